@@ -1,0 +1,53 @@
+// Vector types under the names that the shaders use, and the axis-aligned box. Nothing here knows of
+// rendering.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include <glm/glm.hpp>
+
+namespace candela {
+
+using glm::mat3;
+using glm::mat4;
+using glm::uvec2;
+using glm::uvec3;
+using glm::uvec4;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+
+inline constexpr float PI = 3.14159265358979f;
+inline constexpr float INFINITE = std::numeric_limits<float>::infinity();
+
+// True if no component is NaN or infinite.
+inline bool is_finite(vec3 v) {
+    return !glm::any(glm::isnan(v)) && !glm::any(glm::isinf(v));
+}
+
+// Axis-aligned box [lo, hi], metres. A fresh one is empty: lo = +infinity, hi = -infinity.
+struct Box {
+    vec3 lo{INFINITE};
+    vec3 hi{-INFINITE};
+
+    void extend(vec3 p) {
+        lo = glm::min(lo, p);
+        hi = glm::max(hi, p);
+    }
+    void extend(const Box& box) {
+        lo = glm::min(lo, box.lo);
+        hi = glm::max(hi, box.hi);
+    }
+    bool is_empty() const { return lo.x > hi.x || lo.y > hi.y || lo.z > hi.z; }
+    vec3 extent() const { return hi - lo; }
+    vec3 centroid() const { return 0.5f * lo + 0.5f * hi; }
+    // Half the surface area [m^2]; 0 for an empty box.
+    float half_area() const {
+        if (is_empty()) return 0.0f;
+        const vec3 d = extent();
+        return d.x * d.y + d.y * d.z + d.z * d.x;
+    }
+};
+
+}  // namespace candela
