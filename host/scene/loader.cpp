@@ -1,0 +1,83 @@
+// The scene file as a whole, and its small parts.
+#include "scene/loader.h"
+
+#include "base/file.h"
+#include "scene/geometry.h"
+#include "scene/loader_parts.h"
+#include "scene/names.h"
+
+namespace candela {
+namespace {
+
+Film read_film(const Node& node) {
+    constexpr uint32_t MOST_PIXELS = 65536;  // Along one side.
+    node.allow_only({"size"});
+    const Node size = node.require("size");
+    const std::vector<Node> sides = size.elements();
+    if (sides.size() != 2) size.fail_expected("two whole numbers [width, height]");
+    return {uvec2(sides[0].integer(1, MOST_PIXELS), sides[1].integer(1, MOST_PIXELS))};
+}
+
+IntegratorSettings read_integrator(const Node& node) {
+    constexpr uint32_t MOST_SAMPLES = 1u << 24;  // The count is kept as a float.
+    constexpr uint32_t MOST_BOUNCES = 4096;      // The safety limit of unlimited paths.
+    node.allow_only({"spp", "max_depth", "rr_depth", "estimator", "sampler", "seed"});
+    IntegratorSettings settings;
+    if (const auto spp = node.find("spp")) settings.spp = spp->integer(1, MOST_SAMPLES);
+    if (const auto depth = node.find("max_depth")) {
+        const bool unlimited = depth->is_string() && depth->string() == "unlimited";
+        if (!unlimited && !depth->is_number()) depth->fail_expected("a whole number or \"unlimited\"");
+        if (!unlimited) settings.max_depth = depth->integer(0, MOST_BOUNCES);
+    }
+    if (const auto depth = node.find("rr_depth")) settings.rr_depth = depth->integer(0, MOST_BOUNCES);
+    if (const auto estimator = node.find("estimator"))
+        settings.estimator = estimator->choice(ESTIMATOR_NAMES);
+    if (const auto sampler = node.find("sampler")) settings.sampler = sampler->choice(SAMPLER_NAMES);
+    if (const auto seed = node.find("seed")) settings.seed = seed->integer(0, ~0u);
+    return settings;
+}
+
+DiffuseMaterial read_diffuse(const Node& node) {
+    node.allow_only({"type", "reflectance"});
+    const Node reflectance = node.require("reflectance");
+    const vec3 rgb = reflectance.rgb();
+    if (glm::any(glm::greaterThan(rgb, vec3(1.0f)))) reflectance.fail_expected("numbers from 0 to 1");
+    return {rgb};
+}
+
+Material read_material(const Node& node) {
+    constexpr auto READERS = std::array{std::pair(std::string_view("diffuse"), &read_diffuse)};
+    return {std::string(node.key()), node.require("type").choice(READERS)(node)};
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& path) {
+    const std::string file = path.string();
+    const json::Value document = json::parse(read_file(path), file);
+    const Node root(file, "", document);
+    root.allow_only({"$schema", "cameras", "film", "integrator", "materials", "shapes"});
+
+    Scene scene;
+    if (const auto film = root.find("film")) scene.film = read_film(*film);
+    const Node cameras = root.require("cameras");
+    for (const Node& camera : cameras.members())
+        scene.cameras.push_back(read_camera(camera, scene.film));
+    if (scene.cameras.empty()) cameras.fail("the scene has no camera; add one");
+    if (const auto integrator = root.find("integrator")) scene.integrator = read_integrator(*integrator);
+    if (const auto materials = root.find("materials")) {
+        for (const Node& material : materials->members())
+            scene.materials.push_back(read_material(material));
+    }
+    const Node shapes = root.require("shapes");
+    read_shapes(shapes, path.parent_path(), scene);
+
+    if (scene.shapes.empty()) {
+        scene.warnings.push_back(shapes.place() + ": the scene has no shapes");
+    } else if (emitter_count(scene) == 0) {
+        scene.warnings.push_back(shapes.place() + ": the scene has no light: the image will be black");
+    }
+    return scene;
+}
+
+}  // namespace candela

@@ -1,0 +1,17 @@
+// Polygons cut into triangles.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/math.h"
+
+namespace candela {
+
+// Cuts a polygon of n >= 3 corners, convex or concave, nearly planar, into n - 2 triangles of the same
+// winding, given as indices into `corners`. A polygon that crosses itself is cut somehow. Time grows with the
+// square of n, in the worst case with its cube.
+// Ref: Meisters, "Polygons Have Ears" (1975).
+std::vector<uvec3> triangulate(std::span<const vec3> corners);
+
+}  // namespace candela

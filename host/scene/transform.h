@@ -1,0 +1,36 @@
+// Affine transforms from a shape's own space to world space.
+#pragma once
+
+#include "base/math.h"
+#include "scene/node.h"
+
+namespace candela {
+
+// A chain of steps; starts as the identity. Not singular.
+class Transform {
+  public:
+    // Appends a step (affine, its last row 0 0 0 1). Returns false, and leaves the transform useless, if the
+    // result is singular: if it flattens space to less than 1e-12 of its volume, or overflows.
+    bool append(const glm::dmat4& step);
+
+    // A point in world space; it need not fit into a float.
+    glm::dvec3 point(glm::dvec3 p) const { return glm::dvec3(matrix_ * glm::dvec4(p, 1.0)); }
+    // The unit normal in world space for a normal of any length; zero stays zero.
+    vec3 normal(vec3 n) const;
+    // True if the transform turns clockwise into counter-clockwise.
+    bool mirrors() const { return mirrors_; }
+
+  private:
+    glm::dmat4 matrix_{1.0};
+    glm::dmat3 cofactor_{1.0};  // The inverse transpose of the linear part, up to a factor.
+    bool mirrors_ = false;
+};
+
+// Reads a list of steps, which apply in order, each of them one of
+//     {"scale": s or [x, y, z]}, {"rotate": degrees, "axis": [x, y, z]}, {"translate": [x, y, z]},
+//     {"matrix": [16 numbers, row-major]}.
+// Throws Error with a place for any other content, an axis without length, a matrix that is not affine, or a
+// singular result.
+Transform read_transform(const Node& steps);
+
+}  // namespace candela

@@ -1,0 +1,65 @@
+// What the tests of scene files share: a folder to write scenes to, and errors whose place is marked in the
+// text.
+#pragma once
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include "base_fixture.h"
+#include "scene/loader.h"
+
+namespace candela {
+
+// Removes the one '@' from `text` and returns where it stood, as `line:column`.
+inline std::string take_mark(std::string& text) {
+    const size_t mark = text.find('@');
+    if (mark == std::string::npos) throw std::logic_error("no @ in: " + text);
+    text.erase(mark, 1);
+    const auto begin = text.begin();
+    const auto lines = std::count(begin, begin + std::ptrdiff_t(mark), '\n');
+    const size_t line_begin = mark == 0 ? std::string::npos : text.rfind('\n', mark - 1);
+    const size_t column = mark - (line_begin == std::string::npos ? 0 : line_begin + 1) + 1;
+    return std::to_string(lines + 1) + ':' + std::to_string(column);
+}
+
+class SceneFolder {
+  public:
+    void write(const std::string& name, const std::string& text) {
+        std::ofstream(folder_ / name, std::ios::binary) << text;
+    }
+
+    Scene load(const std::string& text) {
+        write("scene.json", text);
+        return load_scene(folder_ / "scene.json");
+    }
+
+    // Loads a scene that has an error at its '@', and checks the message behind `scene.json:line:column: `.
+    void expect_error(std::string text, const std::string& message) {
+        SCOPED_TRACE(text);
+        const std::string place = take_mark(text);
+        EXPECT_EQ(without_folder(error_of([&] { load(text); })), "scene.json:" + place + ": " + message);
+    }
+
+    std::string without_folder(std::string message) const {
+        const std::string prefix = folder_.path().string() + '/';
+        for (size_t at = message.find(prefix); at != std::string::npos; at = message.find(prefix)) {
+            message.erase(at, prefix.size());
+        }
+        return message;
+    }
+
+  private:
+    TemporaryDirectory folder_;
+};
+
+// A valid scene around the text of its shapes.
+inline std::string scene_of(const std::string& shapes) {
+    return R"({"cameras": {"main": {"position": [0, 0, 5], "look_at": [0, 0, 0], "vertical_fov": 40}},
+"materials": {"glass": {"type": "diffuse", "reflectance": 1}, "white": {"type": "diffuse", "reflectance": 0.5}},
+"shapes": [)" +
+           shapes + "]}";
+}
+
+}  // namespace candela

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Checks that scenes/scene.schema.json accepts every scene and refuses bad ones: schema_test.py SCENES_DIR."""
+
+import copy
+import json
+import re
+import sys
+from pathlib import Path
+
+import jsonschema
+
+# A string, which stays, or a comment, which becomes a space.
+STRING_OR_COMMENT = re.compile(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
+
+
+def read_scene(path):
+    text = path.read_text(encoding="utf-8")
+    return json.loads(STRING_OR_COMMENT.sub(lambda match: match.group(1) or " ", text))
+
+
+GOOD = {
+    "cameras": {"main": {"position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40}},
+    "film": {"size": [640, 480]},
+    "integrator": {"spp": 1, "max_depth": 5, "estimator": "mis"},
+    "materials": {"white": {"type": "diffuse", "reflectance": [1, 0.5, 0]}},
+    "shapes": [
+        {
+            "type": "box",
+            "min": [0, 0, 0],
+            "max": [1, 1, 1],
+            "material": "white",
+            "transform": [{"scale": 2}, {"rotate": 90, "axis": [0, 1, 0]}, {"translate": [1, 2, 3]}],
+        }
+    ],
+}
+
+REMOVE = object()
+
+# What to change in GOOD so that the schema must refuse it: the path of a value, and the value.
+BAD = [
+    (["cameras"], REMOVE),
+    (["cameras"], {}),
+    (["lights"], []),
+    (["cameras", "main", "vertical_fov"], 180),
+    (["cameras", "main", "vertical_fov"], REMOVE),
+    (["cameras", "main", "focal_length"], 0.035),
+    (["cameras", "main", "position"], [0, 0]),
+    (["cameras", "main", "fov"], 40),
+    (["film", "size"], [0, 480]),
+    (["film", "size"], [640.5, 480]),
+    (["film", "size"], [640]),
+    (["integrator", "spp"], 0),
+    (["integrator", "max_depth"], "infinite"),
+    (["integrator", "estimator"], "nee"),
+    (["integrator", "seed"], 2**32),
+    (["materials", "white", "reflectance"], 1.5),
+    (["materials", "white", "reflectance"], [1, 1]),
+    (["materials", "white", "type"], "difuse"),
+    (["shapes", 0, "material"], REMOVE),
+    (["shapes", 0, "max"], REMOVE),
+    (["shapes", 0, "type"], "sphere"),
+    (["shapes", 0, "type"], REMOVE),
+    (["shapes", 0, "file"], "a.obj"),
+    (["shapes", 0, "two_sided"], True),
+    (["shapes", 0, "emission"], -1),
+    (["shapes", 0, "transform"], {"scale": 2}),
+    (["shapes", 0, "transform", 0], {"scale": 2, "translate": [0, 0, 0]}),
+    (["shapes", 0, "transform", 1], {"rotate": 90}),
+    (["shapes", 0, "transform", 2], {"matrix": [1, 0, 0, 0]}),
+]
+
+
+def changed(path, value):
+    """GOOD with one value replaced, added or removed."""
+    scene = copy.deepcopy(GOOD)
+    parent = scene
+    for key in path[:-1]:
+        parent = parent[key]
+    if value is REMOVE:
+        del parent[path[-1]]
+    else:
+        parent[path[-1]] = value
+    return scene
+
+
+def main(folder):
+    schema = read_scene(folder / "scene.schema.json")
+    jsonschema.Draft202012Validator.check_schema(schema)
+    validator = jsonschema.Draft202012Validator(schema)
+    failures = []
+    scenes = [path for path in sorted(folder.glob("*.json")) if path.name != "scene.schema.json"]
+    if not scenes:
+        failures.append(f"{folder}: no scenes found")
+    for path in scenes:
+        for error in validator.iter_errors(read_scene(path)):
+            failures.append(f"{path}: {error.json_path}: {error.message}")
+    for error in validator.iter_errors(GOOD):
+        failures.append(f"the good scene: {error.json_path}: {error.message}")
+    for path, value in BAD:
+        if validator.is_valid(changed(path, value)):
+            change = "removed" if value is REMOVE else f"set to {json.dumps(value)}"
+            failures.append(f"the schema accepts a scene with {path} {change}")
+    for failure in failures:
+        print(failure, file=sys.stderr)
+    print(f"{len(scenes)} scenes and {len(BAD)} bad ones checked, {len(failures)} failures")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: schema_test.py SCENES_DIR")
+    sys.exit(main(Path(sys.argv[1])))

@@ -1,0 +1,137 @@
+// Transforms of shapes: order of steps, exactness, mirrors, and what is refused.
+#include "scene/transform.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "scene_fixture.h"
+
+namespace candela {
+namespace {
+
+Transform parse_transform(const std::string& text) {
+    const std::string file = "t.json";
+    const json::Value value = json::parse(text, file);
+    return read_transform(Node(file, "transform", value));
+}
+
+void expect_transform_error(std::string text, const std::string& message) {
+    SCOPED_TRACE(text);
+    const std::string place = take_mark(text);
+    EXPECT_EQ(error_of([&] { parse_transform(text); }), "t.json:" + place + ": " + message);
+}
+
+void expect_point(const Transform& transform, glm::dvec3 p, glm::dvec3 expected) {
+    EXPECT_LT(length(transform.point(p) - expected), 1e-12);
+}
+
+TEST(Transform, AppliesStepsInOrder) {
+    expect_point(parse_transform("[]"), {1, 2, 3}, {1, 2, 3});
+    expect_point(parse_transform(R"([{"translate": [1, 0, 0]}, {"scale": 2}])"), {1, 1, 1}, {4, 2, 2});
+    expect_point(parse_transform(R"([{"scale": [2, 3, 4]}, {"translate": [1, 0, 0]}])"), {1, 1, 1},
+                 {3, 3, 4});
+    expect_point(parse_transform(R"([{"rotate": 90, "axis": [0, 5, 0]}, {"translate": [0, 0, 1]}])"),
+                 {1, 0, 0}, {0, 0, 0});
+    expect_point(parse_transform(R"([{"matrix": [1, 2, 0, 3, 0, 1, 0, 4, 0, 0, 1, 5, 0, 0, 0, 1]}])"),
+                 {1, 1, 1}, {6, 5, 6});
+}
+
+TEST(Transform, KeepsNormalsPerpendicular) {
+    const Transform shear = parse_transform(R"([{"scale": [1, 1, -1]}, {"rotate": 30, "axis": [1, 2, 3]},
+        {"matrix": [1, 0.5, 0, 0, 0, 2, 0.25, 0, 0, 0, 1, 0, 0, 0, 0, 1]}])");
+    const glm::dvec3 u(1, 2, -1);
+    const glm::dvec3 v(0, 1, 3);
+    const glm::dvec3 origin = shear.point(glm::dvec3(0));
+    const glm::dvec3 n(shear.normal(vec3(cross(u, v))));
+    EXPECT_NEAR(length(n), 1.0, 1e-6);
+    EXPECT_NEAR(dot(n, shear.point(u) - origin), 0.0, 1e-6);
+    EXPECT_NEAR(dot(n, shear.point(v) - origin), 0.0, 1e-6);
+    // What points away from a solid still does.
+    EXPECT_GT(dot(n, shear.point(cross(u, v)) - origin), 0.0);
+    EXPECT_EQ(shear.normal(vec3(0)), vec3(0));
+}
+
+TEST(Transform, KnowsMirrors) {
+    EXPECT_TRUE(parse_transform(R"([{"scale": [1, -1, 1]}])").mirrors());
+    EXPECT_TRUE(parse_transform(R"([{"scale": -1}])").mirrors());
+    EXPECT_FALSE(parse_transform(R"([{"scale": [-1, -1, 1]}])").mirrors());
+    EXPECT_FALSE(parse_transform(R"([{"scale": -1}, {"scale": -1}])").mirrors());
+}
+
+TEST(Transform, RefusesSingularOnes) {
+    const std::string singular =
+        "the transform is singular: up to this step it flattens the shape; use factors other than 0";
+    expect_transform_error(R"([{"translate": [1, 1, 1]}, @{"scale": 0}])", singular);
+    expect_transform_error(R"([@{"scale": [1, 0, 1]}])", singular);
+    expect_transform_error(R"([@{"matrix": [1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0, 0, 0, 0, 1]}])", singular);
+    expect_transform_error(R"([{"scale": 1e-38}, {"scale": 1e-38}, @{"scale": 1e-38}, {"scale": 1e-38}])",
+                           singular);
+    EXPECT_NO_THROW(parse_transform(R"([{"scale": [1e-9, 1, 1e9]}])"));
+}
+
+TEST(Transform, RefusesMalformedSteps) {
+    const std::string one_step =
+        "a step of a transform has exactly one of the keys scale, rotate (with axis), translate and matrix";
+    expect_transform_error("@{}", "\"transform\": expected an array [ ... ], found an object");
+    expect_transform_error("[@{}]", one_step);
+    expect_transform_error(R"([@{"axis": [1, 0, 0]}])", one_step);
+    expect_transform_error(R"([@{"rotate": 90}])", one_step);
+    expect_transform_error(R"([@{"scale": 2, "translate": [1, 0, 0]}])", one_step);
+    expect_transform_error(
+        R"([{@"scal": 2}])",
+        "unknown key \"scal\" (did you mean \"scale\"? known: scale, rotate, axis, translate, matrix)");
+    expect_transform_error(R"([{"rotate": 90, "axis": @[0, 0, 0]}])",
+                           "\"axis\": expected a direction, not zero, found [0, 0, 0]");
+    expect_transform_error(R"([{"rotate": @"90", "axis": [0, 0, 1]}])",
+                           "\"rotate\": expected a number, found \"90\"");
+    expect_transform_error(R"([{"matrix": @[1, 0, 0, 1]}])",
+                           "\"matrix\": expected 16 numbers, row by row, found [1, 0, 0, 1]");
+    expect_transform_error(R"([{"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, @0, 0, 0, 2]}])",
+                           "the last row of a matrix must be 0, 0, 0, 1: the transform must be affine");
+}
+
+TEST(Transform, IsBakedInDoublePrecision) {
+    SceneFolder folder;
+    const Scene scene = folder.load(scene_of(R"({"type": "mesh", "material": "white",
+        "positions": [[552.8, 0, 0], [549.6, 0, 559.2], [556, 548.8, 559.2]], "triangles": [[0, 1, 2]],
+        "transform": [{"scale": 0.001}]})"));
+    const auto& mesh = std::get<TriangleMesh>(scene.shapes[0].geometry);
+    EXPECT_EQ(mesh.positions[0], vec3(0.5528f, 0, 0));
+    EXPECT_EQ(mesh.positions[1], vec3(0.5496f, 0, 0.5592f));
+    EXPECT_EQ(mesh.positions[2], vec3(0.556f, 0.5488f, 0.5592f));
+}
+
+// The fronts of all shapes face away from the middle, mirrored or not.
+TEST(Transform, KeepsFrontsInFront) {
+    SceneFolder folder;
+    const std::string octant = R"("positions": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "triangles": [[0, 1, 2]],
+        "normals": [[2, 0.5, 0.5], [0.5, 2, 0.5], [0.5, 0.5, 2]])";
+    const std::string quad = R"("vertices": [[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]])";
+    folder.write("t.obj", "v 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
+    for (const char* scale : {"[1, 2, 3]", "[-1, 2, 3]", "[-1, -2, -3]", "[1, -2, -3]"}) {
+        const std::string rest =
+            R"(, "material": "white", "transform": [{"scale": )" + std::string(scale) + "}]}";
+        const Scene scene = folder.load(
+            scene_of(R"({"type": "box", "min": [-1, -1, -1], "max": [1, 1, 1])" + rest +
+                     ", {\"type\": \"mesh\", " + octant + rest + ", {\"type\": \"quad\", " + quad + rest +
+                     R"(, {"type": "obj", "file": "t.obj", "normals": "smooth")" + rest));
+        ASSERT_EQ(scene.shapes.size(), 9u);
+        for (const Shape& shape : scene.shapes) {
+            if (const auto* q = std::get_if<Quad>(&shape.geometry)) {
+                const vec3 n = cross(q->corners[1] - q->corners[0], q->corners[2] - q->corners[0]);
+                EXPECT_GT(dot(n, q->corners[0]), 0.0f);
+                continue;
+            }
+            const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+            const uvec3 t = mesh.triangles[0];
+            const vec3 p = mesh.positions[t.x];
+            const vec3 n = cross(mesh.positions[t.y] - p, mesh.positions[t.z] - p);
+            EXPECT_GT(dot(n, p), 0.0f);
+            for (const vec3 normal : mesh.normals)
+                EXPECT_GT(dot(n, normal), 0.0f);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace candela
