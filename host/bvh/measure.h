@@ -1,0 +1,33 @@
+// Depth and cost of a finished tree, computed from its nodes alone.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/math.h"
+#include "shared/bvh_node.h"
+
+namespace candela {
+
+// Half the surface area [m^2] in double precision, in which no box that a BVH accepts overflows or
+// underflows.
+inline double half_area(const Box& box) {
+    const glm::dvec3 d = glm::dvec3(box.hi) - glm::dvec3(box.lo);
+    return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+struct BvhMeasures {
+    uint32_t depth;
+    float sah_cost;
+};
+
+// Measures the tree `nodes` with exact bounds `bounds`; every interior reference must point forwards.
+//
+// depth: nodes on the longest way down, the root included.
+//
+// sah_cost = (sum over nodes of A(node) * NODE_COST + sum over leaves of A(leaf) * count) / A(root), where A
+// is the surface area of the decoded box, which is the one that rays meet (of the root: of `bounds`); 0 if
+// A(root) is. Ref: MacDonald and Booth 1990, Heuristics for Ray Tracing Using Space Subdivision.
+BvhMeasures measure(std::span<const PackedBvhNode> nodes, const Box& bounds);
+
+}  // namespace candela

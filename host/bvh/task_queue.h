@@ -1,0 +1,67 @@
+// Runs tasks that make further tasks on a few threads. Nothing here knows of trees.
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace candela {
+
+// Tasks are taken newest first, which keeps the number that wait small.
+template <class Task>
+class TaskQueue {
+  public:
+    // Adds a task; a task that runs may call this.
+    void push(Task task) {
+        const std::lock_guard lock(mutex_);
+        waiting_.push_back(std::move(task));
+        changed_.notify_one();
+    }
+
+    // Calls work(task) for every task, on `threads` (>= 1) threads of which the caller's is one, until none
+    // is left. The first exception that `work` throws ends the run and is thrown here.
+    template <class Work>
+    void run(unsigned threads, const Work& work) {
+        std::vector<std::jthread> helpers;
+        for (unsigned i = 1; i < threads; ++i)
+            helpers.emplace_back([&] { serve(work); });
+        serve(work);
+        helpers.clear();  // Joins.
+        if (error_) std::rethrow_exception(error_);
+    }
+
+  private:
+    template <class Work>
+    void serve(const Work& work) {
+        std::unique_lock lock(mutex_);
+        while (true) {
+            changed_.wait(lock, [&] { return !waiting_.empty() || running_ == 0 || error_; });
+            if (waiting_.empty() || error_) break;
+            const Task task = std::move(waiting_.back());
+            waiting_.pop_back();
+            ++running_;
+            lock.unlock();
+            std::exception_ptr error;
+            try {
+                work(task);
+            } catch (...) {
+                error = std::current_exception();
+            }
+            lock.lock();
+            --running_;
+            if (error && !error_) error_ = error;
+        }
+        changed_.notify_all();
+    }
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::vector<Task> waiting_;
+    size_t running_ = 0;  // Tasks that threads work on now.
+    std::exception_ptr error_;
+};
+
+}  // namespace candela
