@@ -1,0 +1,61 @@
+// Buffer: an array in device memory that kernels read or write.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <volk.h>
+
+#include "vk/device.h"
+#include "vk/handle.h"
+#include "vk/memory.h"
+
+namespace candela::vk {
+
+enum class BufferUsage {
+    storage,   // Device-local storage buffer.
+    texel,     // Device-local uniform texel buffer of R32G32B32A32_UINT texels (usamplerBuffer).
+    uniform,   // Device-local uniform buffer.
+    readback,  // Storage buffer in host memory: kernels write it, the host reads it. Also what copies go
+               // through.
+};
+
+class Buffer {
+  public:
+    // Makes a buffer of `size` bytes, rounded up to whole elements (16 bytes, at least one); its contents are
+    // undefined. `name` is for messages. Throws an Error that names the buffer, its size and the limit if the
+    // device cannot hold or bind it.
+    Buffer(const Device& device, uint64_t size, BufferUsage usage, const std::string& name);
+
+    // Copies `bytes` to the buffer from `offset` [bytes] on, and waits until it is done. They must fit.
+    void upload(std::span<const std::byte> bytes, uint64_t offset = 0);
+    // Copies from the buffer, from `offset` [bytes] on, into all of `bytes`. They must fit.
+    void download(std::span<std::byte> bytes, uint64_t offset = 0) const;
+
+    // The size in bytes, after rounding.
+    uint64_t size() const { return size_; }
+    BufferUsage usage() const { return usage_; }
+    // The contents as the host sees them, or null if the host must upload and download. Never null for
+    // readback.
+    std::byte* mapped() const { return memory_.mapped(); }
+
+    VkBuffer handle() const { return buffer_.get(); }
+    // The view that a kernel binds; null unless the usage is texel.
+    VkBufferView view() const { return view_.get(); }
+
+  private:
+    const Device* device_;
+    uint64_t size_;
+    BufferUsage usage_;
+    Memory memory_;
+    Unique<VkBuffer, VkDevice> buffer_;
+    Unique<VkBufferView, VkDevice> view_;
+};
+
+// The most bytes that one copy between host and device takes at a time, so that large data needs little extra
+// memory.
+inline constexpr uint64_t STAGING_BYTES = uint64_t{64} << 20;
+
+}  // namespace candela::vk

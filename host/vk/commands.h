@@ -1,0 +1,51 @@
+// Commands: work for the device, recorded, then submitted and waited for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <volk.h>
+
+#include "vk/device.h"
+#include "vk/handle.h"
+
+namespace candela::vk {
+
+class Kernel;
+
+// Submissions follow each other: each sees all that the host and earlier submissions wrote, and the host sees
+// all that it wrote once submit_and_wait() returns. Within one submission, say what depends on what.
+class Commands {
+  public:
+    explicit Commands(const Device& device);
+
+    // Runs groups[0] * groups[1] * groups[2] work groups of `kernel`, with `push_constants` of exactly the
+    // kernel's size. All bindings must be bound. Throws an Error that names the limit if there are too many
+    // groups.
+    void dispatch(const Kernel& kernel, std::span<const std::byte> push_constants,
+                  const std::array<uint32_t, 3>& groups);
+    // What is dispatched after this sees what was dispatched before.
+    void compute_to_compute();
+
+    // Runs what was recorded, waits until it is done and returns how long the device worked on it [s]: by the
+    // device's clock if it has one, else from submit to finish by the host's. Then recording starts afresh.
+    // Throws an Error (device_lost) if the device gave up.
+    double submit_and_wait();
+
+    // The command buffer, for the copies of Buffer and StorageImage.
+    VkCommandBuffer handle() const { return buffer_; }
+
+  private:
+    void begin();
+    double elapsed_by_timestamps() const;
+
+    const Device* device_;
+    Unique<VkCommandPool, VkDevice> pool_;
+    Unique<VkFence, VkDevice> fence_;
+    Unique<VkQueryPool, VkDevice> timestamps_;  // Empty if the queue writes none.
+    VkCommandBuffer buffer_ = VK_NULL_HANDLE;   // Freed with the pool.
+};
+
+}  // namespace candela::vk

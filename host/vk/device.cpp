@@ -1,0 +1,103 @@
+// Opens a device and answers for its memory.
+#include "vk/device.h"
+
+#include <fstream>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
+#include "base/error.h"
+#include "vk/check.h"
+
+namespace candela::vk {
+
+static VkDevice create_device(const DeviceInfo& info) {
+    const float priority = 1.0f;
+    VkDeviceQueueCreateInfo queue{};
+    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+    queue.queueFamilyIndex = info.queue_family;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+
+    // A device that offers this extension (MoltenVK) must be opened with it. Its name is in Vulkan's beta
+    // header.
+    const char* const portability = "VK_KHR_portability_subset";
+    const bool has_portability = has_extension(device_extensions(info.handle), portability);
+
+    VkDeviceCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+    create.queueCreateInfoCount = 1;
+    create.pQueueCreateInfos = &queue;
+    create.enabledExtensionCount = has_portability ? 1 : 0;
+    create.ppEnabledExtensionNames = &portability;
+    VkDevice device = VK_NULL_HANDLE;
+    VK_CHECK(vkCreateDevice(info.handle, &create, nullptr, &device));
+    return device;
+}
+
+Device::Device(const Instance& instance, const DeviceInfo& info,
+               std::optional<std::filesystem::path> pipeline_cache_file)
+    : info_(info), debug_names_(instance.validation()) {
+    if (!info.reason.empty()) {
+        throw Error("device \"" + info.name + "\" will not do: " + info.reason, ExitCode::no_device);
+    }
+    vkGetPhysicalDeviceMemoryProperties(info.handle, &memory_);
+    device_ = {create_device(info), vkDestroyDevice};
+    vkGetDeviceQueue(device_.get(), info.queue_family, 0, &queue_);
+    VkPhysicalDeviceProperties properties{};
+    vkGetPhysicalDeviceProperties(info.handle, &properties);
+    pipeline_cache_.emplace(device_.get(), properties, std::move(pipeline_cache_file));
+}
+
+// Bytes of RAM that programs can still have; where the system does not tell, all of its RAM.
+static uint64_t free_ram() {
+    std::ifstream meminfo("/proc/meminfo");
+    std::string word;
+    while (meminfo >> word) {
+        uint64_t kibibytes = 0;
+        if (word == "MemAvailable:" && meminfo >> kibibytes) return kibibytes * 1024;
+    }
+    return uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE));
+}
+
+uint64_t Device::available_memory() const {
+    return info_.type == DeviceType::cpu ? free_ram() : info_.device_heap;
+}
+
+uint32_t Device::memory_type(uint32_t allowed, VkMemoryPropertyFlags required,
+                             VkMemoryPropertyFlags preferred) const {
+    for (const VkMemoryPropertyFlags wanted : {required | preferred, required}) {
+        for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
+            const bool is_allowed = (allowed & (1u << i)) != 0;
+            if (is_allowed && (memory_properties(i) & wanted) == wanted) return i;
+        }
+    }
+    throw Error("device \"" + info_.name + "\" has no memory of the kind that is needed (properties " +
+                std::to_string(required) + "); choose another device");
+}
+
+VkMemoryPropertyFlags Device::memory_properties(uint32_t memory_type) const {
+    return memory_.memoryTypes[memory_type].propertyFlags;
+}
+
+void Device::check_limit(const std::string& what, const char* unit, uint64_t needed, uint64_t allowed,
+                         const char* limit) const {
+    if (needed <= allowed) return;
+    throw Error(what + " needs " + std::to_string(needed) + " " + unit + ", but \"" + info_.name +
+                    "\" allows " + std::to_string(allowed) + " (" + limit +
+                    "); use less or choose another device",
+                ExitCode::out_of_memory);
+}
+
+void Device::set_object_name(VkObjectType type, uint64_t handle, const std::string& name) const {
+    if (!debug_names_) return;
+    VkDebugUtilsObjectNameInfoEXT info{};
+    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
+    info.objectType = type;
+    info.objectHandle = handle;
+    info.pObjectName = name.c_str();
+    VK_CHECK(vkSetDebugUtilsObjectNameEXT(device_.get(), &info));
+}
+
+}  // namespace candela::vk

@@ -1,0 +1,70 @@
+// The logical device: one compute queue, the pipeline cache, and what memory there is.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <volk.h>
+
+#include "vk/device_info.h"
+#include "vk/handle.h"
+#include "vk/instance.h"
+#include "vk/pipeline_cache.h"
+
+namespace candela::vk {
+
+// Everything made from a device refers to it: it must stay where it is and outlive them all. One thread at a
+// time.
+class Device {
+  public:
+    // Opens the device that `info` (from instance.devices()) describes. Compiled kernels are kept in
+    // `pipeline_cache_file`, if given. Throws an Error if the device will not do or cannot be opened.
+    Device(const Instance& instance, const DeviceInfo& info,
+           std::optional<std::filesystem::path> pipeline_cache_file = std::nullopt);
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    const DeviceInfo& info() const { return info_; }
+    const DeviceLimits& limits() const { return info_.limits; }
+
+    // Bytes that are there to allocate: on a CPU the free RAM right now, else the size of the largest
+    // device-local heap, whatever may be in use of it.
+    uint64_t available_memory() const;
+
+    // The index of a memory type among `allowed` (one bit per type) that has all `required` properties, and
+    // all `preferred` ones too if there is such a type. Throws an Error if none has the required ones.
+    uint32_t memory_type(uint32_t allowed, VkMemoryPropertyFlags required,
+                         VkMemoryPropertyFlags preferred) const;
+    // The properties of the memory type of that index.
+    VkMemoryPropertyFlags memory_properties(uint32_t memory_type) const;
+
+    // Throws an Error (out_of_memory) if `needed` is more than `allowed`: `what` (e.g. `buffer "nodes"`)
+    // needs so many `unit`, but the device allows only so many by the limit of that name in the Vulkan
+    // specification.
+    void check_limit(const std::string& what, const char* unit, uint64_t needed, uint64_t allowed,
+                     const char* limit) const;
+
+    // Gives a Vulkan object the name that validation messages and debuggers show; nothing without validation.
+    template <class Handle>
+    void set_name(VkObjectType type, Handle handle, const std::string& name) const {
+        set_object_name(type, (uint64_t)handle, name);
+    }
+
+    VkDevice handle() const { return device_.get(); }
+    VkQueue queue() const { return queue_; }
+    VkPipelineCache pipeline_cache() const { return pipeline_cache_->handle(); }
+
+  private:
+    void set_object_name(VkObjectType type, uint64_t handle, const std::string& name) const;
+
+    DeviceInfo info_;
+    bool debug_names_;
+    VkPhysicalDeviceMemoryProperties memory_{};
+    Unique<VkDevice> device_;
+    VkQueue queue_ = VK_NULL_HANDLE;
+    std::optional<PipelineCache> pipeline_cache_;
+};
+
+}  // namespace candela::vk

@@ -1,0 +1,166 @@
+// Loads Vulkan, makes the instance and collects what the validation layer says.
+#include "vk/instance.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
+#include <string_view>
+#include <utility>
+
+#include "base/error.h"
+#include "vk/check.h"
+
+namespace candela::vk {
+
+static constexpr const char* VALIDATION_LAYER = "VK_LAYER_KHRONOS_validation";
+
+// What the validation layer said; drivers may call from threads of their own.
+class MessageLog {
+  public:
+    void add(std::string message) {
+        const std::lock_guard lock(mutex_);
+        std::fprintf(stderr, "%s\n", message.c_str());
+        messages_.push_back(std::move(message));
+    }
+    std::vector<std::string> messages() const {
+        const std::lock_guard lock(mutex_);
+        return messages_;
+    }
+
+  private:
+    mutable std::mutex mutex_;
+    std::vector<std::string> messages_;
+};
+
+static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                 VkDebugUtilsMessageTypeFlagsEXT,
+                                                 const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                 void* log) {
+    static_cast<MessageLog*>(log)->add(data->pMessage);
+    return VK_FALSE;  // The call that caused the message goes on.
+}
+
+// Warnings and errors about our use of Vulkan. What the loader says of other drivers is not our concern, nor
+// is advice on performance, which finds fault with copies from images in layout GENERAL.
+static VkDebugUtilsMessengerCreateInfoEXT messenger_info(MessageLog* log) {
+    VkDebugUtilsMessengerCreateInfoEXT info{};
+    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+    info.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+    info.pfnUserCallback = on_message;
+    info.pUserData = log;
+    return info;
+}
+
+// The instance extensions of a layer, or, for null, of Vulkan itself.
+static std::vector<VkExtensionProperties> instance_extensions(const char* layer) {
+    uint32_t count = 0;
+    VK_CHECK(vkEnumerateInstanceExtensionProperties(layer, &count, nullptr));
+    std::vector<VkExtensionProperties> extensions(count);
+    VK_CHECK(vkEnumerateInstanceExtensionProperties(layer, &count, extensions.data()));
+    return extensions;
+}
+
+static void require_validation_layer() {
+    uint32_t count = 0;
+    VK_CHECK(vkEnumerateInstanceLayerProperties(&count, nullptr));
+    std::vector<VkLayerProperties> layers(count);
+    VK_CHECK(vkEnumerateInstanceLayerProperties(&count, layers.data()));
+    const bool found = std::any_of(layers.begin(), layers.end(), [](const VkLayerProperties& layer) {
+        return std::string_view(layer.layerName) == VALIDATION_LAYER;
+    });
+    if (!found) {
+        throw Error(std::string("validation was asked for, but the Vulkan layer ") + VALIDATION_LAYER +
+                    " is not there; install vulkan-validationlayers");
+    }
+}
+
+// Makes the instance; with a log, also the validation layer that writes to it.
+static VkInstance create_instance(MessageLog* log) {
+    VkApplicationInfo application{};
+    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+    application.pApplicationName = "candela";
+    application.apiVersion = VK_API_VERSION_1_2;
+    VkInstanceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    info.pApplicationInfo = &application;
+
+    std::vector<const char*> extensions;
+    if (has_extension(instance_extensions(nullptr), VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
+        extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+        info.flags |= VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR;  // Shows MoltenVK.
+    }
+
+    VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(log);
+    const VkValidationFeatureEnableEXT synchronization =
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    VkValidationFeaturesEXT features{};
+    features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+    features.enabledValidationFeatureCount = 1;
+    features.pEnabledValidationFeatures = &synchronization;
+    if (log != nullptr) {
+        require_validation_layer();
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+        info.pNext = &messenger;  // For messages about the making of the instance itself.
+        info.enabledLayerCount = 1;
+        info.ppEnabledLayerNames = &VALIDATION_LAYER;
+        if (has_extension(instance_extensions(VALIDATION_LAYER), VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME)) {
+            extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+            messenger.pNext = &features;
+        }
+    }
+    info.enabledExtensionCount = uint32_t(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
+
+    VkInstance instance = VK_NULL_HANDLE;
+    const VkResult result = vkCreateInstance(&info, nullptr, &instance);
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
+        throw Error(
+            "no Vulkan driver is installed; install the driver of your GPU, or mesa-vulkan-drivers to render "
+            "on the CPU",
+            ExitCode::no_device);
+    }
+    VK_CHECK(result);
+    return instance;
+}
+
+Instance::Instance(const Options& options) {
+    if (volkInitialize() != VK_SUCCESS) {
+        throw Error(
+            "the Vulkan loader (libvulkan.so.1) is not installed; install libvulkan1, and the driver of your "
+            "GPU "
+            "or mesa-vulkan-drivers to render on the CPU",
+            ExitCode::no_device);
+    }
+    if (options.validation) log_ = std::make_unique<MessageLog>();
+    VkInstance instance = create_instance(log_.get());
+    volkLoadInstance(instance);
+    instance_ = {instance, vkDestroyInstance};
+    if (log_) {
+        const VkDebugUtilsMessengerCreateInfoEXT info = messenger_info(log_.get());
+        VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+        VK_CHECK(vkCreateDebugUtilsMessengerEXT(instance, &info, nullptr, &messenger));
+        messenger_ = {messenger, vkDestroyDebugUtilsMessengerEXT, instance};
+    }
+}
+
+Instance::~Instance() = default;
+
+std::vector<DeviceInfo> Instance::devices() const {
+    uint32_t count = 0;
+    VK_CHECK(vkEnumeratePhysicalDevices(instance_.get(), &count, nullptr));
+    std::vector<VkPhysicalDevice> handles(count);
+    VK_CHECK(vkEnumeratePhysicalDevices(instance_.get(), &count, handles.data()));
+    std::vector<DeviceInfo> devices;
+    for (uint32_t i = 0; i < count; ++i) {
+        devices.push_back(query_device(handles[i], i));
+    }
+    return devices;
+}
+
+std::vector<std::string> Instance::validation_messages() const {
+    return log_ ? log_->messages() : std::vector<std::string>{};
+}
+
+}  // namespace candela::vk

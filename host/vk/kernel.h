@@ -1,0 +1,65 @@
+// Kernel: a compute shader, compiled for the device, with the resources that it is bound to.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <volk.h>
+
+#include "vk/buffer.h"
+#include "vk/device.h"
+#include "vk/handle.h"
+#include "vk/image.h"
+
+namespace candela::vk {
+
+enum class BindingType { texel_buffer, storage_buffer, uniform_buffer, storage_image };
+
+// One resource that a kernel declares: layout(set = 0, binding = number).
+struct Binding {
+    uint32_t number;
+    BindingType type;
+};
+
+class Kernel {
+  public:
+    // Compiles `spirv` (entry point "main"). `bindings` lists what the shader declares in set 0, at least
+    // one; `push_constant_size` is in bytes, a multiple of 4, or 0; `constants` are the values of
+    // specialization constants 0, 1, 2, … (32 bits each); `name` is for messages. Throws an Error that names
+    // the kernel and the limit if the device has too few bindings or push constants.
+    Kernel(const Device& device, std::span<const uint32_t> spirv, std::span<const Binding> bindings,
+           uint32_t push_constant_size, std::span<const uint32_t> constants, const std::string& name);
+
+    // Binds a resource to a binding of the matching type. It stays bound, and must live, until another takes
+    // its place. Not between a dispatch and the submit that runs it.
+    void bind(uint32_t number, const Buffer& buffer);
+    void bind(uint32_t number, const StorageImage& image);
+
+    const std::string& name() const { return name_; }
+    uint32_t push_constant_size() const { return push_constant_size_; }
+
+    VkPipeline pipeline() const { return pipeline_.get(); }
+    VkPipelineLayout layout() const { return layout_.get(); }
+    VkDescriptorSet descriptor_set() const { return set_; }
+
+  private:
+    void create_layouts();
+    void create_pipeline(std::span<const uint32_t> spirv, std::span<const uint32_t> constants);
+    void create_descriptor_set();
+    // The write that fills the binding of that number, still without its resource.
+    VkWriteDescriptorSet descriptor(uint32_t number) const;
+
+    const Device* device_;
+    std::string name_;
+    std::vector<Binding> bindings_;
+    uint32_t push_constant_size_;
+    Unique<VkDescriptorSetLayout, VkDevice> set_layout_;
+    Unique<VkPipelineLayout, VkDevice> layout_;
+    Unique<VkPipeline, VkDevice> pipeline_;
+    Unique<VkDescriptorPool, VkDevice> pool_;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;  // Freed with the pool.
+};
+
+}  // namespace candela::vk

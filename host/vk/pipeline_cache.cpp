@@ -1,0 +1,92 @@
+// The file of the pipeline cache: a hash of the data, 8 bytes in the machine's order, then the data that
+// Vulkan gave.
+#include "vk/pipeline_cache.h"
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+#include "vk/check.h"
+
+namespace candela::vk {
+
+// FNV-1a, 64 bits. Vulkan checks only the header, and drivers trust the rest.
+static uint64_t hash(std::span<const char> data) {
+    uint64_t h = 0xcbf29ce484222325u;
+    for (const char c : data) {
+        h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    }
+    return h;
+}
+
+// True if `data` begins with the header that this device and driver write.
+static bool fits_device(std::span<const char> data, const VkPhysicalDeviceProperties& properties) {
+    VkPipelineCacheHeaderVersionOne header{};
+    if (data.size() < sizeof header) return false;
+    std::memcpy(&header, data.data(), sizeof header);
+    return header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE &&
+           header.vendorID == properties.vendorID && header.deviceID == properties.deviceID &&
+           std::memcmp(header.pipelineCacheUUID, properties.pipelineCacheUUID, VK_UUID_SIZE) == 0;
+}
+
+// The data of the file, or nothing if it is missing, damaged or foreign.
+static std::vector<char> load(const std::filesystem::path& file,
+                              const VkPhysicalDeviceProperties& properties) {
+    std::ifstream stream(file, std::ios::binary);
+    uint64_t expected = 0;
+    stream.read(reinterpret_cast<char*>(&expected), sizeof expected);
+    std::vector<char> data{std::istreambuf_iterator<char>(stream), {}};
+    if (hash(data) != expected || !fits_device(data, properties)) return {};
+    return data;
+}
+
+PipelineCache::PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& properties,
+                             std::optional<std::filesystem::path> file)
+    : device_(device), file_(std::move(file)) {
+    if (file_) loaded_ = load(*file_, properties);
+    VkPipelineCacheCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+    info.initialDataSize = loaded_.size();
+    info.pInitialData = loaded_.data();
+    VkPipelineCache cache = VK_NULL_HANDLE;
+    VK_CHECK(vkCreatePipelineCache(device, &info, nullptr, &cache));
+    cache_ = {cache, vkDestroyPipelineCache, device};
+}
+
+PipelineCache::~PipelineCache() {
+    try {
+        if (file_) save();
+    } catch (...) {  // Out of memory: the next run compiles again.
+    }
+}
+
+void PipelineCache::save() const {
+    size_t size = 0;
+    VK_CHECK(vkGetPipelineCacheData(device_, cache_.get(), &size, nullptr));
+    std::vector<char> data(size);
+    VK_CHECK(vkGetPipelineCacheData(device_, cache_.get(), &size, data.data()));
+    data.resize(size);
+    if (data == loaded_) return;
+
+    // Written beside its place and renamed, so that no other run ever sees half a file.
+    std::error_code ignored;
+    if (file_->has_parent_path()) std::filesystem::create_directories(file_->parent_path(), ignored);
+    std::filesystem::path temporary = *file_;
+    temporary += "." + std::to_string(getpid()) + ".tmp";
+    std::ofstream stream(temporary, std::ios::binary);
+    const uint64_t checksum = hash(data);
+    stream.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+    stream.write(data.data(), std::streamsize(data.size()));
+    stream.close();
+    if (stream) std::filesystem::rename(temporary, *file_, ignored);
+    std::filesystem::remove(temporary, ignored);  // Still there only if something failed.
+}
+
+}  // namespace candela::vk

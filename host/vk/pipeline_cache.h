@@ -1,0 +1,36 @@
+// The pipeline cache: compiled kernels, kept in a file between runs.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include <volk.h>
+
+#include "vk/handle.h"
+
+namespace candela::vk {
+
+class PipelineCache {
+  public:
+    // Creates the cache and fills it from `file`, if that is given and was written for the same device and
+    // driver; a file that is missing, damaged or foreign is ignored.
+    PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& properties,
+                  std::optional<std::filesystem::path> file);
+    // Saves the cache to the file if it changed. Failure is silent: the next run compiles again.
+    ~PipelineCache();
+    PipelineCache(const PipelineCache&) = delete;
+    PipelineCache& operator=(const PipelineCache&) = delete;
+
+    VkPipelineCache handle() const { return cache_.get(); }
+
+  private:
+    void save() const;
+
+    VkDevice device_;
+    std::optional<std::filesystem::path> file_;
+    std::vector<char> loaded_;  // What the file held, so that an unchanged cache is not written again.
+    Unique<VkPipelineCache, VkDevice> cache_;
+};
+
+}  // namespace candela::vk

@@ -1,0 +1,229 @@
+// host/vk's instance and device: what they report, which errors they give, and the file of the pipeline
+// cache.
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "vk/buffer.h"
+#include "vk/device.h"
+#include "vk/image.h"
+#include "vk/kernel.h"
+#include "vk_fixture.h"
+
+namespace candela::vk {
+namespace {
+
+// Sets an environment variable for the length of a scope.
+class ScopedVariable {
+  public:
+    ScopedVariable(const char* name, const char* value) : name_(name) {
+        if (const char* old = std::getenv(name)) old_ = old;
+        setenv(name, value, 1);
+    }
+    ~ScopedVariable() { old_ ? setenv(name_, old_->c_str(), 1) : unsetenv(name_); }
+    ScopedVariable(const ScopedVariable&) = delete;
+    ScopedVariable& operator=(const ScopedVariable&) = delete;
+
+  private:
+    const char* name_;
+    std::optional<std::string> old_;
+};
+
+TEST_F(Vk, DeviceInfoIsFilledIn) {
+    EXPECT_EQ(info_.index, uint32_t(&select_device(devices_, {}) - devices_.data()));
+    EXPECT_FALSE(info_.name.empty());
+    EXPECT_GE(info_.driver.size(), 3u);
+    EXPECT_GE(info_.api_version, VK_API_VERSION_1_2);
+    EXPECT_GT(info_.device_heap, 0u);
+    EXPECT_GT(info_.subgroup_size, 0u);
+    // What every Vulkan 1.2 device guarantees.
+    EXPECT_TRUE(info_.uint_texel_buffers);
+    EXPECT_GE(info_.limits.max_compute_work_group_invocations, 128u);
+    EXPECT_GE(info_.limits.max_texel_buffer_elements, 65536u);
+    EXPECT_GE(info_.limits.max_storage_buffer_range, 1u << 27);
+    EXPECT_GE(info_.limits.max_push_constants_size, 128u);
+    EXPECT_GE(info_.limits.max_image_array_layers, 256u);
+    EXPECT_GE(info_.limits.max_image_bytes, uint64_t{1} << 31);
+    EXPECT_GE(info_.limits.max_memory_allocation_size, uint64_t{1} << 30);
+}
+
+TEST_F(Vk, LimitsAreNamed) {
+    const std::string allows = ", but \"" + info_.name + "\" allows ";
+    const std::string remedy = "; use less or choose another device";
+    info_.limits.max_texel_buffer_elements = 100;
+    info_.limits.max_storage_buffer_range = 1600;
+    info_.limits.max_uniform_buffer_range = 160;
+    info_.limits.max_image_dimension_2d = 64;
+    info_.limits.max_image_array_layers = 4;
+    info_.limits.max_image_bytes = 64 * 64 * 4 * 16 - 1;
+    info_.limits.max_push_constants_size = 4;
+    const Device device(instance_, info_);
+    const auto too_big = [](const std::function<void()>& action) {
+        return error_of(ExitCode::out_of_memory, action);
+    };
+
+    EXPECT_EQ(too_big([&] { Buffer(device, 1601, BufferUsage::texel, "nodes"); }),
+              "buffer \"nodes\" needs 101 texels" + allows + "100 (maxTexelBufferElements)" + remedy);
+    EXPECT_EQ(too_big([&] { Buffer(device, 1601, BufferUsage::storage, "nodes"); }),
+              "buffer \"nodes\" needs 1616 bytes" + allows + "1600 (maxStorageBufferRange)" + remedy);
+    EXPECT_EQ(too_big([&] { Buffer(device, 161, BufferUsage::uniform, "camera"); }),
+              "buffer \"camera\" needs 176 bytes" + allows + "160 (maxUniformBufferRange)" + remedy);
+    EXPECT_EQ(too_big([&] { StorageImage(device, 65, 1, 1, "film"); }),
+              "image \"film\" (65x1, 1 layers) needs 65 pixels across" + allows + "64 (maxImageDimension2D)" +
+                  remedy);
+    EXPECT_EQ(too_big([&] { StorageImage(device, 1, 66, 1, "film"); }),
+              "image \"film\" (1x66, 1 layers) needs 66 pixels down" + allows + "64 (maxImageDimension2D)" +
+                  remedy);
+    EXPECT_EQ(too_big([&] { StorageImage(device, 1, 1, 5, "film"); }),
+              "image \"film\" (1x1, 5 layers) needs 5 layers" + allows + "4 (maxImageArrayLayers)" + remedy);
+    EXPECT_EQ(
+        too_big([&] { StorageImage(device, 64, 64, 4, "film"); }),
+        "image \"film\" (64x64, 4 layers) needs 262144 bytes" + allows + "262143 (maxResourceSize)" + remedy);
+    EXPECT_EQ(
+        too_big([&] { Kernel(device, kernels::vk_test, TEST_BINDINGS, 8, {}, "trace"); }),
+        "kernel \"trace\" needs 8 bytes of push constants" + allows + "4 (maxPushConstantsSize)" + remedy);
+}
+
+TEST_F(Vk, LimitsOfMemoryAndBindingsAreNamed) {
+    const std::string allows = ", but \"" + info_.name + "\" allows ";
+    const std::string remedy = "; use less or choose another device";
+    const auto too_big = [](const std::function<void()>& action) {
+        return error_of(ExitCode::out_of_memory, action);
+    };
+    info_.limits.max_per_stage_descriptor_storage_buffers = 1;
+    info_.limits.max_memory_allocation_size = 4096;
+    const Device device(instance_, info_);
+    EXPECT_EQ(too_big([&] { Kernel(device, kernels::vk_test, TEST_BINDINGS, 8, {}, "trace"); }),
+              "kernel \"trace\" needs 2 storage buffers" + allows +
+                  "1 (maxPerStageDescriptorStorageBuffers)" + remedy);
+    EXPECT_EQ(too_big([&] { Buffer(device, 8192, BufferUsage::storage, "nodes"); }),
+              "buffer \"nodes\" needs 8192 bytes" + allows + "4096 (maxMemoryAllocationSize)" + remedy);
+}
+
+TEST_F(Vk, AvailableMemoryBoundsAllocations) {
+    info_.type = DeviceType::discrete;  // Its heap counts then, even on a CPU.
+    info_.device_heap = 1 << 20;
+    const Device device(instance_, info_);
+    EXPECT_EQ(device.available_memory(), uint64_t{1} << 20);
+    EXPECT_EQ(error_of(ExitCode::out_of_memory, [&] { StorageImage(device, 512, 512, 1, "film"); }),
+              "image \"film\" (512x512, 1 layers) needs 4194304 bytes, but \"" + info_.name +
+                  "\" allows 1048576 (available memory); use less or choose another device");
+}
+
+TEST_F(Vk, ADeviceThatWillNotDoIsNotOpened) {
+    info_.reason = "it has no compute queue";
+    EXPECT_EQ(error_of(ExitCode::no_device, [&] { Device(instance_, info_); }),
+              "device \"" + info_.name + "\" will not do: it has no compute queue");
+}
+
+TEST(VkInstance, WithoutADriverNamesTheRemedy) {
+    const ScopedVariable old_name("VK_ICD_FILENAMES", "/nonexistent.json");
+    const ScopedVariable new_name("VK_DRIVER_FILES", "/nonexistent.json");
+    EXPECT_EQ(error_of(ExitCode::no_device, [] { Instance instance({}); }),
+              "no Vulkan driver is installed; install the driver of your GPU, or mesa-vulkan-drivers to "
+              "render on the "
+              "CPU");
+}
+
+TEST(VkInstance, WithoutTheValidationLayerNamesTheRemedy) {
+    const ScopedVariable layers("VK_LAYER_PATH", "/nonexistent");
+    EXPECT_EQ(
+        error_of(ExitCode::failed, [] { Instance instance({.validation = true}); }),
+        "validation was asked for, but the Vulkan layer VK_LAYER_KHRONOS_validation is not there; install "
+        "vulkan-validationlayers");
+    EXPECT_FALSE(Instance({}).devices().empty());
+}
+
+TEST(VkInstance, CollectsWhatTheValidationLayerSays) {
+    const Instance instance({.validation = true});
+    const std::vector<DeviceInfo> devices = instance.devices();
+    {
+        const Device device(instance, select_device(devices, {}));
+        EXPECT_TRUE(instance.validation_messages().empty());
+        VkFenceCreateInfo info{};  // Its type is missing.
+        VkFence fence = VK_NULL_HANDLE;
+        vkCreateFence(device.handle(), &info, nullptr, &fence);
+        vkDestroyFence(device.handle(), fence, nullptr);
+    }
+    ASSERT_EQ(instance.validation_messages().size(), 1u);
+    EXPECT_NE(instance.validation_messages().front().find("VkFenceCreateInfo"), std::string::npos);
+}
+
+// A directory of its own for the pipeline cache's file.
+class VkPipelineCache : public Vk {
+  protected:
+    VkPipelineCache() { std::filesystem::remove_all(directory_); }
+    ~VkPipelineCache() override { std::filesystem::remove_all(directory_); }
+
+    // Opens the device with the cache in the file, compiles a kernel and closes it again.
+    void use_cache() const {
+        const Device device(instance_, info_, file_);
+        const Kernel kernel(device, kernels::vk_test, TEST_BINDINGS, sizeof(TestPush), {}, "cached");
+    }
+    std::string contents() const {
+        std::ifstream stream(file_, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    void write(const std::string& data) const {
+        std::filesystem::create_directories(directory_);
+        std::ofstream(file_, std::ios::binary) << data;
+    }
+
+    const std::filesystem::path directory_ =
+        std::filesystem::temp_directory_path() / ("candela-vk-test-" + std::to_string(getpid()));
+    const std::filesystem::path file_ = directory_ / "pipelines";
+};
+
+TEST_F(VkPipelineCache, IsSavedOnceAndLeavesNothingElse) {
+    use_cache();
+    EXPECT_GT(contents().size(), 8 + sizeof(VkPipelineCacheHeaderVersionOne) - 1);
+    const auto written = std::filesystem::last_write_time(file_);
+    use_cache();
+    EXPECT_EQ(std::filesystem::last_write_time(file_), written);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory_), {}), 1);
+}
+
+TEST_F(VkPipelineCache, DamagedDataIsIgnoredAndReplaced) {
+    use_cache();
+    const std::string good = contents();
+    std::string flipped = good;
+    flipped.back() = static_cast<char>(flipped.back() ^ 1);
+    for (const std::string& bad : {std::string{}, std::string("not a cache"), good.substr(0, 20), flipped}) {
+        write(bad);
+        use_cache();
+        EXPECT_EQ(contents(), good);
+    }
+}
+
+TEST_F(VkPipelineCache, DataOfAnotherDeviceIsIgnoredAndReplaced) {
+    use_cache();
+    const std::string good = contents();
+    for (const size_t field : {4u, 8u, 12u, 16u}) {  // Version, vendor, device, UUID.
+        std::string data = good.substr(8);
+        data[field] = static_cast<char>(data[field] ^ 1);
+        uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, as the file has it in front.
+        for (const char c : data) {
+            hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+        }
+        write(std::string(reinterpret_cast<const char*>(&hash), sizeof hash) + data);
+        use_cache();
+        EXPECT_EQ(contents(), good);
+    }
+}
+
+TEST_F(VkPipelineCache, AFileThatCannotBeWrittenIsNoError) {
+    write("");
+    const Device device(instance_, info_, file_ / "below" / "a" / "file");
+}
+
+}  // namespace
+}  // namespace candela::vk
