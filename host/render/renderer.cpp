@@ -1,0 +1,251 @@
+#include "render/renderer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "render/kernels.h"
+#include "render/schedule.h"
+#include "shared/triangle.h"
+
+namespace candela {
+namespace {
+
+// Submissions on a GPU must stay far from a driver's watchdog; on a CPU they only set how soon Ctrl-C is
+// heard.
+constexpr double GPU_SUBMISSION_SECONDS = 0.075;
+constexpr double CPU_SUBMISSION_SECONDS = 0.25;
+
+// Rays of the position kernel per submission: one per pixel, far below a watchdog's patience.
+constexpr uint32_t POSITION_PIXELS = 1u << 20;
+
+template <class T>
+std::span<const std::byte> bytes_of(const T& value) {
+    return std::as_bytes(std::span(&value, 1));
+}
+
+uint64_t largest_array(const GpuScene& scene) {
+    return std::max({scene.nodes.size(), scene.triangles.size(), scene.tables.size()});
+}
+
+// Texel buffers wherever they hold the scene: on a CPU they are several times faster, on a GPU no slower.
+SceneAccess choose_access(const vk::Device& device, const GpuScene& scene, SceneAccess wanted) {
+    if (wanted != SceneAccess::automatic) return wanted;
+    const uint64_t texels = largest_array(scene);
+    const uint64_t bytes = texels * sizeof(uvec4);
+    const vk::DeviceLimits& limits = device.limits();
+    if (device.info().uint_texel_buffers && texels <= limits.max_texel_buffer_elements) {
+        return SceneAccess::texel_buffers;
+    }
+    if (bytes <= limits.max_storage_buffer_range) return SceneAccess::storage_buffers;
+    throw Error("the largest array of the scene needs " + std::to_string(texels) + " texels (" +
+                    std::to_string(bytes) + " bytes), but " + device.info().name +
+                    " allows maxTexelBufferElements = " + std::to_string(limits.max_texel_buffer_elements) +
+                    " and maxStorageBufferRange = " + std::to_string(limits.max_storage_buffer_range) +
+                    " bytes; use a smaller scene, or another device (candela devices lists them)",
+                ExitCode::out_of_memory);
+}
+
+uint32_t layer_count(const RenderSettings& settings) {
+    return settings.aovs ? LAYER_COUNT_AOVS : LAYER_COUNT_COLOUR;
+}
+
+std::string gibibytes(uint64_t bytes) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f GiB", double(bytes) / (1 << 30));
+    return text;
+}
+
+const vk::Device& check_memory(const vk::Device& device, const GpuScene& scene,
+                               const RenderSettings& settings) {
+    const uint64_t needed = device_bytes(scene, settings);
+    const uint64_t available = device.available_memory();
+    if (needed > available) {
+        throw Error("rendering needs " + gibibytes(needed) + " (scene " + gibibytes(scene.bytes()) +
+                        ", the rest for a picture of " + std::to_string(settings.crop.width()) + "x" +
+                        std::to_string(settings.crop.height()) + "), but " + device.info().name + " has " +
+                        gibibytes(available) + "; use a smaller picture (--size, --crop) or scene",
+                    ExitCode::out_of_memory);
+    }
+    return device;
+}
+
+vk::Buffer scene_buffer(const vk::Device& device, const std::vector<uvec4>& words, SceneAccess access,
+                        const char* name) {
+    const auto usage =
+        access == SceneAccess::texel_buffers ? vk::BufferUsage::texel : vk::BufferUsage::storage;
+    vk::Buffer buffer(device, words.size() * sizeof(uvec4), usage, name);
+    buffer.upload(std::as_bytes(std::span(words)));
+    return buffer;
+}
+
+// Without lights there is nothing to choose a sample from.
+uint32_t estimator_constant(Estimator estimator, uint32_t light_count) {
+    if (light_count == 0) return ESTIMATOR_BSDF;
+    switch (estimator) {
+        case Estimator::bsdf:
+            return ESTIMATOR_BSDF;
+        case Estimator::light:
+            return ESTIMATOR_LIGHT;
+        case Estimator::mis:
+            break;
+    }
+    return ESTIMATOR_MIS;
+}
+
+uint32_t sampler_constant(SamplerKind sampler) {
+    switch (sampler) {
+        case SamplerKind::independent:
+            return SAMPLER_INDEPENDENT;
+        case SamplerKind::stratified:
+            return SAMPLER_STRATIFIED;
+        case SamplerKind::sobol:
+            break;
+    }
+    return SAMPLER_SOBOL;
+}
+
+}  // namespace
+
+Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
+    const vec3 forward = normalize(camera.look_at - camera.position);
+    const vec3 right = normalize(cross(forward, camera.up));
+    const vec3 up = cross(right, forward);
+    const float tan_y = std::tan(0.5f * camera.vertical_fov);
+    const float tan_x = tan_y * float(settings.size.x) / float(settings.size.y);
+    return {.position = camera.position,
+            .right = tan_x * right,
+            .up = tan_y * up,
+            .forward = forward,
+            .full_size = settings.size,
+            .crop = {settings.crop.x0, settings.crop.y0},
+            .seed = settings.seed,
+            .max_depth = std::min(settings.max_depth, DEPTH_SAFETY_LIMIT),
+            .rr_depth = settings.rr_depth,
+            .light_count = scene.light_count,
+            .tables = scene.table_starts};
+}
+
+uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings) {
+    const uint64_t layer = uint64_t{settings.crop.width()} * settings.crop.height() * sizeof(vec4);
+    return scene.bytes() + layer * (layer_count(settings) + 1);
+}
+
+Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera& camera,
+                   const RenderSettings& settings)
+    : device_(&check_memory(device, scene, settings)),
+      settings_(settings),
+      access_(choose_access(device, scene, settings.scene_access)),
+      nodes_(scene_buffer(device, scene.nodes, access_, "nodes")),
+      triangles_(scene_buffer(device, scene.triangles, access_, "triangles")),
+      tables_(scene_buffer(device, scene.tables, access_, "tables")),
+      parameters_(device, PARAMETERS_WORDS * sizeof(uvec4), vk::BufferUsage::uniform, "parameters"),
+      counter_buffer_(device, COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsage::readback, "counters"),
+      image_(device, image_size().x, image_size().y, layer_count(settings), "accumulation"),
+      commands_(device) {
+    parameters_.upload(bytes_of(pack(make_parameters(scene, camera, settings))));
+    std::memset(counter_buffer_.mapped(), 0, COUNTER_COUNT * sizeof(uint32_t));
+    if (settings_.submission_seconds == 0.0) {
+        const bool cpu = device.info().type == vk::DeviceType::cpu;
+        settings_.submission_seconds = cpu ? CPU_SUBMISSION_SECONDS : GPU_SUBMISSION_SECONDS;
+    }
+
+    const auto start = std::chrono::steady_clock::now();
+    const uint32_t constants[] = {sampler_constant(settings.sampler),
+                                  estimator_constant(settings.estimator, scene.light_count),
+                                  scene.has_normals, settings.aovs};
+    render_kernel_ = std::make_unique<vk::Kernel>(
+        make_kernel(kernels::render, kernels::render_storage, true, constants, "render"));
+    position_kernel_ = std::make_unique<vk::Kernel>(
+        make_kernel(kernels::position, kernels::position_storage, false, constants, "position"));
+    render_kernel_->bind(BINDING_IMAGE, image_);
+    render_kernel_->bind(BINDING_COUNTERS, counter_buffer_);
+    // Some drivers compile at the first dispatch.
+    dispatch(*render_kernel_, Tile{.origin = {0, 0}, .size = {0, 0}, .target_samples = 0});
+    pipeline_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+vk::Kernel Renderer::make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage,
+                                 bool counters, std::span<const uint32_t> constants, const char* name) const {
+    const bool texels = access_ == SceneAccess::texel_buffers;
+    const auto scene_type = texels ? vk::BindingType::texel_buffer : vk::BindingType::storage_buffer;
+    std::vector<vk::Binding> bindings{{BINDING_NODES, scene_type},
+                                      {BINDING_TRIANGLES, scene_type},
+                                      {BINDING_TABLES, scene_type},
+                                      {BINDING_PARAMETERS, vk::BindingType::uniform_buffer},
+                                      {BINDING_IMAGE, vk::BindingType::storage_image}};
+    if (counters) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
+    vk::Kernel kernel(*device_, texels ? texel : storage, bindings, sizeof(Tile), constants, name);
+    kernel.bind(BINDING_NODES, nodes_);
+    kernel.bind(BINDING_TRIANGLES, triangles_);
+    kernel.bind(BINDING_TABLES, tables_);
+    kernel.bind(BINDING_PARAMETERS, parameters_);
+    return kernel;
+}
+
+// Runs one tile and returns how long the device took [s].
+double Renderer::dispatch(const vk::Kernel& kernel, const Tile& tile) {
+    const auto groups = [](uint32_t pixels) {
+        return std::max(1u, (pixels + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE);
+    };
+    commands_.dispatch(kernel, bytes_of(tile), {groups(tile.size.x), groups(tile.size.y), 1});
+    return commands_.submit_and_wait();
+}
+
+void Renderer::collect_counters() {
+    uint32_t words[COUNTER_COUNT];
+    std::memcpy(words, counter_buffer_.mapped(), sizeof words);
+    std::memset(counter_buffer_.mapped(), 0, sizeof words);
+    counters_.rays += uint64_t{words[COUNTER_RAYS_HIGH]} << 32 | words[COUNTER_RAYS_LOW];
+    counters_.nonfinite_samples += words[COUNTER_NONFINITE];
+    counters_.depth_limit_hits += words[COUNTER_DEPTH_LIMIT];
+}
+
+bool Renderer::render(uint32_t target, const std::function<bool(double)>& keep_going) {
+    Schedule schedule(image_size(), samples_, target, settings_.submission_seconds);
+    while (!schedule.done()) {
+        const double seconds = dispatch(*render_kernel_, schedule.next());
+        collect_counters();
+        schedule.advance(seconds);
+        if (!keep_going(schedule.progress()) && !schedule.done()) return false;
+    }
+    samples_ = std::max(samples_, target);
+    return true;
+}
+
+Accumulation Renderer::download() const {
+    return {.full = settings_.size,
+            .rect = settings_.crop,
+            .seed = settings_.seed,
+            .layer_count = image_.layers(),
+            .values = image_.download(0, image_.layers())};
+}
+
+void Renderer::upload(const Accumulation& state) {
+    if (state.full != settings_.size || state.rect != settings_.crop || state.seed != settings_.seed ||
+        state.layer_count != image_.layers()) {
+        throw Error(
+            "the state does not fit: its size, crop, seed or set of images differs from this rendering's; "
+            "render with the settings that it was made with");
+    }
+    image_.upload(0, state.values);
+    samples_ = UINT32_MAX;
+    for (size_t i = 0; i < state.pixel_count(); ++i)
+        samples_ = std::min(samples_, state.sample_count(i));
+}
+
+std::vector<float> Renderer::positions() {
+    const uvec2 size = image_size();
+    vk::StorageImage image(*device_, size.x, size.y, 1, "position");
+    position_kernel_->bind(BINDING_IMAGE, image);
+    const uint32_t rows = std::max(1u, POSITION_PIXELS / size.x);
+    for (uint32_t y = 0; y < size.y; y += rows) {
+        dispatch(*position_kernel_,
+                 {.origin = {0, y}, .size = {size.x, std::min(rows, size.y - y)}, .target_samples = 0});
+    }
+    return image.download(0, 1);
+}
+
+}  // namespace candela

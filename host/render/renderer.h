@@ -1,0 +1,99 @@
+// Renderer: uploads a scene, traces paths on the device and accumulates them.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "render/accumulation.h"
+#include "render/gpu_scene.h"
+#include "scene/scene.h"
+#include "shared/parameters.h"
+#include "vk/buffer.h"
+#include "vk/commands.h"
+#include "vk/image.h"
+#include "vk/kernel.h"
+
+namespace candela {
+
+// How kernels read the scene. Both ways give the same bits.
+enum class SceneAccess { automatic, texel_buffers, storage_buffers };
+
+struct RenderSettings {
+    uvec2 size{512, 512};  // Pixels of the whole picture.
+    PixelRect crop;        // The part to render; not empty.
+    Estimator estimator = Estimator::mis;
+    SamplerKind sampler = SamplerKind::sobol;
+    uint32_t seed = 0;
+    uint32_t max_depth = DEPTH_SAFETY_LIMIT;
+    uint32_t rr_depth = 3;
+    bool aovs = false;  // Accumulate albedo and normal as well.
+    SceneAccess scene_access = SceneAccess::automatic;
+    double submission_seconds = 0.0;  // How long a submission should take; 0: what suits the device.
+};
+
+// What the device counted while it rendered.
+struct RenderCounters {
+    uint64_t rays = 0;
+    uint64_t nonfinite_samples = 0;  // Samples that were not finite and added nothing.
+    uint64_t depth_limit_hits = 0;   // Paths cut at DEPTH_SAFETY_LIMIT.
+};
+
+// The uniform record of a camera and settings for a scene.
+Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
+
+// Bytes of device memory that rendering takes: scene, accumulation image and position image.
+uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings);
+
+class Renderer {
+  public:
+    // Uploads the scene and compiles the kernels, an empty first dispatch included. `device` must outlive the
+    // renderer. Throws Error (out_of_memory) that says how much is needed and what the device allows.
+    Renderer(const vk::Device& device, const GpuScene& scene, const Camera& camera,
+             const RenderSettings& settings);
+
+    // Adds samples until every pixel holds `target`. Between submissions `keep_going(progress)` is asked,
+    // progress in [0, 1]; if it says no, rendering stops with pixels that may hold different numbers of
+    // samples. Returns whether the target was reached.
+    bool render(uint32_t target, const std::function<bool(double)>& keep_going);
+
+    // The state so far, and continuing from a state of the same size and layers. Throws Error if it does not
+    // fit.
+    Accumulation download() const;
+    void upload(const Accumulation& state);
+
+    // x, y, z of what the pinhole ray through each pixel's centre meets and its distance along the view axis
+    // [m]; row-major. 0 0 0 infinity where it meets nothing.
+    std::vector<float> positions();
+
+    const RenderCounters& counters() const { return counters_; }
+    SceneAccess scene_access() const { return access_; }
+    double pipeline_seconds() const {
+        return pipeline_seconds_;
+    }  // Wall time of compiling, first dispatch included.
+
+  private:
+    vk::Kernel make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage, bool counters,
+                           std::span<const uint32_t> constants, const char* name) const;
+    double dispatch(const vk::Kernel& kernel, const Tile& tile);
+    void collect_counters();
+    uvec2 image_size() const { return {settings_.crop.width(), settings_.crop.height()}; }
+
+    const vk::Device* device_;
+    RenderSettings settings_;
+    SceneAccess access_;
+    RenderCounters counters_;
+    double pipeline_seconds_ = 0.0;
+    uint32_t samples_ = 0;  // That every pixel holds at least.
+
+    vk::Buffer nodes_;
+    vk::Buffer triangles_;
+    vk::Buffer tables_;
+    vk::Buffer parameters_;
+    vk::Buffer counter_buffer_;
+    vk::StorageImage image_;
+    vk::Commands commands_;
+    std::unique_ptr<vk::Kernel> render_kernel_;
+    std::unique_ptr<vk::Kernel> position_kernel_;
+};
+
+}  // namespace candela

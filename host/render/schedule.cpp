@@ -1,0 +1,71 @@
+#include "render/schedule.h"
+
+#include <algorithm>
+
+#include "shared/constants.h"
+
+namespace candela {
+namespace {
+
+// The first submission is small, since nothing is known of the device yet: 64 x 64 pixels, one sample.
+constexpr double FIRST_BUDGET = 4096;
+
+// A submission is at most this much larger than the one before, in case that one was unusually cheap.
+constexpr double LARGEST_GROWTH = 4;
+
+// Where the image takes several submissions per pass, a pass adds half as many samples as there are, but at
+// most this many: enough to make reading and writing the accumulation image cheap.
+constexpr uint32_t LARGEST_PASS = 16;
+
+uint32_t whole_groups(double pixels) {
+    return std::max(WORKGROUP_SIZE, uint32_t(std::min(pixels, 1e9)) / WORKGROUP_SIZE * WORKGROUP_SIZE);
+}
+
+}  // namespace
+
+Schedule::Schedule(uvec2 size, uint32_t first_sample, uint32_t target, double submission_seconds)
+    : size_(size),
+      target_(target),
+      submission_seconds_(submission_seconds),
+      budget_(FIRST_BUDGET),
+      total_(uint64_t{size.x} * size.y * (std::max(first_sample, target) - first_sample)),
+      pass_start_(first_sample),
+      pass_target_(first_sample) {
+    begin_pass();
+}
+
+void Schedule::begin_pass() {
+    const double affordable = budget_ / (double(size_.x) * size_.y);
+    const uint32_t samples = std::max(
+        {1u, std::min(pass_start_ / 2, LARGEST_PASS), uint32_t(std::min(affordable, double(target_)))});
+    pass_target_ = pass_start_ + std::min(samples, target_ - std::min(pass_start_, target_));
+    at_ = uvec2(0, 0);
+}
+
+Tile Schedule::next() const {
+    const double pixels = budget_ / (pass_target_ - pass_start_);
+    uvec2 tile{size_.x, whole_groups(pixels / size_.x)};
+    if (at_.x > 0 || pixels < double(size_.x) * WORKGROUP_SIZE) {
+        tile = uvec2(whole_groups(pixels / WORKGROUP_SIZE), WORKGROUP_SIZE);
+    }
+    return {at_, min(tile, size_ - at_), pass_target_};
+}
+
+void Schedule::advance(double seconds) {
+    const Tile tile = next();
+    const double samples = double(tile.size.x) * tile.size.y * (pass_target_ - pass_start_);
+    finished_ += uint64_t(samples);
+    budget_ = std::min(budget_ * LARGEST_GROWTH, submission_seconds_ * samples / std::max(seconds, 1e-9));
+    at_.x += tile.size.x;
+    if (at_.x < size_.x) return;
+    at_ = uvec2(0, at_.y + tile.size.y);
+    if (at_.y < size_.y) return;
+    pass_start_ = pass_target_;
+    begin_pass();
+}
+
+double Schedule::progress() const {
+    return total_ == 0 ? 1.0 : double(finished_) / double(total_);
+}
+
+}  // namespace candela

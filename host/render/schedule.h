@@ -1,0 +1,42 @@
+// Cuts the work into submissions that are long enough to be efficient and short enough for any driver's
+// watchdog. Pure arithmetic: which cut is made never changes a bit of the image.
+#pragma once
+
+#include <cstdint>
+
+#include "shared/parameters.h"
+
+namespace candela {
+
+// Brings an image to a number of samples per pixel in passes over the whole image. A pass adds one sample per
+// pixel at first and more as the image fills, so that an early stop leaves an even image; it is cut into
+// tiles of whole rows, or parts of rows where even those are too much.
+class Schedule {
+  public:
+    // `size`: pixels of the image; `first_sample`: samples that every pixel holds already; `target`: samples
+    // that every pixel shall hold; `submission_seconds`: how long a submission should take.
+    Schedule(uvec2 size, uint32_t first_sample, uint32_t target, double submission_seconds);
+
+    bool done() const { return pass_start_ >= target_; }
+    // The next piece of work; not when done().
+    Tile next() const;
+    // Says that next() was carried out in so many seconds.
+    void advance(double seconds);
+    // Samples carried out over all samples to carry out, in [0, 1].
+    double progress() const;
+
+  private:
+    void begin_pass();
+
+    uvec2 size_;
+    uint32_t target_;
+    double submission_seconds_;
+    double budget_;  // Samples (of single pixels) in the next submission.
+    uint64_t total_;
+    uint64_t finished_ = 0;
+    uint32_t pass_start_;   // Samples per pixel before the current pass ...
+    uint32_t pass_target_;  // ... and after it.
+    uvec2 at_{0, 0};        // Where the next tile begins.
+};
+
+}  // namespace candela

@@ -1,0 +1,23 @@
+// Rays and where they may start.
+#ifndef BASE_RAY_GLSL
+#define BASE_RAY_GLSL
+
+// Points o + t d with t > 0. World space [m]; d need not be of unit length, and t counts in lengths of d.
+struct Ray {
+    vec3 o;
+    vec3 d;
+};
+
+// Moves p, computed on a surface with the unit normal n, to the side that n points to: by a count of representable
+// numbers, so that the step grows with the rounding error of p; near 0, where that error is not relative, by a
+// fixed step. Ref: Waechter and Binder 2019, A Fast and Robust Method for Avoiding Self-Intersection.
+vec3 offset_origin(vec3 p, vec3 n) {
+    const float near_zero = 1.0 / 32.0;
+    const float near_zero_step = 1.0 / 65536.0;
+    const float steps = 256.0;
+    ivec3 offset = ivec3(steps * n);
+    vec3 moved = intBitsToFloat(floatBitsToInt(p) + mix(offset, -offset, lessThan(p, vec3(0.0))));
+    return mix(moved, p + near_zero_step * n, lessThan(abs(p), vec3(near_zero)));
+}
+
+#endif

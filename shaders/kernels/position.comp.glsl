@@ -1,0 +1,26 @@
+// Writes what the pinhole ray through the centre of each pixel meets: position in world space [m] and the distance
+// along the camera's axis [m]. A pixel whose ray meets nothing holds 0 0 0 and infinity.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "scene/camera.glsl"
+#include "scene/interaction.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE, local_size_y = WORKGROUP_SIZE) in;
+
+layout(binding = BINDING_IMAGE, rgba32f) uniform writeonly image2DArray position;
+layout(push_constant) uniform TileBlock { Tile tile; };
+
+void main() {
+    if (any(greaterThanEqual(gl_GlobalInvocationID.xy, tile.size))) return;
+    uvec2 at = tile.origin + gl_GlobalInvocationID.xy;
+    Parameters parameters = scene_parameters();
+    Ray ray = camera_ray(parameters, vec2(parameters.crop + at) + 0.5);
+    Hit hit = bvh_intersect(ray);
+    vec4 value = vec4(vec3(0.0), uintBitsToFloat(0x7F800000u));
+    if (hit.t != FLOAT_MAX) {
+        vec3 p = interaction_at(ray, hit).p;
+        value = vec4(p, dot(p - parameters.position, parameters.forward));
+    }
+    imageStore(position, ivec3(at, 0), value);
+}

@@ -1,0 +1,70 @@
+// The only file that declares the buffers of a scene. Every record is read through one function here.
+//
+// Two ways to the same words: texel buffers, which old software drivers read four times faster, and storage
+// buffers, where a scene has more words than a device's texel buffers may hold.
+#ifndef SCENE_SCENE_DATA_GLSL
+#define SCENE_SCENE_DATA_GLSL
+
+#include "shared/bvh_node.h"
+#include "shared/constants.h"
+#include "shared/light.h"
+#include "shared/material.h"
+#include "shared/parameters.h"
+#include "shared/triangle.h"
+
+#if SCENE_ACCESS_STORAGE
+layout(std430, binding = BINDING_NODES) readonly buffer NodesBlock { uvec4 nodes[]; };
+layout(std430, binding = BINDING_TRIANGLES) readonly buffer TrianglesBlock { uvec4 triangles[]; };
+layout(std430, binding = BINDING_TABLES) readonly buffer TablesBlock { uvec4 tables[]; };
+#define FETCH(buffer, i) buffer[i]
+#else
+layout(binding = BINDING_NODES) uniform usamplerBuffer nodes;
+layout(binding = BINDING_TRIANGLES) uniform usamplerBuffer triangles;
+layout(binding = BINDING_TABLES) uniform usamplerBuffer tables;
+#define FETCH(buffer, i) texelFetch(buffer, int(i))
+#endif
+
+layout(std140, binding = BINDING_PARAMETERS) uniform ParametersBlock { uvec4 parameter_words[PARAMETERS_WORDS]; };
+
+Parameters scene_parameters() {
+    return parameters_unpack(parameter_words);
+}
+
+// A node without its references: traversal asks for those one by one.
+BvhNode scene_node(uint i) {
+    i *= BVH_NODE_WORDS;
+    return bvh_node_unpack(FETCH(nodes, i), FETCH(nodes, i + 1u), FETCH(nodes, i + 2u), uvec4(BVH_EMPTY));
+}
+
+// Reference of the child in that slot of a node.
+uint scene_node_child(uint i, uint slot) {
+    uvec4 child = FETCH(nodes, i * BVH_NODE_WORDS + 3u);
+    return slot < 2u ? (slot == 0u ? child.x : child.y) : (slot == 2u ? child.z : child.w);
+}
+
+// Triangle at that position in leaf order.
+Triangle scene_triangle(uint i) {
+    i *= TRIANGLE_WORDS;
+    return triangle_unpack(FETCH(triangles, i), FETCH(triangles, i + 1u), FETCH(triangles, i + 2u));
+}
+
+// Shading normals of the triangle at that position in leaf order; .w is 0 for a flat triangle.
+uvec4 scene_normals(uint i) {
+    return FETCH(tables, scene_parameters().tables.x + i * NORMALS_WORDS);
+}
+
+MaterialRecord scene_material(uint i) {
+    return material_unpack(FETCH(tables, scene_parameters().tables.y + i * MATERIAL_WORDS));
+}
+
+Light scene_light(uint i) {
+    i = scene_parameters().tables.z + i * LIGHT_WORDS;
+    return light_unpack(FETCH(tables, i), FETCH(tables, i + 1u), FETCH(tables, i + 2u), FETCH(tables, i + 3u));
+}
+
+// Entry of the alias table that chooses lights.
+AliasEntry scene_light_alias(uint i) {
+    return alias_unpack(FETCH(tables, scene_parameters().tables.w + i * ALIAS_WORDS));
+}
+
+#endif

@@ -1,0 +1,73 @@
+// Numbers that the host and the shaders must agree on.
+#ifndef SHARED_CONSTANTS_H
+#define SHARED_CONSTANTS_H
+
+#include "shared/types.h"
+
+#ifdef __cplusplus
+namespace candela {
+#endif
+
+// Work group of every image kernel, 8 x 8: software Vulkan runs eight lanes, and narrower groups waste them.
+const uint WORKGROUP_SIZE = 8u;
+
+// A path that would scatter more often than this is cut, counted and reported.
+const uint DEPTH_SAFETY_LIMIT = 4096u;
+
+// No light, in Triangle::light.
+const uint NO_LIGHT = 0xFFFFFFFFu;
+
+// Estimators of direct light.
+const uint ESTIMATOR_BSDF = 0u;  // Emission counts only where a BSDF sample meets it.
+const uint ESTIMATOR_LIGHT =
+    1u;                         // Emission counts only through light samples (and where those cannot reach).
+const uint ESTIMATOR_MIS = 2u;  // Both, weighted by the power heuristic.
+
+// Samplers.
+const uint SAMPLER_INDEPENDENT = 0u;
+const uint SAMPLER_STRATIFIED = 1u;
+const uint SAMPLER_SOBOL = 2u;
+
+// Dimensions are handed out in pairs. A sample uses PAIR_PIXEL and PAIR_LENS once, then PAIRS_PER_BOUNCE
+// pairs at every scattering vertex, starting at PAIR_FIRST_BOUNCE.
+const uint PAIR_PIXEL = 0u;
+const uint PAIR_LENS = 1u;
+const uint PAIR_FIRST_BOUNCE = 2u;
+const uint PAIR_LIGHT = 0u;     // Point on the light.
+const uint PAIR_BSDF = 1u;      // Scattered direction.
+const uint PAIR_CHOICE = 2u;    // x: which light; y: which lobe of the BSDF.
+const uint PAIR_ROULETTE = 3u;  // x: survival.
+const uint PAIRS_PER_BOUNCE = 4u;
+
+// Layers of the accumulation image (rgba32f). The value of a sum is sum - compensation (Kahan).
+const uint LAYER_L = 0u;                    // rgb: sum of L; a: how many camera rays hit something visible.
+const uint LAYER_L_COMPENSATION = 1u;       // rgb; a: how many samples the pixel holds.
+const uint LAYER_SQUARE = 2u;               // rgb: sum of L^2.
+const uint LAYER_SQUARE_COMPENSATION = 3u;  // rgb.
+const uint LAYER_ALBEDO = 4u;               // rgb: sum of the first hit's albedo.
+const uint LAYER_ALBEDO_COMPENSATION = 5u;  // rgb.
+const uint LAYER_NORMAL = 6u;               // rgb: sum of the first hit's shading normal, world space.
+const uint LAYER_NORMAL_COMPENSATION = 7u;  // rgb.
+const uint LAYER_COUNT_COLOUR = 4u;         // Layers of an image without AOVs ...
+const uint LAYER_COUNT_AOVS = 8u;           // ... and of one with them.
+
+// Words of the counter buffer.
+const uint COUNTER_RAYS_LOW = 0u;  // Rays traced, 64 bits in two words.
+const uint COUNTER_RAYS_HIGH = 1u;
+const uint COUNTER_NONFINITE = 2u;    // Samples that were not finite and added nothing.
+const uint COUNTER_DEPTH_LIMIT = 3u;  // Paths cut at DEPTH_SAFETY_LIMIT.
+const uint COUNTER_COUNT = 4u;
+
+// Descriptor bindings of every kernel that reads the scene.
+const uint BINDING_NODES = 0u;
+const uint BINDING_TRIANGLES = 1u;
+const uint BINDING_TABLES = 2u;
+const uint BINDING_PARAMETERS = 3u;
+const uint BINDING_IMAGE = 4u;
+const uint BINDING_COUNTERS = 5u;
+
+#ifdef __cplusplus
+}  // namespace candela
+#endif
+
+#endif

@@ -1,0 +1,75 @@
+// Record of a triangle, in leaf order, and of its shading normals. The only functions are `pack` (C++) and
+// `unpack` (GLSL), side by side.
+//
+//   Triangle, 3 words of uvec4          Normals, 1 word
+//     0: v0.xyz, id                       0: n0, n1, n2 (octahedral, 2 x 16 bits), smooth
+//     1: v1.xyz, material
+//     2: v2.xyz, light
+#ifndef SHARED_TRIANGLE_H
+#define SHARED_TRIANGLE_H
+
+#include "shared/constants.h"
+
+#ifdef __cplusplus
+#include <array>
+#include <cmath>
+namespace candela {
+#endif
+
+const uint TRIANGLE_WORDS = 3u;
+const uint NORMALS_WORDS = 1u;
+
+// Vertices in world space [m], counter-clockwise from the front.
+struct Triangle {
+    vec3 v0;
+    vec3 v1;
+    vec3 v2;
+    uint id;        // Position in the scene's own order; the lesser one wins where two hits are equally near.
+    uint material;  // Index of a material record.
+    uint light;     // Index of a light record, or NO_LIGHT.
+};
+
+#ifdef __cplusplus
+
+inline std::array<uvec4, TRIANGLE_WORDS> pack(const Triangle& t) {
+    return {words(t.v0, t.id), words(t.v1, t.material), words(t.v2, t.light)};
+}
+
+// Octahedral map of a unit vector to 2 x 16 signed bits. Ref: Cigolle et al. 2014, A Survey of Efficient
+// Representations for Independent Unit Vectors, section 3.2.
+inline uint pack_octahedral(vec3 n) {
+    const float l1 = std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z);
+    vec2 e = vec2(n.x, n.y) / l1;
+    if (n.z < 0.0f) {
+        e = vec2((1.0f - std::fabs(e.y)) * std::copysign(1.0f, e.x),
+                 (1.0f - std::fabs(e.x)) * std::copysign(1.0f, e.y));
+    }
+    const auto snorm16 = [](float x) { return uint(int(std::lround(x * 32767.0f))) & 0xFFFFu; };
+    return snorm16(e.x) | snorm16(e.y) << 16;
+}
+
+// Shading normals at the three vertices, unit length, world space. A flat triangle has a record of zeros.
+inline std::array<uvec4, NORMALS_WORDS> pack_normals(vec3 n0, vec3 n1, vec3 n2) {
+    return {uvec4(pack_octahedral(n0), pack_octahedral(n1), pack_octahedral(n2), 1u)};
+}
+
+}  // namespace candela
+#else
+
+Triangle triangle_unpack(uvec4 a, uvec4 b, uvec4 c) {
+    return Triangle(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz), a.w, b.w, c.w);
+}
+
+// Inverse of pack_octahedral; unit length.
+vec3 octahedral_unpack(uint bits) {
+    vec2 e = max(vec2(int(bits << 16) >> 16, int(bits) >> 16) / 32767.0, vec2(-1.0));
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    float fold = max(-n.z, 0.0);
+    n.x += n.x >= 0.0 ? -fold : fold;
+    n.y += n.y >= 0.0 ? -fold : fold;
+    return normalize(n);
+}
+
+#endif
+
+#endif
