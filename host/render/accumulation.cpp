@@ -1,3 +1,4 @@
+// See accumulation.h.
 #include "render/accumulation.h"
 
 #include <charconv>

@@ -1,3 +1,4 @@
+// See alias_table.h.
 #include "render/alias_table.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// See gpu_scene.h.
 #include "render/gpu_scene.h"
 
 #include <chrono>

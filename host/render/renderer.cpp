@@ -1,3 +1,4 @@
+// See renderer.h.
 #include "render/renderer.h"
 
 #include <algorithm>
@@ -153,13 +154,12 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
     }
 
     const auto start = std::chrono::steady_clock::now();
-    const uint32_t constants[] = {sampler_constant(settings.sampler),
-                                  estimator_constant(settings.estimator, scene.light_count),
-                                  scene.has_normals, settings.aovs};
-    render_kernel_ = std::make_unique<vk::Kernel>(
-        make_kernel(kernels::render, kernels::render_storage, true, constants, "render"));
-    position_kernel_ = std::make_unique<vk::Kernel>(
-        make_kernel(kernels::position, kernels::position_storage, false, constants, "position"));
+    constants_[CONSTANT_SAMPLER] = sampler_constant(settings.sampler);
+    constants_[CONSTANT_ESTIMATOR] = estimator_constant(settings.estimator, scene.light_count);
+    constants_[CONSTANT_HAS_NORMALS] = scene.has_normals;
+    constants_[CONSTANT_HAS_AOVS] = settings.aovs;
+    render_kernel_ =
+        std::make_unique<vk::Kernel>(make_kernel(kernels::render, kernels::render_storage, true, "render"));
     render_kernel_->bind(BINDING_IMAGE, image_);
     render_kernel_->bind(BINDING_COUNTERS, counter_buffer_);
     // Some drivers compile at the first dispatch.
@@ -168,7 +168,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
 }
 
 vk::Kernel Renderer::make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage,
-                                 bool counters, std::span<const uint32_t> constants, const char* name) const {
+                                 bool counters, const char* name) const {
     const bool texels = access_ == SceneAccess::texel_buffers;
     const auto scene_type = texels ? vk::BindingType::texel_buffer : vk::BindingType::storage_buffer;
     std::vector<vk::Binding> bindings{{BINDING_NODES, scene_type},
@@ -177,7 +177,7 @@ vk::Kernel Renderer::make_kernel(std::span<const uint32_t> texel, std::span<cons
                                       {BINDING_PARAMETERS, vk::BindingType::uniform_buffer},
                                       {BINDING_IMAGE, vk::BindingType::storage_image}};
     if (counters) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
-    vk::Kernel kernel(*device_, texels ? texel : storage, bindings, sizeof(Tile), constants, name);
+    vk::Kernel kernel(*device_, texels ? texel : storage, bindings, sizeof(Tile), constants_, name);
     kernel.bind(BINDING_NODES, nodes_);
     kernel.bind(BINDING_TRIANGLES, triangles_);
     kernel.bind(BINDING_TABLES, tables_);
@@ -239,10 +239,11 @@ void Renderer::upload(const Accumulation& state) {
 std::vector<float> Renderer::positions() {
     const uvec2 size = image_size();
     vk::StorageImage image(*device_, size.x, size.y, 1, "position");
-    position_kernel_->bind(BINDING_IMAGE, image);
+    vk::Kernel kernel = make_kernel(kernels::position, kernels::position_storage, false, "position");
+    kernel.bind(BINDING_IMAGE, image);
     const uint32_t rows = std::max(1u, POSITION_PIXELS / size.x);
     for (uint32_t y = 0; y < size.y; y += rows) {
-        dispatch(*position_kernel_,
+        dispatch(kernel,
                  {.origin = {0, y}, .size = {size.x, std::min(rows, size.y - y)}, .target_samples = 0});
     }
     return image.download(0, 1);

@@ -1,6 +1,7 @@
 // Renderer: uploads a scene, traces paths on the device and accumulates them.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 
@@ -46,7 +47,7 @@ uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings);
 
 class Renderer {
   public:
-    // Uploads the scene and compiles the kernels, an empty first dispatch included. `device` must outlive the
+    // Uploads the scene and compiles the kernel, an empty first dispatch included. `device` must outlive the
     // renderer. Throws Error (out_of_memory) that says how much is needed and what the device allows.
     Renderer(const vk::Device& device, const GpuScene& scene, const Camera& camera,
              const RenderSettings& settings);
@@ -73,7 +74,7 @@ class Renderer {
 
   private:
     vk::Kernel make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage, bool counters,
-                           std::span<const uint32_t> constants, const char* name) const;
+                           const char* name) const;
     double dispatch(const vk::Kernel& kernel, const Tile& tile);
     void collect_counters();
     uvec2 image_size() const { return {settings_.crop.width(), settings_.crop.height()}; }
@@ -81,6 +82,7 @@ class Renderer {
     const vk::Device* device_;
     RenderSettings settings_;
     SceneAccess access_;
+    std::array<uint32_t, CONSTANT_COUNT> constants_{};
     RenderCounters counters_;
     double pipeline_seconds_ = 0.0;
     uint32_t samples_ = 0;  // That every pixel holds at least.
@@ -93,7 +95,6 @@ class Renderer {
     vk::StorageImage image_;
     vk::Commands commands_;
     std::unique_ptr<vk::Kernel> render_kernel_;
-    std::unique_ptr<vk::Kernel> position_kernel_;
 };
 
 }  // namespace candela

@@ -1,3 +1,4 @@
+// See schedule.h.
 #include "render/schedule.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ constexpr double LARGEST_GROWTH = 4;
 
 // Where the image takes several submissions per pass, a pass adds half as many samples as there are, but at
 // most this many: enough to make reading and writing the accumulation image cheap.
-constexpr uint32_t LARGEST_PASS = 16;
+constexpr uint32_t LARGEST_PASS = 64;
 
 uint32_t whole_groups(double pixels) {
     return std::max(WORKGROUP_SIZE, uint32_t(std::min(pixels, 1e9)) / WORKGROUP_SIZE * WORKGROUP_SIZE);

@@ -8,8 +8,7 @@
 #include "base/hash.glsl"
 #include "shared/constants.h"
 
-// Which sampler the kernel uses, SAMPLER_*; fixed when the pipeline is made.
-layout(constant_id = 0) const uint SAMPLER = SAMPLER_SOBOL;
+layout(constant_id = CONSTANT_SAMPLER) const uint SAMPLER = SAMPLER_SOBOL;
 
 // Identifies one sample: pixel of the whole picture (x | y << 16, each below 65 536), sample index, seed.
 struct Sampler {

@@ -9,8 +9,7 @@
 
 layout(local_size_x = WORKGROUP_SIZE, local_size_y = WORKGROUP_SIZE) in;
 
-// True if the image has layers for albedo and normal; fixed when the pipeline is made.
-layout(constant_id = 3) const bool HAS_AOVS = true;
+layout(constant_id = CONSTANT_HAS_AOVS) const bool HAS_AOVS = true;
 
 layout(binding = BINDING_IMAGE, rgba32f) uniform image2DArray accumulation;
 layout(std430, binding = BINDING_COUNTERS) buffer CountersBlock { uint counters[COUNTER_COUNT]; };

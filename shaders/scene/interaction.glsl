@@ -6,8 +6,7 @@
 #include "scene/scene_data.glsl"
 #include "scene/traversal.glsl"
 
-// True if any triangle of the scene has shading normals of its own; fixed when the pipeline is made.
-layout(constant_id = 2) const bool HAS_NORMALS = true;
+layout(constant_id = CONSTANT_HAS_NORMALS) const bool HAS_NORMALS = true;
 
 // World space [m]. Both normals are unit vectors on the viewer's side of the surface; which side that is, the
 // geometric normal alone decides.

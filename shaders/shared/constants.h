@@ -66,6 +66,13 @@ const uint BINDING_PARAMETERS = 3u;
 const uint BINDING_IMAGE = 4u;
 const uint BINDING_COUNTERS = 5u;
 
+// Specialization constants: what is fixed when a kernel's pipeline is made.
+const uint CONSTANT_SAMPLER = 0u;      // SAMPLER_*
+const uint CONSTANT_ESTIMATOR = 1u;    // ESTIMATOR_*
+const uint CONSTANT_HAS_NORMALS = 2u;  // 1: some triangle has shading normals of its own.
+const uint CONSTANT_HAS_AOVS = 3u;     // 1: the accumulation image has LAYER_COUNT_AOVS layers.
+const uint CONSTANT_COUNT = 4u;
+
 #ifdef __cplusplus
 }  // namespace candela
 #endif
