@@ -79,7 +79,9 @@ void PipelineCache::save() const {
     std::error_code ignored;
     if (file_->has_parent_path()) std::filesystem::create_directories(file_->parent_path(), ignored);
     std::filesystem::path temporary = *file_;
-    temporary += "." + std::to_string(getpid()) + ".tmp";
+    temporary += ".";
+    temporary += std::to_string(getpid());
+    temporary += ".tmp";
     std::ofstream stream(temporary, std::ios::binary);
     const uint64_t checksum = hash(data);
     stream.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
