@@ -1,0 +1,91 @@
+// Values on the command line: how they are read, and options whose errors name flag, value and what is
+// expected.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "base/error.h"
+#include "base/image.h"
+#include "render/accumulation.h"
+
+namespace candela {
+
+// Pictures are at most this wide and high, as in scene files.
+inline constexpr uint32_t MAX_PICTURE_SIZE = 65536;
+
+// The images that --aov can name.
+inline constexpr const char* AOV_NAMES = "albedo,n,p,z,variance,samples";
+
+// Each reads all of `text`; nothing if it is anything else than described.
+
+// A whole decimal number in [least, most].
+std::optional<uint32_t> parse_uint(const std::string& text, uint32_t least, uint32_t most);
+// A finite decimal number.
+std::optional<double> parse_number(const std::string& text);
+// "WxH": width and height in pixels, each from 1 to MAX_PICTURE_SIZE.
+std::optional<uvec2> parse_size(const std::string& text);
+// "x0,y0,x1,y1": pixels, at least one of them, each number at most MAX_PICTURE_SIZE.
+std::optional<PixelRect> parse_crop(const std::string& text);
+// "90", "90s", "1.5m" or "2h": more than 0, in seconds.
+std::optional<double> parse_duration(const std::string& text);
+// "all", "none" or names of images with commas between, as AOV_NAMES lists them.
+std::optional<AovSelection> parse_aovs(const std::string& text);
+
+// Adds an option that stores parse(value) in `target` (a T or std::optional<T>) if it is a value, and else
+// throws an Error (usage) such as `--size: cannot use "12"; expected WIDTHxHEIGHT`. `names` as in CLI11, e.g.
+// "-o,--output".
+template <class Target, class Parse>
+CLI::Option* add_value(CLI::App& app, const std::string& names, Target& target, const Parse& parse,
+                       const std::string& expected, const std::string& description) {
+    const std::string flag = names.substr(names.rfind(',') + 1);
+    const auto store = [&target, parse, expected, flag](const std::string& text) {
+        const auto value = parse(text);
+        if (!value)
+            throw Error(flag + ": cannot use \"" + text + "\"; expected " + expected, ExitCode::usage);
+        target = *value;
+    };
+    return app.add_option_function<std::string>(names, store, description);
+}
+
+// The words of an option, and what each stands for; as scene/names.h has them.
+template <class T, size_t N>
+using Choices = std::array<std::pair<std::string_view, T>, N>;
+
+// The word for `value`, which must be among the choices.
+template <class T, size_t N>
+std::string name_of(T value, const Choices<T, N>& choices) {
+    return std::string(std::ranges::find(choices, value, &std::pair<std::string_view, T>::second)->first);
+}
+
+// Adds an option that takes one of a few words; `choices` must live as long as `app`.
+template <class Target, class T, size_t N>
+CLI::Option* add_choice(CLI::App& app, const std::string& names, Target& target, const Choices<T, N>& choices,
+                        const std::string& description) {
+    std::string words;
+    for (const auto& [word, value] : choices)
+        words += (words.empty() ? "" : "|") + std::string(word);
+    const auto parse = [&choices](const std::string& text) -> std::optional<T> {
+        for (const auto& [word, value] : choices) {
+            if (text == word) return value;
+        }
+        return std::nullopt;
+    };
+    return add_value(app, names, target, parse, words, description)->type_name(words);
+}
+
+// The size and the part of the picture that commands ask for.
+struct PictureOptions {
+    std::optional<uvec2> size;
+    std::optional<PixelRect> crop;
+
+    // Adds --size and --crop.
+    void add_to(CLI::App& app);
+    // The crop within a picture of `size`, all of it by default. Throws Error (usage) if it reaches beyond.
+    PixelRect crop_within(uvec2 full) const;
+};
+
+}  // namespace candela

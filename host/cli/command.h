@@ -1,0 +1,24 @@
+// The commands of candela. Each has a file of its own, which declares its options and does its work.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "base/error.h"
+
+namespace candela {
+
+struct Command {
+    CLI::App* app;                  // Its options; parsed() says whether it was asked for.
+    std::function<ExitCode()> run;  // Does the work with the options as parsed. Throws Error.
+};
+
+// Each adds one command to `app`. `command_line` is the whole call as the user typed it, for image files.
+Command add_render_command(CLI::App& app, const std::string& command_line);
+Command add_info_command(CLI::App& app);
+Command add_devices_command(CLI::App& app);
+Command add_compare_command(CLI::App& app);
+
+}  // namespace candela

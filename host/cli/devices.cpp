@@ -1,0 +1,113 @@
+// `candela devices`: every Vulkan device, what it offers, and whether it will do.
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/vulkan.h"
+#include "vk/device_info.h"
+#include "vk/instance.h"
+
+namespace candela {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json describe(const vk::DeviceInfo& info, bool is_default) {
+    const vk::DeviceLimits& limits = info.limits;
+    return {{"index", info.index},
+            {"name", info.name},
+            {"type", vk::to_string(info.type)},
+            {"default", is_default},
+            {"usable", info.reason.empty()},
+            {"reason", info.reason},
+            {"vulkan", vk::version_text(info.api_version)},
+            {"driver", info.driver},
+            {"memory_bytes", info.device_heap},
+            {"subgroup_size", info.subgroup_size},
+            {"timestamps", info.timestamp_bits > 0},
+            {"texel_buffers", info.uint_texel_buffers},
+            {"ray_query", info.ray_query},
+            {"limits",
+             {{"maxTexelBufferElements", limits.max_texel_buffer_elements},
+              {"maxStorageBufferRange", limits.max_storage_buffer_range},
+              {"maxImageDimension2D", limits.max_image_dimension_2d},
+              {"maxMemoryAllocationSize", limits.max_memory_allocation_size}}}};
+}
+
+const char* yes_or_no(bool value) {
+    return value ? "yes" : "no";
+}
+
+void print_row(const char* key, const std::string& value) {
+    std::printf("    %-26s%s\n", key, value.c_str());
+}
+
+void print(const vk::DeviceInfo& info, bool is_default) {
+    std::printf("%u: %s (%s)%s\n", info.index, info.name.c_str(), vk::to_string(info.type),
+                is_default ? ", used by default" : "");
+    print_row("will do", info.reason.empty() ? "yes" : "no: " + info.reason);
+    print_row("Vulkan", vk::version_text(info.api_version));
+    if (!info.reason.empty()) return;  // The rest may be unknown.
+    print_row("driver", info.driver);
+    // Whatever a CPU device reports as its heap, the computer's RAM is what counts.
+    print_row("memory",
+              info.type == vk::DeviceType::cpu ? "the computer's free RAM" : bytes_text(info.device_heap));
+    print_row("subgroup size", std::to_string(info.subgroup_size));
+    print_row("timestamps", yes_or_no(info.timestamp_bits > 0));
+    print_row("texel buffers", yes_or_no(info.uint_texel_buffers));
+    print_row("ray query (not used)", yes_or_no(info.ray_query));
+    print_row("maxTexelBufferElements", std::to_string(info.limits.max_texel_buffer_elements));
+    print_row("maxStorageBufferRange", bytes_text(info.limits.max_storage_buffer_range));
+    print_row("maxImageDimension2D", std::to_string(info.limits.max_image_dimension_2d));
+    print_row("maxMemoryAllocationSize", bytes_text(info.limits.max_memory_allocation_size));
+}
+
+// The index of the device that is used by default; none, and the reason in `failure`, if no device will do.
+std::optional<uint32_t> find_default(const std::vector<vk::DeviceInfo>& devices,
+                                     std::optional<Error>& failure) {
+    try {
+        return vk::select_device(devices, std::nullopt).index;
+    } catch (const Error& error) {
+        failure = error;
+        return std::nullopt;
+    }
+}
+
+ExitCode devices(bool json) {
+    const vk::Instance instance(instance_options());
+    const std::vector<vk::DeviceInfo> devices = instance.devices();
+    std::optional<Error> failure;
+    const std::optional<uint32_t> best = find_default(devices, failure);
+
+    if (json) {
+        Json list = Json::array();
+        for (const vk::DeviceInfo& info : devices)
+            list.push_back(describe(info, best == info.index));
+        std::printf("%s\n", list.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    } else {
+        for (const vk::DeviceInfo& info : devices)
+            print(info, best == info.index);
+    }
+    flush_results();
+    if (failure) throw Error(*failure);
+    check_validation(instance);
+    return ExitCode::done;
+}
+
+}  // namespace
+
+Command add_devices_command(CLI::App& app) {
+    CLI::App* const command = app.add_subcommand("devices", "List Vulkan devices and whether they will do");
+    const auto json = std::make_shared<bool>(false);
+    command->add_flag("--json", *json, "Print JSON for programs");
+    command->footer("--device of `candela render` takes the index or a part of the name.");
+    return {command, [json] { return devices(*json); }};
+}
+
+}  // namespace candela

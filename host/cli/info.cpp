@@ -1,0 +1,142 @@
+// `candela info`: what a scene holds and what rendering it will need. No device is touched.
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/console.h"
+#include "render/gpu_scene.h"
+#include "render/renderer.h"
+#include "scene/geometry.h"
+#include "scene/loader.h"
+#include "shared/bvh_node.h"
+
+namespace candela {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+    std::string scene;
+    PictureOptions picture;
+    bool json = false;
+};
+
+Json to_json(const Box& box) {
+    if (box.is_empty()) return nullptr;
+    return {{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
+}
+
+// Device memory by part; the picture with all AOVs and without any.
+Json memory_of(const GpuScene& gpu, RenderSettings settings) {
+    settings.aovs = true;
+    const uint64_t all = device_bytes(gpu, settings);
+    settings.aovs = false;
+    const uint64_t colour = device_bytes(gpu, settings);
+    return {{"bvh", gpu.nodes.size() * sizeof(uvec4)},
+            {"triangles", gpu.triangles.size() * sizeof(uvec4)},
+            {"tables", gpu.tables.size() * sizeof(uvec4)},
+            {"picture", all - gpu.bytes()},
+            {"picture_without_aovs", colour - gpu.bytes()}};
+}
+
+Json describe(const InfoOptions& options, const Scene& scene) {
+    const GpuScene gpu = build_gpu_scene(scene);
+    RenderSettings settings;
+    settings.size = options.picture.size.value_or(scene.film.size);
+    settings.crop = options.picture.crop_within(settings.size);
+    settings.aovs = true;
+    std::vector<std::string> cameras;
+    for (const Camera& camera : scene.cameras)
+        cameras.push_back(camera.name);
+    const PixelRect& crop = settings.crop;
+    return {{"scene", options.scene},
+            {"triangles", gpu.triangle_count},
+            {"lights", gpu.light_count},
+            {"materials", scene.materials.size()},
+            {"cameras", cameras},
+            {"bounds", to_json(bounds(scene))},
+            {"bvh_nodes", gpu.nodes.size() / BVH_NODE_WORDS},
+            {"bvh_depth", gpu.bvh_depth},
+            {"bvh_sah_cost", gpu.bvh_sah_cost},
+            {"bvh_seconds", gpu.bvh_seconds},
+            {"width", settings.size.x},
+            {"height", settings.size.y},
+            {"crop", {crop.x0, crop.y0, crop.x1, crop.y1}},
+            {"device_bytes", device_bytes(gpu, settings)},
+            {"device_bytes_by_part", memory_of(gpu, settings)},
+            {"warnings", scene.warnings}};
+}
+
+std::string join(const Json& words) {
+    std::string text;
+    for (const Json& word : words)
+        text += (text.empty() ? "" : ", ") + word.get<std::string>();
+    return text;
+}
+
+std::string bounds_text(const Json& bounds) {
+    if (bounds.is_null()) return "none";
+    const auto point = [](const Json& p) {
+        char text[64];
+        std::snprintf(text, sizeof text, "(%g, %g, %g)", p[0].get<double>(), p[1].get<double>(),
+                      p[2].get<double>());
+        return std::string(text);
+    };
+    return point(bounds[0]) + " to " + point(bounds[1]) + " m";
+}
+
+void print(const Json& info) {
+    const auto row = [](const char* key, const std::string& value) {
+        std::printf("%-14s%s\n", key, value.c_str());
+    };
+    const auto bytes = [&info](const char* part) {
+        return bytes_text(info["device_bytes_by_part"][part].get<uint64_t>());
+    };
+    row("scene", info["scene"].get<std::string>());
+    row("triangles", info["triangles"].dump());
+    row("lights", info["lights"].dump());
+    row("materials", info["materials"].dump());
+    row("cameras", join(info["cameras"]));
+    row("bounds", bounds_text(info["bounds"]));
+    row("BVH", info["bvh_nodes"].dump() + " nodes, depth " + info["bvh_depth"].dump() + ", SAH cost " +
+                   fixed(info["bvh_sah_cost"].get<double>(), 2) + ", built in " +
+                   fixed(1e3 * info["bvh_seconds"].get<double>(), 1) + " ms");
+    row("picture",
+        info["width"].dump() + 'x' + info["height"].dump() + " pixels, crop " + info["crop"].dump());
+    row("device memory", bytes_text(info["device_bytes"].get<uint64_t>()) + ": BVH " + bytes("bvh") +
+                             ", triangles " + bytes("triangles") + ", tables " + bytes("tables") +
+                             ", picture " + bytes("picture") + " (" + bytes("picture_without_aovs") +
+                             " without AOVs)");
+}
+
+ExitCode run(const InfoOptions& options) {
+    const Scene scene = load_scene(options.scene);
+    for (const std::string& warning : scene.warnings)
+        print_warning(warning);
+    const Json info = describe(options, scene);
+    if (options.json) {
+        std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    } else {
+        print(info);
+    }
+    flush_results();
+    return ExitCode::done;
+}
+
+}  // namespace
+
+Command add_info_command(CLI::App& app) {
+    CLI::App* const command = app.add_subcommand("info", "Tell what a scene holds and needs; uses no device");
+    const auto options = std::make_shared<InfoOptions>();
+    command->add_option("SCENE", options->scene, "Scene file (.json)")->required()->type_name("");
+    options->picture.add_to(*command);
+    command->add_flag("--json", options->json, "Print JSON for programs");
+    return {command, [options] { return run(*options); }};
+}
+
+}  // namespace candela

@@ -1,0 +1,171 @@
+// Writes images with their attributes, and the report.
+#include "cli/outputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "base/image_io.h"
+#include "base/tonemap.h"
+#include "cli/console.h"
+#include "version.h"
+
+namespace candela {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* STDOUT = "-";
+
+// From the world to the camera as OpenEXR's standard attributes define its space: left-handed, x to the
+// right, y up, and z forwards, so that what is in front of the camera has positive z.
+mat4 world_to_camera(const Camera& camera) {
+    const vec3 forward = normalize(camera.look_at - camera.position);
+    const vec3 right = normalize(cross(forward, camera.up));
+    const vec3 up = cross(right, forward);
+    const mat4 axes = transpose(mat4(vec4(right, 0), vec4(up, 0), vec4(forward, 0), vec4(0, 0, 0, 1)));
+    return axes * mat4(vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0), vec4(-camera.position, 1));
+}
+
+// From the world to OpenEXR's normalised device coordinates, after the division by w: x to the right and y
+// down, (0,0) and (1,1) the upper left and lower right corners of the display window. The standard leaves z
+// open; here it is the inverse of the depth [1/m], so that the matrix can be inverted.
+mat4 world_to_ndc(const Camera& camera, uvec2 size) {
+    const float tan_y = std::tan(0.5f * camera.vertical_fov);
+    const float tan_x = tan_y * float(size.x) / float(size.y);
+    const mat4 projection(vec4(0.5f / tan_x, 0, 0, 0), vec4(0, -0.5f / tan_y, 0, 0), vec4(0.5f, 0.5f, 0, 1),
+                          vec4(0, 0, 1, 0));
+    return projection * world_to_camera(camera);
+}
+
+void add_attributes(Image& image, const RenderRecord& record, const Camera& camera) {
+    image.attributes["worldToCamera"] = world_to_camera(camera);
+    image.attributes["worldToNDC"] = world_to_ndc(camera, record.settings.size);
+    image.attributes["samplesPerPixel"] = float(record.spp);
+    image.attributes["renderTimeSeconds"] = float(record.render_seconds);
+    image.attributes["candela.version"] = std::string(CANDELA_VERSION);
+    image.attributes["candela.device"] = record.device;
+    image.attributes["candela.driver"] = record.driver;
+    image.attributes["candela.seed"] = std::to_string(record.settings.seed);
+    image.attributes["candela.commandLine"] = record.command_line;
+}
+
+// Marks R G B A and Albedo as 16-bit. A channel that 16 bits cannot hold stays as it is, with a warning: the
+// samples are paid for.
+void use_half(Image& image) {
+    constexpr float LARGEST_HALF = 65504.0f;
+    constexpr std::string_view COLOURS[] = {"R", "G", "B", "A", "Albedo.R", "Albedo.G", "Albedo.B"};
+    for (Channel& channel : image.channels) {
+        if (std::ranges::find(COLOURS, channel.name) == std::end(COLOURS)) continue;
+        channel.half = std::ranges::all_of(
+            channel.values, [](float v) { return !std::isfinite(v) || std::abs(v) <= LARGEST_HALF; });
+        if (!channel.half) {
+            print_warning(
+                "channel " + channel.name +
+                " holds values beyond 65504, the most that 16 bits can; it is written with 32 bits");
+        }
+    }
+}
+
+std::string hexadecimal(uint64_t value) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+    return text;
+}
+
+Json make_report(const RenderOptions& options, const RenderRecord& record) {
+    const RenderSettings& settings = record.settings;
+    const auto ratio = [](double a, double b) { return b > 0.0 ? a / b : 0.0; };
+    const double samples = double(record.samples);
+    return {{"version", CANDELA_VERSION},
+            {"scene", options.scene_file},
+            {"device", record.device},
+            {"driver", record.driver},
+            {"width", settings.size.x},
+            {"height", settings.size.y},
+            {"crop", {settings.crop.x0, settings.crop.y0, settings.crop.x1, settings.crop.y1}},
+            {"spp", record.spp},
+            {"complete", record.complete},
+            {"seed", settings.seed},
+            {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},
+            {"sampler", name_of(settings.sampler, SAMPLER_NAMES)},
+            {"max_depth", settings.max_depth},
+            {"rr_depth", settings.rr_depth},
+            {"scene_buffers", name_of(settings.scene_access, SCENE_ACCESS_NAMES)},
+            {"triangles", record.triangles},
+            {"lights", record.lights},
+            {"load_seconds", record.load_seconds},
+            {"bvh_seconds", record.bvh_seconds},
+            {"pipeline_seconds", record.pipeline_seconds},
+            {"render_seconds", record.render_seconds},
+            {"cpu_seconds", record.cpu_seconds},
+            {"samples_per_second", ratio(samples, record.render_seconds)},
+            {"rays_per_sample", ratio(double(record.counters.rays), samples)},
+            {"device_bytes", record.device_bytes},
+            {"nonfinite_samples", record.counters.nonfinite_samples},
+            {"depth_limit_hits", record.counters.depth_limit_hits},
+            {"image_hash", hexadecimal(record.image_hash)},
+            {"validation_messages", record.validation_messages}};
+}
+
+void write_report(const std::string& target, const Json& report) {
+    // Names come from files and drivers and may hold bytes that are not UTF-8.
+    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    if (target == STDOUT) {
+        std::fputs(text.c_str(), stdout);
+        flush_results();
+    } else {
+        write_file_atomically(target, text);
+    }
+}
+
+}  // namespace
+
+void check_outputs(const RenderOptions& options) {
+    if (options.outputs.empty()) {
+        throw Error("there is no output; give -o FILE.exr or -o FILE.png (both, too)", ExitCode::usage);
+    }
+    for (const std::string& path : options.outputs)
+        image_format(path);
+    for (const std::string& path : options.outputs)
+        check_writable(path);
+    if (options.report && *options.report != STDOUT) check_writable(*options.report);
+}
+
+void write_outputs(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
+                   Image image) {
+    add_attributes(image, record, camera);
+    if (options.half) use_half(image);
+
+    std::optional<Error> failure;
+    const auto attempt = [&failure](const std::function<void()>& write) {
+        try {
+            write();
+        } catch (const Error& error) {
+            if (failure) print_error(failure->what());
+            failure = error;
+        }
+    };
+    for (const std::string& path : options.outputs) {
+        attempt([&] {
+            if (image_format(path) == ImageFormat::exr) {
+                write_exr(path, image);
+            } else {
+                write_png(path, image.data.width(), image.data.height(),
+                          develop(image, options.tonemap, float(options.exposure)));
+            }
+        });
+    }
+    if (options.report) attempt([&] { write_report(*options.report, make_report(options, record)); });
+    if (failure) throw Error(*failure);
+}
+
+}  // namespace candela

@@ -1,0 +1,44 @@
+// The files that a rendering leaves behind, and the figures that go into them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/image.h"
+#include "cli/render_options.h"
+#include "render/renderer.h"
+
+namespace candela {
+
+// What a rendering was and how it went.
+struct RenderRecord {
+    std::string command_line;
+    std::string device;
+    std::string driver;
+    RenderSettings settings;  // scene_access as it turned out.
+    uint32_t triangles = 0;
+    uint32_t lights = 0;
+    double load_seconds = 0.0;      // Wall times: reading the scene file ...
+    double bvh_seconds = 0.0;       // ... building the BVH ...
+    double pipeline_seconds = 0.0;  // ... compiling kernels, an empty first dispatch included ...
+    double render_seconds = 0.0;    // ... and rendering alone.
+    double cpu_seconds = 0.0;       // CPU time of the whole process while rendering.
+    bool complete = false;          // All samples asked for are there.
+    uint32_t spp = 0;               // Samples that every pixel holds at least.
+    uint64_t samples = 0;           // Samples of all pixels together.
+    RenderCounters counters;
+    uint64_t device_bytes = 0;
+    uint64_t image_hash = 0;
+    size_t validation_messages = 0;
+};
+
+// Throws Error if an output is missing, has an unknown extension (both: usage) or could not be written, or if
+// the report could not. To be called before any long work.
+void check_outputs(const RenderOptions& options);
+
+// Writes all images and the report. Where one fails, the others are written all the same; then the Error is
+// thrown.
+void write_outputs(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
+                   Image image);
+
+}  // namespace candela

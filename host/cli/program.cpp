@@ -1,0 +1,98 @@
+// Help, version, dispatch, and what is wrong with a command line.
+#include "cli/program.h"
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "version.h"
+
+namespace candela {
+
+// Declares help, version and all commands on `app`, and returns the commands.
+static std::vector<Command> declare_program(CLI::App& app, const std::string& command_line) {
+    app.name("candela");
+    app.description("candela: a physically based path tracer for any Vulkan device, GPU or CPU");
+    app.set_version_flag("--version", "candela " CANDELA_VERSION, "Print the version and exit");
+    // Commands take over the column width, but must not take over the footer, which therefore comes last.
+    app.get_formatter()->column_width(36);
+    std::vector<Command> commands{add_render_command(app, command_line), add_info_command(app),
+                                  add_devices_command(app), add_compare_command(app)};
+    app.footer(
+        "`candela COMMAND --help` tells more.\n\n"
+        "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no suitable device, 4 device lost,\n"
+        "            5 out of memory, 6 images differ, 130 interrupted (with a valid partial image)\n"
+        "Environment: CANDELA_NO_CACHE=1 keeps no compiled kernels (else in $XDG_CACHE_HOME/candela);\n"
+        "             CANDELA_VALIDATION=1 turns the Vulkan validation layer on, and fails if it finds "
+        "fault");
+    return commands;
+}
+
+// The call as one line that a shell would take: words with odd characters are quoted.
+static std::string command_line_text(int argc, const char* const* argv) {
+    std::string line;
+    for (int i = 0; i < argc; ++i) {
+        const std::string word = argv[i];
+        const bool plain =
+            !word.empty() && word.find_first_of(" \t\n\"'\\$`&|;<>()*?[]{}!#~") == std::string::npos;
+        if (i > 0) line += ' ';
+        if (plain) {
+            line += word;
+            continue;
+        }
+        line += '\'';
+        for (const char c : word)
+            line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        line += '\'';
+    }
+    return line;
+}
+
+// The command that was asked for, or null.
+static const CLI::App* find_parsed(const CLI::App& app) {
+    const auto parsed = app.get_subcommands();
+    return parsed.empty() ? nullptr : parsed.front();
+}
+
+static std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+    const CLI::App* const command = find_parsed(app);
+    const std::string help =
+        command == nullptr ? "candela --help" : "candela " + command->get_name() + " --help";
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr)
+        return std::string(error.what()) + "; see " + help;
+    const std::string word = app.remaining(true).front();
+    const char* const kind =
+        command == nullptr && word.front() != '-' ? "unknown command \"" : "unknown argument \"";
+    return kind + word + "\"; see " + help;
+}
+
+// Parses the command line into `app`. Returns false if help or the version was asked for, and has been
+// printed.
+static bool parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help_or_version) {
+        app.exit(help_or_version);
+        flush_results();
+        return false;
+    } catch (const CLI::ParseError& error) {
+        throw Error(explain(app, error), ExitCode::usage);
+    }
+    return true;
+}
+
+ExitCode run_program(int argc, const char* const* argv) {
+    CLI::App app;
+    const std::vector<Command> commands = declare_program(app, command_line_text(argc, argv));
+    if (!parse_command_line(app, argc, argv)) return ExitCode::done;
+    for (const Command& command : commands) {
+        if (command.app->parsed()) return command.run();
+    }
+    throw Error("there is no command; give render, info, devices or compare, or see candela --help",
+                ExitCode::usage);
+}
+
+}  // namespace candela

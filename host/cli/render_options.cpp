@@ -1,0 +1,121 @@
+// Declares the options of `candela render` and joins them with what the scene file says.
+#include "cli/render_options.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/image_io.h"
+#include "shared/constants.h"
+
+namespace candela {
+
+// Sample counts are kept as 32-bit floats, which are exact up to here.
+static constexpr uint32_t MAX_SPP = 1u << 24;
+
+static std::optional<uint32_t> parse_spp(const std::string& text) {
+    return parse_uint(text, 1, MAX_SPP);
+}
+
+static std::optional<uint32_t> parse_seed(const std::string& text) {
+    return parse_uint(text, 0, UINT32_MAX);
+}
+
+static std::optional<uint32_t> parse_depth(const std::string& text) {
+    return parse_uint(text, 0, DEPTH_SAFETY_LIMIT);
+}
+
+static std::optional<uint32_t> parse_max_depth(const std::string& text) {
+    return text == "unlimited" ? DEPTH_SAFETY_LIMIT : parse_depth(text);
+}
+
+static_assert(MAX_EXPOSURE_EV == 100.0f, "the message on --exposure says so");
+
+static std::optional<double> parse_exposure(const std::string& text) {
+    const auto value = parse_number(text);
+    return value && std::abs(*value) <= double(MAX_EXPOSURE_EV) ? value : std::nullopt;
+}
+
+void RenderOptions::add_to(CLI::App& app) {
+    app.option_defaults()->take_last();  // A script's options can be followed by others that overrule them.
+    app.add_option("SCENE", scene_file, "Scene file (.json)")->required()->type_name("");
+    add_output_options(app);
+    app.option_defaults()->group("Picture");
+    picture.add_to(app);
+    app.add_option("--camera", camera, "Camera by name (default: the scene's first)")->type_name("NAME");
+    add_sampling_options(app);
+    add_other_options(app);
+}
+
+void RenderOptions::add_output_options(CLI::App& app) {
+    app.option_defaults()->group("Output");
+    app.add_option("-o,--output", outputs, "Image to write, .exr or .png; repeat it for several")
+        ->type_name("FILE")
+        ->take_all()
+        ->allow_extra_args(false);
+    add_value(app, "--aov", aovs, parse_aovs, std::string("all, none or a list of ") + AOV_NAMES,
+              "EXR: none, all (default) or a list of " + std::string(AOV_NAMES))
+        ->type_name("LIST");
+    app.add_flag("--half", half, "EXR: R G B A and Albedo as 16-bit floats (default: 32-bit)");
+    add_value(app, "--exposure", exposure, parse_exposure, "a number from -100 to 100",
+              "PNG: multiply by 2^EV before the tone map (default: 0)")
+        ->type_name("EV");
+    add_choice(app, "--tonemap", tonemap, TONEMAP_NAMES, "PNG: tone map (default: linear, which clamps)");
+    app.add_option("--report", report, "Write figures of the run as JSON; - is standard output")
+        ->type_name("FILE|-");
+}
+
+void RenderOptions::add_sampling_options(CLI::App& app) {
+    app.option_defaults()->group("Sampling (defaults: the scene's)");
+    add_value(app, "--spp", spp, parse_spp, "a whole number from 1 to " + std::to_string(MAX_SPP),
+              "Samples per pixel")
+        ->type_name("N");
+    add_value(app, "--time-limit", time_limit, parse_duration, "a duration such as 90, 90s, 1.5m or 2h",
+              "Stop after 90, 90s, 1.5m, 2h even short of --spp (default: none)")
+        ->type_name("TIME");
+    add_value(app, "--seed", seed, parse_seed, "a whole number from 0 to 4294967295",
+              "Another seed, other noise")
+        ->type_name("S");
+    const std::string depths = "a whole number from 0 to " + std::to_string(DEPTH_SAFETY_LIMIT);
+    add_value(app, "--max-depth", max_depth, parse_max_depth, depths + ", or unlimited",
+              "Bounces at most, or unlimited; 0 shows lights only")
+        ->type_name("D");
+    add_value(app, "--rr-depth", rr_depth, parse_depth, depths, "Bounces before Russian roulette begins")
+        ->type_name("N");
+    add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES, "How light is found; mis has the least noise");
+    add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
+}
+
+void RenderOptions::add_other_options(CLI::App& app) {
+    app.option_defaults()->group("Device");
+    app.add_option("--device", device, "Index or part of the name (default: the best; see candela devices)")
+        ->type_name("D");
+    add_choice(app, "--scene-buffers", scene_access, SCENE_ACCESS_NAMES,
+               "How kernels read the scene; the image is the same (default: auto)");
+    app.option_defaults()->group("Messages");
+    CLI::Option* const quiet_flag =
+        app.add_flag("-q,--quiet", quiet, "No progress, only warnings and errors");
+    app.add_flag("-v,--verbose", verbose, "Also tell about device, scene and memory")->excludes(quiet_flag);
+}
+
+AovSelection RenderOptions::written_aovs() const {
+    const bool exr = std::ranges::any_of(
+        outputs, [](const std::string& path) { return image_format(path) == ImageFormat::exr; });
+    return exr ? aovs : AovSelection{};
+}
+
+RenderSettings RenderOptions::settings(const Scene& scene) const {
+    const IntegratorSettings& proposed = scene.integrator;
+    const uvec2 size = picture.size.value_or(scene.film.size);
+    const uint32_t depth = max_depth.value_or(proposed.max_depth.value_or(DEPTH_SAFETY_LIMIT));
+    return {.size = size,
+            .crop = picture.crop_within(size),
+            .estimator = estimator.value_or(proposed.estimator),
+            .sampler = sampler.value_or(proposed.sampler),
+            .seed = seed.value_or(proposed.seed),
+            .max_depth = std::min(depth, DEPTH_SAFETY_LIMIT),
+            .rr_depth = rr_depth.value_or(proposed.rr_depth),
+            .aovs = written_aovs().needs_layers(),
+            .scene_access = scene_access};
+}
+
+}  // namespace candela

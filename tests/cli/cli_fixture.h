@@ -1,0 +1,74 @@
+// What the tests of the command line share: the program under test, tiny renderings, and a directory for
+// files.
+#pragma once
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "base/image.h"
+#include "base/image_io.h"
+#include "support/process.h"
+#include "unit/base_fixture.h"
+
+namespace candela {
+
+inline const std::string CORNELL_BOX = std::string(CANDELA_SCENES) + "/cornell-box.json";
+inline const std::string MESH = std::string(CANDELA_SCENES) + "/mesh.json";
+
+// A driver list that names no driver: a computer without Vulkan.
+inline const std::map<std::string, std::string> NO_DRIVER = {{"VK_DRIVER_FILES", "/nonexistent.json"},
+                                                             {"VK_ICD_FILENAMES", "/nonexistent.json"}};
+
+using Words = std::vector<std::string>;
+
+inline Words operator+(Words a, const Words& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+class CliTest : public testing::Test {
+  protected:
+    // The call of candela with these arguments, and its environment: with validation, without a cache.
+    static Words call(const Words& arguments) { return Words{CANDELA_BINARY} + arguments; }
+    static ProcessOptions options(std::map<std::string, std::string> environment = {}) {
+        environment.insert({{"CANDELA_VALIDATION", "1"}, {"CANDELA_NO_CACHE", "1"}, {"TERM", "xterm"}});
+        return {.environment = std::move(environment)};
+    }
+    static ProcessResult candela(const Words& arguments,
+                                 std::map<std::string, std::string> environment = {}) {
+        return run_process(call(arguments), options(std::move(environment)));
+    }
+
+    // Renders 32x32 pixels of the Cornell box with 4 samples, unless `arguments` say otherwise.
+    static ProcessResult render(const Words& arguments) {
+        return candela(Words{"render", CORNELL_BOX, "--size", "32x32", "--spp", "4"} + arguments);
+    }
+
+    std::string file(const std::string& name) const { return (directory_ / name).string(); }
+    std::string write(const std::string& name, const std::string& text) const {
+        std::ofstream(file(name)) << text;
+        return file(name);
+    }
+
+    // Renders `arguments` of `scene` and returns the report; the test fails if candela does.
+    nlohmann::json report_of(const Words& arguments, const std::string& scene = CORNELL_BOX) const {
+        const ProcessResult result =
+            candela(Words{"render", scene, "-o", file("report.png"), "--report", "-", "--quiet"} + arguments);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return nlohmann::json::parse(result.out);
+    }
+    std::string hash_of(const Words& arguments, const std::string& scene = CORNELL_BOX) const {
+        return report_of(Words{"--size", "32x32", "--spp", "4"} + arguments, scene)["image_hash"];
+    }
+
+    TemporaryDirectory directory_;
+};
+
+#define EXPECT_CONTAINS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+}  // namespace candela

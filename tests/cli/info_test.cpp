@@ -1,0 +1,119 @@
+// `candela info` and `candela devices`, and computers without a device.
+#include "cli/cli_fixture.h"
+
+namespace candela {
+namespace {
+
+class Info : public CliTest {};
+
+TEST_F(Info, TellsWhatASceneHoldsWithoutADevice) {
+    const ProcessResult result = candela({"info", CORNELL_BOX, "--json"}, NO_DRIVER);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto info = nlohmann::json::parse(result.out);
+    EXPECT_EQ(info["scene"], CORNELL_BOX);
+    EXPECT_EQ(info["triangles"], 32);
+    EXPECT_EQ(info["lights"], 1);
+    EXPECT_EQ(info["cameras"], (std::vector<std::string>{"main"}));
+    EXPECT_EQ(info["bounds"][0], (std::vector<double>{0, 0, 0}));
+    EXPECT_NEAR(info["bounds"][1][2], 0.5592, 1e-6);
+    EXPECT_GE(info["materials"], 3);
+    EXPECT_GT(info["bvh_nodes"], 0);
+    EXPECT_GT(info["bvh_depth"], 0);
+    EXPECT_GT(info["bvh_sah_cost"], 0.0);
+    EXPECT_GT(info["bvh_seconds"], 0.0);
+    EXPECT_EQ(info["warnings"], nlohmann::json::array());
+}
+
+TEST_F(Info, BytesAreThoseOfTheReport) {
+    for (const char* const crop : {"0,0,40,24", "8,8,40,24"}) {
+        const Words picture = {"--size", "40x24", "--crop", crop};
+        const ProcessResult result = candela(Words{"info", MESH, "--json"} + picture);
+        const auto info = nlohmann::json::parse(result.out);
+        uint64_t sum = 0;
+        for (const char* part : {"bvh", "triangles", "tables", "picture"}) {
+            sum += info["device_bytes_by_part"][part].get<uint64_t>();
+        }
+        EXPECT_EQ(info["device_bytes"], sum);
+        const auto report = report_of(picture + Words{"--spp", "1", "-o", file("a.exr")}, MESH);
+        EXPECT_EQ(info["device_bytes"], report["device_bytes"]);
+        EXPECT_EQ(info["triangles"], report["triangles"]);
+        EXPECT_EQ(info["lights"], report["lights"]);
+    }
+}
+
+TEST_F(Info, TextNamesTheSameFacts) {
+    const ProcessResult result = candela({"info", MESH, "--size", "40x24"});
+    EXPECT_EQ(result.exit_code, 0);
+    for (const char* fact :
+         {"main, close", "SAH cost", "depth", "40x24 pixels", "device memory", "without AOVs"}) {
+        EXPECT_CONTAINS(result.out, fact);
+    }
+}
+
+TEST_F(Info, WarningsGoToStderrAndIntoTheJson) {
+    const std::string scene = write("empty.json", R"({
+        "cameras": { "main": { "position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40 } }, "shapes": [] })");
+    const ProcessResult result = candela({"info", scene, "--json"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_CONTAINS(result.err, "candela: warning: ");
+    const auto info = nlohmann::json::parse(result.out);
+    EXPECT_EQ(info["warnings"].size(), 1u);
+    EXPECT_EQ(info["bounds"], nullptr);
+    EXPECT_CONTAINS(candela({"info", scene}).out, "bounds        none");
+}
+
+TEST_F(Info, ErrorsAreThoseOfRender) {
+    EXPECT_EQ(candela({"info", file("missing.json")}).exit_code, 1);
+    EXPECT_EQ(candela({"info", CORNELL_BOX, "--size", "64"}).exit_code, 2);
+    EXPECT_EQ(candela({"info", CORNELL_BOX, "--crop", "0,0,513,1"}).exit_code, 2);
+}
+
+class Devices : public CliTest {};
+
+TEST_F(Devices, OneIsTheDefaultAndDoesWhatItSays) {
+    const ProcessResult result = candela({"devices", "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto devices = nlohmann::json::parse(result.out);
+    size_t defaults = 0;
+    for (const auto& device : devices) {
+        EXPECT_EQ(device["usable"], device["reason"] == "");
+        if (!device["default"]) continue;
+        ++defaults;
+        EXPECT_EQ(device["usable"], true);
+        EXPECT_GE(device["limits"]["maxTexelBufferElements"], 65536);
+        EXPECT_GE(device["limits"]["maxStorageBufferRange"], 1 << 27);
+        EXPECT_GE(device["limits"]["maxImageDimension2D"], 4096);
+        EXPECT_GE(device["limits"]["maxMemoryAllocationSize"], 1 << 30);
+        EXPECT_GT(device["subgroup_size"], 0);
+        const std::string name = device["name"];
+        EXPECT_EQ(report_of({"--size", "8x8", "--spp", "1"})["device"], name);
+        EXPECT_EQ(report_of({"--size", "8x8", "--spp", "1", "--device", name})["device"], name);
+        EXPECT_EQ(report_of({"--size", "8x8", "--spp", "1", "--device", device["index"].dump()})["device"],
+                  name);
+        const std::string text = candela({"devices"}).out;
+        EXPECT_CONTAINS(text, device["index"].dump() + ": " + name);
+        EXPECT_CONTAINS(text, "used by default");
+        EXPECT_CONTAINS(text, "maxTexelBufferElements");
+    }
+    EXPECT_EQ(defaults, 1u);
+}
+
+TEST_F(Devices, AnUnknownNameListsTheDevices) {
+    const ProcessResult result = render({"-o", file("a.png"), "--device", "abacus"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_CONTAINS(result.err,
+                    "no device matches \"abacus\"; give the index or a part of the name of one of: 0: \"");
+}
+
+TEST_F(Devices, NoDriverIsAnErrorWithARemedy) {
+    for (const Words& arguments :
+         std::vector<Words>{{"devices"}, {"render", CORNELL_BOX, "-o", file("a.png")}}) {
+        const ProcessResult result = candela(arguments, NO_DRIVER);
+        EXPECT_EQ(result.exit_code, 3);
+        EXPECT_EQ(result.out, "");
+        EXPECT_CONTAINS(result.err, "mesa-vulkan-drivers");
+    }
+}
+
+}  // namespace
+}  // namespace candela

@@ -1,0 +1,164 @@
+// What `candela render` writes: images with attributes, reports, the cache; and what it never destroys.
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <variant>
+
+#include "base/hash.h"
+#include "cli/cli_fixture.h"
+
+namespace candela {
+namespace {
+
+class RenderFiles : public CliTest {};
+
+TEST_F(RenderFiles, AttributesTellHowTheImageWasMade) {
+    const std::string output = file("two words.exr");
+    ASSERT_EQ(render({"-o", output, "--seed", "7"}).exit_code, 0);
+    const auto attributes = read_exr(output).attributes;
+    const auto text = [&](const char* name) { return std::get<std::string>(attributes.at(name)); };
+    EXPECT_EQ(std::get<float>(attributes.at("samplesPerPixel")), 4.0f);
+    EXPECT_GT(std::get<float>(attributes.at("renderTimeSeconds")), 0.0f);
+    EXPECT_EQ(text("candela.version"), "0.1.0");
+    EXPECT_EQ(text("candela.seed"), "7");
+    EXPECT_NE(text("candela.device"), "");
+    EXPECT_NE(text("candela.driver"), "");
+    EXPECT_EQ(text("candela.commandLine"), std::string(CANDELA_BINARY) + " render " + CORNELL_BOX +
+                                               " --size 32x32 --spp 4 -o '" + output + "' --seed 7");
+}
+
+// The positions of the image, sent through the matrices, come out at their own pixels and depths.
+TEST_F(RenderFiles, CameraMatricesAgreeWithThePositions) {
+    ASSERT_EQ(candela({"render", MESH, "-o", file("a.exr"), "--size", "40x24", "--spp", "1"}).exit_code, 0);
+    const Image image = read_exr(file("a.exr"));
+    const mat4 camera = std::get<mat4>(image.attributes.at("worldToCamera"));
+    const mat4 ndc = std::get<mat4>(image.attributes.at("worldToNDC"));
+    size_t hits = 0;
+    for (size_t i = 0; i < image.pixel_count(); ++i) {
+        const float depth = image.find("Z")->values[i];
+        if (std::isinf(depth)) continue;
+        ++hits;
+        const vec4 p(image.find("P.X")->values[i], image.find("P.Y")->values[i], image.find("P.Z")->values[i],
+                     1);
+        const vec4 projected = ndc * p;
+        EXPECT_NEAR(projected.x / projected.w, (float(i % 40) + 0.5f) / 40, 1e-4f);
+        EXPECT_NEAR(projected.y / projected.w, (float(i / 40) + 0.5f) / 24, 1e-4f);
+        EXPECT_NEAR((camera * p).z, depth, 1e-4f * depth);
+        // Left-handed: x is positive in the right half of the picture, y in the upper one.
+        EXPECT_EQ((camera * p).x > 0, i % 40 >= 20);
+        EXPECT_EQ((camera * p).y > 0, i / 40 < 12);
+    }
+    EXPECT_GT(hits, 100u);
+}
+
+TEST_F(RenderFiles, ReportHasEveryField) {
+    ASSERT_EQ(render({"-o", file("a.exr"), "--seed", "3", "--report", file("r.json")}).exit_code, 0);
+    const auto report = nlohmann::json::parse(read_file(file("r.json")));
+    EXPECT_EQ(report["version"], "0.1.0");
+    EXPECT_EQ(report["scene"], CORNELL_BOX);
+    EXPECT_NE(report["device"], "");
+    EXPECT_NE(report["driver"], "");
+    EXPECT_EQ(report["width"], 32);
+    EXPECT_EQ(report["height"], 32);
+    EXPECT_EQ(report["crop"], (std::vector<int>{0, 0, 32, 32}));
+    EXPECT_EQ(report["spp"], 4);
+    EXPECT_EQ(report["complete"], true);
+    EXPECT_EQ(report["seed"], 3);
+    EXPECT_EQ(report["estimator"], "mis");
+    EXPECT_EQ(report["sampler"], "sobol");
+    EXPECT_EQ(report["max_depth"], 4096);
+    EXPECT_EQ(report["rr_depth"], 3);
+    EXPECT_EQ(report["triangles"], 32);
+    EXPECT_EQ(report["lights"], 1);
+    for (const char* time :
+         {"load_seconds", "bvh_seconds", "pipeline_seconds", "render_seconds", "cpu_seconds"}) {
+        EXPECT_GT(report[time], 0.0) << time;
+    }
+    const double rate = report["samples_per_second"];
+    EXPECT_NEAR(rate * double(report["render_seconds"]), 32 * 32 * 4, 1e-6);
+    EXPECT_GT(report["rays_per_sample"], 1.0);
+    EXPECT_GT(report["device_bytes"], 32 * 32 * 16 * 8);
+    EXPECT_EQ(report["nonfinite_samples"], 0);
+    EXPECT_EQ(report["depth_limit_hits"], 0);
+    EXPECT_EQ(report["validation_messages"], 0);
+}
+
+TEST_F(RenderFiles, ImageHashIsFnvOfTheMeans) {
+    const ProcessResult result = render({"-o", file("a.exr"), "--report", "-", "--quiet"});
+    ASSERT_EQ(result.exit_code, 0);
+    const Image image = read_exr(file("a.exr"));
+    const RgbPlanes rgb = *image.find_rgb();
+    uint64_t hash = FNV1A64_BASIS;
+    for (size_t i = 0; i < image.pixel_count(); ++i) {
+        for (const auto& plane : rgb)
+            hash = fnv1a64(std::as_bytes(plane.subspan(i, 1)), hash);
+    }
+    std::ostringstream text;
+    text << std::hex << std::setw(16) << std::setfill('0') << hash;
+    EXPECT_EQ(nlohmann::json::parse(result.out)["image_hash"], text.str());
+}
+
+TEST_F(RenderFiles, SceneWithoutLightIsAWarning) {
+    const std::string scene = write("dark.json", R"({
+        "cameras": { "main": { "position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40 } },
+        "materials": { "grey": { "type": "diffuse", "reflectance": 0.5 } },
+        "shapes": [ { "type": "box", "min": [-1, -1, -1], "max": [1, 1, 0], "material": "grey" } ] })");
+    const ProcessResult result =
+        candela({"render", scene, "-o", file("a.exr"), "--size", "8x8", "--spp", "1", "--quiet"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.err.rfind("candela: warning: " + scene + ":", 0), 0u) << result.err;
+    EXPECT_CONTAINS(result.err, "the scene has no light");
+    const Image image = read_exr(file("a.exr"));
+    for (const float value : image.find("G")->values)
+        ASSERT_EQ(value, 0.0f);
+}
+
+TEST_F(RenderFiles, FailedRunsLeaveOldFilesAlone) {
+    for (const Words& cause :
+         std::vector<Words>{{"--camera", "none"}, {"--device", "none"}, {"--size", "65536x65536"}}) {
+        write("a.exr", "old");
+        EXPECT_NE(candela(Words{"render", CORNELL_BOX, "-o", file("a.exr")} + cause).exit_code, 0);
+        EXPECT_EQ(read_file(file("a.exr")), "old");
+        EXPECT_EQ(directory_.size(), 1) << "a temporary file was left behind";
+    }
+}
+
+TEST_F(RenderFiles, TooLargeAPictureSaysWhatItNeeds) {
+    // 2^32 pixels of 8 layers and a position, 16 bytes each.
+    const ProcessResult result =
+        candela({"render", CORNELL_BOX, "-o", file("a.exr"), "--size", "65536x65536"});
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_CONTAINS(result.err, "576.00 GiB");
+    EXPECT_CONTAINS(result.err, "use a smaller picture (--size, --crop) or scene");
+}
+
+// The folder of the first output vanishes while rendering; the second is written all the same.
+TEST_F(RenderFiles, OneFailingOutputDoesNotTakeTheOthersWithIt) {
+    std::filesystem::create_directory(file("gone"));
+    ProcessOptions terminal = options();
+    terminal.terminal = true;
+    Process process(call({"render", CORNELL_BOX, "--size", "32x32", "--spp", "16777216", "--time-limit", "1s",
+                          "-o", file("gone/a.exr"), "-o", file("b.exr")}),
+                    terminal);
+    ASSERT_TRUE(process.wait_for_err("Msamples/s"));
+    std::filesystem::remove(file("gone"));
+    const ProcessResult result = process.finish();
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_CONTAINS(result.err, "candela: error: cannot write \"" + file("gone/a.exr"));
+    EXPECT_EQ(read_exr(file("b.exr")).full, uvec2(32, 32));
+}
+
+TEST_F(RenderFiles, CompiledKernelsAreKeptWhereXdgSays) {
+    const Words arguments = {"render", CORNELL_BOX, "--size", "8x8", "--spp", "1", "-o", file("a.png")};
+    EXPECT_EQ(candela(arguments, {{"XDG_CACHE_HOME", file("no")}, {"CANDELA_NO_CACHE", "1"}}).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(file("no/candela")));
+    EXPECT_EQ(candela(arguments, {{"XDG_CACHE_HOME", file("xdg")}, {"CANDELA_NO_CACHE", ""}}).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(file("xdg/candela/pipelines.bin")));
+    EXPECT_EQ(candela(arguments, {{"XDG_CACHE_HOME", ""}, {"HOME", file("home")}, {"CANDELA_NO_CACHE", ""}})
+                  .exit_code,
+              0);
+    EXPECT_TRUE(std::filesystem::exists(file("home/.cache/candela/pipelines.bin")));
+}
+
+}  // namespace
+}  // namespace candela

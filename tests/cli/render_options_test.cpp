@@ -1,0 +1,180 @@
+// Every option of `candela render` does what it says.
+#include <algorithm>
+#include <bit>
+#include <set>
+
+#include "cli/cli_fixture.h"
+
+namespace candela {
+namespace {
+
+class RenderOptionsTest : public CliTest {};
+
+TEST_F(RenderOptionsTest, SizeAndSamplesAreAsAskedFor) {
+    ASSERT_EQ(
+        candela({"render", CORNELL_BOX, "-o", file("a.exr"), "--size", "40x24", "--spp", "3"}).exit_code, 0);
+    const Image image = read_exr(file("a.exr"));
+    EXPECT_EQ(image.full, uvec2(40, 24));
+    EXPECT_EQ(image.data, (PixelRect{0, 0, 40, 24}));
+    for (const float count : image.find("SampleCount.V")->values)
+        ASSERT_EQ(count, 3.0f);
+}
+
+TEST_F(RenderOptionsTest, CropHasTheSameBitsAsTheWhole) {
+    ASSERT_EQ(render({"-o", file("whole.exr")}).exit_code, 0);
+    ASSERT_EQ(render({"-o", file("crop.exr"), "--crop", "5,9,18,30"}).exit_code, 0);
+    const Image whole = read_exr(file("whole.exr"));
+    const Image crop = read_exr(file("crop.exr"));
+    EXPECT_EQ(crop.full, uvec2(32, 32));
+    ASSERT_EQ(crop.data, (PixelRect{5, 9, 18, 30}));
+    ASSERT_EQ(crop.channels.size(), whole.channels.size());
+    for (const Channel& channel : crop.channels) {
+        const Channel* const expected = whole.find(channel.name);
+        ASSERT_NE(expected, nullptr);
+        for (size_t i = 0; i < crop.pixel_count(); ++i) {
+            const size_t x = 5 + i % 13;
+            const size_t y = 9 + i / 13;
+            ASSERT_EQ(std::bit_cast<uint32_t>(channel.values[i]),
+                      std::bit_cast<uint32_t>(expected->values[y * 32 + x]))
+                << channel.name << " at " << x << ", " << y;
+        }
+    }
+}
+
+TEST_F(RenderOptionsTest, SamplingOptionsChangeTheImage) {
+    const std::string plain = hash_of({});
+    EXPECT_EQ(plain, hash_of({"--seed", "0", "--estimator", "mis", "--sampler", "sobol", "--rr-depth", "3"}));
+    std::set<std::string> hashes = {plain};
+    for (const Words& change : std::vector<Words>{{"--seed", "1"},
+                                                  {"--estimator", "bsdf"},
+                                                  {"--estimator", "light"},
+                                                  {"--sampler", "independent"},
+                                                  {"--sampler", "stratified"},
+                                                  {"--rr-depth", "0"},
+                                                  {"--max-depth", "1"},
+                                                  {"--spp", "5"}}) {
+        EXPECT_TRUE(hashes.insert(hash_of(change)).second)
+            << change[0] << ' ' << change[1] << " changed nothing";
+    }
+}
+
+TEST_F(RenderOptionsTest, DepthZeroShowsLightsOnly) {
+    ASSERT_EQ(render({"-o", file("a.exr"), "--max-depth", "0"}).exit_code, 0);
+    const Image image = read_exr(file("a.exr"));
+    const RgbPlanes rgb = *image.find_rgb();
+    float brightest = 0.0f;
+    for (size_t i = 0; i < image.pixel_count(); ++i) {
+        brightest = std::max(brightest, rgb[0][i]);
+        EXPECT_FLOAT_EQ(rgb[0][i] * 4.0f,
+                        rgb[2][i] * 17.0f);  // The light sends out 17 12 4, and all else is black.
+    }
+    EXPECT_EQ(brightest, 17.0f);
+}
+
+TEST_F(RenderOptionsTest, TheLastOfAnOptionCounts) {
+    EXPECT_EQ(hash_of({"--seed", "1", "--seed", "2"}), hash_of({"--seed", "2"}));
+}
+
+TEST_F(RenderOptionsTest, UnlimitedDepthIsTheSafetyLimit) {
+    EXPECT_EQ(hash_of({"--max-depth", "unlimited"}), hash_of({"--max-depth", "4096"}));
+}
+
+TEST_F(RenderOptionsTest, CameraIsChosenByName) {
+    const std::string first = hash_of({}, MESH);
+    EXPECT_EQ(first, hash_of({"--camera", "main"}, MESH));
+    EXPECT_NE(first, hash_of({"--camera", "close"}, MESH));
+}
+
+TEST_F(RenderOptionsTest, SceneBuffersChangeNoBit) {
+    const nlohmann::json texel = report_of({"--size", "32x32", "--spp", "4", "--scene-buffers", "texel"});
+    const nlohmann::json storage = report_of({"--size", "32x32", "--spp", "4", "--scene-buffers", "storage"});
+    EXPECT_EQ(texel["scene_buffers"], "texel");
+    EXPECT_EQ(storage["scene_buffers"], "storage");
+    EXPECT_EQ(texel["image_hash"], storage["image_hash"]);
+}
+
+TEST_F(RenderOptionsTest, ToneMapAndExposureChangeThePngOnly) {
+    std::set<std::string> pictures;
+    std::set<std::string> hashes;
+    for (const Words& change : std::vector<Words>{{"--tonemap", "linear"},
+                                                  {"--tonemap", "reinhard"},
+                                                  {"--tonemap", "aces"},
+                                                  {"--tonemap", "agx"},
+                                                  {"--tonemap", "neutral"},
+                                                  {"--exposure", "-1.5"},
+                                                  {"--exposure", "2"}}) {
+        hashes.insert(hash_of(change));
+        EXPECT_TRUE(pictures.insert(read_file(file("report.png"))).second) << change[1] << " changed nothing";
+    }
+    EXPECT_EQ(hashes.size(), 1u);
+    hash_of({});
+    EXPECT_EQ(pictures.count(read_file(file("report.png"))), 1u) << "linear is not the default";
+}
+
+TEST_F(RenderOptionsTest, AovListNamesTheChannels) {
+    const auto channels = [this](const Words& arguments) {
+        EXPECT_EQ(render(Words{"-o", file("a.exr"), "--crop", "0,0,8,8"} + arguments).exit_code, 0);
+        std::string names;
+        for (const Channel& channel : read_exr(file("a.exr")).channels)
+            names += channel.name + ' ';
+        return names;
+    };
+    EXPECT_EQ(channels({}),
+              "A Albedo.B Albedo.G Albedo.R B G N.X N.Y N.Z P.X P.Y P.Z R SampleCount.V "
+              "Variance.B Variance.G Variance.R Z ");
+    EXPECT_EQ(channels({"--aov", "none"}), "A B G R ");
+    EXPECT_EQ(channels({"--aov", "albedo,z"}), "A Albedo.B Albedo.G Albedo.R B G R Z ");
+    EXPECT_EQ(channels({"--aov", "samples,p"}), "A B G P.X P.Y P.Z R SampleCount.V ");
+    EXPECT_EQ(channels({"--aov", "n,variance"}), "A B G N.X N.Y N.Z R Variance.B Variance.G Variance.R ");
+}
+
+TEST_F(RenderOptionsTest, HalfIsForColourAndAlbedoOnly) {
+    ASSERT_EQ(render({"-o", file("a.exr"), "--half"}).exit_code, 0);
+    const std::set<std::string> colours = {"R", "G", "B", "A", "Albedo.R", "Albedo.G", "Albedo.B"};
+    for (const Channel& channel : read_exr(file("a.exr")).channels) {
+        EXPECT_EQ(channel.half, colours.count(channel.name) == 1) << channel.name;
+    }
+}
+
+TEST_F(RenderOptionsTest, WhatHalfCannotHoldStaysFloat) {
+    const std::string scene = write("bright.json", R"({
+        "cameras": { "main": { "position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40 } },
+        "shapes": [ { "type": "quad", "vertices": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]],
+                      "emission": [1, 2, 70000] } ] })");
+    const ProcessResult result =
+        candela({"render", scene, "-o", file("a.exr"), "--size", "8x8", "--spp", "1", "--half"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_CONTAINS(result.err, "candela: warning: channel B holds values beyond 65504");
+    const Image image = read_exr(file("a.exr"));
+    EXPECT_TRUE(image.find("R")->half);
+    EXPECT_FALSE(image.find("B")->half);
+    EXPECT_EQ(image.find("B")->values[0], 70000.0f);
+}
+
+TEST_F(RenderOptionsTest, TimeLimitEndsARenderingThatWouldNotEnd) {
+    const ProcessResult result = render(
+        {"-o", file("a.exr"), "--spp", "16777216", "--time-limit", "0.01m", "--report", file("report.json")});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_CONTAINS(result.err, " of 16777216 spp in ");
+    const Image image = read_exr(file("a.exr"));
+    for (const float count : image.find("SampleCount.V")->values)
+        ASSERT_GE(count, 1.0f);
+    const auto report = nlohmann::json::parse(read_file(file("report.json")));
+    EXPECT_EQ(report["complete"], false);
+    EXPECT_GE(report["render_seconds"], 0.6);
+    EXPECT_EQ(float(report["spp"]), std::ranges::min(image.find("SampleCount.V")->values));
+}
+
+TEST_F(RenderOptionsTest, QuietIsQuietAndVerboseTellsMore) {
+    EXPECT_EQ(render({"-o", file("a.png"), "--quiet"}).err, "");
+    const std::string normal = render({"-o", file("a.png")}).err;
+    EXPECT_EQ(normal.rfind("rendered 4 spp in ", 0), 0u) << normal;
+    const std::string verbose = render({"-o", file("a.png"), "--verbose"}).err;
+    for (const char* word :
+         {"device: ", "driver ", "scene: 32 triangles, 1 lights", "BVH: depth ", "device memory: "}) {
+        EXPECT_CONTAINS(verbose, word);
+    }
+}
+
+}  // namespace
+}  // namespace candela

@@ -1,0 +1,148 @@
+// Starts, reads and ends processes through POSIX calls.
+#include "support/process.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace candela {
+namespace {
+
+// Two connected descriptors that the child does not inherit unless it is told to.
+struct Channel {
+    int ours = -1;
+    int theirs = -1;
+};
+
+Channel make_pipe() {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("cannot create a pipe");
+    return {ends[0], ends[1]};
+}
+
+Channel make_terminal() {
+    const int master = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (master < 0 || ::grantpt(master) != 0 || ::unlockpt(master) != 0) {
+        throw std::runtime_error("cannot create a terminal");
+    }
+    return {master, ::open(::ptsname(master), O_WRONLY | O_NOCTTY | O_CLOEXEC)};
+}
+
+std::vector<std::string> merge_environment(std::map<std::string, std::string> variables) {
+    for (char** entry = environ; *entry != nullptr; ++entry) {
+        const std::string text = *entry;
+        const size_t equals = text.find('=');
+        variables.emplace(text.substr(0, equals), text.substr(equals + 1));  // Keeps what is there.
+    }
+    std::vector<std::string> merged;
+    for (const auto& [name, value] : variables)
+        merged.push_back(name + '=' + value);
+    return merged;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+    std::vector<char*> result;
+    for (std::string& word : words)
+        result.push_back(word.data());
+    result.push_back(nullptr);
+    return result;
+}
+
+}  // namespace
+
+Process::Process(const std::vector<std::string>& arguments, const ProcessOptions& options)
+    : deadline_(std::chrono::steady_clock::now() +
+                std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                    std::chrono::duration<double>(options.timeout))) {
+    const Channel out = make_pipe();
+    const Channel err = options.terminal ? make_terminal() : make_pipe();
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, out.theirs, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, err.theirs, STDERR_FILENO);
+
+    std::vector<std::string> words = arguments;
+    std::vector<std::string> environment = merge_environment(options.environment);
+    const int error = ::posix_spawn(&pid_, words[0].c_str(), &actions, nullptr, pointers(words).data(),
+                                    pointers(environment).data());
+    posix_spawn_file_actions_destroy(&actions);
+    ::close(out.theirs);
+    ::close(err.theirs);
+    out_ = out.ours;
+    err_ = err.ours;
+    if (error != 0) throw std::runtime_error("cannot start " + words[0]);
+}
+
+Process::~Process() {
+    if (pid_ > 0) {
+        ::kill(pid_, SIGKILL);
+        ::waitpid(pid_, nullptr, 0);
+    }
+    if (out_ >= 0) ::close(out_);
+    if (err_ >= 0) ::close(err_);
+}
+
+// Waits for output and appends it to the result. Returns false when both streams have ended, or if time is
+// up.
+bool Process::read_some() {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - std::chrono::steady_clock::now());
+    std::array<pollfd, 2> streams{{{out_, POLLIN, 0}, {err_, POLLIN, 0}}};
+    if (out_ < 0 && err_ < 0) return false;
+    const int ready = ::poll(streams.data(), streams.size(), int(std::max<int64_t>(left.count(), 0)));
+    if (ready == 0) return false;
+    const auto read_stream = [](int& fd, std::string& text) {
+        std::array<char, 4096> buffer;
+        const ssize_t count = ::read(fd, buffer.data(), buffer.size());
+        if (count > 0) {
+            text.append(buffer.data(), size_t(count));
+        } else if (count == 0 || errno != EINTR) {  // A terminal ends with EIO.
+            ::close(fd);
+            fd = -1;
+        }
+    };
+    if (streams[0].revents != 0) read_stream(out_, result_.out);
+    if (streams[1].revents != 0) read_stream(err_, result_.err);
+    return true;
+}
+
+bool Process::wait_for_err(const std::string& text) {
+    while (result_.err.find(text) == std::string::npos) {
+        if (!read_some()) return false;
+    }
+    return true;
+}
+
+void Process::send(int signal) const {
+    ::kill(pid_, signal);
+}
+
+ProcessResult Process::finish() {
+    while (read_some()) {
+    }
+    if (out_ >= 0 || err_ >= 0) ::kill(pid_, SIGKILL);  // Out of time.
+    int status = 0;
+    ::waitpid(pid_, &status, 0);
+    pid_ = -1;
+    if (WIFEXITED(status)) result_.exit_code = WEXITSTATUS(status);
+    if (WIFSIGNALED(status)) result_.signal = WTERMSIG(status);
+    return result_;
+}
+
+ProcessResult run_process(const std::vector<std::string>& arguments, const ProcessOptions& options) {
+    return Process(arguments, options).finish();
+}
+
+}  // namespace candela
