@@ -78,8 +78,8 @@ Accumulation load_accumulation(const std::filesystem::path& path) {
         refuse(std::string("the attribute ") + SEED_ATTRIBUTE + " is missing");
     }
     const std::string& text = std::get<std::string>(seed->second);
-    if (std::from_chars(text.data(), text.data() + text.size(), state.seed).ptr !=
-        text.data() + text.size()) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), state.seed);
+    if (error != std::errc{} || end != text.data() + text.size()) {
         refuse("its seed is \"" + text + "\"");
     }
     if (image.find(layer_channel(LAYER_ALBEDO, 0)) != nullptr) state.layer_count = LAYER_COUNT_AOVS;

@@ -85,15 +85,16 @@ class Flattener {
         if (has_normals_) flat_.normals.push_back({});
     }
 
-    // The index of a new light, or NO_LIGHT if the shape does not emit or the piece has no area.
+    // The index of a new light, or NO_LIGHT if the piece sends out nothing.
     uint add_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2) {
         if (!shape.emission) return NO_LIGHT;
-        const glm::dvec3 normal = cross(glm::dvec3(e1), glm::dvec3(e2));
-        const double area = length(normal) * (kind == LIGHT_TRIANGLE ? 0.5 : 1.0);
-        if (area == 0.0) return NO_LIGHT;
         const Emission& emission = *shape.emission;
+        const double area =
+            length(cross(glm::dvec3(e1), glm::dvec3(e2))) * (kind == LIGHT_TRIANGLE ? 0.5 : 1.0);
+        const double power = area * luminance(emission.radiance) * (emission.two_sided ? 2.0 : 1.0);
+        if (power == 0.0) return NO_LIGHT;
         flat_.lights.push_back({kind, p, e1, e2, emission.radiance, emission.two_sided ? 1u : 0u, 0.0f});
-        flat_.powers.push_back(area * luminance(emission.radiance) * (emission.two_sided ? 2.0 : 1.0));
+        flat_.powers.push_back(power);
         areas_.push_back(area);
         return uint(flat_.lights.size() - 1);
     }

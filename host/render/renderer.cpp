@@ -194,21 +194,32 @@ double Renderer::dispatch(const vk::Kernel& kernel, const Tile& tile) {
     return commands_.submit_and_wait();
 }
 
-void Renderer::collect_counters() {
-    uint32_t words[COUNTER_COUNT];
-    std::memcpy(words, counter_buffer_.mapped(), sizeof words);
-    std::memset(counter_buffer_.mapped(), 0, sizeof words);
-    counters_.rays += uint64_t{words[COUNTER_RAYS_HIGH]} << 32 | words[COUNTER_RAYS_LOW];
-    counters_.nonfinite_samples += words[COUNTER_NONFINITE];
-    counters_.depth_limit_hits += words[COUNTER_DEPTH_LIMIT];
+// Dispatches a tile until all its pixels hold their samples, and returns how long the device took [s]. Once
+// is enough, unless the driver ends loops that run for long, as lavapipe does: see render.comp.glsl.
+double Renderer::complete(const Tile& tile) {
+    double seconds = 0.0;
+    while (true) {
+        seconds += dispatch(*render_kernel_, tile);
+        uint32_t words[COUNTER_COUNT];
+        std::memcpy(words, counter_buffer_.mapped(), sizeof words);
+        std::memset(counter_buffer_.mapped(), 0, sizeof words);
+        counters_.rays += uint64_t{words[COUNTER_RAYS_HIGH]} << 32 | words[COUNTER_RAYS_LOW];
+        counters_.nonfinite_samples += words[COUNTER_NONFINITE];
+        counters_.depth_limit_hits += words[COUNTER_DEPTH_LIMIT];
+        if (words[COUNTER_UNFINISHED] == 0) return seconds;
+        if (words[COUNTER_SAMPLES] == 0) {
+            throw Error(
+                "the driver of " + device_->info().name +
+                " ends loops before a single path is finished; allow fewer bounces (--max-depth), or use "
+                "another device (candela devices lists them)");
+        }
+    }
 }
 
 bool Renderer::render(uint32_t target, const std::function<bool(double)>& keep_going) {
     Schedule schedule(image_size(), samples_, target, settings_.submission_seconds);
     while (!schedule.done()) {
-        const double seconds = dispatch(*render_kernel_, schedule.next());
-        collect_counters();
-        schedule.advance(seconds);
+        schedule.advance(complete(schedule.next()));
         if (!keep_going(schedule.progress()) && !schedule.done()) return false;
     }
     samples_ = std::max(samples_, target);

@@ -76,7 +76,7 @@ class Renderer {
     vk::Kernel make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage, bool counters,
                            const char* name) const;
     double dispatch(const vk::Kernel& kernel, const Tile& tile);
-    void collect_counters();
+    double complete(const Tile& tile);
     uvec2 image_size() const { return {settings_.crop.width(), settings_.crop.height()}; }
 
     const vk::Device* device_;

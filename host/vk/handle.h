@@ -20,7 +20,9 @@ class Unique {
     Unique(Handle handle, Destroy destroy, Parent... parent)
         : handle_(handle), destroy_(destroy), parent_(parent...) {}
     Unique(Unique&& other) noexcept
-        : handle_(std::exchange(other.handle_, Handle{})), destroy_(other.destroy_), parent_(other.parent_) {}
+        : handle_(std::exchange(other.handle_, Handle{})),
+          destroy_(other.destroy_),
+          parent_(std::move(other.parent_)) {}
     Unique& operator=(Unique&& other) noexcept {
         std::swap(handle_, other.handle_);
         std::swap(destroy_, other.destroy_);

@@ -50,37 +50,46 @@ void main() {
     }
 
     // One vertex per turn: a lane whose path has ended begins its next sample while its neighbours go on.
+    //
+    // A path is folded in the turn after its last vertex. Lavapipe ends all loops of an invocation after 65 535 turns
+    // in sum, whatever their conditions say, so that the last turn may have gone wrong: such a path is dropped here,
+    // and traced again by the next dispatch.
     uint rays = 0u;
     uint n = uint(compensation.a);
     Sampler random;
     Path path;
-    bool alive = false;
-    while (n < tile.target_samples) {
+    bool alive = false;  // The path goes on.
+    bool ended = false;  // The path waits to be folded.
+    while (true) {
+        if (ended) {
+            // A sample whose value or square is not finite adds zero and is counted.
+            if (!is_finite(path.L * path.L)) {
+                atomicAdd(counters[COUNTER_NONFINITE], 1u);
+                path.L = vec3(0.0);
+            }
+            if (path.cut) atomicAdd(counters[COUNTER_DEPTH_LIMIT], 1u);
+            rays += path.rays;
+            compensated_add(sum.rgb, compensation.rgb, path.L);
+            compensated_add(square_sum, square_compensation, path.L * path.L);
+            sum.a += path.visible ? 1.0 : 0.0;
+            if (HAS_AOVS) {
+                compensated_add(albedo_sum, albedo_compensation, path.albedo);
+                compensated_add(normal_sum, normal_compensation, path.normal);
+            }
+            ++n;
+        }
+        if (n >= tile.target_samples) break;
         if (!alive) {
             random = sampler_make(pixel, n, parameters.seed);
             vec2 film = vec2(pixel) + unit_float(sampler_pair(random, PAIR_PIXEL));
             path = path_begin(camera_ray(parameters, film));
         }
         alive = path_step(path, random, parameters);
-        if (alive) continue;
-
-        // A sample whose value or square is not finite adds zero and is counted.
-        if (!is_finite(path.L * path.L)) {
-            atomicAdd(counters[COUNTER_NONFINITE], 1u);
-            path.L = vec3(0.0);
-        }
-        if (path.cut) atomicAdd(counters[COUNTER_DEPTH_LIMIT], 1u);
-        rays += path.rays;
-        compensated_add(sum.rgb, compensation.rgb, path.L);
-        compensated_add(square_sum, square_compensation, path.L * path.L);
-        sum.a += path.visible ? 1.0 : 0.0;
-        if (HAS_AOVS) {
-            compensated_add(albedo_sum, albedo_compensation, path.albedo);
-            compensated_add(normal_sum, normal_compensation, path.normal);
-        }
-        ++n;
+        ended = !alive;
     }
     count_rays(rays);
+    if (n < tile.target_samples) atomicAdd(counters[COUNTER_UNFINISHED], 1u);
+    atomicAdd(counters[COUNTER_SAMPLES], n - uint(compensation.a));
     compensation.a = float(n);
 
     layer_store(at, LAYER_L, sum);

@@ -51,12 +51,14 @@ const uint LAYER_NORMAL_COMPENSATION = 7u;  // rgb.
 const uint LAYER_COUNT_COLOUR = 4u;         // Layers of an image without AOVs ...
 const uint LAYER_COUNT_AOVS = 8u;           // ... and of one with them.
 
-// Words of the counter buffer.
+// Words of the counter buffer: what one submission did.
 const uint COUNTER_RAYS_LOW = 0u;  // Rays traced, 64 bits in two words.
 const uint COUNTER_RAYS_HIGH = 1u;
 const uint COUNTER_NONFINITE = 2u;    // Samples that were not finite and added nothing.
 const uint COUNTER_DEPTH_LIMIT = 3u;  // Paths cut at DEPTH_SAFETY_LIMIT.
-const uint COUNTER_COUNT = 4u;
+const uint COUNTER_SAMPLES = 4u;      // Samples folded.
+const uint COUNTER_UNFINISHED = 5u;   // Pixels whose loop the driver ended before they had all samples.
+const uint COUNTER_COUNT = 6u;
 
 // Descriptor bindings of every kernel that reads the scene.
 const uint BINDING_NODES = 0u;

@@ -62,7 +62,7 @@ TEST(BvhNode, ChildBoxReadsTheBytesOfItsChild) {
 }
 
 TEST(BvhNode, LeafReferencesHoldCountAndPosition) {
-    for (const uint32_t count : {1u, 5u, 8u}) {
+    for (const uint32_t count : {1u, 5u, BVH_COUNT_MASK}) {
         for (const uint32_t first : {0u, 99u, BVH_FIRST_MASK - 1}) {
             const uint32_t reference = leaf_reference(first, count);
             EXPECT_TRUE(is_leaf(reference));
