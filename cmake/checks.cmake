@@ -1,0 +1,47 @@
+# The tests that read the sources, the shaders and the documents. Their label is `check`; a tool that is not here
+# shows as a skipped test.
+find_program(SPIRV_VAL NAMES spirv-val REQUIRED)
+# Debian's own interpreter first, since the package python3-jsonschema belongs to it.
+find_program(PYTHON3 NAMES python3 HINTS /usr/bin REQUIRED)
+find_program(CLANG_FORMAT NAMES clang-format-14)
+find_program(RUN_CLANG_TIDY NAMES run-clang-tidy)
+
+# candela_check(NAME COMMAND...) adds a test of the sources.
+function(candela_check name)
+    add_test(NAME ${name} COMMAND ${ARGN} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    set_tests_properties(${name} PROPERTIES LABELS check TIMEOUT 900 SKIP_REGULAR_EXPRESSION "^skipped: ")
+endfunction()
+
+candela_check(layers ${PYTHON3} cmake/checks/layers.py ${CMAKE_SOURCE_DIR})
+candela_check(layers_test ${PYTHON3} cmake/checks/layers_test.py)
+candela_check(setup_test ${PYTHON3} cmake/checks/setup_test.py)
+candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
+candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes)
+
+# Needs a device, unlike the others.
+candela_check(readme ${PYTHON3} cmake/checks/readme.py README.md $<TARGET_FILE:candela>)
+set_tests_properties(readme PROPERTIES LABELS cli RUN_SERIAL TRUE)
+
+get_target_property(spirv candela_render CANDELA_SPIRV)
+get_target_property(test_spirv test_support CANDELA_SPIRV)
+foreach(file IN LISTS spirv test_spirv)
+    cmake_path(GET file STEM name)
+    candela_check(spirv_val.${name} ${SPIRV_VAL} --target-env vulkan1.2 ${file})
+endforeach()
+
+file(GLOB_RECURSE sources CONFIGURE_DEPENDS
+    ${CMAKE_SOURCE_DIR}/host/*.cpp ${CMAKE_SOURCE_DIR}/host/*.h ${CMAKE_SOURCE_DIR}/shaders/shared/*.h
+    ${CMAKE_SOURCE_DIR}/tests/*.cpp ${CMAKE_SOURCE_DIR}/tests/*.h)
+if(CLANG_FORMAT)
+    candela_check(format ${CLANG_FORMAT} --dry-run -Werror ${sources})
+else()
+    candela_check(format ${CMAKE_COMMAND} -E echo "skipped: clang-format 14 is not here")
+endif()
+
+# clang-tidy keeps all cores busy by itself.
+if(RUN_CLANG_TIDY)
+    candela_check(lint ${RUN_CLANG_TIDY} -quiet -p ${CMAKE_BINARY_DIR} ^${CMAKE_SOURCE_DIR}/host/)
+    set_tests_properties(lint PROPERTIES RUN_SERIAL TRUE)
+else()
+    candela_check(lint ${CMAKE_COMMAND} -E echo "skipped: clang-tidy is not here")
+endif()

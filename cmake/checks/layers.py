@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""Checks the rules of CONTRIBUTING.md, "Layers": who includes whom, and the form of every source file.
+
+usage: layers.py ROOT      Prints one line per violation; exits 1 if there is any.
+"""
+import re
+import sys
+from pathlib import Path
+
+# Folder -> folders (or single headers) that its files may include, itself always.
+MAY_INCLUDE = {
+    "host/base": [],
+    "host/scene": ["host/base"],
+    "host/bvh": ["host/base", "shaders/shared"],
+    "host/vk": ["host/base/error.h"],
+    "host/render": ["host/base", "host/scene", "host/bvh", "host/vk", "shaders/shared"],
+    "host/cli": ["host", "shaders/shared"],
+    "host": ["host", "shaders/shared"],
+    "shaders/shared": ["host/base/math.h"],
+    "shaders/base": ["shaders/shared"],
+    "shaders/bsdf": ["shaders/shared", "shaders/base"],
+    "shaders/scene": ["shaders/shared", "shaders/base"],
+    "shaders/light": ["shaders/shared", "shaders/base", "shaders/scene"],
+    "shaders/integrator": ["shaders"],
+    "shaders/kernels": ["shaders"],
+}
+
+# Library -> what its includes look like, and the folders that may see it, even through other files.
+LIBRARIES = {
+    "GLM": (r"glm/", ["host/base", "host/scene", "host/bvh", "host/render", "host/cli", "host"]),
+    "stb": (r"stb_", ["host/base"]),
+    "OpenEXR": (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex)", ["host/base"]),
+    "nlohmann-json": (r"nlohmann/", ["host/scene", "host/cli"]),
+    "tinyobjloader": (r"tiny_obj_loader", ["host/scene"]),
+    "CLI11": (r"CLI/", ["host/cli"]),
+    "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/cli", "host"]),
+}
+
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
+MAIN = re.compile(r"^\s*void\s+main\s*\(", re.MULTILINE)
+BINDING = re.compile(r"^\s*layout\s*\([^)]*\bbinding\b", re.MULTILINE)
+
+
+class Checker:
+    def __init__(self, root):
+        self.root = root
+        self.problems = []
+        self.files = {}  # Path below the root -> text.
+        for pattern in ("host/**/*.cpp", "host/**/*.h", "host/**/*.h.in", "shaders/**/*.glsl", "shaders/**/*.h"):
+            for path in sorted(root.glob(pattern)):
+                self.files[path.relative_to(root).as_posix()] = path.read_text(encoding="utf-8")
+        # File -> list of (line, what the line says, file of ours or None).
+        self.includes = {name: self.find_includes(name, text) for name, text in self.files.items()}
+
+    def report(self, name, line, message):
+        self.problems.append(f"{name}:{line}: {message}")
+
+    def find_includes(self, name, text):
+        """Quoted includes start at host/ or shaders/, as the compilers' search paths do; a header that CMake
+        generates from NAME.h.in is found beside it."""
+        found = []
+        folder = name.rpartition("/")[0]
+        for match in INCLUDE.finditer(text):
+            line = text.count("\n", 0, match.start()) + 1
+            quoted, library = match.groups()
+            candidates = (f"host/{quoted}", f"shaders/{quoted}", f"{folder}/{quoted}.in")
+            target = next((candidate for candidate in candidates if candidate in self.files), None)
+            if quoted and target is None:
+                self.report(name, line, f'includes "{quoted}", which is neither below host/ nor below shaders/')
+            found.append((line, quoted or library, target))
+        return found
+
+    def reachable(self, name):
+        """All files of ours that `name` includes, directly or not."""
+        seen, stack = set(), [name]
+        while stack:
+            for _, _, target in self.includes[stack.pop()]:
+                if target and target not in seen:
+                    seen.add(target)
+                    stack.append(target)
+        return seen
+
+    def check_edges(self, name, folder):
+        allowed = [folder] + MAY_INCLUDE[folder]
+        for line, said, target in self.includes[name]:
+            if target and not any(target == a or target.startswith(a + "/") for a in allowed):
+                self.report(name, line, f'includes "{said}", but {folder}/ may include only {", ".join(allowed)}')
+
+    def check_libraries(self, name, folder):
+        """Shaders see no C++ library: the preprocessor hides them there."""
+        for library, (pattern, folders) in LIBRARIES.items():
+            if folder in folders or folder.startswith("shaders/"):
+                continue
+            for source in sorted({name} | self.reachable(name)):
+                for line, said, target in self.includes[source]:
+                    if target is None and re.match(pattern, said):
+                        how = "" if source == name else f" through {source}:{line}"
+                        where = line if source == name else 1
+                        self.report(name, where, f"sees {library} (<{said}>){how}, but {folder}/ must not")
+
+    def check_cycles(self, name):
+        if name in self.reachable(name):
+            self.report(name, 1, "includes itself in the end; break the cycle")
+
+    def check_comment(self, name, text):
+        if not text.startswith("//"):
+            self.report(name, 1, "must begin with a comment that says what the file is for")
+
+    def check_form(self, name, folder):
+        text = self.files[name]
+        self.check_comment(name, text)
+        if name.startswith("host/"):
+            if not name.endswith(".cpp") and not re.search(r"^#pragma once$", text, re.MULTILINE):
+                self.report(name, 1, "lacks #pragma once")
+            return
+        is_kernel = name.endswith(".comp.glsl")
+        if is_kernel != (folder == "shaders/kernels"):
+            self.report(name, 1, "kernels, and they alone, are *.comp.glsl in shaders/kernels/")
+        if is_kernel != bool(MAIN.search(text)):
+            self.report(name, 1, "kernels, and they alone, define main()")
+        guard = re.sub(r"\W", "_", name.removeprefix("shaders/")).upper()
+        if not is_kernel and f"#ifndef {guard}\n#define {guard}\n" not in text:
+            self.report(name, 1, f"lacks the include guard {guard}")
+        binding = BINDING.search(text)
+        if binding and not is_kernel and name != "shaders/scene/scene_data.glsl":
+            line = text.count("\n", 0, binding.end()) + 1
+            self.report(name, line, "declares a buffer or an image; only scene/scene_data.glsl and kernels do")
+
+    def run(self):
+        for name in self.files:
+            folder = name.rpartition("/")[0]
+            if folder not in MAY_INCLUDE:
+                self.report(name, 1, f"the folder {folder}/ is not in the table of layers")
+                continue
+            self.check_edges(name, folder)
+            self.check_libraries(name, folder)
+            self.check_cycles(name)
+            self.check_form(name, folder)
+        for pattern in ("tests/**/*.cpp", "tests/**/*.h", "tests/**/*.glsl"):
+            for path in sorted(self.root.glob(pattern)):
+                self.check_comment(path.relative_to(self.root).as_posix(), path.read_text(encoding="utf-8"))
+        if not self.files:
+            self.problems.append(f"{self.root}: no source file found")
+        return self.problems
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    checker = Checker(Path(sys.argv[1]))
+    problems = checker.run()
+    for problem in problems:
+        print(problem)
+    print(f"{len(checker.files)} files, {len(problems)} problems")
+    sys.exit(1 if problems else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,11 @@
+#!/bin/sh
+# Installs what is missing, builds candela with warnings as errors, and runs every test and check on the Vulkan
+# device that it finds.   usage: sh cmake/test.sh
+set -eu
+cd "$(dirname "$0")/.."
+. cmake/setup.sh
+
+install_packages render test optional
+cmake --preset ci
+cmake --build --preset ci
+ctest --preset ci --parallel "$(nproc)"
