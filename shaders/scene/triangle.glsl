@@ -36,6 +36,11 @@ vec3 triangle_intersect(Ray ray, RayShear shear, Triangle triangle) {
     precise vec2 pa = a.xy - shear.s.xy * a.z;
     precise vec2 pb = b.xy - shear.s.xy * b.z;
     precise vec2 pc = c.xy - shear.s.xy * c.z;
+    // Far from a triangle that is small against its distance, the edge functions below are nothing but rounding errors;
+    // so ask first whether the triangle's rectangle holds the origin. Comparisons do not round.
+    if (any(greaterThan(min(pa, min(pb, pc)), vec2(0.0))) || any(lessThan(max(pa, max(pb, pc)), vec2(0.0)))) {
+        return vec3(-1.0);
+    }
     // Twice the signed areas that the origin of the sheared plane spans with each edge.
     precise float u = pc.x * pb.y - pc.y * pb.x;
     precise float v = pa.x * pc.y - pa.y * pc.x;
