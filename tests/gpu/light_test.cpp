@@ -1,0 +1,154 @@
+// Light samples: lights are chosen by their power, points uniformly by area, and densities say so.
+#include <cmath>
+
+#include "chi_squared.h"
+#include "gpu/device_fixture.h"
+#include "support/reference_random.h"
+#include "support/scene_builders.h"
+
+namespace candela {
+namespace {
+
+struct LightItem {
+    vec3 from;
+    uint32_t uc;
+    vec2 u;
+    vec2 unused{0};
+};
+
+struct LightResult {
+    vec3 p, n, wi, Li;
+    float pdf;
+};
+
+// One flat light per plane z = 0, 1, 2, ... (so that a sample tells its light), as expected from the scene
+// alone.
+struct ExpectedLight {
+    vec3 p, e1, e2;
+    bool triangle;
+    bool two_sided;
+    vec3 radiance;
+
+    double area() const { return length(cross(glm::dvec3(e1), glm::dvec3(e2))) * (triangle ? 0.5 : 1.0); }
+    double power() const {
+        const double luminance = 0.2126 * radiance.x + 0.7152 * radiance.y + 0.0722 * radiance.z;
+        return area() * luminance * (two_sided ? 2.0 : 1.0);
+    }
+};
+
+const std::vector<ExpectedLight> LIGHTS{
+    {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 2, 0), false, false, vec3(3, 2, 1)},
+    {vec3(0, 0, 1), vec3(1, 0, 0), vec3(0.5f, 1, 0), false, true, vec3(0.1f)},
+    {vec3(-1, -1, 2), vec3(3, 0, 0), vec3(0, 3, 0), true, false, vec3(0, 1, 0)},
+    {vec3(0, 0, 3), vec3(0.01f, 0, 0), vec3(0, 0.01f, 0), false, false, vec3(5000)},
+    {vec3(1, 1, 4), vec3(0, 2, 0), vec3(-2, 0, 0), true, true, vec3(0.2f, 0.3f, 2)},
+};
+
+Scene scene_of_lights() {
+    Scene scene = scene_of_mesh({});
+    scene.shapes.clear();
+    for (const ExpectedLight& l : LIGHTS) {
+        Shape shape{.geometry = parallelogram(l.p, l.e1, l.e2),
+                    .emission = Emission{.radiance = l.radiance, .two_sided = l.two_sided}};
+        if (l.triangle) {
+            shape.geometry = TriangleMesh{
+                .positions = {l.p, l.p + l.e1, l.p + l.e2}, .normals = {}, .triangles = {uvec3(0, 1, 2)}};
+        }
+        scene.shapes.push_back(shape);
+    }
+    return scene;
+}
+
+class LightTest : public DeviceTest {
+  protected:
+    static constexpr uint32_t CELLS = 8;
+
+    static size_t light_of(const LightResult& s) { return size_t(std::lround(s.p.z)); }
+    static double total_power() {
+        double total = 0.0;
+        for (const ExpectedLight& l : LIGHTS)
+            total += l.power();
+        return total;
+    }
+    // Samples from random points above, between and below the lights.
+    std::vector<LightItem> items(size_t count) const {
+        Random random(60);
+        std::vector<LightItem> items(count);
+        for (LightItem& item : items) {
+            item.from = 5.0f * random.cube() + vec3(0, 0, 2);
+            item.uc = random.bits();
+            item.u = random.square();
+        }
+        return items;
+    }
+    std::vector<LightResult> run(const std::vector<LightItem>& items, SceneAccess access) const {
+        const DeviceScene scene(device(), build_gpu_scene(scene_of_lights()), access);
+        return map<LightResult>(
+            access == SceneAccess::texel_buffers ? kernels::light_sample : kernels::light_sample_storage,
+            items, {}, &scene);
+    }
+};
+
+TEST_F(LightTest, LightsAreChosenByPowerAndPointsByArea) {
+    std::vector<double> chosen(LIGHTS.size());
+    std::vector<std::vector<double>> cells(LIGHTS.size(), std::vector<double>(CELLS * CELLS));
+    for (const LightResult& s : run(items(200000), SceneAccess::texel_buffers)) {
+        const size_t i = light_of(s);
+        ASSERT_LT(i, LIGHTS.size());
+        ++chosen[i];
+        // Coordinates along e1 and e2, and from them ones in which the samples are uniform.
+        const ExpectedLight& l = LIGHTS[i];
+        const glm::dvec3 d(glm::dvec3(s.p) - glm::dvec3(l.p)), e1(l.e1), e2(l.e2);
+        const double det = e1.x * e2.y - e1.y * e2.x;
+        glm::dvec2 at((d.x * e2.y - d.y * e2.x) / det, (e1.x * d.y - e1.y * d.x) / det);
+        const double sum = at.x + at.y;
+        if (l.triangle) at = glm::dvec2(sum * sum, sum > 0.0 ? at.y / sum : 0.0);
+        ASSERT_TRUE(at.x > -1e-4 && at.x < 1.0001 && at.y > -1e-4 && at.y < 1.0001) << at.x << ' ' << at.y;
+        const auto cell = [](double x) { return std::min(uint32_t(std::max(x, 0.0) * CELLS), CELLS - 1); };
+        ++cells[i][cell(at.x) * CELLS + cell(at.y)];
+    }
+
+    const double level = sidak_level(CHI_SQUARED_ALPHA, 1 + LIGHTS.size());
+    std::vector<double> powers;
+    for (const ExpectedLight& l : LIGHTS)
+        powers.push_back(l.power());
+    EXPECT_GT(chi_squared_p_value_of(chosen, powers), level);
+    for (const std::vector<double>& counts : cells) {
+        EXPECT_GT(chi_squared_p_value_of(counts, std::vector<double>(counts.size(), 1.0)), level);
+    }
+}
+
+// The density is that of the light times that of the point, taken to solid angle: pmf / area * distance^2 /
+// cos. A reference point in the plane of a light has none, or one that rounding decides; those are left out.
+TEST_F(LightTest, ASampleSaysWhatArrivesAndHowLikelyItWas) {
+    const std::vector<LightItem> sampled = items(20000);
+    for (const SceneAccess access : {SceneAccess::texel_buffers, SceneAccess::storage_buffers}) {
+        const std::vector<LightResult> results = run(sampled, access);
+        for (size_t i = 0; i < sampled.size(); ++i) {
+            const LightResult& s = results[i];
+            const ExpectedLight& l = LIGHTS[light_of(s)];
+            const glm::dvec3 to_light(glm::dvec3(s.p) - glm::dvec3(sampled[i].from));
+            const double distance = length(to_light);
+            const double cosine = -to_light.z / distance;  // All lights face +z.
+            if (std::abs(cosine) < 1e-3) continue;
+            ASSERT_LE(length(glm::dvec3(s.wi) - to_light / distance), 0x1p-20);
+            ASSERT_EQ(s.n, vec3(0, 0, cosine > 0.0 ? 1 : -1));
+            ASSERT_EQ(s.Li, cosine > 0.0 || l.two_sided ? l.radiance : vec3(0.0f));
+            const double pdf = l.power() / total_power() / l.area() * distance * distance / std::abs(cosine);
+            // A cosine of 1e-3 has a relative error of 1e3 times 2^-22.
+            ASSERT_NEAR(s.pdf, pdf, pdf * 0x1p-22 * (4.0 + 2.0 / std::abs(cosine)));
+        }
+    }
+}
+
+TEST_F(LightTest, APointOnTheLightItselfReceivesNothingFromThere) {
+    const LightItem at_the_sample{.from = vec3(0), .uc = 0, .u = vec2(0)};  // Light 0's corner.
+    const LightItem in_the_plane{.from = vec3(-1, 0, 0), .uc = 0, .u = vec2(0)};
+    for (const LightResult& s : run({at_the_sample, in_the_plane}, SceneAccess::texel_buffers)) {
+        ASSERT_EQ(s.p, vec3(0));
+        EXPECT_EQ(s.pdf, 0.0f);
+    }
+}
+
+}  // namespace
+}  // namespace candela

@@ -1,0 +1,191 @@
+// Records cross the bus unharmed: what the host packs, a kernel reads back field by field, bit for bit.
+#include <bit>
+#include <cmath>
+
+#include "gpu/device_fixture.h"
+#include "shared/bvh_node.h"
+#include "shared/light.h"
+#include "shared/material.h"
+#include "shared/triangle.h"
+#include "support/reference_random.h"
+
+namespace candela {
+namespace {
+
+using RecordsTest = DeviceTest;
+
+// The fields of the records in the order in which records.comp.glsl writes them. Every field that is asked
+// for has bits of its own.
+class Fields {
+  public:
+    uint u() { return keep(0xA0000001u + uint(words.size()) * 0x00010203u); }
+    float f() { return std::bit_cast<float>(keep(0x3F800001u + uint(words.size()) * 0x00001357u)); }
+    uvec2 u2() {
+        const uint x = u();
+        return {x, u()};
+    }
+    uvec3 u3() {
+        const uvec2 xy = u2();
+        return {xy.x, xy.y, u()};
+    }
+    uvec4 u4() {
+        const uvec3 xyz = u3();
+        return {xyz.x, xyz.y, xyz.z, u()};
+    }
+    vec3 f3() {
+        const float x = f();
+        const float y = f();
+        return {x, y, f()};
+    }
+    uint keep(uint word) {
+        words.push_back(word);
+        return word;
+    }
+
+    std::vector<uint> words;
+};
+
+struct Item {
+    uvec4 unused{0};
+};
+
+struct Result {
+    std::array<uint, 78> words;
+};
+
+// One record of every kind.
+struct Records {
+    Parameters parameters;
+    BvhNode node;
+    Triangle triangle;
+    std::array<uvec4, NORMALS_WORDS> normals;
+    MaterialRecord material;
+    Light light;
+    AliasEntry entry;
+};
+
+// Records filled from `fields`, in the order in which the kernel writes them; the scale of a node must be
+// powers of two.
+Records filled(Fields& fields, uvec4 tables) {
+    Records r{};
+    r.parameters = {.position = fields.f3(),
+                    .right = fields.f3(),
+                    .up = fields.f3(),
+                    .forward = fields.f3(),
+                    .full_size = fields.u2(),
+                    .crop = fields.u2(),
+                    .seed = fields.u(),
+                    .max_depth = fields.u(),
+                    .rr_depth = fields.u(),
+                    .light_count = fields.u(),
+                    .tables = tables};
+    for (const int i : {0, 1, 2, 3})
+        fields.keep(tables[i]);
+    r.node.origin = fields.f3();
+    r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);
+    for (const int axis : {0, 1, 2})
+        fields.keep(floatBitsToUint(r.node.scale[axis]));
+    r.node.q_lo = fields.u3();
+    r.node.q_hi = fields.u3();
+    r.node.child = fields.u4();
+    r.triangle = {.v0 = fields.f3(),
+                  .v1 = fields.f3(),
+                  .v2 = fields.f3(),
+                  .id = fields.u(),
+                  .material = fields.u(),
+                  .light = fields.u()};
+    r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1));
+    for (const int i : {0, 1, 2, 3})
+        fields.keep(r.normals[0][i]);
+    r.material = {.model = fields.u(), .reflectance = fields.f3()};
+    r.light = {.kind = fields.u(),
+               .p = fields.f3(),
+               .e1 = fields.f3(),
+               .e2 = fields.f3(),
+               .radiance = fields.f3(),
+               .two_sided = fields.u(),
+               .pdf_area = fields.f()};
+    r.entry = {.threshold = fields.u(), .alias = fields.u(), .pmf = fields.f()};
+    return r;
+}
+
+// Appends a record of 0xFF, so that a wrong stride shows, and then `record`.
+template <size_t N>
+void append_second(std::vector<uvec4>& out, const std::array<uvec4, N>& record) {
+    out.insert(out.end(), N, uvec4(0xFFFFFFFFu));
+    out.insert(out.end(), record.begin(), record.end());
+}
+
+// A word that belongs to nothing, and two records in each of the four tables.
+constexpr uvec4 TABLES(1, 1 + 2 * NORMALS_WORDS, 1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS),
+                       1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS));
+
+GpuScene packed(const Records& r) {
+    GpuScene scene;
+    append_second(scene.nodes, pack(r.node));
+    append_second(scene.triangles, pack(r.triangle));
+    scene.tables.emplace_back(0xFFFFFFFFu);
+    append_second(scene.tables, r.normals);
+    append_second(scene.tables, pack(r.material));
+    append_second(scene.tables, pack(r.light));
+    append_second(scene.tables, pack(r.entry));
+    return scene;
+}
+
+TEST_F(RecordsTest, EveryFieldOfEveryRecordArrives) {
+    Fields fields;
+    const Records records = filled(fields, TABLES);
+    ASSERT_EQ(fields.words.size(), Result{}.words.size());
+    const GpuScene scene = packed(records);
+    for (const SceneAccess access : {SceneAccess::texel_buffers, SceneAccess::storage_buffers}) {
+        const DeviceScene on_device(device(), scene, access, records.parameters);
+        const bool texels = access == SceneAccess::texel_buffers;
+        const std::vector<Result> results = map<Result>(texels ? kernels::records : kernels::records_storage,
+                                                        std::vector<Item>(1), {}, &on_device);
+        const auto& words = results[0].words;
+        EXPECT_EQ(std::vector<uint>(words.begin(), words.end()), fields.words)
+            << (texels ? "texel" : "storage");
+    }
+}
+
+// Axes, the fold of the octahedron (z = 0), its edges (x = 0, y = 0) from both sides, and 100 000 at random.
+std::vector<vec3> unit_vectors() {
+    std::vector<vec3> vectors;
+    for (const float x : {-1.0f, -1e-4f, -0.0f, 0.0f, 1e-4f, 1.0f}) {
+        for (const float y : {-1.0f, -1e-4f, -0.0f, 0.0f, 1e-4f, 1.0f}) {
+            for (const float z : {-1.0f, -1e-4f, -0.0f, 0.0f, 1e-4f, 1.0f}) {
+                if (length(vec3(x, y, z)) > 0.5f) vectors.push_back(normalize(vec3(x, y, z)));
+            }
+        }
+    }
+    Random random(1);
+    for (int i = 0; i < 100000; ++i)
+        vectors.push_back(random.direction());
+    return vectors;
+}
+
+// A component of the octahedral map is off by h = 0.5 / 32767 at most, so z by 2 h, and the point on the
+// octahedron by sqrt(6) h. That point is at least 1/sqrt(3) away from the centre: an angle of sqrt(18) h. The
+// roundings of both sides, some 8 of 2^-24 each, are stretched by sqrt(18) as well.
+TEST_F(RecordsTest, OctahedralNormalsKeepTheirDirection) {
+    struct Bits {
+        uint bits;
+        std::array<uint, 3> unused;
+    };
+    const std::vector<vec3> vectors = unit_vectors();
+    std::vector<Bits> items;
+    for (const vec3 v : vectors)
+        items.push_back({pack_octahedral(v), {}});
+    const std::vector<vec3> decoded = map<vec3>(kernels::octahedral, items);
+
+    const double bound = std::sqrt(18.0) * (0.5 / 32767.0 + 8 * 0x1p-24);
+    for (size_t i = 0; i < vectors.size(); ++i) {
+        const glm::dvec3 a(normalize(glm::dvec3(vectors[i])));
+        const glm::dvec3 b(decoded[i]);
+        ASSERT_LE(std::atan2(length(cross(a, b)), dot(a, b)), bound) << a.x << ' ' << a.y << ' ' << a.z;
+        ASSERT_NEAR(length(b), 1.0, 0x1p-20);
+    }
+}
+
+}  // namespace
+}  // namespace candela

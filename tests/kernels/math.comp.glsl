@@ -1,0 +1,22 @@
+// For math_test.cpp: is_finite, cos_sin_octant and power_heuristic of an item (x, y, z, count), and x + count * y by
+// compensated_add.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#define ITEM_WORDS 1u
+#define RESULT_WORDS 6u
+#include "base/warp.glsl"
+#include "items.glsl"
+
+void main() {
+    if (past_end()) return;
+    vec3 v = item_floats(0u).xyz;
+    put(uint(is_finite(v)));
+    put(cos_sin_octant(v.x));
+    put(power_heuristic(v.x, v.y));
+    vec3 sum = vec3(v.x);
+    vec3 compensation = vec3(0.0);
+    for (uint i = item(0u).w; i > 0u; --i) compensated_add(sum, compensation, vec3(v.y));
+    put(sum.x);
+    put(compensation.x);
+}

@@ -1,0 +1,13 @@
+// For records_test.cpp: decodes octahedral normals.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#define ITEM_WORDS 1u
+#define RESULT_WORDS 3u
+#include "items.glsl"
+#include "shared/triangle.h"
+
+void main() {
+    if (past_end()) return;
+    put(octahedral_unpack(item(0u).x));
+}

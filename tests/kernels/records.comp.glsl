@@ -1,0 +1,72 @@
+// For records_test.cpp: reads the second record of every kind and writes its fields, in the order of the struct.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#define ITEM_WORDS 1u
+#define RESULT_WORDS 78u
+#include "items.glsl"
+#include "scene/scene_data.glsl"
+
+void put_parameters(Parameters p) {
+    put(p.position);
+    put(p.right);
+    put(p.up);
+    put(p.forward);
+    put(p.full_size);
+    put(p.crop);
+    put(p.seed);
+    put(p.max_depth);
+    put(p.rr_depth);
+    put(p.light_count);
+    put(p.tables);
+}
+
+void put_node(uint i) {
+    BvhNode node = scene_node(i);
+    put(node.origin);
+    put(node.scale);
+    put(node.q_lo);
+    put(node.q_hi);
+    for (uint slot = 0u; slot < BVH_WIDTH; ++slot) put(scene_node_child(i, slot));
+}
+
+void put_triangle(Triangle t) {
+    put(t.v0);
+    put(t.v1);
+    put(t.v2);
+    put(t.id);
+    put(t.material);
+    put(t.light);
+}
+
+void put_material(MaterialRecord m) {
+    put(m.model);
+    put(m.reflectance);
+}
+
+void put_light(Light l) {
+    put(l.kind);
+    put(l.p);
+    put(l.e1);
+    put(l.e2);
+    put(l.radiance);
+    put(l.two_sided);
+    put(l.pdf_area);
+}
+
+void put_alias_entry(AliasEntry e) {
+    put(e.threshold);
+    put(e.alias);
+    put(e.pmf);
+}
+
+void main() {
+    if (past_end()) return;
+    put_parameters(scene_parameters());
+    put_node(1u);
+    put_triangle(scene_triangle(1u));
+    put(scene_normals(1u));
+    put_material(scene_material(1u));
+    put_light(scene_light(1u));
+    put_alias_entry(scene_light_alias(1u));
+}

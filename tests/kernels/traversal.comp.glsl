@@ -1,0 +1,37 @@
+// For traversal_test.cpp: item (ray). The nearest hit by the BVH and by looking at every triangle, and whether the
+// ray is occluded before the hit, just behind it, and anywhere.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#define ITEM_WORDS 2u
+#define RESULT_WORDS 9u
+#include "items.glsl"
+#include "scene/traversal.glsl"
+
+Hit brute_force(Ray ray) {
+    RayShear shear = ray_shear(ray.d);
+    Hit hit = Hit(FLOAT_MAX, 0u, 0u, vec2(0.0));
+    for (uint i = 0u; i < triangle_count; ++i) {
+        Triangle triangle = scene_triangle(i);
+        vec3 tb = triangle_intersect(ray, shear, triangle);
+        if (tb.x > 0.0 && (tb.x < hit.t || (tb.x == hit.t && triangle.id < hit.id))) {
+            hit = Hit(tb.x, i, triangle.id, tb.yz);
+        }
+    }
+    return hit;
+}
+
+void main() {
+    if (past_end()) return;
+    Ray ray = Ray(item_floats(0u).xyz, item_floats(1u).xyz);
+    Hit hit = bvh_intersect(ray);
+    put(hit.t);
+    put(hit.id);
+    put(hit.b);
+    Hit reference = brute_force(ray);
+    put(reference.t);
+    put(reference.id);
+    put(uint(bvh_occluded(ray, hit.t)));
+    put(uint(bvh_occluded(ray, hit.t == FLOAT_MAX ? FLOAT_MAX : uintBitsToFloat(floatBitsToUint(hit.t) + 1u))));
+    put(uint(bvh_occluded(ray, FLOAT_MAX)));
+}

@@ -1,0 +1,198 @@
+// The contract: N samples give the same bits however the work was cut into submissions, sessions, files and
+// threads, however the scene is read, and in a crop as in the whole.
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+
+#include "render_fixture.h"
+#include "unit/base_fixture.h"
+
+namespace candela {
+namespace {
+
+class IdentityTest : public RenderTest {
+  protected:
+    static constexpr uint32_t SPP = 16;
+
+    IdentityTest() : scene_(cornell_box()), gpu_scene_(build_gpu_scene(scene_)) {}
+
+    // No multiple of the work group in either direction.
+    static RenderSettings settings() {
+        RenderSettings s = settings_for(37, 23);
+        s.seed = 77;
+        s.aovs = true;
+        return s;
+    }
+    Renderer renderer(const RenderSettings& settings) const {
+        return Renderer(device(), gpu_scene_, scene_.cameras[0], settings);
+    }
+    static void finish(Renderer& renderer, uint32_t spp = SPP) {
+        ASSERT_TRUE(renderer.render(spp, [](double) { return true; }));
+    }
+    Accumulation in_one_go(const RenderSettings& settings) const {
+        Renderer r = renderer(settings);
+        finish(r);
+        return r.download();
+    }
+    static void expect_same_bits(const Accumulation& a, const Accumulation& b) {
+        EXPECT_EQ(a.layer_count, b.layer_count);
+        ASSERT_EQ(a.values.size(), b.values.size());
+        EXPECT_EQ(std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)), 0);
+        EXPECT_EQ(image_hash(image_of(a)), image_hash(image_of(b)));
+    }
+
+    Scene scene_;
+    GpuScene gpu_scene_;
+};
+
+TEST_F(IdentityTest, ManySmallSubmissions) {
+    RenderSettings s = settings();
+    s.submission_seconds = 10.0;
+    const Accumulation whole = in_one_go(s);
+    s.submission_seconds = 1e-6;  // A work group at a time, after the first submission.
+    Renderer r = renderer(s);
+    size_t submissions = 0;
+    EXPECT_TRUE(r.render(SPP, [&](double) { return ++submissions > 0; }));
+    EXPECT_GT(submissions, 30u);  // 15 tiles a pass.
+    expect_same_bits(r.download(), whole);
+}
+
+// So few pixels that thousands of samples of each fit into one submission.
+TEST_F(IdentityTest, ManySamplesOfAFewPixels) {
+    constexpr uint32_t MANY = 5000;
+    RenderSettings s = settings();
+    s.crop = {20, 20, 22, 21};
+    s.submission_seconds = 10.0;
+    Renderer r = renderer(s);
+    finish(r, MANY);
+    const Accumulation at_once = r.download();
+    EXPECT_EQ(at_once.total_samples(), 2 * MANY);
+    Renderer stepwise = renderer(s);
+    for (uint32_t target = 10; target <= MANY; target += 10)
+        finish(stepwise, target);
+    expect_same_bits(at_once, stepwise.download());
+}
+
+TEST_F(IdentityTest, SeveralCalls) {
+    Renderer r = renderer(settings());
+    for (const uint32_t target : {1u, 5u, 5u, SPP})
+        finish(r, target);
+    expect_same_bits(r.download(), in_one_go(settings()));
+}
+
+TEST_F(IdentityTest, AnInterruptionBetweenSubmissions) {
+    RenderSettings s = settings();
+    s.submission_seconds = 1e-6;
+    Renderer r = renderer(s);
+    size_t submissions = 0;
+    EXPECT_FALSE(r.render(SPP, [&](double) { return ++submissions < 23; }));
+    const Accumulation interrupted = r.download();
+    EXPECT_LT(interrupted.total_samples(), SPP * interrupted.pixel_count());
+    finish(r);
+    expect_same_bits(r.download(), in_one_go(settings()));
+}
+
+TEST_F(IdentityTest, AStateThatWentThroughAFile) {
+    const TemporaryDirectory folder;
+    {
+        RenderSettings s = settings();
+        s.submission_seconds = 1e-6;
+        Renderer r = renderer(s);
+        size_t submissions = 0;
+        r.render(SPP, [&](double) { return ++submissions < 30; });
+        save_accumulation(folder / "state.exr", r.download());
+    }
+    Renderer r = renderer(settings());
+    r.upload(load_accumulation(folder / "state.exr"));
+    finish(r);
+    expect_same_bits(r.download(), in_one_go(settings()));
+}
+
+TEST_F(IdentityTest, AStateThatDoesNotFitIsRefused) {
+    const Accumulation state = in_one_go(settings());
+    const auto expect_refused = [&](const std::function<void(RenderSettings&)>& change) {
+        RenderSettings s = settings();
+        change(s);
+        Renderer r = renderer(s);
+        EXPECT_EQ(
+            error_of([&] { r.upload(state); }),
+            "the state does not fit: its size, crop, seed or set of images differs from this rendering's; "
+            "render with the settings that it was made with");
+    };
+    expect_refused([](RenderSettings& s) { s.size.x = 38; });
+    expect_refused([](RenderSettings& s) { s.crop.x0 = 1; });
+    expect_refused([](RenderSettings& s) { s.seed = 78; });
+    expect_refused([](RenderSettings& s) { s.aovs = false; });
+}
+
+TEST_F(IdentityTest, ACrop) {
+    const Accumulation whole = in_one_go(settings());
+    for (const PixelRect crop :
+         {PixelRect{5, 3, 24, 20}, PixelRect{36, 22, 37, 23}, PixelRect{0, 9, 37, 10}}) {
+        RenderSettings s = settings();
+        s.crop = crop;
+        const Accumulation part = in_one_go(s);
+        for (uint32_t layer = 0; layer < whole.layer_count; ++layer) {
+            for (uint32_t y = crop.y0; y < crop.y1; ++y) {
+                const float* expected = whole.at(layer, size_t(y) * whole.rect.width() + crop.x0);
+                const float* row = part.at(layer, size_t(y - crop.y0) * crop.width());
+                ASSERT_EQ(std::memcmp(row, expected, crop.width() * 4 * sizeof(float)), 0)
+                    << layer << ' ' << y;
+            }
+        }
+    }
+}
+
+TEST_F(IdentityTest, TexelAndStorageBuffers) {
+    // With normals, so that every table is read.
+    TriangleMesh ball = sphere_mesh(8, 12);
+    ball.normals = ball.positions;
+    ball = transformed(ball, [](vec3 p) { return vec3(0.2f, 0.3f, 0.2f) + 0.1f * p; });
+    scene_.shapes.push_back({.geometry = ball, .material = 0, .emission = {}});
+    gpu_scene_ = build_gpu_scene(scene_);
+    RenderSettings s = settings();
+    s.scene_access = SceneAccess::texel_buffers;
+    const Accumulation texels = in_one_go(s);
+    s.scene_access = SceneAccess::storage_buffers;
+    expect_same_bits(in_one_go(s), texels);
+}
+
+TEST_F(IdentityTest, AovsLeaveTheColoursAlone) {
+    const Accumulation with = in_one_go(settings());
+    RenderSettings s = settings();
+    s.aovs = false;
+    const Accumulation without = in_one_go(s);
+    ASSERT_EQ(without.layer_count, LAYER_COUNT_COLOUR);
+    ASSERT_EQ(with.layer_count, LAYER_COUNT_AOVS);
+    EXPECT_EQ(std::memcmp(without.values.data(), with.values.data(), without.values.size() * sizeof(float)),
+              0);
+}
+
+TEST_F(IdentityTest, AnotherSeedIsAnotherImage) {
+    RenderSettings s = settings();
+    const uint64_t hash = image_hash(image_of(in_one_go(s)));
+    s.seed = 78;
+    EXPECT_NE(image_hash(image_of(in_one_go(s))), hash);
+}
+
+// Lavapipe reads the number of its threads when an instance lists its devices; other drivers ignore the
+// variable.
+TEST(ThreadsTest, OneThreadOrMany) {
+    const Scene scene = cornell_box();
+    const auto render_with_threads = [&](const char* threads) {
+        setenv("LP_NUM_THREADS", threads, 1);
+        const vk::Instance instance({.validation = true});
+        const std::vector<vk::DeviceInfo> devices = instance.devices();
+        const vk::Device device(instance, vk::select_device(devices, {}));
+        Renderer r(device, build_gpu_scene(scene), scene.cameras[0], settings_for(37, 23));
+        EXPECT_TRUE(r.render(16, [](double) { return true; }));
+        unsetenv("LP_NUM_THREADS");
+        return r.download();
+    };
+    const Accumulation one = render_with_threads("1");
+    const Accumulation three = render_with_threads("3");
+    EXPECT_EQ(std::memcmp(one.values.data(), three.values.data(), one.values.size() * sizeof(float)), 0);
+}
+
+}  // namespace
+}  // namespace candela

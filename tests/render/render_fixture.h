@@ -1,0 +1,101 @@
+// What the tests of whole renderings share: a device, and a scene to its accumulated state in one call.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/compare.h"
+#include "base/statistics.h"
+#include "gpu/vk_fixture.h"
+#include "render/gpu_scene.h"
+#include "render/renderer.h"
+#include "support/scene_builders.h"
+#include "vk/device.h"
+
+namespace candela {
+
+// Settings for a whole small picture.
+inline RenderSettings settings_for(uint32_t width, uint32_t height) {
+    RenderSettings settings;
+    settings.size = uvec2(width, height);
+    settings.crop = {0, 0, width, height};
+    return settings;
+}
+
+inline Image image_of(const Accumulation& state) {
+    return make_image(state, {.variance = true}, {});
+}
+
+// Probability with which a correct renderer fails one statistical test. Seeds are fixed, so on one device a
+// verdict stays; the level bounds how often a new device is accused wrongly.
+inline constexpr double TEST_ALPHA = 1e-4;
+
+// No measured standard error may be larger than this share of the mean: else the test would accept anything.
+inline constexpr double LARGEST_ERROR = 0.002;
+
+// Red, green or blue (0, 1, 2) of a layer that the image has, row-major.
+inline std::span<const float> plane(const Image& image, std::string_view layer, size_t channel) {
+    return image.find_rgb(layer).value()[channel];
+}
+
+// Mean of a channel over the image, and its standard error if pixels are independent.
+struct ImageMean {
+    double mean = 0.0;
+    double error = 0.0;
+    double pixels = 0.0;
+};
+
+inline ImageMean image_mean(const Image& image, size_t channel) {
+    RunningMoments moments;
+    for (const float value : plane(image, "", channel))
+        moments.add(value);
+    double variance = 0.0;
+    for (const float value : plane(image, "Variance", channel))
+        variance += value;
+    const double n = double(moments.count());
+    return {moments.mean(), std::sqrt(variance) / n, n};
+}
+
+// Two images of one expectation, made with independent samples: means of 8 x 8 blocks and of the image must
+// agree within their own standard errors, which must be small. Pixels alone are too noisy to say much.
+inline void expect_same_expectation(const Image& a, const Image& b) {
+    for (const Image* image : {&a, &b}) {
+        for (size_t c = 0; c < 3; ++c) {
+            const ImageMean m = image_mean(*image, c);
+            EXPECT_LE(m.error, LARGEST_ERROR * m.mean);
+        }
+    }
+    const Comparison comparison = compare(a, b, {.alpha = TEST_ALPHA});
+    ASSERT_TRUE(comparison.tests.has_value());
+    const auto& [passing, pixel, block, mean] = *comparison.tests;
+    EXPECT_TRUE(mean.passed()) << "image mean: z = " << mean.z << " of channel " << mean.channel;
+    EXPECT_TRUE(block.passed()) << "block at " << block.place.x0 << ' ' << block.place.y0
+                                << ": z = " << block.z;
+}
+
+class RenderTest : public vk::Vk {
+  protected:
+    RenderTest() { device_.emplace(instance_, info_); }
+    void TearDown() override {
+        device_.reset();
+        Vk::TearDown();
+    }
+    const vk::Device& device() const { return *device_; }
+
+    // Renders `spp` samples per pixel through the scene's first camera. No sample may be other than finite,
+    // and no path may reach the safety limit.
+    Accumulation render(const Scene& scene, const RenderSettings& settings, uint32_t spp) const {
+        Renderer renderer(device(), build_gpu_scene(scene), scene.cameras.at(0), settings);
+        EXPECT_TRUE(renderer.render(spp, [](double) { return true; }));
+        EXPECT_EQ(renderer.counters().nonfinite_samples, 0u);
+        EXPECT_EQ(renderer.counters().depth_limit_hits, 0u);
+        Accumulation state = renderer.download();
+        EXPECT_EQ(state.total_samples(), uint64_t{spp} * state.pixel_count());
+        return state;
+    }
+
+  private:
+    std::optional<vk::Device> device_;
+};
+
+}  // namespace candela
