@@ -10,9 +10,8 @@
 #include "light/light_sampler.glsl"
 #include "scene/interaction.glsl"
 
-// How direct light is found. A scene without lights must use
-// ESTIMATOR_BSDF: asking the parameters here instead would make lavapipe 22.3 compile the kernel anew at every
-// dispatch, as it does wherever a branch depends on uniforms alone.
+// How direct light is found. A scene without lights must use ESTIMATOR_BSDF: asking the parameters instead would make
+// lavapipe 22.3 compile the kernel anew at every dispatch, as it does wherever a branch depends on uniforms alone.
 layout(constant_id = CONSTANT_ESTIMATOR) const uint ESTIMATOR = ESTIMATOR_MIS;
 
 // Survival is never more likely than this, so that every path ends.
@@ -51,7 +50,7 @@ vec3 direct_light(inout Path path, Interaction s, Frame frame, vec3 wo, Material
     LightSample light = light_sample_li(s.p, uc, u);
     vec3 wi = frame_to_local(frame, light.wi);
     vec3 Ld = path.beta * bsdf_f(material, wo, wi) * abs(wi.z) * light.Li;
-    if (light.pdf == 0.0 || dot(light.wi, s.n) <= 0.0 || !(max_component(Ld) > 0.0)) return vec3(0.0);
+    if (light.pdf == 0.0 || dot(light.wi, s.n) <= 0.0 || Ld == vec3(0.0)) return vec3(0.0);
     vec3 from = offset_origin(s.p, s.n);
     vec3 to = offset_origin(light.p, light.n);
     ++path.rays;

@@ -1,6 +1,6 @@
 // Brings every pixel of a tile to a number of samples: each invocation traces one path after the other for its pixel
-// and folds it into the accumulation image. Which samples a pixel still needs, its own count says, so that any cut of the work into
-// tiles and dispatches gives the same bits.
+// and folds it into the accumulation image. Which samples a pixel still needs, its own count says, so that any cut of
+// the work into tiles and dispatches gives the same bits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

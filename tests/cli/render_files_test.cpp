@@ -113,6 +113,18 @@ TEST_F(RenderFiles, SceneWithoutLightIsAWarning) {
         ASSERT_EQ(value, 0.0f);
 }
 
+// The camera looks into a light whose square is beyond the largest float.
+TEST_F(RenderFiles, SamplesThatAreNotFiniteAreAWarning) {
+    const std::string scene = write("glare.json", R"({
+        "cameras": { "main": { "position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40 } },
+        "shapes": [ { "type": "quad", "vertices": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]],
+                      "emission": 1e30 } ] })");
+    const ProcessResult result =
+        candela({"render", scene, "-o", file("a.exr"), "--size", "8x8", "--spp", "2", "--quiet"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.err, "candela: warning: 128 sample(s) were not finite and count as black\n");
+}
+
 TEST_F(RenderFiles, FailedRunsLeaveOldFilesAlone) {
     for (const Words& cause :
          std::vector<Words>{{"--camera", "none"}, {"--device", "none"}, {"--size", "65536x65536"}}) {

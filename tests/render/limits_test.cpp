@@ -1,0 +1,69 @@
+// What happens at the edges: devices too small for a scene, and samples too bright for a float.
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "render/render_fixture.h"
+
+namespace candela {
+namespace {
+
+class LimitsTest : public vk::Vk {
+  protected:
+    // Builds a renderer of the Cornell box on a device that claims the limits of info_.
+    std::string message(ExitCode code) const {
+        const vk::Device device(instance_, info_);
+        const Scene scene = cornell_box();
+        return vk::error_of(code, [&] {
+            const Renderer renderer(device, build_gpu_scene(scene), scene.cameras.at(0), settings_for(8, 8));
+        });
+    }
+};
+
+// The Cornell box: 32 triangles of 3 words each are its largest array.
+TEST_F(LimitsTest, ASceneForTexelBuffersAloneIsStillRead) {
+    info_.limits.max_storage_buffer_range = 96 * 16 - 1;
+    EXPECT_EQ(message(ExitCode::failed), "no error");
+}
+
+TEST_F(LimitsTest, ASceneForStorageBuffersAloneIsStillRead) {
+    info_.limits.max_texel_buffer_elements = 95;
+    EXPECT_EQ(message(ExitCode::failed), "no error");
+}
+
+TEST_F(LimitsTest, ASceneForNeitherSaysWhatItNeeds) {
+    info_.limits.max_texel_buffer_elements = 95;
+    info_.limits.max_storage_buffer_range = 96 * 16 - 1;
+    EXPECT_EQ(message(ExitCode::out_of_memory),
+              "the largest array of the scene needs 96 texels (1536 bytes), but " + info_.name +
+                  " allows maxTexelBufferElements = 95 and maxStorageBufferRange = 1535 bytes; use a smaller "
+                  "scene, "
+                  "or another device (candela devices lists them)");
+}
+
+using FiniteTest = RenderTest;
+
+// The square of 1e30 is no float, that of 1e15 is.
+TEST_F(FiniteTest, SamplesThatAreNotFiniteAddNothingAndAreCounted) {
+    for (const float radiance : {1e15f, 1e30f}) {
+        Scene scene = cornell_box();
+        scene.cameras[0].position = vec3(0.278f, 0.4f, 0.28f);  // Under the light, which fills the view.
+        scene.cameras[0].look_at = vec3(0.278f, 0.5485f, 0.28f);
+        scene.cameras[0].up = vec3(0, 0, 1);
+        scene.cameras[0].vertical_fov = 0.1f;
+        for (Shape& shape : scene.shapes) {
+            if (shape.emission) shape.emission->radiance = vec3(radiance);
+        }
+        RenderSettings settings = settings_for(8, 8);
+        settings.max_depth = 0;
+        Renderer renderer(device(), build_gpu_scene(scene), scene.cameras[0], settings);
+        renderer.render(3, [](double) { return true; });
+        const bool finite = radiance < 1e19f;
+        EXPECT_EQ(renderer.counters().nonfinite_samples, finite ? 0u : 3u * 64u);
+        const Image image = image_of(renderer.download());
+        for (const float value : plane(image, "", 1))
+            ASSERT_EQ(value, finite ? radiance : 0.0f);
+    }
+}
+
+}  // namespace
+}  // namespace candela
