@@ -32,10 +32,7 @@ class EstimatorTest : public RenderTest {
     static constexpr uint32_t SIZE = 64;
 
     static RenderSettings settings(Estimator estimator, uint32_t seed) {
-        RenderSettings s = settings_for(SIZE, SIZE);
-        s.estimator = estimator;
-        s.sampler = SamplerKind::independent;
-        s.seed = seed;
+        RenderSettings s = independent_settings(SIZE, estimator, seed);
         s.max_depth = 8;
         return s;
     }

@@ -13,11 +13,7 @@ class FurnaceTest : public RenderTest {
     static constexpr uint32_t SIZE = 64;
 
     static RenderSettings settings(Estimator estimator, uint32_t seed) {
-        RenderSettings s = settings_for(SIZE, SIZE);
-        s.estimator = estimator;
-        s.sampler = SamplerKind::independent;
-        s.seed = seed;
-        return s;
+        return independent_settings(SIZE, estimator, seed);
     }
     // Student's test over the pixels, whose samples are independent of each other. Every vertex of a path
     // rounds its radiance and throughput some ten times, always the same way at worst: 2^-20 of the sum.

@@ -22,6 +22,15 @@ inline RenderSettings settings_for(uint32_t width, uint32_t height) {
     return settings;
 }
 
+// Settings for statistics over a square picture: the samples of all pixels are independent.
+inline RenderSettings independent_settings(uint32_t size, Estimator estimator, uint32_t seed) {
+    RenderSettings settings = settings_for(size, size);
+    settings.estimator = estimator;
+    settings.sampler = SamplerKind::independent;
+    settings.seed = seed;
+    return settings;
+}
+
 inline Image image_of(const Accumulation& state) {
     return make_image(state, {.variance = true}, {});
 }
