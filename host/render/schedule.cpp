@@ -11,7 +11,8 @@ namespace {
 // The first submission is small, since nothing is known of the device yet: 64 x 64 pixels, one sample.
 constexpr double FIRST_BUDGET = 4096;
 
-// The budget grows by this factor at most from one submission to the next, in case that one was unusually cheap.
+// The budget grows by this factor at most from one submission to the next, in case that one was unusually
+// cheap.
 constexpr double LARGEST_GROWTH = 4;
 
 // Where the image takes several submissions per pass, a pass adds half as many samples as there are, but at

@@ -89,12 +89,6 @@ void Commands::dispatch(const Kernel& kernel, std::span<const std::byte> push_co
     vkCmdDispatch(buffer_, groups[0], groups[1], groups[2]);
 }
 
-void Commands::compute_to_compute() {
-    memory_barrier(buffer_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-                   VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_UNIFORM_READ_BIT);
-}
-
 double Commands::submit_and_wait() {
     memory_barrier(buffer_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                    VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);

@@ -16,7 +16,8 @@ namespace candela::vk {
 class Kernel;
 
 // Submissions follow each other: each sees all that the host and earlier submissions wrote, and the host sees
-// all that it wrote once submit_and_wait() returns. Within one submission, say what depends on what.
+// all that it wrote once submit_and_wait() returns. Dispatches of one submission must not depend on each
+// other.
 class Commands {
   public:
     explicit Commands(const Device& device);
@@ -26,8 +27,6 @@ class Commands {
     // groups.
     void dispatch(const Kernel& kernel, std::span<const std::byte> push_constants,
                   const std::array<uint32_t, 3>& groups);
-    // What is dispatched after this sees what was dispatched before.
-    void compute_to_compute();
 
     // Runs what was recorded, waits until it is done and returns how long the device worked on it [s]: by the
     // device's clock if it has one, else from submit to finish by the host's. Then recording starts afresh.

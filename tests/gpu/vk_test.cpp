@@ -158,16 +158,14 @@ TEST_F(Vk, AKernelSeesItsResourcesConstantsAndPushConstants) {
     EXPECT_EQ(test.pixels_counted(), TestKernel::WIDTH * TestKernel::HEIGHT);
 }
 
-TEST_F(Vk, DispatchesFollowEachOtherWithinAndAcrossSubmissions) {
+TEST_F(Vk, SubmissionsFollowEachOther) {
     const Device device(instance_, info_);
     const TestKernel test(device);
     Commands commands(device);
-    test.dispatch(commands, {.layer = 0, .gain = 1.0f});
-    commands.compute_to_compute();
-    test.dispatch(commands, {.layer = 0, .gain = 1.0f});
-    commands.submit_and_wait();
-    test.dispatch(commands, {.layer = 0, .gain = 1.0f});
-    commands.submit_and_wait();
+    for (int i = 0; i < 3; ++i) {
+        test.dispatch(commands, {.layer = 0, .gain = 1.0f});
+        commands.submit_and_wait();
+    }
     std::vector<float> expected = test.expected(1.0f);
     for (float& value : expected) {
         value *= 3;
