@@ -38,7 +38,7 @@ Json memory_of(const GpuScene& gpu, RenderSettings settings) {
     settings.aovs = false;
     const uint64_t colour = device_bytes(gpu, settings);
     return {{"bvh", gpu.nodes.size() * sizeof(uvec4)},
-            {"triangles", gpu.triangles.size() * sizeof(uvec4)},
+            {"primitives", gpu.primitives.size() * sizeof(uvec4)},
             {"tables", gpu.tables.size() * sizeof(uvec4)},
             {"picture", all - gpu.bytes()},
             {"picture_without_aovs", colour - gpu.bytes()}};
@@ -55,7 +55,7 @@ Json describe(const InfoOptions& options, const Scene& scene) {
         cameras.push_back(camera.name);
     const PixelRect& crop = settings.crop;
     return {{"scene", options.scene},
-            {"triangles", gpu.triangle_count},
+            {"primitives", gpu.primitive_count},
             {"lights", gpu.light_count},
             {"materials", scene.materials.size()},
             {"cameras", cameras},
@@ -98,7 +98,7 @@ void print(const Json& info) {
         return bytes_text(info["device_bytes_by_part"][part].get<uint64_t>());
     };
     row("scene", info["scene"].get<std::string>());
-    row("triangles", info["triangles"].dump());
+    row("primitives", info["primitives"].dump());
     row("lights", info["lights"].dump());
     row("materials", info["materials"].dump());
     row("cameras", join(info["cameras"]));
@@ -109,7 +109,7 @@ void print(const Json& info) {
     row("picture",
         info["width"].dump() + 'x' + info["height"].dump() + " pixels, crop " + info["crop"].dump());
     row("device memory", bytes_text(info["device_bytes"].get<uint64_t>()) + ": BVH " + bytes("bvh") +
-                             ", triangles " + bytes("triangles") + ", tables " + bytes("tables") +
+                             ", primitives " + bytes("primitives") + ", tables " + bytes("tables") +
                              ", picture " + bytes("picture") + " (" + bytes("picture_without_aovs") +
                              " without AOVs)");
 }

@@ -100,7 +100,7 @@ Json make_report(const RenderOptions& options, const RenderRecord& record) {
             {"max_depth", settings.max_depth},
             {"rr_depth", settings.rr_depth},
             {"scene_buffers", name_of(settings.scene_access, SCENE_ACCESS_NAMES)},
-            {"triangles", record.triangles},
+            {"primitives", record.primitives},
             {"lights", record.lights},
             {"load_seconds", record.load_seconds},
             {"bvh_seconds", record.bvh_seconds},

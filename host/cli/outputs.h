@@ -16,7 +16,7 @@ struct RenderRecord {
     std::string device;
     std::string driver;
     RenderSettings settings;  // scene_access as it turned out.
-    uint32_t triangles = 0;
+    uint32_t primitives = 0;
     uint32_t lights = 0;
     double load_seconds = 0.0;      // Wall times: reading the scene file ...
     double bvh_seconds = 0.0;       // ... building the BVH ...

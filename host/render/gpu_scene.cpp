@@ -8,7 +8,7 @@
 #include "render/alias_table.h"
 #include "shared/bvh_node.h"
 #include "shared/material.h"
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 
 namespace candela {
 namespace {
@@ -24,7 +24,7 @@ float luminance(vec3 rgb) {
 
 // The scene in its own order, before the BVH decides on another.
 struct Flat {
-    std::vector<Triangle> triangles;
+    std::vector<Primitive> primitives;
     std::vector<std::array<uvec4, NORMALS_WORDS>> normals;  // One per triangle, or none if all are flat.
     std::vector<Light> lights;
     std::vector<double> powers;  // Of each light, up to a common factor.
@@ -81,7 +81,8 @@ class Flattener {
     }
 
     void add_triangle(const Shape& shape, vec3 v0, vec3 v1, vec3 v2, uint light) {
-        flat_.triangles.push_back({v0, v1, v2, uint(flat_.triangles.size()), shape.material, light});
+        flat_.primitives.push_back(
+            {PRIMITIVE_TRIANGLE, v0, v1, v2, uint(flat_.primitives.size()), shape.material, light});
         if (has_normals_) flat_.normals.push_back({});
     }
 
@@ -108,12 +109,12 @@ MaterialRecord record(const DiffuseMaterial& m) {
     return {MATERIAL_DIFFUSE, m.reflectance};
 }
 
-Bvh build_bvh_over(const std::vector<Triangle>& triangles) {
-    std::vector<Box> boxes(triangles.size());
-    for (size_t i = 0; i < triangles.size(); ++i) {
-        boxes[i].extend(triangles[i].v0);
-        boxes[i].extend(triangles[i].v1);
-        boxes[i].extend(triangles[i].v2);
+Bvh build_bvh_over(const std::vector<Primitive>& primitives) {
+    std::vector<Box> boxes(primitives.size());
+    for (size_t i = 0; i < primitives.size(); ++i) {
+        boxes[i].extend(primitives[i].a);
+        boxes[i].extend(primitives[i].b);
+        boxes[i].extend(primitives[i].c);
     }
     return build_bvh(boxes);
 }
@@ -123,12 +124,12 @@ Bvh build_bvh_over(const std::vector<Triangle>& triangles) {
 GpuScene build_gpu_scene(const Scene& scene) {
     const Flat flat = Flattener(scene).take();
     GpuScene gpu;
-    gpu.triangle_count = uint32_t(flat.triangles.size());
+    gpu.primitive_count = uint32_t(flat.primitives.size());
     gpu.light_count = uint32_t(flat.lights.size());
     gpu.has_normals = !flat.normals.empty();
 
     const auto start = std::chrono::steady_clock::now();
-    const Bvh bvh = build_bvh_over(flat.triangles);
+    const Bvh bvh = build_bvh_over(flat.primitives);
     gpu.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     gpu.bvh_depth = bvh.depth;
     gpu.bvh_sah_cost = bvh.sah_cost;
@@ -136,9 +137,9 @@ GpuScene build_gpu_scene(const Scene& scene) {
     gpu.nodes.reserve(bvh.nodes.size() * BVH_NODE_WORDS);
     for (const auto& node : bvh.nodes)
         append(gpu.nodes, node);
-    gpu.triangles.reserve(flat.triangles.size() * TRIANGLE_WORDS);
+    gpu.primitives.reserve(flat.primitives.size() * PRIMITIVE_WORDS);
     for (const uint32_t i : bvh.order)
-        append(gpu.triangles, pack(flat.triangles[i]));
+        append(gpu.primitives, pack(flat.primitives[i]));
 
     const auto begin_table = [&](glm::length_t table) { gpu.table_starts[table] = uint(gpu.tables.size()); };
     begin_table(0);

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "render/kernels.h"
 #include "render/schedule.h"
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 
 namespace candela {
 namespace {
@@ -28,7 +28,7 @@ std::span<const std::byte> bytes_of(const T& value) {
 }
 
 uint64_t largest_array(const GpuScene& scene) {
-    return std::max({scene.nodes.size(), scene.triangles.size(), scene.tables.size()});
+    return std::max({scene.nodes.size(), scene.primitives.size(), scene.tables.size()});
 }
 
 // Texel buffers wherever they hold the scene: on a CPU they are several times faster, on a GPU no slower.
@@ -140,7 +140,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
       settings_(settings),
       access_(choose_access(device, scene, settings.scene_access)),
       nodes_(scene_buffer(device, scene.nodes, access_, "nodes")),
-      triangles_(scene_buffer(device, scene.triangles, access_, "triangles")),
+      primitives_(scene_buffer(device, scene.primitives, access_, "primitives")),
       tables_(scene_buffer(device, scene.tables, access_, "tables")),
       parameters_(device, PARAMETERS_WORDS * sizeof(uvec4), vk::BufferUsage::uniform, "parameters"),
       counter_buffer_(device, COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsage::readback, "counters"),
@@ -172,14 +172,14 @@ vk::Kernel Renderer::make_kernel(std::span<const uint32_t> texel, std::span<cons
     const bool texels = access_ == SceneAccess::texel_buffers;
     const auto scene_type = texels ? vk::BindingType::texel_buffer : vk::BindingType::storage_buffer;
     std::vector<vk::Binding> bindings{{BINDING_NODES, scene_type},
-                                      {BINDING_TRIANGLES, scene_type},
+                                      {BINDING_PRIMITIVES, scene_type},
                                       {BINDING_TABLES, scene_type},
                                       {BINDING_PARAMETERS, vk::BindingType::uniform_buffer},
                                       {BINDING_IMAGE, vk::BindingType::storage_image}};
     if (counters) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
     vk::Kernel kernel(*device_, texels ? texel : storage, bindings, sizeof(Tile), constants_, name);
     kernel.bind(BINDING_NODES, nodes_);
-    kernel.bind(BINDING_TRIANGLES, triangles_);
+    kernel.bind(BINDING_PRIMITIVES, primitives_);
     kernel.bind(BINDING_TABLES, tables_);
     kernel.bind(BINDING_PARAMETERS, parameters_);
     return kernel;

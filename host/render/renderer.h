@@ -88,7 +88,7 @@ class Renderer {
     uint32_t samples_ = 0;  // That every pixel holds at least.
 
     vk::Buffer nodes_;
-    vk::Buffer triangles_;
+    vk::Buffer primitives_;
     vk::Buffer tables_;
     vk::Buffer parameters_;
     vk::Buffer counter_buffer_;

@@ -21,15 +21,15 @@ struct Interaction {
 };
 
 Interaction interaction_at(Ray ray, Hit hit) {
-    Triangle t = scene_triangle(hit.triangle);
+    Primitive t = scene_primitive(hit.primitive);
     float b0 = 1.0 - hit.b.x - hit.b.y;
     Interaction s;
-    s.p = b0 * t.v0 + hit.b.x * t.v1 + hit.b.y * t.v2;
+    s.p = b0 * t.a + hit.b.x * t.b + hit.b.y * t.c;
     s.wo = -normalize(ray.d);
-    s.n = normalize(cross(t.v1 - t.v0, t.v2 - t.v0));
+    s.n = normalize(cross(t.b - t.a, t.c - t.a));
     s.ns = s.n;
     if (HAS_NORMALS) {
-        uvec4 normals = scene_normals(hit.triangle);
+        uvec4 normals = scene_normals(hit.primitive);
         if (normals.w != 0u) {
             vec3 ns = b0 * octahedral_unpack(normals.x) + hit.b.x * octahedral_unpack(normals.y) +
                       hit.b.y * octahedral_unpack(normals.z);

@@ -10,16 +10,16 @@
 #include "shared/light.h"
 #include "shared/material.h"
 #include "shared/parameters.h"
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 
 #if SCENE_ACCESS_STORAGE
 layout(std430, binding = BINDING_NODES) readonly buffer NodesBlock { uvec4 nodes[]; };
-layout(std430, binding = BINDING_TRIANGLES) readonly buffer TrianglesBlock { uvec4 triangles[]; };
+layout(std430, binding = BINDING_PRIMITIVES) readonly buffer PrimitivesBlock { uvec4 primitives[]; };
 layout(std430, binding = BINDING_TABLES) readonly buffer TablesBlock { uvec4 tables[]; };
 #define FETCH(buffer, i) buffer[i]
 #else
 layout(binding = BINDING_NODES) uniform usamplerBuffer nodes;
-layout(binding = BINDING_TRIANGLES) uniform usamplerBuffer triangles;
+layout(binding = BINDING_PRIMITIVES) uniform usamplerBuffer primitives;
 layout(binding = BINDING_TABLES) uniform usamplerBuffer tables;
 #define FETCH(buffer, i) texelFetch(buffer, int(i))
 #endif
@@ -42,10 +42,10 @@ uint scene_node_child(uint i, uint slot) {
     return slot < 2u ? (slot == 0u ? child.x : child.y) : (slot == 2u ? child.z : child.w);
 }
 
-// Triangle at that position in leaf order.
-Triangle scene_triangle(uint i) {
-    i *= TRIANGLE_WORDS;
-    return triangle_unpack(FETCH(triangles, i), FETCH(triangles, i + 1u), FETCH(triangles, i + 2u));
+// Primitive at that position in leaf order.
+Primitive scene_primitive(uint i) {
+    i *= PRIMITIVE_WORDS;
+    return primitive_unpack(FETCH(primitives, i), FETCH(primitives, i + 1u), FETCH(primitives, i + 2u));
 }
 
 // Shading normals of the triangle at that position in leaf order; .w is 0 for a flat triangle.

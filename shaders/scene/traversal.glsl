@@ -9,7 +9,7 @@
 // The nearest triangle along a ray. Among equally near ones the least id wins, whatever the order of visits.
 struct Hit {
     float t;        // In lengths of ray.d.
-    uint triangle;  // Position in leaf order.
+    uint primitive;  // Position in leaf order.
     uint id;
     vec2 b;  // Barycentric coordinates of v1 and v2.
 };
@@ -136,10 +136,10 @@ Hit bvh_traverse(Ray ray, float t_max, const bool any_hit) {
         uint first = reference & BVH_FIRST_MASK;
         uint end = first + ((reference >> BVH_COUNT_SHIFT) & BVH_COUNT_MASK);
         for (uint i = first; i < end; ++i) {
-            Triangle triangle = scene_triangle(i);
-            vec3 tb = triangle_intersect(ray, shear, triangle);
-            if (tb.x > 0.0 && (tb.x < hit.t || (tb.x == hit.t && triangle.id < hit.id))) {
-                hit = Hit(tb.x, i, triangle.id, tb.yz);
+            Primitive primitive = scene_primitive(i);
+            vec3 tb = triangle_intersect(ray, shear, primitive);
+            if (tb.x > 0.0 && (tb.x < hit.t || (tb.x == hit.t && primitive.id < hit.id))) {
+                hit = Hit(tb.x, i, primitive.id, tb.yz);
                 if (any_hit) return hit;
             }
         }

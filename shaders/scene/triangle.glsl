@@ -1,13 +1,13 @@
 // Ray against triangle, watertight: two triangles that share an edge leave no gap between them.
 //
-// Ref: Woop, Benthin and Wald 2013, Watertight Ray/Triangle Intersection. Their double-precision fallback for edge
+// Ref: Woop, Benthin and Wald 2013, Watertight Ray/Primitive Intersection. Their double-precision fallback for edge
 // functions of 0 is not needed for tightness: rounding is monotone, so that a computed edge function never has the
 // wrong sign, it can only become 0; and 0 counts as inside on both sides of the edge.
 #ifndef SCENE_TRIANGLE_GLSL
 #define SCENE_TRIANGLE_GLSL
 
 #include "base/ray.glsl"
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 
 // What a ray needs once for all triangles: the axis z along which it is longest, and the shear that turns it onto
 // that axis.
@@ -29,10 +29,10 @@ RayShear ray_shear(vec3 d) {
 }
 
 // Distance t > 0 in lengths of ray.d, and the barycentric coordinates of v1 and v2; t = -1 where the ray misses.
-vec3 triangle_intersect(Ray ray, RayShear shear, Triangle triangle) {
-    vec3 a = turn(triangle.v0 - ray.o, shear.kz);
-    vec3 b = turn(triangle.v1 - ray.o, shear.kz);
-    vec3 c = turn(triangle.v2 - ray.o, shear.kz);
+vec3 triangle_intersect(Ray ray, RayShear shear, Primitive primitive) {
+    vec3 a = turn(primitive.a - ray.o, shear.kz);
+    vec3 b = turn(primitive.b - ray.o, shear.kz);
+    vec3 c = turn(primitive.c - ray.o, shear.kz);
     precise vec2 pa = a.xy - shear.s.xy * a.z;
     precise vec2 pb = b.xy - shear.s.xy * b.z;
     precise vec2 pc = c.xy - shear.s.xy * c.z;

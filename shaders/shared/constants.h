@@ -14,7 +14,7 @@ const uint WORKGROUP_SIZE = 8u;
 // A path that would scatter more often than this is cut, counted and reported.
 const uint DEPTH_SAFETY_LIMIT = 4096u;
 
-// No light, in Triangle::light.
+// No light, in Primitive::light.
 const uint NO_LIGHT = 0xFFFFFFFFu;
 
 // Estimators of direct light.
@@ -62,7 +62,7 @@ const uint COUNTER_COUNT = 6u;
 
 // Descriptor bindings of every kernel that reads the scene.
 const uint BINDING_NODES = 0u;
-const uint BINDING_TRIANGLES = 1u;
+const uint BINDING_PRIMITIVES = 1u;
 const uint BINDING_TABLES = 2u;
 const uint BINDING_PARAMETERS = 3u;
 const uint BINDING_IMAGE = 4u;

@@ -11,7 +11,7 @@ TEST_F(Info, TellsWhatASceneHoldsWithoutADevice) {
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const auto info = nlohmann::json::parse(result.out);
     EXPECT_EQ(info["scene"], CORNELL_BOX);
-    EXPECT_EQ(info["triangles"], 32);
+    EXPECT_EQ(info["primitives"], 32);
     EXPECT_EQ(info["lights"], 1);
     EXPECT_EQ(info["cameras"], (std::vector<std::string>{"main"}));
     EXPECT_EQ(info["bounds"][0], (std::vector<double>{0, 0, 0}));
@@ -30,13 +30,13 @@ TEST_F(Info, BytesAreThoseOfTheReport) {
         const ProcessResult result = candela(Words{"info", MESH, "--json"} + picture);
         const auto info = nlohmann::json::parse(result.out);
         uint64_t sum = 0;
-        for (const char* part : {"bvh", "triangles", "tables", "picture"}) {
+        for (const char* part : {"bvh", "primitives", "tables", "picture"}) {
             sum += info["device_bytes_by_part"][part].get<uint64_t>();
         }
         EXPECT_EQ(info["device_bytes"], sum);
         const auto report = report_of(picture + Words{"--spp", "1", "-o", file("a.exr")}, MESH);
         EXPECT_EQ(info["device_bytes"], report["device_bytes"]);
-        EXPECT_EQ(info["triangles"], report["triangles"]);
+        EXPECT_EQ(info["primitives"], report["primitives"]);
         EXPECT_EQ(info["lights"], report["lights"]);
     }
 }

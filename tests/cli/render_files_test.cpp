@@ -68,7 +68,7 @@ TEST_F(RenderFiles, ReportHasEveryField) {
     EXPECT_EQ(report["sampler"], "sobol");
     EXPECT_EQ(report["max_depth"], 4096);
     EXPECT_EQ(report["rr_depth"], 3);
-    EXPECT_EQ(report["triangles"], 32);
+    EXPECT_EQ(report["primitives"], 32);
     EXPECT_EQ(report["lights"], 1);
     for (const char* time :
          {"load_seconds", "bvh_seconds", "pipeline_seconds", "render_seconds", "cpu_seconds"}) {

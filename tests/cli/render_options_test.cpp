@@ -171,7 +171,7 @@ TEST_F(RenderOptionsTest, QuietIsQuietAndVerboseTellsMore) {
     EXPECT_EQ(normal.rfind("rendered 4 spp in ", 0), 0u) << normal;
     const std::string verbose = render({"-o", file("a.png"), "--verbose"}).err;
     for (const char* word :
-         {"device: ", "driver ", "scene: 32 triangles, 1 lights", "BVH: depth ", "device memory: "}) {
+         {"device: ", "driver ", "scene: 32 primitives, 1 lights", "BVH: depth ", "device memory: "}) {
         EXPECT_CONTAINS(verbose, word);
     }
 }

@@ -28,9 +28,9 @@ class DeviceScene {
     DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access,
                 const Parameters& parameters)
         : texels_(access == SceneAccess::texel_buffers),
-          triangle_count_(scene.triangle_count),
+          primitive_count_(scene.primitive_count),
           nodes_(upload(device, scene.nodes)),
-          triangles_(upload(device, scene.triangles)),
+          primitives_(upload(device, scene.primitives)),
           tables_(upload(device, scene.tables)),
           parameters_(device, PARAMETERS_WORDS * sizeof(uvec4), vk::BufferUsage::uniform, "parameters") {
         const auto words = pack(parameters);
@@ -40,18 +40,18 @@ class DeviceScene {
     DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access)
         : DeviceScene(device, scene, access, parameters_of(scene)) {}
 
-    uint32_t triangle_count() const { return triangle_count_; }
+    uint32_t primitive_count() const { return primitive_count_; }
 
     std::vector<vk::Binding> bindings() const {
         const auto type = texels_ ? vk::BindingType::texel_buffer : vk::BindingType::storage_buffer;
         return {{BINDING_NODES, type},
-                {BINDING_TRIANGLES, type},
+                {BINDING_PRIMITIVES, type},
                 {BINDING_TABLES, type},
                 {BINDING_PARAMETERS, vk::BindingType::uniform_buffer}};
     }
     void bind_to(vk::Kernel& kernel) const {
         kernel.bind(BINDING_NODES, nodes_);
-        kernel.bind(BINDING_TRIANGLES, triangles_);
+        kernel.bind(BINDING_PRIMITIVES, primitives_);
         kernel.bind(BINDING_TABLES, tables_);
         kernel.bind(BINDING_PARAMETERS, parameters_);
     }
@@ -71,8 +71,8 @@ class DeviceScene {
     }
 
     bool texels_;
-    uint32_t triangle_count_;
-    vk::Buffer nodes_, triangles_, tables_, parameters_;
+    uint32_t primitive_count_;
+    vk::Buffer nodes_, primitives_, tables_, parameters_;
 };
 
 // A test with a device that is open. At its end the validation layer must have had nothing to say.
@@ -109,7 +109,7 @@ class DeviceTest : public vk::Vk {
             in.upload(std::as_bytes(some));
             kernel.bind(ITEMS, in);
             kernel.bind(RESULTS, out);
-            const Counts counts{uint32_t(some.size()), scene == nullptr ? 0 : scene->triangle_count()};
+            const Counts counts{uint32_t(some.size()), scene == nullptr ? 0 : scene->primitive_count()};
             commands.dispatch(kernel, std::as_bytes(std::span(&counts, 1)), {(counts.items + 63) / 64, 1, 1});
             commands.submit_and_wait();
             out.download(std::as_writable_bytes(std::span(results).subspan(first, some.size())));

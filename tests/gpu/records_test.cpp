@@ -6,7 +6,7 @@
 #include "shared/bvh_node.h"
 #include "shared/light.h"
 #include "shared/material.h"
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 #include "support/reference_random.h"
 
 namespace candela {
@@ -50,14 +50,14 @@ struct Item {
 };
 
 struct Result {
-    std::array<uint, 78> words;
+    std::array<uint, 79> words;
 };
 
 // One record of every kind.
 struct Records {
     Parameters parameters;
     BvhNode node;
-    Triangle triangle;
+    Primitive primitive;
     std::array<uvec4, NORMALS_WORDS> normals;
     MaterialRecord material;
     Light light;
@@ -88,12 +88,13 @@ Records filled(Fields& fields, uvec4 tables) {
     r.node.q_lo = fields.u3();
     r.node.q_hi = fields.u3();
     r.node.child = fields.u4();
-    r.triangle = {.v0 = fields.f3(),
-                  .v1 = fields.f3(),
-                  .v2 = fields.f3(),
-                  .id = fields.u(),
-                  .material = fields.u(),
-                  .light = fields.u()};
+    r.primitive = {.kind = fields.keep(PRIMITIVE_DISK),
+                   .a = fields.f3(),
+                   .b = fields.f3(),
+                   .c = fields.f3(),
+                   .id = fields.u(),
+                   .material = fields.keep(0x2AAAAAA5u),
+                   .light = fields.u()};
     r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1));
     for (const int i : {0, 1, 2, 3})
         fields.keep(r.normals[0][i]);
@@ -123,7 +124,7 @@ constexpr uvec4 TABLES(1, 1 + 2 * NORMALS_WORDS, 1 + 2 * (NORMALS_WORDS + MATERI
 GpuScene packed(const Records& r) {
     GpuScene scene;
     append_second(scene.nodes, pack(r.node));
-    append_second(scene.triangles, pack(r.triangle));
+    append_second(scene.primitives, pack(r.primitive));
     scene.tables.emplace_back(0xFFFFFFFFu);
     append_second(scene.tables, r.normals);
     append_second(scene.tables, pack(r.material));

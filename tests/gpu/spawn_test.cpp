@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "gpu/device_fixture.h"
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 #include "support/reference_random.h"
 
 namespace candela {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "gpu/device_fixture.h"
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 #include "support/reference_random.h"
 #include "support/scene_builders.h"
 

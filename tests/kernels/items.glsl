@@ -9,7 +9,7 @@ layout(binding = 6) uniform usamplerBuffer items;
 layout(std430, binding = 7) writeonly buffer ResultsBlock { uint results[]; };
 layout(push_constant) uniform CountsBlock {
     uint item_count;
-    uint triangle_count;  // Of the scene, for kernels that read one.
+    uint primitive_count;  // Of the scene, for kernels that read one.
 };
 
 // True for invocations that have no item.

@@ -5,7 +5,7 @@
 #define ITEM_WORDS 1u
 #define RESULT_WORDS 3u
 #include "items.glsl"
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 
 void main() {
     if (past_end()) return;

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 78u
+#define RESULT_WORDS 79u
 #include "items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -30,13 +30,14 @@ void put_node(uint i) {
     for (uint slot = 0u; slot < BVH_WIDTH; ++slot) put(scene_node_child(i, slot));
 }
 
-void put_triangle(Triangle t) {
-    put(t.v0);
-    put(t.v1);
-    put(t.v2);
-    put(t.id);
-    put(t.material);
-    put(t.light);
+void put_primitive(Primitive p) {
+    put(p.kind);
+    put(p.a);
+    put(p.b);
+    put(p.c);
+    put(p.id);
+    put(p.material);
+    put(p.light);
 }
 
 void put_material(MaterialRecord m) {
@@ -64,7 +65,7 @@ void main() {
     if (past_end()) return;
     put_parameters(scene_parameters());
     put_node(1u);
-    put_triangle(scene_triangle(1u));
+    put_primitive(scene_primitive(1u));
     put(scene_normals(1u));
     put_material(scene_material(1u));
     put_light(scene_light(1u));

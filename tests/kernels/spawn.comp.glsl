@@ -10,10 +10,10 @@
 
 void main() {
     if (past_end()) return;
-    Triangle t = triangle_unpack(item(0u), item(1u), item(2u));
+    Primitive t = primitive_unpack(item(0u), item(1u), item(2u));
     vec2 b = vec2(item_floats(0u).w, item_floats(1u).w);
-    vec3 p = (1.0 - b.x - b.y) * t.v0 + b.x * t.v1 + b.y * t.v2;
-    vec3 n = normalize(cross(t.v1 - t.v0, t.v2 - t.v0));
+    vec3 p = (1.0 - b.x - b.y) * t.a + b.x * t.b + b.y * t.c;
+    vec3 n = normalize(cross(t.b - t.a, t.c - t.a));
     vec3 wi = item_floats(3u).xyz;
     if (dot(wi, n) < 0.0) n = -n;
     Ray ray = Ray(offset_origin(p, n), wi);

@@ -11,11 +11,11 @@
 Hit brute_force(Ray ray) {
     RayShear shear = ray_shear(ray.d);
     Hit hit = Hit(FLOAT_MAX, 0u, 0u, vec2(0.0));
-    for (uint i = 0u; i < triangle_count; ++i) {
-        Triangle triangle = scene_triangle(i);
-        vec3 tb = triangle_intersect(ray, shear, triangle);
-        if (tb.x > 0.0 && (tb.x < hit.t || (tb.x == hit.t && triangle.id < hit.id))) {
-            hit = Hit(tb.x, i, triangle.id, tb.yz);
+    for (uint i = 0u; i < primitive_count; ++i) {
+        Primitive primitive = scene_primitive(i);
+        vec3 tb = triangle_intersect(ray, shear, primitive);
+        if (tb.x > 0.0 && (tb.x < hit.t || (tb.x == hit.t && primitive.id < hit.id))) {
+            hit = Hit(tb.x, i, primitive.id, tb.yz);
         }
     }
     return hit;

@@ -8,7 +8,7 @@
 
 #include "shared/bvh_node.h"
 #include "shared/material.h"
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 #include "support/scene_builders.h"
 
 namespace candela {
@@ -29,9 +29,9 @@ double area(const Light& l) {
 }
 
 // The triangle at that position in leaf order.
-Triangle triangle(const GpuScene& gpu, uint32_t i) {
-    const uvec4* w = &gpu.triangles[i * TRIANGLE_WORDS];
-    return {floats(w[0]), floats(w[1]), floats(w[2]), w[0].w, w[1].w, w[2].w};
+Primitive triangle(const GpuScene& gpu, uint32_t i) {
+    const uvec4* w = &gpu.primitives[i * PRIMITIVE_WORDS];
+    return {PRIMITIVE_TRIANGLE, floats(w[0]), floats(w[1]), floats(w[2]), w[0].w, w[1].w, w[2].w};
 }
 
 Shape emitter(Quad quad, vec3 radiance, bool two_sided = false) {
@@ -53,7 +53,7 @@ TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
     for (const Quad& quad : {SQUARE, slanted}) {
         const GpuScene gpu = build_gpu_scene(scene_of({emitter(quad, vec3(2))}));
         ASSERT_EQ(gpu.light_count, 1u);
-        ASSERT_EQ(gpu.triangle_count, 2u);
+        ASSERT_EQ(gpu.primitive_count, 2u);
         const Light l = light(gpu, 0);
         EXPECT_EQ(l.kind, LIGHT_PARALLELOGRAM);
         EXPECT_EQ(l.p, quad.corners[0]);
@@ -85,11 +85,11 @@ TEST(GpuScene, AnyOtherQuadIsTwoLightsThatCoverIt) {
     EXPECT_NEAR(probability, 1.0, 1e-6);
     std::set<uint32_t> lights;
     for (const uint32_t i : {0u, 1u}) {
-        const Triangle t = triangle(gpu, i);
+        const Primitive t = triangle(gpu, i);
         const Light l = light(gpu, t.light);
-        EXPECT_EQ(l.p, t.v0);
-        EXPECT_EQ(l.p + l.e1, t.v1);
-        EXPECT_EQ(l.p + l.e2, t.v2);
+        EXPECT_EQ(l.p, t.a);
+        EXPECT_EQ(l.p + l.e1, t.b);
+        EXPECT_EQ(l.p + l.e2, t.c);
         lights.insert(t.light);
     }
     EXPECT_EQ(lights.size(), 2u);
@@ -137,22 +137,22 @@ TEST(GpuScene, IdsFollowTheOrderOfTheSceneAndEveryTriangleIsThere) {
     add_diffuse(scene, vec3(1));
     scene.shapes.push_back({.geometry = mesh, .material = 1, .emission = {}});
     const GpuScene gpu = build_gpu_scene(scene);
-    ASSERT_EQ(gpu.triangle_count, 102u);
+    ASSERT_EQ(gpu.primitive_count, 102u);
     std::set<uint32_t> ids;
-    for (uint32_t i = 0; i < gpu.triangle_count; ++i) {
-        const Triangle t = triangle(gpu, i);
+    for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
+        const Primitive t = triangle(gpu, i);
         ids.insert(t.id);
         EXPECT_EQ(t.light, NO_LIGHT);
         EXPECT_EQ(t.material, t.id < 2 ? 0u : 1u);
         if (t.id < 2) {
-            EXPECT_EQ(t.v0, SQUARE.corners[0]);
-            EXPECT_EQ(t.v1, SQUARE.corners[t.id + 1]);
-            EXPECT_EQ(t.v2, SQUARE.corners[t.id + 2]);
+            EXPECT_EQ(t.a, SQUARE.corners[0]);
+            EXPECT_EQ(t.b, SQUARE.corners[t.id + 1]);
+            EXPECT_EQ(t.c, SQUARE.corners[t.id + 2]);
         } else {
             const uvec3 corners = mesh.triangles[t.id - 2];
-            EXPECT_EQ(t.v0, mesh.positions[corners.x]);
-            EXPECT_EQ(t.v1, mesh.positions[corners.y]);
-            EXPECT_EQ(t.v2, mesh.positions[corners.z]);
+            EXPECT_EQ(t.a, mesh.positions[corners.x]);
+            EXPECT_EQ(t.b, mesh.positions[corners.y]);
+            EXPECT_EQ(t.c, mesh.positions[corners.z]);
         }
     }
     EXPECT_EQ(ids.size(), 102u);
@@ -169,13 +169,13 @@ TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
                                                    {.geometry = smooth, .material = 0, .emission = {}},
                                                    {.geometry = SQUARE, .material = 0, .emission = {}}}));
     EXPECT_TRUE(gpu.has_normals);
-    for (uint32_t i = 0; i < gpu.triangle_count; ++i) {
-        const Triangle t = triangle(gpu, i);
+    for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
+        const Primitive t = triangle(gpu, i);
         const uvec4 normals = gpu.tables[gpu.table_starts.x + i * NORMALS_WORDS];
         const bool of_the_sphere = t.id >= 2 && t.id < 2 + smooth.triangles.size();
         EXPECT_EQ(normals.w, of_the_sphere ? 1u : 0u);
         if (of_the_sphere) {
-            EXPECT_EQ(normals, pack_normals(t.v0, t.v1, t.v2)[0]);
+            EXPECT_EQ(normals, pack_normals(t.a, t.b, t.c)[0]);
         }
     }
 }
@@ -189,12 +189,12 @@ TEST(GpuScene, TablesFollowEachOther) {
     EXPECT_EQ(gpu.tables[0].x, MATERIAL_DIFFUSE);
     EXPECT_EQ(std::bit_cast<vec3>(uvec3(gpu.tables[0].y, gpu.tables[0].z, gpu.tables[0].w)),
               vec3(0.25f, 0.5f, 0.75f));
-    EXPECT_EQ(gpu.bytes(), (gpu.nodes.size() + gpu.triangles.size() + gpu.tables.size()) * 16);
+    EXPECT_EQ(gpu.bytes(), (gpu.nodes.size() + gpu.primitives.size() + gpu.tables.size()) * 16);
 }
 
 TEST(GpuScene, AnEmptySceneIsARootWithoutChildren) {
     const GpuScene gpu = build_gpu_scene(scene_of({}));
-    EXPECT_EQ(gpu.triangle_count, 0u);
+    EXPECT_EQ(gpu.primitive_count, 0u);
     EXPECT_EQ(gpu.light_count, 0u);
     EXPECT_EQ(gpu.nodes.size(), BVH_NODE_WORDS);
 }

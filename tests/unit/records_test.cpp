@@ -1,7 +1,7 @@
 // The host's side of the records that have no other test: octahedral normals and the packing of words.
 #include <gtest/gtest.h>
 
-#include "shared/triangle.h"
+#include "shared/primitive.h"
 
 namespace candela {
 namespace {

@@ -1,12 +1,12 @@
-// Record of a triangle, in leaf order, and of its shading normals. The only functions are `pack` (C++) and
-// `unpack` (GLSL), side by side.
+// Record of a primitive, what the BVH's leaves hold, and of its shading normals. The only functions are
+// `pack` (C++) and `unpack` (GLSL), side by side.
 //
-//   Triangle, 3 words of uvec4          Normals, 1 word
-//     0: v0.xyz, id                       0: n0, n1, n2 (octahedral, 2 x 16 bits), smooth
-//     1: v1.xyz, material
-//     2: v2.xyz, light
-#ifndef SHARED_TRIANGLE_H
-#define SHARED_TRIANGLE_H
+//   Primitive, 3 words of uvec4         Normals, 1 word
+//     0: a.xyz, id                        0: n0, n1, n2 (octahedral, 2 x 16 bits), smooth
+//     1: b.xyz, material | kind << 30
+//     2: c.xyz, light
+#ifndef SHARED_PRIMITIVE_H
+#define SHARED_PRIMITIVE_H
 
 #include "shared/constants.h"
 
@@ -16,23 +16,29 @@
 namespace candela {
 #endif
 
-const uint TRIANGLE_WORDS = 3u;
+const uint PRIMITIVE_WORDS = 3u;
 const uint NORMALS_WORDS = 1u;
 
-// Vertices in world space [m], counter-clockwise from the front.
-struct Triangle {
-    vec3 v0;
-    vec3 v1;
-    vec3 v2;
+// Kinds of primitives. World space [m].
+const uint PRIMITIVE_TRIANGLE = 0u;  // Vertices a, b, c; counter-clockwise from the front.
+const uint PRIMITIVE_SPHERE = 1u;    // Centre a, radius b.x; the front is outside.
+const uint PRIMITIVE_DISK = 2u;      // a + x b + y c with x^2 + y^2 <= 1; cross(b, c) points to the front.
+const uint PRIMITIVE_KIND_SHIFT = 30u;
+
+struct Primitive {
+    uint kind;  // PRIMITIVE_*
+    vec3 a;
+    vec3 b;
+    vec3 c;
     uint id;        // Position in the scene's own order; the lesser one wins where two hits are equally near.
-    uint material;  // Index of a material record.
+    uint material;  // Index of a material record, below 2^30.
     uint light;     // Index of a light record, or NO_LIGHT.
 };
 
 #ifdef __cplusplus
 
-inline std::array<uvec4, TRIANGLE_WORDS> pack(const Triangle& t) {
-    return {words(t.v0, t.id), words(t.v1, t.material), words(t.v2, t.light)};
+inline std::array<uvec4, PRIMITIVE_WORDS> pack(const Primitive& p) {
+    return {words(p.a, p.id), words(p.b, p.material | p.kind << PRIMITIVE_KIND_SHIFT), words(p.c, p.light)};
 }
 
 // Octahedral map of a unit vector to 2 x 16 signed bits. Ref: Cigolle et al. 2014, A Survey of Efficient
@@ -48,7 +54,7 @@ inline uint pack_octahedral(vec3 n) {
     return snorm16(e.x) | snorm16(e.y) << 16;
 }
 
-// Shading normals at the three vertices, unit length, world space. A flat triangle has a record of zeros.
+// Shading normals at the three vertices, unit length, world space. A flat primitive has a record of zeros.
 inline std::array<uvec4, NORMALS_WORDS> pack_normals(vec3 n0, vec3 n1, vec3 n2) {
     return {uvec4(pack_octahedral(n0), pack_octahedral(n1), pack_octahedral(n2), 1u)};
 }
@@ -56,8 +62,9 @@ inline std::array<uvec4, NORMALS_WORDS> pack_normals(vec3 n0, vec3 n1, vec3 n2) 
 }  // namespace candela
 #else
 
-Triangle triangle_unpack(uvec4 a, uvec4 b, uvec4 c) {
-    return Triangle(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz), a.w, b.w, c.w);
+Primitive primitive_unpack(uvec4 u, uvec4 v, uvec4 w) {
+    return Primitive(v.w >> PRIMITIVE_KIND_SHIFT, uintBitsToFloat(u.xyz), uintBitsToFloat(v.xyz),
+                     uintBitsToFloat(w.xyz), u.w, v.w & ((1u << PRIMITIVE_KIND_SHIFT) - 1u), w.w);
 }
 
 // Inverse of pack_octahedral; unit length.
