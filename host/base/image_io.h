@@ -1,4 +1,4 @@
-// Image files: OpenEXR in and out, PNG out. The only interface to the libraries that do it.
+// Image files: OpenEXR in and out, Radiance HDR in, PNG out. The only interface to the libraries that do it.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 
 namespace candela {
 
+// Of the images that are written.
 enum class ImageFormat { exr, png };
 
 // The format that the extension of `path` names, whatever its case. Throws Error (exit code usage) for any
@@ -26,8 +27,21 @@ void write_exr(const std::filesystem::path& path, const Image& image);
 // Reads all channels of the first part of an OpenEXR file, of any type, as 32-bit floats (`half` remembers
 // 16-bit ones), and the attributes that an Image can hold; matrices are turned back into glm's convention.
 // The result is placed relative to the display window. Throws Error if the file is missing, no OpenEXR file,
-// damaged or incomplete, or uses what an Image cannot hold: overscan or subsampled channels.
-Image read_exr(const std::filesystem::path& path);
+// damaged or incomplete, uses what an Image cannot hold (overscan or subsampled channels), or has more than
+// `max_pixels`, which is found before they are read.
+Image read_exr(const std::filesystem::path& path, uint64_t max_pixels = UINT64_MAX);
+
+// Reads a Radiance picture, flat or in either of the format's run-length encodings, as the channels R, G and
+// B. Mantissas m and exponent e stand for m 2^(e - 136) exactly, divided by what the header's lines EXPOSURE
+// and COLORCORR say the file was multiplied by. Colours are taken as they are, whatever the line PRIMARIES
+// says. Throws Error if the file is missing, no Radiance picture, damaged or incomplete, has XYZ colours or
+// rows in another order than -Y +X, or has more than `max_pixels`, which is found before they are read.
+// Ref: Ward, "Real Pixels", Graphics Gems II (1991); "Radiance File Formats" (1994), "Picture File Format".
+Image read_hdr(const std::filesystem::path& path, uint64_t max_pixels = UINT64_MAX);
+
+// read_exr() or read_hdr(), as the extension of `path` says: .exr, .hdr or .pic, whatever its case. Throws
+// Error as these do, and for any other extension.
+Image read_image(const std::filesystem::path& path, uint64_t max_pixels = UINT64_MAX);
 
 // Writes 8-bit RGB, row-major from the top, 3 * width * height bytes, without loss. Throws Error if the file
 // cannot be written or the picture is larger than the encoder's limit of 2^30 bytes. The file appears whole

@@ -1,0 +1,214 @@
+// Radiance pictures (.hdr, .pic), from their description: stb_image knows neither the older run-length
+// encoding nor the exposure, and takes what a truncated file lacks for zeros.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <new>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/image_io.h"
+#include "base/image_io_parts.h"
+
+namespace candela {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Rgbe = std::array<uint8_t, 4>;  // Three mantissas and the exponent that they share.
+
+class HdrReader {
+  public:
+    explicit HdrReader(const fs::path& path) : path_(path), bytes_(read_file(path)) {}
+
+    Image read(uint64_t max_pixels) {
+        read_header();
+        const uvec2 size = read_size();
+        check_pixel_count(path_, size.x, size.y, max_pixels);
+        Image image;
+        image.full = size;
+        image.data = {0, 0, size.x, size.y};
+        image.channels = {{"R", {}}, {"G", {}}, {"B", {}}};
+        std::vector<Rgbe> row(size.x);
+        // The channels grow with the rows, so that a short file whose header claims a huge picture ends
+        // before the memory does.
+        for (row_ = 1; row_ <= size.y; ++row_) {
+            read_row(row);
+            append(row, image);
+        }
+        return image;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& reason) const {
+        throw Error("cannot read " + quoted(path_) + ": " + reason);
+    }
+    [[noreturn]] void fail_damaged(const std::string& what) const {
+        fail("the file is damaged or incomplete (" + what + "); write it again");
+    }
+    std::string row_name() const { return "row " + std::to_string(row_) + " from the top"; }
+
+    uint8_t byte() {
+        if (at_ == bytes_.size()) fail_damaged("it ends in " + row_name());
+        return uint8_t(bytes_[at_++]);
+    }
+
+    std::string_view line() {
+        const size_t end = bytes_.find('\n', at_);
+        if (end == std::string::npos) fail_damaged("it ends in its header");
+        const std::string_view text(bytes_.data() + at_, end - at_);
+        at_ = end + 1;
+        return text;
+    }
+
+    // Lines of the form NAME=VALUE and others, which are comments, up to an empty one.
+    void read_header() {
+        if (!bytes_.starts_with("#?")) fail("it is not a Radiance picture; give an .hdr image");
+        for (std::string_view text = line(); !text.empty(); text = line()) {
+            const size_t equals = text.find('=');
+            if (equals == std::string_view::npos) continue;
+            const std::string_view name = text.substr(0, equals);
+            const std::string_view value = text.substr(equals + 1);
+            if (name == "FORMAT" && value != "32-bit_rle_rgbe") {
+                fail("its format is \"" + std::string(value) + "\"; convert it to \"32-bit_rle_rgbe\"");
+            } else if (name == "EXPOSURE") {
+                divisor_ *= read_factors<1>(text, value)[0];
+            } else if (name == "COLORCORR") {
+                const auto factors = read_factors<3>(text, value);
+                divisor_ *= vec3(factors[0], factors[1], factors[2]);
+            }
+        }
+        for (int c = 0; c < 3; ++c) {
+            if (!std::isnormal(divisor_[c])) fail_damaged("its exposures multiply to no usable number");
+        }
+    }
+
+    template <size_t COUNT>
+    std::array<float, COUNT> read_factors(std::string_view text, std::string_view value) const {
+        std::array<float, COUNT> factors{};
+        const char* at = value.data();
+        const char* const end = at + value.size();
+        for (float& factor : factors) {
+            while (at != end && *at == ' ')
+                ++at;
+            const auto [rest, error] = std::from_chars(at, end, factor);
+            if (error != std::errc() || !std::isfinite(factor) || factor <= 0.0f) {
+                fail_damaged("its header line \"" + std::string(text) + "\" needs numbers above 0");
+            }
+            at = rest;
+        }
+        return factors;
+    }
+
+    uvec2 read_size() {
+        const std::string text(line());
+        std::istringstream stream(text);
+        std::string first;
+        std::string second;
+        int64_t height = 0;
+        int64_t width = 0;
+        stream >> first >> height >> second >> width;
+        const auto is_axis = [](const std::string& name) {
+            return name == "-X" || name == "+X" || name == "-Y" || name == "+Y";
+        };
+        if (stream.fail() || !is_axis(first) || !is_axis(second) || height < 1 || height > MAX_IMAGE_SIDE ||
+            width < 1 || width > MAX_IMAGE_SIDE) {
+            fail_damaged('"' + text + "\" is no size");
+        }
+        if (first != "-Y" || second != "+X") {
+            fail("its pixels run as \"" + text +
+                 "\" says; turn the image so that it says \"-Y HEIGHT +X WIDTH\"");
+        }
+        return {uint32_t(width), uint32_t(height)};
+    }
+
+    // Each row has an encoding of its own. Two bytes of 2 and then the width announce the newer one, which no
+    // pixel of the older one can look like: its greatest mantissa would be at least 128.
+    void read_row(std::vector<Rgbe>& row) {
+        constexpr size_t MIN_ENCODED = 8;  // Pixels; shorter and longer rows always have the older encoding.
+        constexpr size_t MAX_ENCODED = 0x7fff;
+        const bool may_be_encoded = row.size() >= MIN_ENCODED && row.size() <= MAX_ENCODED;
+        const Rgbe start = {byte(), byte(), byte(), byte()};
+        if (!may_be_encoded || start[0] != 2 || start[1] != 2 || start[2] > 127) {
+            read_pixel_runs(start, row);
+            return;
+        }
+        if (size_t(start[2]) * 256 + start[3] != row.size()) fail_damaged(row_name() + " has another width");
+        for (size_t component = 0; component < 4; ++component)
+            read_byte_runs(component, row);
+    }
+
+    // The newer encoding of one component: n > 128 and a byte that occurs n - 128 times, or n <= 128 and n
+    // bytes as they are.
+    void read_byte_runs(size_t component, std::vector<Rgbe>& row) {
+        for (size_t x = 0; x < row.size();) {
+            const size_t code = byte();
+            const bool repeated = code > 128;
+            const size_t count = repeated ? code - 128 : code;
+            if (count == 0 || count > row.size() - x) fail_run();
+            const uint8_t first = byte();
+            row[x++][component] = first;
+            for (size_t i = 1; i < count; ++i)
+                row[x++][component] = repeated ? first : byte();
+        }
+    }
+
+    // The older encoding: pixels as they are, among which (1, 1, 1, n) repeats the one before n times; if
+    // several of these follow each other, their n are the digits of one number to the base 256, the lowest
+    // first. A flat file is one without any.
+    void read_pixel_runs(Rgbe pixel, std::vector<Rgbe>& row) {
+        size_t digit = 1;
+        for (size_t x = 0;;) {
+            if (pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1) {
+                const size_t count = pixel[3] * digit;
+                if (x == 0 || digit > MAX_IMAGE_SIDE || count > row.size() - x) fail_run();
+                std::fill_n(row.begin() + std::ptrdiff_t(x), count, row[x - 1]);
+                x += count;
+                digit *= 256;
+            } else {
+                row[x++] = pixel;
+                digit = 1;
+            }
+            if (x == row.size()) return;
+            pixel = {byte(), byte(), byte(), byte()};
+        }
+    }
+
+    [[noreturn]] void fail_run() const { fail_damaged("a run of pixels exceeds " + row_name()); }
+
+    void append(const std::vector<Rgbe>& row, Image& image) const {
+        constexpr int BIAS = 128 + 8;  // Of the exponent; mantissas count 1/256.
+        for (size_t c = 0; c < 3; ++c) {
+            std::vector<float>& values = image.channels[c].values;
+            for (const Rgbe& pixel : row) {
+                // Exponent 0 is black, whatever the mantissas.
+                const float value = pixel[3] == 0 ? 0.0f : std::ldexp(float(pixel[c]), pixel[3] - BIAS);
+                values.push_back(value / divisor_[int(c)]);
+            }
+        }
+    }
+
+    const fs::path& path_;
+    std::string bytes_;
+    size_t at_ = 0;   // In bytes_.
+    size_t row_ = 0;  // That is being read, from 1; 0: the header.
+    vec3 divisor_{1};
+};
+
+}  // namespace
+
+Image read_hdr(const fs::path& path, uint64_t max_pixels) {
+    try {
+        return HdrReader(path).read(max_pixels);
+    } catch (const std::bad_alloc&) {
+        throw Error("cannot read " + quoted(path) +
+                    ": there is not enough memory for its pixels; use a smaller image or a larger machine");
+    }
+}
+
+}  // namespace candela
