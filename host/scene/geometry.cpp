@@ -2,6 +2,7 @@
 #include "scene/geometry.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace candela {
 namespace {
@@ -19,12 +20,34 @@ void extend(Box& box, const Quad& quad) {
         box.extend(corner);
 }
 
+void extend(Box& box, const Sphere& sphere) {
+    box.extend(sphere.center - sphere.radius);
+    box.extend(sphere.center + sphere.radius);
+}
+
+// Along an axis, x e1 + y e2 is greatest where (x, y) is parallel to the axis' components of e1 and e2.
+void extend(Box& box, const Disk& disk) {
+    vec3 reach;
+    for (glm::length_t axis = 0; axis < 3; ++axis)
+        reach[axis] = std::hypot(disk.e1[axis], disk.e2[axis]);
+    box.extend(disk.center - reach);
+    box.extend(disk.center + reach);
+}
+
 uint64_t triangles_of(const TriangleMesh& mesh) {
     return mesh.triangles.size();
 }
 
 uint64_t triangles_of(const Quad&) {
     return 2;
+}
+
+uint64_t triangles_of(const Sphere&) {
+    return 0;
+}
+
+uint64_t triangles_of(const Disk&) {
+    return 0;
 }
 
 }  // namespace
@@ -48,6 +71,11 @@ uint64_t triangle_count(const Scene& scene) {
 size_t emitter_count(const Scene& scene) {
     return size_t(std::count_if(scene.shapes.begin(), scene.shapes.end(),
                                 [](const Shape& shape) { return shape.emission.has_value(); }));
+}
+
+bool gives_light(const Environment& environment) {
+    return std::any_of(environment.radiance.begin(), environment.radiance.end(),
+                       [](vec3 radiance) { return radiance != vec3(0.0f); });
 }
 
 }  // namespace candela

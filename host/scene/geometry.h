@@ -9,10 +9,13 @@ namespace candela {
 // The least box around all shapes; empty for a scene without shapes.
 Box bounds(const Scene& scene);
 
-// How many triangles the shapes have; a quad counts as two.
+// How many triangles the shapes have; a quad counts as two, a sphere or disk as none.
 uint64_t triangle_count(const Scene& scene);
 
-// How many shapes emit light.
+// How many shapes emit light; the environment is not one of them.
 size_t emitter_count(const Scene& scene);
+
+// Whether an environment is brighter than 0 anywhere.
+bool gives_light(const Environment& environment);
 
 }  // namespace candela

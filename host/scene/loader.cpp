@@ -37,26 +37,13 @@ IntegratorSettings read_integrator(const Node& node) {
     return settings;
 }
 
-DiffuseMaterial read_diffuse(const Node& node) {
-    node.allow_only({"type", "reflectance"});
-    const Node reflectance = node.require("reflectance");
-    const vec3 rgb = reflectance.rgb();
-    if (glm::any(glm::greaterThan(rgb, vec3(1.0f)))) reflectance.fail_expected("numbers from 0 to 1");
-    return {rgb};
-}
-
-Material read_material(const Node& node) {
-    constexpr auto READERS = std::array{std::pair(std::string_view("diffuse"), &read_diffuse)};
-    return {std::string(node.key()), node.require("type").choice(READERS)(node)};
-}
-
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& path) {
     const std::string file = path.string();
     const json::Value document = json::parse(read_file(path), file);
     const Node root(file, "", document);
-    root.allow_only({"$schema", "cameras", "film", "integrator", "materials", "shapes"});
+    root.allow_only({"$schema", "cameras", "film", "integrator", "materials", "shapes", "environment"});
 
     Scene scene;
     if (const auto film = root.find("film")) scene.film = read_film(*film);
@@ -71,10 +58,13 @@ Scene load_scene(const std::filesystem::path& path) {
     }
     const Node shapes = root.require("shapes");
     read_shapes(shapes, path.parent_path(), scene);
+    if (const auto environment = root.find("environment")) {
+        scene.environment = read_environment(*environment, path.parent_path(), scene.warnings);
+    }
 
-    if (scene.shapes.empty()) {
+    if (scene.shapes.empty() && !scene.environment) {
         scene.warnings.push_back(shapes.place() + ": the scene has no shapes");
-    } else if (emitter_count(scene) == 0) {
+    } else if (emitter_count(scene) == 0 && !(scene.environment && gives_light(*scene.environment))) {
         scene.warnings.push_back(shapes.place() + ": the scene has no light: the image will be black");
     }
     return scene;

@@ -7,7 +7,7 @@
 
 namespace candela {
 
-// Reads a scene and the meshes that it names, relative to its folder. Throws Error, with `file:line:column:`
+// Reads a scene and the files that it names, relative to its folder. Throws Error, with `file:line:column:`
 // in front unless the scene file itself cannot be read, for everything that the schema or the meaning of a
 // value forbids. What is odd but usable goes to Scene::warnings.
 Scene load_scene(const std::filesystem::path& path);

@@ -1,4 +1,4 @@
-// Cameras: placed by what they look at, opened by an angle or by film and lens.
+// Cameras: placed by what they look at, opened by an angle or by film and focal length, and their lenses.
 #include <cmath>
 
 #include "scene/loader_parts.h"
@@ -38,11 +38,29 @@ float read_vertical_fov(const Node& node, const Film& film) {
     return fov;
 }
 
+Lens read_lens(const Node& node) {
+    node.allow_only({"radius", "focal_distance", "blades", "rotation"});
+    Lens lens;
+    lens.radius = float(node.require("radius").non_negative());
+    const auto distance = node.find("focal_distance");
+    if (distance) lens.focal_distance = float(distance->positive());
+    if (lens.radius > 0.0f && !distance) {
+        node.fail("a lens with a radius above 0 needs \"focal_distance\", the distance at which it is sharp");
+    }
+    const auto blades = node.find("blades");
+    if (blades) lens.blades = blades->integer(3, MAX_BLADES);
+    if (const auto rotation = node.find("rotation")) {
+        if (!blades) rotation->fail("rotation turns the polygon of an aperture; it needs \"blades\"");
+        lens.rotation = float(rotation->angle());
+    }
+    return lens;
+}
+
 }  // namespace
 
 Camera read_camera(const Node& node, const Film& film) {
     constexpr double PARALLEL = 1e-6;  // Sine of the least angle between view and up.
-    node.allow_only({"position", "look_at", "up", "vertical_fov", "film_size", "focal_length"});
+    node.allow_only({"position", "look_at", "up", "vertical_fov", "film_size", "focal_length", "lens"});
     Camera camera;
     camera.name = node.key();
     const Node look_at = node.require("look_at");
@@ -59,6 +77,7 @@ Camera read_camera(const Node& node, const Film& film) {
             .fail("the camera's up direction is zero or parallel to its view; give another \"up\"");
     }
     camera.vertical_fov = read_vertical_fov(node, film);
+    if (const auto lens = node.find("lens")) camera.lens = read_lens(*lens);
     return camera;
 }
 

@@ -17,4 +17,7 @@ inline constexpr std::array<std::pair<std::string_view, SamplerKind>, 3> SAMPLER
      {"stratified", SamplerKind::stratified},
      {"sobol", SamplerKind::sobol}}};
 
+inline constexpr std::array<std::pair<std::string_view, Fresnel>, 2> FRESNEL_NAMES{
+    {{"schlick", Fresnel::schlick}, {"exact", Fresnel::exact}}};
+
 }  // namespace candela

@@ -2,6 +2,7 @@
 #include "scene/node.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -10,6 +11,7 @@ namespace candela {
 namespace {
 
 constexpr double FLOAT_MAX = std::numeric_limits<float>::max();
+constexpr double FLOAT_MIN = std::numeric_limits<float>::min();
 
 // The least number of characters to insert, delete or replace that turns `a` into `b`.
 // Ref: Wagner, Fischer, "The String-to-String Correction Problem" (1974).
@@ -45,6 +47,12 @@ const std::string* nearest(std::string_view name, std::span<const std::string> k
 }
 
 }  // namespace
+
+std::string number_text(double number, int digits) {
+    std::array<char, 64> text;
+    const auto end = std::to_chars(text.begin(), text.end(), number, std::chars_format::general, digits).ptr;
+    return {text.data(), end};
+}
 
 std::string Node::place() const {
     return *file_ + ':' + std::to_string(value_->place.line) + ':' + std::to_string(value_->place.column);
@@ -138,10 +146,30 @@ double Node::number() const {
     return *value;
 }
 
+float Node::number(float lo, float hi) const {
+    const auto value = float(number());
+    if (value < lo || value > hi) {
+        constexpr int DIGITS = 6;  // As many as a float surely has.
+        fail_expected("a number from " + number_text(lo, DIGITS) + " to " + number_text(hi, DIGITS));
+    }
+    return value;
+}
+
+double Node::non_negative() const {
+    const double value = number();
+    if (value < 0.0) fail_expected("a number of at least 0");
+    return value;
+}
+
 double Node::positive() const {
     const double value = number();
     if (value <= 0.0) fail_expected("a number above 0");
+    if (value < FLOAT_MIN) fail_expected("a number of at least 1.2e-38");
     return value;
+}
+
+double Node::angle() const {
+    return glm::radians(std::remainder(number(), 360.0));
 }
 
 uint32_t Node::integer(uint32_t lo, uint32_t hi) const {
@@ -159,11 +187,17 @@ glm::dvec3 Node::vector() const {
     return {component(0), component(1), component(2)};
 }
 
-vec3 Node::rgb() const {
+glm::dvec3 Node::rgb() const {
     if (!is_number() && !is_array()) fail_expected("one grey number or three [r, g, b]");
     const glm::dvec3 value = is_number() ? glm::dvec3(number()) : vector();
     if (glm::any(glm::lessThan(value, glm::dvec3(0)))) fail_expected("numbers of at least 0");
-    return vec3(value);
+    return value;
+}
+
+glm::dvec3 Node::reflectance() const {
+    const glm::dvec3 value = rgb();
+    if (glm::any(glm::greaterThan(value, glm::dvec3(1)))) fail_expected("numbers from 0 to 1");
+    return value;
 }
 
 }  // namespace candela

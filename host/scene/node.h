@@ -16,6 +16,9 @@
 
 namespace candela {
 
+// A number in at most `digits` significant digits, for messages.
+std::string number_text(double number, int digits);
+
 // A view: the file name, the key and the value must outlive it.
 class Node {
   public:
@@ -54,14 +57,22 @@ class Node {
     const std::string& string() const;
     // A number that a float can hold.
     double number() const;
-    // A number above 0.
+    // A number in [lo, hi], compared as floats: what is written like a limit is within it.
+    float number(float lo, float hi) const;
+    // A number of at least 0.
+    double non_negative() const;
+    // A number above 0 that a float can hold with full precision.
     double positive() const;
+    // An angle given in degrees, in radians from -pi to pi.
+    double angle() const;
     // A whole number in [lo, hi].
     uint32_t integer(uint32_t lo, uint32_t hi) const;
     // Three numbers that floats can hold.
     glm::dvec3 vector() const;
     // One grey number or three, none below 0.
-    vec3 rgb() const;
+    glm::dvec3 rgb() const;
+    // The same, none above 1.
+    glm::dvec3 reflectance() const;
     // The value that belongs to the string.
     template <class T, size_t N>
     T choice(const std::array<std::pair<std::string_view, T>, N>& values) const {

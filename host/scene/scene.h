@@ -12,6 +12,15 @@
 
 namespace candela {
 
+// A thin lens. Its aperture is a disk, or a regular polygon whose corners lie on the disk's rim.
+struct Lens {
+    float radius = 0.0f;          // Of the aperture [m]; 0: a pinhole, everything is sharp.
+    float focal_distance = 1.0f;  // From the lens to the plane that is sharp, along the view [m]; above 0.
+    uint32_t blades = 0;          // Corners of the polygon, 3 .. MAX_BLADES; 0: a disk.
+    float rotation = 0.0f;        // Of the polygon [rad]: its first corner, from the right towards up.
+};
+inline constexpr uint32_t MAX_BLADES = 64;
+
 // A perspective camera. Right is cross(forward, up); square pixels.
 struct Camera {
     std::string name;
@@ -19,6 +28,7 @@ struct Camera {
     vec3 look_at{0, 0, -1};
     vec3 up{0, 1, 0};
     float vertical_fov = 0.0f;  // Full angle [rad], in (0, pi).
+    Lens lens;
 };
 
 struct Film {
@@ -43,9 +53,41 @@ struct DiffuseMaterial {
     vec3 reflectance{0.5f};  // Each in [0, 1].
 };
 
+// A diffuse base under a glossy lobe around the mirrored direction: modified Phong. diffuse + specular is at
+// most 1 in each channel, so that no light is made.
+struct PhongMaterial {
+    vec3 diffuse{0};        // kd.
+    vec3 specular{0};       // ks.
+    float exponent = 1.0f;  // n, in [0, MAX_PHONG_EXPONENT].
+};
+inline constexpr float MAX_PHONG_EXPONENT = 1e5f;
+
+// An ideal mirror.
+struct MirrorMaterial {
+    vec3 reflectance{1};  // Each in [0, 1], at any angle.
+};
+
+// A metal with microfacets (GGX). Its reflectance rises to 1 towards grazing angles (Schlick).
+struct ConductorMaterial {
+    vec3 reflectance{1};  // At normal incidence, each in [0, 1].
+    float alpha = 0.1f;   // Roughness, in [MIN_ALPHA, 1].
+};
+inline constexpr float MIN_ALPHA = 1e-3f;
+
+enum class Fresnel { schlick, exact };
+
+// A smooth boundary between two transparent media: glass, water. Its front side is outside. Solids of it must
+// be closed and must not overlap each other.
+struct DielectricMaterial {
+    float ior = 1.5f;           // Index of refraction behind the surface; above 0 ...
+    float exterior_ior = 1.0f;  // ... and before it.
+    Fresnel fresnel = Fresnel::schlick;
+    vec3 absorption{0};  // Behind the surface [1/m], each >= 0 (Beer and Lambert).
+};
+
 struct Material {
     std::string name;
-    std::variant<DiffuseMaterial> model;
+    std::variant<DiffuseMaterial, PhongMaterial, MirrorMaterial, ConductorMaterial, DielectricMaterial> model;
 };
 
 // Radiance that a surface sends out [W/(m^2 sr)], from its front side (counter-clockwise) or from both.
@@ -66,10 +108,34 @@ struct Quad {
     vec3 corners[4];
 };
 
+// A true sphere; its front is outside.
+struct Sphere {
+    vec3 center{0};
+    float radius = 1.0f;  // Above 0.
+};
+
+// center + x e1 + y e2 with x^2 + y^2 <= 1: a disk, or an ellipse. Its front is the side that cross(e1, e2)
+// points to.
+struct Disk {
+    vec3 center{0};
+    vec3 e1{1, 0, 0};
+    vec3 e2{0, 1, 0};
+};
+
 struct Shape {
-    std::variant<TriangleMesh, Quad> geometry;
+    std::variant<TriangleMesh, Quad, Sphere, Disk> geometry;
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
+};
+
+// Radiance from infinitely far away, as a latitude-longitude map [W/(m^2 sr)], row-major from the top. Its
+// centre lies towards -Z, u grows to +X, v downwards from +Y; it is constant over each texel. A single texel
+// is a constant sky.
+struct Environment {
+    uvec2 size{1, 1};                     // Texels.
+    std::vector<vec3> radiance{vec3(0)};  // Finite, each >= 0; intensity included.
+    float rotation = 0.0f;                // About +Y [rad], counter-clockwise seen from above.
+    bool visible = true;                  // To camera rays; light and reflections come from it in any case.
 };
 
 struct Scene {
@@ -78,7 +144,8 @@ struct Scene {
     IntegratorSettings integrator;
     std::vector<Material> materials;
     std::vector<Shape> shapes;
-    std::vector<std::string> warnings;  // What the loader found odd but usable, each with its place.
+    std::optional<Environment> environment;  // None: black.
+    std::vector<std::string> warnings;       // What the loader found odd but usable, each with its place.
 };
 
 }  // namespace candela

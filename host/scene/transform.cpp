@@ -67,6 +67,23 @@ vec3 Transform::normal(vec3 n) const {
         normalize(m / std::max({size.x, size.y, size.z})));  // Divided first, so that no square overflows.
 }
 
+std::optional<double> Transform::uniform_scale() const {
+    // A matrix whose numbers were written to six decimals of the largest, M + E with |E_ij| <= 5e-7, has
+    // products off by at most 2 * 5e-7 * sqrt(3): |column|_1 <= sqrt(3) |column|. Some of them in a chain may
+    // add up.
+    constexpr double UNEVEN = 1e-5;
+    const glm::dmat3 m(matrix_);
+    const glm::dmat3 products = transpose(m) * m;  // s^2 times the identity if the transform is even.
+    const double square = (products[0][0] + products[1][1] + products[2][2]) / 3.0;
+    for (glm::length_t i = 0; i < 3; ++i) {
+        for (glm::length_t j = 0; j < 3; ++j) {
+            const double expected = i == j ? square : 0.0;
+            if (!(std::abs(products[i][j] - expected) <= UNEVEN * square)) return std::nullopt;
+        }
+    }
+    return std::sqrt(square);
+}
+
 Transform read_transform(const Node& steps) {
     Transform transform;
     for (const Node& step : steps.elements()) {

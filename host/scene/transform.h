@@ -1,6 +1,8 @@
 // Affine transforms from a shape's own space to world space.
 #pragma once
 
+#include <optional>
+
 #include "base/math.h"
 #include "scene/node.h"
 
@@ -15,10 +17,16 @@ class Transform {
 
     // A point in world space; it need not fit into a float.
     glm::dvec3 point(glm::dvec3 p) const { return glm::dvec3(matrix_ * glm::dvec4(p, 1.0)); }
+    // A difference of two points in world space.
+    glm::dvec3 vector(glm::dvec3 v) const { return glm::dmat3(matrix_) * v; }
     // The unit normal in world space for a normal of any length; zero stays zero.
     vec3 normal(vec3 n) const;
     // True if the transform turns clockwise into counter-clockwise.
     bool mirrors() const { return mirrors_; }
+
+    // The factor of a transform that only moves, turns, mirrors and scales evenly, so that spheres stay
+    // spheres within 2e-5 of their radius; nothing for any other.
+    std::optional<double> uniform_scale() const;
 
   private:
     glm::dmat4 matrix_{1.0};

@@ -1,6 +1,8 @@
 // Quads, boxes and meshes of a scene file: what is refused, and the questions about a whole scene.
 #include "scene/geometry.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "scene_fixture.h"
@@ -107,6 +109,30 @@ TEST(Geometry, AnswersForTheWholeScene) {
     EXPECT_EQ(box.hi, vec3(1, 2, 0));  // The unused position does not count.
     EXPECT_TRUE(bounds(Scene()).is_empty());
     EXPECT_EQ(triangle_count(Scene()), 0u);
+}
+
+TEST(Geometry, BoundsRoundShapes) {
+    Scene scene;
+    scene.shapes.push_back({Sphere{vec3(1, 2, 3), 0.5f}, 0, std::nullopt});
+    EXPECT_EQ(bounds(scene).lo, vec3(0.5f, 1.5f, 2.5f));
+    EXPECT_EQ(bounds(scene).hi, vec3(1.5f, 2.5f, 3.5f));
+    EXPECT_EQ(triangle_count(scene), 0u);
+
+    // A disk of radius r reaches r sqrt(1 - n_i^2) along axis i. Any two radii at right angles span it.
+    const glm::dvec3 n = glm::dvec3(1, 2, 2) / 3.0;
+    const glm::dvec3 u = glm::dvec3(2, 1, -2) / 3.0;
+    const glm::dvec3 v = cross(n, u);
+    const vec3 center(-1, 4, 0.25f);
+    for (const double angle : {0.0, 0.3, 1.0, 2.5}) {
+        const glm::dvec3 e1 = 3.0 * (std::cos(angle) * u + std::sin(angle) * v);
+        const glm::dvec3 e2 = 3.0 * (-std::sin(angle) * u + std::cos(angle) * v);
+        scene.shapes = {{Disk{center, vec3(e1), vec3(e2)}, 0, std::nullopt}};
+        const vec3 reach(3.0 * sqrt(1.0 - n * n));
+        // Five roundings of numbers below 8, each by at most 2.4e-7.
+        EXPECT_LT(length(bounds(scene).lo - (center - reach)), 2e-6f);
+        EXPECT_LT(length(bounds(scene).hi - (center + reach)), 2e-6f);
+    }
+    EXPECT_EQ(triangle_count(scene), 0u);
 }
 
 }  // namespace

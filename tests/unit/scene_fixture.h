@@ -42,6 +42,16 @@ class SceneFolder {
         EXPECT_EQ(without_folder(error_of([&] { load(text); })), "scene.json:" + place + ": " + message);
     }
 
+    // Loads a scene that is odd at its '@', and checks that it has one warning, behind
+    // `scene.json:line:column: `.
+    void expect_warning(std::string text, const std::string& message) {
+        SCOPED_TRACE(text);
+        const std::string place = take_mark(text);
+        const Scene scene = load(text);
+        ASSERT_EQ(scene.warnings.size(), 1u);
+        EXPECT_EQ(without_folder(scene.warnings[0]), "scene.json:" + place + ": " + message);
+    }
+
     std::string without_folder(std::string message) const {
         const std::string prefix = folder_.path().string() + '/';
         for (size_t at = message.find(prefix); at != std::string::npos; at = message.find(prefix)) {
@@ -50,16 +60,27 @@ class SceneFolder {
         return message;
     }
 
+    const std::filesystem::path& path() const { return folder_.path(); }
+
   private:
     TemporaryDirectory folder_;
 };
 
-// A valid scene around the text of its shapes.
-inline std::string scene_of(const std::string& shapes) {
-    return R"({"cameras": {"main": {"position": [0, 0, 5], "look_at": [0, 0, 0], "vertical_fov": 40}},
+// A camera for scenes in which another part is under test.
+inline const std::string GOOD_CAMERA =
+    R"("cameras": {"main": {"position": [0, 0, 5], "look_at": [0, 0, 0], "vertical_fov": 40}})";
+
+// A scene without shapes around some of its other members.
+inline std::string settings(const std::string& members) {
+    return "{" + members + ",\n\"shapes\": []}";
+}
+
+// A valid scene around the text of its shapes; `mark` is set before the list of them unless it is 0.
+inline std::string scene_of(const std::string& shapes, char mark = '\0') {
+    return "{" + GOOD_CAMERA + R"(,
 "materials": {"glass": {"type": "diffuse", "reflectance": 1}, "white": {"type": "diffuse", "reflectance": 0.5}},
-"shapes": [)" +
-           shapes + "]}";
+"shapes": )" +
+           (mark == '\0' ? "" : std::string(1, mark)) + '[' + shapes + "]}";
 }
 
 }  // namespace candela

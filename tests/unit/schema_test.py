@@ -19,10 +19,37 @@ def read_scene(path):
 
 
 GOOD = {
-    "cameras": {"main": {"position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40}},
+    "cameras": {
+        "main": {
+            "position": [0, 0, 1],
+            "look_at": [0, 0, 0],
+            "vertical_fov": 40,
+            "lens": {"radius": 0.01, "focal_distance": 1, "blades": 6, "rotation": 15},
+        },
+        "pinhole": {
+            "position": [0, 0, 1],
+            "look_at": [0, 0, 0],
+            "film_size": [4, 3],
+            "focal_length": 5,
+            "lens": {"radius": 0},
+        },
+    },
     "film": {"size": [640, 480]},
     "integrator": {"spp": 1, "max_depth": 5, "estimator": "mis"},
-    "materials": {"white": {"type": "diffuse", "reflectance": [1, 0.5, 0]}},
+    "materials": {
+        "white": {"type": "diffuse", "reflectance": [1, 0.5, 0]},
+        "lacquer": {"type": "phong", "diffuse": 0.5, "specular": [0.1, 0.2, 0.3], "exponent": 0},
+        "silver": {"type": "mirror"},
+        "gold": {"type": "conductor", "reflectance": [1, 0.8, 0.3], "alpha": 0.001},
+        "glass": {
+            "type": "dielectric",
+            "ior": 1.5,
+            "exterior_ior": 1.33,
+            "fresnel": "exact",
+            "absorption": {"transmittance": [0.5, 1, 0.9], "distance": 0.1},
+        },
+    },
+    "environment": {"file": "sky.hdr", "rotation": 90, "intensity": 2, "visible": False},
     "shapes": [
         {
             "type": "box",
@@ -30,7 +57,9 @@ GOOD = {
             "max": [1, 1, 1],
             "material": "white",
             "transform": [{"scale": 2}, {"rotate": 90, "axis": [0, 1, 0]}, {"translate": [1, 2, 3]}],
-        }
+        },
+        {"type": "sphere", "emission": 1},
+        {"type": "disk", "center": [0, 1, 0], "normal": [0, 0, 1], "radius": 2, "material": "gold"},
     ],
 }
 
@@ -46,6 +75,14 @@ BAD = [
     (["cameras", "main", "focal_length"], 0.035),
     (["cameras", "main", "position"], [0, 0]),
     (["cameras", "main", "fov"], 40),
+    (["cameras", "main", "lens", "radius"], -1),
+    (["cameras", "main", "lens", "radius"], REMOVE),
+    (["cameras", "main", "lens", "focal_distance"], 0),
+    (["cameras", "main", "lens", "focal_distance"], REMOVE),
+    (["cameras", "main", "lens", "blades"], 2),
+    (["cameras", "main", "lens", "blades"], REMOVE),
+    (["cameras", "main", "lens", "fstop"], 8),
+    (["cameras", "pinhole", "lens", "radius"], 0.01),
     (["film", "size"], [0, 480]),
     (["film", "size"], [640.5, 480]),
     (["film", "size"], [640]),
@@ -56,9 +93,29 @@ BAD = [
     (["materials", "white", "reflectance"], 1.5),
     (["materials", "white", "reflectance"], [1, 1]),
     (["materials", "white", "type"], "difuse"),
+    (["materials", "lacquer", "exponent"], -1),
+    (["materials", "lacquer", "exponent"], 100001),
+    (["materials", "lacquer", "exponent"], REMOVE),
+    (["materials", "lacquer", "specular"], REMOVE),
+    (["materials", "lacquer", "diffuse"], 1.5),
+    (["materials", "silver", "reflectance"], -0.5),
+    (["materials", "silver", "alpha"], 0.1),
+    (["materials", "gold", "alpha"], 0),
+    (["materials", "gold", "alpha"], 1.5),
+    (["materials", "gold", "alpha"], REMOVE),
+    (["materials", "gold", "reflectance"], REMOVE),
+    (["materials", "glass", "ior"], 0),
+    (["materials", "glass", "ior"], REMOVE),
+    (["materials", "glass", "exterior_ior"], 0),
+    (["materials", "glass", "fresnel"], "exakt"),
+    (["materials", "glass", "absorption", "transmittance"], 0),
+    (["materials", "glass", "absorption", "transmittance"], [1, 0, 1]),
+    (["materials", "glass", "absorption", "transmittance"], REMOVE),
+    (["materials", "glass", "absorption", "distance"], 0),
+    (["materials", "glass", "absorption", "distance"], REMOVE),
     (["shapes", 0, "material"], REMOVE),
     (["shapes", 0, "max"], REMOVE),
-    (["shapes", 0, "type"], "sphere"),
+    (["shapes", 0, "type"], "cone"),
     (["shapes", 0, "type"], REMOVE),
     (["shapes", 0, "file"], "a.obj"),
     (["shapes", 0, "two_sided"], True),
@@ -67,6 +124,25 @@ BAD = [
     (["shapes", 0, "transform", 0], {"scale": 2, "translate": [0, 0, 0]}),
     (["shapes", 0, "transform", 1], {"rotate": 90}),
     (["shapes", 0, "transform", 2], {"matrix": [1, 0, 0, 0]}),
+    (["shapes", 1, "radius"], 0),
+    (["shapes", 1, "center"], 0),
+    (["shapes", 1, "normal"], [0, 0, 1]),
+    (["shapes", 2, "normal"], REMOVE),
+    (["shapes", 2, "radius"], -1),
+    (["environment"], {}),
+    (["environment"], {"radiance": -1}),
+    (["environment"], {"radiance": 1, "rotation": 90}),
+    (["environment", "radiance"], 1),
+    (["environment", "intensity"], -1),
+    (["environment", "rotation"], "90"),
+    (["environment", "visible"], 1),
+]
+
+
+# The same for what it must accept.
+ALSO_GOOD = [
+    (["environment"], REMOVE),
+    (["environment"], {"radiance": [1, 0, 0.5], "intensity": 0, "visible": True}),
 ]
 
 
@@ -96,6 +172,9 @@ def main(folder):
             failures.append(f"{path}: {error.json_path}: {error.message}")
     for error in validator.iter_errors(GOOD):
         failures.append(f"the good scene: {error.json_path}: {error.message}")
+    for path, value in ALSO_GOOD:
+        for error in validator.iter_errors(changed(path, value)):
+            failures.append(f"a good scene: {error.json_path}: {error.message}")
     for path, value in BAD:
         if validator.is_valid(changed(path, value)):
             change = "removed" if value is REMOVE else f"set to {json.dumps(value)}"

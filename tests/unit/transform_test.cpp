@@ -1,6 +1,8 @@
 // Transforms of shapes: order of steps, exactness, mirrors, and what is refused.
 #include "scene/transform.h"
 
+#include <random>
+
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
@@ -56,6 +58,53 @@ TEST(Transform, KnowsMirrors) {
     EXPECT_TRUE(parse_transform(R"([{"scale": -1}])").mirrors());
     EXPECT_FALSE(parse_transform(R"([{"scale": [-1, -1, 1]}])").mirrors());
     EXPECT_FALSE(parse_transform(R"([{"scale": -1}, {"scale": -1}])").mirrors());
+}
+
+TEST(Transform, MovesVectorsByDifferences) {
+    const Transform transform = parse_transform(R"([{"scale": [2, -1, 3]}, {"translate": [5, 5, 5]},
+        {"rotate": 40, "axis": [1, 2, 3]}])");
+    const glm::dvec3 p(1, 2, 3);
+    const glm::dvec3 v(-4, 0.5, 2);
+    EXPECT_LT(length(transform.vector(v) - (transform.point(p + v) - transform.point(p))), 1e-12);
+}
+
+TEST(Transform, KnowsWhatKeepsSpheres) {
+    const auto scale = [](const std::string& text) { return parse_transform(text).uniform_scale(); };
+    EXPECT_EQ(scale("[]"), 1.0);
+    EXPECT_EQ(scale(R"([{"translate": [1e6, 0, 3]}])"), 1.0);
+    EXPECT_EQ(scale(R"([{"scale": [2, -2, 2]}])"), 2.0);
+    EXPECT_NEAR(scale(R"([{"rotate": 77, "axis": [3, 1, 2]}, {"scale": -0.5}])").value(), 0.5, 1e-15);
+    EXPECT_NEAR(scale(R"([{"scale": 1e-30}])").value(), 1e-30, 1e-45);
+    EXPECT_NEAR(scale(R"([{"scale": 1e30}])").value(), 1e30, 1e15);
+    // Undone again: what counts is the whole.
+    EXPECT_EQ(scale(R"([{"scale": [1, 2, 4]}, {"scale": [4, 2, 1]}])"), 4.0);
+
+    EXPECT_FALSE(scale(R"([{"scale": [1, 1, 2]}])"));
+    EXPECT_FALSE(scale(R"([{"scale": [1e-3, 1e-3, 1.1e-3]}])"));
+    EXPECT_FALSE(scale(R"([{"rotate": 45, "axis": [0, 0, 1]}, {"scale": [1, 2, 1]}])"));
+    EXPECT_FALSE(scale(R"([{"matrix": [1, 0, 0.001, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}])"));
+    EXPECT_FALSE(scale(R"([{"matrix": [1, 0, 0, 0, 0, 1, 0, 0, -0.001, 0, 1, 0, 0, 0, 0, 1]}])"));
+    // Squares of 1, 1 and (1 + e) differ from their mean by 4/3 e at most.
+    EXPECT_TRUE(scale(R"([{"scale": [1, 1, 1.000007]}])"));
+    EXPECT_FALSE(scale(R"([{"scale": [1, 1, 1.000008]}])"));
+}
+
+// As other programs write matrices: every rotation is taken for one after rounding to six decimals.
+TEST(Transform, KeepsSpheresUnderRoundedRotations) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    for (int i = 0; i < 1000; ++i) {
+        const glm::dvec3 axis(uniform(random), uniform(random), uniform(random));
+        const glm::dmat4 rotation = glm::rotate(glm::dmat4(1.0), 4.0 * uniform(random), normalize(axis));
+        glm::dmat4 written;
+        for (int column = 0; column < 4; ++column)
+            written[column] = round(rotation[column] * 1e6) / 1e6;
+        Transform transform;
+        ASSERT_TRUE(transform.append(written));
+        ASSERT_TRUE(transform.uniform_scale().has_value());
+        // The mean of three squares, each off by at most 1.7e-6, halved by the root.
+        ASSERT_NEAR(*transform.uniform_scale(), 1.0, 1e-6);
+    }
 }
 
 TEST(Transform, RefusesSingularOnes) {

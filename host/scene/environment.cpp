@@ -1,0 +1,86 @@
+// Checks what an image says before it lights a scene.
+#include "scene/environment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+#include "base/image_io.h"
+
+namespace candela {
+namespace {
+
+constexpr uint64_t MAX_TEXELS = uint64_t(1) << 26;
+
+// "40x20", for messages.
+std::string format_size(uint32_t width, uint32_t height) {
+    return std::to_string(width) + 'x' + std::to_string(height);
+}
+
+void check_complete(const Image& image, const std::string& file) {
+    if (image.data == PixelRect{0, 0, image.full.x, image.full.y}) return;
+    throw Error(file + ": the environment must be complete, but the file holds only " +
+                format_size(image.data.width(), image.data.height()) + " of its picture's " +
+                format_size(image.full.x, image.full.y) + " pixels; write all of it");
+}
+
+RgbPlanes find_colours(const Image& image, const std::string& file) {
+    if (const std::optional<RgbPlanes> rgb = image.find_rgb()) return *rgb;
+    if (const Channel* grey = image.find("Y")) return {grey->values, grey->values, grey->values};
+    std::string names;
+    for (const Channel& channel : image.channels)
+        names += (names.empty() ? "" : ", ") + channel.name;
+    throw Error(file + ": an environment needs the channels R, G and B, or Y, but the file has " + names +
+                "; write it with one of these");
+}
+
+// Negative or not finite, in any channel; then the other channels are not to be trusted either.
+bool is_unusable(vec3 radiance) {
+    for (int c = 0; c < 3; ++c) {
+        if (!std::isfinite(radiance[c]) || radiance[c] < 0.0f) return true;
+    }
+    return false;
+}
+
+// "3 of 2048 texels are negative or not finite and count as black"
+std::string describe_unusable(size_t count, size_t texels) {
+    return std::to_string(count) + " of " + std::to_string(texels) +
+           (count == 1 ? " texels is negative or not finite and counts as black"
+                       : " texels are negative or not finite and count as black");
+}
+
+}  // namespace
+
+Environment load_environment(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+    const std::string name = file.string();
+    const Image image = read_image(file, MAX_TEXELS);
+    check_complete(image, name);
+    const RgbPlanes colours = find_colours(image, name);
+
+    Environment environment;
+    environment.size = image.full;
+    environment.radiance.assign(image.pixel_count(), vec3(0.0f));
+    size_t unusable = 0;
+    for (size_t i = 0; i < environment.radiance.size(); ++i) {
+        const vec3 radiance(colours[0][i], colours[1][i], colours[2][i]);
+        if (is_unusable(radiance)) {
+            ++unusable;
+        } else {
+            environment.radiance[i] = radiance;
+        }
+    }
+    if (unusable > 0) {
+        warnings.push_back(name + ": " + describe_unusable(unusable, environment.radiance.size()));
+    }
+    if (image.full.x != 2 * image.full.y) {
+        warnings.push_back(name + ": the environment has " + format_size(image.full.x, image.full.y) +
+                           " texels, not twice as many across as down; it is stretched over the sphere");
+    }
+    if (std::ranges::all_of(environment.radiance, [](vec3 radiance) { return radiance == vec3(0.0f); })) {
+        warnings.push_back(name + ": the environment is black everywhere: it gives no light");
+    }
+    return environment;
+}
+
+}  // namespace candela
