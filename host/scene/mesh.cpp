@@ -84,4 +84,31 @@ void complete_normals(TriangleMesh& mesh) {
     }
 }
 
+std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh, std::span<const uint32_t> part_of,
+                                     size_t count) {
+    std::vector<TriangleMesh> parts(count);
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+        parts[part_of[i]].triangles.push_back(mesh.triangles[i]);
+    struct Copy {
+        size_t part;     // The part that the vertex was copied to last ...
+        uint32_t index;  // ... and its index there.
+    };
+    std::vector<Copy> copies(mesh.positions.size(), {count, 0});
+    for (size_t part = 0; part < count; ++part) {
+        TriangleMesh& target = parts[part];
+        for (uvec3& t : target.triangles) {
+            for (glm::length_t i = 0; i < 3; ++i) {
+                Copy& copy = copies[t[i]];
+                if (copy.part != part) {
+                    copy = {part, uint32_t(target.positions.size())};
+                    target.positions.push_back(mesh.positions[t[i]]);
+                    if (!mesh.normals.empty()) target.normals.push_back(mesh.normals[t[i]]);
+                }
+                t[i] = copy.index;
+            }
+        }
+    }
+    return parts;
+}
+
 }  // namespace candela

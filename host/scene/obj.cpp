@@ -1,6 +1,7 @@
 // From text through polygons to a mesh with shared vertices.
 #include "scene/obj.h"
 
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -8,9 +9,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "scene/mesh.h"
 #include "scene/obj_check.h"
 #include "scene/polygon.h"
+#include "scene/text_lines.h"
 
 namespace candela {
 namespace {
@@ -98,8 +99,8 @@ class MeshBuilder {
     TriangleMesh mesh_;
 };
 
-TriangleMesh build_mesh(const Polygons& source, bool with_normals) {
-    MeshBuilder builder(source, with_normals);
+TriangleMesh build_mesh(const Polygons& source, MeshNormals normals) {
+    MeshBuilder builder(source, normals == MeshNormals::file && !source.normals.empty());
     std::vector<vec3> positions;
     size_t begin = 0;
     for (const size_t end : source.ends) {
@@ -111,18 +112,72 @@ TriangleMesh build_mesh(const Polygons& source, bool with_normals) {
             builder.add(corners[t.x], corners[t.y], corners[t.z]);
         begin = end;
     }
-    return builder.take();
+    TriangleMesh mesh = builder.take();
+    if (normals == MeshNormals::smooth) smooth_normals(mesh);
+    return mesh;
+}
+
+// What a file says about materials.
+struct Statements {
+    std::vector<ObjName> libraries;
+    std::vector<ObjPart> parts;     // Without their meshes.
+    std::vector<uint32_t> part_of;  // For each face, an index into `parts`.
+};
+
+Statements find_materials(std::string_view text, const std::string& file) {
+    Statements statements;
+    std::map<std::string, uint32_t, std::less<>> indices;  // Of the parts; "" is that of no material.
+    ObjName current;
+    for_each_line(text, [&](uint64_t line, std::string_view command, std::string_view rest) {
+        const auto named = [&](const char* what) -> ObjName {
+            const std::string_view name = trimmed(rest);
+            if (name.empty()) {
+                throw Error(file + ':' + std::to_string(line) + ": " + std::string(command) +
+                            " needs the name of " + what);
+            }
+            return {std::string(name), line};
+        };
+        if (command == "mtllib") statements.libraries.push_back(named("a file"));
+        if (command == "usemtl") current = named("a material");
+        if (command != "f") return;
+        const auto [found, is_new] = indices.emplace(current.name, uint32_t(statements.parts.size()));
+        if (is_new) {
+            statements.parts.emplace_back();
+            if (!current.name.empty()) statements.parts.back().material = current;
+        }
+        ++statements.parts[found->second].faces;
+        statements.part_of.push_back(found->second);
+    });
+    return statements;
 }
 
 }  // namespace
 
-TriangleMesh load_obj(const std::filesystem::path& file, ObjNormals normals) {
+TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals) {
     std::string text = read_file(file);
     check_obj(text, file.string());
+    return build_mesh(parse(std::move(text)), normals);
+}
+
+ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals) {
+    std::string text = read_file(file);
+    check_obj(text, file.string());
+    Statements statements = find_materials(text, file.string());
     const Polygons polygons = parse(std::move(text));
-    TriangleMesh mesh = build_mesh(polygons, normals == ObjNormals::file && !polygons.normals.empty());
-    if (normals == ObjNormals::smooth) smooth_normals(mesh);
-    return mesh;
+
+    std::vector<uint32_t> part_of;  // For each triangle.
+    size_t begin = 0;
+    for (size_t face = 0; face < polygons.ends.size(); ++face) {
+        const size_t triangles = polygons.ends[face] - begin - 2;
+        part_of.insert(part_of.end(), triangles, statements.part_of[face]);
+        begin = polygons.ends[face];
+    }
+    ObjParts result{std::move(statements.libraries), std::move(statements.parts)};
+    std::vector<TriangleMesh> meshes =
+        split_mesh(build_mesh(polygons, normals), part_of, result.parts.size());
+    for (size_t i = 0; i < meshes.size(); ++i)
+        result.parts[i].mesh = std::move(meshes[i]);
+    return result;
 }
 
 }  // namespace candela

@@ -2,21 +2,19 @@
 // to tinyobjloader.
 #include "scene/obj_check.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "base/error.h"
 #include "scene/json.h"
+#include "scene/polygon.h"
+#include "scene/text_lines.h"
 
 namespace candela {
 namespace {
 
-constexpr int MOST_CORNERS = 1024;      // Cutting a polygon takes up to cubic time.
 constexpr size_t MOST_CHARACTERS = 64;  // In a number. tinyobjloader overflows inside longer ones.
 
 // What a face refers to, in the order of `1/2/3`.
@@ -29,32 +27,12 @@ constexpr std::array<Kind, 3> KINDS{{{"v", "vertex", "vertices"},
                                      {"vt", "texture coordinate", "texture coordinates"},
                                      {"vn", "normal", "normals"}}};
 
-// Cuts the next word off `line`; empty at its end.
-std::string_view next_word(std::string_view& line) {
-    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-    const std::string_view word = line.substr(0, line.find_first_of(" \t"));
-    line.remove_prefix(word.size());
-    return word;
-}
-
-// Calls visit(line number, first word, rest) for each line; lines end with \n, \r\n or \r.
-template <class Visit>
-void for_each_line(std::string_view text, Visit visit) {
-    for (uint64_t number = 1; !text.empty(); ++number) {
-        const size_t length = std::min(text.find_first_of("\r\n"), text.size());
-        std::string_view line = text.substr(0, length);
-        text.remove_prefix(length);
-        text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<size_t>(1, text.size()));
-        const std::string_view command = next_word(line);
-        visit(number, command, line);
-    }
-}
-
 class Checker {
   public:
     Checker(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
     void run() {
+        refuse_byte_order_mark(text_, file_);
         for_each_line(text_, [this](uint64_t, std::string_view command, std::string_view) {
             if (const auto kind = kind_of(command)) ++totals_[*kind];
         });
@@ -79,9 +57,6 @@ class Checker {
     }
 
     void check_line(std::string_view command, std::string_view rest) {
-        if (line_ == 1 && command.starts_with("\xEF\xBB\xBF")) {
-            fail("the file begins with a byte order mark; save it without one");
-        }
         if (command == "f") return check_face(rest);
         const auto kind = kind_of(command);
         if (!kind) return;
@@ -94,20 +69,13 @@ class Checker {
     void check_number(std::string_view word, const Kind& kind) const {
         if (word.empty())
             fail("a " + std::string(kind.singular) + " needs three numbers; is the file cut off?");
-        if (word.size() <= MOST_CHARACTERS) {
-            const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
-            const char* end = word.data() + word.size();
-            double value = 0.0;
-            const auto [stop, error] = std::from_chars(begin, end, value);
-            const bool fits = std::abs(value) <= double(std::numeric_limits<float>::max());  // False for NaN.
-            if (error == std::errc() && stop == end && fits) return;
-        }
+        if (word.size() <= MOST_CHARACTERS && parse_finite(word)) return;
         fail("a " + std::string(kind.singular) + " needs three finite numbers, found " + json::quote(word));
     }
 
     void check_face(std::string_view rest) {
         ++faces_;
-        int corners = 0;
+        size_t corners = 0;
         for (std::string_view corner = next_word(rest); !corner.empty(); corner = next_word(rest)) {
             check_corner(corner);
             ++corners;

@@ -8,6 +8,9 @@
 
 namespace candela {
 
+// How many corners the polygons of a file may have: cutting one takes up to cubic time.
+inline constexpr size_t MOST_CORNERS = 1024;
+
 // Cuts a polygon of n >= 3 corners, convex or concave, nearly planar, into n - 2 triangles of the same
 // winding, given as indices into `corners`. A polygon that crosses itself is cut somehow. Time grows with the
 // square of n, in the worst case with its cube.

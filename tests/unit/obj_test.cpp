@@ -18,7 +18,7 @@ constexpr const char* TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 class Obj : public testing::Test {
   protected:
-    TriangleMesh load(const std::string& text, ObjNormals normals = ObjNormals::file) {
+    TriangleMesh load(const std::string& text, MeshNormals normals = MeshNormals::file) {
         folder_.write("m.obj", text);
         return std::get<TriangleMesh>(scene(normals).shapes.at(0).geometry);
     }
@@ -33,10 +33,10 @@ class Obj : public testing::Test {
     SceneFolder folder_;
 
   private:
-    Scene scene(ObjNormals normals) {
-        const char* name = normals == ObjNormals::file   ? "file"
-                           : normals == ObjNormals::flat ? "flat"
-                                                         : "smooth";
+    Scene scene(MeshNormals normals) {
+        const char* name = normals == MeshNormals::file   ? "file"
+                           : normals == MeshNormals::flat ? "flat"
+                                                          : "smooth";
         return folder_.load(scene_of(R"({"type": "obj", "file": "m.obj", "material": "white", "normals": ")" +
                                      std::string(name) + "\"}"));
     }
@@ -59,7 +59,7 @@ TEST_F(Obj, SharesVerticesOfEqualPositionAndNormal) {
     EXPECT_EQ(smooth.normals, std::vector<vec3>(4, vec3(0, 0, 1)));
     const TriangleMesh creased = load(square + "f 1//1 2//1 3//1\nf 2//2 4//2 3//2");
     EXPECT_EQ(creased.positions.size(), 6u);
-    const TriangleMesh flat = load(square + "f 1//1 2//1 3//1\nf 2//2 4//2 3//2", ObjNormals::flat);
+    const TriangleMesh flat = load(square + "f 1//1 2//1 3//1\nf 2//2 4//2 3//2", MeshNormals::flat);
     EXPECT_EQ(flat.positions.size(), 4u);
     EXPECT_TRUE(flat.normals.empty());
 }
@@ -84,7 +84,7 @@ TEST_F(Obj, SmoothsNormalsByAngleOverEqualPositions) {
         }
     }
     cube += "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 11 15 16 12\nf 9 11 12 10\nf 13 14 16 15\n";
-    const TriangleMesh mesh = load(cube, ObjNormals::smooth);
+    const TriangleMesh mesh = load(cube, MeshNormals::smooth);
     ASSERT_EQ(mesh.triangles.size(), 12u);
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         EXPECT_NEAR(length(mesh.normals[i] - normalize(mesh.positions[i])), 0.0f, 1e-6f);
@@ -92,7 +92,7 @@ TEST_F(Obj, SmoothsNormalsByAngleOverEqualPositions) {
 }
 
 TEST_F(Obj, SmoothNormalsThatCancelAreFlat) {
-    const TriangleMesh mesh = load(std::string(TRIANGLE) + "f 1 2 3\nf 1 3 2", ObjNormals::smooth);
+    const TriangleMesh mesh = load(std::string(TRIANGLE) + "f 1 2 3\nf 1 3 2", MeshNormals::smooth);
     EXPECT_TRUE(mesh.normals.empty());
 }
 
