@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/color.h"
 #include "base/error.h"
 
 namespace candela {
@@ -12,8 +13,7 @@ namespace {
 
 // Ref: Reinhard et al., "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, equation 3.
 vec3 reinhard(vec3 colour) {
-    const vec3 rec709_luminance(0.2126f, 0.7152f, 0.0722f);
-    return colour / (1.0f + glm::dot(colour, rec709_luminance));
+    return colour / (1.0f + luminance(colour));
 }
 
 // A rational fit of the ACES RRT and sRGB ODT between a matrix from Rec.709 to the ACES working space with

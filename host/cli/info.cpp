@@ -31,6 +31,12 @@ Json to_json(const Box& box) {
     return {{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
 }
 
+// Texels of the environment, if there is one.
+Json environment_of(const GpuScene& gpu) {
+    if (gpu.environment == ENVIRONMENT_NONE) return nullptr;
+    return {gpu.environment_size.x, gpu.environment_size.y};
+}
+
 // Device memory by part; the picture with all AOVs and without any.
 Json memory_of(const GpuScene& gpu, RenderSettings settings) {
     settings.aovs = true;
@@ -57,6 +63,7 @@ Json describe(const InfoOptions& options, const Scene& scene) {
     return {{"scene", options.scene},
             {"primitives", gpu.primitive_count},
             {"lights", gpu.light_count},
+            {"environment", environment_of(gpu)},
             {"materials", scene.materials.size()},
             {"cameras", cameras},
             {"bounds", to_json(bounds(scene))},
@@ -100,6 +107,9 @@ void print(const Json& info) {
     row("scene", info["scene"].get<std::string>());
     row("primitives", info["primitives"].dump());
     row("lights", info["lights"].dump());
+    const Json& environment = info["environment"];
+    row("environment",
+        environment.is_null() ? "none" : environment[0].dump() + 'x' + environment[1].dump() + " texels");
     row("materials", info["materials"].dump());
     row("cameras", join(info["cameras"]));
     row("bounds", bounds_text(info["bounds"]));

@@ -18,7 +18,7 @@ std::vector<AliasEntry> build_alias_table(std::span<const double> weights) {
     std::vector<uint32_t> large;
     for (uint32_t i = 0; i < n; ++i) {
         share[i] = weights[i] / total * double(n);
-        table[i] = {UINT32_MAX, i, float(weights[i] / total)};
+        table[i] = {UINT32_MAX, i};
         (share[i] < 1.0 ? small : large).push_back(i);
     }
     // Fill up each column that is short of 1 from one that has more.

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "shared/light.h"
-#include "shared/types.h"
+#include "shared/constants.h"
+#include "shared/parameters.h"
 
 namespace candela {
 
@@ -13,13 +13,19 @@ struct GpuScene {
     // Records as shared/*.h describe them, in words of uvec4.
     std::vector<uvec4> nodes;       // BVH nodes, the root first.
     std::vector<uvec4> primitives;  // In leaf order.
-    std::vector<uvec4>
-        tables;             // Normals (in leaf order; none if all are flat), materials, lights, alias table.
-    uvec4 table_starts{0};  // First words of those four in `tables`.
+    std::vector<uvec4> tables;  // One after the other, as TableStarts lists them; normals are in leaf order.
+    TableStarts table_starts{};
 
     uint32_t primitive_count = 0;
     uint32_t light_count = 0;
+    uvec2 environment_size{0};          // Texels.
+    float environment_rotation = 0.0f;  // [rad]
+
+    // What the kernels must know of: see CONSTANT_*.
     bool has_normals = false;
+    uint32_t environment = ENVIRONMENT_NONE;
+    uint32_t materials_present = 0;   // Bit i: a material of model i.
+    uint32_t primitives_present = 0;  // Bit i: a primitive of kind i.
 
     // About the BVH, for reports.
     uint32_t bvh_depth = 0;

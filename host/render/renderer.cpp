@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "render/kernels.h"
 #include "render/schedule.h"
-#include "shared/primitive.h"
 
 namespace candela {
 namespace {
@@ -96,6 +95,11 @@ uint32_t estimator_constant(Estimator estimator, uint32_t light_count) {
     return ESTIMATOR_MIS;
 }
 
+uint32_t aperture_constant(const Lens& lens) {
+    if (lens.radius == 0.0f) return APERTURE_PINHOLE;
+    return lens.blades == 0 ? APERTURE_DISK : APERTURE_POLYGON;
+}
+
 uint32_t sampler_constant(SamplerKind sampler) {
     switch (sampler) {
         case SamplerKind::independent:
@@ -116,6 +120,9 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
     const vec3 up = cross(right, forward);
     const float tan_y = std::tan(0.5f * camera.vertical_fov);
     const float tan_x = tan_y * float(settings.size.x) / float(settings.size.y);
+    const Lens& lens = camera.lens;
+    const float cos_lens = std::cos(lens.rotation);
+    const float sin_lens = std::sin(lens.rotation);
     return {.position = camera.position,
             .right = tan_x * right,
             .up = tan_y * up,
@@ -126,7 +133,13 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .max_depth = std::min(settings.max_depth, DEPTH_SAFETY_LIMIT),
             .rr_depth = settings.rr_depth,
             .light_count = scene.light_count,
-            .tables = scene.table_starts};
+            .tables = scene.table_starts,
+            .environment_size = scene.environment_size,
+            .environment_turn = {std::cos(scene.environment_rotation), std::sin(scene.environment_rotation)},
+            .lens_x = lens.radius * (cos_lens * right + sin_lens * up),
+            .lens_y = lens.radius * (cos_lens * up - sin_lens * right),
+            .focal_distance = lens.focal_distance,
+            .blades = lens.blades};
 }
 
 uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings) {
@@ -158,6 +171,10 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
     constants_[CONSTANT_ESTIMATOR] = estimator_constant(settings.estimator, scene.light_count);
     constants_[CONSTANT_HAS_NORMALS] = scene.has_normals;
     constants_[CONSTANT_HAS_AOVS] = settings.aovs;
+    constants_[CONSTANT_APERTURE] = aperture_constant(camera.lens);
+    constants_[CONSTANT_ENVIRONMENT] = scene.environment;
+    constants_[CONSTANT_MATERIALS] = scene.materials_present;
+    constants_[CONSTANT_PRIMITIVES] = scene.primitives_present;
     render_kernel_ =
         std::make_unique<vk::Kernel>(make_kernel(kernels::render, kernels::render_storage, true, "render"));
     render_kernel_->bind(BINDING_IMAGE, image_);

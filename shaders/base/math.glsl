@@ -27,6 +27,33 @@ vec2 cos_sin_octant(float x) {
                 x * (1.0 + y * (-1.0 / 6.0 + y * (1.0 / 120.0 + y * (-1.0 / 5040.0 + y * (1.0 / 362880.0))))));
 }
 
+// (cos, sin) of 2 pi t for t in [0, 1], as precise as cos_sin_octant.
+vec2 cos_sin_turn(float t) {
+    float quarter = floor(4.0 * t + 0.5);
+    vec2 w = cos_sin_octant((2.0 * PI) * (t - 0.25 * quarter));
+    switch (uint(quarter) & 3u) {
+        case 0u: return w;
+        case 1u: return vec2(-w.y, w.x);
+        case 2u: return -w;
+        default: return vec2(w.y, -w.x);
+    }
+}
+
+// The angle of the point (x, y) in turns: atan(y, x) / 2 pi, in [0, 1]; within 2^-23; 0 for the origin. The built-in
+// function may be as coarse as 2^-12. The polynomial is the Chebyshev interpolant of atan(q) / q in q^2 on [0, 1], of a relative
+// error of 2e-8.
+float angle_turn(float y, float x) {
+    vec2 a = abs(vec2(x, y));
+    float q = min(a.x, a.y) / max(max(a.x, a.y), 1e-37);
+    float z = q * q;
+    float atan_q = q * (0.999999982 + z * (-0.333330367 + z * (0.19991872 + z * (-0.141977978 + z * (0.106183706 +
+                   z * (-0.0745685483 + z * (0.0421376236 + z * (-0.0157312491 + z * 0.0027662835))))))));
+    float turn = atan_q * (0.5 * INV_PI);
+    if (a.y > a.x) turn = 0.25 - turn;
+    if (x < 0.0) turn = 0.5 - turn;
+    return y < 0.0 ? 1.0 - turn : turn;
+}
+
 // Adds x to the compensated sum `sum - compensation`; no contraction, no reordering.
 // Ref: Kahan 1965, Further Remarks on Reducing Truncation Errors.
 void compensated_add(inout vec3 sum, inout vec3 compensation, vec3 x) {

@@ -2,6 +2,7 @@
 #ifndef BASE_WARP_GLSL
 #define BASE_WARP_GLSL
 
+#include "base/exponential.glsl"
 #include "base/math.glsl"
 
 // Uniform point on the unit disk from u in [0,1)^2, area-preserving and continuous; density 1/pi [1/m^2].
@@ -28,10 +29,55 @@ float warp_cosine_hemisphere_pdf(float cos_theta) {
     return cos_theta * INV_PI;
 }
 
+// Direction around +z of that h = 1 - cos(theta), in [0, 2], at an angle of so many turns; unit length. Near the pole h
+// has the digits that the cosine has lost.
+vec3 direction_at(float h, float turn) {
+    return vec3(sqrt(max(0.0, h * (2.0 - h))) * cos_sin_turn(turn), 1.0 - h);
+}
+
+// Direction on the hemisphere around +z with the density (n + 1) / (2 pi) cos(theta)^n [1/sr], from u in [0,1)^2, for n
+// in [0, 10^5]. cos(theta) = (1 - u)^(1 / (n + 1)).
+vec3 warp_power_cosine(vec2 u, float n) {
+    return direction_at(-expm1_nonpositive(log1p_nonpositive(-u.x) / (n + 1.0)), u.y);
+}
+
+// Uniform direction on the unit sphere; density 1 / (4 pi) [1/sr].
+vec3 warp_sphere(vec2 u) {
+    return direction_at(2.0 * u.x, u.y);
+}
+
+// Direction around +z, uniform over the cone in which 1 - cos(theta) <= h_max; density 1 / (2 pi h_max) [1/sr].
+vec3 warp_cone(vec2 u, float h_max) {
+    return direction_at(u.x * h_max, u.y);
+}
+
+// Normal of a GGX microfacet that w sees, with the density G1(w) max(0, w.h) D(h) / w.z [1/sr], from u in [0,1)^2; w.z > 0,
+// alpha in (0, 1]. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, section 3.
+vec3 warp_ggx_visible_normal(vec2 u, float alpha, vec3 w) {
+    // Stretched, the facets are a hemisphere; its visible half is a disk, of which a part is behind the horizon.
+    vec3 v = normalize(vec3(alpha * w.xy, w.z));
+    float across = dot(v.xy, v.xy);
+    vec3 t1 = across > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(across) : vec3(1.0, 0.0, 0.0);
+    vec3 t2 = cross(v, t1);
+    vec2 d = warp_disk(u);
+    d.y = mix(sqrt(max(0.0, 1.0 - d.x * d.x)), d.y, 0.5 * (1.0 + v.z));
+    vec3 h = d.x * t1 + d.y * t2 + sqrt(max(0.0, 1.0 - dot(d, d))) * v;
+    return normalize(vec3(alpha * h.xy, max(1e-7, h.z)));
+}
+
 // Uniform barycentric coordinates (b1, b2) on a triangle from u in [0,1)^2; density 1/area [1/m^2]. Continuous,
 // without a square root. Ref: Heitz 2019, A Low-Distortion Map Between Triangle and Square.
 vec2 warp_triangle(vec2 u) {
     return u.x < u.y ? vec2(0.5 * u.x, u.y - 0.5 * u.x) : vec2(u.x - 0.5 * u.y, 0.5 * u.y);
+}
+
+// Uniform point on the regular polygon with that many corners (>= 3) on the unit circle, the first of them at (1, 0),
+// from u in [0,1)^2. Its area is blades / 2 sin(2 pi / blades).
+vec2 warp_polygon(vec2 u, uint blades) {
+    float scaled = u.x * float(blades);
+    float blade = min(floor(scaled), float(blades - 1u));
+    vec2 b = warp_triangle(vec2(scaled - blade, u.y));
+    return b.x * cos_sin_turn(blade / float(blades)) + b.y * cos_sin_turn((blade + 1.0) / float(blades));
 }
 
 // Index of a column of an alias table of n entries and the 32 bits that decide within it, from 32 random bits.

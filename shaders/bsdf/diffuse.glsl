@@ -10,15 +10,15 @@ vec3 diffuse_f(vec3 reflectance, vec3 wi) {
     return wi.z > 0.0 ? reflectance * INV_PI : vec3(0.0);
 }
 
-// Cosine-distributed wi from u in [0,1)^2: weight f cos / pdf is exactly the reflectance.
-BsdfSample diffuse_sample_f(vec3 reflectance, vec2 u) {
-    vec3 wi = warp_cosine_hemisphere(u);
-    return BsdfSample(wi, reflectance, warp_cosine_hemisphere_pdf(wi.z));
-}
-
 // Density of diffuse_sample_f at wi [1/sr].
 float diffuse_pdf(vec3 wi) {
     return warp_cosine_hemisphere_pdf(max(0.0, wi.z));
+}
+
+// Cosine-distributed wi from u in [0,1)^2: weight f cos / pdf is exactly the reflectance.
+BsdfSample diffuse_sample_f(vec3 reflectance, vec2 u) {
+    vec3 wi = warp_cosine_hemisphere(u);
+    return bsdf_sample(wi, reflectance, warp_cosine_hemisphere_pdf(wi.z));
 }
 
 #endif

@@ -2,14 +2,32 @@
 //
 // Conventions of all BSDFs: wo (towards the viewer) and wi (towards the light) are unit vectors that point away
 // from the surface, in the local frame whose z is the shading normal on the viewer's side. `f` is the value
-// without the cosine [1/sr], `pdf` the density over solid angle [1/sr].
+// without the cosine [1/sr], `pdf` the density over solid angle [1/sr]. Where scattering is ideal ("delta"), f and pdf
+// are 0 everywhere, and a sample's pdf is the probability of its choice.
 #ifndef BSDF_SAMPLE_GLSL
 #define BSDF_SAMPLE_GLSL
 
 struct BsdfSample {
     vec3 wi;
-    vec3 weight;  // f |cos(theta_i)| / pdf; 0 where nothing is scattered.
+    vec3 weight;  // f |cos(theta_i)| / pdf; 0 where nothing is scattered. Radiance is meant: refraction divides by eta^2.
     float pdf;    // [1/sr]; 0 says that the sample failed.
+    bool delta;   // No other direction could have been sampled: light samples cannot find it.
+    float eta;    // Index of refraction on wi's side over that on wo's; 1 unless wi is refracted.
 };
+
+// A sample of a BSDF that is a function.
+BsdfSample bsdf_sample(vec3 wi, vec3 weight, float pdf) {
+    return BsdfSample(wi, weight, pdf, false, 1.0);
+}
+
+// A sample of ideal scattering, chosen with that probability.
+BsdfSample bsdf_sample_delta(vec3 wi, vec3 weight, float pmf, float eta) {
+    return BsdfSample(wi, weight, pmf, true, eta);
+}
+
+// Nothing is scattered.
+BsdfSample bsdf_sample_failed() {
+    return bsdf_sample(vec3(0.0, 0.0, 1.0), vec3(0.0), 0.0);
+}
 
 #endif

@@ -21,42 +21,73 @@ const float RR_MAX_SURVIVAL = 0.95;
 struct Path {
     Ray ray;          // The next segment.
     vec3 beta;        // Throughput: what the radiance along `ray` counts in L.
-    float eta_scale;  // Removes the squares of relative indices from beta; no BSDF refracts yet.
+    float eta_scale;  // Product of the squared relative indices of refraction, by which beta was divided.
     float pdf_bsdf;   // Density with which `ray` was sampled [1/sr].
+    bool delta;       // Light samples could not have found `ray`: the camera sent it, or scattering was ideal.
+    vec3 absorption;  // Of the medium around `ray` [1/m].
     uint depth;       // Scattering vertices so far.
 
     vec3 L;        // Radiance along the camera ray [W/(m^2 sr)].
-    bool visible;  // The camera ray met a surface ...
-    vec3 albedo;   // ... of this albedo ...
-    vec3 normal;   // ... and shading normal, world space; both 0 if it met none.
+    bool visible;  // The camera ray met a surface, or the sky that it may see.
+    vec3 albedo;   // Of the surface that it met,
+    vec3 normal;   // and its shading normal, world space; both 0 if it met none.
     uint rays;     // Rays traced.
     bool cut;      // Ended by DEPTH_SAFETY_LIMIT.
 };
 
 // The path that begins with a camera ray.
 Path path_begin(Ray ray) {
-    return Path(ray, vec3(1.0), 1.0, 0.0, 0u, vec3(0.0), false, vec3(0.0), vec3(0.0), 0u, false);
+    return Path(ray, vec3(1.0), 1.0, 0.0, true, vec3(0.0), 0u, vec3(0.0), false, vec3(0.0), vec3(0.0), 0u, false);
 }
 
-// Weight of the emission of light l that the path's ray met at s, `t` metres away.
-float emission_weight(Path path, Light l, Interaction s, float t) {
-    if (path.depth == 0u || ESTIMATOR == ESTIMATOR_BSDF) return 1.0;  // Light samples cannot reach the camera.
-    if (ESTIMATOR == ESTIMATOR_LIGHT) return 0.0;
-    return power_heuristic(path.pdf_bsdf, area_light_pdf_li(l, square(t), dot(s.wo, s.n)));
+// Weight of the light that the path met, and that a light sample finds with the density pdf_light [1/sr].
+float emission_weight(Path path, float pdf_light) {
+    if (path.delta || ESTIMATOR == ESTIMATOR_BSDF) return 1.0;
+    if (ESTIMATOR == ESTIMATOR_LIGHT) return pdf_light > 0.0 ? 0.0 : 1.0;
+    return power_heuristic(path.pdf_bsdf, pdf_light);
+}
+
+// The path's ray left the scene: adds the sky.
+void add_environment(inout Path path) {
+    if (path.depth == 0u && ENVIRONMENT != ENVIRONMENT_VISIBLE) return;
+    EnvironmentTexel texel = environment_texel(path.ray.d);
+    path.L += emission_weight(path, texel.pdf) * path.beta * texel.radiance;
+    if (path.depth == 0u) path.visible = true;
+}
+
+// The path's ray met light l at s, `t` metres away: adds what it emits.
+void add_emission(inout Path path, Light l, Interaction s, float t) {
+    float pdf_light = light_pdf_li(l, path.ray.o, square(t), dot(s.wo, s.n));
+    path.L += emission_weight(path, pdf_light) * path.beta * area_light_le(l, s.front);
 }
 
 // Radiance that a point on a light sends through s to the path's beginning, divided by its density, weighted.
-vec3 direct_light(inout Path path, Interaction s, Frame frame, vec3 wo, MaterialRecord material, uint uc, vec2 u) {
-    LightSample light = light_sample_li(s.p, uc, u);
+vec3 direct_light(inout Path path, Interaction s, Frame frame, vec3 wo, MaterialRecord material, uint uc, uvec2 u) {
+    vec3 from = interaction_spawn_origin(s, true);
+    LightSample light = light_sample_li(from, uc, u);
     vec3 wi = frame_to_local(frame, light.wi);
     vec3 Ld = path.beta * bsdf_f(material, wo, wi) * abs(wi.z) * light.Li;
     if (light.pdf == 0.0 || dot(light.wi, s.n) <= 0.0 || Ld == vec3(0.0)) return vec3(0.0);
-    vec3 from = offset_origin(s.p, s.n);
-    vec3 to = offset_origin(light.p, light.n);
     ++path.rays;
-    if (bvh_occluded(Ray(from, to - from), 1.0)) return vec3(0.0);
+    if (bvh_occluded(Ray(from, light.shadow), light.t_max)) return vec3(0.0);
     float weight = ESTIMATOR == ESTIMATOR_MIS ? power_heuristic(light.pdf, bsdf_pdf(material, wo, wi)) : 1.0;
     return weight * Ld / light.pdf;
+}
+
+// Sends the path on in a direction that its last surface was sampled for; returns whether it goes on. `material` is that of
+// the front side. A direction on the other side of the geometric surface than of the shading one carries nothing.
+bool path_scatter(inout Path path, Interaction s, Frame frame, MaterialRecord material, BsdfSample scattered) {
+    vec3 wi = frame_to_world(frame, scattered.wi);
+    path.beta *= scattered.weight;
+    bool viewers_side = scattered.wi.z > 0.0;
+    if (scattered.pdf == 0.0 || max_component(path.beta) == 0.0) return false;
+    if (viewers_side ? dot(wi, s.n) <= 0.0 : dot(wi, s.n) >= 0.0) return false;
+    path.eta_scale *= square(scattered.eta);
+    path.pdf_bsdf = scattered.pdf;
+    path.delta = scattered.delta;
+    if (!viewers_side) path.absorption = s.front ? material.base : vec3(0.0);
+    path.ray = Ray(interaction_spawn_origin(s, viewers_side), wi);
+    return true;
 }
 
 // Takes the path to its next vertex and scatters it there; returns whether it goes on.
@@ -64,7 +95,10 @@ bool path_step(inout Path path, Sampler random, Parameters parameters) {
     // Find the nearest surface.
     Hit hit = bvh_intersect(path.ray);
     ++path.rays;
-    if (hit.t == FLOAT_MAX) return false;
+    if (hit.t == FLOAT_MAX) {
+        if (ENVIRONMENT != ENVIRONMENT_NONE) add_environment(path);
+        return false;
+    }
     Interaction s = interaction_at(path.ray, hit);
     MaterialRecord material = scene_material(s.material);
     if (path.depth == 0u) {
@@ -73,11 +107,11 @@ bool path_step(inout Path path, Sampler random, Parameters parameters) {
         path.normal = s.ns;
     }
 
-    // Add what it emits; light samples of the vertex before may already account for a part.
-    if (s.light != NO_LIGHT) {
-        Light l = scene_light(s.light);
-        path.L += emission_weight(path, l, s, hit.t) * path.beta * area_light_le(l, s.front);
-    }
+    // Lose what the medium on the way absorbs. Ref: Beer and Lambert's law.
+    if ((MATERIALS & MATERIALS_DIELECTRIC) != 0u) path.beta *= exp(-hit.t * path.absorption);
+
+    // Add what the surface emits; light samples of the vertex before may already account for a part.
+    if (s.light != NO_LIGHT) add_emission(path, scene_light(s.light), s, hit.t);
 
     // End at the last scattering vertex.
     if (path.depth == parameters.max_depth) {
@@ -86,22 +120,18 @@ bool path_step(inout Path path, Sampler random, Parameters parameters) {
     }
     Frame frame = frame_from_z(s.ns);
     vec3 wo = frame_to_local(frame, s.wo);
+    MaterialRecord seen = bsdf_from_side(material, s.front);
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
     uvec2 choice = sampler_pair(random, pair + PAIR_CHOICE);
 
     // Add direct light.
     if (ESTIMATOR != ESTIMATOR_BSDF) {
-        vec2 u = unit_float(sampler_pair(random, pair + PAIR_LIGHT));
-        path.L += direct_light(path, s, frame, wo, material, choice.x, u);
+        path.L += direct_light(path, s, frame, wo, seen, choice.x, sampler_pair(random, pair + PAIR_LIGHT));
     }
 
-    // Scatter. A direction below the geometric surface carries nothing.
-    BsdfSample scattered = bsdf_sample_f(material, wo, choice.y, unit_float(sampler_pair(random, pair + PAIR_BSDF)));
-    vec3 wi = frame_to_world(frame, scattered.wi);
-    path.beta *= scattered.weight;
-    if (scattered.pdf == 0.0 || max_component(path.beta) == 0.0 || dot(wi, s.n) <= 0.0) return false;
-    path.pdf_bsdf = scattered.pdf;
-    path.ray = interaction_spawn_ray(s, wi);
+    // Scatter.
+    vec2 u = unit_float(sampler_pair(random, pair + PAIR_BSDF));
+    if (!path_scatter(path, s, frame, material, bsdf_sample_f(seen, wo, unit_float(choice.y), u))) return false;
 
     // Russian roulette: paths that carry little end early, the others carry their share.
     // Ref: Arvo and Kirk 1990, Particle Transport and Image Synthesis.

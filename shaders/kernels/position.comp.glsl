@@ -15,7 +15,7 @@ void main() {
     if (any(greaterThanEqual(gl_GlobalInvocationID.xy, tile.size))) return;
     uvec2 at = tile.origin + gl_GlobalInvocationID.xy;
     Parameters parameters = scene_parameters();
-    Ray ray = camera_ray(parameters, vec2(parameters.crop + at) + 0.5);
+    Ray ray = camera_ray_pinhole(parameters, vec2(parameters.crop + at) + 0.5);
     Hit hit = bvh_intersect(ray);
     vec4 value = vec4(vec3(0.0), uintBitsToFloat(0x7F800000u));
     if (hit.t != FLOAT_MAX) {

@@ -82,7 +82,7 @@ void main() {
         if (!alive) {
             random = sampler_make(pixel, n, parameters.seed);
             vec2 film = vec2(pixel) + unit_float(sampler_pair(random, PAIR_PIXEL));
-            path = path_begin(camera_ray(parameters, film));
+            path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(random, PAIR_LENS))));
         }
         alive = path_step(path, random, parameters);
         ended = !alive;

@@ -1,18 +1,32 @@
-// Chooses a light by its power and a point on it.
+// Chooses a light by its power and a point on it; one line per kind of light.
 #ifndef LIGHT_LIGHT_SAMPLER_GLSL
 #define LIGHT_LIGHT_SAMPLER_GLSL
 
+#include "base/sampler.glsl"
 #include "light/area.glsl"
-#include "scene/scene_data.glsl"
+#include "light/environment.glsl"
+#include "light/sphere.glsl"
+#include "scene/primitive.glsl"
 
-// A point on one of the lights, seen from p_reference; uc are 32 random bits that choose the light, u in [0,1)^2
-// chooses the point. The scene has at least one light.
+const bool HAS_SPHERES = (PRIMITIVES & 1u << PRIMITIVE_SPHERE) != 0u;
+
+// A point on one of the lights, seen from p_reference; uc are 32 random bits that choose the light, u 2 x 32 that choose the
+// point. The scene has at least one light.
 // Ref: Walker 1977, An Efficient Method for Generating Discrete Random Variables with General Distributions.
-LightSample light_sample_li(vec3 p_reference, uint uc, vec2 u) {
+LightSample light_sample_li(vec3 p_reference, uint uc, uvec2 u) {
     uvec2 column = warp_alias_column(uc, scene_parameters().light_count);
     AliasEntry entry = scene_light_alias(column.x);
-    uint chosen = column.y < entry.threshold ? column.x : entry.alias;
-    return area_light_sample_li(scene_light(chosen), p_reference, u);
+    Light l = scene_light(column.y < entry.threshold ? column.x : entry.alias);
+    if (ENVIRONMENT != ENVIRONMENT_NONE && l.kind == LIGHT_ENVIRONMENT) return environment_light_sample_li(u);
+    if (HAS_SPHERES && l.kind == LIGHT_SPHERE) return sphere_light_sample_li(l, p_reference, unit_float(u));
+    return area_light_sample_li(l, p_reference, unit_float(u));
+}
+
+// Density [1/sr] with which light_sample_li finds the point of light l at that squared distance [m^2] from p_reference,
+// seen under that cosine of its normal; not for the environment.
+float light_pdf_li(Light l, vec3 p_reference, float distance_squared, float cos_light) {
+    if (HAS_SPHERES && l.kind == LIGHT_SPHERE) return sphere_light_pdf_li(l, p_reference, distance_squared, cos_light);
+    return area_light_pdf_li(l, distance_squared, cos_light);
 }
 
 #endif

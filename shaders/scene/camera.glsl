@@ -3,12 +3,33 @@
 #define SCENE_CAMERA_GLSL
 
 #include "base/ray.glsl"
+#include "base/warp.glsl"
+#include "shared/constants.h"
 #include "shared/parameters.h"
 
-// The ray through a film position in pixels of the whole picture: origin top left, y downwards. Unit direction.
-Ray camera_ray(Parameters camera, vec2 film) {
+layout(constant_id = CONSTANT_APERTURE) const uint APERTURE = APERTURE_DISK;
+
+// Direction of the pinhole ray through a film position in pixels of the whole picture: origin top left, y downwards. Of
+// length 1 along the camera's axis.
+vec3 camera_film_direction(Parameters camera, vec2 film) {
     vec2 s = 2.0 * film / vec2(camera.full_size) - 1.0;
-    return Ray(camera.position, normalize(camera.forward + s.x * camera.right - s.y * camera.up));
+    return camera.forward + s.x * camera.right - s.y * camera.up;
+}
+
+// The pinhole ray through a film position. Unit direction.
+Ray camera_ray_pinhole(Parameters camera, vec2 film) {
+    return Ray(camera.position, normalize(camera_film_direction(camera, film)));
+}
+
+// The ray through a film position and the point of the aperture, uniform over its area, that u in [0,1)^2 chooses. All rays
+// of one film position meet in the plane of focus. Unit direction.
+// Ref: Cook, Porter and Carpenter 1984, Distributed Ray Tracing, section 2.
+Ray camera_ray(Parameters camera, vec2 film, vec2 u) {
+    if (APERTURE == APERTURE_PINHOLE) return camera_ray_pinhole(camera, film);
+    vec2 aperture = APERTURE == APERTURE_DISK ? warp_disk(u) : warp_polygon(u, camera.blades);
+    vec3 offset = aperture.x * camera.lens_x + aperture.y * camera.lens_y;
+    vec3 focus = camera.focal_distance * camera_film_direction(camera, film);
+    return Ray(camera.position + offset, normalize(focus - offset));
 }
 
 #endif

@@ -12,45 +12,59 @@ layout(constant_id = CONSTANT_HAS_NORMALS) const bool HAS_NORMALS = true;
 // geometric normal alone decides.
 struct Interaction {
     vec3 p;
-    vec3 wo;  // Towards the viewer, unit.
-    vec3 n;   // Geometric normal.
-    vec3 ns;  // Shading normal.
-    bool front;  // The viewer sees the front side.
+    float p_error;  // How far p may be off the surface beyond the roundings of its coordinates [m].
+    vec3 wo;        // Towards the viewer, unit.
+    vec3 n;         // Geometric normal.
+    vec3 ns;        // Shading normal.
+    bool front;     // The viewer sees the front side.
     uint material;
     uint light;  // Light that the surface belongs to, or NO_LIGHT.
 };
 
+// The shading normal of the triangle at that position in leaf order, interpolated, on the side of n; n if it has none.
+vec3 shading_normal(uint primitive, vec2 b, vec3 n) {
+    uvec4 normals = scene_normals(primitive);
+    if (normals.w == 0u) return n;
+    vec3 ns = (1.0 - b.x - b.y) * octahedral_unpack(normals.x) + b.x * octahedral_unpack(normals.y) +
+              b.y * octahedral_unpack(normals.z);
+    float length_squared = dot(ns, ns);
+    if (length_squared == 0.0) return n;
+    ns *= inversesqrt(length_squared);
+    return dot(ns, n) < 0.0 ? -ns : ns;
+}
+
 Interaction interaction_at(Ray ray, Hit hit) {
-    Primitive t = scene_primitive(hit.primitive);
-    float b0 = 1.0 - hit.b.x - hit.b.y;
+    Primitive primitive = scene_primitive(hit.primitive);
+    vec3 a = primitive.a;
     Interaction s;
-    s.p = b0 * t.a + hit.b.x * t.b + hit.b.y * t.c;
-    s.wo = -normalize(ray.d);
-    s.n = normalize(cross(t.b - t.a, t.c - t.a));
-    s.ns = s.n;
-    if (HAS_NORMALS) {
-        uvec4 normals = scene_normals(hit.primitive);
-        if (normals.w != 0u) {
-            vec3 ns = b0 * octahedral_unpack(normals.x) + hit.b.x * octahedral_unpack(normals.y) +
-                      hit.b.y * octahedral_unpack(normals.z);
-            float length_squared = dot(ns, ns);
-            if (length_squared > 0.0) s.ns = ns * inversesqrt(length_squared);
-            if (dot(s.ns, s.n) < 0.0) s.ns = -s.ns;
-        }
+    s.p_error = 0.0;
+    if (is_kind(primitive.kind, PRIMITIVE_SPHERE)) {
+        s.n = normalize((ray.o - a) + hit.t * ray.d);
+        s.p = a + primitive.b.x * s.n;
+        s.p_error = sphere_error(a, primitive.b.x);
+    } else if (is_kind(primitive.kind, PRIMITIVE_DISK)) {
+        s.n = normalize(cross(primitive.b, primitive.c));
+        s.p = a + hit.b.x * primitive.b + hit.b.y * primitive.c;
+    } else {
+        s.n = normalize(cross(primitive.b - a, primitive.c - a));
+        s.p = (1.0 - hit.b.x - hit.b.y) * a + hit.b.x * primitive.b + hit.b.y * primitive.c;
     }
+    s.ns = HAS_NORMALS ? shading_normal(hit.primitive, hit.b, s.n) : s.n;
+    s.wo = -normalize(ray.d);
     s.front = dot(s.wo, s.n) >= 0.0;
     if (!s.front) {
         s.n = -s.n;
         s.ns = -s.ns;
     }
-    s.material = t.material;
-    s.light = t.light;
+    s.material = primitive.material;
+    s.light = primitive.light;
     return s;
 }
 
-// A ray that leaves the surface at s.p in that direction.
-Ray interaction_spawn_ray(Interaction s, vec3 wi) {
-    return Ray(offset_origin(s.p, dot(wi, s.n) >= 0.0 ? s.n : -s.n), wi);
+// Where a ray begins that leaves the surface on the viewer's side, or on the other.
+vec3 interaction_spawn_origin(Interaction s, bool viewers_side) {
+    vec3 n = viewers_side ? s.n : -s.n;
+    return offset_origin(s.p, n) + s.p_error * n;
 }
 
 #endif

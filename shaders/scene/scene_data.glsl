@@ -48,23 +48,34 @@ Primitive scene_primitive(uint i) {
     return primitive_unpack(FETCH(primitives, i), FETCH(primitives, i + 1u), FETCH(primitives, i + 2u));
 }
 
-// Shading normals of the triangle at that position in leaf order; .w is 0 for a flat triangle.
+// Shading normals of the primitive at that position in leaf order; .w is 0 unless it is a triangle that has them.
 uvec4 scene_normals(uint i) {
-    return FETCH(tables, scene_parameters().tables.x + i * NORMALS_WORDS);
+    return FETCH(tables, scene_parameters().tables.normals + i * NORMALS_WORDS);
 }
 
 MaterialRecord scene_material(uint i) {
-    return material_unpack(FETCH(tables, scene_parameters().tables.y + i * MATERIAL_WORDS));
+    i = scene_parameters().tables.materials + i * MATERIAL_WORDS;
+    return material_unpack(FETCH(tables, i), FETCH(tables, i + 1u));
 }
 
 Light scene_light(uint i) {
-    i = scene_parameters().tables.z + i * LIGHT_WORDS;
+    i = scene_parameters().tables.lights + i * LIGHT_WORDS;
     return light_unpack(FETCH(tables, i), FETCH(tables, i + 1u), FETCH(tables, i + 2u), FETCH(tables, i + 3u));
 }
 
 // Entry of the alias table that chooses lights.
 AliasEntry scene_light_alias(uint i) {
-    return alias_unpack(FETCH(tables, scene_parameters().tables.w + i * ALIAS_WORDS));
+    return alias_unpack(FETCH(tables, scene_parameters().tables.light_alias + i / 2u), i);
+}
+
+// Texel of the environment, row-major from the top.
+EnvironmentTexel scene_environment_texel(uint i) {
+    return environment_texel_unpack(FETCH(tables, scene_parameters().tables.environment + i * ENVIRONMENT_TEXEL_WORDS));
+}
+
+// Entry of the alias table that chooses texels of the environment.
+AliasEntry scene_environment_alias(uint i) {
+    return alias_unpack(FETCH(tables, scene_parameters().tables.environment_alias + i / 2u), i);
 }
 
 #endif

@@ -3,15 +3,15 @@
 #define SCENE_TRAVERSAL_GLSL
 
 #include "base/math.glsl"
+#include "scene/primitive.glsl"
 #include "scene/scene_data.glsl"
-#include "scene/triangle.glsl"
 
-// The nearest triangle along a ray. Among equally near ones the least id wins, whatever the order of visits.
+// The nearest primitive along a ray. Among equally near ones the least id wins, whatever the order of visits.
 struct Hit {
     float t;        // In lengths of ray.d.
     uint primitive;  // Position in leaf order.
     uint id;
-    vec2 b;  // Barycentric coordinates of v1 and v2.
+    vec2 b;  // Surface coordinates: see primitive_intersect.
 };
 
 // What a ray needs once for all boxes. A component of d that is nearly 0 is replaced by a tiny one: its slabs are
@@ -132,12 +132,12 @@ Hit bvh_traverse(Ray ray, float t_max, const bool any_hit) {
         }
         if (reference == NO_REFERENCE) return hit;
 
-        // Test its triangles.
+        // Test its primitives.
         uint first = reference & BVH_FIRST_MASK;
         uint end = first + ((reference >> BVH_COUNT_SHIFT) & BVH_COUNT_MASK);
         for (uint i = first; i < end; ++i) {
             Primitive primitive = scene_primitive(i);
-            vec3 tb = triangle_intersect(ray, shear, primitive);
+            vec3 tb = primitive_intersect(ray, shear, primitive);
             if (tb.x > 0.0 && (tb.x < hit.t || (tb.x == hit.t && primitive.id < hit.id))) {
                 hit = Hit(tb.x, i, primitive.id, tb.yz);
                 if (any_hit) return hit;
@@ -152,7 +152,7 @@ Hit bvh_intersect(Ray ray) {
     return bvh_traverse(ray, FLOAT_MAX, false);
 }
 
-// True if any triangle meets the ray with t in (0, t_max).
+// True if any primitive meets the ray with t in (0, t_max).
 bool bvh_occluded(Ray ray, float t_max) {
     return bvh_traverse(ray, t_max, true).t < t_max;
 }

@@ -7,7 +7,6 @@
 #define SCENE_TRIANGLE_GLSL
 
 #include "base/ray.glsl"
-#include "shared/primitive.h"
 
 // What a ray needs once for all triangles: the axis z along which it is longest, and the shear that turns it onto
 // that axis.
@@ -29,10 +28,10 @@ RayShear ray_shear(vec3 d) {
 }
 
 // Distance t > 0 in lengths of ray.d, and the barycentric coordinates of v1 and v2; t = -1 where the ray misses.
-vec3 triangle_intersect(Ray ray, RayShear shear, Primitive primitive) {
-    vec3 a = turn(primitive.a - ray.o, shear.kz);
-    vec3 b = turn(primitive.b - ray.o, shear.kz);
-    vec3 c = turn(primitive.c - ray.o, shear.kz);
+vec3 triangle_intersect(Ray ray, RayShear shear, vec3 v0, vec3 v1, vec3 v2) {
+    vec3 a = turn(v0 - ray.o, shear.kz);
+    vec3 b = turn(v1 - ray.o, shear.kz);
+    vec3 c = turn(v2 - ray.o, shear.kz);
     precise vec2 pa = a.xy - shear.s.xy * a.z;
     precise vec2 pb = b.xy - shear.s.xy * b.z;
     precise vec2 pc = c.xy - shear.s.xy * c.z;

@@ -68,12 +68,28 @@ const uint BINDING_PARAMETERS = 3u;
 const uint BINDING_IMAGE = 4u;
 const uint BINDING_COUNTERS = 5u;
 
-// Specialization constants: what is fixed when a kernel's pipeline is made.
+// The camera's aperture.
+const uint APERTURE_PINHOLE = 0u;
+const uint APERTURE_DISK = 1u;
+const uint APERTURE_POLYGON = 2u;
+
+// The environment, to a kernel.
+const uint ENVIRONMENT_NONE = 0u;
+const uint ENVIRONMENT_HIDDEN = 1u;  // Camera rays do not see it.
+const uint ENVIRONMENT_VISIBLE = 2u;
+
+// Specialization constants: what is fixed when a kernel's pipeline is made. So a scene pays for what it uses
+// alone, and no branch depends on uniforms (which makes lavapipe 22.3 compile the kernel anew at every
+// dispatch).
 const uint CONSTANT_SAMPLER = 0u;      // SAMPLER_*
 const uint CONSTANT_ESTIMATOR = 1u;    // ESTIMATOR_*
 const uint CONSTANT_HAS_NORMALS = 2u;  // 1: some triangle has shading normals of its own.
 const uint CONSTANT_HAS_AOVS = 3u;     // 1: the accumulation image has LAYER_COUNT_AOVS layers.
-const uint CONSTANT_COUNT = 4u;
+const uint CONSTANT_APERTURE = 4u;     // APERTURE_*
+const uint CONSTANT_ENVIRONMENT = 5u;  // ENVIRONMENT_*
+const uint CONSTANT_MATERIALS = 6u;    // Bit i: some material has the model i (MATERIAL_*).
+const uint CONSTANT_PRIMITIVES = 7u;   // Bit i: some primitive is of the kind i (PRIMITIVE_*).
+const uint CONSTANT_COUNT = 8u;
 
 #ifdef __cplusplus
 }  // namespace candela

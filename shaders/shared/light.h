@@ -1,8 +1,9 @@
-// Records of an area light, 4 words of uvec4, and of an entry of an alias table, 1 word.
+// Records of a light, 4 words of uvec4, of a texel of the environment, 1 word, and of entries of alias
+// tables, two to a word.
 //
-//   Light                                   AliasEntry
-//     0: p.xyz, kind                          0: threshold, alias, pmf, 0
-//     1: e1.xyz, two_sided
+//   Light                         EnvironmentTexel                 AliasEntry
+//     0: p.xyz, kind                0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
+//     1: e1.xyz, two_sided                                              entry 2i + 1: threshold, alias
 //     2: e2.xyz, 0
 //     3: radiance.rgb, pdf_area
 #ifndef SHARED_LIGHT_H
@@ -16,20 +17,31 @@ namespace candela {
 #endif
 
 const uint LIGHT_WORDS = 4u;
-const uint ALIAS_WORDS = 1u;
+const uint ENVIRONMENT_TEXEL_WORDS = 1u;
 
 const uint LIGHT_TRIANGLE = 0u;       // p + b1 e1 + b2 e2 with b1, b2 >= 0, b1 + b2 <= 1.
 const uint LIGHT_PARALLELOGRAM = 1u;  // p + b1 e1 + b2 e2 with b1, b2 in [0, 1].
+const uint LIGHT_DISK = 2u;           // p + b1 e1 + b2 e2 with b1^2 + b2^2 <= 1.
+const uint LIGHT_SPHERE = 3u;         // Centre p, radius e1.x.
+const uint LIGHT_ENVIRONMENT = 4u;  // All around, infinitely far away; its texels are in tables of their own.
 
-// A flat emitter; its front is the side that cross(e1, e2) points to. World space [m].
+// An emitter. The front of a flat one is the side that cross(e1, e2) points to, that of a sphere is outside.
+// World space [m].
 struct Light {
-    uint kind;
+    uint kind;  // LIGHT_*
     vec3 p;
     vec3 e1;
     vec3 e2;
     vec3 radiance;   // [W/(m^2 sr)], constant over the surface and its directions.
     uint two_sided;  // 1: emits from the back as well.
-    float pdf_area;  // Density of light samples over this surface: pmf of the light / its area [1/m^2].
+    float pdf_area;  // Probability of choosing the light / its area [1/m^2].
+};
+
+// A piece of the sky in latitude and longitude.
+struct EnvironmentTexel {
+    vec3 radiance;  // [W/(m^2 sr)], constant over the texel.
+    float pdf;      // Density of light samples over solid angle [1/sr]: the probability of choosing the
+                    // environment included. In proportion to the luminance.
 };
 
 // Entry i of an alias table of n: column i is kept with probability threshold / 2^32, else the sample is
@@ -37,7 +49,6 @@ struct Light {
 struct AliasEntry {
     uint threshold;
     uint alias;
-    float pmf;  // Probability of index i over the whole table.
 };
 
 #ifdef __cplusplus
@@ -47,8 +58,12 @@ inline std::array<uvec4, LIGHT_WORDS> pack(const Light& l) {
             words(l.radiance, floatBitsToUint(l.pdf_area))};
 }
 
-inline std::array<uvec4, ALIAS_WORDS> pack(const AliasEntry& e) {
-    return {uvec4(e.threshold, e.alias, floatBitsToUint(e.pmf), 0u)};
+inline std::array<uvec4, ENVIRONMENT_TEXEL_WORDS> pack(const EnvironmentTexel& t) {
+    return {words(t.radiance, floatBitsToUint(t.pdf))};
+}
+
+inline std::array<uvec4, 1> pack(const AliasEntry& even, const AliasEntry& odd) {
+    return {uvec4(even.threshold, even.alias, odd.threshold, odd.alias)};
 }
 
 }  // namespace candela
@@ -59,8 +74,13 @@ Light light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
                  uintBitsToFloat(d.xyz), b.w, uintBitsToFloat(d.w));
 }
 
-AliasEntry alias_unpack(uvec4 a) {
-    return AliasEntry(a.x, a.y, uintBitsToFloat(a.z));
+EnvironmentTexel environment_texel_unpack(uvec4 a) {
+    return EnvironmentTexel(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w));
+}
+
+// Entry i, out of word i / 2.
+AliasEntry alias_unpack(uvec4 a, uint i) {
+    return (i & 1u) == 0u ? AliasEntry(a.x, a.y) : AliasEntry(a.z, a.w);
 }
 
 #endif

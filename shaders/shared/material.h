@@ -1,6 +1,11 @@
-// Record of a material, 1 word of uvec4, and the tags of the BSDF models.
+// Record of a material, 2 words of uvec4, and the tags of the BSDF models.
 //
-//   diffuse   0: MATERIAL_DIFFUSE, reflectance.rgb
+//                  0: model, base.rgb                      1: specular.rgb,     parameter
+//   diffuse           MATERIAL_DIFFUSE, reflectance           0                 0
+//   Phong             MATERIAL_PHONG, kd                      ks                exponent n
+//   mirror            MATERIAL_MIRROR, reflectance            0                 0
+//   conductor         MATERIAL_CONDUCTOR, reflectance         0                 alpha
+//   dielectric        MATERIAL_DIELECTRIC_*, absorption       0                 eta
 #ifndef SHARED_MATERIAL_H
 #define SHARED_MATERIAL_H
 
@@ -11,27 +16,34 @@
 namespace candela {
 #endif
 
-const uint MATERIAL_WORDS = 1u;
+const uint MATERIAL_WORDS = 2u;
 
 const uint MATERIAL_DIFFUSE = 0u;
+const uint MATERIAL_PHONG = 1u;
+const uint MATERIAL_MIRROR = 2u;
+const uint MATERIAL_CONDUCTOR = 3u;
+const uint MATERIAL_DIELECTRIC_SCHLICK = 4u;
+const uint MATERIAL_DIELECTRIC_EXACT = 5u;
 
 struct MaterialRecord {
-    uint model;        // MATERIAL_*
-    vec3 reflectance;  // Each in [0, 1].
+    uint model;     // MATERIAL_*
+    vec3 base;      // Reflectance, each in [0, 1]; of a dielectric, the absorption behind its surface [1/m].
+    vec3 specular;  // Phong's ks; each in [0, 1].
+    float parameter;  // Phong's exponent; alpha; or eta, the index behind the surface over that before it.
 };
 
 #ifdef __cplusplus
 
 inline std::array<uvec4, MATERIAL_WORDS> pack(const MaterialRecord& m) {
-    return {uvec4(m.model, floatBitsToUint(m.reflectance.x), floatBitsToUint(m.reflectance.y),
-                  floatBitsToUint(m.reflectance.z))};
+    const uvec4 base = words(m.base, m.model);
+    return {uvec4(base.w, base.x, base.y, base.z), words(m.specular, floatBitsToUint(m.parameter))};
 }
 
 }  // namespace candela
 #else
 
-MaterialRecord material_unpack(uvec4 a) {
-    return MaterialRecord(a.x, uintBitsToFloat(a.yzw));
+MaterialRecord material_unpack(uvec4 a, uvec4 b) {
+    return MaterialRecord(a.x, uintBitsToFloat(a.yzw), uintBitsToFloat(b.xyz), uintBitsToFloat(b.w));
 }
 
 #endif

@@ -1,9 +1,10 @@
-// Record of everything that stays the same while an image is rendered, 6 words of uvec4 in a uniform buffer;
+// Record of everything that stays the same while an image is rendered, 10 words of uvec4 in a uniform buffer;
 // and the push constants of one dispatch.
 //
-//   0: position.xyz, seed             3: forward.xyz, light_count
-//   1: right.xyz,    max_depth        4: full_size.xy, crop.xy
-//   2: up.xyz,       rr_depth         5: first words in the tables buffer: normals, materials, lights, alias
+//   0: position.xyz, seed             5: first words in the tables buffer: normals, materials, lights, alias
+//   table 1: right.xyz,    max_depth        6: first words of the environment: texels, alias table; its
+//   size.xy 2: up.xyz,       rr_depth         7: lens_x.xyz, focal_distance 3: forward.xyz,  light_count 8:
+//   lens_y.xyz, blades 4: full_size.xy, crop.xy          9: environment_turn.xy, 0, 0
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
 
@@ -14,7 +15,17 @@
 namespace candela {
 #endif
 
-const uint PARAMETERS_WORDS = 6u;
+const uint PARAMETERS_WORDS = 10u;
+
+// Where each table begins in the tables buffer, in words.
+struct TableStarts {
+    uint normals;
+    uint materials;
+    uint lights;
+    uint light_alias;
+    uint environment;
+    uint environment_alias;
+};
 
 struct Parameters {
     // The pinhole ray through film position s in [-1, 1]^2 (x to the right, y up) has the direction
@@ -29,8 +40,13 @@ struct Parameters {
     uint max_depth;  // Scattering vertices at most, <= DEPTH_SAFETY_LIMIT.
     uint rr_depth;   // Bounces that always survive.
     uint light_count;
-    uvec4
-        tables;  // Where each table begins in the tables buffer, in words: normals, materials, lights, alias.
+    TableStarts tables;
+    uvec2 environment_size;  // Texels.
+    vec2 environment_turn;   // Cosine and sine of the environment's rotation about +Y.
+    vec3 lens_x;             // The point (x, y) of an aperture of radius 1 is position + x lens_x + y lens_y.
+    vec3 lens_y;
+    float focal_distance;  // Along `forward` [m].
+    uint blades;           // Corners of a polygonal aperture.
 };
 
 // One dispatch: a rectangle of the accumulation image whose pixels are brought to `target_samples` samples
@@ -44,12 +60,17 @@ struct Tile {
 #ifdef __cplusplus
 
 inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
-    return {words(p.position, p.seed),
-            words(p.right, p.max_depth),
-            words(p.up, p.rr_depth),
-            words(p.forward, p.light_count),
-            uvec4(p.full_size.x, p.full_size.y, p.crop.x, p.crop.y),
-            p.tables};
+    return {
+        words(p.position, p.seed),
+        words(p.right, p.max_depth),
+        words(p.up, p.rr_depth),
+        words(p.forward, p.light_count),
+        uvec4(p.full_size.x, p.full_size.y, p.crop.x, p.crop.y),
+        uvec4(p.tables.normals, p.tables.materials, p.tables.lights, p.tables.light_alias),
+        uvec4(p.tables.environment, p.tables.environment_alias, p.environment_size.x, p.environment_size.y),
+        words(p.lens_x, floatBitsToUint(p.focal_distance)),
+        words(p.lens_y, p.blades),
+        uvec4(floatBitsToUint(p.environment_turn.x), floatBitsToUint(p.environment_turn.y), 0u, 0u)};
 }
 
 }  // namespace candela
@@ -57,7 +78,10 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
 
 Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     return Parameters(uintBitsToFloat(w[0].xyz), uintBitsToFloat(w[1].xyz), uintBitsToFloat(w[2].xyz),
-                      uintBitsToFloat(w[3].xyz), w[4].xy, w[4].zw, w[0].w, w[1].w, w[2].w, w[3].w, w[5]);
+                      uintBitsToFloat(w[3].xyz), w[4].xy, w[4].zw, w[0].w, w[1].w, w[2].w, w[3].w,
+                      TableStarts(w[5].x, w[5].y, w[5].z, w[5].w, w[6].x, w[6].y), w[6].zw,
+                      uintBitsToFloat(w[9].xy), uintBitsToFloat(w[7].xyz), uintBitsToFloat(w[8].xyz),
+                      uintBitsToFloat(w[7].w), w[8].w);
 }
 
 #endif

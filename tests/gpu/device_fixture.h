@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <span>
@@ -15,8 +16,9 @@
 #include "vk/commands.h"
 
 namespace candela::kernels {
-extern const std::span<const uint32_t> records, records_storage, octahedral, hash, sampler, warp, math, bsdf,
-    frame, spawn, traversal, traversal_storage, light_sample, light_sample_storage;
+extern const std::span<const uint32_t> records, records_storage, octahedral, hash, sampler, warp, math,
+    exponential, bsdf, frame, spawn, traversal, traversal_storage, light_sample, light_sample_storage,
+    environment, interaction;
 }
 
 namespace candela {
@@ -61,6 +63,9 @@ class DeviceScene {
         Parameters parameters{};
         parameters.light_count = scene.light_count;
         parameters.tables = scene.table_starts;
+        parameters.environment_size = scene.environment_size;
+        parameters.environment_turn = {std::cos(scene.environment_rotation),
+                                       std::sin(scene.environment_rotation)};
         return parameters;
     }
     vk::Buffer upload(const vk::Device& device, const std::vector<uvec4>& words) const {

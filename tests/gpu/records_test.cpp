@@ -32,6 +32,10 @@ class Fields {
         const uvec3 xyz = u3();
         return {xyz.x, xyz.y, xyz.z, u()};
     }
+    vec2 f2() {
+        const float x = f();
+        return {x, f()};
+    }
     vec3 f3() {
         const float x = f();
         const float y = f();
@@ -50,7 +54,7 @@ struct Item {
 };
 
 struct Result {
-    std::array<uint, 79> words;
+    std::array<uint, 106> words;
 };
 
 // One record of every kind.
@@ -61,12 +65,24 @@ struct Records {
     std::array<uvec4, NORMALS_WORDS> normals;
     MaterialRecord material;
     Light light;
-    AliasEntry entry;
+    AliasEntry light_even, light_odd;
+    EnvironmentTexel texel;
+    AliasEntry texel_even, texel_odd;
+};
+
+// Where the tables begin if a word that belongs to nothing comes first, and each table has two records.
+constexpr TableStarts TABLES{
+    .normals = 1,
+    .materials = 1 + 2 * NORMALS_WORDS,
+    .lights = 1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS),
+    .light_alias = 1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
+    .environment = 3 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
+    .environment_alias = 3 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS + ENVIRONMENT_TEXEL_WORDS),
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scale of a node must be
 // powers of two.
-Records filled(Fields& fields, uvec4 tables) {
+Records filled(Fields& fields) {
     Records r{};
     r.parameters = {.position = fields.f3(),
                     .right = fields.f3(),
@@ -78,9 +94,15 @@ Records filled(Fields& fields, uvec4 tables) {
                     .max_depth = fields.u(),
                     .rr_depth = fields.u(),
                     .light_count = fields.u(),
-                    .tables = tables};
-    for (const int i : {0, 1, 2, 3})
-        fields.keep(tables[i]);
+                    .tables = {fields.keep(TABLES.normals), fields.keep(TABLES.materials),
+                               fields.keep(TABLES.lights), fields.keep(TABLES.light_alias),
+                               fields.keep(TABLES.environment), fields.keep(TABLES.environment_alias)},
+                    .environment_size = fields.u2(),
+                    .environment_turn = fields.f2(),
+                    .lens_x = fields.f3(),
+                    .lens_y = fields.f3(),
+                    .focal_distance = fields.f(),
+                    .blades = fields.u()};
     r.node.origin = fields.f3();
     r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);
     for (const int axis : {0, 1, 2})
@@ -98,7 +120,7 @@ Records filled(Fields& fields, uvec4 tables) {
     r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1));
     for (const int i : {0, 1, 2, 3})
         fields.keep(r.normals[0][i]);
-    r.material = {.model = fields.u(), .reflectance = fields.f3()};
+    r.material = {.model = fields.u(), .base = fields.f3(), .specular = fields.f3(), .parameter = fields.f()};
     r.light = {.kind = fields.u(),
                .p = fields.f3(),
                .e1 = fields.f3(),
@@ -106,7 +128,12 @@ Records filled(Fields& fields, uvec4 tables) {
                .radiance = fields.f3(),
                .two_sided = fields.u(),
                .pdf_area = fields.f()};
-    r.entry = {.threshold = fields.u(), .alias = fields.u(), .pmf = fields.f()};
+    const auto entry = [&] { return AliasEntry{.threshold = fields.u(), .alias = fields.u()}; };
+    r.light_even = entry();
+    r.light_odd = entry();
+    r.texel = {.radiance = fields.f3(), .pdf = fields.f()};
+    r.texel_even = entry();
+    r.texel_odd = entry();
     return r;
 }
 
@@ -117,10 +144,6 @@ void append_second(std::vector<uvec4>& out, const std::array<uvec4, N>& record) 
     out.insert(out.end(), record.begin(), record.end());
 }
 
-// A word that belongs to nothing, and two records in each of the four tables.
-constexpr uvec4 TABLES(1, 1 + 2 * NORMALS_WORDS, 1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS),
-                       1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS));
-
 GpuScene packed(const Records& r) {
     GpuScene scene;
     append_second(scene.nodes, pack(r.node));
@@ -129,13 +152,15 @@ GpuScene packed(const Records& r) {
     append_second(scene.tables, r.normals);
     append_second(scene.tables, pack(r.material));
     append_second(scene.tables, pack(r.light));
-    append_second(scene.tables, pack(r.entry));
+    append_second(scene.tables, pack(r.light_even, r.light_odd));
+    append_second(scene.tables, pack(r.texel));
+    append_second(scene.tables, pack(r.texel_even, r.texel_odd));
     return scene;
 }
 
 TEST_F(RecordsTest, EveryFieldOfEveryRecordArrives) {
     Fields fields;
-    const Records records = filled(fields, TABLES);
+    const Records records = filled(fields);
     ASSERT_EQ(fields.words.size(), Result{}.words.size());
     const GpuScene scene = packed(records);
     for (const SceneAccess access : {SceneAccess::texel_buffers, SceneAccess::storage_buffers}) {

@@ -3,20 +3,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#define ITEM_WORDS 4u
-#define RESULT_WORDS 15u
+#define ITEM_WORDS 5u
+#define RESULT_WORDS 17u
 #include "bsdf/bsdf.glsl"
 #include "items.glsl"
 
 void main() {
     if (past_end()) return;
-    MaterialRecord material = material_unpack(item(0u));
-    vec3 wo = item_floats(1u).xyz;
-    vec3 wi = item_floats(2u).xyz;
-    BsdfSample s = bsdf_sample_f(material, wo, item(3u).z, item_floats(3u).xy);
+    MaterialRecord material = bsdf_from_side(material_unpack(item(0u), item(1u)), item(4u).w == 0u);
+    vec3 wo = item_floats(2u).xyz;
+    vec3 wi = item_floats(3u).xyz;
+    BsdfSample s = bsdf_sample_f(material, wo, item_floats(4u).z, item_floats(4u).xy);
     put(s.wi);
     put(s.weight);
     put(s.pdf);
+    put(uint(s.delta));
+    put(s.eta);
     put(bsdf_f(material, wo, s.wi));
     put(bsdf_pdf(material, wo, s.wi));
     put(bsdf_f(material, wo, wi));

@@ -1,18 +1,44 @@
-// For light_test.cpp: item (reference point, 32 bits for the light; u). A light sample from there.
+// For the tests of lights: item (reference point, 32 bits for the light; 2 x 32 bits for the point). A light sample
+// from there; whether its shadow ray is blocked; and what a ray in its direction meets: which light, its radiance and
+// the density that it has for light samples.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 2u
-#define RESULT_WORDS 13u
+#define RESULT_WORDS 17u
 #include "items.glsl"
 #include "light/light_sampler.glsl"
+#include "scene/interaction.glsl"
 
 void main() {
     if (past_end()) return;
-    LightSample s = light_sample_li(item_floats(0u).xyz, item(0u).w, item_floats(1u).xy);
-    put(s.p);
-    put(s.n);
+    vec3 from = item_floats(0u).xyz;
+    LightSample s = light_sample_li(from, item(0u).w, item(1u).xy);
     put(s.wi);
     put(s.Li);
     put(s.pdf);
+    put(s.shadow);
+    put(s.t_max);
+    put(uint(bvh_occluded(Ray(from, s.shadow), s.t_max)));
+
+    Ray ray = Ray(from, s.wi);
+    Hit hit = bvh_intersect(ray);
+    uint light = NO_LIGHT;
+    float pdf = 0.0;
+    vec3 L = vec3(0.0);
+    if (hit.t == FLOAT_MAX) {
+        EnvironmentTexel texel = environment_texel(s.wi);
+        pdf = texel.pdf;
+        L = texel.radiance;
+    } else {
+        Interaction met = interaction_at(ray, hit);
+        light = met.light;
+        if (light != NO_LIGHT) {
+            pdf = light_pdf_li(scene_light(light), from, square(hit.t), dot(met.wo, met.n));
+            L = area_light_le(scene_light(light), met.front);
+        }
+    }
+    put(light);
+    put(pdf);
+    put(L);
 }

@@ -1,10 +1,10 @@
-// For math_test.cpp: is_finite, cos_sin_octant and power_heuristic of an item (x, y, z, count), and x + count * y by
-// compensated_add.
+// For math_test.cpp: is_finite, cos_sin_octant, cos_sin_turn, angle_turn and power_heuristic of an item (x, y, z,
+// count), and x + count * y by compensated_add.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 6u
+#define RESULT_WORDS 9u
 #include "base/warp.glsl"
 #include "items.glsl"
 
@@ -13,6 +13,8 @@ void main() {
     vec3 v = item_floats(0u).xyz;
     put(uint(is_finite(v)));
     put(cos_sin_octant(v.x));
+    put(cos_sin_turn(v.x));
+    put(angle_turn(v.y, v.x));
     put(power_heuristic(v.x, v.y));
     vec3 sum = vec3(v.x);
     vec3 compensation = vec3(0.0);

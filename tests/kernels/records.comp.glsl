@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 79u
+#define RESULT_WORDS 106u
 #include "items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -18,7 +18,18 @@ void put_parameters(Parameters p) {
     put(p.max_depth);
     put(p.rr_depth);
     put(p.light_count);
-    put(p.tables);
+    put(p.tables.normals);
+    put(p.tables.materials);
+    put(p.tables.lights);
+    put(p.tables.light_alias);
+    put(p.tables.environment);
+    put(p.tables.environment_alias);
+    put(p.environment_size);
+    put(p.environment_turn);
+    put(p.lens_x);
+    put(p.lens_y);
+    put(p.focal_distance);
+    put(p.blades);
 }
 
 void put_node(uint i) {
@@ -42,7 +53,9 @@ void put_primitive(Primitive p) {
 
 void put_material(MaterialRecord m) {
     put(m.model);
-    put(m.reflectance);
+    put(m.base);
+    put(m.specular);
+    put(m.parameter);
 }
 
 void put_light(Light l) {
@@ -58,7 +71,11 @@ void put_light(Light l) {
 void put_alias_entry(AliasEntry e) {
     put(e.threshold);
     put(e.alias);
-    put(e.pmf);
+}
+
+void put_texel(EnvironmentTexel t) {
+    put(t.radiance);
+    put(t.pdf);
 }
 
 void main() {
@@ -69,5 +86,9 @@ void main() {
     put(scene_normals(1u));
     put_material(scene_material(1u));
     put_light(scene_light(1u));
-    put_alias_entry(scene_light_alias(1u));
+    put_alias_entry(scene_light_alias(2u));
+    put_alias_entry(scene_light_alias(3u));
+    put_texel(scene_environment_texel(1u));
+    put_alias_entry(scene_environment_alias(2u));
+    put_alias_entry(scene_environment_alias(3u));
 }

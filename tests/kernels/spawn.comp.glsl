@@ -7,6 +7,7 @@
 #define RESULT_WORDS 7u
 #include "items.glsl"
 #include "scene/triangle.glsl"
+#include "shared/primitive.h"
 
 void main() {
     if (past_end()) return;
@@ -17,7 +18,7 @@ void main() {
     vec3 wi = item_floats(3u).xyz;
     if (dot(wi, n) < 0.0) n = -n;
     Ray ray = Ray(offset_origin(p, n), wi);
-    put(triangle_intersect(ray, ray_shear(ray.d), t).x);
+    put(triangle_intersect(ray, ray_shear(ray.d), t.a, t.b, t.c).x);
     put(ray.o);
     put(n);
 }

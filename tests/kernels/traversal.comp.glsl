@@ -1,4 +1,4 @@
-// For traversal_test.cpp: item (ray). The nearest hit by the BVH and by looking at every triangle, and whether the
+// For traversal_test.cpp: item (ray). The nearest hit by the BVH and by looking at every primitive, and whether the
 // ray is occluded before the hit, just behind it, and anywhere.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -13,7 +13,7 @@ Hit brute_force(Ray ray) {
     Hit hit = Hit(FLOAT_MAX, 0u, 0u, vec2(0.0));
     for (uint i = 0u; i < primitive_count; ++i) {
         Primitive primitive = scene_primitive(i);
-        vec3 tb = triangle_intersect(ray, shear, primitive);
+        vec3 tb = primitive_intersect(ray, shear, primitive);
         if (tb.x > 0.0 && (tb.x < hit.t || (tb.x == hit.t && primitive.id < hit.id))) {
             hit = Hit(tb.x, i, primitive.id, tb.yz);
         }

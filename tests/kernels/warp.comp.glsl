@@ -1,18 +1,24 @@
-// For warp_test.cpp: the warps of a point u of the unit square.
+// For warp_test.cpp: item (u, exponent n, h_max; direction w, alpha; number of corners). All warps of the point u of the
+// unit square.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#define ITEM_WORDS 1u
-#define RESULT_WORDS 8u
+#define ITEM_WORDS 3u
+#define RESULT_WORDS 22u
 #include "base/warp.glsl"
 #include "items.glsl"
 
 void main() {
     if (past_end()) return;
-    vec2 u = item_floats(0u).xy;
-    vec3 direction = warp_cosine_hemisphere(u);
-    put(warp_disk(u));
+    vec4 v = item_floats(0u);
+    vec3 direction = warp_cosine_hemisphere(v.xy);
+    put(warp_disk(v.xy));
     put(direction);
     put(warp_cosine_hemisphere_pdf(direction.z));
-    put(warp_triangle(u));
+    put(warp_triangle(v.xy));
+    put(warp_power_cosine(v.xy, v.z));
+    put(warp_sphere(v.xy));
+    put(warp_cone(v.xy, v.w));
+    put(warp_ggx_visible_normal(v.xy, item_floats(1u).w, item_floats(1u).xyz));
+    put(warp_polygon(v.xy, item(2u).x));
 }

@@ -32,7 +32,6 @@ void expect_distribution(const std::vector<double>& weights) {
         const double expected = weights[i] / total;
         ASSERT_LT(table[i].alias, table.size());
         EXPECT_NEAR(probability[i], expected, 0x1p-32) << i;
-        EXPECT_EQ(table[i].pmf, float(expected)) << i;
     }
 }
 
@@ -50,7 +49,7 @@ TEST(AliasTable, OneEntryIsAlwaysDrawn) {
     const std::vector<AliasEntry> table = build_alias_table(std::vector<double>{1e-30});
     ASSERT_EQ(table.size(), 1u);
     EXPECT_EQ(table[0].alias, 0u);
-    EXPECT_EQ(table[0].pmf, 1.0f);
+    EXPECT_EQ(drawn(table)[0], 1.0);
 }
 
 TEST(AliasTable, AZeroWeightIsNeverDrawn) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "shared/bvh_node.h"
+#include "shared/light.h"
 #include "shared/material.h"
 #include "shared/primitive.h"
 #include "support/scene_builders.h"
@@ -19,19 +20,38 @@ vec3 floats(uvec4 word) {
 }
 
 Light light(const GpuScene& gpu, uint32_t i) {
-    const uvec4* w = &gpu.tables[gpu.table_starts.z + i * LIGHT_WORDS];
+    const uvec4* w = &gpu.tables[gpu.table_starts.lights + i * LIGHT_WORDS];
     return {
         w[0].w, floats(w[0]), floats(w[1]), floats(w[2]), floats(w[3]), w[1].w, std::bit_cast<float>(w[3].w)};
+}
+
+// Entry i of the alias table that begins at that word.
+AliasEntry entry(const GpuScene& gpu, uint32_t start, uint32_t i) {
+    const uvec4 w = gpu.tables[start + i / 2];
+    return i % 2 == 0 ? AliasEntry{w.x, w.y} : AliasEntry{w.z, w.w};
+}
+
+// The probability of each light as a shader draws it: column i is kept for fractions below its threshold, of
+// 2^32.
+std::vector<double> light_probabilities(const GpuScene& gpu) {
+    std::vector<double> probability(gpu.light_count);
+    for (uint32_t i = 0; i < gpu.light_count; ++i) {
+        const AliasEntry e = entry(gpu, gpu.table_starts.light_alias, i);
+        const double kept = double(e.threshold) * 0x1p-32;
+        probability[i] += kept / gpu.light_count;
+        probability[e.alias] += (1.0 - kept) / gpu.light_count;
+    }
+    return probability;
 }
 
 double area(const Light& l) {
     return double(length(cross(l.e1, l.e2))) * (l.kind == LIGHT_TRIANGLE ? 0.5 : 1.0);
 }
 
-// The triangle at that position in leaf order.
-Primitive triangle(const GpuScene& gpu, uint32_t i) {
+// The primitive at that position in leaf order; its kind is in the two highest bits of the material's word.
+Primitive primitive(const GpuScene& gpu, uint32_t i) {
     const uvec4* w = &gpu.primitives[i * PRIMITIVE_WORDS];
-    return {PRIMITIVE_TRIANGLE, floats(w[0]), floats(w[1]), floats(w[2]), w[0].w, w[1].w, w[2].w};
+    return {w[1].w >> 30, floats(w[0]), floats(w[1]), floats(w[2]), w[0].w, w[1].w & 0x3FFFFFFFu, w[2].w};
 }
 
 Shape emitter(Quad quad, vec3 radiance, bool two_sided = false) {
@@ -62,8 +82,8 @@ TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
         EXPECT_EQ(l.radiance, vec3(2));
         EXPECT_EQ(l.two_sided, 0u);
         EXPECT_NEAR(double(l.pdf_area) * area(l), 1.0, 1e-6);
-        EXPECT_EQ(triangle(gpu, 0).light, 0u);
-        EXPECT_EQ(triangle(gpu, 1).light, 0u);
+        EXPECT_EQ(primitive(gpu, 0).light, 0u);
+        EXPECT_EQ(primitive(gpu, 1).light, 0u);
     }
 }
 
@@ -85,7 +105,7 @@ TEST(GpuScene, AnyOtherQuadIsTwoLightsThatCoverIt) {
     EXPECT_NEAR(probability, 1.0, 1e-6);
     std::set<uint32_t> lights;
     for (const uint32_t i : {0u, 1u}) {
-        const Primitive t = triangle(gpu, i);
+        const Primitive t = primitive(gpu, i);
         const Light l = light(gpu, t.light);
         EXPECT_EQ(l.p, t.a);
         EXPECT_EQ(l.p + l.e1, t.b);
@@ -108,14 +128,14 @@ TEST(GpuScene, LightsAreChosenByAreaLuminanceAndSides) {
     }));
     const std::vector<double> powers{1.0, 6.0 * 0.7152, 1.0, 3.0 * 2.0, 3.0 * 4.0};
     ASSERT_EQ(gpu.light_count, powers.size());
+    const std::vector<double> chosen = light_probabilities(gpu);
     double total = 0.0, probability = 0.0;
     for (const double power : powers)
         total += power;
     for (uint32_t i = 0; i < gpu.light_count; ++i) {
         const Light l = light(gpu, i);
-        const double pmf = std::bit_cast<float>(gpu.tables[gpu.table_starts.w + i].z);
-        EXPECT_NEAR(pmf, powers[i] / total, 1e-6) << i;
-        EXPECT_NEAR(double(l.pdf_area) * area(l), pmf, 1e-6) << i;
+        EXPECT_NEAR(chosen[i], powers[i] / total, 1e-6) << i;
+        EXPECT_NEAR(double(l.pdf_area) * area(l), chosen[i], 1e-6) << i;
         EXPECT_EQ(l.two_sided, i == 2 ? 1u : 0u);
         probability += double(l.pdf_area) * area(l);
     }
@@ -140,7 +160,7 @@ TEST(GpuScene, IdsFollowTheOrderOfTheSceneAndEveryTriangleIsThere) {
     ASSERT_EQ(gpu.primitive_count, 102u);
     std::set<uint32_t> ids;
     for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
-        const Primitive t = triangle(gpu, i);
+        const Primitive t = primitive(gpu, i);
         ids.insert(t.id);
         EXPECT_EQ(t.light, NO_LIGHT);
         EXPECT_EQ(t.material, t.id < 2 ? 0u : 1u);
@@ -170,8 +190,8 @@ TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
                                                    {.geometry = SQUARE, .material = 0, .emission = {}}}));
     EXPECT_TRUE(gpu.has_normals);
     for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
-        const Primitive t = triangle(gpu, i);
-        const uvec4 normals = gpu.tables[gpu.table_starts.x + i * NORMALS_WORDS];
+        const Primitive t = primitive(gpu, i);
+        const uvec4 normals = gpu.tables[gpu.table_starts.normals + i * NORMALS_WORDS];
         const bool of_the_sphere = t.id >= 2 && t.id < 2 + smooth.triangles.size();
         EXPECT_EQ(normals.w, of_the_sphere ? 1u : 0u);
         if (of_the_sphere) {
@@ -184,12 +204,109 @@ TEST(GpuScene, TablesFollowEachOther) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1))});
     add_diffuse(scene, vec3(1));
     const GpuScene gpu = build_gpu_scene(scene);
-    EXPECT_EQ(gpu.table_starts, uvec4(0, 0, 2 * MATERIAL_WORDS, 2 * MATERIAL_WORDS + LIGHT_WORDS));
-    EXPECT_EQ(gpu.tables.size(), 2 * MATERIAL_WORDS + LIGHT_WORDS + ALIAS_WORDS);
+    EXPECT_EQ(gpu.table_starts.normals, 0u);
+    EXPECT_EQ(gpu.table_starts.materials, 0u);
+    EXPECT_EQ(gpu.table_starts.lights, 2 * MATERIAL_WORDS);
+    EXPECT_EQ(gpu.table_starts.light_alias, 2 * MATERIAL_WORDS + LIGHT_WORDS);
+    EXPECT_EQ(gpu.tables.size(), 2 * MATERIAL_WORDS + LIGHT_WORDS + 1);
     EXPECT_EQ(gpu.tables[0].x, MATERIAL_DIFFUSE);
     EXPECT_EQ(std::bit_cast<vec3>(uvec3(gpu.tables[0].y, gpu.tables[0].z, gpu.tables[0].w)),
               vec3(0.25f, 0.5f, 0.75f));
     EXPECT_EQ(gpu.bytes(), (gpu.nodes.size() + gpu.primitives.size() + gpu.tables.size()) * 16);
+}
+
+EnvironmentTexel texel(const GpuScene& gpu, uint32_t i) {
+    const uvec4 w = gpu.tables[gpu.table_starts.environment + i];
+    return {floats(w), std::bit_cast<float>(w.w)};
+}
+
+// The power of a sky of radiance 1, over pi, on the sphere around the square's box, whose radius is sqrt(2) /
+// 2, is 1/2 * 4 pi; that of the square is 1.
+TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
+    Scene scene = scene_of({emitter(SQUARE, vec3(1))});
+    scene.environment =
+        Environment{.size = {3, 1}, .radiance = {vec3(1), vec3(1), vec3(1)}, .rotation = 0.5f};
+    const GpuScene gpu = build_gpu_scene(scene);
+    ASSERT_EQ(gpu.light_count, 2u);
+    EXPECT_EQ(light(gpu, 1).kind, LIGHT_ENVIRONMENT);
+    EXPECT_EQ(gpu.environment, ENVIRONMENT_VISIBLE);
+    EXPECT_EQ(gpu.environment_size, uvec2(3, 1));
+    EXPECT_EQ(gpu.environment_rotation, 0.5f);
+
+    const double pmf = 2.0 * M_PI / (2.0 * M_PI + 1.0);
+    EXPECT_NEAR(light_probabilities(gpu)[1], pmf, 1e-6);
+    EXPECT_NEAR(light(gpu, 0).pdf_area, 1.0 - pmf, 1e-6);
+    for (const uint32_t i : {0u, 1u, 2u}) {
+        EXPECT_EQ(texel(gpu, i).radiance, vec3(1));
+        EXPECT_NEAR(texel(gpu, i).pdf, pmf / (4.0 * M_PI), 1e-7);
+        // All weights are equal: whichever index a column gives, all three come out alike.
+        EXPECT_LT(entry(gpu, gpu.table_starts.environment_alias, i).alias, 3u);
+    }
+    EXPECT_EQ(gpu.table_starts.environment, gpu.table_starts.light_alias + 1);
+    EXPECT_EQ(gpu.table_starts.environment_alias, gpu.table_starts.environment + 3);
+    EXPECT_EQ(gpu.tables.size(), gpu.table_starts.environment_alias + 2);
+
+    scene.environment->visible = false;
+    EXPECT_EQ(build_gpu_scene(scene).environment, ENVIRONMENT_HIDDEN);
+}
+
+TEST(GpuScene, ASkyThatLightsNothingIsNotSampled) {
+    Scene black = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
+    black.environment = Environment{.size = {1, 1}, .radiance = {vec3(0)}};
+    Scene empty = scene_of({});
+    empty.environment = Environment{.size = {1, 1}, .radiance = {vec3(1)}};
+    for (const Scene& scene : {black, empty}) {
+        const GpuScene gpu = build_gpu_scene(scene);
+        EXPECT_EQ(gpu.light_count, 0u);
+        EXPECT_EQ(gpu.environment, ENVIRONMENT_VISIBLE);
+        EXPECT_EQ(texel(gpu, 0).pdf, 0.0f);
+    }
+}
+
+TEST(GpuScene, EveryMaterialHasItsRecord) {
+    Scene scene;
+    scene.materials = {
+        {"", DiffuseMaterial{vec3(0.1f, 0.2f, 0.3f)}},
+        {"", PhongMaterial{.diffuse = vec3(0.1f), .specular = vec3(0.4f, 0.5f, 0.6f), .exponent = 20.0f}},
+        {"", MirrorMaterial{vec3(0.7f)}},
+        {"", ConductorMaterial{.reflectance = vec3(0.8f), .alpha = 0.25f}},
+        {"", DielectricMaterial{.ior = 1.5f, .exterior_ior = 1.2f, .absorption = vec3(1, 2, 3)}},
+        {"", DielectricMaterial{.fresnel = Fresnel::exact}},
+    };
+    const std::vector<MaterialRecord> expected{
+        {MATERIAL_DIFFUSE, vec3(0.1f, 0.2f, 0.3f), vec3(0), 0.0f},
+        {MATERIAL_PHONG, vec3(0.1f), vec3(0.4f, 0.5f, 0.6f), 20.0f},
+        {MATERIAL_MIRROR, vec3(0.7f), vec3(0), 0.0f},
+        {MATERIAL_CONDUCTOR, vec3(0.8f), vec3(0), 0.25f},
+        {MATERIAL_DIELECTRIC_SCHLICK, vec3(1, 2, 3), vec3(0), 1.25f},
+        {MATERIAL_DIELECTRIC_EXACT, vec3(0), vec3(0), 1.5f},
+    };
+    const GpuScene gpu = build_gpu_scene(scene);
+    for (uint32_t i = 0; i < expected.size(); ++i) {
+        const auto words = pack(expected[i]);
+        EXPECT_EQ(gpu.tables[gpu.table_starts.materials + 2 * i], words[0]) << i;
+        EXPECT_EQ(gpu.tables[gpu.table_starts.materials + 2 * i + 1], words[1]) << i;
+    }
+    EXPECT_EQ(gpu.materials_present, 0x3Fu);
+    EXPECT_EQ(build_gpu_scene(scene_of({})).materials_present, 1u << MATERIAL_DIFFUSE);
+}
+
+TEST(GpuScene, KindsOfPrimitivesArePresentOnlyIfTheyAre) {
+    const auto present = [](std::vector<Shape> shapes) {
+        return build_gpu_scene(scene_of(std::move(shapes))).primitives_present;
+    };
+    const Shape quad{.geometry = SQUARE, .material = 0, .emission = {}};
+    const Shape sphere{.geometry = Sphere{}, .material = 0, .emission = {}};
+    const Shape disk{.geometry = Disk{}, .material = 0, .emission = {}};
+    EXPECT_EQ(present({}), 0u);
+    EXPECT_EQ(present({quad}), 1u << PRIMITIVE_TRIANGLE);
+    EXPECT_EQ(present({sphere, sphere}), 1u << PRIMITIVE_SPHERE);
+    EXPECT_EQ(present({quad, disk}), 1u << PRIMITIVE_TRIANGLE | 1u << PRIMITIVE_DISK);
+    const GpuScene gpu = build_gpu_scene(scene_of({quad, sphere, disk}));
+    std::set<uint> kinds;
+    for (uint32_t i = 0; i < gpu.primitive_count; ++i)
+        kinds.insert(primitive(gpu, i).kind);
+    EXPECT_EQ(kinds, (std::set<uint>{PRIMITIVE_TRIANGLE, PRIMITIVE_SPHERE, PRIMITIVE_DISK}));
 }
 
 TEST(GpuScene, AnEmptySceneIsARootWithoutChildren) {

@@ -1,0 +1,42 @@
+// See environment_map.h.
+#include "render/environment_map.h"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "base/color.h"
+#include "render/alias_table.h"
+
+namespace candela {
+namespace {
+
+// Solid angle of a texel in that row [sr]: 2 pi / width (cos(theta_0) - cos(theta_1)), without cancellation.
+double texel_solid_angle(uvec2 size, uint32_t row) {
+    const double step = std::numbers::pi / size.y;
+    return 4.0 * std::numbers::pi / size.x * std::sin((row + 0.5) * step) * std::sin(0.5 * step);
+}
+
+}  // namespace
+
+EnvironmentMap build_environment_map(const Environment& environment) {
+    const uvec2 size = environment.size;
+    EnvironmentMap map;
+    std::vector<double> weights;
+    weights.reserve(environment.radiance.size());
+    for (uint32_t y = 0; y < size.y; ++y) {
+        const double solid_angle = texel_solid_angle(size, y);
+        for (uint32_t x = 0; x < size.x; ++x)
+            weights.push_back(luminance(environment.radiance[size_t(y) * size.x + x]) * solid_angle);
+    }
+    map.irradiance = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (map.irradiance > 0.0) map.alias = build_alias_table(weights);
+    map.texels.reserve(environment.radiance.size());
+    for (const vec3 radiance : environment.radiance) {
+        const double pdf = map.irradiance > 0.0 ? luminance(radiance) / map.irradiance : 0.0;
+        map.texels.push_back({radiance, float(pdf)});
+    }
+    return map;
+}
+
+}  // namespace candela

@@ -1,0 +1,131 @@
+// One overload of add() per geometry.
+#include "render/flatten.h"
+
+#include <numeric>
+#include <utility>
+
+#include "base/color.h"
+
+namespace candela {
+namespace {
+
+class Flattener {
+  public:
+    explicit Flattener(const Scene& scene) {
+        for (const Shape& shape : scene.shapes) {
+            const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+            has_normals_ = has_normals_ || (mesh != nullptr && !mesh->normals.empty());
+        }
+        for (const Shape& shape : scene.shapes) {
+            std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
+        }
+    }
+
+    FlatScene take() { return std::move(flat_); }
+
+  private:
+    void add(const Shape& shape, const TriangleMesh& mesh) {
+        for (const uvec3 t : mesh.triangles) {
+            const vec3 a = mesh.positions[t.x];
+            const vec3 b = mesh.positions[t.y];
+            const vec3 c = mesh.positions[t.z];
+            add_primitive(shape, PRIMITIVE_TRIANGLE, a, b, c,
+                          add_flat_light(shape, LIGHT_TRIANGLE, a, b - a, c - a));
+            if (!mesh.normals.empty()) {
+                flat_.normals.back() = pack_normals(mesh.normals[t.x], mesh.normals[t.y], mesh.normals[t.z]);
+            }
+        }
+    }
+
+    // Two triangles; where the corners span a parallelogram, one light for both, so that its samples are
+    // stratified over the whole.
+    void add(const Shape& shape, const Quad& quad) {
+        const auto& c = quad.corners;
+        const vec3 e1 = c[1] - c[0];
+        const vec3 e2 = c[3] - c[0];
+        const vec3 diagonal = c[2] - c[0];
+        const float rounding = 4e-7f * (length(c[0]) + length(e1) + length(e2));
+        uint lights[2];
+        if (length(c[0] + e1 + e2 - c[2]) <= rounding) {
+            lights[0] = lights[1] = add_flat_light(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2);
+        } else {
+            lights[0] = add_flat_light(shape, LIGHT_TRIANGLE, c[0], e1, diagonal);
+            lights[1] = add_flat_light(shape, LIGHT_TRIANGLE, c[0], diagonal, e2);
+        }
+        add_primitive(shape, PRIMITIVE_TRIANGLE, c[0], c[1], c[2], lights[0]);
+        add_primitive(shape, PRIMITIVE_TRIANGLE, c[0], c[2], c[3], lights[1]);
+    }
+
+    void add(const Shape& shape, const Sphere& sphere) {
+        const vec3 radius(sphere.radius, 0.0f, 0.0f);
+        const double area = 4.0 * double(PI) * sphere.radius * sphere.radius;
+        const uint light = add_light(shape, LIGHT_SPHERE, sphere.center, radius, vec3(0.0f), area);
+        add_primitive(shape, PRIMITIVE_SPHERE, sphere.center, radius, vec3(0.0f), light);
+    }
+
+    void add(const Shape& shape, const Disk& disk) {
+        const uint light = add_flat_light(shape, LIGHT_DISK, disk.center, disk.e1, disk.e2);
+        add_primitive(shape, PRIMITIVE_DISK, disk.center, disk.e1, disk.e2, light);
+    }
+
+    void add_primitive(const Shape& shape, uint kind, vec3 a, vec3 b, vec3 c, uint light) {
+        flat_.primitives.push_back({kind, a, b, c, uint(flat_.primitives.size()), shape.material, light});
+        if (has_normals_) flat_.normals.push_back({});
+    }
+
+    uint add_flat_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2) {
+        if (!shape.emission) return NO_LIGHT;
+        const double share = kind == LIGHT_TRIANGLE ? 0.5 : kind == LIGHT_DISK ? double(PI) : 1.0;
+        return add_light(shape, kind, p, e1, e2, share * length(cross(glm::dvec3(e1), glm::dvec3(e2))));
+    }
+
+    // The index of a new light, or NO_LIGHT if the piece sends out nothing.
+    uint add_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2, double area) {
+        if (!shape.emission) return NO_LIGHT;
+        const Emission& emission = *shape.emission;
+        const double power = area * luminance(emission.radiance) * (emission.two_sided ? 2.0 : 1.0);
+        if (power == 0.0) return NO_LIGHT;
+        flat_.lights.push_back({kind, p, e1, e2, emission.radiance, emission.two_sided ? 1u : 0u, 0.0f});
+        flat_.powers.push_back(power);
+        flat_.areas.push_back(area);
+        return uint(flat_.lights.size() - 1);
+    }
+
+    bool has_normals_ = false;
+    FlatScene flat_;
+};
+
+}  // namespace
+
+FlatScene flatten(const Scene& scene) {
+    return Flattener(scene).take();
+}
+
+void assign_probabilities(FlatScene& flat) {
+    const double total = std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0);
+    for (size_t i = 0; i < flat.areas.size(); ++i)
+        flat.lights[i].pdf_area = float(flat.powers[i] / total / flat.areas[i]);
+}
+
+Box bounds(const Primitive& p) {
+    Box box;
+    switch (p.kind) {
+        case PRIMITIVE_SPHERE:
+            box.extend(p.a - vec3(p.b.x));
+            box.extend(p.a + vec3(p.b.x));
+            break;
+        case PRIMITIVE_DISK: {
+            const vec3 reach = sqrt(p.b * p.b + p.c * p.c);
+            box.extend(p.a - reach);
+            box.extend(p.a + reach);
+            break;
+        }
+        default:
+            box.extend(p.a);
+            box.extend(p.b);
+            box.extend(p.c);
+    }
+    return box;
+}
+
+}  // namespace candela

@@ -1,0 +1,29 @@
+// Shapes -> primitives and lights: the scene in its own order, before the BVH decides on another.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "scene/scene.h"
+#include "shared/light.h"
+#include "shared/primitive.h"
+
+namespace candela {
+
+struct FlatScene {
+    std::vector<Primitive> primitives;
+    std::vector<std::array<uvec4, NORMALS_WORDS>> normals;  // One per primitive, or none if all are flat.
+    std::vector<Light> lights;   // Those that send out light; pdf_area is 0 until assign_probabilities().
+    std::vector<double> powers;  // Of each light, over pi, by its luminance [W].
+    std::vector<double> areas;   // Of each light [m^2].
+};
+
+FlatScene flatten(const Scene& scene);
+
+// Sets the density of each light that has an area, from its share in all powers (which are not all 0).
+void assign_probabilities(FlatScene& flat);
+
+// The least box around a primitive.
+Box bounds(const Primitive& primitive);
+
+}  // namespace candela

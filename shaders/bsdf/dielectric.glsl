@@ -1,0 +1,22 @@
+// A smooth boundary between two transparent media: it reflects or refracts, never both at once. Local frame, z on the
+// viewer's side; eta is the index of refraction on the other side over that on the viewer's.
+// Ref: Pharr, Jakob and Humphreys 2023, Physically Based Rendering, section 9.5.
+#ifndef BSDF_DIELECTRIC_GLSL
+#define BSDF_DIELECTRIC_GLSL
+
+#include "bsdf/fresnel.glsl"
+#include "bsdf/mirror.glsl"
+
+// The reflected ray with the probability that Fresnel's term gives it, else the refracted one; uc in [0,1) chooses.
+// Refraction narrows the beam to 1 / eta^2 of its solid angle going in, so that radiance towards the viewer is divided
+// by eta^2.
+BsdfSample dielectric_sample_f(float eta, bool exact, vec3 wo, float uc) {
+    if (wo.z <= 0.0) return bsdf_sample_failed();
+    float cos_t = refracted_cosine(dot(wo.xy, wo.xy), eta);
+    float reflected = exact ? fresnel_dielectric_exact(wo.z, cos_t, eta) : fresnel_dielectric_schlick(wo.z, cos_t, eta);
+    if (uc < reflected) return bsdf_sample_delta(mirror_direction(wo), vec3(1.0), reflected, 1.0);
+    vec3 wi = normalize(vec3(-wo.xy / eta, -cos_t));
+    return bsdf_sample_delta(wi, vec3(1.0 / square(eta)), 1.0 - reflected, eta);
+}
+
+#endif

@@ -1,0 +1,42 @@
+// How much light a boundary reflects.
+#ifndef BSDF_FRESNEL_GLSL
+#define BSDF_FRESNEL_GLSL
+
+#include "base/math.glsl"
+
+// (1 - cos(theta))^5, from normal incidence, 0, to grazing, 1.
+float schlick_weight(float cos_theta) {
+    float x = clamp(1.0 - cos_theta, 0.0, 1.0);
+    return square(square(x)) * x;
+}
+
+// Reflectance of a metal that reflects that much at normal incidence; cos_theta in [0, 1].
+// Ref: Schlick 1994, An Inexpensive BRDF Model for Physically-based Rendering, equation 15.
+vec3 fresnel_conductor_schlick(vec3 reflectance, float cos_theta) {
+    return reflectance + (vec3(1.0) - reflectance) * schlick_weight(cos_theta);
+}
+
+// Cosine of the refracted ray to the normal, positive; 0 at and beyond the critical angle. `sin2_theta` is of the
+// incident ray, eta the index of refraction beyond the boundary over that before it. Ref: Snell's law.
+float refracted_cosine(float sin2_theta, float eta) {
+    return sqrt(max(0.0, 1.0 - sin2_theta / square(eta)));
+}
+
+// Reflectance of a dielectric boundary for unpolarised light: Schlick's approximation, with the angle on the side of
+// the lower index, where it grows to 90 degrees as the other nears the critical angle; so that both sides reflect
+// alike. 1 beyond the critical angle.
+float fresnel_dielectric_schlick(float cos_o, float cos_t, float eta) {
+    if (cos_t == 0.0) return 1.0;
+    float normal = square((eta - 1.0) / (eta + 1.0));
+    return mix(normal, 1.0, schlick_weight(eta >= 1.0 ? cos_o : cos_t));
+}
+
+// The same by Fresnel's equations.
+float fresnel_dielectric_exact(float cos_o, float cos_t, float eta) {
+    if (cos_t == 0.0) return 1.0;
+    float parallel = (eta * cos_o - cos_t) / (eta * cos_o + cos_t);
+    float perpendicular = (cos_o - eta * cos_t) / (cos_o + eta * cos_t);
+    return 0.5 * (square(parallel) + square(perpendicular));
+}
+
+#endif

@@ -1,0 +1,62 @@
+// The environment: radiance from infinitely far away, constant over the texels of a latitude-longitude map, sampled in
+// proportion to luminance times solid angle.
+#ifndef LIGHT_ENVIRONMENT_GLSL
+#define LIGHT_ENVIRONMENT_GLSL
+
+#include "base/warp.glsl"
+#include "light/sample.glsl"
+#include "scene/scene_data.glsl"
+
+// ENVIRONMENT_*
+layout(constant_id = CONSTANT_ENVIRONMENT) const uint ENVIRONMENT = ENVIRONMENT_VISIBLE;
+
+// The texel in the unit direction w of world space: its radiance, and the density of environment_light_sample_li there.
+EnvironmentTexel environment_texel(vec3 w) {
+    Parameters parameters = scene_parameters();
+    vec2 turn = parameters.environment_turn;
+    vec3 m = vec3(turn.x * w.x - turn.y * w.z, w.y, turn.y * w.x + turn.x * w.z);  // In the map's own axes.
+    vec2 uv = vec2(fract(angle_turn(m.x, -m.z) + 0.5), 2.0 * angle_turn(length(m.xz), m.y));
+    uvec2 size = parameters.environment_size;
+    uvec2 texel = min(uvec2(uv * vec2(size)), size - 1u);
+    return scene_environment_texel(texel.y * size.x + texel.x);
+}
+
+// Direction in world space through a point of a texel (x, y); `within` in [0,1)^2 is uniform over its solid angle.
+vec3 environment_direction(uvec2 texel, vec2 within) {
+    Parameters parameters = scene_parameters();
+    uvec2 size = parameters.environment_size;
+    // Rows are counted from the nearer pole, since 1 - cos(theta) = 2 sin(theta/2)^2 has its digits there.
+    uint row = min(texel.y, size.y - 1u - texel.y);
+    float row_turn = 0.25 / float(size.y);  // Of theta / 2.
+    float s0 = square(cos_sin_turn(float(row) * row_turn).y);
+    float s1 = square(cos_sin_turn(float(row + 1u) * row_turn).y);
+    float h = 2.0 * mix(s0, s1, within.y);
+    float longitude = fract((float(texel.x) + within.x) / float(size.x) + 0.5);  // In turns from -Z to +X.
+    vec3 d = direction_at(h, longitude);
+    vec3 m = vec3(d.y, row == texel.y ? d.z : -d.z, -d.x);
+    vec2 turn = parameters.environment_turn;
+    return vec3(turn.x * m.x + turn.y * m.z, m.y, turn.x * m.z - turn.y * m.x);
+}
+
+// A direction towards the sky, from 2 x 32 random bits; pdf includes the probability of having chosen the environment.
+LightSample environment_light_sample_li(uvec2 u) {
+    uvec2 size = scene_parameters().environment_size;
+    uvec2 column = warp_alias_column(u.x, size.x * size.y);
+    AliasEntry entry = scene_environment_alias(column.x);
+    // What the choices leave of the random bits is uniform again, and places the point within the texel.
+    bool keep = u.y < entry.threshold;
+    uint chosen = keep ? column.x : entry.alias;
+    float rest = keep ? float(u.y) / float(entry.threshold)
+                      : float(u.y - entry.threshold) / max(1.0, 4294967296.0 - float(entry.threshold));
+    vec2 within = vec2(float(column.y >> 8u) * (1.0 / 16777216.0), min(rest, 1.0 - 1.0 / 16777216.0));
+    EnvironmentTexel texel = scene_environment_texel(chosen);
+    LightSample s;
+    s.wi = environment_direction(uvec2(chosen % size.x, chosen / size.x), within);
+    s.Li = texel.radiance;
+    s.pdf = texel.pdf;
+    s.shadow = s.wi;
+    s.t_max = FLOAT_MAX;
+    return s;
+}
+
+#endif

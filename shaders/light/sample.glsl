@@ -1,0 +1,14 @@
+// What sampling a light returns.
+#ifndef LIGHT_SAMPLE_GLSL
+#define LIGHT_SAMPLE_GLSL
+
+// A point on a light, as seen from a reference point.
+struct LightSample {
+    vec3 wi;      // Unit direction from the reference point.
+    vec3 Li;      // Radiance that arrives if nothing is between [W/(m^2 sr)].
+    float pdf;    // Density over solid angle at the reference point [1/sr]; 0 says that nothing arrives.
+    vec3 shadow;  // The light is hidden if a ray from the reference point in this direction, of any length,
+    float t_max;  // meets something with t in (0, t_max).
+};
+
+#endif

@@ -1,0 +1,49 @@
+// Spherical lights: from outside sampled uniformly over the solid angle that they fill, from inside over their area.
+// Ref: Pharr, Jakob and Humphreys 2023, Physically Based Rendering, section 6.2.4.
+#ifndef LIGHT_SPHERE_GLSL
+#define LIGHT_SPHERE_GLSL
+
+#include "base/frame.glsl"
+#include "light/area.glsl"
+
+// 1 - cos of the angle under which the radius of a sphere is seen whose centre is that far away, distance > radius.
+float sphere_light_cap(float radius, float distance_squared) {
+    float sin2_max = square(radius) / distance_squared;
+    return sin2_max / (1.0 + sqrt(1.0 - sin2_max));
+}
+
+// A point on the light from u in [0,1)^2; pdf includes the probability of having chosen this light.
+LightSample sphere_light_sample_li(Light l, vec3 p_reference, vec2 u) {
+    float radius = l.e1.x;
+    vec3 to_center = l.p - p_reference;
+    float distance_squared = dot(to_center, to_center);
+    float error = sphere_error(l.p, radius);
+    if (distance_squared <= square(radius)) {
+        vec3 n = warp_sphere(u);
+        return area_light_sample_at(l, p_reference, l.p + radius * n, n, error);
+    }
+    float cap = sphere_light_cap(radius, distance_squared);
+    vec3 w = warp_cone(u, cap);
+    LightSample s;
+    s.wi = frame_to_world(frame_from_z(to_center * inversesqrt(distance_squared)), w);
+    s.Li = l.radiance;
+    s.pdf = 2.0 * square(radius) * l.pdf_area / cap;
+    // Where wi meets the sphere first.
+    float t = sqrt(distance_squared) * w.z - sqrt(max(0.0, square(radius) - distance_squared * dot(w.xy, w.xy)));
+    vec3 n = normalize(t * s.wi - to_center);
+    s.shadow = offset_origin(l.p + radius * n, n) + error * n - p_reference;
+    s.t_max = 1.0;
+    return s;
+}
+
+// Density [1/sr] with which sphere_light_sample_li finds the point at that squared distance [m^2] from p_reference, seen
+// under that cosine of its normal.
+float sphere_light_pdf_li(Light l, vec3 p_reference, float distance_squared, float cos_light) {
+    vec3 to_center = l.p - p_reference;
+    float radius = l.e1.x;
+    float center_squared = dot(to_center, to_center);
+    if (center_squared <= square(radius)) return area_light_pdf_li(l, distance_squared, cos_light);
+    return 2.0 * square(radius) * l.pdf_area / sphere_light_cap(radius, center_squared);
+}
+
+#endif

@@ -1,0 +1,25 @@
+// Ray against sphere.
+#ifndef SCENE_SPHERE_GLSL
+#define SCENE_SPHERE_GLSL
+
+#include "base/ray.glsl"
+
+// The least distance t > 0 in lengths of ray.d; what is not above 0 says that the ray misses.
+//
+// Ref: Haines, Guenther and Akenine-Moeller 2019, Precision Improvements for Ray/Sphere Intersection (Ray Tracing Gems,
+// chapter 7): the discriminant from the point of the line next to the centre, and the root that cancels by Vieta's rule.
+float sphere_intersect(Ray ray, vec3 center, float radius) {
+    vec3 f = ray.o - center;
+    float a = dot(ray.d, ray.d);
+    float b = -dot(f, ray.d);
+    vec3 nearest = f + (b / a) * ray.d;
+    float discriminant = radius * radius - dot(nearest, nearest);
+    if (discriminant <= 0.0) return -1.0;  // So q is not 0.
+    float root = sqrt(a * discriminant);
+    float q = b >= 0.0 ? b + root : b - root;
+    float t0 = (dot(f, f) - radius * radius) / q;
+    float t1 = q / a;
+    return min(t0, t1) > 0.0 ? min(t0, t1) : max(t0, t1);
+}
+
+#endif

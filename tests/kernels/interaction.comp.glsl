@@ -1,0 +1,29 @@
+// For interaction_test.cpp: item (ray; direction, side). What the ray meets, and what a second ray meets that leaves from
+// there in that direction, turned to the viewer's side (side 0) or to the other (1).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#define ITEM_WORDS 3u
+#define RESULT_WORDS 17u
+#include "items.glsl"
+#include "scene/interaction.glsl"
+
+void main() {
+    if (past_end()) return;
+    Ray ray = Ray(item_floats(0u).xyz, item_floats(1u).xyz);
+    Hit hit = bvh_intersect(ray);
+    Interaction s = interaction_at(ray, hit);
+    put(hit.t);
+    put(s.p);
+    put(s.p_error);
+    put(s.n);
+    put(uint(s.front));
+    bool viewers_side = item(2u).w == 0u;
+    vec3 wi = item_floats(2u).xyz;
+    if (dot(wi, s.n) > 0.0 != viewers_side) wi = -wi;
+    Ray next = Ray(interaction_spawn_origin(s, viewers_side), wi);
+    put(next.o);
+    put(next.d);
+    put(bvh_intersect(next).t);
+    put(hit.id);
+}
