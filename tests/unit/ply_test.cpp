@@ -79,6 +79,9 @@ class Ply : public testing::Test {
 TEST_F(Ply, ReadsTheThreeFormats) {
     expect_square(load(ascii_square()));
     expect_square(load(ascii_square() + "\n \n"));
+    // The shortest row there is, at the end of a file that lacks the end of its last line.
+    expect_square(load(header("ascii", VERTEX + FACE + "element last 1\nproperty uchar a\n") + POINTS +
+                       "3 0 1 2\n3 0 2 3\n5"));
     expect_square(load(binary_square(false)));
     expect_square(load(binary_square(true)));
 }

@@ -40,5 +40,12 @@ TEST(Records, NormalsCarryTheirMark) {
     EXPECT_EQ(normals[0], uvec4(0x00007FFFu, 0x7FFF0000u, 0u, 1u));
 }
 
+TEST(Records, KindAndMaterialShareAWord) {
+    const Primitive p{PRIMITIVE_DISK, vec3(1, 2, 3), vec3(4, 5, 6), vec3(7, 8, 9), 10, 0x3FFFFFFFu, 11};
+    EXPECT_EQ(pack(p)[0].w, 10u);
+    EXPECT_EQ(pack(p)[1].w, 0xBFFFFFFFu);  // 2 in the two highest bits, ones below.
+    EXPECT_EQ(pack(p)[2].w, 11u);
+}
+
 }  // namespace
 }  // namespace candela

@@ -1,0 +1,134 @@
+// Shapes -> primitives and lights: round shapes, their areas, powers and boxes.
+#include "render/flatten.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/reference_random.h"
+#include "support/scene_builders.h"
+
+namespace candela {
+namespace {
+
+Shape shape(const decltype(Shape::geometry)& geometry, uint32_t material,
+            std::optional<Emission> emission = std::nullopt) {
+    return {.geometry = geometry, .material = material, .emission = emission};
+}
+
+FlatScene flatten_shapes(const std::vector<Shape>& shapes) {
+    Scene scene;
+    scene.shapes = shapes;
+    return flatten(scene);
+}
+
+const Sphere BALL{.center = vec3(1, -2, 3), .radius = 0.5f};
+const Disk ELLIPSE{.center = vec3(4, 5, 6), .e1 = vec3(2, 0, 0), .e2 = vec3(1, 0, -3)};
+
+TEST(Flatten, ASphereIsOnePrimitiveAndOneLight) {
+    const FlatScene flat =
+        flatten_shapes({shape(BALL, 7, Emission{.radiance = vec3(0, 2, 0), .two_sided = false})});
+    ASSERT_EQ(flat.primitives.size(), 1u);
+    EXPECT_EQ(flat.primitives[0].kind, PRIMITIVE_SPHERE);
+    EXPECT_EQ(flat.primitives[0].a, BALL.center);
+    EXPECT_EQ(flat.primitives[0].b.x, BALL.radius);
+    EXPECT_EQ(flat.primitives[0].material, 7u);
+    EXPECT_EQ(flat.primitives[0].light, 0u);
+    ASSERT_EQ(flat.lights.size(), 1u);
+    EXPECT_EQ(flat.lights[0].kind, LIGHT_SPHERE);
+    EXPECT_EQ(flat.lights[0].p, BALL.center);
+    EXPECT_EQ(flat.lights[0].e1.x, BALL.radius);
+    EXPECT_EQ(flat.lights[0].radiance, vec3(0, 2, 0));
+    EXPECT_NEAR(flat.areas[0], M_PI, 1e-6);  // 4 pi / 2^2
+    EXPECT_NEAR(flat.powers[0], M_PI * 2.0 * 0.7152, 2e-6);
+}
+
+TEST(Flatten, ADiskIsOnePrimitiveAndOneLight) {
+    const FlatScene flat =
+        flatten_shapes({shape(ELLIPSE, 3, Emission{.radiance = vec3(1), .two_sided = true})});
+    ASSERT_EQ(flat.primitives.size(), 1u);
+    EXPECT_EQ(flat.primitives[0].kind, PRIMITIVE_DISK);
+    EXPECT_EQ(flat.primitives[0].a, ELLIPSE.center);
+    EXPECT_EQ(flat.primitives[0].b, ELLIPSE.e1);
+    EXPECT_EQ(flat.primitives[0].c, ELLIPSE.e2);
+    EXPECT_EQ(flat.primitives[0].light, 0u);
+    ASSERT_EQ(flat.lights.size(), 1u);
+    EXPECT_EQ(flat.lights[0].kind, LIGHT_DISK);
+    EXPECT_EQ(flat.lights[0].two_sided, 1u);
+    EXPECT_NEAR(flat.areas[0], 6.0 * M_PI, 1e-5);  // The parallelogram of its axes is 6 m^2.
+    EXPECT_NEAR(flat.powers[0], 12.0 * M_PI, 2e-5);
+}
+
+TEST(Flatten, BlackShapesAreNoLights) {
+    const Emission black{.radiance = vec3(0), .two_sided = true};
+    const Disk without_area{.center = vec3(0), .e1 = vec3(1, 0, 0), .e2 = vec3(2, 0, 0)};
+    const FlatScene flat =
+        flatten_shapes({shape(BALL, 0), shape(BALL, 0, black), shape(ELLIPSE, 0), shape(ELLIPSE, 0, black),
+                        shape(without_area, 0, Emission{.radiance = vec3(1), .two_sided = false})});
+    EXPECT_TRUE(flat.lights.empty());
+    ASSERT_EQ(flat.primitives.size(), 5u);
+    for (const Primitive& p : flat.primitives)
+        EXPECT_EQ(p.light, NO_LIGHT);
+}
+
+TEST(Flatten, IdsFollowTheOrderOfTheSceneAcrossKinds) {
+    const Quad quad = parallelogram(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
+    const FlatScene flat = flatten_shapes({shape(BALL, 1), shape(quad, 2), shape(ELLIPSE, 3)});
+    ASSERT_EQ(flat.primitives.size(), 4u);
+    const std::vector<uint> kinds{PRIMITIVE_SPHERE, PRIMITIVE_TRIANGLE, PRIMITIVE_TRIANGLE, PRIMITIVE_DISK};
+    const std::vector<uint> materials{1, 2, 2, 3};
+    for (uint i = 0; i < 4; ++i) {
+        EXPECT_EQ(flat.primitives[i].id, i);
+        EXPECT_EQ(flat.primitives[i].kind, kinds[i]);
+        EXPECT_EQ(flat.primitives[i].material, materials[i]);
+    }
+    EXPECT_TRUE(flat.normals.empty());
+}
+
+TEST(Flatten, EveryPrimitiveHasARecordOfNormalsIfOneIsSmooth) {
+    TriangleMesh smooth = sphere_mesh(4, 6);
+    smooth.normals = smooth.positions;
+    const FlatScene flat = flatten_shapes({shape(BALL, 0), shape(smooth, 0), shape(ELLIPSE, 0)});
+    ASSERT_EQ(flat.normals.size(), flat.primitives.size());
+    for (size_t i = 0; i < flat.normals.size(); ++i)
+        EXPECT_EQ(flat.normals[i][0].w, flat.primitives[i].kind == PRIMITIVE_TRIANGLE ? 1u : 0u);
+}
+
+// A light that has no area, the sky, takes its part of the powers.
+TEST(Flatten, DensitiesAreSharesOfAllPowers) {
+    const Emission white{.radiance = vec3(1), .two_sided = false};
+    FlatScene flat = flatten_shapes({shape(BALL, 0, white), shape(ELLIPSE, 0, white)});
+    flat.powers.push_back(3.0 * M_PI);  // Of 10 pi in all.
+    assign_probabilities(flat);
+    for (const size_t i : {0u, 1u})
+        EXPECT_NEAR(flat.lights[i].pdf_area, 1.0 / (10.0 * M_PI), 1e-7);
+}
+
+// Points of the surface, in double precision, lie in the box but for its roundings, and on each side of the
+// box some point comes near.
+TEST(Flatten, BoxesAreTheLeastOnes) {
+    Random random(3);
+    const FlatScene flat = flatten_shapes({shape(BALL, 0), shape(ELLIPSE, 0)});
+    for (const Primitive& p : flat.primitives) {
+        const Box box = bounds(p);
+        glm::dvec3 lo(1e9), hi(-1e9);
+        for (int i = 0; i < 200000; ++i) {
+            const double phi = 2.0 * M_PI * double(random.unit());
+            const glm::dvec3 point =
+                glm::dvec3(p.a) + (p.kind == PRIMITIVE_SPHERE
+                                       ? double(p.b.x) * normalize(glm::dvec3(random.direction()))
+                                       : std::cos(phi) * glm::dvec3(p.b) + std::sin(phi) * glm::dvec3(p.c));
+            lo = min(lo, point);
+            hi = max(hi, point);
+        }
+        for (const int axis : {0, 1, 2}) {
+            EXPECT_GE(lo[axis], box.lo[axis] - 1e-6);
+            EXPECT_LE(hi[axis], box.hi[axis] + 1e-6);
+            EXPECT_NEAR(lo[axis], box.lo[axis], 1e-3);
+            EXPECT_NEAR(hi[axis], box.hi[axis], 1e-3);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace candela
