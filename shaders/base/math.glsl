@@ -40,8 +40,8 @@ vec2 cos_sin_turn(float t) {
 }
 
 // The angle of the point (x, y) in turns: atan(y, x) / 2 pi, in [0, 1]; within 2^-23; 0 for the origin. The built-in
-// function may be as coarse as 2^-12. The polynomial is the Chebyshev interpolant of atan(q) / q in q^2 on [0, 1], of a relative
-// error of 2e-8.
+// function may be as coarse as 2^-12. The polynomial is the Chebyshev interpolant of atan(q) / q in q^2 on [0, 1], of a
+// relative error of 2e-8.
 float angle_turn(float y, float x) {
     vec2 a = abs(vec2(x, y));
     float q = min(a.x, a.y) / max(max(a.x, a.y), 1e-37);

@@ -20,8 +20,9 @@ vec3 offset_origin(vec3 p, vec3 n) {
     return mix(moved, p + near_zero_step * n, lessThan(abs(p), vec3(near_zero)));
 }
 
-// How far a point that was computed on a sphere may lie off it, and how far from it an intersection may be found [m]: some
-// roundings of the numbers involved, which near the coordinate planes are greater than the point's own coordinates tell.
+// How far a point that was computed on a sphere may lie off it, and how far from it an intersection may be found [m]:
+// some roundings of the numbers involved, which near the coordinate planes are greater than the point's own coordinates
+// tell.
 float sphere_error(vec3 center, float radius) {
     vec3 c = abs(center);
     return (max(c.x, max(c.y, c.z)) + radius) * (1.0 / 262144.0);

@@ -51,8 +51,8 @@ vec3 warp_cone(vec2 u, float h_max) {
     return direction_at(u.x * h_max, u.y);
 }
 
-// Normal of a GGX microfacet that w sees, with the density G1(w) max(0, w.h) D(h) / w.z [1/sr], from u in [0,1)^2; w.z > 0,
-// alpha in (0, 1]. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, section 3.
+// Normal of a GGX microfacet that w sees, with the density G1(w) max(0, w.h) D(h) / w.z [1/sr], from u in [0,1)^2; w.z
+// > 0, alpha in (0, 1]. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, section 3.
 vec3 warp_ggx_visible_normal(vec2 u, float alpha, vec3 w) {
     // Stretched, the facets are a hemisphere; its visible half is a disk, of which a part is behind the horizon.
     vec3 v = normalize(vec3(alpha * w.xy, w.z));

@@ -16,8 +16,8 @@ float ggx_d(float alpha, vec3 h) {
     return 1.0 / (PI * square(alpha * stretched));
 }
 
-// sqrt(cos^2 + alpha^2 sin^2) of w's angle to the normal: what Smith's Lambda is made of, (reach / w.z - 1) / 2, without
-// its pole at grazing angles.
+// sqrt(cos^2 + alpha^2 sin^2) of w's angle to the normal: what Smith's Lambda is made of, (reach / w.z - 1) / 2,
+// without its pole at grazing angles.
 float ggx_reach(float alpha, vec3 w) {
     return sqrt(square(w.z) + square(alpha) * dot(w.xy, w.xy));
 }
@@ -38,15 +38,15 @@ vec3 conductor_f(vec3 reflectance, float alpha, vec3 wo, vec3 wi) {
     return fresnel_conductor_schlick(reflectance, cos_facet) * (ggx_d(alpha, normalize(sum)) * visibility);
 }
 
-// Density of conductor_sample_f at wi [1/sr]: G1 D / (4 cos(theta_o)), that of the facets that wo sees times the Jacobian
-// of reflection. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, equations 3 and 19.
+// Density of conductor_sample_f at wi [1/sr]: G1 D / (4 cos(theta_o)), that of the facets that wo sees times the
+// Jacobian of reflection. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, equations 3 and 19.
 float conductor_pdf(float alpha, vec3 wo, vec3 wi) {
     if (!conductor_sees(wo) || !conductor_sees(wi)) return 0.0;
     return 0.5 * ggx_d(alpha, normalize(wo + wi)) / (wo.z + ggx_reach(alpha, wo));
 }
 
-// wi by reflection on a facet that wo sees, from u in [0,1)^2; the weight is the Fresnel term times G2 / G1. A sample below
-// the surface fails: it would meet another facet.
+// wi by reflection on a facet that wo sees, from u in [0,1)^2; the weight is the Fresnel term times G2 / G1. A sample
+// below the surface fails: it would meet another facet.
 BsdfSample conductor_sample_f(vec3 reflectance, float alpha, vec3 wo, vec2 u) {
     if (!conductor_sees(wo)) return bsdf_sample_failed();
     vec3 h = warp_ggx_visible_normal(u, alpha, wo);

@@ -44,8 +44,8 @@ float phong_pdf(vec3 kd, vec3 ks, float n, vec3 wo, vec3 wi) {
     return mix(warp_cosine_hemisphere_pdf(wi.z), lobe_pdf, phong_lobe_pmf(kd, ks));
 }
 
-// wi around the base or within the lobe, as uc in [0,1) chooses, from u in [0,1)^2. A sample of the lobe that lies below
-// the surface fails: it is what the surface absorbs there.
+// wi around the base or within the lobe, as uc in [0,1) chooses, from u in [0,1)^2. A sample of the lobe that lies
+// below the surface fails: it is what the surface absorbs there.
 BsdfSample phong_sample_f(vec3 kd, vec3 ks, float n, vec3 wo, float uc, vec2 u) {
     vec3 wi;
     if (uc < phong_lobe_pmf(kd, ks)) {

@@ -9,7 +9,7 @@
 
 struct BsdfSample {
     vec3 wi;
-    vec3 weight;  // f |cos(theta_i)| / pdf; 0 where nothing is scattered. Radiance is meant: refraction divides by eta^2.
+    vec3 weight;  // f |cos(theta_i)| / pdf, for radiance: refraction divides by eta^2. 0: nothing is scattered.
     float pdf;    // [1/sr]; 0 says that the sample failed.
     bool delta;   // No other direction could have been sampled: light samples cannot find it.
     float eta;    // Index of refraction on wi's side over that on wo's; 1 unless wi is refracted.

@@ -61,12 +61,21 @@ void add_emission(inout Path path, Light l, Interaction s, float t) {
     path.L += emission_weight(path, pdf_light) * path.beta * area_light_le(l, s.front);
 }
 
+// Share of the light that the medium around the path's ray lets through over that distance [m], which may be infinite.
+// Ref: Beer and Lambert's law.
+vec3 path_transmittance(Path path, float distance) {
+    if ((MATERIALS & MATERIALS_DIELECTRIC) == 0u) return vec3(1.0);
+    return exp(-min(distance, FLOAT_MAX) * path.absorption);
+}
+
 // Radiance that a point on a light sends through s to the path's beginning, divided by its density, weighted.
 vec3 direct_light(inout Path path, Interaction s, Frame frame, vec3 wo, MaterialRecord material, uint uc, uvec2 u) {
     vec3 from = interaction_spawn_origin(s, true);
     LightSample light = light_sample_li(from, uc, u);
     vec3 wi = frame_to_local(frame, light.wi);
     vec3 Ld = path.beta * bsdf_f(material, wo, wi) * abs(wi.z) * light.Li;
+    // The light is in the medium through which the path came to s.
+    Ld *= path_transmittance(path, light.t_max * length(light.shadow));
     if (light.pdf == 0.0 || dot(light.wi, s.n) <= 0.0 || Ld == vec3(0.0)) return vec3(0.0);
     ++path.rays;
     if (bvh_occluded(Ray(from, light.shadow), light.t_max)) return vec3(0.0);
@@ -74,8 +83,9 @@ vec3 direct_light(inout Path path, Interaction s, Frame frame, vec3 wo, Material
     return weight * Ld / light.pdf;
 }
 
-// Sends the path on in a direction that its last surface was sampled for; returns whether it goes on. `material` is that of
-// the front side. A direction on the other side of the geometric surface than of the shading one carries nothing.
+// Sends the path on in a direction that its last surface was sampled for; returns whether it goes on. `material` is
+// that of the front side. A direction on the other side of the geometric surface than of the shading one carries
+// nothing.
 bool path_scatter(inout Path path, Interaction s, Frame frame, MaterialRecord material, BsdfSample scattered) {
     vec3 wi = frame_to_world(frame, scattered.wi);
     path.beta *= scattered.weight;
@@ -107,8 +117,8 @@ bool path_step(inout Path path, Sampler random, Parameters parameters) {
         path.normal = s.ns;
     }
 
-    // Lose what the medium on the way absorbs. Ref: Beer and Lambert's law.
-    if ((MATERIALS & MATERIALS_DIELECTRIC) != 0u) path.beta *= exp(-hit.t * path.absorption);
+    // Lose what the medium on the way absorbs.
+    path.beta *= path_transmittance(path, hit.t);
 
     // Add what the surface emits; light samples of the vertex before may already account for a part.
     if (s.light != NO_LIGHT) add_emission(path, scene_light(s.light), s, hit.t);

@@ -18,8 +18,8 @@ float area_light_pdf_li(Light l, float distance_squared, float cos_light) {
     return cos_light != 0.0 ? l.pdf_area * distance_squared / abs(cos_light) : 0.0;
 }
 
-// The point p of a light, sampled uniformly by area, where n is its front's unit normal; p_error [m] is how far p may be
-// off the surface beyond its roundings.
+// The point p of a light, sampled uniformly by area, where n is its front's unit normal; p_error [m] is how far p may
+// be off the surface beyond its roundings.
 LightSample area_light_sample_at(Light l, vec3 p_reference, vec3 p, vec3 n, float p_error) {
     LightSample s;
     vec3 to_light = p - p_reference;

@@ -10,8 +10,8 @@
 
 const bool HAS_SPHERES = (PRIMITIVES & 1u << PRIMITIVE_SPHERE) != 0u;
 
-// A point on one of the lights, seen from p_reference; uc are 32 random bits that choose the light, u 2 x 32 that choose the
-// point. The scene has at least one light.
+// A point on one of the lights, seen from p_reference; uc are 32 random bits that choose the light, u 2 x 32 that
+// choose the point. The scene has at least one light.
 // Ref: Walker 1977, An Efficient Method for Generating Discrete Random Variables with General Distributions.
 LightSample light_sample_li(vec3 p_reference, uint uc, uvec2 u) {
     uvec2 column = warp_alias_column(uc, scene_parameters().light_count);

@@ -36,8 +36,8 @@ LightSample sphere_light_sample_li(Light l, vec3 p_reference, vec2 u) {
     return s;
 }
 
-// Density [1/sr] with which sphere_light_sample_li finds the point at that squared distance [m^2] from p_reference, seen
-// under that cosine of its normal.
+// Density [1/sr] with which sphere_light_sample_li finds the point at that squared distance [m^2] from p_reference,
+// seen under that cosine of its normal.
 float sphere_light_pdf_li(Light l, vec3 p_reference, float distance_squared, float cos_light) {
     vec3 to_center = l.p - p_reference;
     float radius = l.e1.x;

@@ -21,15 +21,15 @@ Ray camera_ray_pinhole(Parameters camera, vec2 film) {
     return Ray(camera.position, normalize(camera_film_direction(camera, film)));
 }
 
-// The ray through a film position and the point of the aperture, uniform over its area, that u in [0,1)^2 chooses. All rays
-// of one film position meet in the plane of focus. Unit direction.
+// The ray through a film position and the point of the aperture, uniform over its area, that u in [0,1)^2 chooses. All
+// rays of one film position meet in the plane of focus. Unit direction.
 // Ref: Cook, Porter and Carpenter 1984, Distributed Ray Tracing, section 2.
 Ray camera_ray(Parameters camera, vec2 film, vec2 u) {
     if (APERTURE == APERTURE_PINHOLE) return camera_ray_pinhole(camera, film);
     vec2 aperture = APERTURE == APERTURE_DISK ? warp_disk(u) : warp_polygon(u, camera.blades);
     vec3 offset = aperture.x * camera.lens_x + aperture.y * camera.lens_y;
-    vec3 focus = camera.focal_distance * camera_film_direction(camera, film);
-    return Ray(camera.position + offset, normalize(focus - offset));
+    vec3 to_focus = camera_film_direction(camera, film) - offset / camera.focal_distance;
+    return Ray(camera.position + offset, normalize(to_focus));
 }
 
 #endif

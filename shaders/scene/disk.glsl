@@ -4,8 +4,8 @@
 
 #include "base/ray.glsl"
 
-// Distance t in lengths of ray.d, and (x, y) of the point center + x e1 + y e2 with x^2 + y^2 <= 1 that the ray meets; t is
-// not above 0 where it misses.
+// Distance t in lengths of ray.d, and (x, y) of the point center + x e1 + y e2 with x^2 + y^2 <= 1 that the ray meets;
+// t is not above 0 where it misses.
 vec3 disk_intersect(Ray ray, vec3 center, vec3 e1, vec3 e2) {
     vec3 n = cross(e1, e2);
     float approach = dot(ray.d, n);

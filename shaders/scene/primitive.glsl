@@ -17,8 +17,8 @@ bool is_kind(uint kind, const uint asked) {
     return (PRIMITIVES & ~(1u << asked)) == 0u || kind == asked;
 }
 
-// Distance t in lengths of ray.d and the surface coordinates of the point there: of a triangle the barycentric ones of b
-// and c, of a disk those in its axes; t is not above 0 where the ray misses.
+// Distance t in lengths of ray.d and the surface coordinates of the point there: of a triangle the barycentric ones of
+// b and c, of a disk those in its axes; t is not above 0 where the ray misses.
 vec3 primitive_intersect(Ray ray, RayShear shear, Primitive p) {
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) return vec3(sphere_intersect(ray, p.a, p.b.x), 0.0, 0.0);
     if (is_kind(p.kind, PRIMITIVE_DISK)) return disk_intersect(ray, p.a, p.b, p.c);

@@ -7,7 +7,8 @@
 // The least distance t > 0 in lengths of ray.d; what is not above 0 says that the ray misses.
 //
 // Ref: Haines, Guenther and Akenine-Moeller 2019, Precision Improvements for Ray/Sphere Intersection (Ray Tracing Gems,
-// chapter 7): the discriminant from the point of the line next to the centre, and the root that cancels by Vieta's rule.
+// chapter 7): the discriminant from the point of the line next to the centre, and the root that cancels by Vieta's
+// rule.
 float sphere_intersect(Ray ray, vec3 center, float radius) {
     vec3 f = ray.o - center;
     float a = dot(ray.d, ray.d);

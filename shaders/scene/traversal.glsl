@@ -42,8 +42,8 @@ ivec4 ordered_bits(vec4 x) {
 // Above all distances that node_intersect returns for a hit; the low two bits are free.
 const uint NODE_MISS = 0x7F7FFFFCu;
 
-// Where the ray enters the box of each of a node's children, clipped to [0, t_max], as the bits of a float; NODE_MISS where
-// it does not.
+// Where the ray enters the box of each of a node's children, clipped to [0, t_max], as the bits of a float; NODE_MISS
+// where it does not.
 //
 // Conservative: both ends of every slab are moved outwards by 2^-20 of the largest number that took part in the
 // sum, which covers the roundings of the difference, the reciprocal (2.5 ulp in Vulkan) and the products, as well
