@@ -6,9 +6,10 @@
 #include "base/frame.glsl"
 #include "light/area.glsl"
 
-// 1 - cos of the angle under which the radius of a sphere is seen whose centre is that far away, distance > radius.
+// 1 - cos of the angle under which the radius of a sphere is seen whose centre is that far away, distance > radius. (A
+// division may round up to more than 1.)
 float sphere_light_cap(float radius, float distance_squared) {
-    float sin2_max = square(radius) / distance_squared;
+    float sin2_max = min(1.0, square(radius) / distance_squared);
     return sin2_max / (1.0 + sqrt(1.0 - sin2_max));
 }
 

@@ -1,10 +1,11 @@
 // Record of everything that stays the same while an image is rendered, 10 words of uvec4 in a uniform buffer;
 // and the push constants of one dispatch.
 //
-//   0: position.xyz, seed             5: first words in the tables buffer: normals, materials, lights, alias
-//   table 1: right.xyz,    max_depth        6: first words of the environment: texels, alias table; its
-//   size.xy 2: up.xyz,       rr_depth         7: lens_x.xyz, focal_distance 3: forward.xyz,  light_count 8:
-//   lens_y.xyz, blades 4: full_size.xy, crop.xy          9: environment_turn.xy, 0, 0
+//   0: position.xyz, seed         5: first words in the tables: normals, materials, lights, alias table
+//   1: right.xyz, max_depth       6: first words of the environment: texels, alias table; its size.xy
+//   2: up.xyz, rr_depth           7: lens_x.xyz, focal_distance
+//   3: forward.xyz, light_count   8: lens_y.xyz, blades
+//   4: full_size.xy, crop.xy      9: environment_turn.xy, 0, 0
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
 
