@@ -13,6 +13,7 @@ TEST_F(Info, TellsWhatASceneHoldsWithoutADevice) {
     EXPECT_EQ(info["scene"], CORNELL_BOX);
     EXPECT_EQ(info["primitives"], 32);
     EXPECT_EQ(info["lights"], 1);
+    EXPECT_EQ(info["environment"], nullptr);
     EXPECT_EQ(info["cameras"], (std::vector<std::string>{"main"}));
     EXPECT_EQ(info["bounds"][0], (std::vector<double>{0, 0, 0}));
     EXPECT_NEAR(info["bounds"][1][2], 0.5592, 1e-6);
@@ -48,6 +49,26 @@ TEST_F(Info, TextNamesTheSameFacts) {
          {"main, close", "SAH cost", "depth", "40x24 pixels", "device memory", "without AOVs"}) {
         EXPECT_CONTAINS(result.out, fact);
     }
+}
+
+TEST_F(Info, TellsTheSizeOfTheSky) {
+    Image sky{.full = {8, 4}, .data = {0, 0, 8, 4}, .channels = {}, .attributes = {}};
+    for (const char* const channel : {"R", "G", "B"})
+        sky.add(channel, 1.0f);
+    write_exr(file("sky.exr"), sky);
+    const std::string scene = write("sky.json", R"({
+        "cameras": { "main": { "position": [0, 0, 3], "look_at": [0, 0, 0], "vertical_fov": 40 } },
+        "materials": { "grey": { "type": "diffuse", "reflectance": 0.5 } },
+        "shapes": [ { "type": "sphere", "radius": 1, "material": "grey" } ],
+        "environment": { "file": "sky.exr" } })");
+    const ProcessResult result = candela({"info", scene, "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto info = nlohmann::json::parse(result.out);
+    EXPECT_EQ(info["environment"], (std::vector<int>{8, 4}));
+    EXPECT_EQ(info["primitives"], 1);
+    EXPECT_EQ(info["lights"], 1);
+    EXPECT_CONTAINS(candela({"info", scene}).out, "environment   8x4 texels");
+    EXPECT_CONTAINS(candela({"info", CORNELL_BOX}).out, "environment   none");
 }
 
 TEST_F(Info, WarningsGoToStderrAndIntoTheJson) {

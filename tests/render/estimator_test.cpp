@@ -1,5 +1,5 @@
 // Estimators, samplers and roulette change the noise of an image, never its expectation.
-#include "render_fixture.h"
+#include "estimator_fixture.h"
 
 namespace candela {
 namespace {
@@ -7,49 +7,21 @@ namespace {
 // A room with every kind of light: a parallelogram, a quad that is none, a glowing mesh, one that emits from
 // both sides and hangs free, one that also reflects; of very different power.
 Scene scene_with_lights() {
-    Scene scene = scene_with_camera(vec3(0, 1, 2.9f), vec3(0, 0.9f, 0), 1.0f);
-    const uint32_t grey = add_diffuse(scene, vec3(0.5f, 0.6f, 0.7f));
+    Scene scene = open_room();
+    const uint32_t grey = 0;
     const uint32_t black = add_diffuse(scene, vec3(0));
-    const auto add = [&](const auto& geometry, uint32_t material, std::optional<Emission> emission) {
-        scene.shapes.push_back({.geometry = geometry, .material = material, .emission = emission});
-    };
-    add(parallelogram(vec3(-2, 0, 2), vec3(4, 0, 0), vec3(0, 0, -4)), grey, {});  // Floor.
-    add(parallelogram(vec3(-2, 0, -2), vec3(4, 0, 0), vec3(0, 2, 0)), grey, {});  // Back wall.
-    add(parallelogram(vec3(-2, 2, -2), vec3(4, 0, 0), vec3(0, 0, 4)), grey, {});  // Ceiling.
-    add(parallelogram(vec3(-1, 1.99f, -1), vec3(0.8f, 0, 0), vec3(0, 0, 0.8f)), black,
-        Emission{vec3(4, 3, 2), false});
-    add(Quad{{vec3(0.5f, 1.9f, -1), vec3(1.5f, 1.9f, -1.2f), vec3(1.2f, 1.9f, 0), vec3(0.6f, 1.9f, -0.2f)}},
+    add_shape(scene, parallelogram(vec3(-1, 1.99f, -1), vec3(0.8f, 0, 0), vec3(0, 0, 0.8f)), black,
+              Emission{vec3(4, 3, 2), false});
+    add_shape(
+        scene,
+        Quad{{vec3(0.5f, 1.9f, -1), vec3(1.5f, 1.9f, -1.2f), vec3(1.2f, 1.9f, 0), vec3(0.6f, 1.9f, -0.2f)}},
         grey, Emission{vec3(1, 2, 3), false});
-    add(parallelogram(vec3(-1.5f, 0.5f, -1), vec3(0.8f, 0, 0.3f), vec3(0, 0.9f, 0)), grey,
-        Emission{vec3(2), true});
-    add(transformed(sphere_mesh(6, 8), [](vec3 p) { return vec3(0.7f, 0.8f, 0) + 0.3f * p; }), grey,
-        Emission{vec3(3, 1, 1), false});
+    add_shape(scene, parallelogram(vec3(-1.5f, 0.5f, -1), vec3(0.8f, 0, 0.3f), vec3(0, 0.9f, 0)), grey,
+              Emission{vec3(2), true});
+    add_shape(scene, transformed(sphere_mesh(6, 8), [](vec3 p) { return vec3(0.7f, 0.8f, 0) + 0.3f * p; }),
+              grey, Emission{vec3(3, 1, 1), false});
     return scene;
 }
-
-class EstimatorTest : public RenderTest {
-  protected:
-    static constexpr uint32_t SIZE = 64;
-
-    static RenderSettings settings(Estimator estimator, uint32_t seed) {
-        RenderSettings s = independent_settings(SIZE, estimator, seed);
-        s.max_depth = 8;
-        return s;
-    }
-    Image image(const Scene& scene, const RenderSettings& settings, uint32_t spp) const {
-        return image_of(render(scene, settings, spp));
-    }
-    // Samples per pixel: what each estimator needs for LARGEST_ERROR.
-    void expect_estimators_agree(const Scene& scene, uint32_t bsdf_spp, uint32_t spp) const {
-        const Image mis = image(scene, settings(Estimator::mis, 1), spp);
-        {
-            SCOPED_TRACE("light samples only");
-            expect_same_expectation(image(scene, settings(Estimator::light, 2), spp), mis);
-        }
-        SCOPED_TRACE("BSDF samples only");
-        expect_same_expectation(image(scene, settings(Estimator::bsdf, 3), bsdf_spp), mis);
-    }
-};
 
 TEST_F(EstimatorTest, AgreeOnTheCornellBox) {
     expect_estimators_agree(cornell_box(), 2048, 576);
@@ -88,7 +60,7 @@ TEST_F(EstimatorTest, AgreeOnSmoothNormals) {
     TriangleMesh ball = sphere_mesh(8, 12);
     ball.normals = ball.positions;
     ball = transformed(ball, [](vec3 p) { return vec3(-0.3f, 0.6f, 0.3f) + 0.5f * p; });
-    scene.shapes.push_back({.geometry = ball, .material = 0, .emission = {}});
+    add_shape(scene, ball, 0);
     expect_estimators_agree(scene, 512, 256);
 }
 

@@ -10,11 +10,12 @@
 namespace candela {
 namespace {
 
-class IdentityTest : public RenderTest {
+// The Cornell box, and a scene with one of everything.
+class IdentityTest : public RenderTest, public testing::WithParamInterface<Scene (*)()> {
   protected:
     static constexpr uint32_t SPP = 16;
 
-    IdentityTest() : scene_(cornell_box()), gpu_scene_(build_gpu_scene(scene_)) {}
+    IdentityTest() : scene_(GetParam()()), gpu_scene_(build_gpu_scene(scene_)) {}
 
     // No multiple of the work group in either direction.
     static RenderSettings settings() {
@@ -45,7 +46,7 @@ class IdentityTest : public RenderTest {
     GpuScene gpu_scene_;
 };
 
-TEST_F(IdentityTest, ManySmallSubmissions) {
+TEST_P(IdentityTest, ManySmallSubmissions) {
     RenderSettings s = settings();
     s.submission_seconds = 10.0;
     const Accumulation whole = in_one_go(s);
@@ -58,7 +59,7 @@ TEST_F(IdentityTest, ManySmallSubmissions) {
 }
 
 // So few pixels that thousands of samples of each fit into one submission.
-TEST_F(IdentityTest, ManySamplesOfAFewPixels) {
+TEST_P(IdentityTest, ManySamplesOfAFewPixels) {
     constexpr uint32_t MANY = 5000;
     RenderSettings s = settings();
     s.crop = {20, 20, 22, 21};
@@ -73,14 +74,14 @@ TEST_F(IdentityTest, ManySamplesOfAFewPixels) {
     expect_same_bits(at_once, stepwise.download());
 }
 
-TEST_F(IdentityTest, SeveralCalls) {
+TEST_P(IdentityTest, SeveralCalls) {
     Renderer r = renderer(settings());
     for (const uint32_t target : {1u, 5u, 5u, SPP})
         finish(r, target);
     expect_same_bits(r.download(), in_one_go(settings()));
 }
 
-TEST_F(IdentityTest, AnInterruptionBetweenSubmissions) {
+TEST_P(IdentityTest, AnInterruptionBetweenSubmissions) {
     RenderSettings s = settings();
     s.submission_seconds = 1e-6;
     Renderer r = renderer(s);
@@ -92,7 +93,7 @@ TEST_F(IdentityTest, AnInterruptionBetweenSubmissions) {
     expect_same_bits(r.download(), in_one_go(settings()));
 }
 
-TEST_F(IdentityTest, AStateThatWentThroughAFile) {
+TEST_P(IdentityTest, AStateThatWentThroughAFile) {
     const TemporaryDirectory folder;
     {
         RenderSettings s = settings();
@@ -108,7 +109,7 @@ TEST_F(IdentityTest, AStateThatWentThroughAFile) {
     expect_same_bits(r.download(), in_one_go(settings()));
 }
 
-TEST_F(IdentityTest, AStateThatDoesNotFitIsRefused) {
+TEST_P(IdentityTest, AStateThatDoesNotFitIsRefused) {
     const Accumulation state = in_one_go(settings());
     const auto expect_refused = [&](const std::function<void(RenderSettings&)>& change) {
         RenderSettings s = settings();
@@ -125,7 +126,7 @@ TEST_F(IdentityTest, AStateThatDoesNotFitIsRefused) {
     expect_refused([](RenderSettings& s) { s.aovs = false; });
 }
 
-TEST_F(IdentityTest, ACrop) {
+TEST_P(IdentityTest, ACrop) {
     const Accumulation whole = in_one_go(settings());
     for (const PixelRect crop :
          {PixelRect{5, 3, 24, 20}, PixelRect{36, 22, 37, 23}, PixelRect{0, 9, 37, 10}}) {
@@ -143,13 +144,7 @@ TEST_F(IdentityTest, ACrop) {
     }
 }
 
-TEST_F(IdentityTest, TexelAndStorageBuffers) {
-    // With normals, so that every table is read.
-    TriangleMesh ball = sphere_mesh(8, 12);
-    ball.normals = ball.positions;
-    ball = transformed(ball, [](vec3 p) { return vec3(0.2f, 0.3f, 0.2f) + 0.1f * p; });
-    scene_.shapes.push_back({.geometry = ball, .material = 0, .emission = {}});
-    gpu_scene_ = build_gpu_scene(scene_);
+TEST_P(IdentityTest, TexelAndStorageBuffers) {
     RenderSettings s = settings();
     s.scene_access = SceneAccess::texel_buffers;
     const Accumulation texels = in_one_go(s);
@@ -157,7 +152,7 @@ TEST_F(IdentityTest, TexelAndStorageBuffers) {
     expect_same_bits(in_one_go(s), texels);
 }
 
-TEST_F(IdentityTest, AovsLeaveTheColoursAlone) {
+TEST_P(IdentityTest, AovsLeaveTheColoursAlone) {
     const Accumulation with = in_one_go(settings());
     RenderSettings s = settings();
     s.aovs = false;
@@ -168,17 +163,22 @@ TEST_F(IdentityTest, AovsLeaveTheColoursAlone) {
               0);
 }
 
-TEST_F(IdentityTest, AnotherSeedIsAnotherImage) {
+TEST_P(IdentityTest, AnotherSeedIsAnotherImage) {
     RenderSettings s = settings();
     const uint64_t hash = image_hash(image_of(in_one_go(s)));
     s.seed = 78;
     EXPECT_NE(image_hash(image_of(in_one_go(s))), hash);
 }
 
+INSTANTIATE_TEST_SUITE_P(Scenes, IdentityTest, testing::Values(cornell_box, scene_of_everything),
+                         [](const testing::TestParamInfo<Scene (*)()>& scene) -> std::string {
+                             return scene.param == cornell_box ? "CornellBox" : "Everything";
+                         });
+
 // Lavapipe reads the number of its threads when an instance lists its devices; other drivers ignore the
 // variable.
 TEST(ThreadsTest, OneThreadOrMany) {
-    const Scene scene = cornell_box();
+    const Scene scene = scene_of_everything();
     const auto render_with_threads = [&](const char* threads) {
         setenv("LP_NUM_THREADS", threads, 1);
         const vk::Instance instance({.validation = true});

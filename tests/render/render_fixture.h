@@ -65,6 +65,36 @@ inline ImageMean image_mean(const Image& image, size_t channel) {
     return {moments.mean(), std::sqrt(variance) / n, n};
 }
 
+// Every channel of the image must have that mean, within the noise that the image measures of itself, which
+// must be small. `systematic` is the share of the mean by which the expectation itself may be off.
+inline void expect_mean(const Image& image, glm::dvec3 expected, double systematic) {
+    for (size_t c = 0; c < 3; ++c) {
+        const ImageMean m = image_mean(image, c);
+        const double value = expected[int(c)];
+        EXPECT_LE(m.error, LARGEST_ERROR * value);
+        const double beyond = std::max(0.0, std::abs(m.mean - value) - systematic * value);
+        if (beyond == 0.0) continue;
+        EXPECT_GT(normal_p_value(beyond / m.error), TEST_ALPHA)
+            << "mean " << m.mean << ", not " << value << "; z = " << beyond / m.error;
+    }
+}
+
+// Every pixel must be exactly that.
+inline void expect_pixels(const Image& image, vec3 expected) {
+    for (size_t c = 0; c < 3; ++c) {
+        for (const float value : plane(image, "", c))
+            ASSERT_EQ(value, expected[int(c)]);
+    }
+}
+
+// Share of the camera rays that met something visible, over the image.
+inline double coverage(const Image& image) {
+    RunningMoments moments;
+    for (const float alpha : image.find("A")->values)
+        moments.add(alpha);
+    return moments.mean();
+}
+
 // Two images of one expectation, made with independent samples: means of 8 x 8 blocks and of the image must
 // agree within their own standard errors, which must be small. Pixels alone are too noisy to say much.
 inline void expect_same_expectation(const Image& a, const Image& b) {

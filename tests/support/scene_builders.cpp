@@ -19,9 +19,28 @@ Scene furnace(float albedo) {
     return scene;
 }
 
-uint32_t add_diffuse(Scene& scene, vec3 reflectance) {
-    scene.materials.push_back({.name = "", .model = DiffuseMaterial{reflectance}});
+uint32_t add_material(Scene& scene, const decltype(Material::model)& model) {
+    scene.materials.push_back({.name = "", .model = model});
     return uint32_t(scene.materials.size() - 1);
+}
+
+uint32_t add_diffuse(Scene& scene, vec3 reflectance) {
+    return add_material(scene, DiffuseMaterial{reflectance});
+}
+
+void add_shape(Scene& scene, const decltype(Shape::geometry)& geometry, uint32_t material,
+               std::optional<Emission> emission) {
+    scene.shapes.push_back({.geometry = geometry, .material = material, .emission = emission});
+}
+
+Environment constant_environment(vec3 radiance) {
+    return {.size = {1, 1}, .radiance = {radiance}};
+}
+
+Environment one_bright_texel(uvec2 size, uvec2 texel, vec3 radiance) {
+    Environment environment{.size = size, .radiance = std::vector<vec3>(size_t(size.x) * size.y)};
+    environment.radiance[size_t(texel.y) * size.x + texel.x] = radiance;
+    return environment;
 }
 
 Quad parallelogram(vec3 p, vec3 e1, vec3 e2) {
@@ -31,8 +50,65 @@ Quad parallelogram(vec3 p, vec3 e1, vec3 e2) {
 Scene scene_with_camera(vec3 position, vec3 look_at, float vertical_fov) {
     Scene scene;
     const vec3 up = std::abs(normalize(look_at - position).y) < 0.9f ? vec3(0, 1, 0) : vec3(0, 0, 1);
-    scene.cameras.push_back(
-        {.name = "main", .position = position, .look_at = look_at, .up = up, .vertical_fov = vertical_fov});
+    scene.cameras.push_back({.name = "main",
+                             .position = position,
+                             .look_at = look_at,
+                             .up = up,
+                             .vertical_fov = vertical_fov,
+                             .lens = {}});
+    return scene;
+}
+
+Scene open_room() {
+    Scene scene = scene_with_camera(vec3(0, 1, 2.9f), vec3(0, 0.9f, 0), 1.0f);
+    const uint32_t wall = add_diffuse(scene, vec3(0.5f, 0.6f, 0.7f));
+    add_shape(scene, parallelogram(vec3(-2, 0, 2), vec3(4, 0, 0), vec3(0, 0, -4)), wall);  // Floor.
+    add_shape(scene, parallelogram(vec3(-2, 0, -2), vec3(4, 0, 0), vec3(0, 2, 0)), wall);  // Back wall.
+    add_shape(scene, parallelogram(vec3(-2, 2, -2), vec3(4, 0, 0), vec3(0, 0, 4)), wall);  // Ceiling.
+    return scene;
+}
+
+Scene scene_of_everything() {
+    Scene scene = open_room();
+    scene.cameras[0].lens = {.radius = 0.05f, .focal_distance = 2.5f, .blades = 5, .rotation = 0.3f};
+    scene.environment = one_bright_texel({8, 4}, {5, 1}, vec3(6, 5, 4));
+    for (vec3& texel : scene.environment->radiance)
+        texel += vec3(0.2f, 0.3f, 0.4f);
+    scene.environment->rotation = 0.7f;
+
+    const uint32_t black = add_diffuse(scene, vec3(0));
+    const uint32_t phong = add_material(scene, PhongMaterial{vec3(0.3f), vec3(0.6f, 0.5f, 0.4f), 50.0f});
+    const uint32_t mirror = add_material(scene, MirrorMaterial{vec3(0.9f)});
+    const uint32_t metal = add_material(scene, ConductorMaterial{vec3(0.9f, 0.7f, 0.4f), 0.2f});
+    const uint32_t glass = add_material(scene, DielectricMaterial{.absorption = vec3(0.5f, 1, 2)});
+    const uint32_t exact_glass =
+        add_material(scene, DielectricMaterial{.ior = 1.8f, .fresnel = Fresnel::exact});
+
+    const vec3 bright(3, 2, 1);
+    add_shape(scene, parallelogram(vec3(-1, 1.99f, -1), vec3(0.8f, 0, 0), vec3(0, 0, 0.8f)), black,
+              Emission{bright, false});
+    add_shape(scene, Sphere{vec3(1.5f, 1.6f, -1), 0.2f}, black, Emission{bright, false});
+    add_shape(scene, Sphere{vec3(-1.6f, 1.2f, 0), 0.15f}, metal, Emission{bright, true});
+    add_shape(scene, Disk{vec3(0.6f, 1.95f, -0.5f), vec3(0.3f, 0, 0), vec3(0, 0, 0.2f)}, phong,
+              Emission{bright, true});
+
+    add_shape(scene, Sphere{vec3(-0.9f, 0.5f, -0.3f), 0.4f}, glass);
+    add_shape(scene, Sphere{vec3(-0.9f, 0.5f, -0.3f), 0.1f}, phong);  // Within the glass.
+    add_shape(scene, Sphere{vec3(0.1f, 0.4f, 0.4f), 0.3f}, exact_glass);
+    add_shape(scene, Sphere{vec3(0.9f, 0.5f, -0.8f), 0.4f}, mirror);
+    add_shape(scene, Disk{vec3(0, 0.9f, -1.9f), vec3(0.6f, 0, 0.1f), vec3(0, 0.6f, 0)}, metal);
+    TriangleMesh ball = sphere_mesh(8, 12);
+    ball.normals = ball.positions;
+    add_shape(scene, transformed(ball, [](vec3 p) { return vec3(0.9f, 0.3f, 0.5f) + 0.25f * p; }), phong);
+    return scene;
+}
+
+Scene floor_seen_closely(vec3 reflectance) {
+    constexpr float FIELD_OF_VIEW = 1e-3f;
+    Scene scene = scene_with_camera(vec3(0, 1, 5), vec3(0), FIELD_OF_VIEW);
+    add_diffuse(scene, reflectance);
+    add_diffuse(scene, vec3(0));
+    add_shape(scene, parallelogram(vec3(-50, 0, 50), vec3(100, 0, 0), vec3(0, 0, -100)), 0);
     return scene;
 }
 
@@ -84,7 +160,7 @@ TriangleMesh transformed(TriangleMesh mesh, const std::function<vec3(vec3)>& f) 
 Scene scene_of_mesh(TriangleMesh mesh) {
     Scene scene = scene_with_camera(vec3(0), vec3(0, 0, -1), 1.0f);
     add_diffuse(scene, vec3(0.5f));
-    scene.shapes.push_back({.geometry = std::move(mesh), .material = 0, .emission = std::nullopt});
+    add_shape(scene, std::move(mesh), 0);
     return scene;
 }
 

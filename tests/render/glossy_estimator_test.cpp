@@ -1,0 +1,106 @@
+// Estimators agree on every material under every kind of light. Lights are large and lobes are wide enough
+// for each estimator alone to have a small variance.
+#include "estimator_fixture.h"
+
+namespace candela {
+namespace {
+
+constexpr vec3 WARM(4, 3, 2), COOL(1, 2, 3);
+
+// A dim sky with a bright texel up in front of the room.
+Environment textured_sky() {
+    Environment sky = one_bright_texel({8, 4}, {4, 1}, vec3(5, 4, 3));
+    for (uint32_t i = 0; i < 32; ++i)
+        sky.radiance[i] += vec3(0.2f, 0.3f, 0.4f) * (1.0f + float(i % 3));
+    sky.rotation = 2.5f;
+    return sky;
+}
+
+void add_round_lights(Scene& scene) {
+    const uint32_t grey = 0;
+    add_shape(scene, Sphere{vec3(-1.2f, 1.3f, -1), 0.4f}, grey, Emission{WARM, false});
+    add_shape(scene, Sphere{vec3(1.4f, 0.5f, -1.2f), 0.3f}, grey, Emission{COOL, true});
+    add_shape(scene, Disk{vec3(0, 1.95f, -0.5f), vec3(0.6f, 0, 0), vec3(0, 0, 0.4f)}, grey,
+              Emission{COOL, false});
+    add_shape(scene, Disk{vec3(0.2f, 1.2f, -1.7f), vec3(0.4f, 0.1f, 0), vec3(0, 0.4f, 0.1f)}, grey,
+              Emission{WARM, true});
+}
+
+// Four balls on the floor.
+void add_balls(Scene& scene, const std::vector<decltype(Material::model)>& models) {
+    for (size_t i = 0; i < models.size(); ++i) {
+        const float x = -1.2f + 0.8f * float(i);
+        add_shape(scene, Sphere{vec3(x, 0.4f, 0.2f), 0.35f}, add_material(scene, models[i]));
+    }
+}
+
+using GlossyEstimatorTest = EstimatorTest;
+
+TEST_F(GlossyEstimatorTest, AgreeOnRoundLightsAndASky) {
+    Scene scene = open_room();
+    scene.environment = textured_sky();
+    add_round_lights(scene);
+    add_balls(scene, {DiffuseMaterial{vec3(0.7f, 0.5f, 0.3f)}, DiffuseMaterial{vec3(0.9f)}});
+    expect_estimators_agree(scene, 512, 512);
+}
+
+TEST_F(GlossyEstimatorTest, AgreeOnPhongAndMetal) {
+    Scene scene = open_room();
+    scene.environment = textured_sky();
+    add_round_lights(scene);
+    add_balls(scene, {PhongMaterial{vec3(0.3f, 0.2f, 0.1f), vec3(0.6f, 0.5f, 0.4f), 10.0f},
+                      PhongMaterial{vec3(0.1f, 0.2f, 0.3f), vec3(0.5f), 1000.0f},
+                      ConductorMaterial{vec3(0.9f, 0.7f, 0.4f), 0.5f},
+                      ConductorMaterial{vec3(0.8f, 0.8f, 0.9f), 0.05f}});
+    expect_estimators_agree(scene, 512, 2048);
+}
+
+// Light samples do not find what lies behind a mirror or glass: there, emission that a path meets counts in
+// full.
+TEST_F(GlossyEstimatorTest, AgreeOnMirrorsAndGlass) {
+    Scene scene = open_room();
+    scene.environment = constant_environment(vec3(0.5f, 0.6f, 0.7f));
+    add_round_lights(scene);
+    add_balls(scene,
+              {MirrorMaterial{vec3(0.9f, 0.8f, 0.7f)}, DielectricMaterial{.absorption = vec3(2, 1, 0.5f)},
+               DielectricMaterial{.ior = 1.8f, .fresnel = Fresnel::exact}, MirrorMaterial{vec3(0.9f)}});
+    expect_estimators_agree(scene, 1024, 1024);
+}
+
+// The room is within a sphere that shines inwards, with the camera.
+TEST_F(GlossyEstimatorTest, AgreeWithinALight) {
+    Scene scene = open_room();
+    add_shape(scene, Sphere{vec3(0.5f, 1, 0), 5.0f}, 0, Emission{vec3(0.5f, 0.7f, 0.9f), true});
+    add_balls(scene, {DiffuseMaterial{vec3(0.5f)}, PhongMaterial{vec3(0.1f), vec3(0.7f), 10.0f},
+                      ConductorMaterial{vec3(0.9f, 0.7f, 0.4f), 0.5f}, DielectricMaterial{}});
+    expect_estimators_agree(scene, 512, 1024);
+}
+
+// The sky lights the room, though no camera ray sees it.
+TEST_F(GlossyEstimatorTest, AgreeOnAHiddenSky) {
+    Scene scene = open_room();
+    scene.environment = textured_sky();
+    scene.environment->visible = false;
+    add_balls(scene, {PhongMaterial{vec3(0.3f, 0.2f, 0.1f), vec3(0.6f, 0.5f, 0.4f), 10.0f},
+                      ConductorMaterial{vec3(0.9f, 0.7f, 0.4f), 0.5f}, DielectricMaterial{}});
+    expect_estimators_agree(scene, 512, 512);
+}
+
+// A lens and a lobe may want the same random numbers: samplers and roulette keep the mean with all features
+// at once.
+TEST_F(GlossyEstimatorTest, SamplersAgreeOnEverything) {
+    const Scene scene = scene_of_everything();
+    const Image independent = image(scene, settings(Estimator::mis, 4), 512);
+    for (const SamplerKind sampler : {SamplerKind::stratified, SamplerKind::sobol}) {
+        SCOPED_TRACE(int(sampler));
+        RenderSettings s = settings(Estimator::mis, 5);
+        s.sampler = sampler;
+        expect_same_expectation(image(scene, s, 512), independent);
+    }
+    RenderSettings always = settings(Estimator::mis, 6);
+    always.rr_depth = 0;
+    expect_same_expectation(image(scene, always, 1024), independent);
+}
+
+}  // namespace
+}  // namespace candela

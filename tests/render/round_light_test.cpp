@@ -1,0 +1,145 @@
+// Direct light of spheres and disks has closed forms.
+#include <cmath>
+
+#include "render_fixture.h"
+
+namespace candela {
+namespace {
+
+constexpr vec3 REFLECTANCE(0.8f, 0.5f, 0.2f);
+constexpr vec3 RADIANCE(1, 2, 3);
+
+class RoundLightTest : public RenderTest {
+  protected:
+    static RenderSettings settings(Estimator estimator) {
+        RenderSettings s = independent_settings(32, estimator, 1);
+        s.max_depth = 1;
+        return s;
+    }
+    // The floor at the origin must send out what `form_factor` of the light's radiance gives; samples per
+    // pixel for light samples (and MIS) and for BSDF samples, or 0 where one would need too many. The camera
+    // sees 13 mm of the floor to either side, over which the irradiance changes linearly, which cancels, and
+    // in second order by (13 mm / 1 m)^2 of itself, for lights at 1 m or more; a third of that on average.
+    void expect_form_factor(const Scene& scene, double form_factor, uint32_t light_spp,
+                            uint32_t bsdf_spp) const {
+        const glm::dvec3 expected = glm::dvec3(REFLECTANCE) * glm::dvec3(RADIANCE) * form_factor;
+        const auto test = [&](Estimator estimator, uint32_t spp) {
+            SCOPED_TRACE(int(estimator));
+            if (spp > 0) expect_mean(image_of(render(scene, settings(estimator), spp)), expected, 6e-5);
+        };
+        test(Estimator::light, light_spp);
+        test(Estimator::mis, light_spp);
+        test(Estimator::bsdf, bsdf_spp);
+    }
+    static Scene floor_under(const decltype(Shape::geometry)& light, bool two_sided = false) {
+        Scene scene = floor_seen_closely(REFLECTANCE);
+        add_shape(scene, light, 1, Emission{RADIANCE, two_sided});
+        return scene;
+    }
+    // Direction to the left, at that angle from the floor's normal [degrees].
+    static vec3 direction(double theta) {
+        return vec3(float(-std::sin(theta * M_PI / 180.0)), float(std::cos(theta * M_PI / 180.0)), 0);
+    }
+};
+
+// Above the horizon, a sphere lights a surface as a point of the same intensity does: (r / d)^2 cos(theta).
+// Ref: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-38.
+TEST_F(RoundLightTest, ASphereAboveTheHorizon) {
+    struct Case {
+        double radius, distance, theta;
+        uint32_t light_spp, bsdf_spp;
+    };
+    for (const Case c : {Case{0.5, 2.0, 0.0, 64, 4096}, Case{1.9, 2.0, 0.0, 1024, 128},
+                         Case{1.0, 2.0, 45.0, 256, 2048}, Case{0.01, 3.0, 60.0, 16, 0}}) {
+        SCOPED_TRACE(testing::Message() << "radius " << c.radius << " at " << c.distance << " m");
+        const vec3 center = float(c.distance) * direction(c.theta);
+        const double ratio = double(float(c.radius)) / c.distance;
+        expect_form_factor(floor_under(Sphere{center, float(c.radius)}),
+                           ratio * ratio * std::cos(c.theta * M_PI / 180.0), c.light_spp, c.bsdf_spp);
+    }
+}
+
+// Half of the sphere is below the floor: the form factor of a cap that the horizon cuts in half, for a point
+// in the plane of its centre. Ref: Howell, B-38 with the sphere's centre in the plane of the element:
+// (asin(r/d) - (r/d) sqrt(1 - (r/d)^2)) / pi.
+TEST_F(RoundLightTest, ASphereThatTheFloorCuts) {
+    const double s = 0.9;
+    const double form_factor = (std::asin(s) - s * std::sqrt(1.0 - s * s)) / M_PI;
+    expect_form_factor(floor_under(Sphere{vec3(-2, 0, 0), 1.8f}), form_factor, 2048, 2048);
+}
+
+// From within, a sphere fills the sky, if it shines inwards.
+TEST_F(RoundLightTest, ASphereAroundTheFloor) {
+    for (const bool two_sided : {false, true}) {
+        Scene scene = floor_under(Sphere{vec3(0.5f, 1, 0.3f), 20.0f}, two_sided);
+        scene.shapes[0].geometry = Disk{vec3(0), vec3(0, 0, 9), vec3(9, 0, 0)};
+        expect_form_factor(scene, two_sided ? 1.0 : 0.0, 1024, 16);
+    }
+}
+
+TEST_F(RoundLightTest, SpheresOfDifferentPowerAddUp) {
+    Scene scene = floor_under(Sphere{vec3(-1.5f, 2, 0), 0.5f});
+    add_shape(scene, Sphere{vec3(2, 1.5f, 0), 0.1f}, 1, Emission{9.0f * RADIANCE, true});
+    const double d3 = std::pow(2.5, 3.0);
+    expect_form_factor(scene, 0.25 * 2.0 / d3 + 9.0 * 0.01 * 1.5 / d3, 256, 0);
+}
+
+TEST_F(RoundLightTest, ASphereCastsAFullShadow) {
+    Scene scene = floor_under(Sphere{vec3(0, 3, 0), 0.2f});
+    add_shape(scene, Sphere{vec3(0, 1.5f, 0), 0.5f}, 1);
+    expect_form_factor(scene, 0.0, 64, 64);
+}
+
+// r^2 / (r^2 + d^2) on the axis. Ref: Howell, B-12.
+TEST_F(RoundLightTest, ADiskOnItsAxis) {
+    struct Case {
+        float radius, height;
+        uint32_t light_spp, bsdf_spp;
+    };
+    for (const Case c : {Case{1.0f, 2.0f, 256, 2048}, Case{4.0f, 1.0f, 2048, 64}, Case{0.02f, 2.0f, 16, 0}}) {
+        SCOPED_TRACE(testing::Message() << "radius " << c.radius << " at " << c.height << " m");
+        const double r2 = double(c.radius) * double(c.radius);
+        const double form_factor = r2 / (r2 + double(c.height) * double(c.height));
+        const Disk down{vec3(0, c.height, 0), vec3(c.radius, 0, 0), vec3(0, 0, c.radius)};
+        expect_form_factor(floor_under(down), form_factor, c.light_spp, c.bsdf_spp);
+        const Disk up{down.center, down.e2, down.e1};
+        expect_form_factor(floor_under(up), 0.0, 16, 16);
+        expect_form_factor(floor_under(up, true), form_factor, c.light_spp, c.bsdf_spp);
+    }
+}
+
+// A small ellipse that turns its face to the origin: area / (pi d^2) times the floor's cosine. Its own extent
+// changes that by no more than (0.01 / 2)^2 of itself.
+TEST_F(RoundLightTest, AnEllipseAcrossTheView) {
+    const vec3 n = -direction(50.0);
+    const vec3 e1(0, 0, 0.01f);
+    const vec3 e2 = 0.005f * cross(n, vec3(0, 0, 1));
+    ASSERT_GT(dot(cross(e1, e2), n), 0.0f);
+    const double area_over_pi = 0.01 * 0.005;
+    expect_form_factor(floor_under(Disk{-2.0f * n, e1, e2}),
+                       area_over_pi / 4.0 * std::cos(50.0 * M_PI / 180.0), 64, 0);
+}
+
+// What a camera sees is the light's radiance, on the front alone.
+TEST_F(RoundLightTest, ALightThatIsLookedAtShowsItsRadiance) {
+    Scene scene = scene_with_camera(vec3(0, 0, 3), vec3(0), 0.1f);
+    add_diffuse(scene, vec3(0));
+    const Disk front{vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
+    const Disk back{vec3(0), vec3(0, 1, 0), vec3(1, 0, 0)};
+    const Sphere outside{vec3(0), 1.0f};
+    const Sphere inside{vec3(0), 9.0f};
+    const auto seen = [&](const decltype(Shape::geometry)& light, bool two_sided) {
+        scene.shapes.clear();
+        add_shape(scene, light, 0, Emission{RADIANCE, two_sided});
+        return image_of(render(scene, settings(Estimator::mis), 4));
+    };
+    expect_pixels(seen(front, false), RADIANCE);
+    expect_pixels(seen(back, false), vec3(0));
+    expect_pixels(seen(back, true), RADIANCE);
+    expect_pixels(seen(outside, false), RADIANCE);
+    expect_pixels(seen(inside, false), vec3(0));
+    expect_pixels(seen(inside, true), RADIANCE);
+}
+
+}  // namespace
+}  // namespace candela
