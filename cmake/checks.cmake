@@ -17,6 +17,7 @@ candela_check(layers_test ${PYTHON3} cmake/checks/layers_test.py)
 candela_check(setup_test ${PYTHON3} cmake/checks/setup_test.py)
 candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
 candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes)
+candela_check(sky ${PYTHON3} tests/unit/sky_test.py scenes)
 
 # Needs a device, unlike the others.
 candela_check(readme ${PYTHON3} cmake/checks/readme.py README.md $<TARGET_FILE:candela>)
