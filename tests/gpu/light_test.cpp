@@ -1,25 +1,10 @@
-// Light samples: lights are chosen by their power, points uniformly by area, and densities say so.
+// Samples of flat lights: they are chosen by their power, points uniformly by area, and densities say so.
 #include <cmath>
 
-#include "chi_squared.h"
-#include "gpu/device_fixture.h"
-#include "support/reference_random.h"
-#include "support/scene_builders.h"
+#include "gpu/light_fixture.h"
 
 namespace candela {
 namespace {
-
-struct LightItem {
-    vec3 from;
-    uint32_t uc;
-    vec2 u;
-    vec2 unused{0};
-};
-
-struct LightResult {
-    vec3 p, n, wi, Li;
-    float pdf;
-};
 
 // One flat light per plane z = 0, 1, 2, ... (so that a sample tells its light), as expected from the scene
 // alone.
@@ -59,46 +44,49 @@ Scene scene_of_lights() {
     return scene;
 }
 
-class LightTest : public DeviceTest {
+class FlatLightTest : public LightTest {
   protected:
     static constexpr uint32_t CELLS = 8;
 
-    static size_t light_of(const LightResult& s) { return size_t(std::lround(s.p.z)); }
+    // The light whose plane the shadow ray's end is next to: 256 representable numbers at most.
+    static size_t light_of(const LightItem& item, const LightSample& s) {
+        return size_t(std::lround(item.from.z + s.shadow.z));
+    }
+    // The point on that light; the shadow ray's end is moved from there along the normal, z, alone.
+    static glm::dvec3 point_of(const LightItem& item, const LightSample& s) {
+        return {double(item.from.x) + double(s.shadow.x), double(item.from.y) + double(s.shadow.y),
+                double(light_of(item, s))};
+    }
     static double total_power() {
         double total = 0.0;
         for (const ExpectedLight& l : LIGHTS)
             total += l.power();
         return total;
     }
-    // Samples from random points above, between and below the lights.
-    std::vector<LightItem> items(size_t count) const {
+    // From random points above, between and below the lights, none of them nearer than 0.1 to a plane.
+    static std::vector<LightItem> items(size_t count) {
         Random random(60);
-        std::vector<LightItem> items(count);
+        std::vector<LightItem> items = random_items(vec3(0), count, 61);
         for (LightItem& item : items) {
-            item.from = 5.0f * random.cube() + vec3(0, 0, 2);
-            item.uc = random.bits();
-            item.u = random.square();
+            item.from = 5.0f * random.cube();
+            item.from.z = std::floor(item.from.z) + 2.1f + 0.8f * random.unit();
         }
         return items;
     }
-    std::vector<LightResult> run(const std::vector<LightItem>& items, SceneAccess access) const {
-        const DeviceScene scene(device(), build_gpu_scene(scene_of_lights()), access);
-        return map<LightResult>(
-            access == SceneAccess::texel_buffers ? kernels::light_sample : kernels::light_sample_storage,
-            items, {}, &scene);
-    }
 };
 
-TEST_F(LightTest, LightsAreChosenByPowerAndPointsByArea) {
+TEST_F(FlatLightTest, LightsAreChosenByPowerAndPointsByArea) {
     std::vector<double> chosen(LIGHTS.size());
     std::vector<std::vector<double>> cells(LIGHTS.size(), std::vector<double>(CELLS * CELLS));
-    for (const LightResult& s : run(items(200000), SceneAccess::texel_buffers)) {
-        const size_t i = light_of(s);
+    const std::vector<LightItem> sampled = items(200000);
+    const std::vector<LightSample> results = sample(build_gpu_scene(scene_of_lights()), sampled);
+    for (size_t k = 0; k < sampled.size(); ++k) {
+        const size_t i = light_of(sampled[k], results[k]);
         ASSERT_LT(i, LIGHTS.size());
         ++chosen[i];
         // Coordinates along e1 and e2, and from them ones in which the samples are uniform.
         const ExpectedLight& l = LIGHTS[i];
-        const glm::dvec3 d(glm::dvec3(s.p) - glm::dvec3(l.p)), e1(l.e1), e2(l.e2);
+        const glm::dvec3 d(point_of(sampled[k], results[k]) - glm::dvec3(l.p)), e1(l.e1), e2(l.e2);
         const double det = e1.x * e2.y - e1.y * e2.x;
         glm::dvec2 at((d.x * e2.y - d.y * e2.x) / det, (e1.x * d.y - e1.y * d.x) / det);
         const double sum = at.x + at.y;
@@ -119,35 +107,40 @@ TEST_F(LightTest, LightsAreChosenByPowerAndPointsByArea) {
 }
 
 // The density is that of the light times that of the point, taken to solid angle: pmf / area * distance^2 /
-// cos. A reference point in the plane of a light has none, or one that rounding decides; those are left out.
-TEST_F(LightTest, ASampleSaysWhatArrivesAndHowLikelyItWas) {
+// cos.
+TEST_F(FlatLightTest, ASampleSaysWhatArrivesAndHowLikelyItWas) {
     const std::vector<LightItem> sampled = items(20000);
     for (const SceneAccess access : {SceneAccess::texel_buffers, SceneAccess::storage_buffers}) {
-        const std::vector<LightResult> results = run(sampled, access);
+        const std::vector<LightSample> results = sample(build_gpu_scene(scene_of_lights()), sampled, access);
         for (size_t i = 0; i < sampled.size(); ++i) {
-            const LightResult& s = results[i];
-            const ExpectedLight& l = LIGHTS[light_of(s)];
-            const glm::dvec3 to_light(glm::dvec3(s.p) - glm::dvec3(sampled[i].from));
+            const LightSample& s = results[i];
+            const ExpectedLight& l = LIGHTS[light_of(sampled[i], s)];
+            const glm::dvec3 to_light = point_of(sampled[i], s) - glm::dvec3(sampled[i].from);
             const double distance = length(to_light);
             const double cosine = -to_light.z / distance;  // All lights face +z.
-            if (std::abs(cosine) < 1e-3) continue;
             ASSERT_LE(length(glm::dvec3(s.wi) - to_light / distance), 0x1p-20);
-            ASSERT_EQ(s.n, vec3(0, 0, cosine > 0.0 ? 1 : -1));
             ASSERT_EQ(s.Li, cosine > 0.0 || l.two_sided ? l.radiance : vec3(0.0f));
             const double pdf = l.power() / total_power() / l.area() * distance * distance / std::abs(cosine);
-            // A cosine of 1e-3 has a relative error of 1e3 times 2^-22.
+            // A cosine of 1e-2 has a relative error of 1e2 times 2^-22.
             ASSERT_NEAR(s.pdf, pdf, pdf * 0x1p-22 * (4.0 + 2.0 / std::abs(cosine)));
+            // The shadow ray ends before the light, by at most 256 representable numbers, or 2^-16 near 0.
+            const double gap = std::copysign(1.0, cosine) * (sampled[i].from.z + s.shadow.z - l.p.z);
+            ASSERT_GT(gap, 0.0);
+            ASSERT_LE(gap, std::max(257 * 0x1p-23 * 4.0, 0x1p-16) + 8 * 0x1p-24);
+            ASSERT_EQ(s.t_max, 1.0f);
+            // A ray that meets the same light there says the same.
+            if (s.light_met != light_of(sampled[i], s)) continue;
+            ASSERT_EQ(s.Li_met, s.Li);
+            ASSERT_NEAR(s.pdf_met, s.pdf, pdf * 0x1p-20 * (4.0 + 2.0 / std::abs(cosine)));
         }
     }
 }
 
-TEST_F(LightTest, APointOnTheLightItselfReceivesNothingFromThere) {
-    const LightItem at_the_sample{.from = vec3(0), .uc = 0, .u = vec2(0)};  // Light 0's corner.
-    const LightItem in_the_plane{.from = vec3(-1, 0, 0), .uc = 0, .u = vec2(0)};
-    for (const LightResult& s : run({at_the_sample, in_the_plane}, SceneAccess::texel_buffers)) {
-        ASSERT_EQ(s.p, vec3(0));
+TEST_F(FlatLightTest, APointOnTheLightItselfReceivesNothingFromThere) {
+    const LightItem at_the_sample{.from = vec3(0)};  // Light 0's corner.
+    const LightItem in_the_plane{.from = vec3(-1, 0, 0)};
+    for (const LightSample& s : sample(build_gpu_scene(scene_of_lights()), {at_the_sample, in_the_plane}))
         EXPECT_EQ(s.pdf, 0.0f);
-    }
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The small functions under everything: finiteness, cosine and sine, compensated sums, MIS weights, frames.
+// The small functions under everything: finiteness, cosine, sine and angle, compensated sums, MIS weights,
+// frames.
 #include <cmath>
 #include <limits>
 
@@ -19,6 +20,8 @@ class MathTest : public DeviceTest {
     struct Result {
         uint32_t finite;
         float cos, sin;
+        float cos_turn, sin_turn;
+        float angle;  // Of the point (x, y) [turns].
         float weight;
         float sum, compensation;
     };
@@ -52,6 +55,65 @@ TEST_F(MathTest, CosineAndSineOfAnOctantAreAccurate) {
         ASSERT_NEAR(results[i].cos, std::cos(double(items[i].v.x)), 0x1p-23);
         ASSERT_NEAR(results[i].sin, std::sin(double(items[i].v.x)), 0x1p-23);
     }
+}
+
+// The angle 2 pi (t - quarter), at most pi/4, has the roundings of the constant and of the product, 2^-24 of
+// itself each: with those of the series, 2^-22 covers both.
+TEST_F(MathTest, CosineAndSineOfATurnAreAccurate) {
+    std::vector<Item> items;
+    for (int i = 0; i <= 100000; ++i)
+        items.push_back({vec3(float(i) / 100000.0f, 1.0f, 0.0f)});
+    for (const float t : {0x1p-24f, 0.125f - 0x1p-24f, 0.125f + 0x1p-24f, 0.875f, 1.0f - 0x1p-24f})
+        items.push_back({vec3(t, 1.0f, 0.0f)});
+    const std::vector<Result> results = run(items);
+    for (size_t i = 0; i < items.size(); ++i) {
+        ASSERT_NEAR(results[i].cos_turn, std::cos(2.0 * M_PI * double(items[i].v.x)), 0x1p-22);
+        ASSERT_NEAR(results[i].sin_turn, std::sin(2.0 * M_PI * double(items[i].v.x)), 0x1p-22);
+    }
+    for (int quarter = 0; quarter <= 4; ++quarter) {
+        const Result r = results[size_t(quarter) * 25000];
+        EXPECT_EQ(r.cos_turn, quarter % 2 == 0 ? 1.0f - float(quarter % 4) : 0.0f);
+        EXPECT_EQ(r.sin_turn, quarter % 2 == 1 ? 2.0f - float(quarter) : 0.0f);
+    }
+}
+
+// Points all around, at every distance. In turns: the arc tangent of up to 1/8 has a division of 2.5 ulp,
+// 2^-25 in all, and three roundings of its own; the reflections add one of 1/2, 2^-25, and one of 1, 2^-25.
+TEST_F(MathTest, AnglesAreAccurateInEveryOctant) {
+    std::vector<Item> items;
+    for (const float distance : {1e-30f, 1e-3f, 1.0f, 1e30f}) {
+        for (int i = 0; i < 20000; ++i) {
+            const double angle = 2.0 * M_PI * (i + 0.5) / 20000.0;
+            items.push_back({distance * vec3(std::cos(angle), std::sin(angle), 0.0)});
+        }
+    }
+    for (const float tiny : {1e-20f, -1e-20f, 1e-7f, -1e-7f}) {
+        for (const float one : {1.0f, -1.0f}) {
+            items.push_back({vec3(one, tiny, 0.0f)});
+            items.push_back({vec3(tiny, one, 0.0f)});
+            items.push_back({vec3(one, one * (1.0f + tiny), 0.0f)});
+        }
+    }
+    const std::vector<Result> results = run(items);
+    for (size_t i = 0; i < items.size(); ++i) {
+        double expected = std::atan2(double(items[i].v.y), double(items[i].v.x)) / (2.0 * M_PI);
+        if (expected < 0.0) expected += 1.0;
+        ASSERT_NEAR(results[i].angle, expected, 0x1p-23) << items[i].v.x << ' ' << items[i].v.y;
+        ASSERT_GE(results[i].angle, 0.0f);
+        ASSERT_LE(results[i].angle, 1.0f);
+    }
+}
+
+TEST_F(MathTest, AnglesOfTheAxesAreExact) {
+    const std::vector<Result> results = run({{vec3(1, 0, 0)},
+                                             {vec3(0, 1, 0)},
+                                             {vec3(-1, 0, 0)},
+                                             {vec3(0, -1, 0)},
+                                             {vec3(0, 0, 0)},
+                                             {vec3(-0.0f, -0.0f, 0)}});
+    const std::vector<float> turns{0.0f, 0.25f, 0.5f, 0.75f, 0.0f, 0.0f};
+    for (size_t i = 0; i < turns.size(); ++i)
+        EXPECT_EQ(results[i].angle, turns[i]) << i;
 }
 
 // Kahan's sum is off by 2 * 2^-24 of the exact one, and sum - compensation by less. A plain sum would not

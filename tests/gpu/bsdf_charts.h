@@ -1,0 +1,93 @@
+// Charts of directions: coordinates (a, b) in [0, 1]^2 in which a lobe, however narrow, is spread out, so
+// that cells of equal size resolve it. All in double precision, from the formulas of the models.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "base/math.h"
+
+namespace candela {
+
+struct ChartPoint {
+    glm::dvec3 w;
+    double solid_angle;  // Per area of the chart [sr].
+};
+
+// An orthonormal frame around z: x, y.
+inline std::pair<glm::dvec3, glm::dvec3> axes_around(glm::dvec3 z) {
+    const glm::dvec3 other = std::abs(z.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 x = normalize(cross(other, z));
+    return {x, cross(z, x)};
+}
+
+inline double turn_of(double y, double x) {
+    return std::atan2(y, x) / (2.0 * M_PI) + 0.5;
+}
+
+// The whole sphere, by height and angle: equal solid angles.
+class SphereChart {
+  public:
+    ChartPoint at(double a, double b) const {
+        const double z = 2.0 * a - 1.0, phi = 2.0 * M_PI * (b - 0.5), r = std::sqrt(1.0 - z * z);
+        return {{r * std::cos(phi), r * std::sin(phi), z}, 4.0 * M_PI};
+    }
+    std::optional<glm::dvec2> find(glm::dvec3 w) const {
+        return glm::dvec2((w.z + 1.0) / 2.0, turn_of(w.y, w.x));
+    }
+};
+
+// The cone around an axis that holds SHARE of (n + 1) / (2 pi) cos^n, by its distribution function and the
+// angle.
+class LobeChart {
+  public:
+    LobeChart(glm::dvec3 axis, double n) : z_(axis), n_(n) { std::tie(x_, y_) = axes_around(axis); }
+    ChartPoint at(double a, double b) const {
+        const double log_cosine = std::log1p(-SHARE * a) / (n_ + 1.0), h = -std::expm1(log_cosine);
+        const double r = std::sqrt(h * (2.0 - h)), phi = 2.0 * M_PI * (b - 0.5);
+        return {r * std::cos(phi) * x_ + r * std::sin(phi) * y_ + (1.0 - h) * z_,
+                SHARE * 2.0 * M_PI / (n_ + 1.0) * std::exp(-n_ * log_cosine)};
+    }
+    // None outside of the cone.
+    std::optional<glm::dvec2> find(glm::dvec3 w) const {
+        const glm::dvec3 chord = w - z_;
+        const double h = std::min(0.5 * dot(chord, chord), 1.0);
+        const double a = -std::expm1((n_ + 1.0) * std::log1p(-h)) / SHARE;
+        if (a >= 1.0) return std::nullopt;
+        return glm::dvec2(a, turn_of(dot(w, y_), dot(w, x_)));
+    }
+
+  private:
+    static constexpr double SHARE = 15.0 / 16.0;
+
+    glm::dvec3 x_, y_, z_;
+    double n_;
+};
+
+// The reflections of wo on facets, by the slopes of those: with a = 1 - t^2, those of the GGX distribution
+// seen from above are uniform in a; seen at grazing angles, their density grows like 1 / t at most.
+class FacetChart {
+  public:
+    FacetChart(glm::dvec3 wo, double alpha) : wo_(wo), alpha_(alpha) {}
+    ChartPoint at(double s, double b) const {
+        const double t = 1.0 - s, a = 1.0 - t * t;
+        const double r = alpha_ * std::sqrt(a) / t, phi = 2.0 * M_PI * (b - 0.5);
+        const glm::dvec3 h = normalize(glm::dvec3(r * std::cos(phi), r * std::sin(phi), 1.0));
+        // d(slopes) = pi alpha^2 / (1 - a)^2 da db; d(h) = h.z^3 d(slopes); d(wi) = 4 |wo.h| d(h).
+        const double facets = M_PI * alpha_ * alpha_ / (t * t * t * t) * 2.0 * t * h.z * h.z * h.z;
+        return {2.0 * dot(wo_, h) * h - wo_, 4.0 * std::abs(dot(wo_, h)) * facets};
+    }
+    std::optional<glm::dvec2> find(glm::dvec3 w) const {
+        const glm::dvec3 h = normalize(wo_ + w);
+        const double r = std::hypot(h.x, h.y) / (alpha_ * h.z);
+        return glm::dvec2(1.0 - 1.0 / std::sqrt(1.0 + r * r), turn_of(h.y, h.x));
+    }
+
+  private:
+    glm::dvec3 wo_;
+    double alpha_;
+};
+
+}  // namespace candela
