@@ -24,9 +24,8 @@ float refracted_cosine(float sin2_theta, float eta) {
 
 // Reflectance of a dielectric boundary for unpolarised light: Schlick's approximation, with the angle on the side of
 // the lower index, where it grows to 90 degrees as the other nears the critical angle; so that both sides reflect
-// alike. 1 beyond the critical angle.
+// alike. 1 beyond the critical angle, where cos_t is 0.
 float fresnel_dielectric_schlick(float cos_o, float cos_t, float eta) {
-    if (cos_t == 0.0) return 1.0;
     float normal = square((eta - 1.0) / (eta + 1.0));
     return mix(normal, 1.0, schlick_weight(eta >= 1.0 ? cos_o : cos_t));
 }

@@ -30,7 +30,7 @@ LightSample area_light_sample_at(Light l, vec3 p_reference, vec3 p, vec3 n, floa
     if (cos_light < 0.0) n = -n;
     s.pdf = distance_squared > 0.0 ? area_light_pdf_li(l, distance_squared, cos_light) : 0.0;
     s.shadow = offset_origin(p, n) + p_error * n - p_reference;
-    s.t_max = 1.0;
+    s.t_max = LIGHT_T_MAX;
     return s;
 }
 

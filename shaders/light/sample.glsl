@@ -2,6 +2,10 @@
 #ifndef LIGHT_SAMPLE_GLSL
 #define LIGHT_SAMPLE_GLSL
 
+// Shadow rays end a little before a light, lest they meet it: from far away, its point is rounded by more than
+// offset_origin moves it.
+const float LIGHT_T_MAX = 1.0 - 1.0 / 524288.0;
+
 // A point on a light, as seen from a reference point.
 struct LightSample {
     vec3 wi;      // Unit direction from the reference point.

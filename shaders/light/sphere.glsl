@@ -33,7 +33,7 @@ LightSample sphere_light_sample_li(Light l, vec3 p_reference, vec2 u) {
     float t = sqrt(distance_squared) * w.z - sqrt(max(0.0, square(radius) - distance_squared * dot(w.xy, w.xy)));
     vec3 n = normalize(t * s.wi - to_center);
     s.shadow = offset_origin(l.p + radius * n, n) + error * n - p_reference;
-    s.t_max = 1.0;
+    s.t_max = LIGHT_T_MAX;
     return s;
 }
 

@@ -127,7 +127,8 @@ TEST_F(FlatLightTest, ASampleSaysWhatArrivesAndHowLikelyItWas) {
             const double gap = std::copysign(1.0, cosine) * (sampled[i].from.z + s.shadow.z - l.p.z);
             ASSERT_GT(gap, 0.0);
             ASSERT_LE(gap, std::max(257 * 0x1p-23 * 4.0, 0x1p-16) + 8 * 0x1p-24);
-            ASSERT_EQ(s.t_max, 1.0f);
+            ASSERT_LT(s.t_max, 1.0f);  // A millionth before the point, at most two.
+            ASSERT_GE(s.t_max, 1.0f - 0x1p-19f);
             // A ray that meets the same light there says the same.
             if (s.light_met != light_of(sampled[i], s)) continue;
             ASSERT_EQ(s.Li_met, s.Li);
@@ -141,6 +142,24 @@ TEST_F(FlatLightTest, APointOnTheLightItselfReceivesNothingFromThere) {
     const LightItem in_the_plane{.from = vec3(-1, 0, 0)};
     for (const LightSample& s : sample(build_gpu_scene(scene_of_lights()), {at_the_sample, in_the_plane}))
         EXPECT_EQ(s.pdf, 0.0f);
+}
+
+// A panel that slopes a little, next to a coordinate plane, where offset_origin moves a point by 2^-16 only:
+// seen from afar, the points are rounded by more.
+TEST_F(FlatLightTest, AFarLightDoesNotShadowItself) {
+    Scene scene = scene_with_camera(vec3(0), vec3(0, 0, -1), 1.0f);
+    add_diffuse(scene, vec3(0.0f));
+    scene.shapes.push_back(
+        {.geometry = parallelogram(vec3(-1, 0, 0.01f), vec3(2, 0, 0.003f), vec3(0, 1, 0.002f)),
+         .material = 0,
+         .emission = Emission{.radiance = vec3(1), .two_sided = false}});
+    const GpuScene gpu = build_gpu_scene(scene);
+    uint32_t seed = 70;
+    for (const float distance : {1.0f, 1e2f, 1e3f, 1e4f, 1e5f}) {
+        const vec3 from = distance * normalize(vec3(0.5f, 0.4f, 1));
+        for (const LightSample& s : sample(gpu, random_items(from, 2000, seed++)))
+            ASSERT_EQ(s.occluded, 0u) << distance << " m away";
+    }
 }
 
 }  // namespace
