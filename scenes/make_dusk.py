@@ -8,7 +8,7 @@ meets it by chance, as all light behind glass must, makes little noise.
 import math
 from pathlib import Path
 
-from make_sky import encode_component, rgbe
+import radiance_picture
 
 WIDTH, HEIGHT = 512, 256
 
@@ -60,12 +60,14 @@ def radiance(azimuth, elevation):
 
 def encoded_row(row):
     elevation = math.pi * (0.5 - (row + 0.5) / HEIGHT)
-    pixels = [rgbe(radiance(2 * math.pi * ((column + 0.5) / WIDTH - 0.5), elevation)) for column in range(WIDTH)]
-    components = (encode_component([pixel[c] for pixel in pixels]) for c in range(4))
-    return bytes((2, 2, WIDTH >> 8, WIDTH & 255)) + b"".join(components)
+    azimuths = [2 * math.pi * ((column + 0.5) / WIDTH - 0.5) for column in range(WIDTH)]
+    return radiance_picture.encoded_row([radiance(azimuth, elevation) for azimuth in azimuths])
+
+
+def header():
+    return radiance_picture.header("make_dusk.py", WIDTH, HEIGHT)
 
 
 if __name__ == "__main__":
-    text = f"#?RADIANCE\n# Made by make_dusk.py.\nFORMAT=32-bit_rle_rgbe\n\n-Y {HEIGHT} +X {WIDTH}\n"
     rows = [encoded_row(row) for row in range(HEIGHT)]
-    Path(__file__).with_name("dusk.hdr").write_bytes(text.encode() + b"".join(rows))
+    Path(__file__).with_name("dusk.hdr").write_bytes(header() + b"".join(rows))

@@ -11,6 +11,8 @@ import math
 import random
 from pathlib import Path
 
+import radiance_picture
+
 WIDTH, HEIGHT = 1024, 512
 TEXEL = 2 * math.pi / WIDTH  # [rad]
 
@@ -319,55 +321,15 @@ def radiance(column, row):
     return add_hills(colour, d, elevation, veil) if 0 < elevation < 0.15 else colour
 
 
-# --- The file: Radiance RGBE -----------------------------------------------------------------------------------------
-
-
-def rgbe(rgb):
-    largest = max(rgb)
-    if largest < 1e-32:
-        return (0, 0, 0, 0)
-    exponent = math.frexp(largest)[1]
-    mantissas = [math.floor(math.ldexp(c, 8 - exponent) + 0.5) for c in rgb]
-    if max(mantissas) == 256:  # Rounded up to the next power of two.
-        exponent += 1
-        mantissas = [math.floor(math.ldexp(c, 8 - exponent) + 0.5) for c in rgb]
-    return (*mantissas, exponent + 128)
-
-
-def encode_component(values):
-    """Runs of at least 3 equal bytes, and the bytes between them as they are."""
-    encoded, pending = bytearray(), bytearray()
-
-    def flush():
-        for begin in range(0, len(pending), 128):
-            part = pending[begin : begin + 128]
-            encoded.append(len(part))
-            encoded.extend(part)
-        pending.clear()
-
-    at = 0
-    while at < len(values):
-        end = at
-        while end < len(values) and values[end] == values[at] and end - at < 127:
-            end += 1
-        if end - at >= 3:
-            flush()
-            encoded.extend((128 + end - at, values[at]))
-        else:
-            pending.extend(values[at:end])
-        at = end
-    flush()
-    return bytes(encoded)
+# --- The file --------------------------------------------------------------------------------------------------------
 
 
 def encoded_row(row):
-    pixels = [rgbe(radiance(column, row)) for column in range(WIDTH)]
-    components = (encode_component([pixel[c] for pixel in pixels]) for c in range(4))
-    return bytes((2, 2, WIDTH >> 8, WIDTH & 255)) + b"".join(components)
+    return radiance_picture.encoded_row([radiance(column, row) for column in range(WIDTH)])
 
 
 def header():
-    return f"#?RADIANCE\n# Made by make_sky.py.\nFORMAT=32-bit_rle_rgbe\n\n-Y {HEIGHT} +X {WIDTH}\n".encode()
+    return radiance_picture.header("make_sky.py", WIDTH, HEIGHT)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Runs the commands of README.md, in order, as a reader would, but in an empty folder beside links to the scenes, the
 tests and the program. Every ```sh block counts, so a command of a kind that is unknown here is an error. Shell scripts
-must only exist: this check is a part of what they do.
+must only exist: this check is a part of what they do. The commands in the captions of pictures take minutes; they run
+with a single sample per pixel.
 
 usage: readme.py README CANDELA      Prints each command and what went wrong; exits 1 if anything did.
 """
@@ -14,6 +15,7 @@ import tempfile
 import time
 from pathlib import Path
 
+CAPTION = re.compile(r"`(candela render [^`]*)`")
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 WRITES = ("-o", "--output", "--heatmap", "--report")  # Options whose value is a file that must be there afterwards.
 
@@ -22,6 +24,12 @@ def commands(text):
     """The commands of all ```sh blocks, continued lines joined, comments left out."""
     lines = "".join(BLOCK.findall(text)).replace("\\\n", " ").splitlines()
     return [line.strip() for line in lines if line.strip() and not line.strip().startswith("#")]
+
+
+def caption_commands(text):
+    """The commands in running text, each at one sample per pixel."""
+    found = [" ".join(command.split()) for command in CAPTION.findall(text)]
+    return [re.sub(r" --spp \d+", "", command) + " --spp 1" for command in found if "scenes/" in command]
 
 
 def written_files(command):
@@ -49,7 +57,8 @@ def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     readme, candela = (Path(argument).resolve() for argument in sys.argv[1:])
-    found = commands(readme.read_text(encoding="utf-8"))
+    text = readme.read_text(encoding="utf-8")
+    found = commands(text) + caption_commands(text)
     problems = 0
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "build/release").mkdir(parents=True)

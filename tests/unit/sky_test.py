@@ -1,32 +1,42 @@
 #!/usr/bin/env python3
-"""Checks that scenes/sky.hdr is what scenes/make_sky.py makes, in some of its rows: sky_test.py SCENES_DIR."""
+"""Checks that the skies of a folder are, in some rows, what the scripts beside them make: sky_test.py SCENES_DIR."""
 
+import importlib
 import sys
 from pathlib import Path
 
 sys.dont_write_bytecode = True
 
+SKIES = {"sky.hdr": "make_sky", "dusk.hdr": "make_dusk"}
+CHECKED_ROWS = 16
 
-def main(folder):
-    sys.path.insert(0, str(folder))
-    import make_sky
 
-    data = (folder / "sky.hdr").read_bytes()
-    failures = []
-    if not data.startswith(make_sky.header()):
-        failures.append("the header differs")
-    at, rows = len(make_sky.header()), range(0, make_sky.HEIGHT, 32)
-    for row in rows:
-        encoded = make_sky.encoded_row(row)
+def differences(path, maker):
+    """What of the file is not as the script makes it."""
+    data = path.read_bytes()
+    at = len(maker.header())
+    if not data.startswith(maker.header()):
+        return ["the header differs"]
+    found_differences = []
+    for row in range(0, maker.HEIGHT, maker.HEIGHT // CHECKED_ROWS):
+        encoded = maker.encoded_row(row)
         found = data.find(encoded, at)
         # The first row follows the header, and each row those before it.
         if found < 0 or (row == 0 and found != at):
-            failures.append(f"row {row} differs")
+            found_differences.append(f"row {row} differs")
         else:
             at = found + len(encoded)
-    for failure in failures:
-        print(f"{folder / 'sky.hdr'}: {failure}; run make_sky.py", file=sys.stderr)
-    print(f"{len(rows)} rows of {make_sky.HEIGHT} checked, {len(failures)} failures")
+    return found_differences
+
+
+def main(folder):
+    sys.path.insert(0, str(folder))
+    failures = 0
+    for name, maker in SKIES.items():
+        for difference in differences(folder / name, importlib.import_module(maker)):
+            print(f"{folder / name}: {difference}; run {maker}.py", file=sys.stderr)
+            failures += 1
+    print(f"{len(SKIES)} skies checked, {failures} failures")
     return 1 if failures else 0
 
 
