@@ -75,7 +75,7 @@ class HdrReader {
             const std::string_view name = text.substr(0, equals);
             const std::string_view value = text.substr(equals + 1);
             if (name == "FORMAT" && value != "32-bit_rle_rgbe") {
-                fail("its format is \"" + std::string(value) + "\"; convert it to \"32-bit_rle_rgbe\"");
+                fail("its format is \"" + std::string(value) + R"("; convert it to "32-bit_rle_rgbe")");
             } else if (name == "EXPOSURE") {
                 divisor_ *= read_factors<1>(text, value)[0];
             } else if (name == "COLORCORR") {
@@ -122,7 +122,7 @@ class HdrReader {
         }
         if (first != "-Y" || second != "+X") {
             fail("its pixels run as \"" + text +
-                 "\" says; turn the image so that it says \"-Y HEIGHT +X WIDTH\"");
+                 R"(" says; turn the image so that it says "-Y HEIGHT +X WIDTH")");
         }
         return {uint32_t(width), uint32_t(height)};
     }

@@ -43,7 +43,7 @@ Environment read_environment(const Node& node, const std::filesystem::path& fold
     const auto file = node.find("file");
     const auto radiance = node.find("radiance");
     if (file.has_value() == radiance.has_value()) {
-        node.fail("the environment needs either \"file\", an image, or \"radiance\", a constant");
+        node.fail(R"(the environment needs either "file", an image, or "radiance", a constant)");
     }
     Environment environment;
     if (file) environment = load(*file, folder, warnings);

@@ -57,7 +57,7 @@ Model read_conductor(const Node& node) {
     const vec3 reflectance(node.require("reflectance").reflectance());
     const Node alpha = node.require("alpha");
     if (alpha.number() == 0.0) {
-        alpha.fail("a metal without any roughness is no \"conductor\"; use the type \"mirror\"");
+        alpha.fail(R"(a metal without any roughness is no "conductor"; use the type "mirror")");
     }
     return ConductorMaterial{reflectance, alpha.number(MIN_ALPHA, 1.0f)};
 }
