@@ -1,10 +1,9 @@
 // MTL files: the material that each statement makes, and what is refused, in which words.
 #include "scene/mtl.h"
 
-#include <random>
-
 #include <gtest/gtest.h>
 
+#include "damage.h"
 #include "scene_fixture.h"
 
 namespace candela {
@@ -212,17 +211,7 @@ TEST_F(Mtl, LoadsOrIsRefusedAfterAnyChangeOfAByte) {
         "newmtl a\nKd 1 0.5 0\nKs 0.5 0.5 0.5\nNs 10\nillum 2\nd 0.5\nnewmtl b\nillum 7\nNi 1.5\nmap_Kd "
         "x.png\n";
     const std::string likely = "KdsNietwm#-.e0123 \n\r";
-    std::mt19937 random(1);
-    size_t refused = 0;
-    for (int i = 0; i < 2000; ++i) {
-        std::string text = good.substr(0, i % 2 == 0 ? random() % good.size() + 1 : good.size());
-        text[random() % text.size()] = i % 4 < 2 ? char(random()) : likely[random() % likely.size()];
-        try {
-            load(text);
-        } catch (const Error&) {
-            ++refused;
-        }
-    }
+    const size_t refused = count_refused(good, likely, 2000, [&](const std::string& text) { load(text); });
     EXPECT_GT(refused, 300u);
     EXPECT_LT(refused, 2000u);
 }
