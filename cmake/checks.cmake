@@ -24,8 +24,9 @@ candela_check(readme ${PYTHON3} cmake/checks/readme.py README.md $<TARGET_FILE:c
 set_tests_properties(readme PROPERTIES LABELS cli RUN_SERIAL TRUE)
 
 get_target_property(spirv candela_render CANDELA_SPIRV)
+get_target_property(probe_spirv candela_selftest CANDELA_SPIRV)
 get_target_property(test_spirv test_support CANDELA_SPIRV)
-foreach(file IN LISTS spirv test_spirv)
+foreach(file IN LISTS spirv probe_spirv test_spirv)
     cmake_path(GET file STEM name)
     candela_check(spirv_val.${name} ${SPIRV_VAL} --target-env vulkan1.2 ${file})
 endforeach()

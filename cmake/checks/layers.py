@@ -14,6 +14,7 @@ MAY_INCLUDE = {
     "host/bvh": ["host/base", "shaders/shared"],
     "host/vk": ["host/base/error.h"],
     "host/render": ["host/base", "host/scene", "host/bvh", "host/vk", "shaders/shared"],
+    "host/selftest": ["host/base", "host/scene", "host/bvh", "host/vk", "host/render", "shaders/shared"],
     "host/cli": ["host", "shaders/shared"],
     "host": ["host", "shaders/shared"],
     "shaders/shared": ["host/base/math.h"],
@@ -23,17 +24,22 @@ MAY_INCLUDE = {
     "shaders/light": ["shaders/shared", "shaders/base", "shaders/scene"],
     "shaders/integrator": ["shaders"],
     "shaders/kernels": ["shaders"],
+    "shaders/probes": ["shaders"],
 }
+
+# Where kernels are, and the only other files that declare buffers or images.
+KERNEL_FOLDERS = ("shaders/kernels", "shaders/probes")
+DECLARE_BUFFERS = ("shaders/scene/scene_data.glsl", "shaders/probes/items.glsl")
 
 # Library -> what its includes look like, and the folders that may see it, even through other files.
 LIBRARIES = {
-    "GLM": (r"glm/", ["host/base", "host/scene", "host/bvh", "host/render", "host/cli", "host"]),
+    "GLM": (r"glm/", ["host/base", "host/scene", "host/bvh", "host/render", "host/selftest", "host/cli", "host"]),
     "stb": (r"stb_", ["host/base"]),
     "OpenEXR": (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex)", ["host/base"]),
     "nlohmann-json": (r"nlohmann/", ["host/scene", "host/cli"]),
     "tinyobjloader": (r"tiny_obj_loader", ["host/scene"]),
     "CLI11": (r"CLI/", ["host/cli"]),
-    "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/cli", "host"]),
+    "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/selftest", "host/cli", "host"]),
 }
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
@@ -114,17 +120,17 @@ class Checker:
                 self.report(name, 1, "lacks #pragma once")
             return
         is_kernel = name.endswith(".comp.glsl")
-        if is_kernel != (folder == "shaders/kernels"):
-            self.report(name, 1, "kernels, and they alone, are *.comp.glsl in shaders/kernels/")
+        if is_kernel and folder not in KERNEL_FOLDERS or not is_kernel and folder == "shaders/kernels":
+            self.report(name, 1, "kernels, and they alone, are *.comp.glsl in shaders/kernels/; probes are in shaders/probes/")
         if is_kernel != bool(MAIN.search(text)):
             self.report(name, 1, "kernels, and they alone, define main()")
         guard = re.sub(r"\W", "_", name.removeprefix("shaders/")).upper()
         if not is_kernel and f"#ifndef {guard}\n#define {guard}\n" not in text:
             self.report(name, 1, f"lacks the include guard {guard}")
         binding = BINDING.search(text)
-        if binding and not is_kernel and name != "shaders/scene/scene_data.glsl":
+        if binding and not is_kernel and name not in DECLARE_BUFFERS:
             line = text.count("\n", 0, binding.end()) + 1
-            self.report(name, line, "declares a buffer or an image; only scene/scene_data.glsl and kernels do")
+            self.report(name, line, "declares a buffer or an image; only scene/scene_data.glsl, kernels and probes do")
 
     def run(self):
         for name in self.files:

@@ -1,10 +1,13 @@
 // Special functions for p-values: series where they converge fast, continued fractions elsewhere.
 #include "base/statistics.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 namespace candela {
 namespace {
@@ -105,6 +108,40 @@ double gamma_q(double a, double x) {
 
 double chi_squared_p_value(double statistic, double degrees_of_freedom) {
     return gamma_q(0.5 * degrees_of_freedom, 0.5 * statistic);
+}
+
+double pearson_p_value(std::span<const double> counts, std::span<const double> expected) {
+    constexpr double LEAST_EXPECTED = 5.0;  // Of a pool, so that its count is nearly normal.
+    assert(counts.size() == expected.size());
+    const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
+    assert(total > 0.0);
+    const double scale = std::accumulate(counts.begin(), counts.end(), 0.0) / total;
+    std::vector<size_t> order(expected.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::ranges::sort(order, {}, [&](size_t i) { return expected[i]; });
+
+    struct Pool {
+        double count = 0.0;
+        double expected = 0.0;
+    };
+    std::vector<Pool> pools(1);
+    for (const size_t i : order) {
+        if (expected[i] == 0.0 && counts[i] > 0.0) return 0.0;
+        if (pools.back().expected >= LEAST_EXPECTED) pools.emplace_back();
+        pools.back().count += counts[i];
+        pools.back().expected += expected[i] * scale;
+    }
+    if (pools.size() > 1 && pools.back().expected < LEAST_EXPECTED) {
+        const Pool rest = pools.back();
+        pools.pop_back();
+        pools.back().count += rest.count;
+        pools.back().expected += rest.expected;
+    }
+    if (pools.size() < 2) return 1.0;
+    double statistic = 0.0;
+    for (const Pool& pool : pools)
+        statistic += (pool.count - pool.expected) * (pool.count - pool.expected) / pool.expected;
+    return chi_squared_p_value(statistic, double(pools.size() - 1));
 }
 
 double beta_i(double x, double a, double b) {

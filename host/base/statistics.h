@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace candela {
 
@@ -27,6 +28,12 @@ double gamma_q(double a, double x);
 // Probability that a chi-squared statistic of that many degrees of freedom (> 0) is at least `statistic` (>=
 // 0).
 double chi_squared_p_value(double statistic, double degrees_of_freedom);
+
+// Pearson's test: the probability of counts at least as unlikely as these, if each sample falls into bin i
+// with a probability proportional to `expected[i]` (>= 0, not all 0; as many as counts). Bins are pooled,
+// smallest first, until each pool expects 5 samples or more; what is left over joins the last pool. A sample
+// in a bin that expects none gives 0; fewer than two pools, which can say nothing, give 1.
+double pearson_p_value(std::span<const double> counts, std::span<const double> expected);
 
 // Regularised incomplete beta function I_x(a, b), for a, b > 0 and x in [0, 1]; in [0, 1].
 // Ref: NIST Digital Library of Mathematical Functions, 8.17.4 (symmetry), 8.17.22 (continued fraction).

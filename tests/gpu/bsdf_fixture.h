@@ -5,36 +5,12 @@
 #include <cmath>
 #include <vector>
 
-#include "gpu/chi_squared.h"
+#include "base/statistics.h"
 #include "gpu/device_fixture.h"
+#include "selftest/random.h"
 #include "shared/material.h"
-#include "support/reference_random.h"
 
 namespace candela {
-
-struct BsdfItem {
-    MaterialRecord material;
-    vec3 wo{0, 0, 1};
-    float unused0 = 0.0f;
-    vec3 wi{0, 0, 1};
-    float unused1 = 0.0f;
-    vec2 u{0};
-    float uc = 0.0f;
-    uint32_t back = 0;  // 1: wo is on the back side of the surface.
-};
-static_assert(sizeof(BsdfItem) == 80);
-
-// `f` and `pdf_of_wi` are those at BsdfItem::wi, the rest belongs to the sample that u and uc choose.
-struct BsdfResult {
-    vec3 wi, weight;
-    float pdf;
-    uint32_t delta;
-    float eta;
-    vec3 f_of_sample;
-    float pdf_of_sample;
-    vec3 f;
-    float pdf_of_wi;
-};
 
 inline MaterialRecord diffuse(vec3 reflectance) {
     return {MATERIAL_DIFFUSE, reflectance, vec3(0.0f), 0.0f};

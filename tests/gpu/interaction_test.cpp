@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "gpu/device_fixture.h"
-#include "support/reference_random.h"
+#include "selftest/random.h"
 #include "support/scene_builders.h"
 
 namespace candela {

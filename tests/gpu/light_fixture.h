@@ -5,33 +5,12 @@
 #include <cmath>
 #include <vector>
 
-#include "gpu/chi_squared.h"
+#include "base/statistics.h"
 #include "gpu/device_fixture.h"
-#include "support/reference_random.h"
+#include "selftest/random.h"
 #include "support/scene_builders.h"
 
 namespace candela {
-
-// Random bits for a light sample from a reference point: one word chooses the light, two the point.
-struct LightItem {
-    vec3 from{0};
-    uint32_t uc = 0;
-    uvec2 u{0};
-    uvec2 unused{0};
-};
-
-struct LightSample {
-    vec3 wi, Li;
-    float pdf;
-    vec3 shadow;
-    float t_max;
-    uint32_t occluded;  // The shadow ray is.
-    // What a ray in the direction wi meets: a light, or NO_LIGHT for anything else and for the sky; the
-    // density that light samples have there; and its radiance.
-    uint32_t light_met;
-    float pdf_met;
-    vec3 Li_met;
-};
 
 class LightTest : public DeviceTest {
   protected:

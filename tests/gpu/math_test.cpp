@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "gpu/device_fixture.h"
-#include "support/reference_random.h"
+#include "selftest/random.h"
 
 namespace candela {
 namespace {

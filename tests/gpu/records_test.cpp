@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "gpu/device_fixture.h"
+#include "selftest/random.h"
 #include "shared/bvh_node.h"
 #include "shared/light.h"
 #include "shared/material.h"
 #include "shared/primitive.h"
-#include "support/reference_random.h"
 
 namespace candela {
 namespace {

@@ -3,8 +3,8 @@
 #include <set>
 
 #include "gpu/device_fixture.h"
-#include "support/reference_random.h"
-#include "support/reference_sampler.h"
+#include "selftest/random.h"
+#include "selftest/reference_sampler.h"
 
 namespace candela {
 namespace {

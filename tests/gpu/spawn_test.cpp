@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "gpu/device_fixture.h"
+#include "selftest/random.h"
 #include "shared/primitive.h"
-#include "support/reference_random.h"
 
 namespace candela {
 namespace {

@@ -5,30 +5,12 @@
 #include <vector>
 
 #include "gpu/device_fixture.h"
-#include "support/reference_random.h"
+#include "selftest/random.h"
 #include "support/scene_builders.h"
 
 namespace candela {
 
 inline constexpr float NO_HIT = 3.4028234e38f;  // FLOAT_MAX of base/math.glsl.
-
-struct RayItem {
-    vec3 o;
-    float unused0;
-    vec3 d;
-    float unused1;
-};
-
-struct TraversalResult {
-    float t;
-    uint32_t id;
-    vec2 b;
-    float brute_t;
-    uint32_t brute_id;
-    uint32_t occluded_before;  // By anything nearer than the hit,
-    uint32_t occluded_at;      // up to the float above its t,
-    uint32_t occluded;         // at any distance.
-};
 
 using Rays = std::vector<RayItem>;
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <set>
 
-#include "chi_squared.h"
+#include "base/statistics.h"
 #include "gpu/device_fixture.h"
-#include "support/reference_random.h"
+#include "selftest/random.h"
 
 namespace candela {
 namespace {
@@ -53,7 +53,7 @@ class WarpTest : public DeviceTest {
             const auto cell = [](double x) { return std::min(uint32_t(std::max(x, 0.0)), CELLS - 1); };
             ++counts[cell(at.x) * CELLS + cell(at.y)];
         }
-        return chi_squared_p_value_of(counts, std::vector<double>(counts.size(), 1.0));
+        return pearson_p_value(counts, std::vector<double>(counts.size(), 1.0));
     }
     // Angle around the origin as a share of a full turn.
     static double turn(double x, double y) { return std::atan2(y, x) / (2.0 * M_PI) + 0.5; }
@@ -207,7 +207,7 @@ TEST_F(WarpTest, VisibleNormalsFollowTheirDensity) {
                 EXPECT_LT(counts[i], 10.0);
                 counts[i] = 0.0;
             }
-            EXPECT_GT(chi_squared_p_value_of(counts, expected), level) << alpha << ", cosine " << w.z;
+            EXPECT_GT(pearson_p_value(counts, expected), level) << alpha << ", cosine " << w.z;
         }
     }
 }

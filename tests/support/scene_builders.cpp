@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "scene/loader.h"
-#include "support/reference_random.h"
+#include "selftest/random.h"
 
 namespace candela {
 

@@ -9,7 +9,7 @@
 #include "base/file.h"
 #include "base/image_io.h"
 #include "base_fixture.h"
-#include "support/reference_random.h"
+#include "selftest/random.h"
 
 namespace candela {
 namespace {

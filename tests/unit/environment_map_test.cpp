@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/reference_random.h"
+#include "selftest/random.h"
 
 namespace candela {
 namespace {

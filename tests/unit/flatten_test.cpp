@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/reference_random.h"
+#include "selftest/random.h"
 #include "support/scene_builders.h"
 
 namespace candela {

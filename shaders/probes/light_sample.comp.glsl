@@ -6,8 +6,8 @@
 
 #define ITEM_WORDS 2u
 #define RESULT_WORDS 17u
-#include "items.glsl"
 #include "light/light_sampler.glsl"
+#include "probes/items.glsl"
 #include "scene/interaction.glsl"
 
 void main() {

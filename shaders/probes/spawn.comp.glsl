@@ -5,7 +5,7 @@
 
 #define ITEM_WORDS 4u
 #define RESULT_WORDS 7u
-#include "items.glsl"
+#include "probes/items.glsl"
 #include "scene/triangle.glsl"
 #include "shared/primitive.h"
 

@@ -1,5 +1,5 @@
 // See reference_sampler.h.
-#include "support/reference_sampler.h"
+#include "selftest/reference_sampler.h"
 
 #include <array>
 

@@ -5,7 +5,7 @@
 
 #define ITEM_WORDS 2u
 #define RESULT_WORDS 9u
-#include "items.glsl"
+#include "probes/items.glsl"
 #include "scene/traversal.glsl"
 
 Hit brute_force(Ray ray) {

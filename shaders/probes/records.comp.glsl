@@ -4,7 +4,7 @@
 
 #define ITEM_WORDS 1u
 #define RESULT_WORDS 106u
-#include "items.glsl"
+#include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
 void put_parameters(Parameters p) {

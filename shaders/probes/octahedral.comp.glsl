@@ -4,7 +4,7 @@
 
 #define ITEM_WORDS 1u
 #define RESULT_WORDS 3u
-#include "items.glsl"
+#include "probes/items.glsl"
 #include "shared/primitive.h"
 
 void main() {

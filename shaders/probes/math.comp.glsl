@@ -6,7 +6,7 @@
 #define ITEM_WORDS 1u
 #define RESULT_WORDS 9u
 #include "base/warp.glsl"
-#include "items.glsl"
+#include "probes/items.glsl"
 
 void main() {
     if (past_end()) return;

@@ -1,7 +1,7 @@
-// What the test kernels share: invocation i reads item i, ITEM_WORDS words of uvec4, and writes result i,
+// What the probes share: invocation i reads item i, ITEM_WORDS words of uvec4, and writes result i,
 // RESULT_WORDS words, value after value. A kernel defines both numbers before it includes this.
-#ifndef ITEMS_GLSL
-#define ITEMS_GLSL
+#ifndef PROBES_ITEMS_GLSL
+#define PROBES_ITEMS_GLSL
 
 layout(local_size_x = 64) in;
 

@@ -4,8 +4,8 @@
 
 #define ITEM_WORDS 1u
 #define RESULT_WORDS 4u
-#include "items.glsl"
 #include "light/environment.glsl"
+#include "probes/items.glsl"
 
 void main() {
     if (past_end()) return;

@@ -5,7 +5,7 @@
 
 #define ITEM_WORDS 3u
 #define RESULT_WORDS 17u
-#include "items.glsl"
+#include "probes/items.glsl"
 #include "scene/interaction.glsl"
 
 void main() {

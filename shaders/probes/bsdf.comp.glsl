@@ -6,7 +6,7 @@
 #define ITEM_WORDS 5u
 #define RESULT_WORDS 17u
 #include "bsdf/bsdf.glsl"
-#include "items.glsl"
+#include "probes/items.glsl"
 
 void main() {
     if (past_end()) return;

@@ -5,7 +5,7 @@
 #define ITEM_WORDS 1u
 #define RESULT_WORDS 10u
 #include "base/sampler.glsl"
-#include "items.glsl"
+#include "probes/items.glsl"
 
 void main() {
     if (past_end()) return;

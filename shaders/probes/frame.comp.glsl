@@ -5,7 +5,7 @@
 #define ITEM_WORDS 2u
 #define RESULT_WORDS 15u
 #include "base/frame.glsl"
-#include "items.glsl"
+#include "probes/items.glsl"
 
 void main() {
     if (past_end()) return;

@@ -1,0 +1,61 @@
+// Probes: small kernels (shaders/probes) that map an array of items to an array of results by the renderer's
+// own shader functions, with or without a scene.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "render/gpu_scene.h"
+#include "render/renderer.h"
+#include "shared/parameters.h"
+#include "vk/buffer.h"
+#include "vk/device.h"
+#include "vk/kernel.h"
+
+namespace candela {
+
+// A scene's records on the device, for probes that include scene/scene_data.glsl.
+class DeviceScene {
+  public:
+    // `parameters` go to the device as they are. `access` is not `automatic`.
+    DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access,
+                const Parameters& parameters);
+    // With the parameters that concern the scene alone.
+    DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access);
+
+    uint32_t primitive_count() const { return primitive_count_; }
+    std::vector<vk::Binding> bindings() const;
+    void bind_to(vk::Kernel& kernel) const;
+
+  private:
+    vk::Buffer upload(const vk::Device& device, const std::vector<uvec4>& words) const;
+
+    bool texels_;
+    uint32_t primitive_count_;
+    vk::Buffer nodes_, primitives_, tables_, parameters_;
+};
+
+// Runs the probe `spirv` on all items, `item_words` uvec4 each; returns `result_words` words for each, in
+// order. `constants` are its specialization constants; `scene` may be null.
+std::vector<uint32_t> run_probe(const vk::Device& device, std::span<const uint32_t> spirv,
+                                std::span<const std::byte> items, size_t item_words, size_t result_words,
+                                const std::vector<uint32_t>& constants, const DeviceScene* scene);
+
+// The same with types: an `Item` is a whole number of uvec4, a `Result` of 32-bit words, as the probe reads
+// and writes them.
+template <class Result, class Item>
+std::vector<Result> probe(const vk::Device& device, std::span<const uint32_t> spirv,
+                          const std::vector<Item>& items, const std::vector<uint32_t>& constants = {},
+                          const DeviceScene* scene = nullptr) {
+    static_assert(sizeof(Item) % sizeof(uvec4) == 0 && sizeof(Result) % sizeof(uint32_t) == 0);
+    const std::vector<uint32_t> words =
+        run_probe(device, spirv, std::as_bytes(std::span(items)), sizeof(Item) / sizeof(uvec4),
+                  sizeof(Result) / sizeof(uint32_t), constants, scene);
+    std::vector<Result> results(items.size());
+    std::memcpy(static_cast<void*>(results.data()), words.data(), results.size() * sizeof(Result));
+    return results;
+}
+
+}  // namespace candela

@@ -1,0 +1,87 @@
+// The probes as SPIR-V, compiled from shaders/probes at build time, and what the larger ones read and write.
+// NAME reads a scene through texel buffers, NAME_storage through storage buffers.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/math.h"
+#include "shared/material.h"
+
+namespace candela::kernels {
+
+extern const std::span<const uint32_t> bsdf, environment, exponential, frame, hash, interaction, light_sample,
+    light_sample_storage, math, octahedral, records, records_storage, sampler, spawn, traversal,
+    traversal_storage, warp;
+
+}  // namespace candela::kernels
+
+namespace candela {
+
+// bsdf: samples a material with u and uc, and evaluates it both for the sampled direction and for wi.
+struct BsdfItem {
+    MaterialRecord material;
+    vec3 wo{0, 0, 1};
+    float unused0 = 0.0f;
+    vec3 wi{0, 0, 1};
+    float unused1 = 0.0f;
+    vec2 u{0};
+    float uc = 0.0f;
+    uint32_t back = 0;  // 1: wo is on the back side of the surface.
+};
+static_assert(sizeof(BsdfItem) == 80);
+
+// `f` and `pdf_of_wi` are those at BsdfItem::wi, the rest belongs to the sample that u and uc choose.
+struct BsdfResult {
+    vec3 wi, weight;
+    float pdf;
+    uint32_t delta;
+    float eta;
+    vec3 f_of_sample;
+    float pdf_of_sample;
+    vec3 f;
+    float pdf_of_wi;
+};
+
+// light_sample: random bits for a light sample from a reference point: one word chooses the light, two the
+// point.
+struct LightItem {
+    vec3 from{0};
+    uint32_t uc = 0;
+    uvec2 u{0};
+    uvec2 unused{0};
+};
+
+struct LightSample {
+    vec3 wi, Li;
+    float pdf;
+    vec3 shadow;
+    float t_max;
+    uint32_t occluded;  // The shadow ray is.
+    // What a ray in the direction wi meets: a light, or NO_LIGHT for anything else and for the sky; the
+    // density that light samples have there; and its radiance.
+    uint32_t light_met;
+    float pdf_met;
+    vec3 Li_met;
+};
+
+// traversal: a ray, and its nearest hit by the BVH and by looking at every primitive.
+struct RayItem {
+    vec3 o;
+    float unused0;
+    vec3 d;
+    float unused1;
+};
+
+struct TraversalResult {
+    float t;
+    uint32_t id;
+    vec2 b;
+    float brute_t;
+    uint32_t brute_id;
+    uint32_t occluded_before;  // By anything nearer than the hit,
+    uint32_t occluded_at;      // up to the float above its t,
+    uint32_t occluded;         // at any distance.
+};
+
+}  // namespace candela
