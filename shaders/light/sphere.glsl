@@ -25,13 +25,17 @@ LightSample sphere_light_sample_li(Light l, vec3 p_reference, vec2 u) {
     }
     float cap = sphere_light_cap(radius, distance_squared);
     vec3 w = warp_cone(u, cap);
+    Frame frame = frame_from_z(to_center * inversesqrt(distance_squared));
     LightSample s;
-    s.wi = frame_to_world(frame_from_z(to_center * inversesqrt(distance_squared)), w);
+    s.wi = frame_to_world(frame, w);
     s.Li = l.radiance;
     s.pdf = 2.0 * square(radius) * l.pdf_area / cap;
-    // Where wi meets the sphere first.
-    float t = sqrt(distance_squared) * w.z - sqrt(max(0.0, square(radius) - distance_squared * dot(w.xy, w.xy)));
-    vec3 n = normalize(t * s.wi - to_center);
+    // The normal where wi meets the sphere first, without the difference of two points that are far away.
+    float distance = sqrt(distance_squared);
+    float sin2_theta = dot(w.xy, w.xy);
+    float half_chord = sqrt(max(0.0, square(radius) - distance_squared * sin2_theta));
+    float t = distance * w.z - half_chord;
+    vec3 n = frame_to_world(frame, vec3(t * w.xy, -distance * sin2_theta - half_chord * w.z) / radius);
     s.shadow = offset_origin(l.p + radius * n, n) + error * n - p_reference;
     s.t_max = LIGHT_T_MAX;
     return s;
