@@ -29,3 +29,21 @@ function(candela_add_kernels target)
         endforeach()
     endforeach()
 endfunction()
+
+# candela_embed_files(TARGET FILE...) adds to TARGET one generated source per file that holds its bytes; NAME.EXT is
+# candela::embedded::NAME_EXT, which a header of ours must declare.
+function(candela_embed_files target)
+    foreach(file IN LISTS ARGN)
+        get_filename_component(name ${file} NAME)
+        string(MAKE_C_IDENTIFIER ${name} symbol)
+        set(output ${CMAKE_CURRENT_BINARY_DIR}/embedded/${symbol}.cpp)
+        add_custom_command(
+            OUTPUT ${output}
+            COMMAND ${CMAKE_COMMAND} -DINPUT=${file} -DOUTPUT=${output} -DNAME=${symbol}
+                    -P ${CMAKE_SOURCE_DIR}/cmake/embed_file.cmake
+            DEPENDS ${file} ${CMAKE_SOURCE_DIR}/cmake/embed_file.cmake
+            COMMENT "Embedding ${name}"
+            VERBATIM)
+        target_sources(${target} PRIVATE ${output})
+    endforeach()
+endfunction()

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "base/image.h"
 
@@ -30,6 +32,9 @@ void write_exr(const std::filesystem::path& path, const Image& image);
 // damaged or incomplete, uses what an Image cannot hold (overscan or subsampled channels), or has more than
 // `max_pixels`, which is found before they are read.
 Image read_exr(const std::filesystem::path& path, uint64_t max_pixels = UINT64_MAX);
+
+// The same for the bytes of an OpenEXR file; `name` is what messages call it.
+Image decode_exr(std::string_view bytes, const std::string& name);
 
 // Reads a Radiance picture, flat or in either of the format's run-length encodings, as the channels R, G and
 // B. Mantissas m and exponent e stand for m 2^(e - 136) exactly, divided by what the header's lines EXPOSURE

@@ -58,6 +58,28 @@ class MemoryStream : public Imf::OStream {
     size_t position_ = 0;
 };
 
+// The bytes of a file in memory, for OpenEXR to read; they must outlive it.
+class MemoryFile : public Imf::IStream {
+  public:
+    MemoryFile(std::string_view bytes, const std::string& name) : Imf::IStream(name.c_str()), bytes_(bytes) {}
+
+    bool read(char* out, int count) override {
+        const auto size = size_t(count);
+        if (position_ > bytes_.size() || size > bytes_.size() - position_) {
+            throw std::runtime_error("it ends early");
+        }
+        std::memcpy(out, bytes_.data() + position_, size);
+        position_ += size;
+        return position_ < bytes_.size();
+    }
+    uint64_t tellg() override { return position_; }
+    void seekg(uint64_t position) override { position_ = position; }
+
+  private:
+    std::string_view bytes_;
+    size_t position_ = 0;
+};
+
 // A glm matrix for column vectors is stored column by column, an Imath matrix for row vectors row by row.
 // Each is the other transposed, and stored transposed: the 16 numbers stay in place.
 Imath::M44f to_imath(const mat4& m) {
@@ -175,6 +197,30 @@ void read_pixels(Imf::InputFile& file, Image& image) {
     }
 }
 
+// Reads from what OpenEXR takes for a file: a path or a stream. `path` is its name in messages.
+template <class Source>
+Image read_from(Source& source, const fs::path& path, uint64_t max_pixels) {
+    try {
+        if (!Imf::isOpenExrFile(source)) {
+            throw Error("cannot read " + quoted(path) + ": it is not an OpenEXR file; give an .exr image");
+        }
+        Imf::Header::setMaxImageSize(int(MAX_IMAGE_SIDE), int(MAX_IMAGE_SIDE));
+        Imf::InputFile file(source);
+        Image image = read_header(path, file.header());
+        check_pixel_count(path, image.data.width(), image.data.height(), max_pixels);
+        read_pixels(file, image);
+        return image;
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw Error("cannot read " + quoted(path) +
+                    ": there is not enough memory for its pixels; use a smaller image or a larger machine");
+    } catch (const std::exception& error) {
+        throw Error("cannot read " + quoted(path) + ": the file is damaged or incomplete (" + error.what() +
+                    "); write it again");
+    }
+}
+
 }  // namespace
 
 void write_exr(const fs::path& path, const Image& image) {
@@ -208,25 +254,13 @@ void write_exr(const fs::path& path, const Image& image) {
 
 Image read_exr(const fs::path& path, uint64_t max_pixels) {
     check_readable(path);
-    if (!Imf::isOpenExrFile(path.c_str())) {
-        throw Error("cannot read " + quoted(path) + ": it is not an OpenEXR file; give an .exr image");
-    }
-    try {
-        Imf::Header::setMaxImageSize(int(MAX_IMAGE_SIDE), int(MAX_IMAGE_SIDE));
-        Imf::InputFile file(path.c_str());
-        Image image = read_header(path, file.header());
-        check_pixel_count(path, image.data.width(), image.data.height(), max_pixels);
-        read_pixels(file, image);
-        return image;
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw Error("cannot read " + quoted(path) +
-                    ": there is not enough memory for its pixels; use a smaller image or a larger machine");
-    } catch (const std::exception& error) {
-        throw Error("cannot read " + quoted(path) + ": the file is damaged or incomplete (" + error.what() +
-                    "); write it again");
-    }
+    const char* const name = path.c_str();
+    return read_from(name, path, max_pixels);
+}
+
+Image decode_exr(std::string_view bytes, const std::string& name) {
+    MemoryFile file(bytes, name);
+    return read_from(file, name, UINT64_MAX);
 }
 
 }  // namespace candela

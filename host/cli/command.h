@@ -20,5 +20,6 @@ Command add_render_command(CLI::App& app, const std::string& command_line);
 Command add_info_command(CLI::App& app);
 Command add_devices_command(CLI::App& app);
 Command add_compare_command(CLI::App& app);
+Command add_selftest_command(CLI::App& app);
 
 }  // namespace candela

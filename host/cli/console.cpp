@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iterator>
+#include <string_view>
+
+#include <unistd.h>
 
 #include "base/error.h"
 
@@ -16,6 +20,11 @@ void print_warning(const std::string& message) {
 
 void print_error(const std::string& message) {
     std::fprintf(stderr, "candela: error: %s\n", message.c_str());
+}
+
+bool stderr_is_terminal() {
+    const char* const terminal = std::getenv("TERM");
+    return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
 }
 
 void flush_results() {

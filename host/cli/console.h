@@ -12,6 +12,9 @@ void print_warning(const std::string& message);
 // Prints `candela: error: MESSAGE` to stderr.
 void print_error(const std::string& message);
 
+// True if lines on stderr can be rewritten: it is a terminal, and not a dumb one.
+bool stderr_is_terminal();
+
 // Sends buffered results to stdout. Throws Error if they, or any before, could not be written.
 void flush_results();
 

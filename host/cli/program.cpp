@@ -20,7 +20,8 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
     // Commands take over the column width, but must not take over the footer, which therefore comes last.
     app.get_formatter()->column_width(36);
     std::vector<Command> commands{add_render_command(app, command_line), add_info_command(app),
-                                  add_devices_command(app), add_compare_command(app)};
+                                  add_devices_command(app), add_compare_command(app),
+                                  add_selftest_command(app)};
     app.footer(
         "`candela COMMAND --help` tells more.\n\n"
         "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no suitable device, 4 device lost,\n"
@@ -91,7 +92,7 @@ ExitCode run_program(int argc, const char* const* argv) {
     for (const Command& command : commands) {
         if (command.app->parsed()) return command.run();
     }
-    throw Error("there is no command; give render, info, devices or compare, or see candela --help",
+    throw Error("there is no command; give render, info, devices, compare or selftest, or see candela --help",
                 ExitCode::usage);
 }
 

@@ -4,10 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <string_view>
-
-#include <unistd.h>
 
 #include "cli/console.h"
 
@@ -18,11 +14,6 @@ namespace candela {
 static constexpr double LIVE_SECONDS = 0.1;
 static constexpr double PLAIN_SECONDS = 10.0;
 static constexpr double PLAIN_SHARE = 0.1;
-
-static bool stderr_is_terminal() {
-    const char* const terminal = std::getenv("TERM");
-    return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
-}
 
 Progress::Progress(uint64_t pixels, uint32_t spp, std::optional<double> time_limit, bool quiet)
     : pixels_(pixels),

@@ -40,8 +40,11 @@ IntegratorSettings read_integrator(const Node& node) {
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& path) {
-    const std::string file = path.string();
-    const json::Value document = json::parse(read_file(path), file);
+    return parse_scene(read_file(path), path.string(), path.parent_path());
+}
+
+Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder) {
+    const json::Value document = json::parse(text, file);
     const Node root(file, "", document);
     root.allow_only({"$schema", "cameras", "film", "integrator", "materials", "shapes", "environment"});
 
@@ -57,9 +60,9 @@ Scene load_scene(const std::filesystem::path& path) {
             scene.materials.push_back(read_material(material));
     }
     const Node shapes = root.require("shapes");
-    read_shapes(shapes, path.parent_path(), scene);
+    read_shapes(shapes, folder, scene);
     if (const auto environment = root.find("environment")) {
-        scene.environment = read_environment(*environment, path.parent_path(), scene.warnings);
+        scene.environment = read_environment(*environment, folder, scene.warnings);
     }
 
     if (scene.shapes.empty() && !scene.environment) {

@@ -49,9 +49,10 @@ template <class Result, class Item>
 std::vector<Result> probe(const vk::Device& device, std::span<const uint32_t> spirv,
                           const std::vector<Item>& items, const std::vector<uint32_t>& constants = {},
                           const DeviceScene* scene = nullptr) {
-    static_assert(sizeof(Item) % sizeof(uvec4) == 0 && sizeof(Result) % sizeof(uint32_t) == 0);
+    constexpr size_t TEXEL = sizeof(uvec4);
+    static_assert(sizeof(Item) % TEXEL == 0 && sizeof(Result) % sizeof(uint32_t) == 0);
     const std::vector<uint32_t> words =
-        run_probe(device, spirv, std::as_bytes(std::span(items)), sizeof(Item) / sizeof(uvec4),
+        run_probe(device, spirv, std::as_bytes(std::span(items)), sizeof(Item) / TEXEL,
                   sizeof(Result) / sizeof(uint32_t), constants, scene);
     std::vector<Result> results(items.size());
     std::memcpy(static_cast<void*>(results.data()), words.data(), results.size() * sizeof(Result));

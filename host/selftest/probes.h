@@ -10,8 +10,8 @@
 
 namespace candela::kernels {
 
-extern const std::span<const uint32_t> bsdf, environment, exponential, frame, hash, interaction, light_sample,
-    light_sample_storage, math, octahedral, records, records_storage, sampler, spawn, traversal,
+extern const std::span<const uint32_t> bsdf, environment, escape, exponential, frame, hash, interaction,
+    light_sample, light_sample_storage, math, octahedral, records, records_storage, sampler, spawn, traversal,
     traversal_storage, warp;
 
 }  // namespace candela::kernels
@@ -63,6 +63,35 @@ struct LightSample {
     uint32_t light_met;
     float pdf_met;
     vec3 Li_met;
+};
+
+// sampler: what a pair of random words is a function of. The result is a uvec2.
+struct SampleOfPair {
+    uint32_t pixel;  // x | y << 16
+    uint32_t n;
+    uint32_t seed;
+    uint32_t pair;
+};
+
+// warp: a point u of the unit square, and its image by every warp.
+struct WarpItem {
+    vec2 u{0};
+    float exponent = 1.0f;  // Of power_cosine.
+    float h_max = 1.0f;     // Of the cone.
+    vec3 w{0, 0, 1};        // What sees the normal,
+    float alpha = 0.5f;     // and the roughness.
+    uint32_t corners = 3;   // Of the polygon.
+    uvec3 unused{0};
+};
+static_assert(sizeof(WarpItem) == 48);
+
+struct WarpResult {
+    vec2 disk;
+    vec3 direction;
+    float pdf;
+    vec2 triangle;
+    vec3 power_cosine, sphere, cone, normal;
+    vec2 polygon;
 };
 
 // traversal: a ray, and its nearest hit by the BVH and by looking at every primitive.

@@ -1,4 +1,5 @@
-// What the tests of BSDFs share: the kernel bsdf.comp.glsl, materials, and directions to look from.
+// What the tests of BSDFs share: the kernel bsdf.comp.glsl; see selftest/bsdfs.h for materials and
+// directions.
 #pragma once
 
 #include <algorithm>
@@ -7,30 +8,10 @@
 
 #include "base/statistics.h"
 #include "gpu/device_fixture.h"
+#include "selftest/bsdfs.h"
 #include "selftest/random.h"
-#include "shared/material.h"
 
 namespace candela {
-
-inline MaterialRecord diffuse(vec3 reflectance) {
-    return {MATERIAL_DIFFUSE, reflectance, vec3(0.0f), 0.0f};
-}
-inline MaterialRecord phong(vec3 kd, vec3 ks, float n) {
-    return {MATERIAL_PHONG, kd, ks, n};
-}
-inline MaterialRecord mirror(vec3 reflectance) {
-    return {MATERIAL_MIRROR, reflectance, vec3(0.0f), 0.0f};
-}
-inline MaterialRecord conductor(vec3 reflectance, float alpha) {
-    return {MATERIAL_CONDUCTOR, reflectance, vec3(0.0f), alpha};
-}
-// `model` is one of MATERIAL_DIELECTRIC_*; `eta` the index behind the surface over that before it.
-inline MaterialRecord dielectric(uint32_t model, float eta) {
-    return {model, vec3(0.0f), vec3(0.0f), eta};
-}
-
-// Head-on, oblique and grazing.
-inline const std::vector<vec3> VIEWS{vec3(0, 0, 1), normalize(vec3(1, 0.5, 1)), normalize(vec3(-1, 2, 0.01))};
 
 class BsdfTest : public DeviceTest {
   protected:

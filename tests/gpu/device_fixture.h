@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gpu/vk_fixture.h"
+#include "selftest/evidence.h"
 #include "selftest/probe.h"
 #include "selftest/probes.h"
 
@@ -16,6 +17,12 @@ namespace candela {
 // otherwise the verdict may change; all of a test's hypotheses together are rejected wrongly with this
 // probability.
 inline constexpr double CHI_SQUARED_ALPHA = 1e-3;
+
+// All that a check compared must hold, and its p-values must not be too small.
+inline void expect_holds(const Evidence& evidence, double alpha = CHI_SQUARED_ALPHA) {
+    EXPECT_EQ(evidence.wrong(), 0u) << "of " << evidence.compared() << ", first " << evidence.first_wrong();
+    EXPECT_GT(evidence.p_value(), alpha) << evidence.least_likely();
+}
 
 // A test with a device that is open. At its end the validation layer must have had nothing to say.
 class DeviceTest : public vk::Vk {

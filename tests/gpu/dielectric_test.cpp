@@ -138,6 +138,11 @@ TEST_F(DielectricTest, BothSidesReflectAlike) {
                 ASSERT_LE(length(glm::dvec3(wi.x - all[i].x, wi.y - all[i].y, -wi.z - all[i].z)),
                           0x1p-20 + error);
                 ASSERT_NEAR(double(out[all.size() + i].eta) * double(eta), 1.0, 0x1p-21);
+                // What is refracted, times eta^2, is the same both ways: f / eta^2 is reciprocal.
+                const auto through = [](const BsdfResult& s) {
+                    return double(s.pdf) * double(s.weight.x) * double(s.eta) * double(s.eta);
+                };
+                ASSERT_NEAR(through(out[all.size() + i]), through(in[all.size() + i]), 8.0 * error + 0x1p-20);
             }
         }
     }

@@ -64,6 +64,52 @@ TEST_F(PhongTest, TheAlbedoAtNormalIncidenceIsTheSumOfBaseAndLobe) {
     }
 }
 
+// What the lobe reflects of light from all around. With a = 1 - cos(alpha)^(n + 1), uniform over the lobe,
+// and the angle b around it, (n + 2) / (2 pi) cos(alpha)^n d(wi) is (n + 2) / (n + 1) da db; what is below
+// the horizon counts nothing. The midpoint rule is good to 10^-5.
+double lobe_albedo(vec3 wo, double n) {
+    constexpr int ALONG = 512;
+    const double cosine = double(wo.z), sine = std::sqrt(1.0 - cosine * cosine);
+    double sum = 0.0;
+    for (int i = 0; i < ALONG; ++i) {
+        const double cos_alpha = std::pow(1.0 - (i + 0.5) / ALONG, 1.0 / (n + 1.0));
+        const double sin_alpha = std::sqrt(1.0 - cos_alpha * cos_alpha);
+        for (int k = 0; k < ALONG; ++k)
+            sum += std::max(0.0,
+                            cosine * cos_alpha + sine * sin_alpha * std::cos(2.0 * M_PI * (k + 0.5) / ALONG));
+    }
+    return (n + 2.0) / (n + 1.0) * sum / (ALONG * ALONG);
+}
+
+// The mean of the weights is that albedo and the base's. A weight is good to 2^-15.
+TEST_F(PhongTest, TheAlbedoElsewhereIsThatOfQuadrature) {
+    const vec3 ks(0.4f, 0.8f, 0.1f);
+    const std::vector<vec3> kds{vec3(0.0f), vec3(0.5f, 0.2f, 0.9f)};
+    const std::vector<vec3> views{VIEWS[1], normalize(vec3(1, 0, 0.3f)), VIEWS[2]};
+    const double level = sidak_level(CHI_SQUARED_ALPHA, 3 * EXPONENTS.size() * kds.size() * views.size());
+    uint32_t seed = 26;
+    for (const vec3 wo : views) {
+        for (const float n : EXPONENTS) {
+            const double lobe = lobe_albedo(wo, double(n));
+            for (const vec3 kd : kds) {
+                RunningMoments moments[3];
+                for (const BsdfResult& s : samples(phong(kd, ks, n), wo, 30000, seed++)) {
+                    for (const int c : {0, 1, 2})
+                        moments[c].add(double(s.weight[c]));
+                }
+                for (const int c : {0, 1, 2}) {
+                    const double expected = double(kd[c]) + double(ks[c]) * lobe;
+                    const double beyond =
+                        std::max(0.0, std::abs(moments[c].mean() - expected) - 0x1p-15 * expected);
+                    EXPECT_GT(normal_p_value(beyond / std::sqrt(moments[c].variance_of_mean())), level)
+                        << "n " << n << ", cosine " << wo.z << ": " << moments[c].mean() << ", not "
+                        << expected;
+                }
+            }
+        }
+    }
+}
+
 // Under a constant environment a sample counts its weight. What that varies, against its mean, does not
 // depend on how narrow the lobe is.
 TEST_F(PhongTest, SamplesVaryAlikeAtEveryExponent) {

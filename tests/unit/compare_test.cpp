@@ -113,6 +113,20 @@ TEST(Compare, RejectsAnImageThatIsOnePercentBrighter) {
     EXPECT_EQ(result.tests->mean.place, brighter.data);
 }
 
+// A quarter of one channel 2 % off, at 5 % of noise in each pixel: the mean of its 16 blocks, 1024 pixels, is
+// 2 % / (5 % sqrt(2 / 1024)) = 9 deviations off, that of the image half as many, 4.5; 3.1 are rejected.
+// Whether the 16 blocks, 2.3 deviations each, are seen is chance.
+TEST(Compare, RejectsAQuarterOfAChannelThatIsTwoPercentOff) {
+    int rejected = 0;
+    for (unsigned seed = 0; seed < 50; ++seed) {
+        Image off = noisy(64, 64, 2 * seed);
+        for (size_t i = 0; i < off.pixel_count() / 4; ++i)
+            off.channels[1].values[i] *= 1.02f;
+        rejected += compare(off, noisy(64, 64, 2 * seed + 1), {.alpha = 0.01}).passed ? 0 : 1;
+    }
+    EXPECT_GE(rejected, 44);  // Of 50, each with 92 % by the mean alone: 46 +- 2.
+}
+
 TEST(Compare, RejectsAMeanThatNoBlockCanTell) {
     Image brighter = noisy(128, 128, 1);
     scale_block(brighter, brighter.data, 1.004f);

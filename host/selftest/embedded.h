@@ -1,0 +1,12 @@
+// Files of the repository that are part of the program, byte for byte, so that it needs none beside itself.
+#pragma once
+
+#include <string_view>
+
+namespace candela::embedded {
+
+extern const std::string_view cornell_box_json, furnace_json;
+// The Cornell box by an independent renderer: R G B and Variance.
+extern const std::string_view cornell_box_exr;
+
+}  // namespace candela::embedded

@@ -1,0 +1,55 @@
+// What a check finds: comparisons, of which every one must hold, and p-values of statistical tests.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <sstream>
+#include <string>
+
+namespace candela {
+
+// All parts one after another as text; numbers with as many digits as tell floats apart.
+template <class... Parts>
+std::string words(const Parts&... parts) {
+    std::ostringstream text;
+    text.precision(std::numeric_limits<float>::max_digits10);
+    (text << ... << parts);
+    return text.str();
+}
+
+class Evidence {
+  public:
+    // Counts a comparison. Of the first that does not hold, describe() gives the words.
+    template <class Describe>
+    void expect(bool holds, const Describe& describe) {
+        ++compared_;
+        if (holds) return;
+        ++wrong_;
+        if (wrong_ == 1) first_wrong_ = describe();
+    }
+    // Adds the least p-value of so many statistical tests of something; NaN counts as 0.
+    void add_p_value(const std::string& of, double p, uint64_t tests = 1);
+    // Adds all that another check found.
+    void add(const Evidence& other);
+
+    uint64_t compared() const { return compared_; }
+    uint64_t wrong() const { return wrong_; }
+    const std::string& first_wrong() const { return first_wrong_; }
+
+    uint64_t tests() const { return tests_; }
+    // Probability with which chance alone gives a least p-value as small as the one found, for independent
+    // tests (Sidak's correction); 1 if there was no test.
+    double p_value() const;
+    // What the least p-value is of.
+    const std::string& least_likely() const { return least_likely_; }
+
+    // True if all comparisons hold and the p-value is above `level`.
+    bool passes(double level) const { return wrong_ == 0 && p_value() > level; }
+
+  private:
+    uint64_t compared_ = 0, wrong_ = 0, tests_ = 0;
+    double least_p_ = 1.0;
+    std::string first_wrong_, least_likely_;
+};
+
+}  // namespace candela

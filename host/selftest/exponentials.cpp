@@ -1,0 +1,82 @@
+// See exponentials.h.
+#include "selftest/exponentials.h"
+
+#include <bit>
+#include <cmath>
+
+#include "selftest/probe.h"
+#include "selftest/probes.h"
+
+namespace candela {
+namespace {
+
+// Negative numbers of every size from -2^-100 to `least`, on a logarithmic scale, `least` included.
+std::vector<float> of_every_size(double least) {
+    std::vector<float> x;
+    const int count = 100000;
+    for (int i = 0; i <= count; ++i)
+        x.push_back(float(-std::exp2(-100.0 + (std::log2(-least) + 100.0) * i / count)));
+    x.back() = float(least);
+    return x;
+}
+
+// The floats around `x`, 64 on either side.
+void add_neighbours(std::vector<float>& out, float x) {
+    for (int steps = -64; steps <= 64; ++steps)
+        out.push_back(std::bit_cast<float>(std::bit_cast<uint32_t>(x) + uint32_t(steps)));
+}
+
+}  // namespace
+
+std::vector<Exponentials> run_exponentials(const vk::Device& device, const std::vector<float>& x) {
+    std::vector<vec4> items;
+    for (const float value : x)
+        items.emplace_back(value, 0.0f, 0.0f, 0.0f);
+    return probe<Exponentials>(device, kernels::exponential, items);
+}
+
+// In units of 2^-24 of the result: s = f / (2 + f) carries a division, 5 by Vulkan's rules (2.5 ulp), and a
+// sum, 1; where the mantissa is taken from the rounded 1 + x, below -0.2929, that is off by 1/2 of itself and
+// the logarithm by 1/2 / (0.7 * 0.35) = 2 at most, just there; the additions of the series, multiplied by
+// less than 0.36 where they add to an exponent, are less than 1 more.
+Evidence test_logarithm(const vk::Device& device) {
+    std::vector<float> x = of_every_size(-1.0 + 0x1p-24);
+    add_neighbours(x, -0.2929f);
+    for (const float scale : {0.25f, 0.125f, 0x1p-10f}) {  // 1 + x around scale and scale / sqrt(2).
+        add_neighbours(x, scale - 1.0f);
+        add_neighbours(x, scale * std::sqrt(0.5f) - 1.0f);
+    }
+    add_neighbours(x, -0.5f);
+    for (int i = 0; i < 100; ++i)
+        x.push_back(-1.0f + float(i + 1) * 0x1p-24f);  // 1 - u for the last u of [0, 1).
+    const std::vector<Exponentials> values = run_exponentials(device, x);
+    Evidence evidence;
+    for (size_t i = 0; i < x.size(); ++i) {
+        const double expected = std::log1p(double(x[i]));
+        evidence.expect(std::abs(double(values[i].log1p) - expected) <= 8 * 0x1p-24 * -expected,
+                        [&] { return words("log1p(", x[i], ") = ", values[i].log1p); });
+    }
+    return evidence;
+}
+
+// exp(x) = 2^k (1 + p): p <= 0.42 has the roundings of its series, 1.5, and of x - k log(2), less than 1 of
+// 0.35; the final product and sum add 1. expm1 cancels at worst at k = -1, p = 0.41: 0.3 out of 0.5.
+Evidence test_exponentials(const vk::Device& device) {
+    constexpr float LEAST = -87.0f;
+    std::vector<float> x = of_every_size(double(LEAST));
+    for (int k = 0; k < 126; ++k)  // Where one power of two gives way to the next.
+        add_neighbours(x, float(-std::log(2.0) * (k + 0.5)));
+    const std::vector<Exponentials> values = run_exponentials(device, x);
+    Evidence evidence;
+    for (size_t i = 0; i < x.size(); ++i) {
+        if (x[i] < LEAST) continue;
+        const double exp = std::exp(double(x[i])), expm1 = std::expm1(double(x[i]));
+        evidence.expect(
+            std::abs(double(values[i].exp) - exp) <= 3 * 0x1p-24 * exp &&
+                std::abs(double(values[i].expm1) - expm1) <= 3 * 0x1p-24 * -expm1,
+            [&] { return words("exp(", x[i], ") = ", values[i].exp, ", less 1: ", values[i].expm1); });
+    }
+    return evidence;
+}
+
+}  // namespace candela

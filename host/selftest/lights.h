@@ -1,0 +1,35 @@
+// Light samples on the device against their distributions, densities and radiance.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "selftest/evidence.h"
+#include "selftest/probe.h"
+#include "selftest/probes.h"
+
+namespace candela {
+
+// Light samples of a scene. `access` is not `automatic`.
+std::vector<LightSample> sample_lights(const vk::Device& device, const GpuScene& scene,
+                                       const std::vector<LightItem>& items,
+                                       SceneAccess access = SceneAccess::texel_buffers);
+
+// So many items with random bits, all from one point.
+std::vector<LightItem> random_light_items(vec3 from, size_t count, uint32_t seed);
+
+// One flat light in each of the planes z = 0, 1, 2, ..., parallelograms and triangles of very different
+// power.
+Scene scene_of_flat_lights();
+// Lights are chosen by their power, and points uniformly by area.
+Evidence test_flat_light_points(const vk::Device& device);
+// A sample says what arrives and how likely it was; its shadow ray ends just before the light.
+Evidence test_flat_light_values(const vk::Device& device, SceneAccess access);
+
+// Spheres are sampled uniformly over the solid angle that they fill, from inside over their area; disks over
+// their area. Densities and radiance belong to the points, and nothing is in between.
+Evidence test_spheres_from_outside(const vk::Device& device);
+Evidence test_spheres_from_inside(const vk::Device& device);
+Evidence test_disks(const vk::Device& device);
+
+}  // namespace candela

@@ -1,0 +1,224 @@
+// Records cross the bus unharmed: what the host packs, a kernel reads back field by field, bit for bit.
+#include "selftest/records.h"
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+#include "selftest/probe.h"
+#include "selftest/probes.h"
+#include "selftest/random.h"
+#include "shared/bvh_node.h"
+#include "shared/light.h"
+#include "shared/material.h"
+#include "shared/primitive.h"
+
+namespace candela {
+namespace {
+
+// The fields of the records in the order in which records.comp.glsl writes them. Every field that is asked
+// for has bits of its own.
+class Fields {
+  public:
+    uint u() { return keep(0xA0000001u + uint(words.size()) * 0x00010203u); }
+    float f() { return std::bit_cast<float>(keep(0x3F800001u + uint(words.size()) * 0x00001357u)); }
+    uvec2 u2() {
+        const uint x = u();
+        return {x, u()};
+    }
+    uvec3 u3() {
+        const uvec2 xy = u2();
+        return {xy.x, xy.y, u()};
+    }
+    uvec4 u4() {
+        const uvec3 xyz = u3();
+        return {xyz.x, xyz.y, xyz.z, u()};
+    }
+    vec2 f2() {
+        const float x = f();
+        return {x, f()};
+    }
+    vec3 f3() {
+        const float x = f();
+        const float y = f();
+        return {x, y, f()};
+    }
+    uint keep(uint word) {
+        words.push_back(word);
+        return word;
+    }
+
+    std::vector<uint> words;
+};
+
+// One record of every kind.
+struct Records {
+    Parameters parameters;
+    BvhNode node;
+    Primitive primitive;
+    std::array<uvec4, NORMALS_WORDS> normals;
+    MaterialRecord material;
+    Light light;
+    AliasEntry light_even, light_odd;
+    EnvironmentTexel texel;
+    AliasEntry texel_even, texel_odd;
+};
+
+struct Item {
+    uvec4 unused{0};
+};
+
+// What the kernel writes.
+struct Result {
+    std::array<uint, 106> words;
+};
+
+// Where the tables begin if a word that belongs to nothing comes first, and each table has two records.
+constexpr TableStarts TABLES{
+    .normals = 1,
+    .materials = 1 + 2 * NORMALS_WORDS,
+    .lights = 1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS),
+    .light_alias = 1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
+    .environment = 3 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
+    .environment_alias = 3 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS + ENVIRONMENT_TEXEL_WORDS),
+};
+
+// Records filled from `fields`, in the order in which the kernel writes them; the scale of a node must be
+// powers of two.
+Records filled(Fields& fields) {
+    Records r{};
+    r.parameters = {.position = fields.f3(),
+                    .right = fields.f3(),
+                    .up = fields.f3(),
+                    .forward = fields.f3(),
+                    .full_size = fields.u2(),
+                    .crop = fields.u2(),
+                    .seed = fields.u(),
+                    .max_depth = fields.u(),
+                    .rr_depth = fields.u(),
+                    .light_count = fields.u(),
+                    .tables = {fields.keep(TABLES.normals), fields.keep(TABLES.materials),
+                               fields.keep(TABLES.lights), fields.keep(TABLES.light_alias),
+                               fields.keep(TABLES.environment), fields.keep(TABLES.environment_alias)},
+                    .environment_size = fields.u2(),
+                    .environment_turn = fields.f2(),
+                    .lens_x = fields.f3(),
+                    .lens_y = fields.f3(),
+                    .focal_distance = fields.f(),
+                    .blades = fields.u()};
+    r.node.origin = fields.f3();
+    r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);
+    for (const int axis : {0, 1, 2})
+        fields.keep(floatBitsToUint(r.node.scale[axis]));
+    r.node.q_lo = fields.u3();
+    r.node.q_hi = fields.u3();
+    r.node.child = fields.u4();
+    r.primitive = {.kind = fields.keep(PRIMITIVE_DISK),
+                   .a = fields.f3(),
+                   .b = fields.f3(),
+                   .c = fields.f3(),
+                   .id = fields.u(),
+                   .material = fields.keep(0x2AAAAAA5u),
+                   .light = fields.u()};
+    r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1));
+    for (const int i : {0, 1, 2, 3})
+        fields.keep(r.normals[0][i]);
+    r.material = {.model = fields.u(), .base = fields.f3(), .specular = fields.f3(), .parameter = fields.f()};
+    r.light = {.kind = fields.u(),
+               .p = fields.f3(),
+               .e1 = fields.f3(),
+               .e2 = fields.f3(),
+               .radiance = fields.f3(),
+               .two_sided = fields.u(),
+               .pdf_area = fields.f()};
+    const auto entry = [&] { return AliasEntry{.threshold = fields.u(), .alias = fields.u()}; };
+    r.light_even = entry();
+    r.light_odd = entry();
+    r.texel = {.radiance = fields.f3(), .pdf = fields.f()};
+    r.texel_even = entry();
+    r.texel_odd = entry();
+    return r;
+}
+
+// Appends a record of 0xFF, so that a wrong stride shows, and then `record`.
+template <size_t N>
+void append_second(std::vector<uvec4>& out, const std::array<uvec4, N>& record) {
+    out.insert(out.end(), N, uvec4(0xFFFFFFFFu));
+    out.insert(out.end(), record.begin(), record.end());
+}
+
+GpuScene packed(const Records& r) {
+    GpuScene scene;
+    append_second(scene.nodes, pack(r.node));
+    append_second(scene.primitives, pack(r.primitive));
+    scene.tables.emplace_back(0xFFFFFFFFu);
+    append_second(scene.tables, r.normals);
+    append_second(scene.tables, pack(r.material));
+    append_second(scene.tables, pack(r.light));
+    append_second(scene.tables, pack(r.light_even, r.light_odd));
+    append_second(scene.tables, pack(r.texel));
+    append_second(scene.tables, pack(r.texel_even, r.texel_odd));
+    return scene;
+}
+
+// Axes, the fold of the octahedron (z = 0), its edges (x = 0, y = 0) from both sides, and 100 000 at random.
+std::vector<vec3> unit_vectors() {
+    std::vector<vec3> vectors;
+    for (const float x : {-1.0f, -1e-4f, -0.0f, 0.0f, 1e-4f, 1.0f}) {
+        for (const float y : {-1.0f, -1e-4f, -0.0f, 0.0f, 1e-4f, 1.0f}) {
+            for (const float z : {-1.0f, -1e-4f, -0.0f, 0.0f, 1e-4f, 1.0f}) {
+                if (length(vec3(x, y, z)) > 0.5f) vectors.push_back(normalize(vec3(x, y, z)));
+            }
+        }
+    }
+    Random random(1);
+    for (int i = 0; i < 100000; ++i)
+        vectors.push_back(random.direction());
+    return vectors;
+}
+
+}  // namespace
+
+Evidence test_records(const vk::Device& device, SceneAccess access) {
+    Fields fields;
+    const Records records = filled(fields);
+    assert(fields.words.size() == Result{}.words.size());
+    const DeviceScene on_device(device, packed(records), access, records.parameters);
+    const bool texels = access == SceneAccess::texel_buffers;
+    const Result read = probe<Result>(device, texels ? kernels::records : kernels::records_storage,
+                                      std::vector<Item>(1), {}, &on_device)[0];
+    Evidence evidence;
+    for (size_t i = 0; i < fields.words.size(); ++i) {
+        evidence.expect(read.words[i] == fields.words[i], [&] {
+            return words("word ", i, ", through ", texels ? "texel" : "storage", " buffers: ", read.words[i],
+                         " instead of ", fields.words[i]);
+        });
+    }
+    return evidence;
+}
+
+// A component of the octahedral map is off by h = 0.5 / 32767 at most, so z by 2 h, and the point on the
+// octahedron by sqrt(6) h. That point is at least 1/sqrt(3) away from the centre: an angle of sqrt(18) h. The
+// roundings of both sides, some 8 of 2^-24 each, are stretched by sqrt(18) as well.
+Evidence test_octahedral_normals(const vk::Device& device) {
+    const std::vector<vec3> vectors = unit_vectors();
+    std::vector<uvec4> items;
+    for (const vec3 v : vectors)
+        items.emplace_back(pack_octahedral(v), 0, 0, 0);
+    const std::vector<vec3> decoded = probe<vec3>(device, kernels::octahedral, items);
+
+    const double bound = std::sqrt(18.0) * (0.5 / 32767.0 + 8 * 0x1p-24);
+    Evidence evidence;
+    for (size_t i = 0; i < vectors.size(); ++i) {
+        const glm::dvec3 a(normalize(glm::dvec3(vectors[i]))), b(decoded[i]);
+        const double angle = std::atan2(length(cross(a, b)), dot(a, b));
+        evidence.expect(angle <= bound && std::abs(length(b) - 1.0) <= 0x1p-20, [&] {
+            return words("normal ", a.x, ' ', a.y, ' ', a.z, " became ", b.x, ' ', b.y, ' ', b.z);
+        });
+    }
+    return evidence;
+}
+
+}  // namespace candela

@@ -1,0 +1,154 @@
+// Samples of spheres and disks that emit: over the solid angle of a sphere from outside, over the area else.
+#include <algorithm>
+#include <cmath>
+
+#include "selftest/charts.h"
+#include "selftest/histogram.h"
+#include "selftest/lights.h"
+#include "selftest/scenes.h"
+#include "shared/light.h"
+
+namespace candela {
+namespace {
+
+constexpr size_t CELLS = 16;
+constexpr size_t SAMPLES = 100000;
+constexpr vec3 RADIANCE(3, 2, 1);
+
+GpuScene scene_of(const decltype(Shape::geometry)& geometry, bool two_sided) {
+    Scene scene = scene_of_mesh({});
+    scene.shapes = {{.geometry = geometry,
+                     .material = 0,
+                     .emission = Emission{.radiance = RADIANCE, .two_sided = two_sided}}};
+    return build_gpu_scene(scene);
+}
+
+std::string describe(const char* what, vec3 from, const LightSample& s) {
+    return words(what, " from ", from.x, ' ', from.y, ' ', from.z, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z,
+                 ", pdf ", s.pdf, ", Li ", s.Li.x, ", occluded ", s.occluded, "; met: ", s.light_met,
+                 ", pdf ", s.pdf_met, ", Li ", s.Li_met.x);
+}
+
+struct Place {
+    Sphere sphere;
+    vec3 from;
+};
+
+// From far away to almost touching; a tiny sphere and a huge one; away from the origin.
+const std::vector<Place> OUTSIDE{
+    {{vec3(0, 0, -3), 1.0f}, vec3(0)},
+    {{vec3(1, 2, 3), 0.25f}, vec3(-1, 0.5f, 2)},
+    {{vec3(5, 4, 3), 1.0f}, vec3(300, 400, 500)},
+    {{vec3(0, 2, 0), 1e-3f}, vec3(0.5f, 0, 0)},
+    {{vec3(0), 1e-3f}, vec3(60, 0, 80)},
+    {{vec3(0, -1e4f, 0), 1e4f}, vec3(3, 1, 2)},
+    {{vec3(0, 0, -1), 1.0f}, vec3(0, 0, 0.01f)},
+    {{vec3(10, 0, 0), 2.0f}, vec3(7.999f, 0, 0)},
+};
+
+// In 1 - cos of the angle to the axis and the angle around it. The density has the error of 1 - cos(max) =
+// sin^2 / (1 + sqrt(1 - sin^2)): sin^2 is off by 16 * 2^-24 of itself (the centre as seen from the point
+// counts twice), and that of the root is as much over twice the root.
+void test_sphere_from_outside(const vk::Device& device, const Place& place, Evidence& evidence) {
+    const Sphere& sphere = place.sphere;
+    const vec3 from = place.from;
+    const glm::dvec3 to_center = glm::dvec3(sphere.center) - glm::dvec3(from);
+    const double sine = double(sphere.radius) / length(to_center), root = std::sqrt(1.0 - sine * sine);
+    const double h_max = sine * sine / (1.0 + root), pdf = 1.0 / (2.0 * M_PI * h_max);
+    const glm::dvec3 axis = normalize(to_center);
+    const auto [x, y] = axes_around(axis);
+    Histogram points(CELLS);
+    size_t met = 0, outside = 0;
+    for (const LightSample& s :
+         sample_lights(device, scene_of(sphere, false), random_light_items(from, SAMPLES, 80))) {
+        const glm::dvec3 wi(s.wi), chord = wi - axis;
+        const double h = 0.5 * dot(chord, chord);
+        outside += h > h_max;
+        points.add({h / h_max, turn_of(dot(wi, y), dot(wi, x))});
+        bool right = std::abs(length(wi) - 1.0) <= 0x1p-20 &&
+                     std::abs(double(s.pdf) - pdf) <= pdf * 0x1p-20 * (1.0 + 1.0 / root) &&
+                     s.Li == RADIANCE && s.occluded == 0;
+        if (s.light_met != NO_LIGHT) {
+            ++met;
+            right = right && std::abs(double(s.pdf_met) - double(s.pdf)) <= double(s.pdf) * 0x1p-22 &&
+                    s.Li_met == RADIANCE;
+        }
+        evidence.expect(right, [&] { return describe("sphere", from, s); });
+    }
+    const std::string name = words("sphere of radius ", sphere.radius, ' ', length(to_center), " m away");
+    evidence.add_p_value(name, points.uniformity());
+    // Rays past the limb: the centre's distance carries 4 roundings, which count in radii.
+    const double limb = std::min(1.0, 2.0 * 8 * 0x1p-24 / sine) * SAMPLES;
+    evidence.expect(double(met) >= SAMPLES - 10.0 - 2.0 * limb && double(outside) <= 10.0 + 2.0 * limb, [&] {
+        return words(name, ": of ", SAMPLES, " samples ", met, " meet it, ", outside, " are beside it");
+    });
+}
+
+}  // namespace
+
+Evidence test_spheres_from_outside(const vk::Device& device) {
+    Evidence evidence;
+    for (const Place& place : OUTSIDE)
+        test_sphere_from_outside(device, place, evidence);
+    return evidence;
+}
+
+// The point is uniform over the whole area; the density is that of the area, taken to solid angle. From
+// inside, a sphere shines only if it is two-sided.
+Evidence test_spheres_from_inside(const vk::Device& device) {
+    const Sphere sphere{vec3(1, 2, 3), 2.0f};
+    Evidence evidence;
+    for (const vec3 from : {vec3(1, 2, 3), vec3(2, 3, 3), vec3(1, 2, 4.99f)}) {
+        Histogram points(CELLS);
+        for (const LightSample& s :
+             sample_lights(device, scene_of(sphere, true), random_light_items(from, SAMPLES, 81))) {
+            const glm::dvec3 n =
+                normalize(glm::dvec3(from) + glm::dvec3(s.shadow) - glm::dvec3(sphere.center));
+            const glm::dvec3 to_light = glm::dvec3(sphere.center) + 2.0 * n - glm::dvec3(from);
+            points.add({(n.z + 1.0) / 2.0, turn_of(n.y, n.x)});
+            const double distance = length(to_light), cosine = dot(to_light, n) / distance;
+            const double pdf = distance * distance / (16.0 * M_PI * cosine);
+            // What the shadow ray's end, about 10^-4 off the sphere, tells of the point.
+            const double off = 1e-4 * (1.0 / distance + 1.0 / cosine);
+            const bool right = length(glm::dvec3(s.wi) - to_light / distance) <= 1e-4 / distance &&
+                               std::abs(double(s.pdf) - pdf) <= pdf * 10.0 * off && s.Li == RADIANCE &&
+                               s.occluded == 0 && s.light_met == 0 &&
+                               std::abs(double(s.pdf_met) - double(s.pdf)) <= double(s.pdf) * off;
+            evidence.expect(right, [&] { return describe("sphere around", from, s); });
+        }
+        evidence.add_p_value(words("sphere from inside, z ", from.z), points.uniformity());
+        for (const LightSample& s :
+             sample_lights(device, scene_of(sphere, false), random_light_items(from, 1000, 82)))
+            evidence.expect(s.Li == vec3(0.0f), [&] { return describe("one-sided sphere around", from, s); });
+    }
+    return evidence;
+}
+
+// An ellipse, in the coordinates of its axes; its front is where cross(e1, e2) points.
+Evidence test_disks(const vk::Device& device) {
+    const Disk disk{.center = vec3(1, 2, 3), .e1 = vec3(2, 0, 0), .e2 = vec3(1, 3, 0)};
+    Evidence evidence;
+    for (const vec3 from : {vec3(0, 0, 5), vec3(1, 2, 3.5f), vec3(4, 0, -20)}) {
+        Histogram points(CELLS);
+        for (const LightSample& s :
+             sample_lights(device, scene_of(disk, false), random_light_items(from, SAMPLES, 83))) {
+            const glm::dvec3 p(glm::dvec3(from) + glm::dvec3(s.shadow));  // Moved along z alone.
+            const double y = (p.y - 2.0) / 3.0, x = (p.x - 1.0 - y) / 2.0;
+            points.add({x * x + y * y, turn_of(y, x)});
+            const glm::dvec3 to_light = glm::dvec3(p.x, p.y, 3.0) - glm::dvec3(from);
+            const double distance = length(to_light), cosine = std::abs(to_light.z) / distance;
+            const double pdf = distance * distance / (6.0 * M_PI * cosine), relative = 4.0 + 2.0 / cosine;
+            bool right = x * x + y * y <= 1.0 + 1e-5 &&
+                         length(glm::dvec3(s.wi) - to_light / distance) <= 0x1p-20 &&
+                         std::abs(double(s.pdf) - pdf) <= pdf * 0x1p-22 * relative &&
+                         s.Li == (from.z > 3.0f ? RADIANCE : vec3(0.0f)) && s.occluded == 0;
+            if (s.light_met != NO_LIGHT)  // Else it is over the rim by a rounding.
+                right = right && std::abs(double(s.pdf_met) - double(s.pdf)) <= pdf * 0x1p-20 * relative;
+            evidence.expect(right, [&] { return describe("disk", from, s); });
+        }
+        evidence.add_p_value(words("disk from z ", from.z), points.uniformity());
+    }
+    return evidence;
+}
+
+}  // namespace candela

@@ -1,0 +1,62 @@
+// Scenes and meshes for evidence, made in a few words.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "scene/scene.h"
+
+namespace candela {
+
+// Scenes of the folder scenes/, as they were when the program was built.
+Scene cornell_box();
+// A closed box that emits radiance 1 everywhere and reflects `albedo` of what it receives.
+Scene furnace(float albedo);
+
+// Adds a material and returns its index.
+uint32_t add_material(Scene& scene, const decltype(Material::model)& model);
+uint32_t add_diffuse(Scene& scene, vec3 reflectance);
+
+// Adds a shape of that geometry.
+void add_shape(Scene& scene, const decltype(Shape::geometry)& geometry, uint32_t material,
+               std::optional<Emission> emission = {});
+
+// The same radiance from everywhere.
+Environment constant_environment(vec3 radiance);
+// An environment that is black but for one texel, at the column and row (x, y).
+Environment one_bright_texel(uvec2 size, uvec2 texel, vec3 radiance);
+
+// A quad with corners p, p + e1, p + e1 + e2, p + e2.
+Quad parallelogram(vec3 p, vec3 e1, vec3 e2);
+
+// A scene that a camera at `position` sees through a narrow vertical field of view [rad]; no shapes yet.
+Scene scene_with_camera(vec3 position, vec3 look_at, float vertical_fov);
+
+// A grey room without lights, open in front and at the sides; its floor is at y = 0.
+Scene open_room();
+
+// One of everything in a room that opens to the sky: materials, shapes, lights, a lens with a polygonal
+// aperture, smooth normals.
+Scene scene_of_everything();
+
+// A sphere of rings * segments quads, two triangles each; unit radius, centre 0, closed, the front outside.
+TriangleMesh sphere_mesh(uint32_t rings, uint32_t segments);
+
+// Triangles whose corners lie in a cube of edge 2 `size` around a random centre in [-1, 1]^3. Independent of
+// each other.
+TriangleMesh triangle_soup(uint32_t count, float size, uint32_t seed);
+
+void add_triangle(TriangleMesh& mesh, vec3 a, vec3 b, vec3 c);
+
+// All that is difficult. A quarter of the triangles each: slivers a million times longer than wide; triangles
+// that overlap in 20 planes; triangles of sizes from 10^-3 to 10^3; and copies of those, the corners in
+// another order.
+TriangleMesh nasty_mesh(uint32_t count);
+
+// The mesh with every position p replaced by f(p).
+TriangleMesh transformed(TriangleMesh mesh, const std::function<vec3(vec3)>& f);
+
+// A scene of that mesh alone, with one material and a camera at the origin.
+Scene scene_of_mesh(TriangleMesh mesh);
+
+}  // namespace candela

@@ -1,0 +1,32 @@
+// The sky on the device: where its texels are, and how light samples find them.
+#pragma once
+
+#include <vector>
+
+#include "scene/scene.h"
+#include "selftest/evidence.h"
+#include "vk/device.h"
+
+namespace candela {
+
+// A scene with something in it, far below, where it hides next to nothing of the sky.
+Scene scene_under(const Environment& environment);
+
+// What the device finds in a direction.
+struct SkyTexel {
+    vec3 radiance;
+    float pdf;
+};
+std::vector<SkyTexel> look_up(const vk::Device& device, const Environment& sky,
+                              const std::vector<vec3>& directions);
+
+// Skies of several sizes: every direction has the texel that the convention says.
+Evidence test_sky_lookup(const vk::Device& device);
+
+// Texels are sampled by luminance times solid angle, and within a texel uniformly over its solid angle.
+Evidence test_sky_samples(const vk::Device& device);
+
+// The sky and another light are chosen by their power.
+Evidence test_choice_of_sky(const vk::Device& device);
+
+}  // namespace candela

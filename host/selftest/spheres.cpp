@@ -1,0 +1,216 @@
+// See spheres.h.
+#include "selftest/spheres.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "selftest/probe.h"
+#include "selftest/probes.h"
+#include "selftest/random.h"
+#include "selftest/scenes.h"
+#include "selftest/traversal.h"
+
+namespace candela {
+namespace {
+
+constexpr size_t COUNT = 20000;
+
+struct InteractionItem {
+    vec3 o;
+    float unused0 = 0.0f;
+    vec3 d;
+    float unused1 = 0.0f;
+    vec3 wi;            // Turned over where it does not point to that side:
+    uint32_t side = 0;  // 0: the viewer's, 1: the other.
+};
+
+struct InteractionResult {
+    float t;
+    vec3 p;
+    float p_error;
+    vec3 n;
+    uint32_t front;
+    vec3 next_o, next_d;
+    float next_t;
+    uint32_t id;
+};
+
+const std::vector<Sphere> SPHERES{
+    {vec3(0), 1.0f},
+    {vec3(0), 1e-3f},
+    {vec3(0), 1e4f},
+    {vec3(0, -1000, 0), 1000.0f},  // A ground whose top is at the origin.
+    {vec3(0.3f, 0.6f, -0.2f), 0.5f},
+    {vec3(1000, -2000, 3000), 1.0f},
+    {vec3(100, 0, 100), 0.1f},
+    {vec3(0, 0, 5), 1e-2f},
+};
+
+std::vector<InteractionResult> run(const vk::Device& device, const decltype(Shape::geometry)& geometry,
+                                   const std::vector<InteractionItem>& items) {
+    Scene scene = scene_of_mesh({});
+    scene.shapes = {{.geometry = geometry, .material = 0, .emission = {}}};
+    const DeviceScene on_device(device, build_gpu_scene(scene), SceneAccess::texel_buffers);
+    return probe<InteractionResult>(device, kernels::interaction, items, {}, &on_device);
+}
+
+// Rays at points of the sphere, from around it or from within.
+std::vector<InteractionItem> items(const Sphere& sphere, bool from_inside, uint32_t side, uint32_t seed) {
+    Random random(seed);
+    std::vector<InteractionItem> items(COUNT);
+    for (InteractionItem& item : items) {
+        const vec3 n = random.direction();
+        const vec3 target = sphere.center + sphere.radius * n;
+        const float away = from_inside ? 0.9f * random.unit() : 1.1f + 3.0f * random.unit();
+        item.o = sphere.center + away * sphere.radius * random.direction();
+        item.d = normalize(target - item.o);
+        item.wi = random.direction();
+        item.side = side;
+    }
+    return items;
+}
+
+// wi, turned to a grazing angle with n: its cosine is `cosine`.
+vec3 grazing(vec3 wi, vec3 n, float cosine) {
+    return normalize(normalize(wi - dot(wi, n) * n) + cosine * n);
+}
+
+std::string name_of(const Sphere& sphere) {
+    return words("sphere of radius ", sphere.radius, " at ", sphere.center.x, ' ', sphere.center.y, ' ',
+                 sphere.center.z);
+}
+
+// More than a share of the rays must have met the shape, or the test would say nothing.
+void expect_most_meet(const std::string& name, size_t met, double share, size_t rays, Evidence& evidence) {
+    evidence.expect(double(met) > share * double(rays),
+                    [&] { return words(name, ": only ", met, " of ", rays, " rays meet it"); });
+}
+
+// Whether the second ray of `r` meets the far side of the sphere: at a distance of 2 r cos, but for the
+// offset of the origin, which at grazing angles is a larger part of it.
+bool meets_far_side(const Sphere& sphere, const InteractionResult& r) {
+    if (r.next_t == NO_HIT) return false;
+    const glm::dvec3 o(r.next_o), d(r.next_d), f = o - glm::dvec3(sphere.center);
+    const double b = -dot(f, d), radius = double(sphere.radius);
+    const double far = b + std::sqrt(std::max(0.0, b * b + radius * radius - dot(f, f)));
+    return std::abs(double(r.next_t) - far) <= 1e-2 * radius + 4.0 * double(r.p_error);
+}
+
+void test_rays_within(const vk::Device& device, const Sphere& sphere, bool from_inside, uint32_t seed,
+                      Evidence& evidence) {
+    const std::string name = name_of(sphere) + (from_inside ? ", from inside" : "");
+    const std::vector<InteractionItem> rays = items(sphere, from_inside, from_inside ? 0 : 1, seed);
+    std::vector<InteractionItem> both = rays;
+    const std::vector<InteractionResult> first = run(device, sphere, rays);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        both.push_back(rays[i]);
+        both.back().wi = grazing(rays[i].wi, from_inside ? first[i].n : -first[i].n, 1e-3f);
+    }
+    size_t met = 0;
+    for (const InteractionResult& r : run(device, sphere, both)) {
+        if (r.t == NO_HIT) continue;
+        ++met;
+        evidence.expect(r.front == (from_inside ? 0u : 1u) && meets_far_side(sphere, r), [&] {
+            return words(name, ": from ", r.next_o.x, ' ', r.next_o.y, ' ', r.next_o.z, " towards ",
+                         r.next_d.x, ' ', r.next_d.y, ' ', r.next_d.z, ": t ", r.next_t, ", front ", r.front);
+        });
+    }
+    expect_most_meet(name, met, 0.5, both.size(), evidence);
+}
+
+}  // namespace
+
+// The direction of the second ray lies in the hemisphere of the normal where it starts, down to grazing
+// angles: the outside of a sphere cannot be seen from there.
+Evidence test_rays_outside_spheres(const vk::Device& device) {
+    Evidence evidence;
+    uint32_t seed = 110;
+    for (const Sphere& sphere : SPHERES) {
+        std::vector<InteractionItem> rays = items(sphere, false, 0, seed++);
+        std::vector<InteractionResult> results = run(device, sphere, rays);
+        // Once more, at a grazing angle to the normals that were found.
+        for (size_t i = 0; i < rays.size(); ++i)
+            rays[i].wi = grazing(rays[i].wi, results[i].n, 1e-4f);
+        const std::vector<InteractionResult> more = run(device, sphere, rays);
+        results.insert(results.end(), more.begin(), more.end());
+        size_t met = 0;
+        for (const InteractionResult& r : results) {
+            if (r.t == NO_HIT) continue;
+            ++met;
+            evidence.expect(r.front == 1 && r.next_t == NO_HIT, [&] {
+                return words(name_of(sphere), ": met again after ", r.next_t, " from ", r.next_o.x, ' ',
+                             r.next_o.y, ' ', r.next_o.z, ", front ", r.front);
+            });
+        }
+        expect_most_meet(name_of(sphere), met, 0.5, results.size(), evidence);
+    }
+    return evidence;
+}
+
+Evidence test_rays_within_spheres(const vk::Device& device) {
+    Evidence evidence;
+    uint32_t seed = 130;
+    for (const Sphere& sphere : SPHERES) {
+        for (const bool from_inside : {false, true})
+            test_rays_within(device, sphere, from_inside, seed, evidence);
+        ++seed;
+    }
+    return evidence;
+}
+
+Evidence test_points_on_spheres(const vk::Device& device) {
+    Evidence evidence;
+    for (const Sphere& sphere : SPHERES) {
+        for (const InteractionResult& r : run(device, sphere, items(sphere, false, 0, 150))) {
+            if (r.t == NO_HIT) continue;
+            const glm::dvec3 p(r.p), n(r.n), from_center = p - glm::dvec3(sphere.center);
+            const double error = double(r.p_error);
+            // The step off the surface is of the order of the error, or of what offset_origin takes.
+            const double step = length(glm::dvec3(r.next_o) - p);
+            const bool right =
+                std::abs(length(from_center) - double(sphere.radius)) <= error &&
+                std::abs(length(n) - 1.0) <= 0x1p-20 &&
+                length(normalize(from_center) - n) <= 2.0 * double(r.p_error / sphere.radius) + 0x1p-20 &&
+                step <= 2.0 * error + 0x1p-15 + 0x1p-14 * length(p);
+            evidence.expect(right, [&] {
+                return words(name_of(sphere), ": point ", r.p.x, ' ', r.p.y, ' ', r.p.z, ", error ",
+                             r.p_error, ", normal ", r.n.x, ' ', r.n.y, ' ', r.n.z, ", step ", step);
+            });
+        }
+    }
+    return evidence;
+}
+
+Evidence test_rays_at_disks(const vk::Device& device) {
+    Evidence evidence;
+    for (const float radius : {1e-3f, 1.0f, 1e3f}) {
+        for (const vec3 center : {vec3(0), vec3(0, -1, 0), vec3(100, 200, -300)}) {
+            Random random(160);
+            const vec3 e1 = radius * random.direction();
+            const Disk disk{
+                .center = center, .e1 = e1, .e2 = cross(e1, normalize(cross(e1, random.direction())))};
+            std::vector<InteractionItem> rays;
+            for (size_t i = 0; i < COUNT; ++i) {
+                const vec3 target = center + 0.7f * random.unit() * disk.e1 + 0.7f * random.unit() * disk.e2;
+                const vec3 o = center + 2.0f * radius * random.direction();
+                rays.push_back({.o = o,
+                                .d = normalize(target - o),
+                                .wi = random.direction(),
+                                .side = random.bits() % 2});
+            }
+            const std::string name = words("disk of radius ", radius, " at ", center.x);
+            size_t met = 0;
+            for (const InteractionResult& r : run(device, disk, rays)) {
+                if (r.t == NO_HIT) continue;
+                ++met;
+                evidence.expect(r.next_t == NO_HIT,
+                                [&] { return words(name, ": met again after ", r.next_t); });
+            }
+            expect_most_meet(name, met, 0.9, rays.size(), evidence);
+        }
+    }
+    return evidence;
+}
+
+}  // namespace candela

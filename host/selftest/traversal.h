@@ -1,0 +1,41 @@
+// Rays, and their hits on the device by the BVH and by looking at every primitive.
+#pragma once
+
+#include <vector>
+
+#include "selftest/evidence.h"
+#include "selftest/probe.h"
+#include "selftest/probes.h"
+
+namespace candela {
+
+inline constexpr float NO_HIT = 3.4028234e38f;  // FLOAT_MAX of base/math.glsl.
+
+using Rays = std::vector<RayItem>;
+
+void add(Rays& rays, vec3 o, vec3 d);
+
+// From random points of a cube around `centre` of edge 2 `size`, in random directions.
+Rays random_rays(size_t count, vec3 centre, float size, uint32_t seed);
+
+// From random points of that cube towards random vertices, midpoints of edges and points of triangles.
+Rays rays_at_features(const TriangleMesh& mesh, size_t count, vec3 centre, float size, uint32_t seed);
+
+// `access` is not `automatic`.
+std::vector<TraversalResult> trace(const vk::Device& device, const GpuScene& scene, const Rays& rays,
+                                   SceneAccess access);
+
+// Every ray must have the hit of brute force, and be occluded from its hit on, but not before.
+Evidence compare_with_brute_force(const std::vector<TraversalResult>& results);
+
+// From inside closed meshes at vertices, into edges and along the axes, at three scales and far from the
+// origin, where the grid of floats is coarse: every ray has the hit of brute force through either kind of
+// buffer, and there is one.
+Evidence test_closed_meshes(const vk::Device& device);
+
+// The same, but that rays may miss, for a nasty_mesh().
+Evidence test_nasty_mesh(const vk::Device& device);
+
+size_t hits(const std::vector<TraversalResult>& results);
+
+}  // namespace candela

@@ -1,0 +1,26 @@
+// Warps on the device: points and directions are distributed as their densities say.
+#pragma once
+
+#include <vector>
+
+#include "selftest/evidence.h"
+#include "selftest/probes.h"
+#include "vk/device.h"
+
+namespace candela {
+
+// 200 000 random points of the unit square through all warps.
+std::vector<WarpResult> run_warps(const vk::Device& device, uint32_t seed, const WarpItem& parameters = {});
+
+// Disk, cosine-weighted hemisphere, triangle.
+Evidence test_basic_warps(const vk::Device& device);
+// Powers of the cosine, with exponents from 0 to 10^5.
+Evidence test_power_cosines(const vk::Device& device);
+// The sphere, and cones from narrow ones to the whole sphere.
+Evidence test_sphere_and_cones(const vk::Device& device);
+// Regular polygons of 3 to 64 corners.
+Evidence test_polygons(const vk::Device& device);
+// Visible normals of GGX for three views and roughnesses.
+Evidence test_visible_normals(const vk::Device& device);
+
+}  // namespace candela

@@ -1,0 +1,55 @@
+// `candela selftest` on the device at hand: all passes, and table and JSON say so.
+#include <regex>
+#include <sstream>
+
+#include "cli/cli_fixture.h"
+
+namespace candela {
+namespace {
+
+class SelftestCommand : public CliTest {
+  protected:
+    static ProcessResult selftest(const Words& arguments) {
+        ProcessOptions slow = options();
+        slow.timeout = 240.0;
+        return run_process(call(Words{"selftest"} + arguments), slow);
+    }
+};
+
+TEST_F(SelftestCommand, PassesOnThisDevice) {
+    const ProcessResult result = selftest({"--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+    const auto report = nlohmann::json::parse(result.out);
+    EXPECT_EQ(report["passed"], true);
+    EXPECT_EQ(report["failed"], 0);
+    EXPECT_NE(report["device"], "");
+    EXPECT_NE(report["driver"], "");
+    EXPECT_NE(report["system"], "");
+    EXPECT_EQ(report["checks"].size(), 17u);
+    for (const auto& check : report["checks"]) {
+        EXPECT_EQ(check["passed"], true) << check;
+        EXPECT_EQ(check["wrong"], 0) << check;
+        EXPECT_EQ(check["reason"], "") << check;
+        EXPECT_GT(check["compared"], 0) << check;
+        EXPECT_EQ(check["tests"] == 0, check["p"].is_null()) << check;
+        EXPECT_CONTAINS(result.err, ": " + check["name"].get<std::string>() + "\n");
+    }
+}
+
+TEST_F(SelftestCommand, HelpSaysHowOftenChanceFailsIt) {
+    const ProcessResult help = candela({"selftest", "--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    for (const char* part : {"--device", "--json", "a probability of 0.001 at most", "Exit code: 0"})
+        EXPECT_CONTAINS(help.out, part);
+}
+
+TEST_F(SelftestCommand, UnknownDevicesAndWordsAreRefused) {
+    EXPECT_EQ(candela({"selftest", "--device", "abacus"}).exit_code, 3);
+    EXPECT_EQ(candela({"selftest"}, NO_DRIVER).exit_code, 3);
+    const ProcessResult word = candela({"selftest", "now"});
+    EXPECT_EQ(word.exit_code, 2);
+    EXPECT_CONTAINS(word.err, "unknown argument \"now\"; see candela selftest --help");
+}
+
+}  // namespace
+}  // namespace candela
