@@ -1,5 +1,5 @@
-# The tests that read the sources, the shaders and the documents. Their label is `check`; a tool that is not here
-# shows as a skipped test.
+# The tests that read the sources, the shaders and the documents. Their label is `check`, and `quick` but for those
+# that take longer; a tool that is not here shows as a skipped test.
 find_program(SPIRV_VAL NAMES spirv-val REQUIRED)
 # Debian's own interpreter first, since the package python3-jsonschema belongs to it.
 find_program(PYTHON3 NAMES python3 HINTS /usr/bin REQUIRED)
@@ -9,14 +9,15 @@ find_program(RUN_CLANG_TIDY NAMES run-clang-tidy)
 # candela_check(NAME COMMAND...) adds a test of the sources.
 function(candela_check name)
     add_test(NAME ${name} COMMAND ${ARGN} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-    set_tests_properties(${name} PROPERTIES LABELS check TIMEOUT 900 SKIP_REGULAR_EXPRESSION "^skipped: ")
+    set_tests_properties(${name} PROPERTIES LABELS "check;quick" TIMEOUT 900 SKIP_REGULAR_EXPRESSION "^skipped: ")
 endfunction()
 
 candela_check(layers ${PYTHON3} cmake/checks/layers.py ${CMAKE_SOURCE_DIR})
 candela_check(layers_test ${PYTHON3} cmake/checks/layers_test.py)
 candela_check(setup_test ${PYTHON3} cmake/checks/setup_test.py)
 candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
-candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes)
+set_tests_properties(shaders_alone PROPERTIES LABELS check)
+candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes tests/references)
 candela_check(sky ${PYTHON3} tests/unit/sky_test.py scenes)
 
 # Needs a device, unlike the others.
@@ -40,10 +41,10 @@ else()
     candela_check(format ${CMAKE_COMMAND} -E echo "skipped: clang-format 14 is not here")
 endif()
 
-# clang-tidy keeps all cores busy by itself.
+# Minutes of all cores, and nothing that a run of the program could tell: the label `lint` runs by its own preset.
 if(RUN_CLANG_TIDY)
     candela_check(lint ${RUN_CLANG_TIDY} -quiet -p ${CMAKE_BINARY_DIR} ^${CMAKE_SOURCE_DIR}/host/)
-    set_tests_properties(lint PROPERTIES RUN_SERIAL TRUE)
 else()
     candela_check(lint ${CMAKE_COMMAND} -E echo "skipped: clang-tidy is not here")
 endif()
+set_tests_properties(lint PROPERTIES LABELS lint RUN_SERIAL TRUE)

@@ -29,9 +29,7 @@ Shape lamp(float x0, float x1, float z0, float z1, float height, bool down = tru
 class DirectLightTest : public RenderTest {
   protected:
     static RenderSettings settings(Estimator estimator) {
-        RenderSettings s = settings_for(16, 16);
-        s.estimator = estimator;
-        s.sampler = SamplerKind::independent;
+        RenderSettings s = independent_settings(16, estimator, 0);
         s.max_depth = 1;
         return s;
     }

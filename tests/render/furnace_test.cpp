@@ -37,7 +37,7 @@ class FurnaceTest : public RenderTest {
 
 TEST_F(FurnaceTest, EveryRaySeesTheGeometricSeries) {
     uint32_t seed = 0;
-    for (const float albedo : {0.0f, 0.5f, 0.8f}) {
+    for (const float albedo : {0.0f, 0.5f, 0.8f, 0.95f}) {
         for (const Estimator estimator : {Estimator::bsdf, Estimator::mis}) {
             SCOPED_TRACE(testing::Message() << "albedo " << albedo << ", estimator " << int(estimator));
             expect_mean(render(furnace(albedo), settings(estimator, seed++), 128),

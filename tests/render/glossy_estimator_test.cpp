@@ -86,20 +86,53 @@ TEST_F(GlossyEstimatorTest, AgreeOnAHiddenSky) {
     expect_estimators_agree(scene, 512, 512);
 }
 
-// A lens and a lobe may want the same random numbers: samplers and roulette keep the mean with all features
-// at once.
+// After Veach: a smooth and a rough plate under a small bright and a large dim lamp of the same power. BSDF
+// samples seldom find the small one from the rough plate, light samples seldom that part of the large one
+// which the smooth plate mirrors.
+TEST_F(GlossyEstimatorTest, AgreeOnPlatesUnderASmallAndALargeLamp) {
+    Scene scene = scene_with_camera(vec3(0, 1.5f, 4), vec3(0, 0.2f, 0), 0.6f);
+    const uint32_t black = add_diffuse(scene, vec3(0));
+    const uint32_t smooth = add_material(scene, PhongMaterial{vec3(0.1f), vec3(0.8f, 0.7f, 0.6f), 2000.0f});
+    const uint32_t rough = add_material(scene, ConductorMaterial{vec3(0.6f, 0.7f, 0.8f), 0.4f});
+    add_shape(scene, parallelogram(vec3(-2, 0, 0), vec3(4, 0, 0), vec3(0, 0, -1)), smooth);
+    add_shape(scene, parallelogram(vec3(-2, 0, 1), vec3(4, 0, 0), vec3(0, 0, -1)), rough);
+    add_shape(scene, Sphere{vec3(0.7f, 0.9f, -1.5f), 0.1f}, black, Emission{25.0f * COOL, false});
+    add_shape(scene, Sphere{vec3(-0.7f, 0.9f, -1.5f), 0.5f}, black, Emission{WARM, false});
+    expect_estimators_agree(scene, 2048, 2048);
+}
+
+// From outside the glass only BSDF samples find the lamp, and count in full; on the ball beside it in the
+// glass both kinds find it, but for the light that comes back from the boundary.
+TEST_F(GlossyEstimatorTest, AgreeOnALampWithinGlass) {
+    Scene scene = open_room();
+    add_shape(scene, Sphere{vec3(0, 0.8f, 0), 0.7f},
+              add_material(scene, DielectricMaterial{.absorption = vec3(1, 0.5f, 0.2f)}));
+    add_shape(scene, Sphere{vec3(-0.3f, 0.9f, 0), 0.25f}, 0, Emission{WARM, false});
+    add_shape(scene, Sphere{vec3(0.3f, 0.7f, 0), 0.25f}, add_diffuse(scene, vec3(0.9f)));
+    expect_estimators_agree(scene, 1024, 1024);
+}
+
+// A lens and a lobe may want the same random numbers: samplers keep the mean with all features at once. The
+// samples of a stratified pixel depend on each other, the means of renderings with other seeds do not.
 TEST_F(GlossyEstimatorTest, SamplersAgreeOnEverything) {
     const Scene scene = scene_of_everything();
-    const Image independent = image(scene, settings(Estimator::mis, 4), 512);
+    RenderSettings s = settings(Estimator::mis, 4);
+    const Replicates independent = replicates(scene, s, 16);
     for (const SamplerKind sampler : {SamplerKind::stratified, SamplerKind::sobol}) {
         SCOPED_TRACE(int(sampler));
-        RenderSettings s = settings(Estimator::mis, 5);
         s.sampler = sampler;
-        expect_same_expectation(image(scene, s, 512), independent);
+        s.seed += SEEDS;
+        expect_same_expectation(replicates(scene, s, 16), independent);
     }
+}
+
+TEST_F(GlossyEstimatorTest, RouletteKeepsTheMeanOfEverything) {
+    const Scene scene = scene_of_everything();
     RenderSettings always = settings(Estimator::mis, 6);
     always.rr_depth = 0;
-    expect_same_expectation(image(scene, always, 1024), independent);
+    RenderSettings never = settings(Estimator::mis, 7);
+    never.rr_depth = DEPTH_SAFETY_LIMIT;
+    expect_same_expectation(image(scene, always, 512), image(scene, never, 256));
 }
 
 }  // namespace

@@ -58,6 +58,25 @@ TEST_P(IdentityTest, ManySmallSubmissions) {
     expect_same_bits(r.download(), whole);
 }
 
+// So few pixels that all their samples fit into the first submission, however fast the device is.
+TEST_P(IdentityTest, OneSubmissionOrSixteen) {
+    RenderSettings s = settings();
+    s.crop = {3, 2, 18, 18};
+    const auto submissions = [](Renderer& r, uint32_t target) {
+        size_t count = 0;
+        EXPECT_TRUE(r.render(target, [&](double) { return ++count > 0; }));
+        return count;
+    };
+    Renderer whole = renderer(s);
+    EXPECT_EQ(submissions(whole, SPP), 1u);
+    Renderer stepwise = renderer(s);
+    size_t count = 0;
+    for (uint32_t target = 1; target <= SPP; ++target)
+        count += submissions(stepwise, target);
+    EXPECT_EQ(count, 16u);
+    expect_same_bits(stepwise.download(), whole.download());
+}
+
 // So few pixels that thousands of samples of each fit into one submission.
 TEST_P(IdentityTest, ManySamplesOfAFewPixels) {
     constexpr uint32_t MANY = 5000;
@@ -177,10 +196,10 @@ INSTANTIATE_TEST_SUITE_P(Scenes, IdentityTest, testing::Values(cornell_box, scen
 
 // Lavapipe reads the number of its threads when an instance lists its devices; other drivers ignore the
 // variable.
-TEST(ThreadsTest, OneThreadOrMany) {
+TEST(ThreadsTest, OneThreadTwoOrAsManyAsTheDriverLikes) {
     const Scene scene = scene_of_everything();
     const auto render_with_threads = [&](const char* threads) {
-        setenv("LP_NUM_THREADS", threads, 1);
+        if (threads) setenv("LP_NUM_THREADS", threads, 1);
         const vk::Instance instance({.validation = true});
         const std::vector<vk::DeviceInfo> devices = instance.devices();
         const vk::Device device(instance, vk::select_device(devices, {}));
@@ -189,9 +208,14 @@ TEST(ThreadsTest, OneThreadOrMany) {
         unsetenv("LP_NUM_THREADS");
         return r.download();
     };
-    const Accumulation one = render_with_threads("1");
-    const Accumulation three = render_with_threads("3");
-    EXPECT_EQ(std::memcmp(one.values.data(), three.values.data(), one.values.size() * sizeof(float)), 0);
+    const Accumulation preferred = render_with_threads(nullptr);
+    for (const char* threads : {"1", "2"}) {
+        SCOPED_TRACE(threads);
+        const Accumulation state = render_with_threads(threads);
+        EXPECT_EQ(std::memcmp(state.values.data(), preferred.values.data(),
+                              preferred.values.size() * sizeof(float)),
+                  0);
+    }
 }
 
 }  // namespace

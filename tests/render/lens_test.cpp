@@ -150,6 +150,9 @@ TEST_P(BlurTest, IsAnImageOfTheAperture) {
     expect("x", blur.mean([](auto z) { return z.real(); }), 0.0, 0.0);
     expect("y", blur.mean([](auto z) { return z.imag(); }), 0.0, 0.0);
     expect("moment", blur.mean([](auto z) { return std::norm(z); }), moment, 1e-3 * moment);
+    // As wide as high, and not tilted: the second moments of a regular polygon are those of a circle.
+    expect("stretch", blur.mean([](auto z) { return (z * z).real(); }), 0.0, 1e-3 * moment);
+    expect("tilt", blur.mean([](auto z) { return (z * z).imag(); }), 0.0, 1e-3 * moment);
 
     // Its middle is as dim as its area is large.
     RunningMoments middle;
