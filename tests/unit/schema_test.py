@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Checks that scenes/scene.schema.json accepts every scene and refuses bad ones: schema_test.py SCENES_DIR."""
+"""Checks that scenes/scene.schema.json accepts every scene and refuses bad ones: schema_test.py SCENES_DIR...
+
+The schema is in the first folder.
+"""
 
 import copy
 import json
@@ -159,14 +162,17 @@ def changed(path, value):
     return scene
 
 
-def main(folder):
-    schema = read_scene(folder / "scene.schema.json")
+def main(folders):
+    schema = read_scene(folders[0] / "scene.schema.json")
     jsonschema.Draft202012Validator.check_schema(schema)
     validator = jsonschema.Draft202012Validator(schema)
     failures = []
-    scenes = [path for path in sorted(folder.glob("*.json")) if path.name != "scene.schema.json"]
-    if not scenes:
-        failures.append(f"{folder}: no scenes found")
+    scenes = []
+    for folder in folders:
+        found = [path for path in sorted(folder.glob("*.json")) if path.name != "scene.schema.json"]
+        if not found:
+            failures.append(f"{folder}: no scenes found")
+        scenes += found
     for path in scenes:
         for error in validator.iter_errors(read_scene(path)):
             failures.append(f"{path}: {error.json_path}: {error.message}")
@@ -186,6 +192,6 @@ def main(folder):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: schema_test.py SCENES_DIR")
-    sys.exit(main(Path(sys.argv[1])))
+    if len(sys.argv) < 2:
+        sys.exit("usage: schema_test.py SCENES_DIR...")
+    sys.exit(main([Path(folder) for folder in sys.argv[1:]]))

@@ -1,0 +1,316 @@
+#!/usr/bin/env python3
+"""Makes the references of this folder with Mitsuba 3: `python3 make_references.py [NAME]...`, or all of them.
+
+A reference is the picture of a scene by an independent renderer: NAME.exr of NAME.json here, or of the scene of that
+name in scenes/; mean and variance of the mean over many renderings with seeds of their own. reference_test.cpp compares
+candela with them. Requirements, in a virtual environment of their own (they are none of candela's):
+
+    python3 -m venv venv && venv/bin/pip install mitsuba==3.9.1 numpy && venv/bin/python make_references.py
+
+Mitsuba compiles its kernels with LLVM 16 or newer (Debian: libllvm19); where there are several, the variable
+DRJIT_LIBLLVM_PATH names the library. All references together take about seven minutes of two cores.
+"""
+
+import json
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+import mitsuba as mi
+import numpy as np
+
+mi.set_variant("llvm_ad_rgb")
+mi.set_log_level(mi.LogLevel.Error)
+
+import reflection_models  # noqa: E402 (needs the variant)
+
+HERE = Path(__file__).parent
+SCENES = HERE.parent.parent / "scenes"
+
+SIZE = 64  # Pixels on each side of every picture.
+SEEDS = 64
+# Samples per pixel and seed; the names of all references.
+SPP = {
+    "cornell-box": 256,
+    "colour-bleeding": 256,
+    "mirror": 256,
+    "glass": 128,
+    "absorbing-glass": 64,
+    "rough-metal": 128,
+    "phong": 256,
+    "depth-of-field": 256,
+    "environment": 128,
+    "small-sphere-light": 128,
+    "many-lights": 512,
+    "mesh-light": 256,
+    "smooth-normals": 128,
+}
+
+# A string, which stays, or a comment, which becomes a space.
+STRING_OR_COMMENT = re.compile(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
+
+
+def read_scene(name):
+    """The scene file, and the folder from which it names other files."""
+    path = next(p for p in (HERE / f"{name}.json", SCENES / f"{name}.json") if p.exists())
+    text = path.read_text(encoding="utf-8")
+    return json.loads(STRING_OR_COMMENT.sub(lambda match: match.group(1) or " ", text)), path.parent
+
+
+def rgb(value):
+    """Three numbers from three, or from one for all channels."""
+    return list(value) if isinstance(value, list) else [value] * 3
+
+
+def colour(value):
+    return {"type": "rgb", "value": rgb(value)}
+
+
+# --- Materials -------------------------------------------------------------------------------------------------------
+
+
+def diffuse(material, smooth):
+    # Mitsuba decides by the shading normal which side of a two-sided surface is lit, which is wrong at silhouettes.
+    lambert = {"type": "diffuse", "reflectance": colour(material["reflectance"])}
+    return lambert if smooth else {"type": "twosided", "bsdf": lambert}
+
+
+def mirror(material, smooth):
+    ideal = {"type": "conductor", "material": "none", "specular_reflectance": colour(material.get("reflectance", 1))}
+    return {"type": "twosided", "bsdf": ideal}
+
+
+def phong(material, smooth):
+    colours = {"diffuse": rgb(material.get("diffuse", 0)), "specular": rgb(material["specular"])}
+    return {"type": "candela_phong", **colours, "exponent": float(material["exponent"])}
+
+
+def metal(material, smooth):
+    return {"type": "candela_metal", "reflectance": rgb(material["reflectance"]), "alpha": float(material["alpha"])}
+
+
+def dielectric(material, smooth):
+    assert material.get("fresnel") == "exact", "Mitsuba knows no approximation of Fresnel's equations"
+    return {"type": "dielectric", "int_ior": float(material["ior"]), "ext_ior": float(material.get("exterior_ior", 1))}
+
+
+BSDFS = {"diffuse": diffuse, "mirror": mirror, "phong": phong, "conductor": metal, "dielectric": dielectric}
+BLACK = {"type": "diffuse", "reflectance": 0.0}
+
+
+def interior(material):
+    """The absorbing medium inside a dielectric, if it absorbs."""
+    absorption = material.get("absorption")
+    if not absorption:
+        return {}
+    sigma_t = -np.log(rgb(absorption["transmittance"])) / absorption["distance"]
+    scale = float(max(sigma_t))  # Mitsuba takes it for a colour, in [0, 1].
+    medium = {"type": "homogeneous", "albedo": 0.0, "sigma_t": colour((sigma_t / scale).tolist()), "scale": scale}
+    return {"interior": medium}
+
+
+# --- Shapes ----------------------------------------------------------------------------------------------------------
+
+
+def rotation(degrees, axis):
+    return np.array(mi.ScalarTransform4f().rotate(axis, degrees).matrix)
+
+
+def transform(shape):
+    """The 4 x 4 matrix of all steps."""
+    total = np.eye(4)
+    for step in shape.get("transform", []):
+        matrix = np.eye(4)
+        if "scale" in step:
+            matrix[:3, :3] = np.diag(rgb(step["scale"]))
+        elif "rotate" in step:
+            matrix = rotation(step["rotate"], step["axis"])
+        elif "translate" in step:
+            matrix[:3, 3] = step["translate"]
+        else:
+            matrix = np.reshape(step["matrix"], (4, 4))
+        total = matrix @ total
+    return total
+
+
+def box(shape):
+    """Corners and triangles; the front is outside."""
+    low, high = np.array(shape["min"]), np.array(shape["max"])
+    corners = [np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)]
+    quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    return corners, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+
+
+def write_ply(path, positions, triangles, normals=None):
+    columns = positions if normals is None else np.hstack([positions, normals])
+    names = ["x", "y", "z", "nx", "ny", "nz"][: columns.shape[1]]
+    lines = ["ply", "format ascii 1.0", f"element vertex {len(columns)}", *(f"property float {n}" for n in names)]
+    lines += [f"element face {len(triangles)}", "property list uchar int vertex_index", "end_header"]
+    lines += [" ".join(repr(float(x)) for x in row) for row in columns]
+    lines += [f"3 {a} {b} {c}" for a, b, c in triangles]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def read_ply(path):
+    """Positions, triangles and normals of a mesh as make_mesh.py writes it, which Mitsuba does not read: little-endian,
+    positions and normals as floats, faces of three or four 16-bit indices."""
+    header, _, data = path.read_bytes().partition(b"end_header\n")
+    vertices, faces = (int(n) for n in re.findall(rb"element \w+ (\d+)", header))
+    columns = np.frombuffer(data, "<f4", 6 * vertices).reshape(-1, 6)
+    at, triangles = columns.nbytes, []
+    for _ in range(faces):
+        corners = np.frombuffer(data, "<u2", data[at], at + 1)
+        triangles += [(corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)]
+        at += 1 + corners.nbytes
+    return columns[:, :3], triangles, columns[:, 3:]
+
+
+def mesh_of(shape, folder, temporary):
+    """A mesh of any kind but OBJ as a file that Mitsuba reads."""
+    normals = None
+    if shape["type"] == "quad":
+        positions, triangles = shape["vertices"], [(0, 1, 2), (0, 2, 3)]
+    elif shape["type"] == "box":
+        positions, triangles = box(shape)
+    elif shape["type"] == "ply":
+        positions, triangles, normals = read_ply(folder / shape["file"])
+    else:
+        positions, triangles, normals = shape["positions"], shape["triangles"], shape.get("normals")
+    path = temporary / f"{len(list(temporary.iterdir()))}.ply"
+    write_ply(path, np.array(positions), triangles, normals)
+    return {"type": "ply", "filename": str(path), "face_normals": normals is None}
+
+
+def geometry(shape, folder, temporary):
+    """Mitsuba's shape, without its material."""
+    to_world = transform(shape)
+    if shape["type"] == "sphere":
+        local = mi.ScalarTransform4f().translate(shape.get("center", [0, 0, 0])).scale(shape.get("radius", 1))
+        result = {"type": "sphere"}
+        to_world = to_world @ np.array(local.matrix)
+    elif shape["type"] == "disk":
+        # Mitsuba's disk looks along its +Z.
+        center, normal = np.array(shape.get("center", [0, 0, 0])), np.array(shape["normal"])
+        up = [1, 0, 0] if abs(normal[0]) < 0.5 * np.linalg.norm(normal) else [0, 1, 0]
+        local = mi.ScalarTransform4f().look_at(center.tolist(), (center + normal).tolist(), up)
+        result = {"type": "disk"}
+        to_world = to_world @ np.array(local.scale(shape.get("radius", 1)).matrix)
+    elif shape["type"] == "obj":
+        flat = shape.get("normals", "file") == "flat"
+        result = {"type": "obj", "filename": str((folder / shape["file"]).resolve()), "face_normals": flat}
+    else:
+        result = mesh_of(shape, folder, temporary)
+    return {**result, "to_world": mi.ScalarTransform4f(to_world)}
+
+
+def shape_of(shape, materials, folder, temporary):
+    assert not shape.get("two_sided"), "Mitsuba's lights are one-sided"
+    result = geometry(shape, folder, temporary)
+    smooth = not result.get("face_normals", True)
+    if "material" in shape:
+        material = materials[shape["material"]]
+        result |= {"bsdf": BSDFS[material["type"]](material, smooth), **interior(material)}
+    else:
+        result["bsdf"] = BLACK
+    if "emission" in shape:
+        result["emitter"] = {"type": "area", "radiance": colour(shape["emission"])}
+    return result
+
+
+# --- Camera and environment ------------------------------------------------------------------------------------------
+
+
+def sensor(camera):
+    if "vertical_fov" in camera:
+        fov = camera["vertical_fov"]
+    else:
+        fov = np.degrees(2 * np.arctan(camera["film_size"][1] / (2 * camera["focal_length"])))
+    look_at = mi.ScalarTransform4f().look_at(camera["position"], camera["look_at"], camera.get("up", [0, 1, 0]))
+    film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "component_format": "float32"}
+    result = {"type": "perspective", "to_world": look_at, "fov": float(fov), "fov_axis": "y", "near_clip": 1e-3}
+    lens = camera.get("lens", {"radius": 0})
+    if lens["radius"] > 0:
+        assert "blades" not in lens, "Mitsuba's aperture is a disk"
+        result |= {"type": "thinlens", "aperture_radius": lens["radius"], "focus_distance": lens["focal_distance"]}
+    return {**result, "film": {**film, "pixel_format": "rgb"}, "sampler": {"type": "independent"}}
+
+
+def baked(texels, factor=4):
+    """Mitsuba interpolates between points of which the first and last row are the poles; candela's map is constant over
+    each texel. So this samples the constant texels at the points of a grid that many times finer; its columns begin at
+    -Z, where candela has the middle. Points between two rows of texels get the mean of both."""
+    height, width, _ = texels.shape
+    columns = np.roll(np.repeat(texels, factor, axis=1), width * factor // 2, axis=1)
+    at = np.arange(factor * height + 1) / factor
+    above = np.clip(np.ceil(at).astype(int) - 1, 0, height - 1)
+    below = np.clip(np.floor(at).astype(int), 0, height - 1)
+    return (columns[above] + columns[below]) / 2
+
+
+def environment_of(environment, folder):
+    assert environment.get("visible", True), "Mitsuba would hide all lights"
+    scale = environment.get("intensity", 1)
+    if "radiance" in environment:
+        return {"type": "constant", "radiance": colour([scale * c for c in rgb(environment["radiance"])])}
+    texels = np.array(mi.Bitmap(str(folder / environment["file"])), dtype=np.float32)[..., :3]
+    bitmap = mi.Bitmap(baked(texels).astype(np.float32))
+    turn = mi.ScalarTransform4f(rotation(environment.get("rotation", 0), [0, 1, 0]))
+    return {"type": "envmap", "bitmap": bitmap, "scale": float(scale), "to_world": turn}
+
+
+# --- Pictures --------------------------------------------------------------------------------------------------------
+
+
+def integrator(scene):
+    if any("absorption" in material for material in scene["materials"].values()):
+        # Of the two that know media, `volpath` has fireflies, and the roulette of `volpathmis` takes 0.2 % of light:
+        # so this one without roulette, and with more vertices than light survives.
+        return {"type": "volpathmis", "max_depth": 64, "rr_depth": 64}
+    depth = scene.get("integrator", {}).get("max_depth", "unlimited")
+    # Mitsuba counts the light as a vertex, too.
+    return {"type": "path", "max_depth": -1 if depth == "unlimited" else depth + 1}
+
+
+def load(name, temporary):
+    scene, folder = read_scene(name)
+    camera = next(iter(scene["cameras"].values()))
+    result = {"type": "scene", "integrator": integrator(scene), "sensor": sensor(camera)}
+    if "environment" in scene:
+        result["environment"] = environment_of(scene["environment"], folder)
+    for i, shape in enumerate(scene["shapes"]):
+        result[f"shape{i}"] = shape_of(shape, scene["materials"], folder, temporary)
+    return mi.load_dict(result)
+
+
+def render(name):
+    """Mean and variance of the mean, SIZE x SIZE x 3 each."""
+    with tempfile.TemporaryDirectory() as temporary:
+        scene = load(name, Path(temporary))
+        images = [np.array(mi.render(scene, spp=SPP[name], seed=seed), dtype=float) for seed in range(SEEDS)]
+    return np.mean(images, axis=0), np.var(images, axis=0, ddof=1) / SEEDS
+
+
+def write(name, mean, variance):
+    channels = ["R", "G", "B", "Variance.R", "Variance.G", "Variance.B"]
+    values = np.concatenate([mean, variance], axis=2).astype(np.float32)
+    picture = mi.Bitmap(values, pixel_format=mi.Bitmap.PixelFormat.MultiChannel, channel_names=channels)
+    picture.metadata()["renderer"] = f"Mitsuba {mi.__version__}, make_references.py"
+    picture.metadata()["samples"] = f"{SEEDS} seeds x {SPP[name]} per pixel"
+    picture.write(str(HERE / f"{name}.exr"))
+
+
+def main(names):
+    unknown = set(names) - set(SPP)
+    if unknown:
+        sys.exit(f"unknown scene {', '.join(sorted(unknown))} (known: {', '.join(SPP)})")
+    reflection_models.check_albedos()
+    for name in names or SPP:
+        mean, variance = render(name)
+        write(name, mean, variance)
+        noise = np.median(np.sqrt(variance) / np.maximum(mean, 1e-9))
+        print(f"{name}: mean {mean.mean():.4f}, median noise of a pixel {100 * noise:.2f} %", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
