@@ -16,8 +16,8 @@
 namespace candela {
 namespace {
 
-constexpr size_t CELLS = 16;  // Along each axis of a histogram.
-constexpr size_t SAMPLES = 200000;
+constexpr size_t CELLS = 8;         // Along each axis of a histogram.
+constexpr size_t SAMPLES = 400000;  // In so many cells, they tell a density that is 2 % off.
 
 // Adds the p-value of the hypothesis that coordinates(result), in [0, 1]^2, are uniform.
 template <class Coordinates>

@@ -1,0 +1,92 @@
+"""The ways in which mutate.py breaks the renderer, in groups: the tests to run, and for each way its name, the file, what
+stands there once, and what it becomes."""
+
+PATH = "shaders/integrator/path.glsl"
+LIGHT_SAMPLER = "shaders/light/light_sampler.glsl"
+AREA = "shaders/light/area.glsl"
+SPHERE = "shaders/light/sphere.glsl"
+SKY = "shaders/light/environment.glsl"
+PHONG = "shaders/bsdf/phong.glsl"
+CONDUCTOR = "shaders/bsdf/conductor.glsl"
+DIELECTRIC = "shaders/bsdf/dielectric.glsl"
+FRESNEL = "shaders/bsdf/fresnel.glsl"
+WARP = "shaders/base/warp.glsl"
+SAMPLER = "shaders/base/sampler.glsl"
+TRAVERSAL = "shaders/scene/traversal.glsl"
+TRIANGLE = "shaders/scene/triangle.glsl"
+CAMERA = "shaders/scene/camera.glsl"
+RENDER = "shaders/kernels/render.comp.glsl"
+
+# What a group runs: filters for the tests of shaders and for those of whole images, each quick for what it tells.
+INTEGRATOR = ("Interaction*",
+              "Furnace*:EstimatorTest*:Roulette*:Dielectric*Within*:Dielectric*Absorbs:SkyFurnace*:DirectLight*:"
+              "*Reference*/glass:*Reference*/absorbing_glass:*Reference*/phong")
+BSDFS = ("*Bsdf*:Phong*:Dielectric*:Warp*",
+         "SkyFurnace*:Albedo*:Dielectric*:*Reference*/phong:*Reference*/rough_metal:*Reference*/glass")
+LIGHTS = ("*Light*:Environment*:Alias*",
+          "DirectLight*:RoundLight*:EnvironmentLight*:EstimatorTest*Lights:*Reference*/small_sphere_light:"
+          "*Reference*/environment")
+SAMPLES = ("Sampler*:Math*", "Furnace*:*Lens*:*Blur*:Aov*:SamplerError*:*Reference*/depth_of_field:*Reference*/mirror")
+GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*:Interaction*:RoundShapes*",
+            "DirectLight*:SkyFurnace*:*Reference*/smooth_normals")
+
+GROUPS = [
+    (INTEGRATOR, [
+        ("cosine dropped from direct light", PATH, "* abs(wi.z) * light.Li", "* light.Li"),
+        ("emission counted in full beside light samples", PATH, "return power_heuristic(path.pdf_bsdf, pdf_light);",
+         "return 1.0;"),
+        ("MIS weight of emission with twice the light's density", PATH, "power_heuristic(path.pdf_bsdf, pdf_light)",
+         "power_heuristic(path.pdf_bsdf, 2.0 * pdf_light)"),
+        ("ideal scattering taken for a density", PATH, "path.delta = scattered.delta", "path.delta = false"),
+        ("roulette without reweighting", PATH, "path.beta /= survival;", ""),
+        ("roulette blind to refraction", PATH, "max_component(path.beta) * path.eta_scale",
+         "max_component(path.beta) / path.eta_scale"),
+        ("roulette with the number that chose the lobe", PATH, "sampler_pair(random, pair + PAIR_ROULETTE).x",
+         "choice.y"),
+        ("the same dimensions at every bounce", PATH, "path.depth * PAIRS_PER_BOUNCE", "0u"),
+        ("one bounce too many", PATH, "path.depth == parameters.max_depth", "path.depth > parameters.max_depth"),
+        ("absorption also outside of the solid", PATH, "s.front ? material.base : vec3(0.0)", "material.base"),
+        ("light from below the geometric surface", PATH, "light.pdf == 0.0 || dot(light.wi, s.n) <= 0.0 ||",
+         "light.pdf == 0.0 ||"),
+    ]),
+    (BSDFS, [
+        ("1/pi missing from Lambert's reflector", "shaders/bsdf/diffuse.glsl", "reflectance * INV_PI", "reflectance"),
+        ("Phong normalised for its sampling, not its albedo", PHONG, "0.5 * (n + 2.0)", "0.5 * (n + 1.0)"),
+        ("Phong's lobes chosen otherwise than the density says", PHONG, "if (uc < phong_lobe_pmf(kd, ks))",
+         "if (uc < 0.5)"),
+        ("GGX sampled as if seen from above", WARP, "0.5 * (1.0 + v.z)", "1.0"),
+        ("GGX shadowing without correlation in the weight only", CONDUCTOR,
+         "wi.z * (wo.z + reach_o) / (wi.z * reach_o + wo.z * ggx_reach(alpha, wi))",
+         "2.0 * wi.z / (wi.z + ggx_reach(alpha, wi))"),
+        ("eta swapped in Snell's law", DIELECTRIC, "-wo.xy / eta", "-wo.xy * eta"),
+        ("eta^2 missing from refracted radiance", DIELECTRIC, "vec3(1.0 / square(eta))", "vec3(1.0)"),
+        ("Schlick's angle on the wrong side of the glass", FRESNEL, "eta >= 1.0 ? cos_o : cos_t", "cos_o"),
+    ]),
+    (LIGHTS, [
+        ("alias table off by one", LIGHT_SAMPLER, ": entry.alias);",
+         ": (entry.alias + 1u) % scene_parameters().light_count);"),
+        ("lights chosen with a wrong probability", LIGHT_SAMPLER, "column.y < entry.threshold",
+         "column.y < entry.threshold / 2u"),
+        ("cosine missing from an area light's density", AREA, "distance_squared / abs(cos_light)", "distance_squared"),
+        ("emission from the back", AREA, "front || l.two_sided != 0u", "true"),
+        ("a sphere light's density 2 % low", SPHERE, "return 2.0 * square(radius)", "return 1.96 * square(radius)"),
+        ("solid angle missing from the choice of texels", "host/render/environment_map.cpp", "size.x + x]) * solid_angle",
+         "size.x + x])"),
+        ("sky turned the wrong way", SKY, "turn.x * w.x - turn.y * w.z", "turn.x * w.x + turn.y * w.z"),
+    ]),
+    (SAMPLES, [
+        ("aperture not uniform", CAMERA, "? warp_disk(u)", "? u.x * cos_sin_turn(u.y)"),
+        ("lens and pixel share their random numbers", RENDER, "PAIR_LENS", "PAIR_PIXEL"),
+        ("half a pixel off", RENDER, "vec2(pixel) + unit_float", "vec2(pixel) + 0.5 + unit_float"),
+        ("a fold of the Sobol matrix missing", SAMPLER, "i ^= (i >> 4u) & 0x0F0F0F0Fu;", ""),
+        ("sums without compensation", "shaders/base/math.glsl", "(t - sum) - y", "0.0 * ((t - sum) - y)"),
+    ]),
+    (GEOMETRY, [
+        ("rays leave on the wrong side", "shaders/base/ray.glsl", "mix(offset, -offset,", "mix(-offset, offset,"),
+        ("child boxes rounded inwards", "host/bvh/quantise.cpp", "while (decode(q) < x)", "while (decode(q + 1) < x)"),
+        ("boxes without a margin, a little small", TRAVERSAL, "vec3 far = start + margin", "vec3 far = start - margin"),
+        ("edges belong to no triangle", TRIANGLE, "min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0",
+         "min(u, min(v, w)) <= 0.0 && max(u, max(v, w)) >= 0.0"),
+        ("of equal hits the last one found wins", TRAVERSAL, "primitive.id < hit.id", "true"),
+    ]),
+]
