@@ -78,7 +78,8 @@ GROUPS = [
     ]),
     (GEOMETRY, [
         ("rays leave on the wrong side", "shaders/base/ray.glsl", "mix(offset, -offset,", "mix(-offset, offset,"),
-        ("child boxes rounded inwards", "host/bvh/quantise.cpp", "while (decode(q) < x)", "while (decode(q + 1) < x)"),
+        ("child boxes rounded inwards", "host/bvh/quantise.cpp",
+         "std::ceil(steps(x)));\n        while (decode(q) < x)", "steps(x));\n        while (decode(q + 1) < x)"),
         ("boxes without a margin, a little small", TRAVERSAL, "vec3 far = start + margin", "vec3 far = start - margin"),
         ("edges belong to no triangle", TRIANGLE, "min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0",
          "min(u, min(v, w)) <= 0.0 && max(u, max(v, w)) >= 0.0"),
