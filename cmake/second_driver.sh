@@ -12,8 +12,10 @@ candela=build/ci/candela
 unpack() {
     keyring=/usr/share/keyrings/debian-archive-keyring.gpg
     [ -f "$keyring" ] || { echo "There is no $keyring: this script needs Debian 12." >&2; exit 1; }
+    mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Codename: bookworm' | head -n 1)
+    [ -n "$mirror" ] || { echo "apt knows no mirror of Debian 12, which this script needs." >&2; exit 1; }
     mkdir -p "$folder/lists/partial" "$folder/packages"
-    echo "deb [signed-by=$keyring] http://deb.debian.org/debian bookworm-backports main" >"$folder/sources.list"
+    echo "deb [signed-by=$keyring] $mirror bookworm-backports main" >"$folder/sources.list"
     set -- $(printf '%s/bookworm-backports ' "$@")
     apt="apt-get -qq -o Dir::Etc::sourcelist=$folder/sources.list -o Dir::Etc::sourceparts=-
          -o Dir::State::lists=$folder/lists -o APT::Get::List-Cleanup=0 -o APT::Sandbox::User=root"

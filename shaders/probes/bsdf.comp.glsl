@@ -1,4 +1,4 @@
-// For bsdf_test.cpp: one material, given by its record. Samples it with u and evaluates it, both for the sampled
+// For selftest/bsdfs.h: one material, given by its record. Samples it with u and evaluates it, both for the sampled
 // direction and for a given wi.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// For environment_test.cpp: the texel in the direction of an item.
+// For selftest/skies.h: the texel in the direction of an item.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

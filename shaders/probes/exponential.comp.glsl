@@ -1,4 +1,4 @@
-// For exponential_test.cpp: logarithm and exponentials of an item x <= 0.
+// For selftest/exponentials.h: logarithm and exponentials of an item x <= 0.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

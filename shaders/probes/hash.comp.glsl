@@ -1,4 +1,4 @@
-// For sampler_test.cpp: every integer function that the samplers are made of.
+// For selftest/samplers.h: every integer function that the samplers are made of.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

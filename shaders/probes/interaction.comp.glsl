@@ -1,4 +1,4 @@
-// For interaction_test.cpp: item (ray; direction, side). What the ray meets, and what a second ray meets that leaves from
+// For selftest/spheres.h: item (ray; direction, side). What the ray meets, and what a second ray meets that leaves from
 // there in that direction, turned to the viewer's side (side 0) or to the other (1).
 #version 460
 #extension GL_GOOGLE_include_directive : require

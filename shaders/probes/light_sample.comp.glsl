@@ -1,4 +1,4 @@
-// For the tests of lights: item (reference point, 32 bits for the light; 2 x 32 bits for the point). A light sample
+// For selftest/lights.h: item (reference point, 32 bits for the light; 2 x 32 bits for the point). A light sample
 // from there; whether its shadow ray is blocked; and what a ray in its direction meets: which light, its radiance and
 // the density that it has for light samples.
 #version 460

@@ -1,4 +1,4 @@
-// For records_test.cpp: decodes octahedral normals.
+// For selftest/records.h: decodes octahedral normals.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,4 +1,4 @@
-// For records_test.cpp: reads the second record of every kind and writes its fields, in the order of the struct.
+// For selftest/records.h: reads the second record of every kind and writes its fields, in the order of the struct.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,4 +1,4 @@
-// For sampler_test.cpp: the pair of random words of a sample (pixel, n, seed) and a pair of dimensions.
+// For selftest/samplers.h: the pair of random words of a sample (pixel, n, seed) and a pair of dimensions.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,5 +1,5 @@
-// For warp_test.cpp: item (u, exponent n, h_max; direction w, alpha; number of corners). All warps of the point u of the
-// unit square.
+// For selftest/warps.h: item (u, exponent n, h_max; direction w, alpha; number of corners). All warps of the point u of
+// the unit square.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
