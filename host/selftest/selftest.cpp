@@ -28,13 +28,6 @@ Evidence test_all_samplers(const vk::Device& device) {
     return evidence;
 }
 
-Evidence test_all_records(const vk::Device& device) {
-    Evidence evidence = test_records(device, SceneAccess::texel_buffers);
-    evidence.add(test_records(device, SceneAccess::storage_buffers));
-    evidence.add(test_octahedral_normals(device));
-    return evidence;
-}
-
 Evidence test_bsdfs(const vk::Device& device) {
     Evidence evidence;
     uint32_t seed = 700;
@@ -54,82 +47,60 @@ Evidence test_extreme_bsdfs(const vk::Device& device) {
     return evidence;
 }
 
-Evidence test_flat_lights(const vk::Device& device) {
-    Evidence evidence = test_flat_light_points(device);
-    evidence.add(test_flat_light_values(device, SceneAccess::texel_buffers));
-    evidence.add(test_flat_light_values(device, SceneAccess::storage_buffers));
+// A test of how kernels read the scene, through both kinds of buffers.
+template <Evidence (*test)(const vk::Device&, SceneAccess)>
+Evidence through_both_buffers(const vk::Device& device) {
+    Evidence evidence = test(device, SceneAccess::texel_buffers);
+    evidence.add(test(device, SceneAccess::storage_buffers));
     return evidence;
 }
 
-Evidence test_round_lights(const vk::Device& device) {
-    Evidence evidence = test_spheres_from_outside(device);
-    evidence.add(test_spheres_from_inside(device));
-    evidence.add(test_disks(device));
-    return evidence;
-}
-
-Evidence test_skies(const vk::Device& device) {
-    Evidence evidence = test_sky_lookup(device);
-    evidence.add(test_sky_samples(device));
-    evidence.add(test_choice_of_sky(device));
-    return evidence;
-}
-
-Evidence test_warps(const vk::Device& device) {
-    Evidence evidence = test_basic_warps(device);
-    evidence.add(test_power_cosines(device));
-    evidence.add(test_sphere_and_cones(device));
-    evidence.add(test_polygons(device));
-    evidence.add(test_visible_normals(device));
-    return evidence;
-}
-
-Evidence test_exponential_functions(const vk::Device& device) {
-    Evidence evidence = test_logarithm(device);
-    evidence.add(test_exponentials(device));
-    return evidence;
-}
-
-Evidence test_round_shapes(const vk::Device& device) {
-    Evidence evidence = test_rays_outside_spheres(device);
-    evidence.add(test_rays_within_spheres(device));
-    evidence.add(test_points_on_spheres(device));
-    evidence.add(test_rays_at_disks(device));
-    return evidence;
-}
-
+// A check, made of one test or several.
 struct Row {
     const char* name;
     const char* unit;
-    Evidence (*test)(const vk::Device&);
+    std::vector<Evidence (*)(const vk::Device&)> tests;
 };
 
-constexpr Row ROWS[] = {
-    {"hashes", "values", test_integer_functions},
-    {"samplers", "pairs", test_all_samplers},
-    {"exp and log", "values", test_exponential_functions},
-    {"records", "values", test_all_records},
-    {"rays in closed meshes", "rays", test_closed_meshes},
-    {"rays at nasty meshes", "rays", test_nasty_mesh},
-    {"rays at spheres", "rays", test_round_shapes},
-    {"warps", "samples", test_warps},
-    {"BSDFs", "samples", test_bsdfs},
-    {"BSDFs at extremes", "samples", test_extreme_bsdfs},
-    {"flat lights", "samples", test_flat_lights},
-    {"round lights", "samples", test_round_lights},
-    {"skies", "samples", test_skies},
-    {"furnace", "images", test_furnace},
-    {"bsdf = light = mis", "images", test_estimators},
-    {"identical bits", "images", test_identical_bits},
-    {"Cornell box", "images", test_cornell_box},
-};
+std::vector<Row> rows() {
+    return {
+        {"hashes", "values", {test_integer_functions}},
+        {"samplers", "pairs", {test_all_samplers}},
+        {"exp and log", "values", {test_logarithm, test_exponentials}},
+        {"records", "values", {through_both_buffers<test_records>, test_octahedral_normals}},
+        {"rays in closed meshes", "rays", {test_closed_meshes}},
+        {"rays at nasty meshes", "rays", {test_nasty_mesh}},
+        {"rays at spheres",
+         "rays",
+         {test_rays_outside_spheres, test_rays_within_spheres, test_points_on_spheres, test_rays_at_disks}},
+        {"warps",
+         "samples",
+         {test_basic_warps, test_power_cosines, test_sphere_and_cones, test_polygons, test_visible_normals}},
+        {"BSDFs", "samples", {test_bsdfs}},
+        {"BSDFs at extremes", "samples", {test_extreme_bsdfs}},
+        {"flat lights", "samples", {test_flat_light_points, through_both_buffers<test_flat_light_values>}},
+        {"round lights", "samples", {test_spheres_from_outside, test_spheres_from_inside, test_disks}},
+        {"skies", "samples", {test_sky_lookup, test_sky_samples, test_choice_of_sky}},
+        {"furnace", "images", {test_furnace}},
+        {"bsdf = light = mis", "images", {test_estimators}},
+        {"identical bits", "images", {test_identical_bits}},
+        {"Cornell box", "images", {test_cornell_box}},
+    };
+}
 
 }  // namespace
 
 std::vector<Check> selftest_checks(const vk::Device& device) {
     std::vector<Check> checks;
-    for (const Row& row : ROWS)
-        checks.push_back({row.name, row.unit, [&device, test = row.test] { return test(device); }});
+    for (const Row& row : rows()) {
+        const auto run = [&device, tests = row.tests] {
+            Evidence evidence;
+            for (const auto& test : tests)
+                evidence.add(test(device));
+            return evidence;
+        };
+        checks.push_back({row.name, row.unit, run});
+    }
     return checks;
 }
 
