@@ -169,6 +169,9 @@ std::string read_file(const fs::path& path) {
     check_readable(path);
     std::ifstream file(path, std::ios::binary);
     std::string bytes;
+    std::error_code unknown_size;  // Of what is no file of its own, such as a pipe.
+    const uintmax_t size = fs::file_size(path, unknown_size);
+    if (!unknown_size) bytes.reserve(size);
     std::array<char, 65536> buffer;
     do {
         errno = 0;  // Streams do not promise to set it, but those of Unix do.

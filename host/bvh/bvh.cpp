@@ -21,9 +21,6 @@ namespace candela {
 
 namespace {
 
-// A range this small never becomes a node: trees with leaves of one were measured a quarter slower on
-// software Vulkan, where a node costs all lanes.
-constexpr uint32_t MAX_LEAF_SIZE = 4;
 // A larger leaf is opened where its node has room for the parts, which saves half of all triangle tests at no
 // further node. Smaller ones gain nothing; they are often the two halves of a quad.
 constexpr uint32_t SMALL_LEAF_SIZE = 2;
@@ -58,13 +55,13 @@ struct Children {
 };
 
 bool makes_leaf(const PrimitiveRange& range) {
-    return range.count <= MAX_LEAF_SIZE;
+    return range.count <= BVH_LEAF_SIZE;
 }
 
 // Levels of nodes over `count` primitives if each splits into four equal parts.
 uint32_t balanced_depth(uint32_t count) {
     uint32_t depth = 0;
-    for (; count > MAX_LEAF_SIZE; count = (count + 3) / 4)
+    for (; count > BVH_LEAF_SIZE; count = (count + 3) / 4)
         ++depth;
     return depth;
 }
@@ -77,7 +74,8 @@ uint32_t balanced_depth(uint32_t count) {
 Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
     const bool balanced = job.depth + 1 + balanced_depth(job.range.count - 1) >= BVH_STACK_SIZE;
     const auto priority = [balanced](const PrimitiveRange& range) {
-        return std::make_tuple(!makes_leaf(range), balanced ? 0.0 : half_area(range.bounds), range.count);
+        return std::make_tuple(!makes_leaf(range), balanced ? 0.0 : half_area(Box(range.bounds)),
+                               range.count);
     };
 
     Children children{{job.range}, 1};
@@ -99,7 +97,7 @@ Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
 BvhNode make_node(const Children& children) {
     std::array<Box, BVH_WIDTH> boxes;
     for (uint32_t c = 0; c < children.count; ++c)
-        boxes[c] = children.ranges[c].bounds;
+        boxes[c] = Box(children.ranges[c].bounds);
     BvhNode node = quantise(std::span(boxes).first(children.count));
     for (uint32_t c = 0; c < children.count; ++c) {
         const PrimitiveRange& range = children.ranges[c];
@@ -147,6 +145,13 @@ void run_task(std::span<PrimitiveRef> refs, const Task& task, TaskQueue<Task>& q
     }
 }
 
+size_t count_nodes(const Piece& piece) {
+    size_t count = piece.nodes.size();
+    for (const std::unique_ptr<Piece>& child : piece.children)
+        count += child ? count_nodes(*child) : 0;
+    return count;
+}
+
 // The nodes of all pieces, depth first, with references from node 0.
 std::vector<PackedBvhNode> join_pieces(std::unique_ptr<Piece> root) {
     struct Pending {
@@ -155,6 +160,7 @@ std::vector<PackedBvhNode> join_pieces(std::unique_ptr<Piece> root) {
         uint32_t slot;
     };
     std::vector<PackedBvhNode> nodes;
+    nodes.reserve(count_nodes(*root));
     std::vector<Pending> stack;
     stack.push_back({std::move(root), 0, 0});
     while (!stack.empty()) {
@@ -213,7 +219,7 @@ Bvh build_bvh(std::span<const Box> boxes, const BvhOptions& options) {
     PrimitiveRange all;
     std::vector<PrimitiveRef> refs = make_refs(boxes, all);
     Bvh bvh;
-    bvh.bounds = all.bounds;
+    bvh.bounds = Box(all.bounds);
     if (boxes.empty()) {
         bvh.nodes.push_back(pack(quantise({})));
     } else {

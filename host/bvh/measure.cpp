@@ -6,18 +6,10 @@
 
 namespace candela {
 
-namespace {
-
-// Cost of a node in primitive tests. What dominates both is fetching the record: 4 words of a node, 3 of a
-// triangle.
-constexpr double NODE_COST = 4.0 / 3.0;
-
-}  // namespace
-
 BvhMeasures measure(std::span<const PackedBvhNode> nodes, const Box& bounds) {
     std::vector<uint32_t> depths(nodes.size());  // Of the subtree below each node, itself included.
     const double root_area = bounds.is_empty() ? 0.0 : half_area(bounds);
-    double cost = root_area * NODE_COST;
+    double cost = root_area * BVH_NODE_COST;
     for (size_t i = nodes.size(); i-- > 0;) {  // Children stand behind their parent.
         const BvhNode node = unpack(nodes[i]);
         uint32_t deepest = 0;
@@ -25,7 +17,7 @@ BvhMeasures measure(std::span<const PackedBvhNode> nodes, const Box& bounds) {
             const uint32_t reference = node.child[int(c)];
             if (reference == BVH_EMPTY) continue;
             const bool leaf = is_leaf(reference);
-            cost += half_area(child_box(node, c)) * (leaf ? leaf_count(reference) : NODE_COST);
+            cost += half_area(child_box(node, c)) * (leaf ? leaf_count(reference) : BVH_NODE_COST);
             if (!leaf) deepest = std::max(deepest, depths[reference]);
         }
         depths[i] = deepest + 1;

@@ -12,10 +12,14 @@ namespace {
 class Flattener {
   public:
     explicit Flattener(const Scene& scene) {
+        size_t count = 0;
         for (const Shape& shape : scene.shapes) {
             const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
             has_normals_ = has_normals_ || (mesh != nullptr && !mesh->normals.empty());
+            count += mesh != nullptr ? mesh->triangles.size() : 2;  // Of a quad; others are one primitive.
         }
+        flat_.primitives.reserve(count);
+        if (has_normals_) flat_.normals.reserve(count);
         for (const Shape& shape : scene.shapes) {
             std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
         }

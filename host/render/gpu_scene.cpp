@@ -47,9 +47,10 @@ MaterialRecord record(const DielectricMaterial& m) {
 }
 
 Bvh build_bvh_over(const std::vector<Primitive>& primitives) {
-    std::vector<Box> boxes(primitives.size());
-    for (size_t i = 0; i < primitives.size(); ++i)
-        boxes[i] = bounds(primitives[i]);
+    std::vector<Box> boxes;
+    boxes.reserve(primitives.size());
+    for (const Primitive& primitive : primitives)
+        boxes.push_back(bounds(primitive));
     return build_bvh(boxes);
 }
 
@@ -110,6 +111,7 @@ GpuScene build_gpu_scene(const Scene& scene) {
 
     gpu.table_starts.normals = 0;
     if (gpu.has_normals) {
+        gpu.tables.reserve(flat.normals.size() * NORMALS_WORDS);
         for (const uint32_t i : bvh.order)
             append(gpu.tables, flat.normals[i]);
     }

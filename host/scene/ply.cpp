@@ -23,8 +23,8 @@ constexpr std::array<std::string_view, 6> COORDINATES{"x", "y", "z", "nx", "ny",
 struct Polygons {
     std::vector<vec3> positions;
     std::vector<vec3> normals;
-    std::vector<uint32_t> corners;
-    std::vector<size_t> ends;  // Of each polygon, in `corners`.
+    std::vector<uint32_t> corners;  // Of all polygons, one after the other.
+    std::vector<uint32_t> sizes;    // Corners of each polygon.
 };
 
 const PlyElement& require_element(const PlyHeader& header, std::string_view name, const std::string& file) {
@@ -95,6 +95,7 @@ class BodyReader {
         const bool is_vertex = element.name == "vertex";
         const PlyProperty* indices = element.name == "face" ? find_indices(element) : nullptr;
         if (is_vertex) begin_vertices(element);
+        if (indices) begin_faces(element, *indices);
         position_.element = element.name;
         for (position_.row = 0; position_.row < element.rows; ++position_.row) {
             rows_.begin_row();
@@ -122,6 +123,14 @@ class BodyReader {
         }
         polygons_.positions.reserve(vertex.rows);
         if (with_normals_) polygons_.normals.reserve(vertex.rows);
+    }
+
+    // Makes room for as many triangles, or for what the file can hold of them.
+    void begin_faces(const PlyElement& face, const PlyProperty& indices) {
+        const size_t least_size = header_.format == PlyFormat::ascii ? 2 : size_of(indices.type);
+        const size_t most = rows_.bytes_left() / least_size;
+        polygons_.corners.reserve(std::min<size_t>(3 * face.rows, most));
+        polygons_.sizes.reserve(std::min<size_t>(face.rows, most / 3));
     }
 
     void read_vertex(const PlyElement& vertex) {
@@ -158,7 +167,7 @@ class BodyReader {
             }
             polygons_.corners.push_back(uint32_t(index));
         }
-        polygons_.ends.push_back(polygons_.corners.size());
+        polygons_.sizes.push_back(uint32_t(corners));
     }
 
     void skip(const PlyProperty& property) {
@@ -180,16 +189,20 @@ class BodyReader {
 
 TriangleMesh build_mesh(Polygons polygons) {
     TriangleMesh mesh{std::move(polygons.positions), std::move(polygons.normals), {}};
+    mesh.triangles.reserve(polygons.corners.size() - 2 * polygons.sizes.size());
     std::vector<vec3> positions;
-    size_t begin = 0;
-    for (const size_t end : polygons.ends) {
-        const uint32_t* corners = &polygons.corners[begin];
-        positions.clear();
-        for (size_t i = begin; i < end; ++i)
-            positions.push_back(mesh.positions[polygons.corners[i]]);
-        for (const uvec3 t : triangulate(positions))
-            mesh.triangles.emplace_back(corners[t.x], corners[t.y], corners[t.z]);
-        begin = end;
+    const uint32_t* corners = polygons.corners.data();
+    for (const uint32_t size : polygons.sizes) {
+        if (size == 3) {
+            mesh.triangles.emplace_back(corners[0], corners[1], corners[2]);
+        } else {
+            positions.clear();
+            for (uint32_t i = 0; i < size; ++i)
+                positions.push_back(mesh.positions[corners[i]]);
+            for (const uvec3 t : triangulate(positions))
+                mesh.triangles.emplace_back(corners[t.x], corners[t.y], corners[t.z]);
+        }
+        corners += size;
     }
     return mesh;
 }

@@ -108,11 +108,11 @@ TEST(Bvh, IsTheSameForAnyNumberOfThreads) {
 
 TEST(Bvh, SplitsEqualCentroidsInHalvesByIndex) {
     const Bvh bvh = build_valid(std::vector<Box>(64, Box{vec3(-1), vec3(1)}));
-    EXPECT_EQ(bvh.depth, 2u);  // 64 = 4 x 4 x 4.
-    for (uint32_t first = 0; first < 64; first += 4) {
+    EXPECT_EQ(bvh.depth, 3u);  // 64 = 4 x 4 x (2 + 2), leaves of two.
+    for (uint32_t first = 0; first < 64; first += 2) {
         const auto leaf = bvh.order.begin() + first;
-        EXPECT_EQ(*std::min_element(leaf, leaf + 4), first);
-        EXPECT_EQ(*std::max_element(leaf, leaf + 4), first + 3);
+        EXPECT_EQ(*std::min_element(leaf, leaf + 2), first);
+        EXPECT_EQ(*std::max_element(leaf, leaf + 2), first + 1);
     }
 }
 

@@ -171,6 +171,14 @@ TEST_F(Ply, CutsPolygons) {
     EXPECT_EQ(area, 2.0);  // Of small whole numbers: exact.
 }
 
+TEST_F(Ply, KeepsTheOrderOfFacesOfAnySize) {
+    const TriangleMesh mesh =
+        load(header("ascii", VERTEX + replaced(FACE, "2", "3")) + POINTS + "3 3 1 2\n4 0 1 2 3\n3 2 0 3\n");
+    ASSERT_EQ(mesh.triangles.size(), 4u);
+    EXPECT_EQ(mesh.triangles.front(), uvec3(3, 1, 2));
+    EXPECT_EQ(mesh.triangles.back(), uvec3(2, 0, 3));
+}
+
 TEST_F(Ply, TakesNormalsFromTheFileOrNot) {
     const std::string elements =
         VERTEX + "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n" + FACE;
