@@ -46,6 +46,8 @@ VIOLATIONS = [
      'includes "a.h", which is neither below host/ nor below shaders/'),
     ("Vulkan by its own name", "host/bvh/a.cpp", "// A.\n#include <vulkan/vulkan.h>\n",
      "host/bvh/a.cpp:2: sees Vulkan (<vulkan/vulkan.h>), but host/bvh/ must not"),
+    ("a rival in the renderer", "host/render/a.cpp", "// A.\n#include <embree3/rtcore.h>\n",
+     "host/render/a.cpp:2: sees Embree (<embree3/rtcore.h>), but host/render/ must not"),
     ("JSON through another file", "host/render/a.cpp", '// A.\n#include "scene/json.h"\n',
      "sees nlohmann-json (<nlohmann/json.hpp>) through host/scene/json.h:3, but host/render/ must not"),
     ("a BSDF that sees buffers", "shaders/bsdf/a.glsl", f'// A.\n{GUARD}#include "scene/scene_data.glsl"\n#endif\n',

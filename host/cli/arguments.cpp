@@ -9,7 +9,7 @@
 
 namespace candela {
 
-static std::vector<std::string> split(const std::string& text, char separator) {
+std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
     size_t begin = 0;
     for (size_t end = text.find(separator); end != std::string::npos; end = text.find(separator, begin)) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -19,6 +20,9 @@ inline constexpr uint32_t MAX_PICTURE_SIZE = 65536;
 
 // The images that --aov can name.
 inline constexpr const char* AOV_NAMES = "albedo,n,p,z,variance,samples";
+
+// The parts of `text` between separators, empty ones included.
+std::vector<std::string> split(const std::string& text, char separator);
 
 // Each reads all of `text`; nothing if it is anything else than described.
 

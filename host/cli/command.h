@@ -21,5 +21,6 @@ Command add_info_command(CLI::App& app);
 Command add_devices_command(CLI::App& app);
 Command add_compare_command(CLI::App& app);
 Command add_selftest_command(CLI::App& app);
+Command add_bench_command(CLI::App& app);
 
 }  // namespace candela

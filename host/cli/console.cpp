@@ -8,6 +8,7 @@
 #include <iterator>
 #include <string_view>
 
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include "base/error.h"
@@ -31,6 +32,12 @@ void flush_results() {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
         throw Error("cannot write to standard output; check where it goes");
     }
+}
+
+std::string system_text() {
+    utsname names{};
+    if (uname(&names) != 0) return "unknown";
+    return std::string(names.sysname) + ' ' + names.release + ' ' + names.machine;
 }
 
 std::string fixed(double value, int digits) {

@@ -19,9 +19,12 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
     app.set_version_flag("--version", "candela " CANDELA_VERSION, "Print the version and exit");
     // Commands take over the column width, but must not take over the footer, which therefore comes last.
     app.get_formatter()->column_width(36);
-    std::vector<Command> commands{add_render_command(app, command_line), add_info_command(app),
-                                  add_devices_command(app), add_compare_command(app),
-                                  add_selftest_command(app)};
+    std::vector<Command> commands{add_render_command(app, command_line),
+                                  add_info_command(app),
+                                  add_devices_command(app),
+                                  add_compare_command(app),
+                                  add_selftest_command(app),
+                                  add_bench_command(app)};
     app.footer(
         "`candela COMMAND --help` tells more.\n\n"
         "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no suitable device, 4 device lost,\n"
@@ -92,8 +95,9 @@ ExitCode run_program(int argc, const char* const* argv) {
     for (const Command& command : commands) {
         if (command.app->parsed()) return command.run();
     }
-    throw Error("there is no command; give render, info, devices, compare or selftest, or see candela --help",
-                ExitCode::usage);
+    throw Error(
+        "there is no command; give render, info, devices, compare, selftest or bench, or see candela --help",
+        ExitCode::usage);
 }
 
 }  // namespace candela

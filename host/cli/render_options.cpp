@@ -9,9 +9,6 @@
 
 namespace candela {
 
-// Sample counts are kept as 32-bit floats, which are exact up to here.
-static constexpr uint32_t MAX_SPP = 1u << 24;
-
 static std::optional<uint32_t> parse_spp(const std::string& text) {
     return parse_uint(text, 1, MAX_SPP);
 }
@@ -35,15 +32,31 @@ static std::optional<double> parse_exposure(const std::string& text) {
     return value && std::abs(*value) <= double(MAX_EXPOSURE_EV) ? value : std::nullopt;
 }
 
+static constexpr const char* SAMPLING_GROUP = "Sampling (defaults: the scene's)";
+
 void RenderOptions::add_to(CLI::App& app) {
     app.option_defaults()->take_last();  // A script's options can be followed by others that overrule them.
     app.add_option("SCENE", scene_file, "Scene file (.json)")->required()->type_name("");
     add_output_options(app);
+    add_rendering_to(app);
+    app.option_defaults()->group("Picture");
+    app.add_option("--camera", camera, "Camera by name (default: the scene's first)")->type_name("NAME");
+    app.option_defaults()->group(SAMPLING_GROUP);
+    add_value(app, "--time-limit", time_limit, parse_duration, "a duration such as 90, 90s, 1.5m or 2h",
+              "Stop after 90, 90s, 1.5m, 2h even short of --spp (default: none)")
+        ->type_name("TIME");
+    add_message_options(app);
+}
+
+void RenderOptions::add_rendering_to(CLI::App& app) {
     app.option_defaults()->group("Picture");
     picture.add_to(app);
-    app.add_option("--camera", camera, "Camera by name (default: the scene's first)")->type_name("NAME");
     add_sampling_options(app);
-    add_other_options(app);
+    app.option_defaults()->group("Device");
+    app.add_option("--device", device, "Index or part of the name (default: the best; see candela devices)")
+        ->type_name("D");
+    add_choice(app, "--scene-buffers", scene_access, SCENE_ACCESS_NAMES,
+               "How kernels read the scene; the image is the same (default: auto)");
 }
 
 void RenderOptions::add_output_options(CLI::App& app) {
@@ -65,13 +78,10 @@ void RenderOptions::add_output_options(CLI::App& app) {
 }
 
 void RenderOptions::add_sampling_options(CLI::App& app) {
-    app.option_defaults()->group("Sampling (defaults: the scene's)");
+    app.option_defaults()->group(SAMPLING_GROUP);
     add_value(app, "--spp", spp, parse_spp, "a whole number from 1 to " + std::to_string(MAX_SPP),
               "Samples per pixel")
         ->type_name("N");
-    add_value(app, "--time-limit", time_limit, parse_duration, "a duration such as 90, 90s, 1.5m or 2h",
-              "Stop after 90, 90s, 1.5m, 2h even short of --spp (default: none)")
-        ->type_name("TIME");
     add_value(app, "--seed", seed, parse_seed, "a whole number from 0 to 4294967295",
               "Another seed, other noise")
         ->type_name("S");
@@ -85,12 +95,7 @@ void RenderOptions::add_sampling_options(CLI::App& app) {
     add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
 }
 
-void RenderOptions::add_other_options(CLI::App& app) {
-    app.option_defaults()->group("Device");
-    app.add_option("--device", device, "Index or part of the name (default: the best; see candela devices)")
-        ->type_name("D");
-    add_choice(app, "--scene-buffers", scene_access, SCENE_ACCESS_NAMES,
-               "How kernels read the scene; the image is the same (default: auto)");
+void RenderOptions::add_message_options(CLI::App& app) {
     app.option_defaults()->group("Messages");
     CLI::Option* const quiet_flag =
         app.add_flag("-q,--quiet", quiet, "No progress, only warnings and errors");

@@ -18,6 +18,9 @@
 
 namespace candela {
 
+// Samples per pixel at most: their counts are kept as 32-bit floats, which are exact up to here.
+inline constexpr uint32_t MAX_SPP = 1u << 24;
+
 inline constexpr Choices<SceneAccess, 3> SCENE_ACCESS_NAMES{{{"auto", SceneAccess::automatic},
                                                              {"texel", SceneAccess::texel_buffers},
                                                              {"storage", SceneAccess::storage_buffers}}};
@@ -55,6 +58,8 @@ struct RenderOptions {
 
     // Declares them all on `app`, which fills them in when it parses; this object must stay where it is.
     void add_to(CLI::App& app);
+    // Declares those alone that say what is computed and where: picture, sampling, device.
+    void add_rendering_to(CLI::App& app);
 
     // The images beside R G B A that will be written: those selected if there is an EXR among the outputs,
     // else none.
@@ -67,7 +72,7 @@ struct RenderOptions {
   private:
     void add_output_options(CLI::App& app);
     void add_sampling_options(CLI::App& app);
-    void add_other_options(CLI::App& app);
+    void add_message_options(CLI::App& app);
 };
 
 }  // namespace candela

@@ -8,7 +8,6 @@
 #include <string>
 
 #include <nlohmann/json.hpp>
-#include <sys/utsname.h>
 
 #include "cli/command.h"
 #include "cli/console.h"
@@ -26,13 +25,6 @@ struct SelftestOptions {
     std::optional<std::string> device;
     bool json = false;
 };
-
-// "Linux 6.1.0 x86_64".
-std::string system_text() {
-    utsname names{};
-    if (uname(&names) != 0) return "unknown";
-    return words(names.sysname, ' ', names.release, ' ', names.machine);
-}
 
 // Three digits that say how small a probability is.
 std::string probability_text(double p) {

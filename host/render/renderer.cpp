@@ -30,24 +30,6 @@ uint64_t largest_array(const GpuScene& scene) {
     return std::max({scene.nodes.size(), scene.primitives.size(), scene.tables.size()});
 }
 
-// Texel buffers wherever they hold the scene: on a CPU they are several times faster, on a GPU no slower.
-SceneAccess choose_access(const vk::Device& device, const GpuScene& scene, SceneAccess wanted) {
-    if (wanted != SceneAccess::automatic) return wanted;
-    const uint64_t texels = largest_array(scene);
-    const uint64_t bytes = texels * sizeof(uvec4);
-    const vk::DeviceLimits& limits = device.limits();
-    if (device.info().uint_texel_buffers && texels <= limits.max_texel_buffer_elements) {
-        return SceneAccess::texel_buffers;
-    }
-    if (bytes <= limits.max_storage_buffer_range) return SceneAccess::storage_buffers;
-    throw Error("the largest array of the scene needs " + std::to_string(texels) + " texels (" +
-                    std::to_string(bytes) + " bytes), but " + device.info().name +
-                    " allows maxTexelBufferElements = " + std::to_string(limits.max_texel_buffer_elements) +
-                    " and maxStorageBufferRange = " + std::to_string(limits.max_storage_buffer_range) +
-                    " bytes; use a smaller scene, or another device (candela devices lists them)",
-                ExitCode::out_of_memory);
-}
-
 uint32_t layer_count(const RenderSettings& settings) {
     return settings.aovs ? LAYER_COUNT_AOVS : LAYER_COUNT_COLOUR;
 }
@@ -113,6 +95,24 @@ uint32_t sampler_constant(SamplerKind sampler) {
 }
 
 }  // namespace
+
+// Texel buffers wherever they hold the scene: on a CPU they are several times faster, on a GPU no slower.
+SceneAccess choose_access(const vk::Device& device, const GpuScene& scene, SceneAccess wanted) {
+    if (wanted != SceneAccess::automatic) return wanted;
+    const uint64_t texels = largest_array(scene);
+    const uint64_t bytes = texels * sizeof(uvec4);
+    const vk::DeviceLimits& limits = device.limits();
+    if (device.info().uint_texel_buffers && texels <= limits.max_texel_buffer_elements) {
+        return SceneAccess::texel_buffers;
+    }
+    if (bytes <= limits.max_storage_buffer_range) return SceneAccess::storage_buffers;
+    throw Error("the largest array of the scene needs " + std::to_string(texels) + " texels (" +
+                    std::to_string(bytes) + " bytes), but " + device.info().name +
+                    " allows maxTexelBufferElements = " + std::to_string(limits.max_texel_buffer_elements) +
+                    " and maxStorageBufferRange = " + std::to_string(limits.max_storage_buffer_range) +
+                    " bytes; use a smaller scene, or another device (candela devices lists them)",
+                ExitCode::out_of_memory);
+}
 
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
     const vec3 forward = normalize(camera.look_at - camera.position);

@@ -42,6 +42,10 @@ struct RenderCounters {
 // The uniform record of a camera and settings for a scene.
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
+// `wanted`, or, for `automatic`, what suits the device and holds the scene. Throws Error (out_of_memory) that
+// names the device's limits if nothing does.
+SceneAccess choose_access(const vk::Device& device, const GpuScene& scene, SceneAccess wanted);
+
 // Bytes of device memory that rendering takes: scene, accumulation image and position image.
 uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings);
 

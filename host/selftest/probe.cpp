@@ -9,17 +9,8 @@
 namespace candela {
 namespace {
 
-// Bindings of shaders/probes/items.glsl.
-constexpr uint32_t ITEMS = 6, RESULTS = 7;
 // The least maxTexelBufferElements of any device.
 constexpr size_t GUARANTEED_TEXELS = 65536;
-// Invocations in a work group of a probe.
-constexpr uint32_t GROUP = 64;
-
-struct Counts {
-    uint32_t items;
-    uint32_t primitives;
-};
 
 Parameters parameters_of(const GpuScene& scene) {
     Parameters parameters{};
@@ -74,9 +65,9 @@ std::vector<uint32_t> run_probe(const vk::Device& device, std::span<const uint32
                                 std::span<const std::byte> items, size_t item_words, size_t result_words,
                                 const std::vector<uint32_t>& constants, const DeviceScene* scene) {
     auto bindings = scene == nullptr ? std::vector<vk::Binding>{} : scene->bindings();
-    bindings.push_back({ITEMS, vk::BindingType::texel_buffer});
-    bindings.push_back({RESULTS, vk::BindingType::storage_buffer});
-    vk::Kernel kernel(device, spirv, bindings, sizeof(Counts), constants, "probe");
+    bindings.push_back({PROBE_ITEMS, vk::BindingType::texel_buffer});
+    bindings.push_back({PROBE_RESULTS, vk::BindingType::storage_buffer});
+    vk::Kernel kernel(device, spirv, bindings, sizeof(ProbeCounts), constants, "probe");
     if (scene != nullptr) scene->bind_to(kernel);
     vk::Commands commands(device);
 
@@ -91,11 +82,11 @@ std::vector<uint32_t> run_probe(const vk::Device& device, std::span<const uint32
         vk::Buffer in(device, some.size(), vk::BufferUsage::texel, "items");
         const vk::Buffer out(device, results_of_some.size_bytes(), vk::BufferUsage::readback, "results");
         in.upload(some);
-        kernel.bind(ITEMS, in);
-        kernel.bind(RESULTS, out);
-        const Counts counts{uint32_t(size), scene == nullptr ? 0 : scene->primitive_count()};
+        kernel.bind(PROBE_ITEMS, in);
+        kernel.bind(PROBE_RESULTS, out);
+        const ProbeCounts counts{uint32_t(size), scene == nullptr ? 0 : scene->primitive_count()};
         commands.dispatch(kernel, std::as_bytes(std::span(&counts, 1)),
-                          {(counts.items + GROUP - 1) / GROUP, 1, 1});
+                          {(counts.items + PROBE_GROUP - 1) / PROBE_GROUP, 1, 1});
         commands.submit_and_wait();
         out.download(std::as_writable_bytes(results_of_some));
     }

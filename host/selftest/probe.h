@@ -37,6 +37,14 @@ class DeviceScene {
     vk::Buffer nodes_, primitives_, tables_, parameters_;
 };
 
+// What shaders/probes/items.glsl declares: bindings, push constants, and invocations in a work group.
+inline constexpr uint32_t PROBE_ITEMS = 6, PROBE_RESULTS = 7;
+inline constexpr uint32_t PROBE_GROUP = 64;
+struct ProbeCounts {
+    uint32_t items;
+    uint32_t primitives;
+};
+
 // Runs the probe `spirv` on all items, `item_words` uvec4 each; returns `result_words` words for each, in
 // order. `constants` are its specialization constants; `scene` may be null.
 std::vector<uint32_t> run_probe(const vk::Device& device, std::span<const uint32_t> spirv,

@@ -10,9 +10,9 @@
 
 namespace candela::kernels {
 
-extern const std::span<const uint32_t> bsdf, environment, escape, exponential, frame, hash, interaction,
-    light_sample, light_sample_storage, math, octahedral, records, records_storage, sampler, spawn, traversal,
-    traversal_storage, warp;
+extern const std::span<const uint32_t> any_hit, any_hit_storage, bsdf, closest_hit, closest_hit_storage,
+    environment, escape, exponential, frame, hash, interaction, light_sample, light_sample_storage, math,
+    octahedral, records, records_storage, sampler, spawn, traversal, traversal_storage, warp;
 
 }  // namespace candela::kernels
 

@@ -18,7 +18,7 @@ TEST_F(Usage, VersionAndHelpGoToStdout) {
     const ProcessResult help = candela({"--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_EQ(help.err, "");
-    for (const char* command : {"render", "info", "devices", "compare", "selftest", "Exit codes"}) {
+    for (const char* command : {"render", "info", "devices", "compare", "selftest", "bench", "Exit codes"}) {
         EXPECT_CONTAINS(help.out, command);
     }
 }
@@ -36,7 +36,7 @@ TEST_F(Usage, HelpOfRenderListsEveryOption) {
 
 TEST_F(Usage, UnknownWordsAreNamed) {
     const std::vector<std::pair<Words, const char*>> cases = {
-        {{}, "there is no command; give render, info, devices, compare or selftest"},
+        {{}, "there is no command; give render, info, devices, compare, selftest or bench"},
         {{"trace"}, "unknown command \"trace\""},
         {{"--trace"}, "unknown argument \"--trace\""},
         {{"render", CORNELL_BOX, "-o", "x.png", "--trace"},

@@ -1,0 +1,54 @@
+// CPU time and wall time: on a machine that is shared with other work, the first says what the work costs.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <thread>
+
+#include "vk/device_info.h"
+
+namespace candela {
+
+// Durations [s].
+struct Clocks {
+    double cpu = 0.0;  // Of all threads of the process together.
+    double wall = 0.0;
+};
+
+// Runs from its construction on.
+class Stopwatch {
+  public:
+    Clocks elapsed() const {
+        const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - wall_;
+        return {cpu_now() - cpu_, wall.count()};
+    }
+
+  private:
+    static double cpu_now() {
+        timespec time{};
+        ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+        return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+    }
+
+    double cpu_ = cpu_now();
+    std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+};
+
+// Threads that the machine runs at once.
+inline double cores() {
+    return double(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+// Whether what a device does takes CPU time. That of a GPU is measured by wall time alone.
+inline bool works_on_cpu(const vk::DeviceInfo& device) {
+    return device.type == vk::DeviceType::cpu;
+}
+
+// The seconds that a speed counts: by CPU time those in which all cores together would have done the work,
+// with nothing else to do; else wall time.
+inline double counted_seconds(const Clocks& clocks, bool by_cpu_time) {
+    return by_cpu_time ? clocks.cpu / cores() : clocks.wall;
+}
+
+}  // namespace candela

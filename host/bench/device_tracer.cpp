@@ -1,0 +1,108 @@
+// candela's side of the benchmark of rays; see tracer.h.
+#include <algorithm>
+#include <array>
+
+#include "bench/tracer.h"
+#include "selftest/probe.h"
+#include "selftest/probes.h"
+#include "shared/constants.h"
+#include "vk/commands.h"
+
+namespace candela {
+namespace {
+
+constexpr uint32_t WORDS_PER_RAY = sizeof(BenchRay) / sizeof(uvec4);
+
+// As many rays as a texel buffer and one dimension of a dispatch may have on the device.
+size_t largest_batch(const vk::DeviceLimits& limits) {
+    return std::min<uint64_t>(limits.max_texel_buffer_elements / WORDS_PER_RAY,
+                              uint64_t{limits.max_compute_work_group_count[0]} * PROBE_GROUP);
+}
+
+class DeviceTracer : public RayTracer {
+  public:
+    DeviceTracer(const vk::Device& device, const GpuScene& scene, SceneAccess access, size_t batch)
+        : device_(&device),
+          batch_(std::min(batch, largest_batch(device.limits()))),
+          scene_(device, scene, access),
+          closest_(make_kernel(scene, access == SceneAccess::texel_buffers ? kernels::closest_hit
+                                                                           : kernels::closest_hit_storage)),
+          any_(make_kernel(
+              scene, access == SceneAccess::texel_buffers ? kernels::any_hit : kernels::any_hit_storage)),
+          commands_(device) {}
+
+    void prepare(const RaySet& set) override {
+        set_ = &set;
+        batches_.clear();
+        for (size_t first = 0; first < set.rays.size(); first += batch_) {
+            const auto some = std::span(set.rays).subspan(first, std::min(batch_, set.rays.size() - first));
+            batches_.push_back(
+                {uint32_t(some.size()),
+                 {*device_, some.size_bytes(), vk::BufferUsage::texel, "rays"},
+                 {*device_, some.size() * sizeof(uint32_t), vk::BufferUsage::storage, "hits"}});
+            batches_.back().rays.upload(std::as_bytes(some));
+        }
+    }
+
+    Clocks trace(uint32_t repeats) override {
+        vk::Kernel& kernel = set_->any_hit ? any_ : closest_;
+        const Stopwatch watch;
+        double device_seconds = 0.0;
+        for (const Batch& batch : batches_) {
+            kernel.bind(PROBE_ITEMS, batch.rays);
+            kernel.bind(PROBE_RESULTS, batch.hits);
+            const ProbeCounts counts{batch.count, scene_.primitive_count()};
+            for (uint32_t i = 0; i < repeats; ++i) {
+                commands_.dispatch(kernel, std::as_bytes(std::span(&counts, 1)),
+                                   {(batch.count + PROBE_GROUP - 1) / PROBE_GROUP, 1, 1});
+            }
+            device_seconds += commands_.submit_and_wait();
+        }
+        return {watch.elapsed().cpu, device_seconds};
+    }
+
+    std::vector<uint32_t> results() const override {
+        std::vector<uint32_t> ids(set_->rays.size());
+        auto rest = std::span(ids);
+        for (const Batch& batch : batches_) {
+            batch.hits.download(std::as_writable_bytes(rest.first(batch.count)));
+            rest = rest.subspan(batch.count);
+        }
+        return ids;
+    }
+
+  private:
+    struct Batch {
+        uint32_t count;  // Rays.
+        vk::Buffer rays;
+        vk::Buffer hits;
+    };
+
+    vk::Kernel make_kernel(const GpuScene& scene, std::span<const uint32_t> spirv) const {
+        auto bindings = scene_.bindings();
+        bindings.push_back({PROBE_ITEMS, vk::BindingType::texel_buffer});
+        bindings.push_back({PROBE_RESULTS, vk::BindingType::storage_buffer});
+        std::array<uint32_t, CONSTANT_COUNT> constants{};
+        constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
+        vk::Kernel kernel(*device_, spirv, bindings, sizeof(ProbeCounts), constants, "bench");
+        scene_.bind_to(kernel);
+        return kernel;
+    }
+
+    const vk::Device* device_;
+    size_t batch_;  // Rays of a dispatch at most.
+    DeviceScene scene_;
+    vk::Kernel closest_, any_;
+    vk::Commands commands_;
+    const RaySet* set_ = nullptr;
+    std::vector<Batch> batches_;
+};
+
+}  // namespace
+
+std::unique_ptr<RayTracer> make_device_tracer(const vk::Device& device, const GpuScene& scene,
+                                              SceneAccess access, size_t batch) {
+    return std::make_unique<DeviceTracer>(device, scene, access, batch);
+}
+
+}  // namespace candela

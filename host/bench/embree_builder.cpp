@@ -1,0 +1,162 @@
+// The rival of the benchmark of building, where the program was built with it; see build.h.
+#include "bench/build.h"
+
+#ifdef CANDELA_EMBREE
+
+#include <cassert>
+#include <new>
+
+#include <embree3/rtcore.h>
+
+#include "base/error.h"
+#include "bvh/measure.h"
+#include "bvh/quantise.h"
+
+namespace candela {
+namespace {
+
+// What Embree's callbacks make: a node with children, or a leaf with primitives of the array that was built
+// over.
+struct EmbreeNode {
+    unsigned count = 0;  // Of either.
+    const RTCBuildPrimitive* primitives = nullptr;
+    std::array<const EmbreeNode*, BVH_WIDTH> children{};
+    std::array<Box, BVH_WIDTH> boxes;
+};
+
+EmbreeNode* allocate(RTCThreadLocalAllocator allocator) {
+    return new (rtcThreadLocalAlloc(allocator, sizeof(EmbreeNode), alignof(EmbreeNode))) EmbreeNode();
+}
+
+void* create_node(RTCThreadLocalAllocator allocator, unsigned children, void*) {
+    EmbreeNode* const node = allocate(allocator);
+    node->count = children;
+    return node;
+}
+
+void set_children(void* parent, void** children, unsigned count, void*) {
+    for (unsigned i = 0; i < count; ++i)
+        static_cast<EmbreeNode*>(parent)->children[i] = static_cast<const EmbreeNode*>(children[i]);
+}
+
+void set_bounds(void* parent, const RTCBounds** bounds, unsigned count, void*) {
+    for (unsigned i = 0; i < count; ++i) {
+        const RTCBounds& b = *bounds[i];
+        static_cast<EmbreeNode*>(parent)->boxes[i] = {vec3(b.lower_x, b.lower_y, b.lower_z),
+                                                      vec3(b.upper_x, b.upper_y, b.upper_z)};
+    }
+}
+
+void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count,
+                  void*) {
+    EmbreeNode* const leaf = allocate(allocator);
+    leaf->count = unsigned(count);
+    leaf->primitives = primitives;
+    return leaf;
+}
+
+// Adds the leaf's primitives to the order, and returns the reference to them.
+uint32_t add_leaf(const EmbreeNode& leaf, Bvh& bvh) {
+    const auto first = uint32_t(bvh.order.size());
+    for (unsigned i = 0; i < leaf.count; ++i)
+        bvh.order.push_back(leaf.primitives[i].primID);
+    return leaf_reference(first, leaf.count);
+}
+
+// Adds a node and all below it, depth first.
+void add_node(const EmbreeNode& node, Bvh& bvh) {
+    const size_t index = bvh.nodes.size();
+    bvh.nodes.emplace_back();
+    BvhNode record = quantise(std::span(node.boxes).first(node.count));
+    for (unsigned i = 0; i < node.count; ++i) {
+        const EmbreeNode& child = *node.children[i];
+        if (child.primitives != nullptr) {
+            record.child[int(i)] = add_leaf(child, bvh);
+        } else {
+            record.child[int(i)] = uint32_t(bvh.nodes.size());
+            add_node(child, bvh);
+        }
+    }
+    bvh.nodes[index] = pack(record);
+}
+
+Bvh to_bvh(const EmbreeNode& root, std::span<const Box> boxes) {
+    Bvh bvh;
+    for (const Box& box : boxes)
+        bvh.bounds.extend(box);
+    if (root.primitives != nullptr) {  // All in one leaf, which in our records hangs below a node.
+        EmbreeNode node;
+        node.count = 1;
+        node.children[0] = &root;
+        node.boxes[0] = bvh.bounds;
+        add_node(node, bvh);
+    } else {
+        add_node(root, bvh);
+    }
+    const BvhMeasures measures = measure(bvh.nodes, bvh.bounds);
+    bvh.depth = measures.depth;
+    bvh.sah_cost = measures.sah_cost;
+    return bvh;
+}
+
+std::vector<RTCBuildPrimitive> to_primitives(std::span<const Box> boxes) {
+    std::vector<RTCBuildPrimitive> primitives;
+    primitives.reserve(boxes.size());
+    for (const Box& box : boxes) {
+        primitives.push_back(
+            {box.lo.x, box.lo.y, box.lo.z, 0, box.hi.x, box.hi.y, box.hi.z, uint32_t(primitives.size())});
+    }
+    return primitives;
+}
+
+}  // namespace
+
+std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes, uint32_t whole, uint32_t leaf_size) {
+    assert(!boxes.empty());
+    std::vector<RTCBuildPrimitive> primitives = to_primitives(boxes);
+    RTCDevice device = rtcNewDevice(nullptr);
+    RTCBVH tree = rtcNewBVH(device);
+    RTCBuildArguments arguments = rtcDefaultBuildArguments();
+    arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
+    arguments.maxBranchingFactor = BVH_WIDTH;
+    arguments.maxDepth = 64;
+    arguments.sahBlockSize = 1;
+    arguments.minLeafSize = whole;
+    arguments.maxLeafSize = leaf_size;
+    arguments.traversalCost = float(BVH_NODE_COST);
+    arguments.intersectionCost = 1.0f;
+    arguments.bvh = tree;
+    arguments.primitives = primitives.data();
+    arguments.primitiveCount = primitives.size();
+    arguments.primitiveArrayCapacity = primitives.size();
+    arguments.createNode = create_node;
+    arguments.setNodeChildren = set_children;
+    arguments.setNodeBounds = set_bounds;
+    arguments.createLeaf = create_leaf;
+    const Stopwatch watch;
+    const auto* const root = static_cast<const EmbreeNode*>(rtcBuildBVH(&arguments));
+    const Clocks clocks = watch.elapsed();
+    std::optional<TimedBvh> result;
+    if (root != nullptr) result = {to_bvh(*root, boxes), clocks};
+    rtcReleaseBVH(tree);
+    rtcReleaseDevice(device);
+    if (!result) {
+        throw Error("Embree has no memory for the mesh; use a smaller one (--triangles)",
+                    ExitCode::out_of_memory);
+    }
+    return result;
+}
+
+}  // namespace candela
+
+#else
+
+namespace candela {
+
+std::optional<TimedBvh> build_with_embree(std::span<const Box>, uint32_t, uint32_t) {
+    return std::nullopt;
+}
+
+}  // namespace candela
+
+#endif

@@ -1,0 +1,128 @@
+// See first_pixel.h.
+#include "bench/first_pixel.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "bench/clocks.h"
+#include "selftest/embedded.h"
+#include "selftest/evidence.h"
+
+namespace candela {
+namespace {
+
+double seconds(const timeval& time) {
+    return double(time.tv_sec) + 1e-6 * double(time.tv_usec);
+}
+
+// A new, empty directory that goes away with all its contents.
+class ScratchDirectory {
+  public:
+    ScratchDirectory() {
+        std::error_code no_folder;  // Then it has no name either.
+        const std::filesystem::path folder = std::filesystem::temp_directory_path(no_folder);
+        std::string name = (folder / "candela-bench-XXXXXX").string();
+        if (no_folder || ::mkdtemp(name.data()) == nullptr) {
+            throw Error("first-pixel: cannot create a folder for its images: " +
+                        (no_folder ? no_folder.message() : name + ": " + std::strerror(errno)) +
+                        "; set TMPDIR to a folder that may be written to");
+        }
+        path_ = name;
+    }
+    ScratchDirectory(const ScratchDirectory&) = delete;
+    ScratchDirectory& operator=(const ScratchDirectory&) = delete;
+    ~ScratchDirectory() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+    std::vector<char*> result;
+    for (std::string& word : words)
+        result.push_back(word.data());
+    result.push_back(nullptr);
+    return result;
+}
+
+// Our environment, but for those variables ("NAME=value").
+std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
+    std::vector<std::string> all = variables;
+    for (char** variable = environ; *variable != nullptr; ++variable) {
+        const std::string_view old(*variable);
+        const auto same_name = [&](const std::string& s) {
+            return old.starts_with(s.substr(0, s.find('=') + 1));
+        };
+        if (std::ranges::none_of(variables, same_name)) all.emplace_back(old);
+    }
+    return all;
+}
+
+// Runs a program to its end, which must be a good one.
+Clocks run_program(std::vector<std::string> arguments, const std::vector<std::string>& variables) {
+    std::vector<std::string> environment = environment_with(variables);
+    const Stopwatch watch;
+    pid_t pid = 0;
+    const int error = ::posix_spawn(&pid, arguments[0].c_str(), nullptr, nullptr, pointers(arguments).data(),
+                                    pointers(environment).data());
+    if (error != 0) throw Error("cannot start " + arguments[0] + ": " + std::strerror(error));
+    int status = 0;
+    rusage usage{};
+    while (::wait4(pid, &status, 0, &usage) < 0 && errno == EINTR) {
+    }
+    const double wall = watch.elapsed().wall;
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+        std::string call;
+        for (const std::string& word : arguments)
+            call += (call.empty() ? "" : " ") + word;
+        const std::string end = WIFEXITED(status) ? words("exited with ", WEXITSTATUS(status))
+                                                  : words("was ended by signal ", WTERMSIG(status));
+        throw Error("first-pixel: `" + call + "` " + end + "; see above for what it said");
+    }
+    return {seconds(usage.ru_utime) + seconds(usage.ru_stime), wall};
+}
+
+}  // namespace
+
+std::vector<Row> bench_first_pixel(const BenchOptions& options, const std::filesystem::path& program,
+                                   const std::optional<std::filesystem::path>& scene_file,
+                                   const std::optional<std::string>& device) {
+    const std::string name = scene_file ? scene_file->string() : "Cornell box";
+    options.progress("first-pixel: " + name);
+    const ScratchDirectory scratch;
+    const std::filesystem::path file = scene_file.value_or(scratch.path() / "cornell-box.json");
+    if (!scene_file) write_file_atomically(file, embedded::cornell_box_json);
+    std::vector<std::string> call{
+        program.string(), "render", file.string(), "--spp", "1",
+        "--size",         "64x64",  "--quiet",     "-o",    (scratch.path() / "first.png").string()};
+    if (device) call.insert(call.end(), {"--device", *device});
+    const std::vector<std::string> cold{"CANDELA_NO_CACHE=1", "MESA_SHADER_CACHE_DISABLE=true"};
+    const std::vector<std::string> warm{"XDG_CACHE_HOME=" + scratch.path().string()};
+    run_program(call, warm);  // Fills the caches.
+
+    std::vector<Row> rows;
+    rows.push_back({.subject = name, .what = "first image, cold", .unit = "s"});
+    rows.push_back({.subject = name, .what = "first image, warm", .unit = "s"});
+    for (uint32_t run = 0; run < options.runs; ++run) {
+        for (Row& row : rows) {
+            const Clocks clocks = run_program(call, &row == &rows[0] ? cold : warm);
+            row.ours.push_back(clocks.cpu);
+            row.ours_wall.push_back(clocks.wall);
+        }
+    }
+    return rows;
+}
+
+}  // namespace candela

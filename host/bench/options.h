@@ -1,0 +1,21 @@
+// What every group of benchmarks is told.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "render/renderer.h"
+
+namespace candela {
+
+struct BenchOptions {
+    uint32_t runs = 5;                                 // Of each figure, after a warm-up; at least 1.
+    std::vector<uint32_t> triangles{190000, 1000000};  // Sizes of the meshes, about; see meshes.h.
+    uint32_t rays = 1u << 20;                          // Camera rays, about.
+    SceneAccess scene_access = SceneAccess::automatic;
+    std::function<void(const std::string&)> progress;  // Told what comes next: "traversal: 1 M triangles".
+};
+
+}  // namespace candela

@@ -1,0 +1,37 @@
+// The benchmark of whole renders: samples per second, rays per sample, and the error after a given time.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "bench/options.h"
+#include "bench/report.h"
+#include "render/renderer.h"
+#include "scene/scene.h"
+#include "vk/device.h"
+
+namespace candela {
+
+struct RenderTask {
+    std::string name;
+    Scene scene;
+    RenderSettings settings{};             // Without AOVs.
+    uint32_t spp = 0;                      // Samples per pixel of a run ...
+    std::optional<double> seconds{};       // ... that ends, if given, after that time all the same [s].
+    std::optional<RgbPlanes> reference{};  // A converged image of the same crop, if the error is asked for.
+};
+
+// Speed [Msamples/s], rays per sample, and, if there is a reference, relMSE at the end of a run. Each run has
+// a seed of its own. The times count rendering alone. On a CPU device they are CPU time over the number of
+// cores, with speeds of wall time beside those; on a GPU they are wall time. A run ends a few per cent late
+// at most. Throws Error as Renderer does.
+std::vector<Row> bench_render(const vk::Device& device, const BenchOptions& options, const RenderTask& task);
+
+// Relative mean squared error: the mean over all pixels and channels of (x - r)^2 / (r^2 + 0.01 m^2), r the
+// reference and m its mean over all pixels and channels: so nothing depends on the unit of radiance, and
+// black pixels do not outweigh all others. Both have the same number of pixels.
+double relative_mse(const RgbPlanes& image, const RgbPlanes& reference);
+
+}  // namespace candela

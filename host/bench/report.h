@@ -1,0 +1,34 @@
+// What a benchmark found: rows of figures, with every single run, and what a table says of them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace candela {
+
+// One line of the table. All lists have one value per run, in the order of the runs, or a single value if
+// nothing could make a difference; those of ours and of the rival belong together pairwise, since the two
+// take turns. Speeds and times are by CPU time wherever a CPU does the work.
+struct Row {
+    std::string subject{};             // What is worked on: "Cornell box, 32 triangles".
+    std::string what{};                // "primary rays".
+    std::string unit{};                // "Mrays/s"; empty for a mere number.
+    std::vector<double> ours{};        // Not empty.
+    std::vector<double> rival{};       // Embree's; empty where there is none.
+    std::vector<double> ours_wall{};   // The same runs by wall time; empty where that is no other figure.
+    std::vector<double> rival_wall{};  // Likewise.
+};
+
+struct Spread {
+    double median, least, largest;
+};
+
+// Of at least one value. The median of an even number of values is the mean of the two in the middle.
+Spread spread(std::span<const double> values);
+
+// Median over the runs of ours / rival; none without a rival.
+std::optional<double> ratio(const Row& row);
+
+}  // namespace candela

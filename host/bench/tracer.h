@@ -1,0 +1,47 @@
+// What is timed: something that traces a set of rays, candela's kernels or the rival.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/clocks.h"
+#include "bench/rays.h"
+#include "render/gpu_scene.h"
+#include "render/renderer.h"
+#include "vk/device.h"
+
+namespace candela {
+
+class RayTracer {
+  public:
+    RayTracer() = default;
+    RayTracer(const RayTracer&) = delete;
+    RayTracer& operator=(const RayTracer&) = delete;
+    virtual ~RayTracer() = default;
+
+    // Makes ready for tracing that set, which must live until the next takes its place.
+    virtual void prepare(const RaySet& set) = 0;
+    // Traces all rays of the set that many times over, on all of the device, and returns how long that took.
+    virtual Clocks trace(uint32_t repeats) = 0;
+    // Of the last trace(), one per ray: a triangle's id, ANY_HIT or NO_TRIANGLE, as rays.h says.
+    virtual std::vector<uint32_t> results() const = 0;
+};
+
+// The kernels closest_hit and any_hit of shaders/probes on a scene's records, one ray per invocation;
+// `access` is not `automatic`. A dispatch has as many rays as the device allows, but at most `batch`. Wall
+// time is the device's own where it has a clock. `device` must outlive the tracer.
+std::unique_ptr<RayTracer> make_device_tracer(const vk::Device& device, const GpuScene& scene,
+                                              SceneAccess access, size_t batch = SIZE_MAX);
+
+// Embree's rtcIntersect1 and rtcOccluded1 on triangles (their ids are their positions), on all cores; null in
+// a program that was built without Embree.
+std::unique_ptr<RayTracer> make_embree_tracer(std::span<const Primitive> triangles);
+
+// "Embree 3.13.5"; none in a program that was built without it.
+std::optional<std::string> embree_version();
+
+}  // namespace candela

@@ -1,0 +1,123 @@
+// See traversal.h.
+#include "bench/traversal.h"
+
+#include <cassert>
+#include <cmath>
+
+#include "base/error.h"
+#include "bench/meshes.h"
+#include "render/flatten.h"
+#include "selftest/evidence.h"
+#include "selftest/scenes.h"
+
+namespace candela {
+namespace {
+
+// A run traces its rays again and again until about that long has passed, so that clocks and idle ends do not
+// count.
+constexpr double RUN_SECONDS = 0.1;
+constexpr double MOST_REPEATS = 1000;
+
+// Of so many rays one may have another hit by the rival.
+constexpr size_t RAYS_PER_OTHER_HIT = 1000;
+
+// A tracer that has a set of rays to trace, and the figures that it gives.
+class Contender {
+  public:
+    // The rays are traced twice: some drivers compile at the first time, and the second says how long a run
+    // is.
+    Contender(RayTracer& tracer, const RaySet& set) : tracer_(&tracer), rays_(double(set.rays.size())) {
+        tracer_->prepare(set);
+        tracer_->trace(1);
+        const double seconds = tracer_->trace(1).wall;
+        repeats_ = uint32_t(std::clamp(std::ceil(RUN_SECONDS / seconds), 1.0, MOST_REPEATS));
+    }
+
+    // Adds the speed of one run [Mrays/s].
+    void run(bool by_cpu_time, std::vector<double>& values, std::vector<double>& wall_values) {
+        const Clocks clocks = tracer_->trace(repeats_);
+        const double millions = 1e-6 * rays_ * repeats_;
+        values.push_back(millions / counted_seconds(clocks, by_cpu_time));
+        if (by_cpu_time) wall_values.push_back(millions / clocks.wall);
+    }
+
+  private:
+    RayTracer* tracer_;
+    double rays_;
+    uint32_t repeats_ = 1;
+};
+
+size_t count_differing(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b) {
+    size_t count = 0;
+    for (size_t i = 0; i < a.size(); ++i)
+        count += a[i] != b[i];
+    return count;
+}
+
+void add_rows(const vk::Device& device, const BenchOptions& options, const std::string& name,
+              const Scene& scene, std::vector<Row>& rows) {
+    const std::vector<Primitive> triangles = flatten(scene).primitives;
+    const std::string subject = (name.empty() ? "" : name + ", ") + triangles_text(triangles.size());
+    options.progress("traversal: " + subject);
+    const GpuScene gpu = build_gpu_scene(scene);
+    assert(gpu.primitives_present == 1u << PRIMITIVE_TRIANGLE);
+    const auto ours = make_device_tracer(device, gpu, choose_access(device, gpu, options.scene_access));
+    const auto rival = make_embree_tracer(triangles);
+
+    const auto closest_hits = [&](const RaySet& set) {
+        ours->prepare(set);
+        ours->trace(1);
+        return ours->results();
+    };
+    size_t differing = 0, rays = 0;
+    for (const RaySet& set : make_ray_sets(scene, triangles, options.rays, closest_hits)) {
+        rows.push_back(
+            time_rays(subject, set, *ours, rival.get(), options.runs, works_on_cpu(device.info())));
+        if (rival == nullptr) continue;
+        const size_t others = count_differing(ours->results(), rival->results());
+        check_same_hits(subject + ", " + set.name, others, set.rays.size());
+        differing += others;
+        rays += set.rays.size();
+    }
+    if (rival != nullptr)
+        rows.push_back({subject,
+                        "rays with another hit",
+                        "of 10^6",
+                        {1e6 * double(differing) / double(rays)},
+                        {},
+                        {},
+                        {}});
+}
+
+}  // namespace
+
+std::vector<Row> bench_traversal(const vk::Device& device, const BenchOptions& options) {
+    std::vector<Row> rows;
+    add_rows(device, options, "Cornell box", cornell_box(), rows);
+    for (const uint32_t triangles : options.triangles)
+        add_rows(device, options, "", displaced_scene(triangles), rows);
+    return rows;
+}
+
+Row time_rays(const std::string& subject, const RaySet& set, RayTracer& ours, RayTracer* rival, uint32_t runs,
+              bool by_cpu_time) {
+    Row row{.subject = subject, .what = set.name, .unit = "Mrays/s"};
+    Contender us(ours, set);
+    std::optional<Contender> them;
+    if (rival != nullptr) them.emplace(*rival, set);
+    for (uint32_t run = 0; run < runs; ++run) {
+        us.run(by_cpu_time, row.ours, row.ours_wall);
+        if (them) them->run(by_cpu_time, row.rival, row.rival_wall);
+    }
+    return row;
+}
+
+void check_same_hits(const std::string& what, size_t differing, size_t rays) {
+    if (differing <= 1 + rays / RAYS_PER_OTHER_HIT) return;
+    throw Error(
+        words(what, ": ", differing, " of ", rays,
+              " rays have another hit than Embree's, so that the speeds are not those of one task; `candela "
+              "selftest` tells what is wrong on this device"));
+}
+
+}  // namespace candela

@@ -1,0 +1,240 @@
+// `candela bench`: how fast this program is on this device, and beside Embree.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "base/image_io.h"
+#include "bench/build.h"
+#include "bench/clocks.h"
+#include "bench/first_pixel.h"
+#include "bench/render.h"
+#include "bench/tracer.h"
+#include "bench/traversal.h"
+#include "cli/bench_options.h"
+#include "cli/bench_report.h"
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/vulkan.h"
+#include "scene/loader.h"
+#include "selftest/scenes.h"
+#include "version.h"
+#include "vk/device.h"
+#include "vk/instance.h"
+
+namespace candela {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// How long a run of the group `render` lasts unless the samples are given [s].
+constexpr double DEFAULT_SECONDS = 3.0;
+
+// A run is limited by time unless the command line limits it by samples.
+RenderTask make_task(const BenchArguments& arguments, const std::string& name, Scene scene) {
+    for (const std::string& warning : scene.warnings)
+        print_warning(warning);
+    RenderTask task{.name = name, .scene = std::move(scene)};
+    task.settings = arguments.render.settings(task.scene);
+    task.spp = arguments.render.spp.value_or(MAX_SPP);
+    task.seconds = arguments.seconds;
+    if (!task.seconds && !arguments.render.spp) task.seconds = DEFAULT_SECONDS;
+    return task;
+}
+
+std::vector<RenderTask> make_tasks(const BenchArguments& arguments) {
+    std::vector<RenderTask> tasks;
+    for (const std::string& file : arguments.scenes)
+        tasks.push_back(make_task(arguments, file, load_scene(file)));
+    if (tasks.empty()) tasks.push_back(make_task(arguments, "Cornell box", cornell_box()));
+    return tasks;
+}
+
+std::string size_text(uvec2 size) {
+    return std::to_string(size.x) + 'x' + std::to_string(size.y);
+}
+
+// The reference of the only task. Throws Error if it is of another size, or no picture.
+RgbPlanes reference_planes(const std::string& file, const Image& image, const RenderTask& task) {
+    const PixelRect& crop = task.settings.crop;
+    const uvec2 size(crop.width(), crop.height()), found(image.data.width(), image.data.height());
+    if (found != size) {
+        throw Error(file + ": the reference has " + size_text(found) + " pixels, but " + task.name +
+                    " is rendered with " + size_text(size) + "; use --size or --crop as for the reference");
+    }
+    const auto planes = image.find_rgb();
+    if (!planes)
+        throw Error(file + ": the reference lacks the channels R, G and B; render it with candela render");
+    return *planes;
+}
+
+// Says on stderr what is running: on a terminal in a line that goes away; elsewhere only if no table is
+// printed.
+void print_progress(const std::string& text, bool table) {
+    const bool terminal = stderr_is_terminal();
+    if (terminal) std::fputs("\r\x1b[K", stderr);
+    if (text.empty() || !(terminal || !table)) return;
+    std::fprintf(stderr, "%s%s", text.c_str(), terminal ? "" : "\n");
+}
+
+std::string rival_text() {
+    return embree_version().value_or(
+        "none; for Embree beside it install libembree-dev and build with cmake -DCANDELA_EMBREE=ON");
+}
+
+void print_heading(const vk::DeviceInfo& device, const BenchOptions& options) {
+    std::printf("candela %s bench\n", CANDELA_VERSION);
+    std::printf("device   %u: %s (%s)\n", device.index, device.name.c_str(), vk::to_string(device.type));
+    std::printf("driver   %s\n", device.driver.c_str());
+    std::printf("system   %s, %.0f cores\n", system_text().c_str(), cores());
+    std::printf("rival    %s\n\n", rival_text().c_str());
+    std::printf("Median (least .. largest) of %u run(s); ratio: candela over Embree, run by run.\n",
+                options.runs);
+    if (works_on_cpu(device)) {
+        std::printf(
+            "Speeds are by CPU time, times the cores; times are CPU seconds. Beside them stands the median\n"
+            "by wall time, which other work on the machine disturbs.\n\n");
+    } else {
+        std::printf(
+            "Rays and samples are by wall time, those of candela on the device, Embree's on all cores.\n"
+            "Building and first images are by CPU time, with the median by wall time beside it.\n\n");
+    }
+}
+
+Json settings_json(const BenchArguments& arguments, const RenderTask& task) {
+    const RenderSettings& settings = task.settings;
+    return {{"runs", arguments.bench.runs},
+            {"rays", arguments.bench.rays},
+            {"triangles", arguments.bench.triangles},
+            {"scene_buffers", name_of(arguments.bench.scene_access, SCENE_ACCESS_NAMES)},
+            {"seconds", task.seconds ? Json(*task.seconds) : Json(nullptr)},
+            {"spp", arguments.render.spp ? Json(*arguments.render.spp) : Json(nullptr)},
+            {"reference", arguments.reference ? Json(*arguments.reference) : Json(nullptr)},
+            {"width", settings.crop.width()},
+            {"height", settings.crop.height()},
+            {"max_depth", settings.max_depth},
+            {"rr_depth", settings.rr_depth},
+            {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},
+            {"sampler", name_of(settings.sampler, SAMPLER_NAMES)},
+            {"seed", settings.seed}};
+}
+
+Json report_json(const BenchArguments& arguments, const vk::DeviceInfo& device,
+                 const std::vector<RenderTask>& tasks, const std::vector<BenchTable>& tables) {
+    Json settings = Json::object();
+    for (const RenderTask& task : tasks)
+        settings[task.name] = settings_json(arguments, task);
+    Json groups = Json::array();
+    for (const BenchTable& table : tables)
+        groups.push_back(to_json(table));
+    return {{"version", CANDELA_VERSION},
+            {"device", device.name},
+            {"type", vk::to_string(device.type)},
+            {"driver", device.driver},
+            {"vulkan", vk::version_text(device.api_version)},
+            {"system", system_text()},
+            {"cores", uint32_t(cores())},
+            {"clock", works_on_cpu(device) ? "cpu" : "wall"},
+            {"embree", embree_version() ? Json(*embree_version()) : Json(nullptr)},
+            {"settings", settings},
+            {"groups", groups}};
+}
+
+// To a file, or to stdout for "-".
+void write_json(const std::string& target, const Json& report) {
+    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    if (target != "-") return write_file_atomically(target, text);
+    std::printf("%s", text.c_str());
+    flush_results();
+}
+
+std::vector<Row> run_group(BenchGroup group, const vk::Device& device, const BenchArguments& arguments,
+                           const std::vector<RenderTask>& tasks) {
+    std::vector<Row> rows;
+    const auto append = [&rows](const std::vector<Row>& more) {
+        rows.insert(rows.end(), more.begin(), more.end());
+    };
+    switch (group) {
+        case BenchGroup::traversal:
+            append(bench_traversal(device, arguments.bench));
+            break;
+        case BenchGroup::build:
+            append(bench_build(arguments.bench));
+            break;
+        case BenchGroup::render:
+            for (const RenderTask& task : tasks)
+                append(bench_render(device, arguments.bench, task));
+            break;
+        case BenchGroup::first_pixel: {
+            const auto program = std::filesystem::read_symlink("/proc/self/exe");
+            const auto first_pixel = [&](const std::optional<std::filesystem::path>& scene) {
+                append(bench_first_pixel(arguments.bench, program, scene, arguments.render.device));
+            };
+            for (const std::string& scene : arguments.scenes)
+                first_pixel(scene);
+            if (arguments.scenes.empty()) first_pixel(std::nullopt);
+            break;
+        }
+    }
+    return rows;
+}
+
+ExitCode bench(const BenchArguments& arguments) {
+    const bool table = arguments.json != "-";
+    if (arguments.json && table) check_writable(*arguments.json);
+    if (arguments.reference && arguments.scenes.size() > 1)
+        throw Error("--reference: one image cannot be the reference of " +
+                        std::to_string(arguments.scenes.size()) + " scenes; give one scene",
+                    ExitCode::usage);
+    std::vector<RenderTask> tasks = make_tasks(arguments);
+    Image reference;  // The task refers to it.
+    if (arguments.reference) {
+        reference = read_exr(*arguments.reference);
+        tasks[0].reference = reference_planes(*arguments.reference, reference, tasks[0]);
+    }
+
+    const vk::Instance instance(instance_options());
+    const std::vector<vk::DeviceInfo> devices = instance.devices();
+    const vk::Device device(instance, vk::select_device(devices, arguments.render.device),
+                            pipeline_cache_file());
+    BenchArguments told = arguments;
+    told.bench.scene_access = arguments.render.scene_access;
+    told.bench.progress = [table](const std::string& text) { print_progress(text, table); };
+    if (table) print_heading(device.info(), told.bench);
+    std::vector<BenchTable> tables;
+    for (const BenchGroup group : told.only) {
+        tables.push_back({name_of(group, BENCH_GROUP_NAMES), run_group(group, device, told, tasks)});
+        print_progress("", table);
+        if (table) std::printf("%s\n", table_text(tables.back()).c_str());
+        flush_results();
+    }
+    if (arguments.json) write_json(*arguments.json, report_json(told, device.info(), tasks, tables));
+    check_validation(instance);
+    return ExitCode::done;
+}
+
+}  // namespace
+
+Command add_bench_command(CLI::App& app) {
+    CLI::App* const command =
+        app.add_subcommand("bench", "Measure speed on this device; takes two minutes on a CPU");
+    const auto arguments = std::make_shared<BenchArguments>();
+    arguments->add_to(*command);
+    command->footer(
+        "traversal: rays alone, in the Cornell box and in meshes; beside Embree if built with it.\n"
+        "build: the BVH of those meshes, and its bytes on the device, all included. Finer rival: Embree\n"
+        "splits down to single triangles where that lowers the SAH cost; like leaves: its leaves have\n"
+        "three triangles, as candela's have.\n"
+        "render: samples per second and rays per sample of SCENE.\n"
+        "first-pixel: all of `candela render SCENE --spp 1 --size 64x64`, with and without caches.\n"
+        "relMSE: mean over pixels and channels of (x - r)^2 / (r^2 + 0.01 m^2), r the reference and m\n"
+        "its mean.\n\n"
+        "Example:\n"
+        "  candela bench --only traversal --triangles 190k,1M,10M --json bench.json");
+    return {command, [arguments] { return bench(*arguments); }};
+}
+
+}  // namespace candela

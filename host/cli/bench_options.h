@@ -1,0 +1,37 @@
+// The options of `candela bench`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/options.h"
+#include "cli/arguments.h"
+#include "cli/render_options.h"
+
+namespace candela {
+
+enum class BenchGroup { traversal, build, render, first_pixel };
+inline constexpr Choices<BenchGroup, 4> BENCH_GROUP_NAMES{{{"traversal", BenchGroup::traversal},
+                                                           {"build", BenchGroup::build},
+                                                           {"render", BenchGroup::render},
+                                                           {"first-pixel", BenchGroup::first_pixel}}};
+
+// What stands on the command line.
+struct BenchArguments {
+    std::vector<std::string> scenes;  // None: the Cornell box that is part of the program.
+    std::vector<BenchGroup> only{BenchGroup::traversal, BenchGroup::build, BenchGroup::render,
+                                 BenchGroup::first_pixel};
+    std::optional<std::string> json;  // "-": stdout.
+    BenchOptions bench;
+    std::optional<double> seconds;
+    std::optional<std::string> reference;
+    RenderOptions render;  // Those that add_rendering_to() declares.
+
+    // Declares them all on `app`, which fills them in when it parses; this object must stay where it is.
+    void add_to(CLI::App& app);
+};
+
+}  // namespace candela

@@ -1,0 +1,15 @@
+// For bench/tracer.h: item (ray with t_max). ANY_HIT if anything is met before t_max, else NO_TRIANGLE: one word,
+// so that little but traversal takes time.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#define ITEM_WORDS 2u
+#define RESULT_WORDS 1u
+#include "probes/items.glsl"
+#include "scene/traversal.glsl"
+
+void main() {
+    if (past_end()) return;
+    Ray ray = Ray(item_floats(0u).xyz, item_floats(1u).xyz);
+    put(bvh_occluded(ray, item_floats(0u).w) ? 0u : 0xFFFFFFFFu);
+}
