@@ -17,12 +17,18 @@ candela_check(layers_test ${PYTHON3} cmake/checks/layers_test.py)
 candela_check(setup_test ${PYTHON3} cmake/checks/setup_test.py)
 candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
 set_tests_properties(shaders_alone PROPERTIES LABELS check)
-candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes tests/references)
+candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes tests/references tests/bench/scenes)
 candela_check(sky ${PYTHON3} tests/unit/sky_test.py scenes)
 
-# Needs a device, unlike the others.
+# Need a device, unlike the others.
 candela_check(readme ${PYTHON3} cmake/checks/readme.py README.md $<TARGET_FILE:candela>)
 set_tests_properties(readme PROPERTIES LABELS cli RUN_SERIAL TRUE)
+candela_check(rivals ${PYTHON3} tests/bench/rivals_test.py $<TARGET_FILE:candela>)
+set_tests_properties(rivals PROPERTIES LABELS cli RUN_SERIAL TRUE)
+if(CANDELA_EMBREE)
+    candela_check(tracer ${PYTHON3} tests/bench/tracer_test.py $<TARGET_FILE:candela> $<TARGET_FILE:tracer>)
+    set_tests_properties(tracer PROPERTIES LABELS cli RUN_SERIAL TRUE)
+endif()
 
 get_target_property(spirv candela_render CANDELA_SPIRV)
 get_target_property(probe_spirv candela_selftest CANDELA_SPIRV)

@@ -1,0 +1,101 @@
+"""Runs candela and its rivals on one scene, all with the same settings.
+
+Each renderer's render() writes an OpenEXR picture and returns {"cpu", "wall": seconds; "rays": per sample, or None
+where they are not counted}. Seconds are those that all samples after the first of each pixel took, over all threads,
+scaled to all samples: so that neither starting, nor compiling, nor preparing the scene counts.
+"""
+
+import json
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+# Bounces that always survive. All three ask for roulette after the second scattering first: Cycles cannot sooner.
+RR_DEPTH = 1
+# Blender without windows and the user's settings; it fails if the script does.
+BLENDER_SCRIPT = ["-b", "--factory-startup", "--python-exit-code", "1", "-P"]
+
+
+@dataclass
+class Job:
+    scene: Path
+    depth: int  # Scattering vertices at most.
+    width: int  # Of the picture, and its height [pixels].
+    threads: int
+
+
+def run(command):
+    """Standard output of a program; ends with its messages if it fails."""
+    result = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    if result.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\nended with {result.returncode}:\n{result.stdout}{result.stderr}")
+    return result.stdout
+
+
+def last_json(text):
+    """What the last line that is an object says."""
+    return json.loads([line for line in text.splitlines() if line.startswith("{")][-1])
+
+
+def without_start(one, all_samples, spp):
+    """CPU time and wall time [s] of spp samples of each pixel, from those of renderings with one and with spp."""
+    return {what: spp / (spp - 1) * (all_samples[what] - one[what]) for what in ("cpu", "wall")}
+
+
+class Candela:
+    name = "candela"
+
+    def __init__(self, program):
+        self.program = find(program, "build it, or give the path of the program")
+        self.version = None  # Known after the first run.
+
+    def render(self, job, spp, seed, output):
+        options = ["--size", f"{job.width}x{job.width}", "--max-depth", job.depth, "--rr-depth", RR_DEPTH]
+        options += ["--seed", seed, "--aov", "none", "--quiet", "--report", "-"]
+        one, all_samples = (
+            json.loads(run([self.program, "render", job.scene, "-o", output, "--spp", n, *options])) for n in (1, spp)
+        )
+        self.version = "candela {version} on {device}, {driver}".format(**all_samples)
+        for report in (one, all_samples):
+            report |= {"cpu": report["cpu_seconds"], "wall": report["render_seconds"]}
+        return without_start(one, all_samples, spp) | {"rays": all_samples["rays_per_sample"]}
+
+
+class Tracer:
+    name = "tracer"
+
+    def __init__(self, program):
+        remedy = "build the target `tracer` with -DCANDELA_EMBREE=ON, name it by --tracer, or use --without tracer"
+        self.program = find(program, remedy)
+        self.version = "tracer.cpp over Embree 3"
+
+    def render(self, job, spp, seed, output):
+        settings = [job.depth, RR_DEPTH, seed, job.threads]
+        one, all_samples = (
+            json.loads(run([self.program, job.scene, output, job.width, n, *settings])) for n in (1, spp)
+        )
+        return without_start(one, all_samples, spp) | {"rays": all_samples["rays"]}
+
+
+class Cycles:
+    name = "Cycles"
+
+    def __init__(self, blender):
+        self.blender = find(blender, "install Blender 3.4, name it by --blender, or use --without Cycles")
+        self.version = "Cycles of " + run([self.blender, "--version"]).splitlines()[0]
+
+    def render(self, job, spp, seed, output):
+        settings = [job.width, spp, job.depth, seed, job.threads]
+        words = [*BLENDER_SCRIPT, HERE / "cycles.py", "--", job.scene, output, *settings]
+        figures = last_json(run([self.blender, *words]))
+        return without_start(figures["one"], figures["all"], spp) | {"rays": None}
+
+
+def find(program, remedy):
+    found = shutil.which(program)
+    if not found:
+        sys.exit(f"cannot run {program}: {remedy}")
+    return found

@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""Tests what rivals/compare.py computes itself: pictures, scenes, times, messages. usage: rivals_test.py CANDELA"""
+
+import array
+import itertools
+import json
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+RIVALS = Path(__file__).resolve().parent / "rivals"
+sys.path.insert(0, str(RIVALS))
+
+import exr  # noqa: E402 (needs the path)
+import pictures  # noqa: E402
+import renderers  # noqa: E402
+import scene_file  # noqa: E402
+
+ROOT = RIVALS.parents[2]
+CANDELA = None  # The program, from the command line.
+
+
+def candela(*words):
+    return subprocess.run([CANDELA, *map(str, words)], capture_output=True, text=True, check=True).stdout
+
+
+def compare(*words):
+    """What compare.py says when it fails."""
+    result = subprocess.run([sys.executable, RIVALS / "compare.py", *words], capture_output=True, text=True)
+    assert result.returncode != 0, result.stdout
+    return result.stderr.strip().splitlines()[-1]
+
+
+def grey(width, height, value):
+    """A picture of that value everywhere, or of value(x, y)."""
+    values = [value(x, y) if callable(value) else value for y, x in itertools.product(range(height), range(width))]
+    return width, height, [array.array("f", values) for _ in "RGB"]
+
+
+class Pictures(unittest.TestCase):
+    def test_exr_files_are_read_as_candela_reads_them(self):
+        # The last block of 37 rows is a short one; `compare` prints six digits of its own error measure.
+        with tempfile.TemporaryDirectory() as folder:
+            paths = [Path(folder, f"{seed}.exr") for seed in range(2)]
+            for seed, path in enumerate(paths):
+                options = ("--size", "24x37", "--spp", 1, "--seed", seed, "--aov", "none", "--quiet")
+                candela("render", ROOT / "scenes/cornell-box.json", "-o", path, *options)
+            (width, height, a), (_, _, b) = (exr.read(path) for path in paths)
+            said = float(re.search(r"relMSE +(\S+)", candela("compare", *paths, "--relmse", 1e9))[1])
+        self.assertEqual((width, height), (24, 37))
+        terms = [(x - r) ** 2 / (r * r + 0.01) for p, q in zip(a, b) for x, r in zip(p, q)]
+        self.assertGreater(said, 0)
+        self.assertAlmostEqual(sum(terms) / len(terms), said, delta=1e-5 * said)
+        self.assertTrue(sum(a[0]) > sum(a[1]) > sum(a[2]))  # The lamp's radiance is 17, 12, 4.
+
+    def test_relmse_is_relative_to_the_reference_and_to_its_mean(self):
+        self.assertAlmostEqual(pictures.relmse(grey(2, 3, 3), grey(2, 3, 2)), 1 / (4 + 0.04), places=6)
+        halves = grey(2, 2, lambda x, y: 4 * x)  # Of mean 2: black pixels count (1 - 0)^2 / 0.04.
+        self.assertAlmostEqual(pictures.relmse(grey(2, 2, 1), halves), (1 / 0.04 + 9 / 16.04) / 2, places=5)
+
+    def test_differences_are_those_of_the_whole_and_of_blocks(self):
+        even = grey(80, 40, 1)  # Blocks: 32 + 32 + 16 columns, 32 + 8 rows.
+        spot = grey(80, 40, lambda x, y: 3 if x >= 64 and y >= 32 else 1)
+        whole, blocks = pictures.differences(spot, even)
+        self.assertAlmostEqual(whole, 2 * 16 * 8 / (80 * 40), places=6)
+        self.assertAlmostEqual(blocks, (2**2 / 6) ** 0.5, places=6)
+
+
+class Scenes(unittest.TestCase):
+    def check(self, path):
+        """Bounds and number of triangles must be those that candela finds."""
+        told = json.loads(candela("info", path, "--json"))
+        meshes = [scene_file.mesh(shape, path.parent) for shape in scene_file.read_scene(path)["shapes"]]
+        self.assertEqual(sum(len(triangles) for _, _, triangles in meshes), told["primitives"])
+        points = [positions[i] for positions, _, triangles in meshes for triangle in triangles for i in triangle]
+        for axis in range(3):
+            self.assertAlmostEqual(min(p[axis] for p in points), told["bounds"][0][axis], places=5)
+            self.assertAlmostEqual(max(p[axis] for p in points), told["bounds"][1][axis], places=5)
+
+    def test_the_cornell_box_is_the_one_that_candela_reads(self):
+        self.check(ROOT / "scenes/cornell-box.json")
+
+    def test_a_box_is_closed_and_has_the_area_and_the_volume_of_a_box(self):
+        corners, _, triangles = scene_file.mesh({"type": "box", "min": [-1, 2, 5], "max": [1, 5, 9]}, None)
+        edges = [(t[i - 1], t[i]) for t in triangles for i in range(3)]
+        self.assertEqual(sorted(edges), sorted({(b, a) for a, b in edges}))  # Each once, and once in reverse.
+        area = volume = 0
+        for a, b, c in (map(corners.__getitem__, triangle) for triangle in triangles):
+            (x, y, z), (u, v, w) = ([q - p for p, q in zip(a, end)] for end in (b, c))
+            normal = (y * w - z * v, z * u - x * w, x * v - y * u)
+            area += sum(n * n for n in normal) ** 0.5 / 2
+            volume += sum(p * n for p, n in zip(a, normal)) / 6  # Ref: Gauss's theorem; above 0: fronts outside.
+        self.assertAlmostEqual(area, 2 * (2 * 3 + 3 * 4 + 4 * 2))
+        self.assertAlmostEqual(volume, 2 * 3 * 4)
+
+    def test_boxes_and_turned_meshes_are_those_that_candela_reads(self):
+        turn = [{"rotate": 30, "axis": [0, 1, 0]}, {"translate": [5, 1, -2]}]
+        scene = {
+            "cameras": {"main": {"position": [0, 0, 9], "look_at": [0, 0, 0], "vertical_fov": 40}},
+            "materials": {"clay": {"type": "diffuse", "reflectance": 0.5}},
+            "shapes": [
+                {"type": "box", "min": [-3, -2, -1], "max": [0.5, 1, 2], "material": "clay"},
+                {"type": "ply", "file": "m.ply", "material": "clay", "transform": turn},
+            ],
+        }
+        header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
+        header += "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+        header += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        corners = ((0, 0, 0), (4, 0, 1), (0, 3, 2))
+        data = b"".join(struct.pack("<6f", *corner, 0, 0, 1) for corner in corners) + struct.pack("<B3i", 3, 0, 1, 2)
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "m.ply").write_bytes(header.encode() + data)
+            path = Path(folder, "scene.json")
+            path.write_text("// A comment.\n" + json.dumps(scene), encoding="utf-8")
+            self.check(path)
+
+
+class Runs(unittest.TestCase):
+    def test_the_time_of_the_first_sample_and_of_starting_counts_for_none(self):
+        # 3 s to start, 2 s for each of five samples.
+        times = renderers.without_start({"cpu": 5, "wall": 4}, {"cpu": 13, "wall": 8}, 5)
+        self.assertEqual(times, {"cpu": 10, "wall": 5})
+
+    def test_candelas_time_grows_with_its_samples(self):
+        job = renderers.Job(ROOT / "scenes/cornell-box.json", depth=1, width=16, threads=1)
+        with tempfile.TemporaryDirectory() as folder:
+            figures = renderers.Candela(CANDELA).render(job, 64, 0, Path(folder, "a.exr"))
+            self.assertEqual(exr.read(Path(folder, "a.exr"))[:2], (16, 16))
+        self.assertGreater(figures["cpu"], 0)
+        self.assertTrue(1 < figures["rays"] < 3, figures)  # A camera ray; where there are walls, two more.
+
+    def test_what_is_unknown_or_missing_is_told_with_its_remedy(self):
+        known = "cornell-box, suzannes, many-lights, sky"
+        self.assertIn(f"unknown scene teapot (known: {known})", compare(CANDELA, "teapot"))
+        self.assertIn("cannot run /no/candela: build it, or give", compare("/no/candela"))
+        self.assertIn("cannot run /no/blender: install Blender", compare(CANDELA, "--blender", "/no/blender"))
+        missing = compare(CANDELA, "--without", "Cycles", "--tracer", "/no/tracer", "sky")
+        self.assertIn("cannot run /no/tracer: build the target `tracer` with -DCANDELA_EMBREE=ON", missing)
+        self.assertIn("--runs, --seconds and --reference must be above 0", compare(CANDELA, "--seconds", "0"))
+
+    def test_a_program_that_fails_is_quoted(self):
+        with self.assertRaisesRegex(SystemExit, "(?s)candela nonsense\nended with 2:.*nonsense"):
+            renderers.run([CANDELA, "nonsense"])
+
+
+if __name__ == "__main__":
+    CANDELA = sys.argv.pop(1)
+    unittest.main()
