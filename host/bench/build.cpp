@@ -1,7 +1,6 @@
 // See build.h.
 #include "bench/build.h"
 
-#include <array>
 #include <string>
 #include <utility>
 #include <variant>
@@ -10,22 +9,25 @@
 #include "bench/tracer.h"
 #include "render/flatten.h"
 #include "render/gpu_scene.h"
+#include "render/triangle_pairs.h"
 #include "scene/mesh.h"
 
 namespace candela {
 namespace {
 
-// What Embree is told: it never splits ranges of up to `whole`.
-struct Rival {
-    uint32_t whole;
-    const char* name;
-};
-constexpr std::array<Rival, 2> RIVALS{{{1, "finer rival"}, {BVH_LEAF_SIZE, "like leaves"}}};
-
 TimedBvh build_ours(std::span<const Box> boxes) {
     const Stopwatch watch;
     Bvh bvh = build_bvh(boxes);
     return {std::move(bvh), watch.elapsed()};
+}
+
+// What pairing the triangles of a scene takes.
+Clocks time_pairing(const Scene& scene) {
+    const Stopwatch watch;
+    for (const Shape& shape : scene.shapes) {
+        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) pair_triangles(*mesh);
+    }
+    return watch.elapsed();
 }
 
 void add_speed(const Clocks& clocks, size_t triangles, std::vector<double>& values,
@@ -35,25 +37,37 @@ void add_speed(const Clocks& clocks, size_t triangles, std::vector<double>& valu
     wall_values.push_back(millions / clocks.wall);
 }
 
-// Speed and cost beside one rival, which may be missing.
-void add_builds(const std::string& subject, std::span<const Box> boxes, const Rival& rival, uint32_t runs,
-                std::vector<Row>& rows) {
-    const std::string beside = embree_version() ? std::string(", ") + rival.name : "";
-    Row speed{.subject = subject, .what = "build" + beside, .unit = "Mtri/s"};
-    Row cost{.subject = subject, .what = "SAH cost" + beside};
+// Speed and cost of the trees over a scene's triangles.
+void add_builds(const std::string& subject, const Scene& scene, uint32_t runs, std::vector<Row>& rows) {
+    std::vector<Box> triangles, pairs;
+    for (const BenchTriangle& t : triangles_of(scene)) {
+        triangles.emplace_back();
+        for (const vec3 corner : {t.a, t.b, t.c})
+            triangles.back().extend(corner);
+    }
+    for (const Primitive& primitive : flatten(scene).primitives)
+        pairs.push_back(bounds(primitive));
+
+    Row whole{.subject = subject, .what = "pairs and tree", .unit = "Mtri/s"};
+    Row speed{.subject = subject, .what = "tree over pairs", .unit = "Mtri/s"};
+    Row cost{.subject = subject, .what = "SAH cost of it"};
     for (uint32_t run = 0; run <= runs; ++run) {
-        const TimedBvh ours = build_ours(boxes);
-        const std::optional<TimedBvh> theirs = build_with_embree(boxes, rival.whole, BVH_LEAF_SIZE);
+        const Clocks pairing = time_pairing(scene);
+        const TimedBvh ours = build_ours(pairs);
+        const std::optional<TimedBvh> theirs = build_with_embree(pairs);
+        const std::optional<TimedBvh> of_triangles = build_with_embree(triangles);
         if (run == 0) {  // A warm-up. The trees are always the same.
             cost.ours.push_back(double(ours.bvh.sah_cost));
             if (theirs) cost.rival.push_back(double(theirs->bvh.sah_cost));
             continue;
         }
-        add_speed(ours.clocks, boxes.size(), speed.ours, speed.ours_wall);
-        if (theirs) add_speed(theirs->clocks, boxes.size(), speed.rival, speed.rival_wall);
+        const Clocks both{.cpu = pairing.cpu + ours.clocks.cpu, .wall = pairing.wall + ours.clocks.wall};
+        add_speed(both, triangles.size(), whole.ours, whole.ours_wall);
+        if (of_triangles) add_speed(of_triangles->clocks, triangles.size(), whole.rival, whole.rival_wall);
+        add_speed(ours.clocks, triangles.size(), speed.ours, speed.ours_wall);
+        if (theirs) add_speed(theirs->clocks, triangles.size(), speed.rival, speed.rival_wall);
     }
-    rows.push_back(speed);
-    rows.push_back(cost);
+    rows.insert(rows.end(), {whole, speed, cost});
 }
 
 double bytes_per_triangle(Scene scene) {
@@ -61,7 +75,7 @@ double bytes_per_triangle(Scene scene) {
         if (auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) smooth_normals(*mesh);
     }
     const GpuScene gpu = build_gpu_scene(scene);
-    return double(gpu.bytes()) / gpu.primitive_count;
+    return double(gpu.bytes()) / gpu.id_count;
 }
 
 }  // namespace
@@ -70,13 +84,9 @@ std::vector<Row> bench_build(const BenchOptions& options) {
     std::vector<Row> rows;
     for (const uint32_t triangles : options.triangles) {
         Scene scene = displaced_scene(triangles);
-        std::vector<Box> boxes;
-        for (const Primitive& primitive : flatten(scene).primitives)
-            boxes.push_back(bounds(primitive));
-        const std::string subject = triangles_text(boxes.size());
+        const std::string subject = triangles_text(triangles_of(scene).size());
         options.progress("build: " + subject);
-        for (const Rival& rival : std::span(RIVALS).first(embree_version() ? RIVALS.size() : 1))
-            add_builds(subject, boxes, rival, options.runs, rows);
+        add_builds(subject, scene, options.runs, rows);
         rows.push_back({.subject = subject,
                         .what = "device memory",
                         .unit = "B/triangle",

@@ -111,7 +111,7 @@ std::vector<RTCBuildPrimitive> to_primitives(std::span<const Box> boxes) {
 
 }  // namespace
 
-std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes, uint32_t whole, uint32_t leaf_size) {
+std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes) {
     assert(!boxes.empty());
     std::vector<RTCBuildPrimitive> primitives = to_primitives(boxes);
     RTCDevice device = rtcNewDevice(nullptr);
@@ -121,8 +121,8 @@ std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes, uint32_t w
     arguments.maxBranchingFactor = BVH_WIDTH;
     arguments.maxDepth = 64;
     arguments.sahBlockSize = 1;
-    arguments.minLeafSize = whole;
-    arguments.maxLeafSize = leaf_size;
+    arguments.minLeafSize = 1;
+    arguments.maxLeafSize = BVH_LEAF_SIZE;
     arguments.traversalCost = float(BVH_NODE_COST);
     arguments.intersectionCost = 1.0f;
     arguments.bvh = tree;
@@ -153,7 +153,7 @@ std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes, uint32_t w
 
 namespace candela {
 
-std::optional<TimedBvh> build_with_embree(std::span<const Box>, uint32_t, uint32_t) {
+std::optional<TimedBvh> build_with_embree(std::span<const Box>) {
     return std::nullopt;
 }
 

@@ -46,7 +46,7 @@ uint32_t any(RTCScene scene, RTCIntersectContext& context, const BenchRay& ray) 
 
 class EmbreeTracer : public RayTracer {
   public:
-    explicit EmbreeTracer(std::span<const Primitive> triangles)
+    explicit EmbreeTracer(std::span<const BenchTriangle> triangles)
         : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         auto* const vertices = static_cast<vec3*>(rtcSetNewGeometryBuffer(
@@ -121,7 +121,7 @@ class EmbreeTracer : public RayTracer {
 
 }  // namespace
 
-std::unique_ptr<RayTracer> make_embree_tracer(std::span<const Primitive> triangles) {
+std::unique_ptr<RayTracer> make_embree_tracer(std::span<const BenchTriangle> triangles) {
     return std::make_unique<EmbreeTracer>(triangles);
 }
 
@@ -135,7 +135,7 @@ std::optional<std::string> embree_version() {
 
 namespace candela {
 
-std::unique_ptr<RayTracer> make_embree_tracer(std::span<const Primitive>) {
+std::unique_ptr<RayTracer> make_embree_tracer(std::span<const BenchTriangle>) {
     return nullptr;
 }
 

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 
+#include "render/flatten.h"
 #include "selftest/random.h"
 #include "selftest/scenes.h"
 
@@ -124,6 +126,19 @@ Scene displaced_scene(uint32_t triangles) {
     add_shape(scene, parallelogram(vec3(-0.75f, 3.99f, -0.75f), 0.25f * x, 0.25f * z), grey,
               Emission{vec3(10.0f), false});
     return scene;
+}
+
+std::vector<BenchTriangle> triangles_of(const Scene& scene) {
+    const FlatScene flat = flatten(scene);
+    std::vector<BenchTriangle> triangles(flat.id_count);
+    for (size_t i = 0; i < flat.primitives.size(); ++i) {
+        const Primitive& p = flat.primitives[i];
+        assert(p.kind == PRIMITIVE_TRIANGLES);
+        const uvec2 id = flat.surfaces[i].id;
+        triangles[id.x] = {p.a, p.b, p.c};
+        if (id.y != id.x) triangles[id.y] = {p.a, p.c, p.d};
+    }
+    return triangles;
 }
 
 std::string triangles_text(uint64_t triangles) {

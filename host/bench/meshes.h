@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -18,6 +19,14 @@ TriangleMesh displaced_sphere(uint32_t n, uint32_t seed);
 // rectangular light, so that every ray meets something and bounces remain incoherent. The camera stands in a
 // corner; all is diffuse, flat.
 Scene displaced_scene(uint32_t triangles);
+
+// World space [m].
+struct BenchTriangle {
+    vec3 a, b, c;
+};
+
+// The triangles of a scene that has nothing else, by id.
+std::vector<BenchTriangle> triangles_of(const Scene& scene);
 
 // "190 k triangles", "1 M triangles", "72 triangles": a number of triangles for people, to three digits.
 std::string triangles_text(uint64_t triangles);

@@ -44,7 +44,7 @@ struct Vertex {
     vec3 n;
 };
 
-Vertex vertex_of(const BenchRay& ray, const Primitive& triangle, double above) {
+Vertex vertex_of(const BenchRay& ray, const BenchTriangle& triangle, double above) {
     const dvec3 o(ray.o), d(ray.d), a(triangle.a);
     dvec3 n = normalize(cross(dvec3(triangle.b) - a, dvec3(triangle.c) - a));
     if (dot(n, d) > 0.0) n = -n;
@@ -53,7 +53,7 @@ Vertex vertex_of(const BenchRay& ray, const Primitive& triangle, double above) {
 }
 
 // The vertices at the hits of a set; rays that hit nothing have none.
-std::vector<Vertex> vertices_of(const RaySet& set, std::span<const Primitive> triangles, double above,
+std::vector<Vertex> vertices_of(const RaySet& set, std::span<const BenchTriangle> triangles, double above,
                                 const ClosestHits& trace) {
     const std::vector<uint32_t> hits = trace(set);
     std::vector<Vertex> vertices;
@@ -94,9 +94,9 @@ const Quad& light_of(const Scene& scene) {
     return std::get<Quad>(shape->geometry);
 }
 
-double extent_of(std::span<const Primitive> triangles) {
+double extent_of(std::span<const BenchTriangle> triangles) {
     Box box;
-    for (const Primitive& triangle : triangles) {
+    for (const BenchTriangle& triangle : triangles) {
         box.extend(triangle.a);
         box.extend(triangle.b);
         box.extend(triangle.c);
@@ -107,8 +107,8 @@ double extent_of(std::span<const Primitive> triangles) {
 
 }  // namespace
 
-std::vector<RaySet> make_ray_sets(const Scene& scene, std::span<const Primitive> triangles, uint32_t count,
-                                  const ClosestHits& trace) {
+std::vector<RaySet> make_ray_sets(const Scene& scene, std::span<const BenchTriangle> triangles,
+                                  uint32_t count, const ClosestHits& trace) {
     Random random(1);
     const double above = START_ABOVE * extent_of(triangles);
     RaySet primary{.name = "primary rays", .coherent = true, .rays = {}};

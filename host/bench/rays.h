@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/meshes.h"
 #include "scene/scene.h"
-#include "shared/primitive.h"
 
 namespace candela {
 
@@ -22,7 +22,7 @@ struct BenchRay {
 static_assert(sizeof(BenchRay) == 32);
 
 // What a tracer answers to a ray that meets nothing. To one that does, it answers with the triangle's
-// Primitive::id, or, where any hit will do, with ANY_HIT.
+// the position in triangles_of(), or, where any hit will do, with ANY_HIT.
 inline constexpr uint32_t NO_TRIANGLE = 0xFFFFFFFFu;
 inline constexpr uint32_t ANY_HIT = 0u;
 
@@ -42,7 +42,7 @@ using ClosestHits = std::function<std::vector<uint32_t>(const RaySet&)>;
 // the primary rays to random points of the first emitting quad, which the scene must have. Rays stand in the
 // order of pixels: tiles of 8x8, row-major, as are the pixels of each, so that neighbours are as alike as a
 // renderer's. Random numbers have a fixed seed.
-std::vector<RaySet> make_ray_sets(const Scene& scene, std::span<const Primitive> triangles, uint32_t count,
-                                  const ClosestHits& trace);
+std::vector<RaySet> make_ray_sets(const Scene& scene, std::span<const BenchTriangle> triangles,
+                                  uint32_t count, const ClosestHits& trace);
 
 }  // namespace candela

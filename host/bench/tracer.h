@@ -39,7 +39,7 @@ std::unique_ptr<RayTracer> make_device_tracer(const vk::Device& device, const Gp
 
 // Embree's rtcIntersect1 and rtcOccluded1 on triangles (their ids are their positions), on all cores; null in
 // a program that was built without Embree.
-std::unique_ptr<RayTracer> make_embree_tracer(std::span<const Primitive> triangles);
+std::unique_ptr<RayTracer> make_embree_tracer(std::span<const BenchTriangle> triangles);
 
 // "Embree 3.13.5"; none in a program that was built without it.
 std::optional<std::string> embree_version();

@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "bench/meshes.h"
-#include "render/flatten.h"
 #include "selftest/evidence.h"
 #include "selftest/scenes.h"
+#include "shared/primitive.h"
 
 namespace candela {
 namespace {
@@ -56,11 +56,11 @@ size_t count_differing(const std::vector<uint32_t>& a, const std::vector<uint32_
 
 void add_rows(const vk::Device& device, const BenchOptions& options, const std::string& name,
               const Scene& scene, std::vector<Row>& rows) {
-    const std::vector<Primitive> triangles = flatten(scene).primitives;
+    const std::vector<BenchTriangle> triangles = triangles_of(scene);
     const std::string subject = (name.empty() ? "" : name + ", ") + triangles_text(triangles.size());
     options.progress("traversal: " + subject);
     const GpuScene gpu = build_gpu_scene(scene);
-    assert(gpu.primitives_present == 1u << PRIMITIVE_TRIANGLE);
+    assert(gpu.primitives_present == 1u << PRIMITIVE_TRIANGLES);
     const auto ours = make_device_tracer(device, gpu, choose_access(device, gpu, options.scene_access));
     const auto rival = make_embree_tracer(triangles);
 

@@ -21,9 +21,6 @@ namespace candela {
 
 namespace {
 
-// A larger leaf is opened where its node has room for the parts, which saves half of all triangle tests at no
-// further node. Smaller ones gain nothing; they are often the two halves of a quad.
-constexpr uint32_t SMALL_LEAF_SIZE = 2;
 // A range larger than this is a task of its own: small enough for many tasks a thread, large enough that
 // taking a task costs nothing against it.
 constexpr uint32_t TASK_SIZE = 8192;
@@ -67,23 +64,21 @@ uint32_t balanced_depth(uint32_t count) {
 }
 
 // Splits the range of a node, then the part that most rays would meet (the largest surface), until there are
-// four parts; leaves are split last, into the room that is left. The heuristic may take a single primitive
+// four parts. The heuristic may take a single primitive
 // off at every split (boxes that grow exponentially). So wherever a child of all primitives but one might
 // be too deep for what is left of BVH_STACK_SIZE levels, the node is split into equal parts, and those fit:
 // nodes on the way down kept to this rule.
 Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
     const bool balanced = job.depth + 1 + balanced_depth(job.range.count - 1) >= BVH_STACK_SIZE;
     const auto priority = [balanced](const PrimitiveRange& range) {
-        return std::make_tuple(!makes_leaf(range), balanced ? 0.0 : half_area(Box(range.bounds)),
-                               range.count);
+        return std::make_pair(balanced ? 0.0 : half_area(Box(range.bounds)), range.count);
     };
 
     Children children{{job.range}, 1};
     while (children.count < BVH_WIDTH) {
         PrimitiveRange* chosen = nullptr;
         for (PrimitiveRange& range : std::span(children.ranges).first(children.count)) {
-            if (range.count > SMALL_LEAF_SIZE && (!chosen || priority(*chosen) < priority(range)))
-                chosen = &range;
+            if (!makes_leaf(range) && (!chosen || priority(*chosen) < priority(range))) chosen = &range;
         }
         if (!chosen) break;
         const auto [left, right] = balanced ? split_median(refs, *chosen) : split_sah(refs, *chosen);

@@ -13,9 +13,10 @@
 
 namespace candela {
 
-// The most primitives of a leaf. A range this small never becomes a node: of trees with up to 2, 3 and 4,
-// those with 3 are as fast as any on software Vulkan and take a quarter fewer nodes than those with 2.
-inline constexpr uint32_t BVH_LEAF_SIZE = 3;
+// The most primitives of a leaf. A range this small never becomes a node. One primitive may be two triangles;
+// of leaves with up to 1, 2 and 4 of those, 1 was the fastest on software Vulkan for the Cornell box and as
+// fast as any for meshes, and traversal tests one primitive a turn.
+inline constexpr uint32_t BVH_LEAF_SIZE = 1;
 
 struct BvhOptions {
     unsigned threads = 0;  // 0: as many as the hardware has.

@@ -61,7 +61,7 @@ Json describe(const InfoOptions& options, const Scene& scene) {
         cameras.push_back(camera.name);
     const PixelRect& crop = settings.crop;
     return {{"scene", options.scene},
-            {"primitives", gpu.primitive_count},
+            {"primitives", gpu.id_count},
             {"lights", gpu.light_count},
             {"environment", environment_of(gpu)},
             {"materials", scene.materials.size()},

@@ -44,7 +44,7 @@ void print_details(const vk::Device& device, const GpuScene& scene, const Render
     const vk::DeviceInfo& info = device.info();
     std::fprintf(stderr, "device: %s (%s), Vulkan %s, driver %s\n", info.name.c_str(),
                  vk::to_string(info.type), vk::version_text(info.api_version).c_str(), info.driver.c_str());
-    std::fprintf(stderr, "scene: %u primitives, %u lights, loaded in %s s\n", scene.primitive_count,
+    std::fprintf(stderr, "scene: %u primitives, %u lights, loaded in %s s\n", scene.id_count,
                  scene.light_count, fixed(record.load_seconds, 3).c_str());
     std::fprintf(stderr, "BVH: depth %u, SAH cost %s, built in %s s\n", scene.bvh_depth,
                  fixed(double(scene.bvh_sah_cost), 2).c_str(), fixed(scene.bvh_seconds, 3).c_str());
@@ -135,7 +135,7 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
     record.settings = options.settings(scene);
 
     const GpuScene gpu_scene = build_gpu_scene(scene);
-    record.primitives = gpu_scene.primitive_count;
+    record.primitives = gpu_scene.id_count;
     record.lights = gpu_scene.light_count;
     record.bvh_seconds = gpu_scene.bvh_seconds;
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/color.h"
+#include "render/triangle_pairs.h"
 
 namespace candela {
 namespace {
@@ -28,16 +29,20 @@ class Flattener {
     FlatScene take() { return std::move(flat_); }
 
   private:
+    // The triangles of an emitter are lights of their own, so that they stay alone.
     void add(const Shape& shape, const TriangleMesh& mesh) {
-        for (const uvec3 t : mesh.triangles) {
-            const vec3 a = mesh.positions[t.x];
-            const vec3 b = mesh.positions[t.y];
-            const vec3 c = mesh.positions[t.z];
-            add_primitive(shape, PRIMITIVE_TRIANGLE, a, b, c,
-                          add_flat_light(shape, LIGHT_TRIANGLE, a, b - a, c - a));
-            if (!mesh.normals.empty()) {
-                flat_.normals.back() = pack_normals(mesh.normals[t.x], mesh.normals[t.y], mesh.normals[t.z]);
-            }
+        const uint first_id = flat_.id_count;
+        flat_.id_count += uint(mesh.triangles.size());
+        const bool smooth = !mesh.normals.empty();
+        const std::vector<vec3>& p = mesh.positions;
+        const std::vector<vec3>& n = mesh.normals;
+        for (const auto& [v, first, second] :
+             shape.emission ? single_triangles(mesh) : pair_triangles(mesh)) {
+            const uint light =
+                add_flat_light(shape, LIGHT_TRIANGLE, p[v.x], p[v.y] - p[v.x], p[v.z] - p[v.x]);
+            add_primitive({PRIMITIVE_TRIANGLES, p[v.x], p[v.y], p[v.z], p[v.w]},
+                          {first_id + uvec2(first, second), shape.material, smooth, light});
+            if (smooth) flat_.normals.back() = pack_normals(n[v.x], n[v.y], n[v.z], n[v.w]);
         }
     }
 
@@ -49,31 +54,39 @@ class Flattener {
         const vec3 e2 = c[3] - c[0];
         const vec3 diagonal = c[2] - c[0];
         const float rounding = 4e-7f * (length(c[0]) + length(e1) + length(e2));
-        uint lights[2];
-        if (length(c[0] + e1 + e2 - c[2]) <= rounding) {
-            lights[0] = lights[1] = add_flat_light(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2);
+        const uint id = flat_.id_count;
+        flat_.id_count += 2;
+        if (!shape.emission || length(c[0] + e1 + e2 - c[2]) <= rounding) {
+            const uint light = add_flat_light(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2);
+            add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[3]},
+                          {uvec2(id, id + 1), shape.material, 0, light});
         } else {
-            lights[0] = add_flat_light(shape, LIGHT_TRIANGLE, c[0], e1, diagonal);
-            lights[1] = add_flat_light(shape, LIGHT_TRIANGLE, c[0], diagonal, e2);
+            uint light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], e1, diagonal);
+            add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[2]},
+                          {uvec2(id), shape.material, 0, light});
+            light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], diagonal, e2);
+            add_primitive({PRIMITIVE_TRIANGLES, c[0], c[2], c[3], c[3]},
+                          {uvec2(id + 1), shape.material, 0, light});
         }
-        add_primitive(shape, PRIMITIVE_TRIANGLE, c[0], c[1], c[2], lights[0]);
-        add_primitive(shape, PRIMITIVE_TRIANGLE, c[0], c[2], c[3], lights[1]);
     }
 
     void add(const Shape& shape, const Sphere& sphere) {
         const vec3 radius(sphere.radius, 0.0f, 0.0f);
         const double area = 4.0 * double(PI) * sphere.radius * sphere.radius;
         const uint light = add_light(shape, LIGHT_SPHERE, sphere.center, radius, vec3(0.0f), area);
-        add_primitive(shape, PRIMITIVE_SPHERE, sphere.center, radius, vec3(0.0f), light);
+        add_primitive({PRIMITIVE_SPHERE, sphere.center, radius, vec3(0.0f), vec3(0.0f)},
+                      {uvec2(flat_.id_count++), shape.material, 0, light});
     }
 
     void add(const Shape& shape, const Disk& disk) {
         const uint light = add_flat_light(shape, LIGHT_DISK, disk.center, disk.e1, disk.e2);
-        add_primitive(shape, PRIMITIVE_DISK, disk.center, disk.e1, disk.e2, light);
+        add_primitive({PRIMITIVE_DISK, disk.center, disk.e1, disk.e2, vec3(0.0f)},
+                      {uvec2(flat_.id_count++), shape.material, 0, light});
     }
 
-    void add_primitive(const Shape& shape, uint kind, vec3 a, vec3 b, vec3 c, uint light) {
-        flat_.primitives.push_back({kind, a, b, c, uint(flat_.primitives.size()), shape.material, light});
+    void add_primitive(const Primitive& primitive, const Surface& surface) {
+        flat_.primitives.push_back(primitive);
+        flat_.surfaces.push_back(surface);
         if (has_normals_) flat_.normals.push_back({});
     }
 
@@ -128,6 +141,7 @@ Box bounds(const Primitive& p) {
             box.extend(p.a);
             box.extend(p.b);
             box.extend(p.c);
+            box.extend(p.d);
     }
     return box;
 }

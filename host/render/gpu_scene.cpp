@@ -1,6 +1,7 @@
 // See gpu_scene.h.
 #include "render/gpu_scene.h"
 
+#include <algorithm>
 #include <chrono>
 #include <numeric>
 
@@ -55,11 +56,17 @@ Bvh build_bvh_over(const std::vector<Primitive>& primitives) {
 }
 
 // Adds the environment to the lights, with the power that falls onto the scene: that on a disk as wide as the
-// sphere around its box. Ref: Pharr, Jakob and Humphreys 2023, Physically Based Rendering, section 12.5.
+// sphere around its box; but with no more than all other lights together, so that they have half of the
+// samples at least: a large floor takes much light from the sky and yet is no brighter for it, and half too
+// few samples cost less than ten times too few. Ref: Pharr, Jakob and Humphreys 2023, Physically Based
+// Rendering, section 12.5.
 void add_environment_light(FlatScene& flat, double irradiance, const Box& box) {
     const double radius = box.is_empty() ? 0.0 : 0.5 * length(glm::dvec3(box.extent()));
-    const double power = radius * radius * irradiance;
+    double power = radius * radius * irradiance;
     if (power == 0.0) return;
+    if (!flat.powers.empty()) {
+        power = std::min(power, std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0));
+    }
     flat.lights.push_back({LIGHT_ENVIRONMENT, vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f), 0u, 0.0f});
     flat.powers.push_back(power);
 }
@@ -81,6 +88,7 @@ GpuScene build_gpu_scene(const Scene& scene) {
     FlatScene flat = flatten(scene);
     GpuScene gpu;
     gpu.primitive_count = uint32_t(flat.primitives.size());
+    gpu.id_count = flat.id_count;
     gpu.has_normals = !flat.normals.empty();
 
     const auto start = std::chrono::steady_clock::now();
@@ -109,7 +117,10 @@ GpuScene build_gpu_scene(const Scene& scene) {
     assign_probabilities(flat);
     gpu.light_count = uint32_t(flat.lights.size());
 
-    gpu.table_starts.normals = 0;
+    gpu.table_starts.surfaces = 0;
+    for (const uint32_t i : bvh.order)
+        append(gpu.tables, pack(flat.surfaces[i]));
+    gpu.table_starts.normals = uint(gpu.tables.size());
     if (gpu.has_normals) {
         gpu.tables.reserve(flat.normals.size() * NORMALS_WORDS);
         for (const uint32_t i : bvh.order)

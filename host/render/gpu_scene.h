@@ -13,10 +13,12 @@ struct GpuScene {
     // Records as shared/*.h describe them, in words of uvec4.
     std::vector<uvec4> nodes;       // BVH nodes, the root first.
     std::vector<uvec4> primitives;  // In leaf order.
-    std::vector<uvec4> tables;  // One after the other, as TableStarts lists them; normals are in leaf order.
+    std::vector<uvec4>
+        tables;  // One after the other, as TableStarts lists them; surfaces and normals are in leaf order.
     TableStarts table_starts{};
 
-    uint32_t primitive_count = 0;
+    uint32_t primitive_count = 0;  // Two triangles may be one: see shared/primitive.h.
+    uint32_t id_count = 0;         // Triangles, spheres and disks.
     uint32_t light_count = 0;
     uvec2 environment_size{0};          // Texels.
     float environment_rotation = 0.0f;  // [rad]

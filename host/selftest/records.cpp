@@ -57,7 +57,8 @@ class Fields {
 struct Records {
     Parameters parameters;
     BvhNode node;
-    Primitive primitive;
+    Primitive triangles, disk;
+    Surface surface;
     std::array<uvec4, NORMALS_WORDS> normals;
     MaterialRecord material;
     Light light;
@@ -72,42 +73,45 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 106> words;
+    std::array<uint, 122> words;
 };
 
 // Where the tables begin if a word that belongs to nothing comes first, and each table has two records.
 constexpr TableStarts TABLES{
-    .normals = 1,
-    .materials = 1 + 2 * NORMALS_WORDS,
-    .lights = 1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS),
-    .light_alias = 1 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
-    .environment = 3 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
-    .environment_alias = 3 + 2 * (NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS + ENVIRONMENT_TEXEL_WORDS),
+    .surfaces = 1,
+    .normals = 1 + 2 * SURFACE_WORDS,
+    .materials = 1 + 2 * (SURFACE_WORDS + NORMALS_WORDS),
+    .lights = 1 + 2 * (SURFACE_WORDS + NORMALS_WORDS + MATERIAL_WORDS),
+    .light_alias = 1 + 2 * (SURFACE_WORDS + NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
+    .environment = 3 + 2 * (SURFACE_WORDS + NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
+    .environment_alias =
+        3 + 2 * (SURFACE_WORDS + NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS + ENVIRONMENT_TEXEL_WORDS),
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scale of a node must be
 // powers of two.
 Records filled(Fields& fields) {
     Records r{};
-    r.parameters = {.position = fields.f3(),
-                    .right = fields.f3(),
-                    .up = fields.f3(),
-                    .forward = fields.f3(),
-                    .full_size = fields.u2(),
-                    .crop = fields.u2(),
-                    .seed = fields.u(),
-                    .max_depth = fields.u(),
-                    .rr_depth = fields.u(),
-                    .light_count = fields.u(),
-                    .tables = {fields.keep(TABLES.normals), fields.keep(TABLES.materials),
-                               fields.keep(TABLES.lights), fields.keep(TABLES.light_alias),
-                               fields.keep(TABLES.environment), fields.keep(TABLES.environment_alias)},
-                    .environment_size = fields.u2(),
-                    .environment_turn = fields.f2(),
-                    .lens_x = fields.f3(),
-                    .lens_y = fields.f3(),
-                    .focal_distance = fields.f(),
-                    .blades = fields.u()};
+    r.parameters = {
+        .position = fields.f3(),
+        .right = fields.f3(),
+        .up = fields.f3(),
+        .forward = fields.f3(),
+        .full_size = fields.u2(),
+        .crop = fields.u2(),
+        .seed = fields.u(),
+        .max_depth = fields.u(),
+        .rr_depth = fields.u(),
+        .light_count = fields.u(),
+        .tables = {fields.keep(TABLES.surfaces), fields.keep(TABLES.normals), fields.keep(TABLES.materials),
+                   fields.keep(TABLES.lights), fields.keep(TABLES.light_alias),
+                   fields.keep(TABLES.environment), fields.keep(TABLES.environment_alias)},
+        .environment_size = fields.u2(),
+        .environment_turn = fields.f2(),
+        .lens_x = fields.f3(),
+        .lens_y = fields.f3(),
+        .focal_distance = fields.f(),
+        .blades = fields.u()};
     r.node.origin = fields.f3();
     r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);
     for (const int axis : {0, 1, 2})
@@ -115,14 +119,21 @@ Records filled(Fields& fields) {
     r.node.q_lo = fields.u3();
     r.node.q_hi = fields.u3();
     r.node.child = fields.u4();
-    r.primitive = {.kind = fields.keep(PRIMITIVE_DISK),
+    r.triangles = {.kind = fields.keep(PRIMITIVE_TRIANGLES),
                    .a = fields.f3(),
                    .b = fields.f3(),
                    .c = fields.f3(),
-                   .id = fields.u(),
-                   .material = fields.keep(0x2AAAAAA5u),
-                   .light = fields.u()};
-    r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1));
+                   .d = fields.f3()};
+    r.disk = {.kind = fields.keep(PRIMITIVE_DISK),
+              .a = fields.f3(),
+              .b = fields.f3(),
+              .c = fields.f3(),
+              .d = vec3(0)};
+    r.surface = {.id = fields.u2(),
+                 .material = fields.keep(0x2AAAAAA5u),
+                 .smooth_ = fields.keep(1u),
+                 .light = fields.u()};
+    r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), vec3(0, -1, 0));
     for (const int i : {0, 1, 2, 3})
         fields.keep(r.normals[0][i]);
     r.material = {.model = fields.u(), .base = fields.f3(), .specular = fields.f3(), .parameter = fields.f()};
@@ -152,8 +163,11 @@ void append_second(std::vector<uvec4>& out, const std::array<uvec4, N>& record) 
 GpuScene packed(const Records& r) {
     GpuScene scene;
     append_second(scene.nodes, pack(r.node));
-    append_second(scene.primitives, pack(r.primitive));
+    append_second(scene.primitives, pack(r.triangles));
+    const auto disk = pack(r.disk);
+    scene.primitives.insert(scene.primitives.end(), disk.begin(), disk.end());
     scene.tables.emplace_back(0xFFFFFFFFu);
+    append_second(scene.tables, pack(r.surface));
     append_second(scene.tables, r.normals);
     append_second(scene.tables, pack(r.material));
     append_second(scene.tables, pack(r.light));

@@ -19,6 +19,28 @@ bool is_finite(vec3 v) {
     return all(notEqual(floatBitsToUint(v) & 0x7F800000u, uvec3(0x7F800000u)));
 }
 
+// The signs of numbers that are not NaN; 0 has none. Comparing the bits of a float takes one instruction where floats,
+// for the sake of NaN, take three on software Vulkan.
+bool all_positive(vec4 v) {
+    ivec4 bits = floatBitsToInt(v);
+    return min(min(bits.x, bits.y), min(bits.z, bits.w)) > 0;
+}
+
+bool all_negative(vec4 v) {
+    uvec4 bits = floatBitsToUint(v);
+    return min(min(bits.x, bits.y), min(bits.z, bits.w)) > 0x80000000u;
+}
+
+bool any_positive(vec3 v) {
+    ivec3 bits = floatBitsToInt(v);
+    return max(bits.x, max(bits.y, bits.z)) > 0;
+}
+
+bool any_negative(vec3 v) {
+    uvec3 bits = floatBitsToUint(v);
+    return max(bits.x, max(bits.y, bits.z)) > 0x80000000u;
+}
+
 // (cos x, sin x) for |x| <= pi/4, within 2^-23: Taylor's series, since the built-in functions may be as coarse as 2^-11
 // and differ between drivers.
 vec2 cos_sin_octant(float x) {

@@ -8,6 +8,13 @@ struct Ray {
     vec3 d;
 };
 
+// Reciprocals of a direction's components. One that is nearly 0 is replaced by a tiny one: what the ray would never
+// reach is then very far away on either side, and no 0 * infinity arises.
+vec3 reciprocals(vec3 d) {
+    const float tiny = 1e-18;
+    return 1.0 / mix(d, vec3(tiny), lessThan(abs(d), vec3(tiny)));
+}
+
 // Moves p, computed on a surface with the unit normal n, to the side that n points to: by a count of representable
 // numbers, so that the step grows with the rounding error of p; near 0, where that error is not relative, by a
 // fixed step. Ref: Waechter and Binder 2019, A Fast and Robust Method for Avoiding Self-Intersection.

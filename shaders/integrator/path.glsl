@@ -17,7 +17,7 @@ layout(constant_id = CONSTANT_ESTIMATOR) const uint ESTIMATOR = ESTIMATOR_MIS;
 // Survival is never more likely than this, so that every path ends.
 const float RR_MAX_SURVIVAL = 0.95;
 
-// A path on its way, and what it has gathered.
+// A path on its way.
 struct Path {
     Ray ray;          // The next segment.
     vec3 beta;        // Throughput: what the radiance along `ray` counts in L.
@@ -26,18 +26,35 @@ struct Path {
     bool delta;       // Light samples could not have found `ray`: the camera sent it, or scattering was ideal.
     vec3 absorption;  // Of the medium around `ray` [1/m].
     uint depth;       // Scattering vertices so far.
+};
 
+// What a path has gathered.
+struct Estimate {
     vec3 L;        // Radiance along the camera ray [W/(m^2 sr)].
     bool visible;  // The camera ray met a surface, or the sky that it may see.
     vec3 albedo;   // Of the surface that it met,
     vec3 normal;   // and its shading normal, world space; both 0 if it met none.
-    uint rays;     // Rays traced.
-    bool cut;      // Ended by DEPTH_SAFETY_LIMIT.
+    bool cut;      // The path ended by DEPTH_SAFETY_LIMIT.
 };
 
-// The path that begins with a camera ray.
+// A ray towards a light sample, which may meet something on the way.
+struct ShadowRay {
+    Ray ray;
+    float t_max;  // In lengths of ray.d; 0 if there is none to trace.
+    vec3 Ld;      // What L gains if nothing is in the way.
+};
+
+// The path that begins with a camera ray, and an estimate of nothing so far.
 Path path_begin(Ray ray) {
-    return Path(ray, vec3(1.0), 1.0, 0.0, true, vec3(0.0), 0u, vec3(0.0), false, vec3(0.0), vec3(0.0), 0u, false);
+    return Path(ray, vec3(1.0), 1.0, 0.0, true, vec3(0.0), 0u);
+}
+
+Estimate estimate_begin() {
+    return Estimate(vec3(0.0), false, vec3(0.0), vec3(0.0), false);
+}
+
+ShadowRay shadow_none() {
+    return ShadowRay(Ray(vec3(0.0), vec3(0.0)), 0.0, vec3(0.0));
 }
 
 // Weight of the light that the path met, and that a light sample finds with the density pdf_light [1/sr].
@@ -48,17 +65,17 @@ float emission_weight(Path path, float pdf_light) {
 }
 
 // The path's ray left the scene: adds the sky.
-void add_environment(inout Path path) {
+void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u && ENVIRONMENT != ENVIRONMENT_VISIBLE) return;
     EnvironmentTexel texel = environment_texel(path.ray.d);
-    path.L += emission_weight(path, texel.pdf) * path.beta * texel.radiance;
-    if (path.depth == 0u) path.visible = true;
+    estimate.L += emission_weight(path, texel.pdf) * path.beta * texel.radiance;
+    if (path.depth == 0u) estimate.visible = true;
 }
 
 // The path's ray met light l at s, `t` metres away: adds what it emits.
-void add_emission(inout Path path, Light l, Interaction s, float t) {
+void add_emission(Path path, inout Estimate estimate, Light l, Interaction s, float t) {
     float pdf_light = light_pdf_li(l, path.ray.o, square(t), dot(s.wo, s.n));
-    path.L += emission_weight(path, pdf_light) * path.beta * area_light_le(l, s.front);
+    estimate.L += emission_weight(path, pdf_light) * path.beta * area_light_le(l, s.front);
 }
 
 // Share of the light that the medium around the path's ray lets through over that distance [m], which may be infinite.
@@ -68,19 +85,18 @@ vec3 path_transmittance(Path path, float distance) {
     return exp(-min(distance, FLOAT_MAX) * path.absorption);
 }
 
-// Radiance that a point on a light sends through s to the path's beginning, divided by its density, weighted.
-vec3 direct_light(inout Path path, Interaction s, Frame frame, vec3 wo, MaterialRecord material, uint uc, uvec2 u) {
+// The ray from s towards a point on a light, and the radiance that this point sends through s to the path's beginning,
+// divided by its density, weighted.
+ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, MaterialRecord material, uint uc, uvec2 u) {
     vec3 from = interaction_spawn_origin(s, true);
     LightSample light = light_sample_li(from, uc, u);
     vec3 wi = frame_to_local(frame, light.wi);
     vec3 Ld = path.beta * bsdf_f(material, wo, wi) * abs(wi.z) * light.Li;
     // The light is in the medium through which the path came to s.
     Ld *= path_transmittance(path, light.t_max * length(light.shadow));
-    if (light.pdf == 0.0 || dot(light.wi, s.n) <= 0.0 || Ld == vec3(0.0)) return vec3(0.0);
-    ++path.rays;
-    if (bvh_occluded(Ray(from, light.shadow), light.t_max)) return vec3(0.0);
+    bool dark = light.pdf == 0.0 || dot(light.wi, s.n) <= 0.0 || Ld == vec3(0.0);
     float weight = ESTIMATOR == ESTIMATOR_MIS ? power_heuristic(light.pdf, bsdf_pdf(material, wo, wi)) : 1.0;
-    return weight * Ld / light.pdf;
+    return ShadowRay(Ray(from, light.shadow), dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
 }
 
 // Sends the path on in a direction that its last surface was sampled for; returns whether it goes on. `material` is
@@ -100,32 +116,32 @@ bool path_scatter(inout Path path, Interaction s, Frame frame, MaterialRecord ma
     return true;
 }
 
-// Takes the path to its next vertex and scatters it there; returns whether it goes on.
-bool path_step(inout Path path, Sampler random, Parameters parameters) {
-    // Find the nearest surface.
-    Hit hit = bvh_intersect(path.ray);
-    ++path.rays;
+// Scatters the path where its ray has met something, or nothing; returns whether it goes on. `shadow` is the ray that
+// is to be traced for direct light there.
+bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, Hit hit, Sampler random,
+               Parameters parameters) {
+    shadow = shadow_none();
     if (hit.t == FLOAT_MAX) {
-        if (ENVIRONMENT != ENVIRONMENT_NONE) add_environment(path);
+        if (ENVIRONMENT != ENVIRONMENT_NONE) add_environment(path, estimate);
         return false;
     }
     Interaction s = interaction_at(path.ray, hit);
     MaterialRecord material = scene_material(s.material);
     if (path.depth == 0u) {
-        path.visible = true;
-        path.albedo = bsdf_albedo(material);
-        path.normal = s.ns;
+        estimate.visible = true;
+        estimate.albedo = bsdf_albedo(material);
+        estimate.normal = s.ns;
     }
 
     // Lose what the medium on the way absorbs.
     path.beta *= path_transmittance(path, hit.t);
 
     // Add what the surface emits; light samples of the vertex before may already account for a part.
-    if (s.light != NO_LIGHT) add_emission(path, scene_light(s.light), s, hit.t);
+    if (s.light != NO_LIGHT) add_emission(path, estimate, scene_light(s.light), s, hit.t);
 
     // End at the last scattering vertex.
     if (path.depth == parameters.max_depth) {
-        path.cut = path.depth == DEPTH_SAFETY_LIMIT;
+        estimate.cut = path.depth == DEPTH_SAFETY_LIMIT;
         return false;
     }
     Frame frame = frame_from_z(s.ns);
@@ -136,7 +152,7 @@ bool path_step(inout Path path, Sampler random, Parameters parameters) {
 
     // Add direct light.
     if (ESTIMATOR != ESTIMATOR_BSDF) {
-        path.L += direct_light(path, s, frame, wo, seen, choice.x, sampler_pair(random, pair + PAIR_LIGHT));
+        shadow = direct_light(path, s, frame, wo, seen, choice.x, sampler_pair(random, pair + PAIR_LIGHT));
     }
 
     // Scatter.

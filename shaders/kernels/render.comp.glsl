@@ -48,48 +48,76 @@ void main() {
         normal_sum = layer_load(at, LAYER_NORMAL).rgb;
         normal_compensation = layer_load(at, LAYER_NORMAL_COMPENSATION).rgb;
     }
+    uint first = uint(compensation.a);
+    if (first >= tile.target_samples) return;
 
-    // One vertex per turn: a lane whose path has ended begins its next sample while its neighbours go on.
+    // One vertex per turn: a lane whose path has ended begins its next sample while its neighbours go on. The shadow
+    // ray of a vertex and the path's next ray are traced one after the other, without waiting for the neighbours in
+    // between; if the path has ended, the next ray is the next sample's.
     //
-    // A path is folded in the turn after its last vertex. Lavapipe ends all loops of an invocation after 65 535 turns
-    // in sum, whatever their conditions say, so that the last turn may have gone wrong: such a path is dropped here,
-    // and traced again by the next dispatch.
+    // There is one place for everything that a sample goes through: the compiler may round differently in another, and
+    // a sample's bits must not depend on where in a dispatch it comes.
+    //
+    // Lavapipe ends all loops of an invocation after 65 535 turns in sum, whatever their conditions say. What is not
+    // folded then is dropped, and traced again by the next dispatch.
+    uint n = first;        // Samples folded,
+    uint started = first;  // and begun.
     uint rays = 0u;
-    uint n = uint(compensation.a);
     Sampler random;
     Path path;
+    Estimate estimate;
+    ShadowRay shadow = shadow_none();
     bool alive = false;  // The path goes on.
-    bool ended = false;  // The path waits to be folded.
-    while (true) {
+    bool ended = false;  // The sample's path has ended; its shadow ray may still be on its way.
+    while (n < tile.target_samples) {
+        if (!alive && started < tile.target_samples) {
+            random = sampler_make(pixel, started, parameters.seed);
+            vec2 film = vec2(pixel) + unit_float(sampler_pair(random, PAIR_PIXEL));
+            path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(random, PAIR_LENS))));
+            alive = true;
+            ++started;
+        }
+
+        bool shadowed = shadow.t_max > 0.0;
+        Ray next = path.ray;
+        if (shadowed) next = shadow.ray;
+        Traversal traversal = bvh_begin(next, shadowed ? shadow.t_max : FLOAT_MAX, shadowed);
+        if (!shadowed && !alive) traversal.reference = NO_REFERENCE;
+        while (!bvh_ended(traversal)) {
+            bvh_advance(traversal);
+            if (traversal.any_hit && bvh_ended(traversal)) {
+                if (traversal.hit.t == shadow.t_max) estimate.L += shadow.Ld;
+                if (alive) traversal = bvh_begin(path.ray, FLOAT_MAX, false);
+            }
+        }
+        if (!bvh_ended(traversal)) break;
+
         if (ended) {
             // A sample whose value or square is not finite adds zero and is counted.
-            if (!is_finite(path.L * path.L)) {
+            if (!is_finite(estimate.L * estimate.L)) {
                 atomicAdd(counters[COUNTER_NONFINITE], 1u);
-                path.L = vec3(0.0);
+                estimate.L = vec3(0.0);
             }
-            if (path.cut) atomicAdd(counters[COUNTER_DEPTH_LIMIT], 1u);
-            rays += path.rays;
-            compensated_add(sum.rgb, compensation.rgb, path.L);
-            compensated_add(square_sum, square_compensation, path.L * path.L);
-            sum.a += path.visible ? 1.0 : 0.0;
+            if (estimate.cut) atomicAdd(counters[COUNTER_DEPTH_LIMIT], 1u);
+            compensated_add(sum.rgb, compensation.rgb, estimate.L);
+            compensated_add(square_sum, square_compensation, estimate.L * estimate.L);
+            sum.a += estimate.visible ? 1.0 : 0.0;
             if (HAS_AOVS) {
-                compensated_add(albedo_sum, albedo_compensation, path.albedo);
-                compensated_add(normal_sum, normal_compensation, path.normal);
+                compensated_add(albedo_sum, albedo_compensation, estimate.albedo);
+                compensated_add(normal_sum, normal_compensation, estimate.normal);
             }
             ++n;
         }
-        if (n >= tile.target_samples) break;
-        if (!alive) {
-            random = sampler_make(pixel, n, parameters.seed);
-            vec2 film = vec2(pixel) + unit_float(sampler_pair(random, PAIR_PIXEL));
-            path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(random, PAIR_LENS))));
+        if (alive) {
+            if (path.depth == 0u) estimate = estimate_begin();
+            alive = path_step(path, estimate, shadow, traversal.hit, random, parameters);
+            rays += shadow.t_max > 0.0 ? 2u : 1u;
+            ended = !alive;
         }
-        alive = path_step(path, random, parameters);
-        ended = !alive;
     }
     count_rays(rays);
     if (n < tile.target_samples) atomicAdd(counters[COUNTER_UNFINISHED], 1u);
-    atomicAdd(counters[COUNTER_SAMPLES], n - uint(compensation.a));
+    atomicAdd(counters[COUNTER_SAMPLES], n - first);
     compensation.a = float(n);
 
     layer_store(at, LAYER_L, sum);

@@ -11,14 +11,14 @@
 #include "probes/items.glsl"
 #include "scene/traversal.glsl"
 
-// A random vertex of a random triangle, or a random point of one of its edges.
+// A random vertex of a random pair of triangles, or a random point of one of its edges.
 vec3 feature_point(uvec3 random) {
     uint index, rest;
     umulExtended(random.x, primitive_count, index, rest);
     Primitive t = scene_primitive(index);
-    uint corner = random.y % 3u;
-    vec3 from = corner == 0u ? t.a : corner == 1u ? t.b : t.c;
-    vec3 to = corner == 0u ? t.b : corner == 1u ? t.c : t.a;
+    uint corner = random.y % 5u;  // 4 is the common edge.
+    vec3 from = corner == 0u ? t.a : corner == 1u ? t.b : corner == 2u ? t.c : corner == 3u ? t.d : t.a;
+    vec3 to = corner == 0u ? t.b : corner == 1u ? t.c : corner == 2u ? t.d : corner == 3u ? t.a : t.c;
     return (random.y & 4096u) == 0u ? from : mix(from, to, unit_float(random.z));
 }
 

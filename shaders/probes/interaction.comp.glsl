@@ -25,5 +25,5 @@ void main() {
     put(next.o);
     put(next.d);
     put(bvh_intersect(next).t);
-    put(hit.id);
+    put(hit_id(hit));
 }

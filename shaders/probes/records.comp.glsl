@@ -18,6 +18,7 @@ void put_parameters(Parameters p) {
     put(p.max_depth);
     put(p.rr_depth);
     put(p.light_count);
+    put(p.tables.surfaces);
     put(p.tables.normals);
     put(p.tables.materials);
     put(p.tables.lights);
@@ -46,9 +47,14 @@ void put_primitive(Primitive p) {
     put(p.a);
     put(p.b);
     put(p.c);
-    put(p.id);
-    put(p.material);
-    put(p.light);
+    if (p.kind == PRIMITIVE_TRIANGLES) put(p.d);
+}
+
+void put_surface(Surface s) {
+    put(s.id);
+    put(s.material);
+    put(s.smooth_);
+    put(s.light);
 }
 
 void put_material(MaterialRecord m) {
@@ -83,6 +89,8 @@ void main() {
     put_parameters(scene_parameters());
     put_node(1u);
     put_primitive(scene_primitive(1u));
+    put_primitive(scene_primitive(2u));
+    put_surface(scene_surface(1u));
     put(scene_normals(1u));
     put_material(scene_material(1u));
     put_light(scene_light(1u));

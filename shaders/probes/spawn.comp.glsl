@@ -7,18 +7,19 @@
 #define RESULT_WORDS 7u
 #include "probes/items.glsl"
 #include "scene/triangle.glsl"
-#include "shared/primitive.h"
 
 void main() {
     if (past_end()) return;
-    Primitive t = primitive_unpack(item(0u), item(1u), item(2u));
+    vec3 v0 = item_floats(0u).xyz;
+    vec3 v1 = item_floats(1u).xyz;
+    vec3 v2 = item_floats(2u).xyz;
     vec2 b = vec2(item_floats(0u).w, item_floats(1u).w);
-    vec3 p = (1.0 - b.x - b.y) * t.a + b.x * t.b + b.y * t.c;
-    vec3 n = normalize(cross(t.b - t.a, t.c - t.a));
+    vec3 p = (1.0 - b.x - b.y) * v0 + b.x * v1 + b.y * v2;
+    vec3 n = normalize(cross(v1 - v0, v2 - v0));
     vec3 wi = item_floats(3u).xyz;
     if (dot(wi, n) < 0.0) n = -n;
     Ray ray = Ray(offset_origin(p, n), wi);
-    put(triangle_intersect(ray, ray_shear(ray.d), t.a, t.b, t.c).x);
+    put(triangles_intersect(ray, ray_shear(ray.d), v0, v1, v2, v2).x);
     put(ray.o);
     put(n);
 }

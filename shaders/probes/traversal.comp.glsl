@@ -10,14 +10,8 @@
 
 Hit brute_force(Ray ray) {
     RayShear shear = ray_shear(ray.d);
-    Hit hit = Hit(FLOAT_MAX, 0u, 0u, vec2(0.0));
-    for (uint i = 0u; i < primitive_count; ++i) {
-        Primitive primitive = scene_primitive(i);
-        vec3 tb = primitive_intersect(ray, shear, primitive);
-        if (tb.x > 0.0 && (tb.x < hit.t || (tb.x == hit.t && primitive.id < hit.id))) {
-            hit = Hit(tb.x, i, primitive.id, tb.yz);
-        }
-    }
+    Hit hit = Hit(FLOAT_MAX, 0u, vec2(0.0));
+    for (uint i = 0u; i < primitive_count; ++i) primitive_intersect(ray, shear, scene_primitive(i), i, hit);
     return hit;
 }
 
@@ -26,11 +20,11 @@ void main() {
     Ray ray = Ray(item_floats(0u).xyz, item_floats(1u).xyz);
     Hit hit = bvh_intersect(ray);
     put(hit.t);
-    put(hit.id);
+    put(hit_id(hit));
     put(hit.b);
     Hit reference = brute_force(ray);
     put(reference.t);
-    put(reference.id);
+    put(hit_id(reference));
     put(uint(bvh_occluded(ray, hit.t)));
     put(uint(bvh_occluded(ray, hit.t == FLOAT_MAX ? FLOAT_MAX : uintBitsToFloat(floatBitsToUint(hit.t) + 1u))));
     put(uint(bvh_occluded(ray, FLOAT_MAX)));

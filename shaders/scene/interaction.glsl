@@ -21,10 +21,10 @@ struct Interaction {
     uint light;  // Light that the surface belongs to, or NO_LIGHT.
 };
 
-// The shading normal of the triangle at that position in leaf order, interpolated, on the side of n; n if it has none.
-vec3 shading_normal(uint primitive, vec2 b, vec3 n) {
-    uvec4 normals = scene_normals(primitive);
-    if (normals.w == 0u) return n;
+// The shading normal of the triangle at that place, interpolated, on the side of n.
+vec3 shading_normal(uint place, vec2 b, vec3 n) {
+    uvec4 normals = scene_normals(place / 2u);
+    if ((place & 1u) != 0u) normals.yz = normals.zw;
     vec3 ns = (1.0 - b.x - b.y) * octahedral_unpack(normals.x) + b.x * octahedral_unpack(normals.y) +
               b.y * octahedral_unpack(normals.z);
     float length_squared = dot(ns, ns);
@@ -34,7 +34,8 @@ vec3 shading_normal(uint primitive, vec2 b, vec3 n) {
 }
 
 Interaction interaction_at(Ray ray, Hit hit) {
-    Primitive primitive = scene_primitive(hit.primitive);
+    Primitive primitive = scene_primitive(hit.place / 2u);
+    Surface surface = scene_surface(hit.place / 2u);
     vec3 a = primitive.a;
     Interaction s;
     s.p_error = 0.0;
@@ -46,18 +47,22 @@ Interaction interaction_at(Ray ray, Hit hit) {
         s.n = normalize(cross(primitive.b, primitive.c));
         s.p = a + hit.b.x * primitive.b + hit.b.y * primitive.c;
     } else {
-        s.n = normalize(cross(primitive.b - a, primitive.c - a));
-        s.p = (1.0 - hit.b.x - hit.b.y) * a + hit.b.x * primitive.b + hit.b.y * primitive.c;
+        bool second = (hit.place & 1u) != 0u;
+        vec3 b = second ? primitive.c : primitive.b;
+        vec3 c = second ? primitive.d : primitive.c;
+        s.n = normalize(cross(b - a, c - a));
+        s.p = (1.0 - hit.b.x - hit.b.y) * a + hit.b.x * b + hit.b.y * c;
     }
-    s.ns = HAS_NORMALS ? shading_normal(hit.primitive, hit.b, s.n) : s.n;
+    s.ns = s.n;
+    if (HAS_NORMALS && surface.smooth_ != 0u) s.ns = shading_normal(hit.place, hit.b, s.n);
     s.wo = -normalize(ray.d);
     s.front = dot(s.wo, s.n) >= 0.0;
     if (!s.front) {
         s.n = -s.n;
         s.ns = -s.ns;
     }
-    s.material = primitive.material;
-    s.light = primitive.light;
+    s.material = surface.material;
+    s.light = surface.light;
     return s;
 }
 

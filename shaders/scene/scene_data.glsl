@@ -48,7 +48,12 @@ Primitive scene_primitive(uint i) {
     return primitive_unpack(FETCH(primitives, i), FETCH(primitives, i + 1u), FETCH(primitives, i + 2u));
 }
 
-// Shading normals of the primitive at that position in leaf order; .w is 0 unless it is a triangle that has them.
+// Surface of the primitive at that position in leaf order.
+Surface scene_surface(uint i) {
+    return surface_unpack(FETCH(tables, scene_parameters().tables.surfaces + i * SURFACE_WORDS));
+}
+
+// Shading normals of the triangles at that position in leaf order, at each vertex; zeros unless they are smooth.
 uvec4 scene_normals(uint i) {
     return FETCH(tables, scene_parameters().tables.normals + i * NORMALS_WORDS);
 }

@@ -6,16 +6,7 @@
 #include "scene/primitive.glsl"
 #include "scene/scene_data.glsl"
 
-// The nearest primitive along a ray. Among equally near ones the least id wins, whatever the order of visits.
-struct Hit {
-    float t;        // In lengths of ray.d.
-    uint primitive;  // Position in leaf order.
-    uint id;
-    vec2 b;  // Surface coordinates: see primitive_intersect.
-};
-
-// What a ray needs once for all boxes. A component of d that is nearly 0 is replaced by a tiny one: its slabs are
-// then met very far away on either side, and no 0 * infinity arises.
+// What a ray needs once for all boxes.
 struct RaySlabs {
     vec3 o;
     vec3 inv_d;
@@ -23,9 +14,8 @@ struct RaySlabs {
 };
 
 RaySlabs ray_slabs(Ray ray) {
-    const float tiny = 1e-18;
-    vec3 d = mix(ray.d, vec3(tiny), lessThan(abs(ray.d), vec3(tiny)));
-    return RaySlabs(ray.o, 1.0 / d, lessThan(d, vec3(0.0)));
+    vec3 inv_d = reciprocals(ray.d);
+    return RaySlabs(ray.o, inv_d, lessThan(inv_d, vec3(0.0)));
 }
 
 // The four bytes of a word as floats.
@@ -47,7 +37,7 @@ const uint NODE_MISS = 0x7F7FFFFCu;
 //
 // Conservative: both ends of every slab are moved outwards by 2^-20 of the largest number that took part in the
 // sum, which covers the roundings of the difference, the reciprocal (2.5 ulp in Vulkan) and the products, as well
-// as those of triangle_intersect's t. So a triangle is never culled by a box that contains it.
+// as those of the bounds in triangles_intersect. So a triangle is never culled by a box that contains it.
 // Ref: Ize 2013, Robust BVH Ray Traversal, for the problem; the bound is our own, for quantised boxes.
 uvec4 node_intersect(BvhNode node, RaySlabs ray, float t_max) {
     vec3 scale = node.scale * ray.inv_d;
@@ -115,46 +105,78 @@ uint pending_next(inout Pending pending, inout uint top) {
     return reference;
 }
 
-// The nearest hit with t in (0, t_max), or, if `any_hit`, some hit; Hit::t is t_max where there is none.
-Hit bvh_traverse(Ray ray, float t_max, const bool any_hit) {
-    RaySlabs slabs = ray_slabs(ray);
-    RayShear shear = ray_shear(ray.d);
-    Hit hit = Hit(t_max, 0u, 0u, vec2(0.0));
-    uint top = 0u;
-    Pending pending = Pending(0u, 0u, 0u);
-    uint reference = 0u;  // The root.
-    while (true) {
-        // Go down to the next leaf.
-        while ((reference & BVH_LEAF_BIT) == 0u) {
-            if (pending.count > 0u) stack[top++] = pending_pack(pending);
-            pending = pending_children(reference, node_intersect(scene_node(reference), slabs, hit.t));
-            reference = pending_next(pending, top);
-        }
-        if (reference == NO_REFERENCE) return hit;
+// A ray on its way through the tree.
+struct Traversal {
+    Ray ray;
+    RaySlabs slabs;
+    RayShear shear;
+    bool any_hit;     // The first hit is the end.
+    Hit hit;          // The nearest so far; t is t_max where there is none.
+    uint reference;   // To be visited next; NO_REFERENCE at the end.
+    Pending pending;  // Siblings of `reference`,
+    uint top;         // and how much of the stack is below them.
+};
 
-        // Test its primitives.
-        uint first = reference & BVH_FIRST_MASK;
-        uint end = first + ((reference >> BVH_COUNT_SHIFT) & BVH_COUNT_MASK);
-        for (uint i = first; i < end; ++i) {
-            Primitive primitive = scene_primitive(i);
-            vec3 tb = primitive_intersect(ray, shear, primitive);
-            if (tb.x > 0.0 && (tb.x < hit.t || (tb.x == hit.t && primitive.id < hit.id))) {
-                hit = Hit(tb.x, i, primitive.id, tb.yz);
-                if (any_hit) return hit;
-            }
-        }
-        reference = pending_next(pending, top);
+// Before the root, looking for hits with t in (0, t_max).
+Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
+    Pending nothing = Pending(0u, 0u, 0u);
+    return Traversal(ray, ray_slabs(ray), ray_shear(ray.d), any_hit, Hit(t_max, 0u, vec2(0.0)), 0u, nothing, 0u);
+}
+
+bool bvh_ended(Traversal t) {
+    return t.reference == NO_REFERENCE;
+}
+
+// So many nodes a ray may visit before those that have come to a leaf go on. Where lanes go together and none skips
+// what others do, as on software Vulkan, fewer would mean more tests of leaves for few rays, and more would mean that
+// most rays wait for the one that has furthest to go.
+const uint NODES_PER_TURN = 4u;
+
+// Takes a ray some way on; not one that has ended.
+void bvh_advance(inout Traversal t) {
+    // Go down, perhaps to a leaf.
+    for (uint i = 0u; i < NODES_PER_TURN && (t.reference & BVH_LEAF_BIT) == 0u; ++i) {
+        if (t.pending.count > 0u) stack[t.top++] = pending_pack(t.pending);
+        t.pending = pending_children(t.reference, node_intersect(scene_node(t.reference), t.slabs, t.hit.t));
+        t.reference = pending_next(t.pending, t.top);
+    }
+    if ((t.reference & BVH_LEAF_BIT) == 0u || t.reference == NO_REFERENCE) return;
+
+    // Test the leaf's next primitive.
+    uint count = (t.reference >> BVH_COUNT_SHIFT) & BVH_COUNT_MASK;
+    float t_max = t.hit.t;
+    if (count > 0u) {
+        uint position = t.reference & BVH_FIRST_MASK;
+        primitive_intersect(t.ray, t.shear, scene_primitive(position), position, t.hit);
+    }
+    if (t.any_hit && t.hit.t < t_max) {
+        t.reference = NO_REFERENCE;
+    } else if (count > 1u) {
+        t.reference += 1u - (1u << BVH_COUNT_SHIFT);
+    } else {
+        t.reference = pending_next(t.pending, t.top);
     }
 }
 
 // The closest hit with t > 0; Hit::t is FLOAT_MAX where there is none.
 Hit bvh_intersect(Ray ray) {
-    return bvh_traverse(ray, FLOAT_MAX, false);
+    Traversal t = bvh_begin(ray, FLOAT_MAX, false);
+    while (!bvh_ended(t)) bvh_advance(t);
+    return t.hit;
 }
 
 // True if any primitive meets the ray with t in (0, t_max).
 bool bvh_occluded(Ray ray, float t_max) {
-    return bvh_traverse(ray, t_max, true).t < t_max;
+    Traversal t = bvh_begin(ray, t_max, true);
+    while (!bvh_ended(t)) bvh_advance(t);
+    return t.hit.t < t_max;
+}
+
+// The place of the triangle, sphere or disk in the scene's own order; 0 for no hit.
+uint hit_id(Hit hit) {
+    if (hit.t == FLOAT_MAX) return 0u;
+    uvec2 id = scene_surface(hit.place / 2u).id;
+    return (hit.place & 1u) == 0u ? id.x : id.y;
 }
 
 #endif

@@ -1,4 +1,4 @@
-// Ray against triangle, watertight: two triangles that share an edge leave no gap between them.
+// Ray against two triangles, watertight: two that share an edge leave no gap between them.
 //
 // Ref: Woop, Benthin and Wald 2013, Watertight Ray/Primitive Intersection. Their double-precision fallback for edge
 // functions of 0 is not needed for tightness: rounding is monotone, so that a computed edge function never has the
@@ -6,6 +6,7 @@
 #ifndef SCENE_TRIANGLE_GLSL
 #define SCENE_TRIANGLE_GLSL
 
+#include "base/math.glsl"
 #include "base/ray.glsl"
 
 // What a ray needs once for all triangles: the axis z along which it is longest, and the shear that turns it onto
@@ -13,6 +14,7 @@
 struct RayShear {
     uint kz;
     vec3 s;
+    vec2 inv;  // Reciprocals of the two shorter components.
 };
 
 // v with its components turned so that component kz comes last, the order kept cyclic.
@@ -24,31 +26,69 @@ RayShear ray_shear(vec3 d) {
     vec3 a = abs(d);
     uint kz = a.x > a.y ? (a.x > a.z ? 0u : 2u) : (a.y > a.z ? 1u : 2u);
     vec3 e = turn(d, kz);
-    return RayShear(kz, vec3(e.x / e.z, e.y / e.z, 1.0 / e.z));
+    return RayShear(kz, vec3(e.x / e.z, e.y / e.z, 1.0 / e.z), reciprocals(e).xy);
 }
 
-// Distance t > 0 in lengths of ray.d, and the barycentric coordinates of v1 and v2; t = -1 where the ray misses.
-vec3 triangle_intersect(Ray ray, RayShear shear, vec3 v0, vec3 v1, vec3 v2) {
-    vec3 a = turn(v0 - ray.o, shear.kz);
-    vec3 b = turn(v1 - ray.o, shear.kz);
-    vec3 c = turn(v2 - ray.o, shear.kz);
-    precise vec2 pa = a.xy - shear.s.xy * a.z;
-    precise vec2 pb = b.xy - shear.s.xy * b.z;
-    precise vec2 pc = c.xy - shear.s.xy * c.z;
-    // Far from a triangle that is small against its distance, the edge functions below are nothing but rounding errors;
-    // so ask first whether the triangle's rectangle holds the origin. Comparisons do not round.
-    if (any(greaterThan(min(pa, min(pb, pc)), vec2(0.0))) || any(lessThan(max(pa, max(pb, pc)), vec2(0.0)))) {
-        return vec3(-1.0);
-    }
-    // Twice the signed areas that the origin of the sheared plane spans with each edge.
-    precise float u = pc.x * pb.y - pc.y * pb.x;
-    precise float v = pa.x * pc.y - pa.y * pc.x;
-    precise float w = pb.x * pa.y - pb.y * pa.x;
-    if (min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0) return vec3(-1.0);
-    precise float det = u + v + w;
-    if (det == 0.0) return vec3(-1.0);
-    precise float t = shear.s.z * (u * a.z + v * b.z + w * c.z) / det;
-    return vec3(t, v / det, w / det);
+// A vertex as the ray sees it: across the ray, and along it [lengths of d's longest component].
+struct ShearedVertex {
+    vec2 p;
+    float z;
+    vec2 t;  // Where the ray reaches each of its two other coordinates.
+};
+
+ShearedVertex shear_vertex(Ray ray, RayShear shear, vec3 v) {
+    vec3 a = turn(v - ray.o, shear.kz);
+    precise vec2 p = a.xy - shear.s.xy * a.z;
+    return ShearedVertex(p, a.z, a.xy * shear.inv);
+}
+
+// Twice the signed area that the ray spans with an edge.
+float edge_function(ShearedVertex a, ShearedVertex b) {
+    precise float e = b.p.x * a.p.y - b.p.y * a.p.x;
+    return e;
+}
+
+// Whether a triangle meets the ray of which these are the edge functions: none lies on the other side than another. A
+// triangle without area meets none.
+bool edges_meet(vec3 e, float det) {
+    return !(any_negative(e) && any_positive(e)) && det != 0.0;
+}
+
+// Where a ray meets the triangles v0 v1 v2 and v0 v2 v3, the nearer one if both: distance t in lengths of ray.d,
+// barycentric coordinates of the second and the third vertex, and which triangle (0 or 1; 0 if equally near). t is not
+// above 0 where the ray misses.
+vec4 triangles_intersect(Ray ray, RayShear shear, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
+    ShearedVertex a = shear_vertex(ray, shear, v0);
+    ShearedVertex b = shear_vertex(ray, shear, v1);
+    ShearedVertex c = shear_vertex(ray, shear, v2);
+    ShearedVertex d = shear_vertex(ray, shear, v3);
+    // Far from triangles that are small against their distance, the edge functions below are nothing but rounding
+    // errors; so ask first whether the rectangle around them holds the origin. Comparisons do not round.
+    vec4 x = vec4(a.p.x, b.p.x, c.p.x, d.p.x);
+    vec4 y = vec4(a.p.y, b.p.y, c.p.y, d.p.y);
+    bool beside = all_positive(x) || all_negative(x) || all_positive(y) || all_negative(y);
+
+    float diagonal = edge_function(c, a);
+    vec3 e0 = vec3(edge_function(b, c), diagonal, edge_function(a, b));
+    vec3 e1 = vec3(edge_function(c, d), edge_function(d, a), -diagonal);
+    precise float det0 = e0.x + e0.y + e0.z;
+    precise float det1 = e1.x + e1.y + e1.z;
+    precise float t0 = shear.s.z * (e0.x * a.z + e0.y * b.z + e0.z * c.z) / det0;
+    precise float t1 = shear.s.z * (e1.x * a.z + e1.y * c.z + e1.z * d.z) / det1;
+    // A point between three vertices has their range along z, but across, if the triangle is a sliver, the roundings of
+    // the edge functions may have moved it away from the ray; where the box around the triangles begins and ends, is
+    // certain. Without this, a box that is further away than t could hide it.
+    vec2 near = min(min(a.t, b.t), min(c.t, d.t));
+    vec2 far = max(max(a.t, b.t), max(c.t, d.t));
+    float begin = max(near.x, near.y);
+    float end = min(far.x, far.y);
+    t0 = min(max(t0, begin), end);
+    t1 = min(max(t1, begin), end);
+    bool meets0 = edges_meet(e0, det0) && t0 > 0.0;
+    bool meets1 = edges_meet(e1, det1) && t1 > 0.0;
+    if (beside || !(meets0 || meets1)) return vec4(-1.0);
+    bool second = meets1 && !(meets0 && t0 <= t1);
+    return second ? vec4(t1, e1.yz / det1, 1.0) : vec4(t0, e0.yz / det0, 0.0);
 }
 
 #endif

@@ -5,7 +5,7 @@
 //   1: right.xyz, max_depth       6: first words of the environment: texels, alias table; its size.xy
 //   2: up.xyz, rr_depth           7: lens_x.xyz, focal_distance
 //   3: forward.xyz, light_count   8: lens_y.xyz, blades
-//   4: full_size.xy, crop.xy      9: environment_turn.xy, 0, 0
+//   4: full_size.xy, crop.xy      9: environment_turn.xy, first word of the surfaces, 0
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
 
@@ -20,6 +20,7 @@ const uint PARAMETERS_WORDS = 10u;
 
 // Where each table begins in the tables buffer, in words.
 struct TableStarts {
+    uint surfaces;
     uint normals;
     uint materials;
     uint lights;
@@ -71,7 +72,8 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         uvec4(p.tables.environment, p.tables.environment_alias, p.environment_size.x, p.environment_size.y),
         words(p.lens_x, floatBitsToUint(p.focal_distance)),
         words(p.lens_y, p.blades),
-        uvec4(floatBitsToUint(p.environment_turn.x), floatBitsToUint(p.environment_turn.y), 0u, 0u)};
+        uvec4(floatBitsToUint(p.environment_turn.x), floatBitsToUint(p.environment_turn.y), p.tables.surfaces,
+              0u)};
 }
 
 }  // namespace candela
@@ -80,7 +82,7 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
 Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     return Parameters(uintBitsToFloat(w[0].xyz), uintBitsToFloat(w[1].xyz), uintBitsToFloat(w[2].xyz),
                       uintBitsToFloat(w[3].xyz), w[4].xy, w[4].zw, w[0].w, w[1].w, w[2].w, w[3].w,
-                      TableStarts(w[5].x, w[5].y, w[5].z, w[5].w, w[6].x, w[6].y), w[6].zw,
+                      TableStarts(w[9].z, w[5].x, w[5].y, w[5].z, w[5].w, w[6].x, w[6].y), w[6].zw,
                       uintBitsToFloat(w[9].xy), uintBitsToFloat(w[7].xyz), uintBitsToFloat(w[8].xyz),
                       uintBitsToFloat(w[7].w), w[8].w);
 }

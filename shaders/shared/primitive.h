@@ -1,10 +1,11 @@
-// Record of a primitive, what the BVH's leaves hold, and of its shading normals. The only functions are
-// `pack` (C++) and `unpack` (GLSL), side by side.
+// Records of a primitive, what the BVH's leaves hold: its geometry, which traversal reads; its surface, which
+// is read where a path meets it; and its shading normals. The only functions are `pack` (C++) and `unpack`
+// (GLSL), side by side.
 //
-//   Primitive, 3 words of uvec4         Normals, 1 word
-//     0: a.xyz, id                        0: n0, n1, n2 (octahedral, 2 x 16 bits), smooth
-//     1: b.xyz, material | kind << 30
-//     2: c.xyz, light
+//   Primitive, 3 words of uvec4   Surface, 1 word                   Normals, 1 word
+//     0: a.xyz, d.x or tag          0: id, id of the second           0: at a, b, c, d
+//     1: b.xyz, d.y                    triangle, material |              (octahedral, 2 x 16 bits)
+//     2: c.xyz, d.z                    smooth << 31, light
 #ifndef SHARED_PRIMITIVE_H
 #define SHARED_PRIMITIVE_H
 
@@ -17,28 +18,46 @@ namespace candela {
 #endif
 
 const uint PRIMITIVE_WORDS = 3u;
+const uint SURFACE_WORDS = 1u;
 const uint NORMALS_WORDS = 1u;
 
 // Kinds of primitives. World space [m].
-const uint PRIMITIVE_TRIANGLE = 0u;  // Vertices a, b, c; counter-clockwise from the front.
-const uint PRIMITIVE_SPHERE = 1u;    // Centre a, radius b.x; the front is outside.
-const uint PRIMITIVE_DISK = 2u;      // a + x b + y c with x^2 + y^2 <= 1; cross(b, c) points to the front.
-const uint PRIMITIVE_KIND_SHIFT = 30u;
+//
+// Two triangles that share an edge, as in most meshes they can, are one primitive: half the memory, half the
+// leaves, and less to compute than for two. The second one, a c d, has no area where there is but one.
+const uint PRIMITIVE_TRIANGLES = 0u;  // a b c and a c d; counter-clockwise from the front.
+const uint PRIMITIVE_SPHERE = 1u;     // Centre a, radius b.x; the front is outside.
+const uint PRIMITIVE_DISK = 2u;       // a + x b + y c with x^2 + y^2 <= 1; cross(b, c) points to the front.
+
+// The tag of a kind that has no d: a NaN, which no vertex has.
+const uint PRIMITIVE_TAG = 0x7FC00000u;
+
+const uint SURFACE_SMOOTH_BIT = 0x80000000u;
 
 struct Primitive {
     uint kind;  // PRIMITIVE_*
     vec3 a;
     vec3 b;
     vec3 c;
-    uint id;        // Position in the scene's own order; the lesser one wins where two hits are equally near.
-    uint material;  // Index of a material record, below 2^30.
+    vec3 d;  // Of triangles alone; equal to c where there is but one.
+};
+
+struct Surface {
+    uvec2 id;       // Position in the scene's own order, of each triangle.
+    uint material;  // Index of a material record, below 2^31.
+    uint smooth_;   // 1: has shading normals.
     uint light;     // Index of a light record, or NO_LIGHT.
 };
 
 #ifdef __cplusplus
 
 inline std::array<uvec4, PRIMITIVE_WORDS> pack(const Primitive& p) {
-    return {words(p.a, p.id), words(p.b, p.material | p.kind << PRIMITIVE_KIND_SHIFT), words(p.c, p.light)};
+    const uint first = p.kind == PRIMITIVE_TRIANGLES ? floatBitsToUint(p.d.x) : PRIMITIVE_TAG | p.kind;
+    return {words(p.a, first), words(p.b, floatBitsToUint(p.d.y)), words(p.c, floatBitsToUint(p.d.z))};
+}
+
+inline std::array<uvec4, SURFACE_WORDS> pack(const Surface& s) {
+    return {uvec4(s.id.x, s.id.y, s.material | s.smooth_ * SURFACE_SMOOTH_BIT, s.light)};
 }
 
 // Octahedral map of a unit vector to 2 x 16 signed bits. Ref: Cigolle et al. 2014, A Survey of Efficient
@@ -54,17 +73,23 @@ inline uint pack_octahedral(vec3 n) {
     return snorm16(e.x) | snorm16(e.y) << 16;
 }
 
-// Shading normals at the three vertices, unit length, world space. A flat primitive has a record of zeros.
-inline std::array<uvec4, NORMALS_WORDS> pack_normals(vec3 n0, vec3 n1, vec3 n2) {
-    return {uvec4(pack_octahedral(n0), pack_octahedral(n1), pack_octahedral(n2), 1u)};
+// Shading normals at the vertices a, b, c, d, unit length, world space. A flat primitive has a record of
+// zeros.
+inline std::array<uvec4, NORMALS_WORDS> pack_normals(vec3 a, vec3 b, vec3 c, vec3 d) {
+    return {uvec4(pack_octahedral(a), pack_octahedral(b), pack_octahedral(c), pack_octahedral(d))};
 }
 
 }  // namespace candela
 #else
 
 Primitive primitive_unpack(uvec4 u, uvec4 v, uvec4 w) {
-    return Primitive(v.w >> PRIMITIVE_KIND_SHIFT, uintBitsToFloat(u.xyz), uintBitsToFloat(v.xyz),
-                     uintBitsToFloat(w.xyz), u.w, v.w & ((1u << PRIMITIVE_KIND_SHIFT) - 1u), w.w);
+    uint kind = (u.w & ~3u) == PRIMITIVE_TAG ? u.w & 3u : PRIMITIVE_TRIANGLES;
+    return Primitive(kind, uintBitsToFloat(u.xyz), uintBitsToFloat(v.xyz), uintBitsToFloat(w.xyz),
+                     uintBitsToFloat(uvec3(u.w, v.w, w.w)));
+}
+
+Surface surface_unpack(uvec4 u) {
+    return Surface(u.xy, u.z & ~SURFACE_SMOOTH_BIT, u.z / SURFACE_SMOOTH_BIT, u.w);
 }
 
 // Inverse of pack_octahedral; unit length.

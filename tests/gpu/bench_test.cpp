@@ -4,7 +4,6 @@
 #include "bench/meshes.h"
 #include "bench/tracer.h"
 #include "gpu/device_fixture.h"
-#include "render/flatten.h"
 #include "selftest/traversal.h"
 
 namespace candela {
@@ -18,7 +17,7 @@ class BenchTest : public DeviceTest {
     // within the room, many of which miss it.
     std::vector<RaySet> ray_sets() const {
         const auto tracer = make_device_tracer(device(), gpu_, SceneAccess::texel_buffers);
-        std::vector<RaySet> sets = make_ray_sets(scene_, flatten(scene_).primitives, 256,
+        std::vector<RaySet> sets = make_ray_sets(scene_, triangles_of(scene_), 256,
                                                  [&](const RaySet& set) { return run(*tracer, set); });
         RaySet closest{.name = "random rays", .rays = {}};
         for (const RayItem& ray : random_rays(256, vec3(0, 2, 0), 6.0f, 7))
@@ -77,7 +76,7 @@ TEST_F(BenchTest, RaysInSeveralDispatchesFindTheSame) {
 
 // Of a program without Embree there is nothing else to say.
 TEST_F(BenchTest, TheRivalIsThereWhenItsVersionIsAndFindsTheSameHits) {
-    const auto rival = make_embree_tracer(flatten(scene_).primitives);
+    const auto rival = make_embree_tracer(triangles_of(scene_));
     ASSERT_EQ(rival != nullptr, embree_version().has_value());
     if (rival == nullptr) return;
     // No ray of this seed grazes an edge.

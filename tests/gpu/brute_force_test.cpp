@@ -58,7 +58,7 @@ class BruteForceTest : public TraversalTest {
                 rays.insert(rays.end(), aimed.begin(), aimed.end());
             }
             const GpuScene scene = build_gpu_scene(scene_of_mesh(mesh));
-            ASSERT_EQ(scene.primitive_count, mesh.triangles.size());
+            ASSERT_EQ(scene.id_count, mesh.triangles.size());
             const std::vector<TraversalResult> results = trace(scene, rays, SceneAccess::texel_buffers);
             expect_holds(compare_with_brute_force(results));
             EXPECT_GT(hits(results), rays.size() / 4);

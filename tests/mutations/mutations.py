@@ -14,6 +14,8 @@ WARP = "shaders/base/warp.glsl"
 SAMPLER = "shaders/base/sampler.glsl"
 TRAVERSAL = "shaders/scene/traversal.glsl"
 TRIANGLE = "shaders/scene/triangle.glsl"
+PRIMITIVE = "shaders/scene/primitive.glsl"
+INTERACTION = "shaders/scene/interaction.glsl"
 CAMERA = "shaders/scene/camera.glsl"
 RENDER = "shaders/kernels/render.comp.glsl"
 
@@ -25,7 +27,7 @@ BSDFS = ("BsdfTest*:Phong*:Dielectric*:Warp*", "Albedo*:SkyFurnace*:*Dielectric*
 LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
 SAMPLES = ("Sampler*:Math*", "Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
-GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*")
+GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*")
 
 GROUPS = [
     (INTEGRATOR, [
@@ -81,8 +83,12 @@ GROUPS = [
         ("child boxes rounded inwards", "host/bvh/quantise.cpp",
          "std::ceil(steps(x)));\n        while (decode(q) < x)", "steps(x));\n        while (decode(q + 1) < x)"),
         ("boxes without a margin, a little small", TRAVERSAL, "vec3 far = start + margin", "vec3 far = start - margin"),
-        ("edges belong to no triangle", TRIANGLE, "min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0",
-         "min(u, min(v, w)) <= 0.0 && max(u, max(v, w)) >= 0.0"),
-        ("of equal hits the last one found wins", TRAVERSAL, "primitive.id < hit.id", "true"),
+        ("edges belong to no triangle", TRIANGLE, "any_negative(e) && any_positive(e)",
+         "!(e.x * e.y > 0.0 && e.y * e.z > 0.0)"),
+        ("of equal hits the last one found wins", PRIMITIVE, "place < hit.place", "true"),
+        ("the distance of a sliver not kept within its box", TRIANGLE, "t0 = min(max(t0, begin), end);", ""),
+        ("of two triangles always the first", TRIANGLE, "bool second = meets1 && !(meets0 && t0 <= t1);",
+         "bool second = !meets0;"),
+        ("the first triangle's normals on the second", INTERACTION, "normals.yz = normals.zw;", ""),
     ]),
 ]

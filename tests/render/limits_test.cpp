@@ -31,13 +31,16 @@ TEST_F(LimitsTest, ASceneForStorageBuffersAloneIsStillRead) {
 }
 
 TEST_F(LimitsTest, ASceneForNeitherSaysWhatItNeeds) {
-    info_.limits.max_texel_buffer_elements = 95;
-    info_.limits.max_storage_buffer_range = 96 * 16 - 1;
+    const GpuScene gpu = build_gpu_scene(cornell_box());
+    const size_t texels = std::max({gpu.nodes.size(), gpu.primitives.size(), gpu.tables.size()});
+    info_.limits.max_texel_buffer_elements = uint32_t(texels - 1);
+    info_.limits.max_storage_buffer_range = uint32_t(16 * texels - 1);
     EXPECT_EQ(message(ExitCode::out_of_memory),
-              "the largest array of the scene needs 96 texels (1536 bytes), but " + info_.name +
-                  " allows maxTexelBufferElements = 95 and maxStorageBufferRange = 1535 bytes; use a smaller "
-                  "scene, "
-                  "or another device (candela devices lists them)");
+              "the largest array of the scene needs " + std::to_string(texels) + " texels (" +
+                  std::to_string(16 * texels) + " bytes), but " + info_.name +
+                  " allows maxTexelBufferElements = " + std::to_string(texels - 1) +
+                  " and maxStorageBufferRange = " + std::to_string(16 * texels - 1) +
+                  " bytes; use a smaller scene, or another device (candela devices lists them)");
 }
 
 using FiniteTest = RenderTest;

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "bench/rays.h"
-#include "render/flatten.h"
 #include "selftest/scenes.h"
 
 namespace candela {
@@ -16,7 +15,7 @@ using glm::dvec3;
 
 // Distance along the ray at which it meets the triangle, in double precision; infinite if it does not.
 // Ref: Moeller and Trumbore 1997, Fast, Minimum Storage Ray/Triangle Intersection.
-double distance_to(const BenchRay& ray, const Primitive& triangle) {
+double distance_to(const BenchRay& ray, const BenchTriangle& triangle) {
     const dvec3 e1 = dvec3(triangle.b) - dvec3(triangle.a), e2 = dvec3(triangle.c) - dvec3(triangle.a);
     const dvec3 from = dvec3(ray.o) - dvec3(triangle.a);
     const dvec3 p = cross(dvec3(ray.d), e2), q = cross(from, e1);
@@ -45,11 +44,11 @@ class BenchRays : public testing::Test {
     uint32_t closest(const BenchRay& ray) const {
         uint32_t id = NO_TRIANGLE;
         double nearest = double(ray.t_max);
-        for (const Primitive& triangle : triangles_) {
-            const double t = distance_to(ray, triangle);
+        for (uint32_t i = 0; i < triangles_.size(); ++i) {
+            const double t = distance_to(ray, triangles_[i]);
             if (t >= nearest) continue;
             nearest = t;
-            id = triangle.id;
+            id = i;
         }
         return id;
     }
@@ -59,7 +58,7 @@ class BenchRays : public testing::Test {
         std::vector<std::pair<BenchRay, dvec3>> result;
         for (size_t i = 0; i < hits_[set].size(); ++i) {
             if (hits_[set][i] == NO_TRIANGLE) continue;
-            const Primitive& t = triangles_[hits_[set][i]];
+            const BenchTriangle& t = triangles_[hits_[set][i]];
             const dvec3 n = normalize(cross(dvec3(t.b) - dvec3(t.a), dvec3(t.c) - dvec3(t.a)));
             const BenchRay& ray = sets_[set].rays[i];
             result.emplace_back(ray, dot(n, dvec3(ray.d)) > 0 ? -n : n);
@@ -68,7 +67,7 @@ class BenchRays : public testing::Test {
     }
 
     const Scene scene_ = cornell_box();
-    std::vector<Primitive> triangles_ = flatten(scene_).primitives;
+    std::vector<BenchTriangle> triangles_ = triangles_of(scene_);
     std::vector<std::vector<uint32_t>> hits_;  // Of the first two sets.
     std::vector<RaySet> sets_;
 };

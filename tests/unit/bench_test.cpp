@@ -9,7 +9,6 @@
 #include "bench/report.h"
 #include "bench/traversal.h"
 #include "cli/bench_report.h"
-#include "render/flatten.h"
 #include "unit/base_fixture.h"
 
 namespace candela {
@@ -198,9 +197,9 @@ TEST(BenchMeshes, TheSameSeedMakesTheSameBumps) {
 
 // n is 1 for 72, 56 for 190 000, 129 for a million.
 TEST(BenchMeshes, ASceneHasAboutTheTrianglesAskedFor) {
-    EXPECT_EQ(flatten(displaced_scene(72)).primitives.size(), 72u);
-    EXPECT_EQ(flatten(displaced_scene(190000)).primitives.size(), 60u * 56 * 56 + 12);
-    EXPECT_EQ(flatten(displaced_scene(1000000)).primitives.size(), 60u * 129 * 129 + 12);
+    EXPECT_EQ(triangles_of(displaced_scene(72)).size(), 72u);
+    EXPECT_EQ(triangles_of(displaced_scene(190000)).size(), 60u * 56 * 56 + 12);
+    EXPECT_EQ(triangles_of(displaced_scene(1000000)).size(), 60u * 129 * 129 + 12);
 }
 
 TEST(BenchMeshes, TheCameraSeesTheRoomFromWithinAndTheLightShinesDown) {

@@ -32,8 +32,8 @@ TEST(Flatten, ASphereIsOnePrimitiveAndOneLight) {
     EXPECT_EQ(flat.primitives[0].kind, PRIMITIVE_SPHERE);
     EXPECT_EQ(flat.primitives[0].a, BALL.center);
     EXPECT_EQ(flat.primitives[0].b.x, BALL.radius);
-    EXPECT_EQ(flat.primitives[0].material, 7u);
-    EXPECT_EQ(flat.primitives[0].light, 0u);
+    EXPECT_EQ(flat.surfaces[0].material, 7u);
+    EXPECT_EQ(flat.surfaces[0].light, 0u);
     ASSERT_EQ(flat.lights.size(), 1u);
     EXPECT_EQ(flat.lights[0].kind, LIGHT_SPHERE);
     EXPECT_EQ(flat.lights[0].p, BALL.center);
@@ -51,7 +51,7 @@ TEST(Flatten, ADiskIsOnePrimitiveAndOneLight) {
     EXPECT_EQ(flat.primitives[0].a, ELLIPSE.center);
     EXPECT_EQ(flat.primitives[0].b, ELLIPSE.e1);
     EXPECT_EQ(flat.primitives[0].c, ELLIPSE.e2);
-    EXPECT_EQ(flat.primitives[0].light, 0u);
+    EXPECT_EQ(flat.surfaces[0].light, 0u);
     ASSERT_EQ(flat.lights.size(), 1u);
     EXPECT_EQ(flat.lights[0].kind, LIGHT_DISK);
     EXPECT_EQ(flat.lights[0].two_sided, 1u);
@@ -67,20 +67,21 @@ TEST(Flatten, BlackShapesAreNoLights) {
                         shape(without_area, 0, Emission{.radiance = vec3(1), .two_sided = false})});
     EXPECT_TRUE(flat.lights.empty());
     ASSERT_EQ(flat.primitives.size(), 5u);
-    for (const Primitive& p : flat.primitives)
-        EXPECT_EQ(p.light, NO_LIGHT);
+    for (const Surface& surface : flat.surfaces)
+        EXPECT_EQ(surface.light, NO_LIGHT);
 }
 
 TEST(Flatten, IdsFollowTheOrderOfTheSceneAcrossKinds) {
     const Quad quad = parallelogram(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
     const FlatScene flat = flatten_shapes({shape(BALL, 1), shape(quad, 2), shape(ELLIPSE, 3)});
-    ASSERT_EQ(flat.primitives.size(), 4u);
-    const std::vector<uint> kinds{PRIMITIVE_SPHERE, PRIMITIVE_TRIANGLE, PRIMITIVE_TRIANGLE, PRIMITIVE_DISK};
-    const std::vector<uint> materials{1, 2, 2, 3};
-    for (uint i = 0; i < 4; ++i) {
-        EXPECT_EQ(flat.primitives[i].id, i);
+    ASSERT_EQ(flat.primitives.size(), 3u);
+    EXPECT_EQ(flat.id_count, 4u);
+    const std::vector<uint> kinds{PRIMITIVE_SPHERE, PRIMITIVE_TRIANGLES, PRIMITIVE_DISK};
+    const std::vector<uvec2> ids{uvec2(0, 0), uvec2(1, 2), uvec2(3, 3)};
+    for (uint i = 0; i < 3; ++i) {
+        EXPECT_EQ(flat.surfaces[i].id, ids[i]);
         EXPECT_EQ(flat.primitives[i].kind, kinds[i]);
-        EXPECT_EQ(flat.primitives[i].material, materials[i]);
+        EXPECT_EQ(flat.surfaces[i].material, i + 1);
     }
     EXPECT_TRUE(flat.normals.empty());
 }
@@ -90,8 +91,13 @@ TEST(Flatten, EveryPrimitiveHasARecordOfNormalsIfOneIsSmooth) {
     smooth.normals = smooth.positions;
     const FlatScene flat = flatten_shapes({shape(BALL, 0), shape(smooth, 0), shape(ELLIPSE, 0)});
     ASSERT_EQ(flat.normals.size(), flat.primitives.size());
-    for (size_t i = 0; i < flat.normals.size(); ++i)
-        EXPECT_EQ(flat.normals[i][0].w, flat.primitives[i].kind == PRIMITIVE_TRIANGLE ? 1u : 0u);
+    for (size_t i = 0; i < flat.normals.size(); ++i) {
+        const bool of_the_mesh = flat.primitives[i].kind == PRIMITIVE_TRIANGLES;
+        EXPECT_EQ(flat.surfaces[i].smooth_, of_the_mesh ? 1u : 0u);
+        if (!of_the_mesh) {
+            EXPECT_EQ(flat.normals[i][0], uvec4(0));
+        }
+    }
 }
 
 // A light that has no area, the sky, takes its part of the powers.

@@ -2,6 +2,7 @@
 #include "render/gpu_scene.h"
 
 #include <cstring>
+#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -48,10 +49,44 @@ double area(const Light& l) {
     return double(length(cross(l.e1, l.e2))) * (l.kind == LIGHT_TRIANGLE ? 0.5 : 1.0);
 }
 
-// The primitive at that position in leaf order; its kind is in the two highest bits of the material's word.
-Primitive primitive(const GpuScene& gpu, uint32_t i) {
-    const uvec4* w = &gpu.primitives[i * PRIMITIVE_WORDS];
-    return {w[1].w >> 30, floats(w[0]), floats(w[1]), floats(w[2]), w[0].w, w[1].w & 0x3FFFFFFFu, w[2].w};
+// A triangle of the scene, and what its surface says.
+struct Triangle {
+    vec3 a, b, c;
+    Surface surface;
+    uvec3 normals{0};  // Packed; 0 if it has none.
+};
+
+// All triangles by id, from the primitives in leaf order; ids are 0, 1, 2 ...
+std::vector<Triangle> triangles(const GpuScene& gpu) {
+    std::map<uint32_t, Triangle> by_id;
+    for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
+        const uvec4* w = &gpu.primitives[i * PRIMITIVE_WORDS];
+        const uvec4 s = gpu.tables[gpu.table_starts.surfaces + i];
+        const Surface surface{uvec2(s.x, s.y), s.z & 0x7FFFFFFFu, s.z >> 31, s.w};
+        const vec3 d = std::bit_cast<vec3>(uvec3(w[0].w, w[1].w, w[2].w));
+        const uvec4 n = gpu.has_normals ? gpu.tables[gpu.table_starts.normals + i] : uvec4(0);
+        EXPECT_TRUE(
+            by_id.insert({s.x, {floats(w[0]), floats(w[1]), floats(w[2]), surface, uvec3(n)}}).second);
+        if (s.y == s.x) {
+            EXPECT_EQ(d, floats(w[2])) << "a triangle alone repeats its last vertex";
+            continue;
+        }
+        const uvec3 second(n.x, n.z, n.w);
+        EXPECT_TRUE(by_id.insert({s.y, {floats(w[0]), floats(w[2]), d, surface, second}}).second);
+    }
+    EXPECT_EQ(by_id.size(), gpu.id_count);
+    std::vector<Triangle> all;
+    for (const auto& [id, triangle] : by_id) {
+        EXPECT_EQ(id, all.size());
+        all.push_back(triangle);
+    }
+    return all;
+}
+
+// Whether the corners are these, in this order, from whichever one on.
+bool same_corners(const Triangle& t, vec3 a, vec3 b, vec3 c) {
+    const auto is = [&](vec3 x, vec3 y, vec3 z) { return t.a == x && t.b == y && t.c == z; };
+    return is(a, b, c) || is(b, c, a) || is(c, a, b);
 }
 
 Shape emitter(Quad quad, vec3 radiance, bool two_sided = false) {
@@ -73,7 +108,7 @@ TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
     for (const Quad& quad : {SQUARE, slanted}) {
         const GpuScene gpu = build_gpu_scene(scene_of({emitter(quad, vec3(2))}));
         ASSERT_EQ(gpu.light_count, 1u);
-        ASSERT_EQ(gpu.primitive_count, 2u);
+        ASSERT_EQ(gpu.primitive_count, 1u);
         const Light l = light(gpu, 0);
         EXPECT_EQ(l.kind, LIGHT_PARALLELOGRAM);
         EXPECT_EQ(l.p, quad.corners[0]);
@@ -82,8 +117,8 @@ TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
         EXPECT_EQ(l.radiance, vec3(2));
         EXPECT_EQ(l.two_sided, 0u);
         EXPECT_NEAR(double(l.pdf_area) * area(l), 1.0, 1e-6);
-        EXPECT_EQ(primitive(gpu, 0).light, 0u);
-        EXPECT_EQ(primitive(gpu, 1).light, 0u);
+        for (const Triangle& t : triangles(gpu))
+            EXPECT_EQ(t.surface.light, 0u);
     }
 }
 
@@ -104,13 +139,12 @@ TEST(GpuScene, AnyOtherQuadIsTwoLightsThatCoverIt) {
     EXPECT_NEAR(covered, 6.0, 1e-6);
     EXPECT_NEAR(probability, 1.0, 1e-6);
     std::set<uint32_t> lights;
-    for (const uint32_t i : {0u, 1u}) {
-        const Primitive t = primitive(gpu, i);
-        const Light l = light(gpu, t.light);
+    for (const Triangle& t : triangles(gpu)) {
+        const Light l = light(gpu, t.surface.light);
         EXPECT_EQ(l.p, t.a);
         EXPECT_EQ(l.p + l.e1, t.b);
         EXPECT_EQ(l.p + l.e2, t.c);
-        lights.insert(t.light);
+        lights.insert(t.surface.light);
     }
     EXPECT_EQ(lights.size(), 2u);
 }
@@ -157,26 +191,21 @@ TEST(GpuScene, IdsFollowTheOrderOfTheSceneAndEveryTriangleIsThere) {
     add_diffuse(scene, vec3(1));
     scene.shapes.push_back({.geometry = mesh, .material = 1, .emission = {}});
     const GpuScene gpu = build_gpu_scene(scene);
-    ASSERT_EQ(gpu.primitive_count, 102u);
-    std::set<uint32_t> ids;
-    for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
-        const Primitive t = primitive(gpu, i);
-        ids.insert(t.id);
-        EXPECT_EQ(t.light, NO_LIGHT);
-        EXPECT_EQ(t.material, t.id < 2 ? 0u : 1u);
-        if (t.id < 2) {
-            EXPECT_EQ(t.a, SQUARE.corners[0]);
-            EXPECT_EQ(t.b, SQUARE.corners[t.id + 1]);
-            EXPECT_EQ(t.c, SQUARE.corners[t.id + 2]);
+    ASSERT_EQ(gpu.id_count, 102u);
+    EXPECT_EQ(gpu.primitive_count, 101u);  // No two of the soup touch.
+    const std::vector<Triangle> all = triangles(gpu);
+    for (uint32_t id = 0; id < all.size(); ++id) {
+        const Triangle& t = all[id];
+        EXPECT_EQ(t.surface.light, NO_LIGHT);
+        EXPECT_EQ(t.surface.material, id < 2 ? 0u : 1u);
+        if (id < 2) {
+            EXPECT_TRUE(same_corners(t, SQUARE.corners[0], SQUARE.corners[id + 1], SQUARE.corners[id + 2]));
         } else {
-            const uvec3 corners = mesh.triangles[t.id - 2];
-            EXPECT_EQ(t.a, mesh.positions[corners.x]);
-            EXPECT_EQ(t.b, mesh.positions[corners.y]);
-            EXPECT_EQ(t.c, mesh.positions[corners.z]);
+            const uvec3 corners = mesh.triangles[id - 2];
+            EXPECT_TRUE(same_corners(t, mesh.positions[corners.x], mesh.positions[corners.y],
+                                     mesh.positions[corners.z]));
         }
     }
-    EXPECT_EQ(ids.size(), 102u);
-    EXPECT_EQ(*ids.rbegin(), 101u);
 }
 
 TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
@@ -189,13 +218,19 @@ TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
                                                    {.geometry = smooth, .material = 0, .emission = {}},
                                                    {.geometry = SQUARE, .material = 0, .emission = {}}}));
     EXPECT_TRUE(gpu.has_normals);
-    for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
-        const Primitive t = primitive(gpu, i);
-        const uvec4 normals = gpu.tables[gpu.table_starts.normals + i * NORMALS_WORDS];
-        const bool of_the_sphere = t.id >= 2 && t.id < 2 + smooth.triangles.size();
-        EXPECT_EQ(normals.w, of_the_sphere ? 1u : 0u);
+    EXPECT_LT(gpu.primitive_count, 2 + smooth.triangles.size());
+    const std::vector<Triangle> all = triangles(gpu);
+    for (uint32_t id = 0; id < all.size(); ++id) {
+        const Triangle& t = all[id];
+        const bool of_the_sphere = id >= 2 && id < 2 + smooth.triangles.size();
+        EXPECT_EQ(t.surface.smooth_, of_the_sphere ? 1u : 0u);
+        EXPECT_EQ(t.normals, of_the_sphere
+                                 ? uvec3(pack_octahedral(t.a), pack_octahedral(t.b), pack_octahedral(t.c))
+                                 : uvec3(0));
         if (of_the_sphere) {
-            EXPECT_EQ(normals, pack_normals(t.a, t.b, t.c)[0]);
+            const uvec3 corners = smooth.triangles[id - 2];
+            EXPECT_TRUE(same_corners(t, smooth.positions[corners.x], smooth.positions[corners.y],
+                                     smooth.positions[corners.z]));
         }
     }
 }
@@ -204,13 +239,14 @@ TEST(GpuScene, TablesFollowEachOther) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1))});
     add_diffuse(scene, vec3(1));
     const GpuScene gpu = build_gpu_scene(scene);
-    EXPECT_EQ(gpu.table_starts.normals, 0u);
-    EXPECT_EQ(gpu.table_starts.materials, 0u);
-    EXPECT_EQ(gpu.table_starts.lights, 2 * MATERIAL_WORDS);
-    EXPECT_EQ(gpu.table_starts.light_alias, 2 * MATERIAL_WORDS + LIGHT_WORDS);
-    EXPECT_EQ(gpu.tables.size(), 2 * MATERIAL_WORDS + LIGHT_WORDS + 1);
-    EXPECT_EQ(gpu.tables[0].x, MATERIAL_DIFFUSE);
-    EXPECT_EQ(std::bit_cast<vec3>(uvec3(gpu.tables[0].y, gpu.tables[0].z, gpu.tables[0].w)),
+    EXPECT_EQ(gpu.table_starts.surfaces, 0u);
+    EXPECT_EQ(gpu.table_starts.normals, 1u);
+    EXPECT_EQ(gpu.table_starts.materials, 1u);
+    EXPECT_EQ(gpu.table_starts.lights, 1 + 2 * MATERIAL_WORDS);
+    EXPECT_EQ(gpu.table_starts.light_alias, 1 + 2 * MATERIAL_WORDS + LIGHT_WORDS);
+    EXPECT_EQ(gpu.tables.size(), 1 + 2 * MATERIAL_WORDS + LIGHT_WORDS + 1);
+    EXPECT_EQ(gpu.tables[1].x, MATERIAL_DIFFUSE);
+    EXPECT_EQ(std::bit_cast<vec3>(uvec3(gpu.tables[1].y, gpu.tables[1].z, gpu.tables[1].w)),
               vec3(0.25f, 0.5f, 0.75f));
     EXPECT_EQ(gpu.bytes(), (gpu.nodes.size() + gpu.primitives.size() + gpu.tables.size()) * 16);
 }
@@ -221,9 +257,9 @@ EnvironmentTexel texel(const GpuScene& gpu, uint32_t i) {
 }
 
 // The power of a sky of radiance 1, over pi, on the sphere around the square's box, whose radius is sqrt(2) /
-// 2, is 1/2 * 4 pi; that of the square is 1.
+// 2, is 1/2 * 4 pi; that of the square is 10.
 TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
-    Scene scene = scene_of({emitter(SQUARE, vec3(1))});
+    Scene scene = scene_of({emitter(SQUARE, vec3(10))});
     scene.environment =
         Environment{.size = {3, 1}, .radiance = {vec3(1), vec3(1), vec3(1)}, .rotation = 0.5f};
     const GpuScene gpu = build_gpu_scene(scene);
@@ -233,7 +269,7 @@ TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
     EXPECT_EQ(gpu.environment_size, uvec2(3, 1));
     EXPECT_EQ(gpu.environment_rotation, 0.5f);
 
-    const double pmf = 2.0 * M_PI / (2.0 * M_PI + 1.0);
+    const double pmf = 2.0 * M_PI / (2.0 * M_PI + 10.0);
     EXPECT_NEAR(light_probabilities(gpu)[1], pmf, 1e-6);
     EXPECT_NEAR(light(gpu, 0).pdf_area, 1.0 - pmf, 1e-6);
     for (const uint32_t i : {0u, 1u, 2u}) {
@@ -248,6 +284,18 @@ TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
 
     scene.environment->visible = false;
     EXPECT_EQ(build_gpu_scene(scene).environment, ENVIRONMENT_HIDDEN);
+}
+
+TEST(GpuScene, TheSkyIsChosenForHalfOfTheSamplesAtMost) {
+    Scene scene = scene_of({emitter(SQUARE, vec3(1)), emitter(SQUARE, vec3(2))});
+    scene.environment = Environment{.size = {1, 1}, .radiance = {vec3(100)}};
+    const GpuScene gpu = build_gpu_scene(scene);
+    const std::vector<double> chosen = light_probabilities(gpu);
+    EXPECT_NEAR(chosen[0], 1.0 / 6.0, 1e-6);
+    EXPECT_NEAR(chosen[1], 2.0 / 6.0, 1e-6);
+    EXPECT_NEAR(chosen[2], 0.5, 1e-6);
+    EXPECT_NEAR(light(gpu, 0).pdf_area, 1.0 / 6.0, 1e-6);
+    EXPECT_NEAR(texel(gpu, 0).pdf, 0.5 / (4.0 * M_PI), 1e-7);
 }
 
 TEST(GpuScene, ASkyThatLightsNothingIsNotSampled) {
@@ -299,14 +347,11 @@ TEST(GpuScene, KindsOfPrimitivesArePresentOnlyIfTheyAre) {
     const Shape sphere{.geometry = Sphere{}, .material = 0, .emission = {}};
     const Shape disk{.geometry = Disk{}, .material = 0, .emission = {}};
     EXPECT_EQ(present({}), 0u);
-    EXPECT_EQ(present({quad}), 1u << PRIMITIVE_TRIANGLE);
+    EXPECT_EQ(present({quad}), 1u << PRIMITIVE_TRIANGLES);
     EXPECT_EQ(present({sphere, sphere}), 1u << PRIMITIVE_SPHERE);
-    EXPECT_EQ(present({quad, disk}), 1u << PRIMITIVE_TRIANGLE | 1u << PRIMITIVE_DISK);
-    const GpuScene gpu = build_gpu_scene(scene_of({quad, sphere, disk}));
-    std::set<uint> kinds;
-    for (uint32_t i = 0; i < gpu.primitive_count; ++i)
-        kinds.insert(primitive(gpu, i).kind);
-    EXPECT_EQ(kinds, (std::set<uint>{PRIMITIVE_TRIANGLE, PRIMITIVE_SPHERE, PRIMITIVE_DISK}));
+    EXPECT_EQ(present({quad, disk}), 1u << PRIMITIVE_TRIANGLES | 1u << PRIMITIVE_DISK);
+    EXPECT_EQ(present({quad, sphere, disk}),
+              1u << PRIMITIVE_TRIANGLES | 1u << PRIMITIVE_SPHERE | 1u << PRIMITIVE_DISK);
 }
 
 TEST(GpuScene, AnEmptySceneIsARootWithoutChildren) {

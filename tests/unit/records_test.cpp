@@ -34,17 +34,25 @@ TEST(Records, TheLowerHalfIsFoldedOver) {
     EXPECT_EQ(high(pack_octahedral(vec3(third, -third, -third))), -21845);
 }
 
-TEST(Records, NormalsCarryTheirMark) {
+TEST(Records, NormalsAreAWordForEachVertex) {
     const std::array<uvec4, NORMALS_WORDS> normals =
-        pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1));
-    EXPECT_EQ(normals[0], uvec4(0x00007FFFu, 0x7FFF0000u, 0u, 1u));
+        pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(-1, 0, 0));
+    EXPECT_EQ(normals[0], uvec4(0x00007FFFu, 0x7FFF0000u, 0u, 0x00008001u));
 }
 
-TEST(Records, KindAndMaterialShareAWord) {
-    const Primitive p{PRIMITIVE_DISK, vec3(1, 2, 3), vec3(4, 5, 6), vec3(7, 8, 9), 10, 0x3FFFFFFFu, 11};
-    EXPECT_EQ(pack(p)[0].w, 10u);
-    EXPECT_EQ(pack(p)[1].w, 0xBFFFFFFFu);  // 2 in the two highest bits, ones below.
-    EXPECT_EQ(pack(p)[2].w, 11u);
+TEST(Records, TheFourthVertexOrTheKindFillsTheLastWords) {
+    const Primitive triangles{PRIMITIVE_TRIANGLES, vec3(1), vec3(2), vec3(3), vec3(4, 5, 6)};
+    EXPECT_EQ(pack(triangles)[0].w, floatBitsToUint(4.0f));
+    EXPECT_EQ(pack(triangles)[1].w, floatBitsToUint(5.0f));
+    EXPECT_EQ(pack(triangles)[2].w, floatBitsToUint(6.0f));
+    const Primitive disk{PRIMITIVE_DISK, vec3(1), vec3(2), vec3(3), vec3(0)};
+    EXPECT_EQ(pack(disk)[0].w, 0x7FC00002u);
+    EXPECT_TRUE(std::isnan(std::bit_cast<float>(pack(disk)[0].w)));
+}
+
+TEST(Records, SmoothAndMaterialShareAWord) {
+    const Surface surface{uvec2(1, 2), 0x7FFFFFFEu, 1u, 3u};
+    EXPECT_EQ(pack(surface)[0], uvec4(1u, 2u, 0xFFFFFFFEu, 3u));
 }
 
 }  // namespace
