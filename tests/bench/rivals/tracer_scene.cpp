@@ -95,8 +95,8 @@ uint32_t TracerScene::add_lamp(const Shape& shape, vec3 p, vec3 e1, vec3 e2, boo
     return uint32_t(lamps.size() - 1);
 }
 
-// Lamps count by area times luminance, the environment by what falls onto a disk as wide as the scene, as
-// candela's do.
+// Lamps count by area times luminance, the environment by what falls onto a disk as wide as the scene but no more
+// than all lamps together, as candela's do.
 void TracerScene::build_lights() {
     map_ = build_environment_map(environment_);
     for (uint32_t y = 0; y <= environment_.size.y; ++y)
@@ -104,7 +104,9 @@ void TracerScene::build_lights() {
     std::vector<double> powers;
     for (const Lamp& lamp : lamps)
         powers.push_back(lamp.area * luminance(lamp.radiance));
-    powers.push_back(0.25 * diagonal * diagonal * map_.irradiance);
+    const double all_lamps = std::accumulate(powers.begin(), powers.end(), 0.0);
+    const double sky = 0.25 * diagonal * diagonal * map_.irradiance;
+    powers.push_back(lamps.empty() ? sky : std::min(sky, all_lamps));
     const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
     has_lights = total > 0.0;
     if (!has_lights) return;

@@ -1,0 +1,23 @@
+# `cmake --install` puts the program into bin, the shared libraries that it brings along into lib, where its run path
+# finds them wherever both are moved to, and the scenes into share; `cpack` in the build folder makes an archive of that.
+#
+# What every system with a Vulkan driver has stays out: glibc and the run-time library of C++, of which a process should
+# have one, and drivers bring theirs.
+include(GNUInstallDirs)
+
+set_target_properties(candela PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+# The old kind of run path, which also serves the libraries that those libraries need.
+target_link_options(candela PRIVATE LINKER:--disable-new-dtags)
+install(TARGETS candela RUNTIME_DEPENDENCY_SET candela_libraries)
+install(RUNTIME_DEPENDENCY_SET candela_libraries
+    PRE_EXCLUDE_REGEXES "^ld-linux" "^linux-vdso" "^lib(c|m|dl|rt|pthread|stdc\\+\\+|gcc_s)\\.so")
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/candela)
+install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${CMAKE_SOURCE_DIR}/LICENSE
+    DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(CPACK_GENERATOR TGZ)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "A path tracer that gives the same picture on any Vulkan device")
+string(TOLOWER "${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR}" system)
+set(CPACK_PACKAGE_FILE_NAME "candela-${PROJECT_VERSION}-${system}")
+set(CPACK_STRIP_FILES ON)
+include(CPack)

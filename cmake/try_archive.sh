@@ -1,0 +1,53 @@
+#!/bin/sh
+# Makes the portable archive and renders from it in a root folder that holds nothing else but glibc, the C++ run-time
+# library and lavapipe; says which versions of the first two it asks for, and refuses newer ones than Debian 12 has.
+# Takes a build with the preset `release`, and root.   usage: sh cmake/try_archive.sh
+set -eu
+cd "$(dirname "$0")/.."
+
+GLIBC=2.36
+GLIBCXX=3.4.30  # GCC 12
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cpack --config build/release/CPackConfig.cmake -B "$folder" >"$folder/cpack.log" || { cat "$folder/cpack.log"; exit 1; }
+archive=$(ls "$folder"/candela-*.tar.gz)
+root=$folder/root
+mkdir -p "$root/opt" "$root/tmp" "$root/proc"
+tar -C "$root/opt" -xzf "$archive"
+home=$(cd "$root" && ls -d opt/candela-*)
+
+# newest NAME: the highest version NAME_... that the program and its libraries ask for.
+newest() {
+    objdump -T "$root/$home/bin/candela" "$root/$home"/lib/lib*.so* |
+        grep -o "[( ]$1_[0-9.]*" | sed "s/.*_//" | sort -uV | tail -n 1
+}
+for pair in "GLIBC $GLIBC" "GLIBCXX $GLIBCXX"; do
+    set -- $pair
+    found=$(newest "$1")
+    echo "The archive asks for $1 $found; $2 is allowed"
+    [ "$(printf '%s\n%s\n' "$found" "$2" | sort -V | tail -n 1)" = "$2" ]
+done
+
+# bring FILE...: copies files, and the shared libraries that they need, to the same places in the root folder.
+bring() {
+    for file in "$@"; do
+        cp -L --parents "$file" "$root"
+        ldd "$file" 2>/dev/null | grep -o '/[^ ]*' | while read -r library; do cp -L --parents "$library" "$root"; done
+    done
+}
+manifest=$(ls /usr/share/vulkan/icd.d/lvp_icd*.json | head -n 1)
+driver=$(grep -o '"library_path": *"[^"]*"' "$manifest" | cut -d '"' -f 4)
+bring "$manifest" "$driver" "$(ldconfig -p | grep -o '/.*/libvulkan\.so\.1$' | head -n 1)"
+# The program's own libraries are in the archive; these are the system's.
+for library in libc.so.6 libm.so.6 libstdc++.so.6 libgcc_s.so.1; do
+    bring "$(ldconfig -p | grep -o "/.*/$library\$" | head -n 1)"
+done
+
+# The dynamic loader asks /proc where the program is.
+unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$@"' sh \
+    "$root" "/$home/bin/candela" render "/$home/share/candela/scenes/cornell-box.json" \
+    --spp 1 --size 64x64 -o /tmp/box.png -o /tmp/box.exr
+test -s "$root/tmp/box.png"
+test -s "$root/tmp/box.exr"
+echo "$(basename "$archive"), $(du -h "$archive" | cut -f 1), rendered the Cornell box in a root folder of its own"
