@@ -15,8 +15,11 @@ constexpr double FIRST_BUDGET = 4096;
 // cheap.
 constexpr double LARGEST_GROWTH = 4;
 
-// Where the image takes several submissions per pass, a pass adds half as many samples as there are, but at
-// most this many: enough to make reading and writing the accumulation image cheap.
+// Where the image takes several submissions per pass, the first pass takes one sample of every pixel, for a
+// quick look; the second goes on to this many, and later ones double them, up to so many at once. Within a
+// pass, neighbours of unequal path lengths each go on with their own next sample; at its end they wait for
+// each other. Passes of half as many samples as there are were seen to cost a seventh more.
+constexpr uint32_t SECOND_PASS_TARGET = 8;
 constexpr uint32_t LARGEST_PASS = 64;
 
 uint32_t whole_groups(double pixels) {
@@ -38,8 +41,9 @@ Schedule::Schedule(uvec2 size, uint32_t first_sample, uint32_t target, double su
 
 void Schedule::begin_pass() {
     const double affordable = budget_ / (double(size_.x) * size_.y);
-    const uint32_t samples = std::max(
-        {1u, std::min(pass_start_ / 2, LARGEST_PASS), uint32_t(std::min(affordable, double(target_)))});
+    const uint32_t usual =
+        pass_start_ == 0 ? 1 : std::clamp(pass_start_, SECOND_PASS_TARGET - 1, LARGEST_PASS);
+    const uint32_t samples = std::max(usual, uint32_t(std::min(affordable, double(target_))));
     pass_target_ = pass_start_ + std::min(samples, target_ - std::min(pass_start_, target_));
     at_ = uvec2(0, 0);
 }
