@@ -131,7 +131,7 @@ Records filled(Fields& fields) {
               .d = vec3(0)};
     r.surface = {.id = fields.u2(),
                  .material = fields.keep(0x2AAAAAA5u),
-                 .smooth_ = fields.keep(1u),
+                 .has_normals = fields.keep(1u),
                  .light = fields.u()};
     r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), vec3(0, -1, 0));
     for (const int i : {0, 1, 2, 3})

@@ -53,7 +53,7 @@ void put_primitive(Primitive p) {
 void put_surface(Surface s) {
     put(s.id);
     put(s.material);
-    put(s.smooth_);
+    put(s.has_normals);
     put(s.light);
 }
 

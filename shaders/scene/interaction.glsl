@@ -54,7 +54,7 @@ Interaction interaction_at(Ray ray, Hit hit) {
         s.p = (1.0 - hit.b.x - hit.b.y) * a + hit.b.x * b + hit.b.y * c;
     }
     s.ns = s.n;
-    if (HAS_NORMALS && surface.smooth_ != 0u) s.ns = shading_normal(hit.place, hit.b, s.n);
+    if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit.place, hit.b, s.n);
     s.wo = -normalize(ray.d);
     s.front = dot(s.wo, s.n) >= 0.0;
     if (!s.front) {

@@ -43,10 +43,10 @@ struct Primitive {
 };
 
 struct Surface {
-    uvec2 id;       // Position in the scene's own order, of each triangle.
-    uint material;  // Index of a material record, below 2^31.
-    uint smooth_;   // 1: has shading normals.
-    uint light;     // Index of a light record, or NO_LIGHT.
+    uvec2 id;          // Position in the scene's own order, of each triangle.
+    uint material;     // Index of a material record, below 2^31.
+    uint has_normals;  // 1: has shading normals.
+    uint light;        // Index of a light record, or NO_LIGHT.
 };
 
 #ifdef __cplusplus
@@ -57,7 +57,7 @@ inline std::array<uvec4, PRIMITIVE_WORDS> pack(const Primitive& p) {
 }
 
 inline std::array<uvec4, SURFACE_WORDS> pack(const Surface& s) {
-    return {uvec4(s.id.x, s.id.y, s.material | s.smooth_ * SURFACE_SMOOTH_BIT, s.light)};
+    return {uvec4(s.id.x, s.id.y, s.material | s.has_normals * SURFACE_SMOOTH_BIT, s.light)};
 }
 
 // Octahedral map of a unit vector to 2 x 16 signed bits. Ref: Cigolle et al. 2014, A Survey of Efficient

@@ -93,7 +93,7 @@ TEST(Flatten, EveryPrimitiveHasARecordOfNormalsIfOneIsSmooth) {
     ASSERT_EQ(flat.normals.size(), flat.primitives.size());
     for (size_t i = 0; i < flat.normals.size(); ++i) {
         const bool of_the_mesh = flat.primitives[i].kind == PRIMITIVE_TRIANGLES;
-        EXPECT_EQ(flat.surfaces[i].smooth_, of_the_mesh ? 1u : 0u);
+        EXPECT_EQ(flat.surfaces[i].has_normals, of_the_mesh ? 1u : 0u);
         if (!of_the_mesh) {
             EXPECT_EQ(flat.normals[i][0], uvec4(0));
         }

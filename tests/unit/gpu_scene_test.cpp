@@ -223,7 +223,7 @@ TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
     for (uint32_t id = 0; id < all.size(); ++id) {
         const Triangle& t = all[id];
         const bool of_the_sphere = id >= 2 && id < 2 + smooth.triangles.size();
-        EXPECT_EQ(t.surface.smooth_, of_the_sphere ? 1u : 0u);
+        EXPECT_EQ(t.surface.has_normals, of_the_sphere ? 1u : 0u);
         EXPECT_EQ(t.normals, of_the_sphere
                                  ? uvec3(pack_octahedral(t.a), pack_octahedral(t.b), pack_octahedral(t.c))
                                  : uvec3(0));
