@@ -48,6 +48,23 @@ TEST_F(TraversalTest, OfEqualTrianglesTheFirstInLeafOrderWins) {
               5000u);
 }
 
+// A narrow V whose sides are one primitive: a ray from above meets one first, a ray from below the other.
+TEST_F(TraversalTest, OfTwoTrianglesWithACommonEdgeTheNearerOneIsHit) {
+    const TriangleMesh mesh{
+        .positions = {vec3(0, 0, 0), vec3(1, 0.1f, 0.5f), vec3(0, 0, 1), vec3(1, -0.1f, 0.5f)},
+        .normals = {},
+        .triangles = {uvec3(0, 1, 2), uvec3(0, 2, 3)}};
+    ASSERT_EQ(build_gpu_scene(scene_of_mesh(mesh)).primitive_count, 1u);
+    Rays rays;
+    add(rays, vec3(0.5f, 5, 0.5f), vec3(0, -1, 0));
+    add(rays, vec3(0.5f, -5, 0.5f), vec3(0, 1, 0));
+    const std::vector<TraversalResult> results = expect_brute_force(scene_of_mesh(mesh), rays);
+    for (const uint32_t i : {0u, 1u}) {
+        EXPECT_EQ(results[i].id, i);
+        EXPECT_NEAR(results[i].t, 4.95f, 1e-5f);
+    }
+}
+
 // Triangles from 1 mm to 1 km in one scene.
 TEST_F(TraversalTest, AMillionfoldRatioOfSizes) {
     Random random(21);

@@ -89,6 +89,7 @@ GROUPS = [
         ("the distance of a sliver not kept within its box", TRIANGLE, "t0 = min(max(t0, begin), end);", ""),
         ("of two triangles always the first", TRIANGLE, "bool second = meets1 && !(meets0 && t0 <= t1);",
          "bool second = !meets0;"),
-        ("the first triangle's normals on the second", INTERACTION, "normals.yz = normals.zw;", ""),
+        ("the first triangle's normals on the second", INTERACTION, "normals.yz = normals.zw;",
+         "normals.yz = normals.yz;"),
     ]),
 ]
