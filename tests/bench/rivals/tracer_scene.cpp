@@ -95,8 +95,8 @@ uint32_t TracerScene::add_lamp(const Shape& shape, vec3 p, vec3 e1, vec3 e2, boo
     return uint32_t(lamps.size() - 1);
 }
 
-// Lamps count by area times luminance, the environment by what falls onto a disk as wide as the scene but no more
-// than all lamps together, as candela's do.
+// Lamps count by area times luminance, the environment by what falls onto a disk as wide as the scene but no
+// more than all lamps together, as candela's do.
 void TracerScene::build_lights() {
     map_ = build_environment_map(environment_);
     for (uint32_t y = 0; y <= environment_.size.y; ++y)
