@@ -9,7 +9,7 @@
 #include <memory>
 #include <sstream>
 #include <thread>
-#include <tuple>
+#include <utility>
 
 #include "base/error.h"
 #include "bvh/measure.h"

@@ -225,9 +225,8 @@ Command add_bench_command(CLI::App& app) {
     arguments->add_to(*command);
     command->footer(
         "traversal: rays alone, in the Cornell box and in meshes; beside Embree if built with it.\n"
-        "build: the BVH of those meshes, and its bytes on the device, all included. Finer rival: Embree\n"
-        "splits down to single triangles where that lowers the SAH cost; like leaves: its leaves have\n"
-        "three triangles, as candela's have.\n"
+        "build: pairing the triangles of those meshes and building their BVH, beside Embree's over the\n"
+        "triangles; building alone, both over the pairs, with the SAH cost; and all bytes on the device.\n"
         "render: samples per second and rays per sample of SCENE.\n"
         "first-pixel: all of `candela render SCENE --spp 1 --size 64x64`, with and without caches.\n"
         "relMSE: mean over pixels and channels of (x - r)^2 / (r^2 + 0.01 m^2), r the reference and m\n"

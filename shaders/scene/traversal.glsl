@@ -86,7 +86,7 @@ Pending pending_unpack(uint word) {
     return Pending(word & (BVH_MAX_NODES - 1u), (word >> 24u) & 63u, word >> 30u);
 }
 
-// The stack of bvh_traverse. One word per level of the tree, not one per child: on software Vulkan a store to an
+// The stack of bvh_advance. One word per level of the tree, not one per child: on software Vulkan a store to an
 // indexed array is a loop over lanes with a branch in each, and was seen to take half of all time. Handed to
 // pending_next as an argument it would be copied.
 uint stack[BVH_STACK_SIZE];
