@@ -1,6 +1,7 @@
 // See environment_map.h.
 #include "render/environment_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -31,6 +32,8 @@ EnvironmentMap build_environment_map(const Environment& environment) {
     }
     map.irradiance = std::accumulate(weights.begin(), weights.end(), 0.0);
     if (map.irradiance > 0.0) map.alias = build_alias_table(weights);
+    map.even = std::ranges::all_of(environment.radiance,
+                                   [&](vec3 radiance) { return radiance == environment.radiance[0]; });
     map.texels.reserve(environment.radiance.size());
     for (const vec3 radiance : environment.radiance) {
         const double pdf = map.irradiance > 0.0 ? luminance(radiance) / map.irradiance : 0.0;

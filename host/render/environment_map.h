@@ -14,6 +14,7 @@ struct EnvironmentMap {
     std::vector<EnvironmentTexel> texels;
     std::vector<AliasEntry> alias;  // Chooses a texel; empty for a black environment.
     double irradiance = 0.0;        // Luminance, integrated over the whole sphere [W/m^2].
+    bool even = false;              // The same radiance from everywhere.
 };
 
 EnvironmentMap build_environment_map(const Environment& environment);

@@ -60,9 +60,13 @@ Bvh build_bvh_over(const std::vector<Primitive>& primitives) {
 // samples at least: a large floor takes much light from the sky and yet is no brighter for it, and half too
 // few samples cost less than ten times too few. Ref: Pharr, Jakob and Humphreys 2023, Physically Based
 // Rendering, section 12.5.
-void add_environment_light(FlatScene& flat, double irradiance, const Box& box) {
+//
+// An even sky is none of the lights: BSDF samples find it as well as any, and light samples for it would be
+// taken from the lamps.
+void add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box& box) {
+    if (map.even) return;
     const double radius = box.is_empty() ? 0.0 : 0.5 * length(glm::dvec3(box.extent()));
-    double power = radius * radius * irradiance;
+    double power = radius * radius * map.irradiance;
     if (power == 0.0) return;
     if (!flat.powers.empty()) {
         power = std::min(power, std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0));
@@ -109,7 +113,7 @@ GpuScene build_gpu_scene(const Scene& scene) {
     EnvironmentMap map;
     if (scene.environment) {
         map = build_environment_map(*scene.environment);
-        add_environment_light(flat, map.irradiance, bvh.bounds);
+        add_environment_light(flat, map, bvh.bounds);
         gpu.environment = scene.environment->visible ? ENVIRONMENT_VISIBLE : ENVIRONMENT_HIDDEN;
         gpu.environment_size = scene.environment->size;
         gpu.environment_rotation = scene.environment->rotation;

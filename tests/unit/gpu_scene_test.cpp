@@ -256,12 +256,12 @@ EnvironmentTexel texel(const GpuScene& gpu, uint32_t i) {
     return {floats(w), std::bit_cast<float>(w.w)};
 }
 
-// The power of a sky of radiance 1, over pi, on the sphere around the square's box, whose radius is sqrt(2) /
-// 2, is 1/2 * 4 pi; that of the square is 10.
+// The power of a sky of luminance 1, over pi, on the sphere around the square's box, whose radius is sqrt(2)
+// / 2, is 1/2 * 4 pi; that of the square is 10.
 TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
     Scene scene = scene_of({emitter(SQUARE, vec3(10))});
-    scene.environment =
-        Environment{.size = {3, 1}, .radiance = {vec3(1), vec3(1), vec3(1)}, .rotation = 0.5f};
+    const std::vector<vec3> radiance{vec3(1), vec3(1), vec3(1.5f, 0.6089f / 0.7152f, 1)};
+    scene.environment = Environment{.size = {3, 1}, .radiance = radiance, .rotation = 0.5f};
     const GpuScene gpu = build_gpu_scene(scene);
     ASSERT_EQ(gpu.light_count, 2u);
     EXPECT_EQ(light(gpu, 1).kind, LIGHT_ENVIRONMENT);
@@ -273,7 +273,7 @@ TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
     EXPECT_NEAR(light_probabilities(gpu)[1], pmf, 1e-6);
     EXPECT_NEAR(light(gpu, 0).pdf_area, 1.0 - pmf, 1e-6);
     for (const uint32_t i : {0u, 1u, 2u}) {
-        EXPECT_EQ(texel(gpu, i).radiance, vec3(1));
+        EXPECT_EQ(texel(gpu, i).radiance, radiance[i]);
         EXPECT_NEAR(texel(gpu, i).pdf, pmf / (4.0 * M_PI), 1e-7);
         // All weights are equal: whichever index a column gives, all three come out alike.
         EXPECT_LT(entry(gpu, gpu.table_starts.environment_alias, i).alias, 3u);
@@ -288,27 +288,39 @@ TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
 
 TEST(GpuScene, TheSkyIsChosenForHalfOfTheSamplesAtMost) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1)), emitter(SQUARE, vec3(2))});
-    scene.environment = Environment{.size = {1, 1}, .radiance = {vec3(100)}};
+    scene.environment = Environment{.size = {2, 1}, .radiance = {vec3(50), vec3(150)}};
     const GpuScene gpu = build_gpu_scene(scene);
     const std::vector<double> chosen = light_probabilities(gpu);
     EXPECT_NEAR(chosen[0], 1.0 / 6.0, 1e-6);
     EXPECT_NEAR(chosen[1], 2.0 / 6.0, 1e-6);
     EXPECT_NEAR(chosen[2], 0.5, 1e-6);
     EXPECT_NEAR(light(gpu, 0).pdf_area, 1.0 / 6.0, 1e-6);
-    EXPECT_NEAR(texel(gpu, 0).pdf, 0.5 / (4.0 * M_PI), 1e-7);
+    EXPECT_NEAR(texel(gpu, 0).pdf, 0.5 * 0.5 / (4.0 * M_PI), 1e-7);
 }
 
-TEST(GpuScene, ASkyThatLightsNothingIsNotSampled) {
+TEST(GpuScene, ASkyThatIsEvenOrLightsNothingIsNotSampled) {
     Scene black = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
     black.environment = Environment{.size = {1, 1}, .radiance = {vec3(0)}};
     Scene empty = scene_of({});
-    empty.environment = Environment{.size = {1, 1}, .radiance = {vec3(1)}};
-    for (const Scene& scene : {black, empty}) {
+    empty.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(2)}};
+    Scene even = black;
+    even.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(1)}};
+    for (const Scene& scene : {black, empty, even}) {
         const GpuScene gpu = build_gpu_scene(scene);
         EXPECT_EQ(gpu.light_count, 0u);
         EXPECT_EQ(gpu.environment, ENVIRONMENT_VISIBLE);
         EXPECT_EQ(texel(gpu, 0).pdf, 0.0f);
     }
+}
+
+TEST(GpuScene, AnEvenSkyLeavesAllSamplesToTheLamps) {
+    Scene scene = scene_of({emitter(SQUARE, vec3(1))});
+    scene.environment = Environment{.size = {1, 1}, .radiance = {vec3(100)}};
+    const GpuScene gpu = build_gpu_scene(scene);
+    ASSERT_EQ(gpu.light_count, 1u);
+    EXPECT_EQ(light(gpu, 0).pdf_area, 1.0f);
+    EXPECT_EQ(texel(gpu, 0).radiance, vec3(100));
+    EXPECT_EQ(texel(gpu, 0).pdf, 0.0f);
 }
 
 TEST(GpuScene, EveryMaterialHasItsRecord) {

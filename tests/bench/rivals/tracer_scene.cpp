@@ -96,7 +96,7 @@ uint32_t TracerScene::add_lamp(const Shape& shape, vec3 p, vec3 e1, vec3 e2, boo
 }
 
 // Lamps count by area times luminance, the environment by what falls onto a disk as wide as the scene but no
-// more than all lamps together, as candela's do.
+// more than all lamps together and, if it is even, for nothing, as candela's do.
 void TracerScene::build_lights() {
     map_ = build_environment_map(environment_);
     for (uint32_t y = 0; y <= environment_.size.y; ++y)
@@ -106,15 +106,15 @@ void TracerScene::build_lights() {
         powers.push_back(lamp.area * luminance(lamp.radiance));
     const double all_lamps = std::accumulate(powers.begin(), powers.end(), 0.0);
     const double sky = 0.25 * diagonal * diagonal * map_.irradiance;
-    powers.push_back(lamps.empty() ? sky : std::min(sky, all_lamps));
+    powers.push_back(map_.even ? 0.0 : lamps.empty() ? sky : std::min(sky, all_lamps));
     const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
     has_lights = total > 0.0;
+    for (EnvironmentTexel& texel : map_.texels)
+        texel.pdf *= has_lights ? float(powers.back() / total) : 0.0f;
     if (!has_lights) return;
     alias_ = build_alias_table(powers);
     for (size_t i = 0; i < lamps.size(); ++i)
         lamps[i].pdf_area = float(powers[i] / total / lamps[i].area);
-    for (EnvironmentTexel& texel : map_.texels)
-        texel.pdf *= float(powers.back() / total);
 }
 
 void TracerScene::build_embree() {
