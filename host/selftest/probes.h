@@ -43,11 +43,10 @@ struct BsdfResult {
     float pdf_of_wi;
 };
 
-// light_sample: random bits for a light sample from a reference point: one word chooses the light, two the
-// point.
+// light_sample: random bits for a light sample from a reference point.
 struct LightItem {
     vec3 from{0};
-    uint32_t uc = 0;
+    uint32_t fill = 0;  // 8 bits count.
     uvec2 u{0};
     uvec2 unused{0};
 };

@@ -4,6 +4,7 @@
 
 #include "base/exponential.glsl"
 #include "base/math.glsl"
+#include "shared/light.h"
 
 // Uniform point on the unit disk from u in [0,1)^2, area-preserving and continuous; density 1/pi [1/m^2].
 // Ref: Shirley and Chiu 1997, A Low Distortion Map Between Disk and Square.
@@ -86,6 +87,20 @@ uvec2 warp_alias_column(uint bits, uint n) {
     uint column, fraction;
     umulExtended(bits, n, column, fraction);
     return uvec2(column, fraction);
+}
+
+// What an alias table chose.
+struct AliasChoice {
+    uint i;
+    float rest;  // Uniform in [0, 1): what the choice has left of the random bits, a multiple of 2^-24.
+};
+
+// The choice of a column (index and the 32 bits that decide within it), whose entry is given.
+AliasChoice warp_alias_choice(uvec2 column, AliasEntry entry) {
+    bool keep = column.y < entry.threshold;
+    float rest = keep ? float(column.y) / float(entry.threshold)
+                      : float(column.y - entry.threshold) / max(1.0, 4294967296.0 - float(entry.threshold));
+    return AliasChoice(keep ? column.x : entry.alias, min(rest, 1.0 - 1.0 / 16777216.0));
 }
 
 // Weight of a sample drawn with density pdf where another strategy has density pdf_other (same measure), one

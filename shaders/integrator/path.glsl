@@ -87,9 +87,9 @@ vec3 path_transmittance(Path path, float distance) {
 
 // The ray from s towards a point on a light, and the radiance that this point sends through s to the path's beginning,
 // divided by its density, weighted.
-ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, MaterialRecord material, uint uc, uvec2 u) {
+ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, MaterialRecord material, uvec2 u, uint fill) {
     vec3 from = interaction_spawn_origin(s, true);
-    LightSample light = light_sample_li(from, uc, u);
+    LightSample light = light_sample_li(from, u, fill);
     vec3 wi = frame_to_local(frame, light.wi);
     vec3 Ld = path.beta * bsdf_f(material, wo, wi) * abs(wi.z) * light.Li;
     // The light is in the medium through which the path came to s.
@@ -152,7 +152,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
 
     // Add direct light.
     if (ESTIMATOR != ESTIMATOR_BSDF) {
-        shadow = direct_light(path, s, frame, wo, seen, choice.x, sampler_pair(random, pair + PAIR_LIGHT));
+        shadow = direct_light(path, s, frame, wo, seen, sampler_pair(random, pair + PAIR_LIGHT), choice.x);
     }
 
     // Scatter.
@@ -163,7 +163,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     // Ref: Arvo and Kirk 1990, Particle Transport and Image Synthesis.
     if (path.depth >= parameters.rr_depth) {
         float survival = min(RR_MAX_SURVIVAL, max_component(path.beta) * path.eta_scale);
-        if (unit_float(sampler_pair(random, pair + PAIR_ROULETTE).x) >= survival) return false;
+        if (unit_float(choice.x) >= survival) return false;
         path.beta /= survival;
     }
     ++path.depth;

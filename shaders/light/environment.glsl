@@ -42,16 +42,12 @@ vec3 environment_direction(uvec2 texel, vec2 within) {
 LightSample environment_light_sample_li(uvec2 u) {
     uvec2 size = scene_parameters().environment_size;
     uvec2 column = warp_alias_column(u.x, size.x * size.y);
-    AliasEntry entry = scene_environment_alias(column.x);
     // What the choices leave of the random bits is uniform again, and places the point within the texel.
-    bool keep = u.y < entry.threshold;
-    uint chosen = keep ? column.x : entry.alias;
-    float rest = keep ? float(u.y) / float(entry.threshold)
-                      : float(u.y - entry.threshold) / max(1.0, 4294967296.0 - float(entry.threshold));
-    vec2 within = vec2(float(column.y >> 8u) * (1.0 / 16777216.0), min(rest, 1.0 - 1.0 / 16777216.0));
-    EnvironmentTexel texel = scene_environment_texel(chosen);
+    AliasChoice choice = warp_alias_choice(uvec2(column.x, u.y), scene_environment_alias(column.x));
+    vec2 within = vec2(float(column.y >> 8u) * (1.0 / 16777216.0), choice.rest);
+    EnvironmentTexel texel = scene_environment_texel(choice.i);
     LightSample s;
-    s.wi = environment_direction(uvec2(chosen % size.x, chosen / size.x), within);
+    s.wi = environment_direction(uvec2(choice.i % size.x, choice.i / size.x), within);
     s.Li = texel.radiance;
     s.pdf = texel.pdf;
     s.shadow = s.wi;

@@ -10,13 +10,15 @@
 
 const bool HAS_SPHERES = (PRIMITIVES & 1u << PRIMITIVE_SPHERE) != 0u;
 
-// A point on one of the lights, seen from p_reference; uc are 32 random bits that choose the light, u 2 x 32 that
-// choose the point. The scene has at least one light.
+// A point on one of the lights, seen from p_reference, from 2 x 32 random bits. The first word chooses the light as well,
+// and what the choice leaves of it is uniform again: so the points of a light are as well spread as those of a sampler
+// are. The 8 low bits of `fill` are random too, and become those of the word. The scene has at least one light.
 // Ref: Walker 1977, An Efficient Method for Generating Discrete Random Variables with General Distributions.
-LightSample light_sample_li(vec3 p_reference, uint uc, uvec2 u) {
-    uvec2 column = warp_alias_column(uc, scene_parameters().light_count);
-    AliasEntry entry = scene_light_alias(column.x);
-    Light l = scene_light(column.y < entry.threshold ? column.x : entry.alias);
+LightSample light_sample_li(vec3 p_reference, uvec2 u, uint fill) {
+    uvec2 column = warp_alias_column(u.x, scene_parameters().light_count);
+    AliasChoice choice = warp_alias_choice(column, scene_light_alias(column.x));
+    u.x = uint(choice.rest * 16777216.0) << 8u | (fill & 255u);
+    Light l = scene_light(choice.i);
     if (ENVIRONMENT != ENVIRONMENT_NONE && l.kind == LIGHT_ENVIRONMENT) return environment_light_sample_li(u);
     if (HAS_SPHERES && l.kind == LIGHT_SPHERE) return sphere_light_sample_li(l, p_reference, unit_float(u));
     return area_light_sample_li(l, p_reference, unit_float(u));

@@ -1,4 +1,4 @@
-// For selftest/lights.h: item (reference point, 32 bits for the light; 2 x 32 bits for the point). A light sample
+// For selftest/lights.h: item (reference point, 8 random bits; 2 x 32 more). A light sample
 // from there; whether its shadow ray is blocked; and what a ray in its direction meets: which light, its radiance and
 // the density that it has for light samples.
 #version 460
@@ -13,7 +13,7 @@
 void main() {
     if (past_end()) return;
     vec3 from = item_floats(0u).xyz;
-    LightSample s = light_sample_li(from, item(0u).w, item(1u).xy);
+    LightSample s = light_sample_li(from, item(1u).xy, item(0u).w);
     put(s.wi);
     put(s.Li);
     put(s.pdf);

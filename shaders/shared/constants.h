@@ -33,11 +33,10 @@ const uint SAMPLER_SOBOL = 2u;
 const uint PAIR_PIXEL = 0u;
 const uint PAIR_LENS = 1u;
 const uint PAIR_FIRST_BOUNCE = 2u;
-const uint PAIR_LIGHT = 0u;     // Point on the light.
+const uint PAIR_LIGHT = 0u;     // Which light, and the point on it.
 const uint PAIR_BSDF = 1u;      // Scattered direction.
-const uint PAIR_CHOICE = 2u;    // x: which light; y: which lobe of the BSDF.
-const uint PAIR_ROULETTE = 3u;  // x: survival.
-const uint PAIRS_PER_BOUNCE = 4u;
+const uint PAIR_CHOICE = 2u;    // x: survival, and its 8 low bits fill PAIR_LIGHT; y: which lobe of the BSDF.
+const uint PAIRS_PER_BOUNCE = 3u;
 
 // Layers of the accumulation image (rgba32f). The value of a sum is sum - compensation (Kahan).
 const uint LAYER_L = 0u;                    // rgb: sum of L; a: how many camera rays hit something visible.

@@ -67,7 +67,7 @@ class LightRobustnessTest : public LightTest {
         std::vector<LightItem> items(3000);
         for (LightItem& item : items) {
             item.from = reference(p, e1, e2);
-            item.uc = bits();
+            item.fill = bits();
             item.u.x = bits();
             item.u.y = bits();
         }
