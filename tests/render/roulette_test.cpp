@@ -34,41 +34,64 @@ class RouletteTest : public RenderTest {
     }
 };
 
-// In a closed box a path goes on with the share of the light that it carries: the first d vertices leave that
-// at a^d, the roulette of the next one takes a^(d + 1) for the probability and restores the weight to 1, and
-// all others have the probability a. After the d + 1 certain rays, there are k > 0 more with the probability
-// a^(d + 1) a^(k - 1) (1 - a).
+// In a closed box all paths carry the same: a^d after d vertices without roulette. Then each vertex leaves a
+// times that share, of which the root is the probability to go on and, by division, the new share. So the
+// number of rays has the probabilities of a product, until that is nothing.
 TEST_F(RouletteTest, APathGoesOnWithWhatItCarries) {
     for (const float albedo : {0.3f, 0.8f}) {
         for (const uint32_t rr_depth : {0u, 3u}) {
             SCOPED_TRACE(testing::Message() << "albedo " << albedo << " from bounce " << rr_depth);
-            const auto a = double(albedo);
             const double certain = rr_depth + 1.0;
-            const double share = std::pow(a, certain);
-            const CountMoments more{share / (1.0 - a), share * (1.0 + a) / ((1.0 - a) * (1.0 - a))};
-            expect_rays(furnace(albedo), settings(rr_depth),
-                        {certain + more.mean, certain * certain + 2.0 * certain * more.mean + more.square});
+            CountMoments rays{certain, certain * certain};
+            double share = std::pow(double(albedo), rr_depth);
+            double reached = 1.0;  // The probability of n rays.
+            for (double n = certain + 1.0; reached > 1e-12; ++n) {
+                share = std::sqrt(double(albedo) * share);
+                reached *= share;
+                rays.mean += reached;
+                rays.square += reached * (2.0 * n - 1.0);
+            }
+            expect_rays(furnace(albedo), settings(rr_depth), rays);
         }
     }
 }
 
-// Within glass a path from outside weighs 1 / eta^2 only, though nothing is lost: that must not end it. It
-// always survives with the most that is allowed, s. With the reflectance R and T = 1 - R, a ray that enters
-// the slab is the first of M = 1 + (1 with probability s T, as many again with s R, else 0), and the camera's
-// is the first of 1 + (1 with s R, M with s T, else 0).
-TEST_F(RouletteTest, ClearGlassEndsNoMorePathsThanItMust) {
-    constexpr double S = 0.95;  // RR_MAX_SURVIVAL of path.glsl.
+constexpr double S = 0.99;  // RR_MAX_SURVIVAL of path.glsl.
+
+// The moments if one ray is certain, and a second and a third have these probabilities.
+CountMoments up_to_three(double second, double third) {
+    return {1.0 + second + third, 1.0 + 3.0 * second + 5.0 * third};
+}
+
+// Within glass a path from outside weighs 1 / eta^2 only, though nothing is lost: that must not end it where
+// it meets something white.
+TEST_F(RouletteTest, WithinClearGlassNoMorePathsEndThanMust) {
     constexpr float IOR = 1.8f;
     Scene scene = scene_with_camera(vec3(0, 2, 0), vec3(0), 1e-3f);
     scene.environment = constant_environment(vec3(1));
     const uint32_t glass = add_material(scene, DielectricMaterial{.ior = IOR, .fresnel = Fresnel::exact});
+    const uint32_t white = add_material(scene, DiffuseMaterial{vec3(1)});
     add_shape(scene, Disk{vec3(0), vec3(0, 0, 9), vec3(9, 0, 0)}, glass);
-    add_shape(scene, Disk{vec3(0, -1, 0), vec3(9, 0, 0), vec3(0, 0, 9)}, glass);
+    add_shape(scene, Disk{vec3(0, -1, 0), vec3(0, 0, 9), vec3(9, 0, 0)}, white);
+    RenderSettings two = settings(0);
+    two.max_depth = 2;
     const double r = std::pow((double(IOR) - 1.0) / (double(IOR) + 1.0), 2.0);
-    const double sr = S * r, st = S * (1.0 - r);
-    const double m = (1.0 + st) / (1.0 - sr);
-    const double m2 = (2.0 * m - 1.0 + st) / (1.0 - sr);
-    expect_rays(scene, settings(0), {1.0 + sr + st * m, 1.0 + 2.0 * (sr + st * m) + sr + st * m2});
+    expect_rays(scene, two, up_to_three(S, S * (1.0 - r) * S));
+}
+
+// Only the path itself can find what a mirror shows: it goes on, however dark the mirror is. Behind it, at a
+// wall, it counts what the path carries.
+TEST_F(RouletteTest, AMirrorEndsNoMorePathsThanItMust) {
+    constexpr float REFLECTANCE = 0.25f;
+    Scene scene = scene_with_camera(vec3(0, 2, 0), vec3(0), 1e-3f);
+    scene.environment = constant_environment(vec3(1));
+    const uint32_t mirror = add_material(scene, MirrorMaterial{vec3(REFLECTANCE)});
+    const uint32_t white = add_material(scene, DiffuseMaterial{vec3(1)});
+    add_shape(scene, Disk{vec3(0), vec3(0, 0, 9), vec3(9, 0, 0)}, mirror);
+    add_shape(scene, Disk{vec3(0, 3, 0), vec3(9, 0, 0), vec3(0, 0, 9)}, white);
+    RenderSettings two = settings(0);
+    two.max_depth = 2;
+    expect_rays(scene, two, up_to_three(S, S * std::sqrt(double(REFLECTANCE) / S)));
 }
 
 }  // namespace

@@ -187,8 +187,8 @@ vec3 Tracer::radiance(Ray ray, Random& random) {
             path.L += path.beta * direct_light(vertex, frame, wo, random);
         }
         if (!scatter(path, vertex, frame, wo, random)) return path.L;
-        const float survival = max_component(path.beta) * path.eta_scale;
-        if (depth >= settings_.rr_depth && survival < 1.0f) {
+        const float survival = std::sqrt(max_component(path.beta) * path.eta_scale);
+        if (depth >= settings_.rr_depth && vertex.surface->model != Model::glass && survival < 1.0f) {
             if (random.number() >= survival) return path.L;
             path.beta *= 1.0f / survival;
         }
