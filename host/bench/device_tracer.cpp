@@ -82,9 +82,8 @@ class DeviceTracer : public RayTracer {
         auto bindings = scene_.bindings();
         bindings.push_back({PROBE_ITEMS, vk::BindingType::texel_buffer});
         bindings.push_back({PROBE_RESULTS, vk::BindingType::storage_buffer});
-        std::array<uint32_t, CONSTANT_COUNT> constants{};
-        constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
-        vk::Kernel kernel(*device_, spirv, bindings, sizeof(ProbeCounts), constants, "bench");
+        vk::Kernel kernel(*device_, spirv, bindings, sizeof(ProbeCounts), traversal_constants(scene),
+                          "bench");
         scene_.bind_to(kernel);
         return kernel;
     }

@@ -55,43 +55,44 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
     return leaf;
 }
 
-// Adds the leaf's primitives to the order, and returns the reference to them.
-uint32_t add_leaf(const EmbreeNode& leaf, Bvh& bvh) {
-    const auto first = uint32_t(bvh.order.size());
-    for (unsigned i = 0; i < leaf.count; ++i)
-        bvh.order.push_back(leaf.primitives[i].primID);
-    return leaf_reference(first, leaf.count);
-}
-
-// Adds a node and all below it, depth first.
-void add_node(const EmbreeNode& node, Bvh& bvh) {
-    const size_t index = bvh.nodes.size();
-    bvh.nodes.emplace_back();
-    BvhNode record = quantise(std::span(node.boxes).first(node.count));
+// Puts a node at `index`, and all below it at the end, depth first.
+void put_node(const EmbreeNode& node, uint32_t index, Bvh& bvh) {
+    const auto first_node = uint32_t(bvh.nodes.size()), first_primitive = uint32_t(bvh.order.size());
+    std::vector<const EmbreeNode*> nodes;
+    std::vector<Box> boxes, of_leaves;
     for (unsigned i = 0; i < node.count; ++i) {
         const EmbreeNode& child = *node.children[i];
-        if (child.primitives != nullptr) {
-            record.child[int(i)] = add_leaf(child, bvh);
+        if (child.primitives == nullptr) {
+            nodes.push_back(&child);
+            boxes.push_back(node.boxes[i]);
         } else {
-            record.child[int(i)] = uint32_t(bvh.nodes.size());
-            add_node(child, bvh);
+            assert(child.count == 1);
+            bvh.order.push_back(child.primitives->primID);
+            of_leaves.push_back(node.boxes[i]);
         }
     }
+    boxes.insert(boxes.end(), of_leaves.begin(), of_leaves.end());
+    BvhNode record = quantise(boxes);
+    record.children = bvh_children(uint32_t(nodes.size()), first_node, node.count, first_primitive);
     bvh.nodes[index] = pack(record);
+    bvh.nodes.resize(first_node + nodes.size());
+    for (size_t i = 0; i < nodes.size(); ++i)
+        put_node(*nodes[i], first_node + uint32_t(i), bvh);
 }
 
 Bvh to_bvh(const EmbreeNode& root, std::span<const Box> boxes) {
     Bvh bvh;
+    bvh.nodes.resize(1);
     for (const Box& box : boxes)
         bvh.bounds.extend(box);
-    if (root.primitives != nullptr) {  // All in one leaf, which in our records hangs below a node.
+    if (root.primitives != nullptr) {  // A leaf, which in our records hangs below a node.
         EmbreeNode node;
         node.count = 1;
         node.children[0] = &root;
         node.boxes[0] = bvh.bounds;
-        add_node(node, bvh);
+        put_node(node, 0, bvh);
     } else {
-        add_node(root, bvh);
+        put_node(root, 0, bvh);
     }
     const BvhMeasures measures = measure(bvh.nodes, bvh.bounds);
     bvh.depth = measures.depth;
@@ -122,7 +123,7 @@ std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes) {
     arguments.maxDepth = 64;
     arguments.sahBlockSize = 1;
     arguments.minLeafSize = 1;
-    arguments.maxLeafSize = BVH_LEAF_SIZE;
+    arguments.maxLeafSize = 1;
     arguments.traversalCost = float(BVH_NODE_COST);
     arguments.intersectionCost = 1.0f;
     arguments.bvh = tree;

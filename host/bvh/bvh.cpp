@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <thread>
@@ -27,10 +28,11 @@ constexpr uint32_t TASK_SIZE = 8192;
 // Coordinates below it leave room to add, subtract and scale boxes in float arithmetic.
 constexpr float MAX_COORDINATE = 1e37f;
 
-// A piece of the tree in depth-first order, with references from its first node. Either a whole subtree, or
-// one node whose children stand in pieces of their own.
+// A piece of the tree, with references from its first node and its first position. Either a whole subtree, or
+// one node of whose children those that are nodes begin pieces of their own.
 struct Piece {
     std::vector<PackedBvhNode> nodes;
+    std::vector<uint32_t> order;
     std::array<std::unique_ptr<Piece>, BVH_WIDTH> children;
 };
 
@@ -45,20 +47,22 @@ struct Task {
     Piece* piece = nullptr;  // Receives the result.
 };
 
-// The parts of a range that become the children of one node.
+// The parts of a range that become the children of one node; the first `nodes` of them nodes, the others
+// leaves.
 struct Children {
     std::array<PrimitiveRange, BVH_WIDTH> ranges;
     uint32_t count = 0;
+    uint32_t nodes = 0;
 };
 
 bool makes_leaf(const PrimitiveRange& range) {
-    return range.count <= BVH_LEAF_SIZE;
+    return range.count == 1;
 }
 
 // Levels of nodes over `count` primitives if each splits into four equal parts.
 uint32_t balanced_depth(uint32_t count) {
     uint32_t depth = 0;
-    for (; count > BVH_LEAF_SIZE; count = (count + 3) / 4)
+    for (; count > 1; count = (count + 3) / 4)
         ++depth;
     return depth;
 }
@@ -66,15 +70,15 @@ uint32_t balanced_depth(uint32_t count) {
 // Splits the range of a node, then the part that most rays would meet (the largest surface), until there are
 // four parts. The heuristic may take a single primitive
 // off at every split (boxes that grow exponentially). So wherever a child of all primitives but one might
-// be too deep for what is left of BVH_STACK_SIZE levels, the node is split into equal parts, and those fit:
+// be too deep for what is left of BVH_MAX_DEPTH levels, the node is split into equal parts, and those fit:
 // nodes on the way down kept to this rule.
 Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
-    const bool balanced = job.depth + 1 + balanced_depth(job.range.count - 1) >= BVH_STACK_SIZE;
+    const bool balanced = job.depth + 1 + balanced_depth(job.range.count - 1) >= BVH_MAX_DEPTH;
     const auto priority = [balanced](const PrimitiveRange& range) {
         return std::make_pair(balanced ? 0.0 : half_area(Box(range.bounds)), range.count);
     };
 
-    Children children{{job.range}, 1};
+    Children children{{job.range}, 1, 0};
     while (children.count < BVH_WIDTH) {
         PrimitiveRange* chosen = nullptr;
         for (PrimitiveRange& range : std::span(children.ranges).first(children.count)) {
@@ -85,41 +89,43 @@ Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
         *chosen = left;
         children.ranges[children.count++] = right;
     }
+    const auto all = std::span(children.ranges).first(children.count);
+    const auto leaves = std::ranges::stable_partition(all, std::not_fn(makes_leaf));
+    children.nodes = children.count - uint32_t(leaves.size());
     return children;
 }
 
-// The record of a node with its leaf references; those to nodes are still 0.
-BvhNode make_node(const Children& children) {
+// Puts a node into `piece` at `index`, and its leaves into the piece's order; the nodes among its children
+// are to stand at the end.
+void put_node(std::span<const PrimitiveRef> refs, const Children& children, Piece& piece, uint32_t index) {
     std::array<Box, BVH_WIDTH> boxes;
     for (uint32_t c = 0; c < children.count; ++c)
         boxes[c] = Box(children.ranges[c].bounds);
     BvhNode node = quantise(std::span(boxes).first(children.count));
-    for (uint32_t c = 0; c < children.count; ++c) {
-        const PrimitiveRange& range = children.ranges[c];
-        node.child[int(c)] = makes_leaf(range) ? leaf_reference(range.first, range.count) : 0;
-    }
-    return node;
+    node.children = bvh_children(children.nodes, uint32_t(piece.nodes.size()), children.count,
+                                 uint32_t(piece.order.size()));
+    piece.nodes[index] = pack(node);
+    for (uint32_t c = children.nodes; c < children.count; ++c)
+        piece.order.push_back(refs[children.ranges[c].first].index);
 }
 
-// Builds the whole subtree of `root` into `nodes`.
-void build_subtree(std::span<PrimitiveRef> refs, const Job& root, std::vector<PackedBvhNode>& nodes) {
+// Builds the whole subtree of `root`.
+void build_subtree(std::span<PrimitiveRef> refs, const Job& root, Piece& piece) {
     struct Pending {
         Job job;
-        uint32_t parent;
-        uint32_t slot;
+        uint32_t index;
     };
-    std::vector<Pending> stack{{root, 0, 0}};
+    piece.nodes.resize(1);
+    std::vector<Pending> stack{{root, 0}};
     while (!stack.empty()) {
         const Pending next = stack.back();
         stack.pop_back();
         const Children children = open_children(refs, next.job);
-        const auto index = uint32_t(nodes.size());
-        if (index > 0) nodes[next.parent][3][int(next.slot)] = index;
-        nodes.push_back(pack(make_node(children)));
-        for (uint32_t c = children.count; c-- > 0;) {
-            const PrimitiveRange& range = children.ranges[c];
-            if (!makes_leaf(range)) stack.push_back({{range, next.job.depth + 1}, index, c});
-        }
+        put_node(refs, children, piece, next.index);
+        const auto first = uint32_t(piece.nodes.size());
+        piece.nodes.resize(first + children.nodes);
+        for (uint32_t c = children.nodes; c-- > 0;)
+            stack.push_back({{children.ranges[c], next.job.depth + 1}, first + c});
     }
 }
 
@@ -127,16 +133,15 @@ void build_subtree(std::span<PrimitiveRef> refs, const Job& root, std::vector<Pa
 void run_task(std::span<PrimitiveRef> refs, const Task& task, TaskQueue<Task>& queue) {
     Piece& piece = *task.piece;
     if (task.job.range.count <= TASK_SIZE) {
-        build_subtree(refs, task.job, piece.nodes);
+        build_subtree(refs, task.job, piece);
         return;
     }
     const Children children = open_children(refs, task.job);
-    piece.nodes.push_back(pack(make_node(children)));
-    for (uint32_t c = 0; c < children.count; ++c) {
-        const PrimitiveRange& range = children.ranges[c];
-        if (makes_leaf(range)) continue;
+    piece.nodes.resize(1);
+    put_node(refs, children, piece, 0);
+    for (uint32_t c = 0; c < children.nodes; ++c) {
         piece.children[c] = std::make_unique<Piece>();
-        queue.push({{range, task.job.depth + 1}, piece.children[c].get()});
+        queue.push({{children.ranges[c], task.job.depth + 1}, piece.children[c].get()});
     }
 }
 
@@ -147,33 +152,33 @@ size_t count_nodes(const Piece& piece) {
     return count;
 }
 
-// The nodes of all pieces, depth first, with references from node 0.
-std::vector<PackedBvhNode> join_pieces(std::unique_ptr<Piece> root) {
+// Joins all pieces into nodes and order, with references from their beginnings. The first node of a piece
+// stands beside its siblings, the others behind all that came before.
+void join_pieces(std::unique_ptr<Piece> root, Bvh& bvh) {
     struct Pending {
         std::unique_ptr<Piece> piece;
-        uint32_t parent;
-        uint32_t slot;
+        uint32_t index;
     };
-    std::vector<PackedBvhNode> nodes;
-    nodes.reserve(count_nodes(*root));
+    bvh.nodes.reserve(count_nodes(*root));
+    bvh.nodes.resize(1);
     std::vector<Pending> stack;
-    stack.push_back({std::move(root), 0, 0});
+    stack.push_back({std::move(root), 0});
     while (!stack.empty()) {
         const Pending next = std::move(stack.back());
         stack.pop_back();
-        const auto base = uint32_t(nodes.size());
-        if (base > 0) nodes[next.parent][3][int(next.slot)] = base;
-        for (PackedBvhNode node : next.piece->nodes) {
-            for (int c = 0; c < int(BVH_WIDTH); ++c) {
-                if ((node[3][c] & BVH_LEAF_BIT) == 0) node[3][c] += base;
-            }
-            nodes.push_back(node);
-        }
-        for (uint32_t c = BVH_WIDTH; c-- > 0;) {
-            if (next.piece->children[c]) stack.push_back({std::move(next.piece->children[c]), base, c});
-        }
+        Piece& piece = *next.piece;
+        const auto nodes_before = uint32_t(bvh.nodes.size()), order_before = uint32_t(bvh.order.size());
+        for (PackedBvhNode& node : piece.nodes)
+            node[2] += uvec4(0u, 0u, nodes_before - 1, order_before);
+        bvh.nodes[next.index] = piece.nodes.front();
+        bvh.nodes.insert(bvh.nodes.end(), piece.nodes.begin() + 1, piece.nodes.end());
+        bvh.order.insert(bvh.order.end(), piece.order.begin(), piece.order.end());
+        const auto siblings =
+            uint32_t(std::ranges::count_if(piece.children, [](auto& c) { return bool(c); }));
+        bvh.nodes.resize(bvh.nodes.size() + siblings);
+        for (uint32_t c = siblings; c-- > 0;)
+            stack.push_back({std::move(piece.children[c]), nodes_before + c});
     }
-    return nodes;
 }
 
 std::string in_words(const Box& box) {
@@ -185,9 +190,9 @@ std::string in_words(const Box& box) {
 
 // The references in the caller's order, and the range of all; throws on a box that no tree can hold.
 std::vector<PrimitiveRef> make_refs(std::span<const Box> boxes, PrimitiveRange& all) {
-    if (boxes.size() > BVH_FIRST_MASK) {
+    if (boxes.size() > BVH_MAX_PRIMITIVES) {
         throw Error("BVH: " + std::to_string(boxes.size()) +
-                    " primitives, but the node record holds at most " + std::to_string(BVH_FIRST_MASK) +
+                    " primitives, but the node record holds at most " + std::to_string(BVH_MAX_PRIMITIVES) +
                     "; simplify the meshes");
     }
     std::vector<PrimitiveRef> refs;
@@ -216,27 +221,27 @@ Bvh build_bvh(std::span<const Box> boxes, const BvhOptions& options) {
     Bvh bvh;
     bvh.bounds = Box(all.bounds);
     if (boxes.empty()) {
-        bvh.nodes.push_back(pack(quantise({})));
+        BvhNode node = quantise({});
+        node.children = bvh_children(0, 0, 1, 0);
+        bvh.nodes.push_back(pack(node));
     } else {
         auto root = std::make_unique<Piece>();
         TaskQueue<Task> queue;
         queue.push({{all, 0}, root.get()});
         const unsigned threads = options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
         queue.run(std::max(threads, 1u), [&](const Task& task) { run_task(refs, task, queue); });
-        bvh.nodes = join_pieces(std::move(root));
+        bvh.order.reserve(refs.size());
+        join_pieces(std::move(root), bvh);
     }
     if (bvh.nodes.size() >= BVH_MAX_NODES) {
         throw Error("BVH: " + std::to_string(boxes.size()) + " primitives need " +
                     std::to_string(bvh.nodes.size()) + " nodes, but traversal can address fewer than " +
                     std::to_string(BVH_MAX_NODES) + "; simplify the meshes");
     }
-    bvh.order.reserve(refs.size());
-    for (const PrimitiveRef& ref : refs)
-        bvh.order.push_back(ref.index);
     const BvhMeasures measures = measure(bvh.nodes, bvh.bounds);
     bvh.depth = measures.depth;
     bvh.sah_cost = measures.sah_cost;
-    assert(bvh.depth <= BVH_STACK_SIZE);
+    assert(bvh.depth <= BVH_MAX_DEPTH);
     return bvh;
 }
 

@@ -13,12 +13,10 @@ BvhMeasures measure(std::span<const PackedBvhNode> nodes, const Box& bounds) {
     for (size_t i = nodes.size(); i-- > 0;) {  // Children stand behind their parent.
         const BvhNode node = unpack(nodes[i]);
         uint32_t deepest = 0;
-        for (uint32_t c = 0; c < BVH_WIDTH; ++c) {
-            const uint32_t reference = node.child[int(c)];
-            if (reference == BVH_EMPTY) continue;
-            const bool leaf = is_leaf(reference);
-            cost += half_area(child_box(node, c)) * (leaf ? leaf_count(reference) : BVH_NODE_COST);
-            if (!leaf) deepest = std::max(deepest, depths[reference]);
+        for (uint32_t c = 0; c < bvh_child_count(node); ++c) {
+            const uint32_t reference = bvh_child(node.children, c);
+            cost += half_area(child_box(node, c)) * (is_leaf(reference) ? 1.0 : BVH_NODE_COST);
+            if (!is_leaf(reference)) deepest = std::max(deepest, depths[reference]);
         }
         depths[i] = deepest + 1;
     }

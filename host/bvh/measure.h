@@ -16,9 +16,8 @@ inline double half_area(const Box& box) {
     return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-// Cost of a node in primitive tests. What dominates both is fetching the record: 4 words of a node, 3 of a
-// triangle.
-inline constexpr double BVH_NODE_COST = 4.0 / 3.0;
+// Cost of a node in primitive tests: both records have as many words, and take about as much arithmetic.
+inline constexpr double BVH_NODE_COST = 1.0;
 
 struct BvhMeasures {
     uint32_t depth;
@@ -29,7 +28,7 @@ struct BvhMeasures {
 //
 // depth: nodes on the longest way down, the root included.
 //
-// sah_cost = (sum over nodes of A(node) * BVH_NODE_COST + sum over leaves of A(leaf) * count) / A(root),
+// sah_cost = (sum over nodes of A(node) * BVH_NODE_COST + sum over leaves of A(leaf)) / A(root),
 // where A is the surface area of the decoded box, which is the one that rays meet (of the root: of `bounds`);
 // 0 if A(root) is. Ref: MacDonald and Booth 1990, Heuristics for Ray Tracing Using Space Subdivision.
 BvhMeasures measure(std::span<const PackedBvhNode> nodes, const Box& bounds);

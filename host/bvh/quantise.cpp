@@ -62,8 +62,8 @@ BvhNode quantise(std::span<const Box> boxes) {
     for (const Box& box : boxes)
         bounds.extend(box);
 
-    // An empty child keeps the inverted box [255, 0].
-    BvhNode node{bounds.lo, vec3(1), uvec3(0xFFFFFFFFu), uvec3(0), uvec4(BVH_EMPTY)};
+    // A child that does not exist keeps the inverted box [255, 0].
+    BvhNode node{bounds.lo, vec3(1), uvec3(0xFFFFFFFFu), uvec3(0), uvec2(0)};
     for (int a = 0; a < 3; ++a) {
         const GridAxis axis(bounds.lo[a], bounds.hi[a]);
         node.scale[a] = axis.scale;

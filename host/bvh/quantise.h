@@ -9,7 +9,7 @@
 namespace candela {
 
 // The node whose decoded child boxes contain `boxes`, as tightly as its grid allows. Boxes: 0 .. BVH_WIDTH,
-// valid, coordinates up to 1e37. All references are BVH_EMPTY, for the caller to fill.
+// valid, coordinates up to 1e37. Where the children are is left to the caller.
 BvhNode quantise(std::span<const Box> boxes);
 
 }  // namespace candela

@@ -47,31 +47,24 @@ struct Claims {
             nodes[reference] = true;
             return std::nullopt;
         }
-        for (uint32_t i = 0; i < leaf_count(reference); ++i) {
-            const uint32_t position = leaf_first(reference) + i;
-            if (position >= positions.size())
-                return name("leaf with position", position) + ", which is out of range";
-            if (positions[position]) return name("second leaf with position", position);
-            positions[position] = true;
-        }
+        const uint32_t position = leaf_position(reference);
+        if (position >= positions.size())
+            return name("leaf with position", position) + ", which is out of range";
+        if (positions[position]) return name("second leaf with position", position);
+        positions[position] = true;
         return std::nullopt;
     }
 };
 
-// References are in range and forwards, with the empty ones last; every node but the root and every position
-// is referred to once.
+// References are in range and forwards; every node but the root and every position is referred to once.
 Problem check_references(const Bvh& bvh) {
     Claims claims{std::vector<bool>(bvh.nodes.size()), std::vector<bool>(bvh.order.size())};
     for (size_t i = 0; i < bvh.nodes.size(); ++i) {
         const BvhNode node = unpack(bvh.nodes[i]);
-        for (int c = 0; c < int(BVH_WIDTH); ++c) {
-            if (node.child[c] == BVH_EMPTY) continue;
-            if (c > 0 && node.child[c - 1] == BVH_EMPTY)
-                return name("node", i) + ": child behind an empty one";
-            if (const Problem problem = claims.claim(i, node.child[c]))
+        for (uint32_t c = 0; c < bvh_child_count(node); ++c) {
+            if (const Problem problem = claims.claim(i, bvh_child(node.children, c)))
                 return name("node", i) + ": " + *problem;
         }
-        if (node.child[0] == BVH_EMPTY && !bvh.order.empty()) return name("node", i) + ": no child";
     }
     for (size_t i = 1; i < claims.nodes.size(); ++i) {
         if (!claims.nodes[i]) return name("node", i) + ": no reference to it";
@@ -88,17 +81,10 @@ Problem check_boxes(const Bvh& bvh, std::span<const Box> boxes) {
     std::vector<Box> exact(bvh.nodes.size());
     for (size_t i = bvh.nodes.size(); i-- > 0;) {
         const BvhNode node = unpack(bvh.nodes[i]);
-        for (uint32_t c = 0; c < BVH_WIDTH; ++c) {
-            const uint32_t reference = node.child[int(c)];
-            if (reference == BVH_EMPTY) continue;
-            Box below;
-            if (!is_leaf(reference)) {
-                below = exact[reference];
-            } else {
-                for (uint32_t k = 0; k < leaf_count(reference); ++k) {
-                    below.extend(boxes[bvh.order[leaf_first(reference) + k]]);
-                }
-            }
+        for (uint32_t c = 0; c < bvh_child_count(node); ++c) {
+            const uint32_t reference = bvh_child(node.children, c);
+            const Box below =
+                is_leaf(reference) ? boxes[bvh.order[leaf_position(reference)]] : exact[reference];
             if (!contains(child_box(node, c), below)) {
                 return name("node", i) + ": the box of " + name("child", c) +
                        " does not contain what is below it";
@@ -115,8 +101,8 @@ Problem check_measures(const Bvh& bvh) {
     const BvhMeasures actual = measure(bvh.nodes, bvh.bounds);
     if (bvh.depth != actual.depth)
         return name("depth is", actual.depth) + ", not " + std::to_string(bvh.depth);
-    if (bvh.depth > BVH_STACK_SIZE) {
-        return name("depth is", bvh.depth) + ", more than " + name("BVH_STACK_SIZE,", BVH_STACK_SIZE);
+    if (bvh.depth > BVH_MAX_DEPTH) {
+        return name("depth is", bvh.depth) + ", more than " + name("BVH_MAX_DEPTH,", BVH_MAX_DEPTH);
     }
     if (bvh.sah_cost != actual.sah_cost) return "sah_cost is not that of the nodes";
     return std::nullopt;
@@ -127,8 +113,8 @@ Problem check_measures(const Bvh& bvh) {
 std::optional<std::string> validate(const Bvh& bvh, std::span<const Box> boxes) {
     if (bvh.nodes.empty()) return "there is no root";
     Problem problem = check_order(bvh.order, boxes.size());
-    if (!problem) problem = check_references(bvh);
-    if (!problem) problem = check_boxes(bvh, boxes);
+    if (!problem && !boxes.empty()) problem = check_references(bvh);
+    if (!problem && !boxes.empty()) problem = check_boxes(bvh, boxes);
     if (!problem) problem = check_measures(bvh);
     return problem;
 }

@@ -29,8 +29,9 @@ struct GpuScene {
     uint32_t materials_present = 0;   // Bit i: a material of model i.
     uint32_t primitives_present = 0;  // Bit i: a primitive of kind i.
 
+    uint32_t bvh_depth = 1;  // Levels of nodes.
+
     // About the BVH, for reports.
-    uint32_t bvh_depth = 0;
     float bvh_sah_cost = 0.0f;
     double bvh_seconds = 0.0;  // Wall time of the build alone.
 

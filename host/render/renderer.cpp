@@ -175,6 +175,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
     constants_[CONSTANT_ENVIRONMENT] = scene.environment;
     constants_[CONSTANT_MATERIALS] = scene.materials_present;
     constants_[CONSTANT_PRIMITIVES] = scene.primitives_present;
+    constants_[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
     render_kernel_ =
         std::make_unique<vk::Kernel>(make_kernel(kernels::render, kernels::render_storage, true, "render"));
     render_kernel_->bind(BINDING_IMAGE, image_);

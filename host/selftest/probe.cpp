@@ -61,6 +61,13 @@ vk::Buffer DeviceScene::upload(const vk::Device& device, const std::vector<uvec4
     return buffer;
 }
 
+std::vector<uint32_t> traversal_constants(const GpuScene& scene) {
+    std::vector<uint32_t> constants(CONSTANT_COUNT);
+    constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
+    constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
+    return constants;
+}
+
 std::vector<uint32_t> run_probe(const vk::Device& device, std::span<const uint32_t> spirv,
                                 std::span<const std::byte> items, size_t item_words, size_t result_words,
                                 const std::vector<uint32_t>& constants, const DeviceScene* scene) {

@@ -37,6 +37,9 @@ class DeviceScene {
     vk::Buffer nodes_, primitives_, tables_, parameters_;
 };
 
+// Specialization constants of probes that trace rays: what is in the scene.
+std::vector<uint32_t> traversal_constants(const GpuScene& scene);
+
 // What shaders/probes/items.glsl declares: bindings, push constants, and invocations in a work group.
 inline constexpr uint32_t PROBE_ITEMS = 6, PROBE_RESULTS = 7;
 inline constexpr uint32_t PROBE_GROUP = 64;

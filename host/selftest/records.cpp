@@ -73,7 +73,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 122> words;
+    std::array<uint, 120> words;
 };
 
 // Where the tables begin if a word that belongs to nothing comes first, and each table has two records.
@@ -118,7 +118,7 @@ Records filled(Fields& fields) {
         fields.keep(floatBitsToUint(r.node.scale[axis]));
     r.node.q_lo = fields.u3();
     r.node.q_hi = fields.u3();
-    r.node.child = fields.u4();
+    r.node.children = fields.u2();
     r.triangles = {.kind = fields.keep(PRIMITIVE_TRIANGLES),
                    .a = fields.f3(),
                    .b = fields.f3(),

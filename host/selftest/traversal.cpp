@@ -61,8 +61,8 @@ std::vector<TraversalResult> trace(const vk::Device& device, const GpuScene& sce
                                    SceneAccess access) {
     const DeviceScene on_device(device, scene, access);
     const bool texels = access == SceneAccess::texel_buffers;
-    return probe<TraversalResult>(device, texels ? kernels::traversal : kernels::traversal_storage, rays, {},
-                                  &on_device);
+    return probe<TraversalResult>(device, texels ? kernels::traversal : kernels::traversal_storage, rays,
+                                  traversal_constants(scene), &on_device);
 }
 
 Evidence compare_with_brute_force(const std::vector<TraversalResult>& results) {

@@ -82,7 +82,7 @@ void main() {
         Ray next = path.ray;
         if (shadowed) next = shadow.ray;
         Traversal traversal = bvh_begin(next, shadowed ? shadow.t_max : FLOAT_MAX, shadowed);
-        if (!shadowed && !alive) traversal.reference = NO_REFERENCE;
+        if (!shadowed && !alive) traversal.reference = REFERENCE_END;
         while (!bvh_ended(traversal)) {
             bvh_advance(traversal);
             if (traversal.any_hit && bvh_ended(traversal)) {

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 106u
+#define RESULT_WORDS 120u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -39,7 +39,7 @@ void put_node(uint i) {
     put(node.scale);
     put(node.q_lo);
     put(node.q_hi);
-    for (uint slot = 0u; slot < BVH_WIDTH; ++slot) put(scene_node_child(i, slot));
+    put(node.children);
 }
 
 void put_primitive(Primitive p) {

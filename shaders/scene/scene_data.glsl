@@ -30,16 +30,14 @@ Parameters scene_parameters() {
     return parameters_unpack(parameter_words);
 }
 
-// A node without its references: traversal asks for those one by one.
 BvhNode scene_node(uint i) {
     i *= BVH_NODE_WORDS;
-    return bvh_node_unpack(FETCH(nodes, i), FETCH(nodes, i + 1u), FETCH(nodes, i + 2u), uvec4(BVH_EMPTY));
+    return bvh_node_unpack(FETCH(nodes, i), FETCH(nodes, i + 1u), FETCH(nodes, i + 2u));
 }
 
-// Reference of the child in that slot of a node.
-uint scene_node_child(uint i, uint slot) {
-    uvec4 child = FETCH(nodes, i * BVH_NODE_WORDS + 3u);
-    return slot < 2u ? (slot == 0u ? child.x : child.y) : (slot == 2u ? child.z : child.w);
+// Where the children of a node are; see bvh_child.
+uvec2 scene_node_children(uint i) {
+    return FETCH(nodes, i * BVH_NODE_WORDS + 2u).zw;
 }
 
 // Primitive at that position in leaf order.

@@ -1,6 +1,7 @@
 // Rays against the scene's BVH: the closest hit, and whether there is any.
 #ifndef SCENE_TRAVERSAL_GLSL
 #define SCENE_TRAVERSAL_GLSL
+#extension GL_EXT_control_flow_attributes : require
 
 #include "base/math.glsl"
 #include "scene/primitive.glsl"
@@ -59,51 +60,67 @@ uvec4 node_intersect(BvhNode node, RaySlabs ray, float t_max) {
 // Children of a node that are still to be visited, the nearest first.
 struct Pending {
     uint node;
-    uint slots;  // Two bits each, the next one lowest.
-    uint count;  // 0 .. BVH_WIDTH
+    uvec2 children;  // The node's.
+    uint slots;      // Two bits each, the next one lowest.
+    uint count;      // 0 .. BVH_WIDTH
 };
 
 // The children that a ray meets, sorted by distance: the slot rides in the free bits of the distance through a
 // sorting network of five exchanges.
-Pending pending_children(uint node, uvec4 t) {
+Pending pending_children(uint node, uvec2 children, uvec4 t) {
     uvec4 k = t | uvec4(0u, 1u, 2u, 3u);
     k = uvec4(min(k.xz, k.yw), max(k.xz, k.yw));  // 0:1 2:3, the lesser ones in xy
     k = uvec4(min(k.xz, k.yw), max(k.xz, k.yw));  // lesser ones, greater ones: x is least, w greatest
     k.yz = uvec2(min(k.y, k.z), max(k.y, k.z));
-    Pending p;
-    p.node = node;
-    p.slots = (k.x & 3u) | (k.y & 3u) << 2u | (k.z & 3u) << 4u | (k.w & 3u) << 6u;
-    p.count = uint(k.x < NODE_MISS) + uint(k.y < NODE_MISS) + uint(k.z < NODE_MISS) + uint(k.w < NODE_MISS);
-    return p;
+    uint slots = (k.x & 3u) | (k.y & 3u) << 2u | (k.z & 3u) << 4u | (k.w & 3u) << 6u;
+    uint count = uint(k.x < NODE_MISS) + uint(k.y < NODE_MISS) + uint(k.z < NODE_MISS) + uint(k.w < NODE_MISS);
+    return Pending(node, children, slots, count);
 }
 
-// One word for the stack; at least one child has been visited, so three slots are enough.
+// Takes the next one out of them, of which there is one at least; returns its reference.
+uint pending_take(inout Pending p) {
+    uint reference = bvh_child(p.children, p.slots & 3u);
+    p.slots >>= 2u;
+    --p.count;
+    return reference;
+}
+
+// One word for the stack, never STACK_BOTTOM; at least one child has been visited, so three slots are enough.
 uint pending_pack(Pending p) {
     return p.node | p.slots << 24u | p.count << 30u;
 }
 
+// Reads where the children are once more.
 Pending pending_unpack(uint word) {
-    return Pending(word & (BVH_MAX_NODES - 1u), (word >> 24u) & 63u, word >> 30u);
+    uint node = word & (BVH_MAX_NODES - 1u);
+    return Pending(node, scene_node_children(node), (word >> 24u) & 63u, word >> 30u);
 }
 
-// The stack of bvh_advance. One word per level of the tree, not one per child: on software Vulkan a store to an
-// indexed array is a loop over lanes with a branch in each, and was seen to take half of all time. Handed to
-// pending_next as an argument it would be copied.
-uint stack[BVH_STACK_SIZE];
+// Levels of the scene's tree.
+layout(constant_id = CONSTANT_BVH_DEPTH) const uint BVH_DEPTH = BVH_MAX_DEPTH;
 
-const uint NO_REFERENCE = 0xFFFFFFFFu;
+// The stack of bvh_advance, its top at 0: a word for each node on the way down that has children left to visit, and
+// STACK_BOTTOM below them. All of it moves with every word, so that no index depends on the ray and the array becomes
+// registers: on software Vulkan a store to an indexed array takes longer than moving fourteen words. (The loops count
+// with signed numbers, or lavapipe 22.3 would not unroll them.) Handed to a function as an argument it would be copied.
+uint stack[BVH_DEPTH];
 
-// The reference to visit next: of `pending`, or, when that is used up, of the stack's top; NO_REFERENCE at the end.
-uint pending_next(inout Pending pending, inout uint top) {
-    if (pending.count == 0u) {
-        if (top == 0u) return NO_REFERENCE;
-        pending = pending_unpack(stack[--top]);
-    }
-    uint reference = scene_node_child(pending.node, pending.slots & 3u);
-    pending.slots >>= 2u;
-    --pending.count;
-    return reference;
+const uint STACK_BOTTOM = 0u;
+
+void stack_push(uint word) {
+    [[unroll]] for (int k = int(BVH_DEPTH) - 1; k > 0; --k) stack[k] = stack[k - 1];
+    stack[0] = word;
 }
+
+uint stack_pop() {
+    uint word = stack[0];
+    [[unroll]] for (int k = 1; k < int(BVH_DEPTH); ++k) stack[k - 1] = stack[k];
+    return word;
+}
+
+// No reference to visit before the stack is asked, and none at all.
+const uint REFERENCE_WAIT = 0xFFFFFFFEu;
+const uint REFERENCE_END = 0xFFFFFFFFu;
 
 // A ray on its way through the tree.
 struct Traversal {
@@ -112,50 +129,60 @@ struct Traversal {
     RayShear shear;
     bool any_hit;     // The first hit is the end.
     Hit hit;          // The nearest so far; t is t_max where there is none.
-    uint reference;   // To be visited next; NO_REFERENCE at the end.
-    Pending pending;  // Siblings of `reference`,
-    uint top;         // and how much of the stack is below them.
+    uint reference;   // To be visited next.
+    Pending pending;  // Siblings of `reference`; those further up are on the stack.
 };
 
 // Before the root, looking for hits with t in (0, t_max).
 Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
-    Pending nothing = Pending(0u, 0u, 0u);
-    return Traversal(ray, ray_slabs(ray), ray_shear(ray.d), any_hit, Hit(t_max, 0u, vec2(0.0)), 0u, nothing, 0u);
+    stack[0] = STACK_BOTTOM;
+    Pending nothing = Pending(0u, uvec2(0u), 0u, 0u);
+    return Traversal(ray, ray_slabs(ray), ray_shear(ray.d), any_hit, Hit(t_max, 0u, vec2(0.0)), 0u, nothing);
 }
 
 bool bvh_ended(Traversal t) {
-    return t.reference == NO_REFERENCE;
+    return t.reference == REFERENCE_END;
 }
 
 // So many nodes a ray may visit before those that have come to a leaf go on. Where lanes go together and none skips
 // what others do, as on software Vulkan, fewer would mean more tests of leaves for few rays, and more would mean that
 // most rays wait for the one that has furthest to go.
-const uint NODES_PER_TURN = 4u;
+const uint NODES_PER_TURN = 12u;
 
 // Takes a ray some way on; not one that has ended.
 void bvh_advance(inout Traversal t) {
-    // Go down, perhaps to a leaf.
+    // Go down, perhaps to a leaf. Where nothing is left to visit, wait: the stack is read once a turn.
     for (uint i = 0u; i < NODES_PER_TURN && (t.reference & BVH_LEAF_BIT) == 0u; ++i) {
-        if (t.pending.count > 0u) stack[t.top++] = pending_pack(t.pending);
-        t.pending = pending_children(t.reference, node_intersect(scene_node(t.reference), t.slabs, t.hit.t));
-        t.reference = pending_next(t.pending, t.top);
+        BvhNode node = scene_node(t.reference);
+        Pending met = pending_children(t.reference, node.children, node_intersect(node, t.slabs, t.hit.t));
+        if (met.count > 0u && t.pending.count > 0u) stack_push(pending_pack(t.pending));
+        if (met.count > 0u) t.pending = met;
+        t.reference = REFERENCE_WAIT;
+        if (t.pending.count > 0u) t.reference = pending_take(t.pending);
     }
-    if ((t.reference & BVH_LEAF_BIT) == 0u || t.reference == NO_REFERENCE) return;
+    if ((t.reference & BVH_LEAF_BIT) == 0u) return;
 
-    // Test the leaf's next primitive.
-    uint count = (t.reference >> BVH_COUNT_SHIFT) & BVH_COUNT_MASK;
-    float t_max = t.hit.t;
-    if (count > 0u) {
-        uint position = t.reference & BVH_FIRST_MASK;
+    // Test the leaf.
+    if (t.reference != REFERENCE_WAIT) {
+        float t_max = t.hit.t;
+        uint position = t.reference & ~BVH_LEAF_BIT;
         primitive_intersect(t.ray, t.shear, scene_primitive(position), position, t.hit);
+        if (t.any_hit && t.hit.t < t_max) {
+            t.reference = REFERENCE_END;
+            return;
+        }
     }
-    if (t.any_hit && t.hit.t < t_max) {
-        t.reference = NO_REFERENCE;
-    } else if (count > 1u) {
-        t.reference += 1u - (1u << BVH_COUNT_SHIFT);
-    } else {
-        t.reference = pending_next(t.pending, t.top);
+
+    // Find what is next.
+    if (t.pending.count == 0u) {
+        uint word = stack_pop();
+        if (word == STACK_BOTTOM) {
+            t.reference = REFERENCE_END;
+            return;
+        }
+        t.pending = pending_unpack(word);
     }
+    t.reference = pending_take(t.pending);
 }
 
 // The closest hit with t > 0; Hit::t is FLOAT_MAX where there is none.

@@ -88,7 +88,8 @@ const uint CONSTANT_APERTURE = 4u;     // APERTURE_*
 const uint CONSTANT_ENVIRONMENT = 5u;  // ENVIRONMENT_*
 const uint CONSTANT_MATERIALS = 6u;    // Bit i: some material has the model i (MATERIAL_*).
 const uint CONSTANT_PRIMITIVES = 7u;   // Bit i: some primitive is of the kind i (PRIMITIVE_*).
-const uint CONSTANT_COUNT = 8u;
+const uint CONSTANT_BVH_DEPTH = 8u;    // Levels of the tree's nodes.
+const uint CONSTANT_COUNT = 9u;
 
 #ifdef __cplusplus
 }  // namespace candela

@@ -39,46 +39,50 @@ Box cube(float lo, float hi) {
 TEST(BvhNode, PacksAndUnpacksEveryField) {
     const BvhNode node{vec3(1.5f, -2.0f, 3e30f), vec3(0x1p-126f, 1.0f, 0x1p127f),
                        uvec3(0x01020304u, 0x05060708u, 0x090A0B0Cu),
-                       uvec3(0xF1F2F3F4u, 0xF5F6F7F8u, 0xF9FAFBFCu),
-                       uvec4(7u, leaf_reference(1234567u, 7u), leaf_reference(0u, 1u), BVH_EMPTY)};
+                       uvec3(0xF1F2F3F4u, 0xF5F6F7F8u, 0xF9FAFBFCu), bvh_children(2u, 1234567u, 3u, 89u)};
     const PackedBvhNode words = pack(node);
     EXPECT_EQ(words[0].w, 1u | 127u << 8 | 254u << 16);
     EXPECT_EQ(words[1], uvec4(0x01020304u, 0x05060708u, 0x090A0B0Cu, 0xF1F2F3F4u));
-    EXPECT_EQ(words[2], uvec4(0xF5F6F7F8u, 0xF9FAFBFCu, 0u, 0u));
+    EXPECT_EQ(words[2], uvec4(0xF5F6F7F8u, 0xF9FAFBFCu, node.children));
     const BvhNode back = unpack(words);
     EXPECT_EQ(back.origin, node.origin);
     EXPECT_EQ(back.scale, node.scale);
     EXPECT_EQ(back.q_lo, node.q_lo);
     EXPECT_EQ(back.q_hi, node.q_hi);
-    EXPECT_EQ(back.child, node.child);
+    EXPECT_EQ(back.children, node.children);
 }
 
 TEST(BvhNode, ChildBoxReadsTheBytesOfItsChild) {
     const BvhNode node{vec3(10, 20, 30), vec3(1, 2, 4), uvec3(0x04030201u, 0x08070605u, 0x0C0B0A09u),
-                       uvec3(0x44434241u, 0x48474645u, 0x4C4B4A49u), uvec4(BVH_EMPTY)};
+                       uvec3(0x44434241u, 0x48474645u, 0x4C4B4A49u), uvec2(0)};
     const Box box = child_box(node, 2);
     EXPECT_EQ(box.lo, vec3(10 + 3, 20 + 2 * 7, 30 + 4 * 11));
     EXPECT_EQ(box.hi, vec3(10 + 0x43, 20 + 2 * 0x47, 30 + 4 * 0x4B));
 }
 
-TEST(BvhNode, LeafReferencesHoldCountAndPosition) {
-    for (const uint32_t count : {1u, 5u, BVH_COUNT_MASK}) {
-        for (const uint32_t first : {0u, 99u, BVH_FIRST_MASK - 1}) {
-            const uint32_t reference = leaf_reference(first, count);
-            EXPECT_TRUE(is_leaf(reference));
-            EXPECT_EQ(leaf_first(reference), first);
-            EXPECT_EQ(leaf_count(reference), count);
+TEST(BvhNode, ChildrenAreNodesThenPrimitivesAndAnyOtherIsTheLast) {
+    for (const uint32_t node : {1u, 99u, BVH_MAX_NODES - BVH_WIDTH}) {
+        for (const uint32_t primitive : {0u, 77u, BVH_MAX_PRIMITIVES - BVH_WIDTH}) {
+            for (uint32_t count = 1; count <= BVH_WIDTH; ++count) {
+                for (uint32_t nodes = 0; nodes <= count; ++nodes) {
+                    const uvec2 children = bvh_children(nodes, node, count, primitive);
+                    for (uint32_t i = 0; i < BVH_WIDTH; ++i) {
+                        const uint32_t existing = std::min(i, count - 1);
+                        const uint32_t reference = bvh_child(children, i);
+                        EXPECT_EQ(reference, existing < nodes
+                                                 ? node + existing
+                                                 : BVH_LEAF_BIT | (primitive + existing - nodes));
+                    }
+                }
+            }
         }
     }
-    EXPECT_FALSE(is_leaf(BVH_EMPTY));
-    EXPECT_FALSE(is_leaf(0x7FFFFFFFu));
 }
 
-TEST(BvhNode, EmptyChildrenGetAnInvertedBoxAndNoReference) {
+TEST(BvhNode, ChildrenThatDoNotExistGetAnInvertedBox) {
     const BvhNode node = quantise(std::vector<Box>{cube(0, 1), cube(2, 3)});
     EXPECT_EQ(node.q_lo.x >> 16, 0xFFFFu);
     EXPECT_EQ(node.q_hi.x >> 16, 0u);
-    EXPECT_EQ(node.child, uvec4(BVH_EMPTY));
     EXPECT_EQ(quantise({}).q_lo, uvec3(0xFFFFFFFFu));
 }
 

@@ -39,8 +39,9 @@ Box point(float x, float y = 0.0f, float z = 0.0f) {
 uint32_t levels(const Bvh& bvh, uint32_t index) {
     const BvhNode node = unpack(bvh.nodes[index]);
     uint32_t below = 0;
-    for (int c = 0; c < int(BVH_WIDTH) && node.child[c] != BVH_EMPTY; ++c) {
-        if (!is_leaf(node.child[c])) below = std::max(below, levels(bvh, node.child[c]));
+    for (uint32_t c = 0; c < bvh_child_count(node); ++c) {
+        const uint32_t child = bvh_child(node.children, c);
+        if (!is_leaf(child)) below = std::max(below, levels(bvh, child));
     }
     return below + 1;
 }
@@ -48,7 +49,7 @@ uint32_t levels(const Bvh& bvh, uint32_t index) {
 TEST(Bvh, HoldsNothing) {
     const Bvh bvh = build_valid({});
     ASSERT_EQ(bvh.nodes.size(), 1u);
-    EXPECT_EQ(unpack(bvh.nodes[0]).child, uvec4(BVH_EMPTY));
+    EXPECT_EQ(unpack(bvh.nodes[0]).children, bvh_children(0, 0, 1, 0));
     EXPECT_TRUE(bvh.order.empty());
     EXPECT_TRUE(bvh.bounds.is_empty());
     EXPECT_EQ(bvh.depth, 1u);
@@ -58,7 +59,9 @@ TEST(Bvh, HoldsNothing) {
 TEST(Bvh, HoldsOnePrimitiveInOneLeaf) {
     const Bvh bvh = build_valid({Box{vec3(1, 2, 3), vec3(4, 5, 6)}});
     ASSERT_EQ(bvh.nodes.size(), 1u);
-    EXPECT_EQ(unpack(bvh.nodes[0]).child, uvec4(leaf_reference(0, 1), uvec3(BVH_EMPTY)));
+    const BvhNode root = unpack(bvh.nodes[0]);
+    EXPECT_EQ(bvh_child_count(root), 1u);
+    EXPECT_EQ(bvh_child(root.children, 0), BVH_LEAF_BIT | 0u);
     EXPECT_EQ(bvh.order, std::vector<uint32_t>{0});
 }
 
@@ -67,25 +70,34 @@ TEST(Bvh, IsValidForRandomBoxesOfAnyCount) {
         for (const float size : {0.01f, 1.0f}) {
             SCOPED_TRACE(count);
             const Bvh bvh = build_valid(random_boxes(count, size, uint32_t(count)));
-            EXPECT_LE(bvh.depth, BVH_STACK_SIZE);
+            EXPECT_LE(bvh.depth, BVH_MAX_DEPTH);
         }
     }
 }
 
-TEST(Bvh, NumbersNodesDepthFirst) {
+// Siblings side by side, then all below the first of them, then all below the second, and so on; positions in
+// the order of the nodes' visits.
+TEST(Bvh, NumbersSiblingsSideBySideAndTheRestDepthFirst) {
     const Bvh bvh = build_bvh(random_boxes(20000, 0.01f));
     std::vector<uint32_t> stack{0};
-    uint32_t expected = 0;
+    uint32_t next_node = 1, next_position = 0;
     while (!stack.empty()) {
-        const uint32_t index = stack.back();
+        const BvhNode node = unpack(bvh.nodes[stack.back()]);
         stack.pop_back();
-        ASSERT_EQ(index, expected++);
-        for (int c = int(BVH_WIDTH); c-- > 0;) {
-            const uint32_t reference = bvh.nodes[index][3][c];
-            if ((reference & BVH_LEAF_BIT) == 0) stack.push_back(reference);
+        std::vector<uint32_t> nodes;
+        for (uint32_t c = 0; c < bvh_child_count(node); ++c) {
+            const uint32_t child = bvh_child(node.children, c);
+            if (is_leaf(child)) {
+                ASSERT_EQ(leaf_position(child), next_position++);
+            } else {
+                ASSERT_EQ(child, next_node++);
+                nodes.push_back(child);
+            }
         }
+        stack.insert(stack.end(), nodes.rbegin(), nodes.rend());
     }
-    EXPECT_EQ(expected, bvh.nodes.size());
+    EXPECT_EQ(next_node, bvh.nodes.size());
+    EXPECT_EQ(next_position, bvh.order.size());
 }
 
 // 20 000 boxes make several tasks; the grid and the equal boxes make many ties.
@@ -148,13 +160,13 @@ TEST(Bvh, HoldsADetailInARoomAMillionTimesLarger) {
     EXPECT_LT(build_valid(boxes).sah_cost, 0.5f * cost_alone);
 }
 
-TEST(Bvh, KeepsToTheStackWhereTheHeuristicWouldPeelOffBoxesOneByOne) {
+TEST(Bvh, IsNotTooDeepWhereTheHeuristicWouldPeelOffBoxesOneByOne) {
     std::vector<Box> boxes;
     for (float x = 1e-37f; x < 1e37f; x *= 1.25f)
         boxes.push_back({vec3(0.0f), vec3(x)});
     const Bvh bvh = build_valid(boxes);
-    EXPECT_GT(bvh.depth, BVH_STACK_SIZE / 2);
-    EXPECT_LE(bvh.depth, BVH_STACK_SIZE);
+    EXPECT_GT(bvh.depth, BVH_MAX_DEPTH / 2);
+    EXPECT_LE(bvh.depth, BVH_MAX_DEPTH);
     EXPECT_EQ(bvh.depth, levels(bvh, 0));
 }
 
@@ -165,12 +177,11 @@ TEST(Bvh, DepthIsThatOfTheLongestWayDown) {
     }
 }
 
-// Two unit cubes, one unit apart: the root costs 4/3 tests; each leaf, which has 3/7 of its area, one test.
+// Two unit cubes, one unit apart: the root costs one test; each leaf, which has 3/7 of its area, one as well.
 TEST(Bvh, SahCostIsThatOfTheFormula) {
     const Bvh bvh = build_valid({Box{vec3(0), vec3(1)}, Box{vec3(2, 0, 0), vec3(3, 1, 1)}});
-    ASSERT_EQ(unpack(bvh.nodes[0]).child,
-              uvec4(leaf_reference(0, 1), leaf_reference(1, 1), BVH_EMPTY, BVH_EMPTY));
-    EXPECT_FLOAT_EQ(bvh.sah_cost, 4.0f / 3.0f + 6.0f / 7.0f);
+    ASSERT_EQ(unpack(bvh.nodes[0]).children, bvh_children(0, 1, 2, 0));
+    EXPECT_FLOAT_EQ(bvh.sah_cost, 1.0f + 6.0f / 7.0f);
 }
 
 TEST(Bvh, RefusesBoxesThatAreNoBoxes) {
@@ -192,7 +203,7 @@ TEST(Bvh, RefusesBoxesThatAreNoBoxes) {
 
 TEST(Bvh, RefusesMorePrimitivesThanReferencesCanName) {
     const Box box;
-    const std::span<const Box> too_many(&box, size_t(BVH_FIRST_MASK) + 1);  // Only counted, never read.
+    const std::span<const Box> too_many(&box, size_t(BVH_MAX_PRIMITIVES) + 1);  // Only counted, never read.
     expect_refused(
         too_many,
         "BVH: 268435456 primitives, but the node record holds at most 268435455; simplify the meshes");

@@ -18,6 +18,7 @@ struct Ray {
 
 // Whether the closed box meets the ray at any t >= 0.
 bool meets(const Box& box, const Ray& ray) {
+    if (box.is_empty()) return false;  // Inverted: of a child that does not exist.
     double begin = 0.0, end = std::numeric_limits<double>::infinity();
     for (int a = 0; a < 3; ++a) {
         const double lo = double(box.lo[a]) - ray.origin[a], hi = double(box.hi[a]) - ray.origin[a];
@@ -39,14 +40,12 @@ std::vector<uint32_t> reach(const Bvh& bvh, const Ray& ray) {
         const uint32_t reference = stack.back();
         stack.pop_back();
         if (is_leaf(reference)) {
-            const auto first = bvh.order.begin() + leaf_first(reference);
-            primitives.insert(primitives.end(), first, first + leaf_count(reference));
+            primitives.push_back(bvh.order[leaf_position(reference)]);
             continue;
         }
         const BvhNode node = unpack(bvh.nodes[reference]);
-        for (uint32_t c = 0; c < BVH_WIDTH; ++c) {
-            if (node.child[int(c)] != BVH_EMPTY && meets(child_box(node, c), ray))
-                stack.push_back(node.child[int(c)]);
+        for (uint32_t c = 0; c < bvh_child_count(node); ++c) {
+            if (meets(child_box(node, c), ray)) stack.push_back(bvh_child(node.children, c));
         }
     }
     std::sort(primitives.begin(), primitives.end());

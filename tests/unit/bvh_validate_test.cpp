@@ -19,22 +19,14 @@ class BvhValidate : public testing::Test {
         ASSERT_TRUE(problem.has_value());
         EXPECT_EQ(*problem, words);
     }
-    // Some leaf reference, and where it stands.
-    struct Place {
-        size_t node;
-        int child;
-    };
-    Place find_leaf() const {
-        for (size_t i = 0; i < bvh_.nodes.size(); ++i) {
-            for (int c = 0; c < int(BVH_WIDTH); ++c) {
-                const uint32_t reference = bvh_.nodes[i][3][c];
-                if (is_leaf(reference) && leaf_count(reference) > 0) return {i, c};
-            }
-        }
-        return {};
+    // What says where the children of a node are.
+    BvhNode node(size_t i) const { return unpack(bvh_.nodes[i]); }
+    void set_children(size_t i, uvec2 children) {
+        BvhNode changed = node(i);
+        changed.children = children;
+        bvh_.nodes[i] = pack(changed);
     }
-    std::string at(const Place& place) const { return "node " + std::to_string(place.node) + ": "; }
-    uint32_t& reference(const Place& place) { return bvh_.nodes[place.node][3][place.child]; }
+    static std::string at(size_t node) { return "node " + std::to_string(node) + ": "; }
 };
 
 TEST_F(BvhValidate, SeesAMissingRoot) {
@@ -57,68 +49,59 @@ TEST_F(BvhValidate, SeesAPrimitiveTwice) {
     expect_problem("order names primitive " + std::to_string(bvh_.order[3]) + " twice");
 }
 
+// The root of a thousand boxes has four nodes; the last node of all has leaves alone.
 TEST_F(BvhValidate, SeesANodeOutOfRange) {
-    bvh_.nodes[0][3].x = uint32_t(bvh_.nodes.size());
-    expect_problem("node 0: reference to node " + std::to_string(bvh_.nodes.size()) +
-                   ", which is out of range");
+    const auto size = uint32_t(bvh_.nodes.size());
+    set_children(0, bvh_children(4, size - 3, 4, 0));
+    expect_problem(at(0) + "reference to node " + std::to_string(size) + ", which is out of range");
 }
 
 TEST_F(BvhValidate, SeesACycle) {
-    bvh_.nodes[1][3].x = 0;
-    expect_problem("node 1: reference back to node 0");
+    set_children(1, bvh_children(4, 0, 4, 0));
+    expect_problem(at(1) + "reference back to node 0");
 }
 
 TEST_F(BvhValidate, SeesANodeTwice) {
-    bvh_.nodes[0][3].y = bvh_.nodes[0][3].x;
-    expect_problem("node 0: second reference to node 1");
+    set_children(1, bvh_children(4, 4, 4, 0));
+    expect_problem(at(1) + "second reference to node 4");
 }
 
 TEST_F(BvhValidate, SeesALeafOutOfRange) {
-    const Place leaf = find_leaf();
-    reference(leaf) = leaf_reference(999, 2);
-    expect_problem(at(leaf) + "leaf with position 1000, which is out of range");
+    const size_t last = bvh_.nodes.size() - 1;
+    set_children(last, bvh_children(0, 0, 1, 1000));
+    expect_problem(at(last) + "leaf with position 1000, which is out of range");
 }
 
 TEST_F(BvhValidate, SeesALeafThatIsLost) {
-    // The last node has leaves alone.
-    int last = int(BVH_WIDTH) - 1;
-    while (bvh_.nodes.back()[3][last] == BVH_EMPTY)
-        --last;
-    const uint32_t lost = leaf_first(bvh_.nodes.back()[3][last]);
-    bvh_.nodes.back()[3][last] = BVH_EMPTY;
+    const size_t last = bvh_.nodes.size() - 1;
+    ASSERT_GT(bvh_child_count(node(last)), 1u);
+    const uint32_t lost = leaf_position(bvh_child(node(last).children, BVH_WIDTH - 1));
+    set_children(last, bvh_children(0, 0, bvh_child_count(node(last)) - 1, node(last).children.y));
     expect_problem("position " + std::to_string(lost) + " of order: in no leaf");
 }
 
 TEST_F(BvhValidate, SeesALeafTwice) {
-    const Place leaf = find_leaf();
-    const uint32_t old = reference(leaf);
-    bvh_.nodes.back()[3] = uvec4(leaf_reference(leaf_first(old), 1), uvec3(BVH_EMPTY));
-    expect_problem("node " + std::to_string(bvh_.nodes.size() - 1) + ": second leaf with position " +
-                   std::to_string(leaf_first(old)));
+    const size_t last = bvh_.nodes.size() - 1;
+    set_children(last, bvh_children(0, 0, 1, 0));
+    expect_problem(at(last) + "second leaf with position 0");
 }
 
 TEST_F(BvhValidate, SeesANodeThatNothingRefersTo) {
+    const size_t last = bvh_.nodes.size() - 1;
     bvh_.nodes.push_back(bvh_.nodes.back());
-    bvh_.nodes.back()[3] = uvec4(BVH_EMPTY);
-    expect_problem("node " + std::to_string(bvh_.nodes.size() - 1) + ": no child");
+    expect_problem(at(last + 1) + "second leaf with position " + std::to_string(node(last).children.y));
     bvh_.nodes.pop_back();
-    bvh_.nodes[0][3].w = BVH_EMPTY;
-    const std::optional<std::string> problem = validate(bvh_, boxes_);
-    ASSERT_TRUE(problem.has_value());
-    EXPECT_NE(problem->find(": no reference to it"), std::string::npos) << *problem;
-}
-
-TEST_F(BvhValidate, SeesAHoleBetweenChildren) {
-    bvh_.nodes[0][3].y = BVH_EMPTY;
-    expect_problem("node 0: child behind an empty one");
+    set_children(0, bvh_children(3, 1, 3, 0));
+    expect_problem(at(4) + "no reference to it");
 }
 
 TEST_F(BvhValidate, SeesABoxThatIsTooSmall) {
-    const Place leaf = find_leaf();
-    bvh_.nodes[leaf.node][1].y &= ~(0xFFu << 8 * leaf.child);  // q_lo.y = 0 ...
-    bvh_.nodes[leaf.node][2].x &= ~(0xFFu << 8 * leaf.child);  // ... and q_hi.y = 0.
-    expect_problem(at(leaf) + "the box of child " + std::to_string(leaf.child) +
-                   " does not contain what is below it");
+    const size_t last = bvh_.nodes.size() - 1;
+    BvhNode changed = node(last);
+    changed.q_lo.y &= ~0xFFu;
+    changed.q_hi.y &= ~0xFFu;
+    bvh_.nodes[last] = pack(changed);
+    expect_problem(at(last) + "the box of child 0 does not contain what is below it");
 }
 
 TEST_F(BvhValidate, SeesABoxTooSmallForWhatIsFurtherDown) {
@@ -149,14 +132,12 @@ TEST(BvhValidateStack, SeesATreeThatIsTooDeep) {
     Bvh bvh = build_bvh(boxes);
     bvh.nodes.clear();
     for (uint32_t i = 0; i < LEVELS; ++i) {
-        BvhNode node{vec3(0), vec3(1), uvec3(0), uvec3(0x01010101u), uvec4(BVH_EMPTY)};
-        for (uint32_t c = 0; c < 3; ++c)
-            node.child[int(c)] = leaf_reference(3 * i + c, 1);
-        if (i + 1 < LEVELS) node.child.w = i + 1;
-        bvh.nodes.push_back(pack(node));
+        const bool last = i + 1 == LEVELS;
+        bvh.nodes.push_back(pack(BvhNode{vec3(0), vec3(1), uvec3(0), uvec3(0x01010101u),
+                                         bvh_children(last ? 0 : 1, i + 1, last ? 3 : 4, 3 * i)}));
     }
     bvh.depth = LEVELS;
-    EXPECT_EQ(validate(bvh, boxes), "depth is 33, more than BVH_STACK_SIZE, 32");
+    EXPECT_EQ(validate(bvh, boxes), "depth is 33, more than BVH_MAX_DEPTH, 32");
 }
 
 }  // namespace
