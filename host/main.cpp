@@ -1,4 +1,5 @@
 // The program: runs the command line, and turns every error into a message and an exit code.
+#include <csignal>
 #include <exception>
 #include <new>
 #include <string>
@@ -9,6 +10,8 @@
 
 int main(int argc, char** argv) {
     using candela::ExitCode;
+    // A file that may not grow further is an error of writing like any other, not the end.
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return int(candela::run_program(argc, argv));
     } catch (const candela::Error& error) {

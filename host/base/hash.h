@@ -1,8 +1,12 @@
-// FNV-1a, the hash that names an image in a report: short, portable, not meant against an adversary.
+// Hashes: FNV-1a, which names an image in a report, and a faster one for large arrays. Both are portable, and
+// not meant against an adversary.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 namespace candela {
@@ -16,6 +20,22 @@ inline uint64_t fnv1a64(std::span<const std::byte> bytes, uint64_t hash = FNV1A6
     for (const std::byte byte : bytes) {
         hash = (hash ^ std::to_integer<uint64_t>(byte)) * PRIME;
     }
+    return hash;
+}
+
+// A 64-bit hash of `bytes` and of their number. To hash in parts, hand in the hash of the part before as
+// `hash`. A step is one multiplication per eight bytes: half a gigabyte takes about 0.2 s. The rotation lets
+// the upper bits of a word, which a multiplication moves nowhere, spread in the next step.
+inline uint64_t hash_words(std::span<const std::byte> bytes, uint64_t hash = FNV1A64_BASIS) {
+    constexpr uint64_t ODD = 0x9e3779b97f4a7c15u;  // 2^64 over the golden ratio: bits without a pattern.
+    const auto step = [&hash](uint64_t word) { hash = std::rotl((hash ^ word) * ODD, 29); };
+    step(bytes.size());
+    for (size_t i = 0; i < bytes.size(); i += sizeof(uint64_t)) {
+        uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + i, std::min(sizeof word, bytes.size() - i));
+        step(word);
+    }
+    step(0);
     return hash;
 }
 

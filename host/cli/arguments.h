@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/image.h"
 #include "render/accumulation.h"
+#include "scene/names.h"
 
 namespace candela {
 
@@ -53,16 +54,6 @@ CLI::Option* add_value(CLI::App& app, const std::string& names, Target& target, 
         target = *value;
     };
     return app.add_option_function<std::string>(names, store, description);
-}
-
-// The words of an option, and what each stands for; as scene/names.h has them.
-template <class T, size_t N>
-using Choices = std::array<std::pair<std::string_view, T>, N>;
-
-// The word for `value`, which must be among the choices.
-template <class T, size_t N>
-std::string name_of(T value, const Choices<T, N>& choices) {
-    return std::string(std::ranges::find(choices, value, &std::pair<std::string_view, T>::second)->first);
 }
 
 // Adds an option that takes one of a few words; `choices` must live as long as `app`.

@@ -16,7 +16,8 @@
 namespace candela {
 
 void print_warning(const std::string& message) {
-    std::fprintf(stderr, "candela: warning: %s\n", message.c_str());
+    // On a terminal it takes the place of a live line, if there is one.
+    std::fprintf(stderr, "%scandela: warning: %s\n", stderr_is_terminal() ? "\r\x1b[K" : "", message.c_str());
 }
 
 void print_error(const std::string& message) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,6 @@
 #include "base/image_io.h"
 #include "base/tonemap.h"
 #include "cli/console.h"
-#include "version.h"
 
 namespace candela {
 namespace {
@@ -46,15 +46,20 @@ mat4 world_to_ndc(const Camera& camera, uvec2 size) {
     return projection * world_to_camera(camera);
 }
 
+// The samples that some pixel holds.
+std::string samples_text(const RenderRecord& record) {
+    const SampleRange held{record.settings.first_sample, record.settings.first_sample + record.most_spp};
+    return to_text({&held, 1});
+}
+
 void add_attributes(Image& image, const RenderRecord& record, const Camera& camera) {
     image.attributes["worldToCamera"] = world_to_camera(camera);
     image.attributes["worldToNDC"] = world_to_ndc(camera, record.settings.size);
     image.attributes["samplesPerPixel"] = float(record.spp);
     image.attributes["renderTimeSeconds"] = float(record.render_seconds);
-    image.attributes["candela.version"] = std::string(CANDELA_VERSION);
-    image.attributes["candela.device"] = record.device;
-    image.attributes["candela.driver"] = record.driver;
-    image.attributes["candela.seed"] = std::to_string(record.settings.seed);
+    image.attributes["candela.samples"] = samples_text(record);
+    set_maker(image, record.maker);
+    set_identity(image, record.identity);
     image.attributes["candela.commandLine"] = record.command_line;
 }
 
@@ -75,24 +80,19 @@ void use_half(Image& image) {
     }
 }
 
-std::string hexadecimal(uint64_t value) {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-    return text;
-}
-
 Json make_report(const RenderOptions& options, const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     const auto ratio = [](double a, double b) { return b > 0.0 ? a / b : 0.0; };
     const double samples = double(record.samples);
-    return {{"version", CANDELA_VERSION},
+    return {{"version", record.maker.version},
             {"scene", options.scene_file},
-            {"device", record.device},
-            {"driver", record.driver},
+            {"device", record.maker.device},
+            {"driver", record.maker.driver},
             {"width", settings.size.x},
             {"height", settings.size.y},
             {"crop", {settings.crop.x0, settings.crop.y0, settings.crop.x1, settings.crop.y1}},
             {"spp", record.spp},
+            {"samples", samples_text(record)},
             {"complete", record.complete},
             {"seed", settings.seed},
             {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},
@@ -112,6 +112,7 @@ Json make_report(const RenderOptions& options, const RenderRecord& record) {
             {"device_bytes", record.device_bytes},
             {"nonfinite_samples", record.counters.nonfinite_samples},
             {"depth_limit_hits", record.counters.depth_limit_hits},
+            {"device_failures", record.device_failures},
             {"image_hash", hexadecimal(record.image_hash)},
             {"validation_messages", record.validation_messages}};
 }
@@ -127,6 +128,25 @@ void write_report(const std::string& target, const Json& report) {
     }
 }
 
+// Tries one thing after the other, and in the end throws the last Error; those before are printed.
+class Attempts {
+  public:
+    void attempt(const std::function<void()>& write) {
+        try {
+            write();
+        } catch (const Error& error) {
+            if (failure_) print_error(failure_->what());
+            failure_ = error;
+        }
+    }
+    void finish() const {
+        if (failure_) throw Error(*failure_);
+    }
+
+  private:
+    std::optional<Error> failure_;
+};
+
 }  // namespace
 
 void check_outputs(const RenderOptions& options) {
@@ -140,22 +160,11 @@ void check_outputs(const RenderOptions& options) {
     if (options.report && *options.report != STDOUT) check_writable(*options.report);
 }
 
-void write_outputs(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
-                   Image image) {
-    add_attributes(image, record, camera);
+void write_images(const RenderOptions& options, Image image) {
     if (options.half) use_half(image);
-
-    std::optional<Error> failure;
-    const auto attempt = [&failure](const std::function<void()>& write) {
-        try {
-            write();
-        } catch (const Error& error) {
-            if (failure) print_error(failure->what());
-            failure = error;
-        }
-    };
+    Attempts attempts;
     for (const std::string& path : options.outputs) {
-        attempt([&] {
+        attempts.attempt([&] {
             if (image_format(path) == ImageFormat::exr) {
                 write_exr(path, image);
             } else {
@@ -164,8 +173,17 @@ void write_outputs(const RenderOptions& options, const RenderRecord& record, con
             }
         });
     }
-    if (options.report) attempt([&] { write_report(*options.report, make_report(options, record)); });
-    if (failure) throw Error(*failure);
+    attempts.finish();
+}
+
+void write_outputs(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
+                   Image image) {
+    add_attributes(image, record, camera);
+    Attempts attempts;
+    attempts.attempt([&] { write_images(options, std::move(image)); });
+    if (options.report)
+        attempts.attempt([&] { write_report(*options.report, make_report(options, record)); });
+    attempts.finish();
 }
 
 }  // namespace candela

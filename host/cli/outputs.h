@@ -6,6 +6,7 @@
 
 #include "base/image.h"
 #include "cli/render_options.h"
+#include "render/identity.h"
 #include "render/renderer.h"
 
 namespace candela {
@@ -13,20 +14,22 @@ namespace candela {
 // What a rendering was and how it went.
 struct RenderRecord {
     std::string command_line;
-    std::string device;
-    std::string driver;
+    Maker maker;
+    Identity identity;
     RenderSettings settings;  // scene_access as it turned out.
     uint32_t primitives = 0;
     uint32_t lights = 0;
     double load_seconds = 0.0;      // Wall times: reading the scene file ...
     double bvh_seconds = 0.0;       // ... building the BVH ...
     double pipeline_seconds = 0.0;  // ... compiling kernels, an empty first dispatch included ...
-    double render_seconds = 0.0;    // ... and rendering alone.
-    double cpu_seconds = 0.0;       // CPU time of the whole process while rendering.
+    double render_seconds = 0.0;    // ... and rendering alone, before it was resumed as well.
+    double cpu_seconds = 0.0;       // CPU time of the whole process while rendering; a resumed part alone.
     bool complete = false;          // All samples asked for are there.
     uint32_t spp = 0;               // Samples that every pixel holds at least.
+    uint32_t most_spp = 0;          // And the most that one holds.
     uint64_t samples = 0;           // Samples of all pixels together.
     RenderCounters counters;
+    uint32_t device_failures = 0;  // That were survived.
     uint64_t device_bytes = 0;
     uint64_t image_hash = 0;
     size_t validation_messages = 0;
@@ -36,8 +39,12 @@ struct RenderRecord {
 // the report could not. To be called before any long work.
 void check_outputs(const RenderOptions& options);
 
-// Writes all images and the report. Where one fails, the others are written all the same; then the Error is
-// thrown.
+// Writes all images as the options say. Where one fails, the others are written all the same; then the Error
+// is thrown.
+void write_images(const RenderOptions& options, Image image);
+
+// Writes all images, with attributes, and the report. Where one fails, the others are written all the same;
+// then the Error is thrown.
 void write_outputs(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
                    Image image);
 

@@ -23,6 +23,7 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
                                   add_info_command(app),
                                   add_devices_command(app),
                                   add_compare_command(app),
+                                  add_merge_command(app, command_line),
                                   add_selftest_command(app),
                                   add_bench_command(app)};
     app.footer(
@@ -96,7 +97,8 @@ ExitCode run_program(int argc, const char* const* argv) {
         if (command.app->parsed()) return command.run();
     }
     throw Error(
-        "there is no command; give render, info, devices, compare, selftest or bench, or see candela --help",
+        "there is no command; give render, info, devices, compare, merge, selftest or bench, or see "
+        "candela --help",
         ExitCode::usage);
 }
 

@@ -15,12 +15,14 @@ static constexpr double LIVE_SECONDS = 0.1;
 static constexpr double PLAIN_SECONDS = 10.0;
 static constexpr double PLAIN_SHARE = 0.1;
 
-Progress::Progress(uint64_t pixels, uint32_t spp, std::optional<double> time_limit, bool quiet)
+Progress::Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit, bool quiet)
     : pixels_(pixels),
       spp_(spp),
+      done_before_(done),
       time_limit_(time_limit),
       output_(quiet ? Output::none : (stderr_is_terminal() ? Output::live : Output::plain)),
-      start_(std::chrono::steady_clock::now()) {}
+      start_(std::chrono::steady_clock::now()),
+      printed_done_(done) {}
 
 Progress::~Progress() {
     if (output_ == Output::live && printed_seconds_ > 0.0) std::fputs("\r\x1b[K", stderr);
@@ -32,8 +34,9 @@ double Progress::seconds() const {
 
 // `12 %, 31 of 256 spp, 1.52 Msamples/s, 38.2 s left`
 std::string Progress::line(double done, double now) const {
-    const double samples = done * double(spp_) * double(pixels_);
-    double left = done > 0.0 ? now * (1.0 - done) / done : 0.0;
+    const double newly = std::max(0.0, done - done_before_);
+    const double samples = newly * double(spp_) * double(pixels_);
+    double left = newly > 0.0 ? now * (1.0 - done) / newly : 0.0;
     if (time_limit_) left = std::min(left, std::max(0.0, *time_limit_ - now));
     return fixed(std::floor(100.0 * done), 0) + " %, " + fixed(std::floor(done * spp_), 0) + " of " +
            std::to_string(spp_) + " spp, " + fixed(samples / std::max(now, 1e-9) / 1e6, 2) + " Msamples/s, " +

@@ -10,9 +10,9 @@ namespace candela {
 
 class Progress {
   public:
-    // `pixels` get `spp` samples each, unless `time_limit` [s], if given, is over before. The clock starts
-    // here.
-    Progress(uint64_t pixels, uint32_t spp, std::optional<double> time_limit, bool quiet);
+    // `pixels` get `spp` samples each, of which the share `done` is there already, unless `time_limit` [s],
+    // if given, is over before. The clock starts here.
+    Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit, bool quiet);
     // Clears the live line, if there is one.
     ~Progress();
     Progress(const Progress&) = delete;
@@ -31,10 +31,11 @@ class Progress {
 
     uint64_t pixels_;
     uint32_t spp_;
+    double done_before_;
     std::optional<double> time_limit_;
     Output output_;
     std::chrono::steady_clock::time_point start_;
-    double printed_done_ = 0.0;     // When something was printed last: the share done ...
+    double printed_done_;           // When something was printed last: the share done ...
     double printed_seconds_ = 0.0;  // ... and the time.
 };
 

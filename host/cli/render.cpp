@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/checkpoints.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/interrupt.h"
@@ -17,9 +18,10 @@
 #include "cli/render_options.h"
 #include "cli/vulkan.h"
 #include "render/gpu_scene.h"
-#include "render/renderer.h"
+#include "render/identity.h"
+#include "render/steady_renderer.h"
 #include "scene/loader.h"
-#include "vk/device.h"
+#include "version.h"
 #include "vk/instance.h"
 
 namespace candela {
@@ -27,16 +29,6 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-const Camera& choose_camera(const Scene& scene, const std::optional<std::string>& name) {
-    if (!name) return scene.cameras.front();
-    std::string names;
-    for (const Camera& camera : scene.cameras) {
-        if (camera.name == *name) return camera;
-        names += (names.empty() ? "" : ", ") + camera.name;
-    }
-    throw Error("--camera: unknown camera \"" + *name + "\" (defined: " + names + ")", ExitCode::usage);
 }
 
 // What --verbose tells before rendering.
@@ -53,28 +45,44 @@ void print_details(const vk::Device& device, const GpuScene& scene, const Render
 }
 
 // Renders until all samples are there, the time is over or a signal comes; the record learns what it took.
-void trace(Renderer& renderer, const RenderOptions& options, uint32_t target, const InterruptGuard& guard,
-           RenderRecord& record) {
+// Returns the Error if the device failed for good.
+std::optional<Error> trace(SteadyRenderer& renderer, const RenderOptions& options, uint32_t target,
+                           const InterruptGuard& guard, std::optional<CheckpointWriter>& checkpoints,
+                           RenderRecord& record) {
     const PixelRect& crop = record.settings.crop;
-    Progress progress(uint64_t{crop.width()} * crop.height(), target, options.time_limit, options.quiet);
+    const uint32_t held = renderer.state() ? renderer.state()->least_samples() : 0;
+    Progress progress(uint64_t{crop.width()} * crop.height(), target, double(held) / target,
+                      options.time_limit, options.quiet);
+    const double seconds_before = record.render_seconds;
     const std::clock_t cpu_start = std::clock();
-    record.complete = renderer.render(target, [&](double done) {
-        progress.update(done);
-        return !guard.interrupted() && !(options.time_limit && progress.seconds() >= *options.time_limit);
-    });
-    record.render_seconds = progress.seconds();
+    std::optional<Error> failure;
+    try {
+        record.complete = renderer.render(target, [&](double done) {
+            progress.update(done);
+            if (checkpoints && checkpoints->due()) {
+                renderer.hold();
+                checkpoints->write(*renderer.state(), seconds_before + progress.seconds());
+            }
+            return !guard.interrupted() && !(options.time_limit && progress.seconds() >= *options.time_limit);
+        });
+    } catch (const Error& error) {
+        if (!renderer.state()) throw;
+        failure = error;
+    }
+    record.render_seconds = seconds_before + progress.seconds();
     record.cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
-    record.counters = renderer.counters();
+    record.counters = renderer.state()->counters;
+    record.device_failures = renderer.failures();
+    if (checkpoints) checkpoints->write(*renderer.state(), record.render_seconds);
+    return failure;
 }
 
-Image collect_image(Renderer& renderer, const AovSelection& aovs, RenderRecord& record) {
-    const Accumulation state = renderer.download();
+Image collect_image(const SteadyRenderer& renderer, const AovSelection& aovs, RenderRecord& record) {
+    const Accumulation& state = *renderer.state();
     record.samples = state.total_samples();
-    record.spp = UINT32_MAX;
-    for (size_t i = 0; i < state.pixel_count(); ++i)
-        record.spp = std::min(record.spp, state.sample_count(i));
-    Image image =
-        make_image(state, aovs, aovs.needs_positions() ? renderer.positions() : std::vector<float>{});
+    record.spp = state.least_samples();
+    record.most_spp = state.most_samples();
+    Image image = make_image(state, aovs, renderer.positions());
     record.image_hash = image_hash(image);
     return image;
 }
@@ -96,33 +104,61 @@ void print_outcome(const RenderRecord& record, uint32_t target, bool quiet) {
                  duration_text(record.render_seconds).c_str(), fixed(rate / 1e6, 2).c_str());
 }
 
-// What is left to do once there is a device.
+void warn_of_device_failure(const Error& error, uint32_t kept, double submission_seconds) {
+    print_warning(std::string(error.what()) + "; opening the device again, and going on from " +
+                  std::to_string(kept) + " samples per pixel in submissions of " +
+                  fixed(1e3 * submission_seconds, 3) + " ms");
+}
+
+void warn_of_maker(const Maker& before, const Maker& now) {
+    if (before == now) return;
+    print_warning("the checkpoint was made by " + to_text(before) + ", and this is " + to_text(now) +
+                  ": the image is right, but not the same bits as if one had made it all");
+}
+
+// What is left to do once there is an instance.
 ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, const GpuScene& scene,
                    const Camera& camera, uint32_t target, RenderRecord& record) {
-    const std::vector<vk::DeviceInfo> devices = instance.devices();
-    const vk::Device device(instance, vk::select_device(devices, options.device), pipeline_cache_file());
-    record.device = device.info().name;
-    record.driver = device.info().driver;
+    std::optional<Checkpoint> resumed = load_to_resume(options, record.identity, record.settings, target);
+    const vk::DeviceInfo device = vk::select_device(instance.devices(), options.device);
+    record.maker = {.device = device.name, .driver = device.driver, .version = CANDELA_VERSION};
     record.device_bytes = device_bytes(scene, record.settings);
-    if (options.verbose) print_details(device, scene, record);
-
-    Renderer renderer(device, scene, camera, record.settings);
+    const AovSelection aovs = options.written_aovs();
+    SteadyRenderer::Source source{.instance = &instance,
+                                  .device = device,
+                                  .pipeline_cache_file = pipeline_cache_file(),
+                                  .scene = &scene,
+                                  .camera = &camera,
+                                  .settings = record.settings,
+                                  .positions = aovs.needs_positions()};
+    if (resumed) {
+        warn_of_maker(resumed->maker, record.maker);
+        record.render_seconds = resumed->render_seconds;
+        source.state = std::move(resumed->state);
+    }
+    SteadyRenderer renderer(std::move(source), warn_of_device_failure);
     record.settings.scene_access = renderer.scene_access();
     record.pipeline_seconds = renderer.pipeline_seconds();
+    if (options.verbose) print_details(renderer.device(), scene, record);
+    std::optional<CheckpointWriter> checkpoints;
+    if (options.checkpoint)
+        checkpoints.emplace(*options.checkpoint, options.checkpoint_every, record.identity, record.maker);
 
     // Before this line there is nothing to keep, and a signal ends the program at once.
     const InterruptGuard guard;
-    trace(renderer, options, target, guard, record);
+    const std::optional<Error> failure = trace(renderer, options, target, guard, checkpoints, record);
     const bool interrupted = guard.interrupted() && !record.complete;
-    Image image = collect_image(renderer, options.written_aovs(), record);
+    Image image = collect_image(renderer, aovs, record);
     print_outcome(record, target, options.quiet);
     record.validation_messages = instance.validation_messages().size();
     write_outputs(options, record, camera, std::move(image));
+    if (failure) throw Error(*failure);
     return interrupted ? ExitCode::interrupted : ExitCode::done;
 }
 
 ExitCode render(const RenderOptions& options, const std::string& command_line) {
     check_outputs(options);
+    check_checkpoint(options);
     RenderRecord record;
     record.command_line = command_line;
 
@@ -131,13 +167,14 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
     record.load_seconds = seconds_since(start);
     for (const std::string& warning : scene.warnings)
         print_warning(warning);
-    const Camera& camera = choose_camera(scene, options.camera);
+    const Camera& camera = options.choose_camera(scene);
     record.settings = options.settings(scene);
 
     const GpuScene gpu_scene = build_gpu_scene(scene);
     record.primitives = gpu_scene.id_count;
     record.lights = gpu_scene.light_count;
     record.bvh_seconds = gpu_scene.bvh_seconds;
+    record.identity = make_identity(gpu_scene, camera, record.settings);
 
     const vk::Instance instance(instance_options());
     const ExitCode code = render_on(instance, options, gpu_scene, camera, options.target_spp(scene), record);
@@ -154,7 +191,11 @@ Command add_render_command(CLI::App& app, const std::string& command_line) {
     command->footer(
         "Example:\n"
         "  candela render scenes/cornell-box.json -o box.exr -o box.png --spp 256 --size 512x512\n\n"
-        "Ctrl-C stops early and writes the image so far (exit code 130); a second Ctrl-C ends at once.");
+        "Ctrl-C stops early and writes the image so far (exit code 130); a second Ctrl-C ends at once.\n\n"
+        "With --checkpoint a rendering survives the end of the program: the same command with --resume goes "
+        "on,\n"
+        "to the same bits. A script can always pass --resume, the first time as well.\n"
+        "--samples 0..64 on one computer, --samples 64..128 on another: candela merge joins the parts.");
     return {command, [options, command_line] { return render(*options, command_line); }};
 }
 

@@ -32,6 +32,13 @@ static std::optional<double> parse_exposure(const std::string& text) {
     return value && std::abs(*value) <= double(MAX_EXPOSURE_EV) ? value : std::nullopt;
 }
 
+static std::optional<SampleRange> parse_samples(const std::string& text) {
+    const auto ranges = parse_ranges(text);
+    return ranges && ranges->size() == 1 && ranges->front().count() > 0 ? std::optional(ranges->front())
+                                                                        : std::nullopt;
+}
+
+static constexpr const char* DURATIONS = "a duration such as 90, 90s, 1.5m or 2h";
 static constexpr const char* SAMPLING_GROUP = "Sampling (defaults: the scene's)";
 
 void RenderOptions::add_to(CLI::App& app) {
@@ -39,12 +46,17 @@ void RenderOptions::add_to(CLI::App& app) {
     app.add_option("SCENE", scene_file, "Scene file (.json)")->required()->type_name("");
     add_output_options(app);
     add_rendering_to(app);
-    app.option_defaults()->group("Picture");
-    app.add_option("--camera", camera, "Camera by name (default: the scene's first)")->type_name("NAME");
+    add_camera_to(app);
     app.option_defaults()->group(SAMPLING_GROUP);
-    add_value(app, "--time-limit", time_limit, parse_duration, "a duration such as 90, 90s, 1.5m or 2h",
+    add_value(app, "--time-limit", time_limit, parse_duration, DURATIONS,
               "Stop after 90, 90s, 1.5m, 2h even short of --spp (default: none)")
         ->type_name("TIME");
+    add_value(app, "--samples", samples, parse_samples,
+              "A..B: samples A to B-1, with A < B, each at most " + std::to_string(MAX_SPP),
+              "The samples A, A+1, ..., B-1 alone, as a part for candela merge")
+        ->type_name("A..B")
+        ->excludes(app.get_option("--spp"));
+    add_checkpoint_options(app);
     add_message_options(app);
 }
 
@@ -59,22 +71,49 @@ void RenderOptions::add_rendering_to(CLI::App& app) {
                "How kernels read the scene; the image is the same (default: auto)");
 }
 
-void RenderOptions::add_output_options(CLI::App& app) {
-    app.option_defaults()->group("Output");
-    app.add_option("-o,--output", outputs, "Image to write, .exr or .png; repeat it for several")
-        ->type_name("FILE")
-        ->take_all()
-        ->allow_extra_args(false);
-    add_value(app, "--aov", aovs, parse_aovs, std::string("all, none or a list of ") + AOV_NAMES,
-              "EXR: none, all (default) or a list of " + std::string(AOV_NAMES))
-        ->type_name("LIST");
-    app.add_flag("--half", half, "EXR: R G B A and Albedo as 16-bit floats (default: 32-bit)");
+void RenderOptions::add_development_to(CLI::App& app) {
     add_value(app, "--exposure", exposure, parse_exposure, "a number from -100 to 100",
               "PNG: multiply by 2^EV before the tone map (default: 0)")
         ->type_name("EV");
     add_choice(app, "--tonemap", tonemap, TONEMAP_NAMES, "PNG: tone map (default: linear, which clamps)");
+}
+
+void RenderOptions::add_camera_to(CLI::App& app) {
+    app.option_defaults()->group("Picture");
+    app.add_option("--camera", camera, "Camera by name (default: the scene's first)")->type_name("NAME");
+}
+
+void RenderOptions::add_output_options(CLI::App& app) {
+    app.option_defaults()->group("Output");
+    add_images_to(app);
+    add_value(app, "--aov", aovs, parse_aovs, std::string("all, none or a list of ") + AOV_NAMES,
+              "EXR: none, all (default) or a list of " + std::string(AOV_NAMES))
+        ->type_name("LIST");
     app.add_option("--report", report, "Write figures of the run as JSON; - is standard output")
         ->type_name("FILE|-");
+}
+
+void RenderOptions::add_images_to(CLI::App& app) {
+    app.add_option("-o,--output", outputs, "Image to write, .exr or .png; repeat it for several")
+        ->type_name("FILE")
+        ->take_all()
+        ->allow_extra_args(false);
+    app.add_flag("--half", half, "EXR: R G B A and Albedo as 16-bit floats (default: 32-bit)");
+    add_development_to(app);
+}
+
+void RenderOptions::add_checkpoint_options(CLI::App& app) {
+    app.option_defaults()->group("Never lose work");
+    CLI::Option* const file =
+        app.add_option("--checkpoint", checkpoint,
+                       "Keep the state in this file, at the end and if interrupted, too")
+            ->type_name("FILE");
+    add_value(app, "--checkpoint-every", checkpoint_every, parse_duration, DURATIONS,
+              "How often, such as 90, 90s, 1.5m, 2h (default: 60s)")
+        ->type_name("TIME")
+        ->needs(file);
+    app.add_flag("--resume", resume, "Go on from the checkpoint; start anew if it does not exist yet")
+        ->needs(file);
 }
 
 void RenderOptions::add_sampling_options(CLI::App& app) {
@@ -108,6 +147,16 @@ AovSelection RenderOptions::written_aovs() const {
     return exr ? aovs : AovSelection{};
 }
 
+const Camera& RenderOptions::choose_camera(const Scene& scene) const {
+    if (!camera) return scene.cameras.front();
+    std::string names;
+    for (const Camera& defined : scene.cameras) {
+        if (defined.name == *camera) return defined;
+        names += (names.empty() ? "" : ", ") + defined.name;
+    }
+    throw Error("--camera: unknown camera \"" + *camera + "\" (defined: " + names + ")", ExitCode::usage);
+}
+
 RenderSettings RenderOptions::settings(const Scene& scene) const {
     const IntegratorSettings& proposed = scene.integrator;
     const uvec2 size = picture.size.value_or(scene.film.size);
@@ -117,6 +166,7 @@ RenderSettings RenderOptions::settings(const Scene& scene) const {
             .estimator = estimator.value_or(proposed.estimator),
             .sampler = sampler.value_or(proposed.sampler),
             .seed = seed.value_or(proposed.seed),
+            .first_sample = samples ? samples->first : 0,
             .max_depth = std::min(depth, DEPTH_SAFETY_LIMIT),
             .rr_depth = rr_depth.value_or(proposed.rr_depth),
             .aovs = written_aovs().needs_layers(),

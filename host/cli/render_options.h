@@ -13,13 +13,11 @@
 #include "cli/arguments.h"
 #include "render/accumulation.h"
 #include "render/renderer.h"
+#include "render/sample_range.h"
 #include "scene/names.h"
 #include "scene/scene.h"
 
 namespace candela {
-
-// Samples per pixel at most: their counts are kept as 32-bit floats, which are exact up to here.
-inline constexpr uint32_t MAX_SPP = 1u << 24;
 
 inline constexpr Choices<SceneAccess, 3> SCENE_ACCESS_NAMES{{{"auto", SceneAccess::automatic},
                                                              {"texel", SceneAccess::texel_buffers},
@@ -44,12 +42,17 @@ struct RenderOptions {
     std::optional<std::string> camera;
 
     std::optional<uint32_t> spp;
-    std::optional<double> time_limit;  // Seconds.
+    std::optional<double> time_limit;    // Seconds.
+    std::optional<SampleRange> samples;  // Instead of spp: these alone.
     std::optional<uint32_t> seed;
     std::optional<uint32_t> max_depth;  // DEPTH_SAFETY_LIMIT: unlimited.
     std::optional<uint32_t> rr_depth;
     std::optional<Estimator> estimator;
     std::optional<SamplerKind> sampler;
+
+    std::optional<std::string> checkpoint;
+    double checkpoint_every = 60.0;  // Seconds.
+    bool resume = false;
 
     std::optional<std::string> device;  // Index or part of the name.
     SceneAccess scene_access = SceneAccess::automatic;
@@ -60,18 +63,30 @@ struct RenderOptions {
     void add_to(CLI::App& app);
     // Declares those alone that say what is computed and where: picture, sampling, device.
     void add_rendering_to(CLI::App& app);
+    // Declares those alone that say which images are written, and how: outputs, 16 bits, development.
+    void add_images_to(CLI::App& app);
+    // Declares those alone that say how radiance becomes a picture: exposure and tone map.
+    void add_development_to(CLI::App& app);
+    // Declares --camera.
+    void add_camera_to(CLI::App& app);
 
     // The images beside R G B A that will be written: those selected if there is an EXR among the outputs,
     // else none.
     AovSelection written_aovs() const;
+    // The camera of that name, by default the scene's first. Throws Error (usage) that lists the names if
+    // there is none.
+    const Camera& choose_camera(const Scene& scene) const;
     // Samples per pixel to reach.
-    uint32_t target_spp(const Scene& scene) const { return spp.value_or(scene.integrator.spp); }
+    uint32_t target_spp(const Scene& scene) const {
+        return samples ? samples->count() : spp.value_or(scene.integrator.spp);
+    }
     // The renderer's settings for a scene. Throws Error (usage) if the crop reaches beyond the picture.
     RenderSettings settings(const Scene& scene) const;
 
   private:
     void add_output_options(CLI::App& app);
     void add_sampling_options(CLI::App& app);
+    void add_checkpoint_options(CLI::App& app);
     void add_message_options(CLI::App& app);
 };
 

@@ -1,22 +1,13 @@
 // See accumulation.h.
 #include "render/accumulation.h"
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "base/hash.h"
-#include "base/image_io.h"
 
 namespace candela {
 namespace {
-
-constexpr const char* COMPONENTS[] = {"R", "G", "B", "A"};
-constexpr const char* SEED_ATTRIBUTE = "candela.seed";
-
-std::string layer_channel(uint32_t layer, size_t component) {
-    return "Layer" + std::to_string(layer) + "." + COMPONENTS[component];
-}
 
 // Appends one channel, its value at pixel i given by value(i).
 template <class Value>
@@ -54,46 +45,18 @@ uint64_t Accumulation::total_samples() const {
     return samples;
 }
 
-void save_accumulation(const std::filesystem::path& path, const Accumulation& state) {
-    Image image{.full = state.full, .data = state.rect, .channels = {}, .attributes = {}};
-    image.attributes[SEED_ATTRIBUTE] = std::to_string(state.seed);
-    for (uint32_t layer = 0; layer < state.layer_count; ++layer) {
-        for (size_t c = 0; c < 4; ++c) {
-            add_channel(image, layer_channel(layer, c).c_str(),
-                        [&](size_t i) { return state.at(layer, i)[c]; });
-        }
-    }
-    write_exr(path, image);
+uint32_t Accumulation::least_samples() const {
+    uint32_t least = UINT32_MAX;
+    for (size_t i = 0; i < pixel_count(); ++i)
+        least = std::min(least, sample_count(i));
+    return least;
 }
 
-Accumulation load_accumulation(const std::filesystem::path& path) {
-    const Image image = read_exr(path);
-    const auto refuse = [&](const std::string& why) {
-        throw Error(path.string() + ": not a state of candela: " + why +
-                    "; give a file that candela wrote as one");
-    };
-    Accumulation state{.full = image.full, .rect = image.data, .values = {}};
-    const auto seed = image.attributes.find(SEED_ATTRIBUTE);
-    if (seed == image.attributes.end() || !std::holds_alternative<std::string>(seed->second)) {
-        refuse(std::string("the attribute ") + SEED_ATTRIBUTE + " is missing");
-    }
-    const std::string& text = std::get<std::string>(seed->second);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), state.seed);
-    if (error != std::errc{} || end != text.data() + text.size()) {
-        refuse("its seed is \"" + text + "\"");
-    }
-    if (image.find(layer_channel(LAYER_ALBEDO, 0)) != nullptr) state.layer_count = LAYER_COUNT_AOVS;
-    state.values.resize(state.layer_count * state.pixel_count() * 4);
-    for (uint32_t layer = 0; layer < state.layer_count; ++layer) {
-        for (size_t c = 0; c < 4; ++c) {
-            const Channel* channel = image.find(layer_channel(layer, c));
-            if (channel == nullptr) refuse("the channel " + layer_channel(layer, c) + " is missing");
-            for (size_t i = 0; i < state.pixel_count(); ++i) {
-                state.values[(layer * state.pixel_count() + i) * 4 + c] = channel->values[i];
-            }
-        }
-    }
-    return state;
+uint32_t Accumulation::most_samples() const {
+    uint32_t most = 0;
+    for (size_t i = 0; i < pixel_count(); ++i)
+        most = std::max(most, sample_count(i));
+    return most;
 }
 
 Image make_image(const Accumulation& state, const AovSelection& aovs, const std::vector<float>& positions) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <vector>
 
 #include "base/image.h"
@@ -10,14 +9,25 @@
 
 namespace candela {
 
+// What the device counted while it rendered.
+struct RenderCounters {
+    uint64_t rays = 0;
+    uint64_t nonfinite_samples = 0;  // Samples that were not finite and added nothing.
+    uint64_t depth_limit_hits = 0;   // Paths cut at DEPTH_SAFETY_LIMIT.
+
+    bool operator==(const RenderCounters&) const = default;
+};
+
 // Sums of samples per pixel, exactly as the device holds them: layers (LAYER_*) of `rect`, each row-major
 // RGBA.
 struct Accumulation {
     uvec2 full{0, 0};  // Pixels of the whole picture ...
     PixelRect rect;    // ... and the part of it that is held here.
     uint32_t seed = 0;
+    uint32_t first_sample = 0;                  // Index of each pixel's first sample.
     uint32_t layer_count = LAYER_COUNT_COLOUR;  // LAYER_COUNT_COLOUR or LAYER_COUNT_AOVS.
     std::vector<float> values;
+    RenderCounters counters{};  // Of all the work that went into it.
 
     size_t pixel_count() const { return size_t(rect.width()) * rect.height(); }
     // RGBA of a layer at pixel i of `rect`.
@@ -25,13 +35,10 @@ struct Accumulation {
     uint32_t sample_count(size_t i) const { return uint32_t(at(LAYER_L_COMPENSATION, i)[3]); }
     // All samples of all pixels.
     uint64_t total_samples() const;
+    // The samples of the pixel that holds fewest, and of the one that holds most.
+    uint32_t least_samples() const;
+    uint32_t most_samples() const;
 };
-
-// Writes the state to a file, whole or not at all: a multilayer EXR of its layers, bit for bit.
-void save_accumulation(const std::filesystem::path& path, const Accumulation& state);
-
-// Reads it back. Throws Error if the file is not such a state.
-Accumulation load_accumulation(const std::filesystem::path& path);
 
 // Which images beside R G B A.
 struct AovSelection {

@@ -139,7 +139,23 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .lens_x = lens.radius * (cos_lens * right + sin_lens * up),
             .lens_y = lens.radius * (cos_lens * up - sin_lens * right),
             .focal_distance = lens.focal_distance,
-            .blades = lens.blades};
+            .blades = lens.blades,
+            .first_sample = settings.first_sample};
+}
+
+std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const Camera& camera,
+                                                    const RenderSettings& settings) {
+    std::array<uint32_t, CONSTANT_COUNT> constants{};
+    constants[CONSTANT_SAMPLER] = sampler_constant(settings.sampler);
+    constants[CONSTANT_ESTIMATOR] = estimator_constant(settings.estimator, scene.light_count);
+    constants[CONSTANT_HAS_NORMALS] = scene.has_normals;
+    constants[CONSTANT_HAS_AOVS] = settings.aovs;
+    constants[CONSTANT_APERTURE] = aperture_constant(camera.lens);
+    constants[CONSTANT_ENVIRONMENT] = scene.environment;
+    constants[CONSTANT_MATERIALS] = scene.materials_present;
+    constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
+    constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
+    return constants;
 }
 
 uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings) {
@@ -152,6 +168,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
     : device_(&check_memory(device, scene, settings)),
       settings_(settings),
       access_(choose_access(device, scene, settings.scene_access)),
+      constants_(make_constants(scene, camera, settings)),
       nodes_(scene_buffer(device, scene.nodes, access_, "nodes")),
       primitives_(scene_buffer(device, scene.primitives, access_, "primitives")),
       tables_(scene_buffer(device, scene.tables, access_, "tables")),
@@ -165,17 +182,11 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
         const bool cpu = device.info().type == vk::DeviceType::cpu;
         settings_.submission_seconds = cpu ? CPU_SUBMISSION_SECONDS : GPU_SUBMISSION_SECONDS;
     }
+    compile();
+}
 
+void Renderer::compile() {
     const auto start = std::chrono::steady_clock::now();
-    constants_[CONSTANT_SAMPLER] = sampler_constant(settings.sampler);
-    constants_[CONSTANT_ESTIMATOR] = estimator_constant(settings.estimator, scene.light_count);
-    constants_[CONSTANT_HAS_NORMALS] = scene.has_normals;
-    constants_[CONSTANT_HAS_AOVS] = settings.aovs;
-    constants_[CONSTANT_APERTURE] = aperture_constant(camera.lens);
-    constants_[CONSTANT_ENVIRONMENT] = scene.environment;
-    constants_[CONSTANT_MATERIALS] = scene.materials_present;
-    constants_[CONSTANT_PRIMITIVES] = scene.primitives_present;
-    constants_[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
     render_kernel_ =
         std::make_unique<vk::Kernel>(make_kernel(kernels::render, kernels::render_storage, true, "render"));
     render_kernel_->bind(BINDING_IMAGE, image_);
@@ -183,6 +194,26 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
     // Some drivers compile at the first dispatch.
     dispatch(*render_kernel_, Tile{.origin = {0, 0}, .size = {0, 0}, .target_samples = 0});
     pipeline_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
+    const double submission_seconds = settings_.submission_seconds;
+    settings_ = settings;
+    if (settings_.submission_seconds == 0.0) settings_.submission_seconds = submission_seconds;
+    parameters_.upload(bytes_of(pack(make_parameters(scene, camera, settings))));
+    const uvec2 size = image_size();
+    if (size == uvec2(image_.width(), image_.height()) && layer_count(settings) == image_.layers()) {
+        image_.clear();
+    } else {
+        image_ = vk::StorageImage(*device_, size.x, size.y, layer_count(settings), "accumulation");
+        render_kernel_->bind(BINDING_IMAGE, image_);
+    }
+    samples_ = 0;
+    counters_ = {};
+    const auto constants = make_constants(scene, camera, settings);
+    if (constants == constants_) return;
+    constants_ = constants;
+    compile();
 }
 
 vk::Kernel Renderer::make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage,
@@ -248,21 +279,22 @@ Accumulation Renderer::download() const {
     return {.full = settings_.size,
             .rect = settings_.crop,
             .seed = settings_.seed,
+            .first_sample = settings_.first_sample,
             .layer_count = image_.layers(),
-            .values = image_.download(0, image_.layers())};
+            .values = image_.download(0, image_.layers()),
+            .counters = counters_};
 }
 
 void Renderer::upload(const Accumulation& state) {
     if (state.full != settings_.size || state.rect != settings_.crop || state.seed != settings_.seed ||
-        state.layer_count != image_.layers()) {
+        state.first_sample != settings_.first_sample || state.layer_count != image_.layers()) {
         throw Error(
-            "the state does not fit: its size, crop, seed or set of images differs from this rendering's; "
-            "render with the settings that it was made with");
+            "the state does not fit: its size, crop, seed, first sample or set of images differs from this "
+            "rendering's; render with the settings that it was made with");
     }
     image_.upload(0, state.values);
-    samples_ = UINT32_MAX;
-    for (size_t i = 0; i < state.pixel_count(); ++i)
-        samples_ = std::min(samples_, state.sample_count(i));
+    samples_ = state.least_samples();
+    counters_ = state.counters;
 }
 
 std::vector<float> Renderer::positions() {

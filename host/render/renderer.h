@@ -25,6 +25,7 @@ struct RenderSettings {
     Estimator estimator = Estimator::mis;
     SamplerKind sampler = SamplerKind::sobol;
     uint32_t seed = 0;
+    uint32_t first_sample = 0;  // Index of each pixel's first sample.
     uint32_t max_depth = DEPTH_SAFETY_LIMIT;
     uint32_t rr_depth = 3;
     bool aovs = false;  // Accumulate albedo and normal as well.
@@ -32,15 +33,12 @@ struct RenderSettings {
     double submission_seconds = 0.0;  // How long a submission should take; 0: what suits the device.
 };
 
-// What the device counted while it rendered.
-struct RenderCounters {
-    uint64_t rays = 0;
-    uint64_t nonfinite_samples = 0;  // Samples that were not finite and added nothing.
-    uint64_t depth_limit_hits = 0;   // Paths cut at DEPTH_SAFETY_LIMIT.
-};
-
 // The uniform record of a camera and settings for a scene.
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
+
+// The values of the specialization constants CONSTANT_* for them.
+std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const Camera& camera,
+                                                    const RenderSettings& settings);
 
 // `wanted`, or, for `automatic`, what suits the device and holds the scene. Throws Error (out_of_memory) that
 // names the device's limits if nothing does.
@@ -56,13 +54,18 @@ class Renderer {
     Renderer(const vk::Device& device, const GpuScene& scene, const Camera& camera,
              const RenderSettings& settings);
 
+    // Begins anew, without a sample, with another camera or other settings. Compiles the kernel only if they
+    // need another one (see make_constants). `scene` must be the one that the renderer was made with, but for
+    // the rotation of its environment; how it is read does not change.
+    void reset(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
+
     // Adds samples until every pixel holds `target`. Between submissions `keep_going(progress)` is asked,
     // progress in [0, 1]; if it says no, rendering stops with pixels that may hold different numbers of
     // samples. Returns whether the target was reached.
     bool render(uint32_t target, const std::function<bool(double)>& keep_going);
 
-    // The state so far, and continuing from a state of the same size and layers. Throws Error if it does not
-    // fit.
+    // The state so far, counters included, and continuing from a state of the same size, first sample and
+    // layers. Throws Error if it does not fit.
     Accumulation download() const;
     void upload(const Accumulation& state);
 
@@ -71,12 +74,19 @@ class Renderer {
     std::vector<float> positions();
 
     const RenderCounters& counters() const { return counters_; }
+    // The sums of samples, layers LAYER_*, for kernels that show them; another image after a reset() to
+    // another size.
+    const vk::StorageImage& accumulation() const { return image_; }
     SceneAccess scene_access() const { return access_; }
+    // How long a submission should take [s].
+    double submission_seconds() const { return settings_.submission_seconds; }
     double pipeline_seconds() const {
         return pipeline_seconds_;
     }  // Wall time of compiling, first dispatch included.
 
   private:
+    // Makes the render kernel for constants_ and image_, an empty first dispatch included.
+    void compile();
     vk::Kernel make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage, bool counters,
                            const char* name) const;
     double dispatch(const vk::Kernel& kernel, const Tile& tile);
@@ -86,7 +96,7 @@ class Renderer {
     const vk::Device* device_;
     RenderSettings settings_;
     SceneAccess access_;
-    std::array<uint32_t, CONSTANT_COUNT> constants_{};
+    std::array<uint32_t, CONSTANT_COUNT> constants_;
     RenderCounters counters_;
     double pipeline_seconds_ = 0.0;
     uint32_t samples_ = 0;  // That every pixel holds at least.

@@ -1,7 +1,9 @@
 // The names of the settings that are chosen by name, in scene files, on the command line and in reports.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -9,15 +11,24 @@
 
 namespace candela {
 
-inline constexpr std::array<std::pair<std::string_view, Estimator>, 3> ESTIMATOR_NAMES{
+// The words of a setting, and what each stands for.
+template <class T, size_t N>
+using Choices = std::array<std::pair<std::string_view, T>, N>;
+
+// The word for `value`, which must be among the choices.
+template <class T, size_t N>
+std::string name_of(T value, const Choices<T, N>& choices) {
+    return std::string(std::ranges::find(choices, value, &std::pair<std::string_view, T>::second)->first);
+}
+
+inline constexpr Choices<Estimator, 3> ESTIMATOR_NAMES{
     {{"bsdf", Estimator::bsdf}, {"light", Estimator::light}, {"mis", Estimator::mis}}};
 
-inline constexpr std::array<std::pair<std::string_view, SamplerKind>, 3> SAMPLER_NAMES{
-    {{"independent", SamplerKind::independent},
-     {"stratified", SamplerKind::stratified},
-     {"sobol", SamplerKind::sobol}}};
+inline constexpr Choices<SamplerKind, 3> SAMPLER_NAMES{{{"independent", SamplerKind::independent},
+                                                        {"stratified", SamplerKind::stratified},
+                                                        {"sobol", SamplerKind::sobol}}};
 
-inline constexpr std::array<std::pair<std::string_view, Fresnel>, 2> FRESNEL_NAMES{
+inline constexpr Choices<Fresnel, 2> FRESNEL_NAMES{
     {{"schlick", Fresnel::schlick}, {"exact", Fresnel::exact}}};
 
 }  // namespace candela

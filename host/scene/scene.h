@@ -18,6 +18,8 @@ struct Lens {
     float focal_distance = 1.0f;  // From the lens to the plane that is sharp, along the view [m]; above 0.
     uint32_t blades = 0;          // Corners of the polygon, 3 .. MAX_BLADES; 0: a disk.
     float rotation = 0.0f;        // Of the polygon [rad]: its first corner, from the right towards up.
+
+    bool operator==(const Lens&) const = default;
 };
 inline constexpr uint32_t MAX_BLADES = 64;
 
@@ -29,6 +31,8 @@ struct Camera {
     vec3 up{0, 1, 0};
     float vertical_fov = 0.0f;  // Full angle [rad], in (0, pi).
     Lens lens;
+
+    bool operator==(const Camera&) const = default;
 };
 
 struct Film {

@@ -73,7 +73,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 120> words;
+    std::array<uint, 121> words;
 };
 
 // Where the tables begin if a word that belongs to nothing comes first, and each table has two records.
@@ -111,7 +111,8 @@ Records filled(Fields& fields) {
         .lens_x = fields.f3(),
         .lens_y = fields.f3(),
         .focal_distance = fields.f(),
-        .blades = fields.u()};
+        .blades = fields.u(),
+        .first_sample = fields.u()};
     r.node.origin = fields.f3();
     r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);
     for (const int axis : {0, 1, 2})

@@ -60,7 +60,7 @@ void main() {
     //
     // Lavapipe ends all loops of an invocation after 65 535 turns in sum, whatever their conditions say. What is not
     // folded then is dropped, and traced again by the next dispatch.
-    uint n = first;        // Samples folded,
+    uint n = first;        // Samples folded, the first of which has the index parameters.first_sample,
     uint started = first;  // and begun.
     uint rays = 0u;
     Sampler random;
@@ -71,7 +71,7 @@ void main() {
     bool ended = false;  // The sample's path has ended; its shadow ray may still be on its way.
     while (n < tile.target_samples) {
         if (!alive && started < tile.target_samples) {
-            random = sampler_make(pixel, started, parameters.seed);
+            random = sampler_make(pixel, parameters.first_sample + started, parameters.seed);
             vec2 film = vec2(pixel) + unit_float(sampler_pair(random, PAIR_PIXEL));
             path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(random, PAIR_LENS))));
             alive = true;

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 120u
+#define RESULT_WORDS 121u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -31,6 +31,7 @@ void put_parameters(Parameters p) {
     put(p.lens_y);
     put(p.focal_distance);
     put(p.blades);
+    put(p.first_sample);
 }
 
 void put_node(uint i) {

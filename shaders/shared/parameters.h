@@ -5,7 +5,7 @@
 //   1: right.xyz, max_depth       6: first words of the environment: texels, alias table; its size.xy
 //   2: up.xyz, rr_depth           7: lens_x.xyz, focal_distance
 //   3: forward.xyz, light_count   8: lens_y.xyz, blades
-//   4: full_size.xy, crop.xy      9: environment_turn.xy, first word of the surfaces, 0
+//   4: full_size.xy, crop.xy      9: environment_turn.xy, first word of the surfaces, first_sample
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
 
@@ -49,6 +49,7 @@ struct Parameters {
     vec3 lens_y;
     float focal_distance;  // Along `forward` [m].
     uint blades;           // Corners of a polygonal aperture.
+    uint first_sample;     // Index of the first sample of every pixel.
 };
 
 // One dispatch: a rectangle of the accumulation image whose pixels are brought to `target_samples` samples
@@ -73,7 +74,7 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         words(p.lens_x, floatBitsToUint(p.focal_distance)),
         words(p.lens_y, p.blades),
         uvec4(floatBitsToUint(p.environment_turn.x), floatBitsToUint(p.environment_turn.y), p.tables.surfaces,
-              0u)};
+              p.first_sample)};
 }
 
 }  // namespace candela
@@ -84,7 +85,7 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
                       uintBitsToFloat(w[3].xyz), w[4].xy, w[4].zw, w[0].w, w[1].w, w[2].w, w[3].w,
                       TableStarts(w[9].z, w[5].x, w[5].y, w[5].z, w[5].w, w[6].x, w[6].y), w[6].zw,
                       uintBitsToFloat(w[9].xy), uintBitsToFloat(w[7].xyz), uintBitsToFloat(w[8].xyz),
-                      uintBitsToFloat(w[7].w), w[8].w);
+                      uintBitsToFloat(w[7].w), w[8].w, w[9].w);
 }
 
 #endif

@@ -21,6 +21,13 @@ TEST_F(RenderFiles, AttributesTellHowTheImageWasMade) {
     EXPECT_GT(std::get<float>(attributes.at("renderTimeSeconds")), 0.0f);
     EXPECT_EQ(text("candela.version"), "0.1.0");
     EXPECT_EQ(text("candela.seed"), "7");
+    EXPECT_EQ(text("candela.samples"), "0..4");
+    EXPECT_EQ(text("candela.sampler"), "sobol");
+    EXPECT_EQ(text("candela.estimator"), "mis");
+    EXPECT_EQ(text("candela.maxDepth"), "4096");
+    EXPECT_EQ(text("candela.rrDepth"), "3");
+    EXPECT_EQ(text("candela.camera").rfind("at 0.278 0.273 -0.8 ", 0), 0u) << text("candela.camera");
+    EXPECT_EQ(text("candela.identity").size(), 16u);
     EXPECT_NE(text("candela.device"), "");
     EXPECT_NE(text("candela.driver"), "");
     EXPECT_EQ(text("candela.commandLine"), std::string(CANDELA_BINARY) + " render " + CORNELL_BOX +
@@ -62,6 +69,8 @@ TEST_F(RenderFiles, ReportHasEveryField) {
     EXPECT_EQ(report["height"], 32);
     EXPECT_EQ(report["crop"], (std::vector<int>{0, 0, 32, 32}));
     EXPECT_EQ(report["spp"], 4);
+    EXPECT_EQ(report["samples"], "0..4");
+    EXPECT_EQ(report["device_failures"], 0);
     EXPECT_EQ(report["complete"], true);
     EXPECT_EQ(report["seed"], 3);
     EXPECT_EQ(report["estimator"], "mis");

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <functional>
 
+#include "render/checkpoint.h"
 #include "render_fixture.h"
 #include "unit/base_fixture.h"
 
@@ -120,12 +121,41 @@ TEST_P(IdentityTest, AStateThatWentThroughAFile) {
         Renderer r = renderer(s);
         size_t submissions = 0;
         r.render(SPP, [&](double) { return ++submissions < 30; });
-        save_accumulation(folder / "state.exr", r.download());
+        save_checkpoint(folder / "state.exr", make_identity(gpu_scene_, scene_.cameras[0], s), {}, 1.0,
+                        r.download());
     }
     Renderer r = renderer(settings());
-    r.upload(load_accumulation(folder / "state.exr"));
+    r.upload(load_checkpoint(folder / "state.exr").state);
     finish(r);
     expect_same_bits(r.download(), in_one_go(settings()));
+}
+
+// Each sample by itself, folded here as the device folds them.
+TEST_P(IdentityTest, SamplesThatBeginLater) {
+    const Accumulation whole = in_one_go(settings());
+    const size_t pixels = whole.pixel_count();
+    std::vector<float> folded(whole.layer_count * pixels * 4);
+    Renderer r = renderer(settings());
+    for (uint32_t n = 0; n < SPP; ++n) {
+        RenderSettings s = settings();
+        s.first_sample = n;
+        r.reset(gpu_scene_, scene_.cameras[0], s);
+        finish(r, 1);
+        const Accumulation one = r.download();
+        for (uint32_t layer = 0; layer < whole.layer_count; layer += 2) {
+            float* const sum = &folded[layer * pixels * 4];
+            float* const compensation = sum + pixels * 4;
+            for (size_t i = 0; i < pixels * 4; ++i) {
+                const float y = one.at(layer, 0)[i] - compensation[i];
+                const float t = sum[i] + y;
+                compensation[i] = (t - sum[i]) - y;
+                sum[i] = t;
+            }
+        }
+    }
+    for (size_t i = 0; i < pixels; ++i)
+        folded[(LAYER_L_COMPENSATION * pixels + i) * 4 + 3] = float(SPP);
+    EXPECT_EQ(std::memcmp(folded.data(), whole.values.data(), folded.size() * sizeof(float)), 0);
 }
 
 TEST_P(IdentityTest, AStateThatDoesNotFitIsRefused) {
@@ -136,12 +166,13 @@ TEST_P(IdentityTest, AStateThatDoesNotFitIsRefused) {
         Renderer r = renderer(s);
         EXPECT_EQ(
             error_of([&] { r.upload(state); }),
-            "the state does not fit: its size, crop, seed or set of images differs from this rendering's; "
-            "render with the settings that it was made with");
+            "the state does not fit: its size, crop, seed, first sample or set of images differs from this "
+            "rendering's; render with the settings that it was made with");
     };
     expect_refused([](RenderSettings& s) { s.size.x = 38; });
     expect_refused([](RenderSettings& s) { s.crop.x0 = 1; });
     expect_refused([](RenderSettings& s) { s.seed = 78; });
+    expect_refused([](RenderSettings& s) { s.first_sample = 1; });
     expect_refused([](RenderSettings& s) { s.aovs = false; });
 }
 

@@ -34,6 +34,8 @@ class Process {
 
     // Waits until stderr contains `text`. Returns false if the program ended or ran out of time before.
     bool wait_for_err(const std::string& text);
+    // What it has written to stderr as far as that was waited for.
+    const std::string& err() const { return result_.err; }
     void send(int signal) const;
     // Waits for the end.
     ProcessResult finish();

@@ -1,4 +1,4 @@
-// The accumulation state: the means and variances that it stands for, and its file.
+// The accumulation state: the means and variances that it stands for.
 #include "render/accumulation.h"
 
 #include <cmath>
@@ -6,60 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "base/file.h"
-#include "base/image_io.h"
-#include "base_fixture.h"
-#include "selftest/random.h"
+#include "accumulation_fixture.h"
 
 namespace candela {
 namespace {
-
-// A state of 3 x 2 pixels of a crop, pixel i with i samples, each with a random L, and the samples
-// themselves.
-struct Sampled {
-    Accumulation state;
-    std::vector<std::vector<vec3>> samples;
-};
-
-// Fills the layers as the device does, but in double precision: the sum as float, what is missing as
-// compensation.
-void set_sum(Accumulation& state, uint32_t layer, size_t i, int component, double sum) {
-    const size_t at = (layer * state.pixel_count() + i) * 4 + size_t(component);
-    state.values[at] = float(sum);
-    state.values[at + state.pixel_count() * 4] = float(double(float(sum)) - sum);
-}
-
-Sampled sampled(uint32_t layer_count) {
-    Sampled s;
-    s.state = {.full = uvec2(40, 30),
-               .rect = {10, 20, 13, 22},
-               .seed = 0xFFFFFFFEu,
-               .layer_count = layer_count,
-               .values = {}};
-    s.state.values.resize(layer_count * s.state.pixel_count() * 4);
-    s.samples.resize(s.state.pixel_count());
-    Random random(70);
-    for (size_t i = 0; i < s.state.pixel_count(); ++i) {
-        for (size_t n = 0; n < i; ++n)
-            s.samples[i].push_back(10.0f + random.cube());
-        for (int c = 0; c < 3; ++c) {
-            double sum = 0.0, squares = 0.0;
-            for (const vec3 L : s.samples[i]) {
-                sum += L[c];
-                squares += double(L[c]) * L[c];
-            }
-            set_sum(s.state, LAYER_L, i, c, sum);
-            set_sum(s.state, LAYER_SQUARE, i, c, squares);
-            if (layer_count == LAYER_COUNT_AOVS) {
-                set_sum(s.state, LAYER_ALBEDO, i, c, 0.25 * double(i));
-                set_sum(s.state, LAYER_NORMAL, i, c, -0.5 * double(i));
-            }
-        }
-        s.state.values[(LAYER_L * s.state.pixel_count() + i) * 4 + 3] = float(i / 2);
-        s.state.values[(LAYER_L_COMPENSATION * s.state.pixel_count() + i) * 4 + 3] = float(i);
-    }
-    return s;
-}
 
 constexpr AovSelection ALL{true, true, true, true, true, true};
 
@@ -143,68 +93,6 @@ TEST(Accumulation, TheHashIsThatOfTheColoursInOrder) {
     EXPECT_EQ(image_hash(image), expected);
     image.channels[2].values[1] = 1e-30f;
     EXPECT_NE(image_hash(image), expected);
-}
-
-TEST(Accumulation, TheFileKeepsEveryBit) {
-    const TemporaryDirectory folder;
-    for (const uint32_t layers : {LAYER_COUNT_COLOUR, LAYER_COUNT_AOVS}) {
-        Accumulation state = sampled(layers).state;
-        state.values[5] = -0.0f;
-        state.values[6] = 0x1p-149f;
-        state.values[7] = INFINITE;
-        save_accumulation(folder / "state.exr", state);
-        const Accumulation loaded = load_accumulation(folder / "state.exr");
-        EXPECT_EQ(loaded.full, state.full);
-        EXPECT_EQ(loaded.rect, state.rect);
-        EXPECT_EQ(loaded.seed, state.seed);
-        EXPECT_EQ(loaded.layer_count, state.layer_count);
-        ASSERT_EQ(loaded.values.size(), state.values.size());
-        EXPECT_EQ(std::memcmp(loaded.values.data(), state.values.data(), state.values.size() * sizeof(float)),
-                  0);
-    }
-}
-
-// Loads a state after `change` has had its way with the image in the file.
-template <class Change>
-std::string error_after(const Change& change) {
-    const TemporaryDirectory folder;
-    save_accumulation(folder / "state.exr", sampled(LAYER_COUNT_COLOUR).state);
-    Image image = read_exr(folder / "state.exr");
-    change(image);
-    write_exr(folder / "state.exr", image);
-    const std::string message = error_of([&] { load_accumulation(folder / "state.exr"); });
-    const std::string prefix = (folder / "state.exr").string() + ": not a state of candela: ";
-    EXPECT_EQ(message.substr(0, prefix.size()), prefix);
-    return message.substr(std::min(prefix.size(), message.size()));
-}
-
-TEST(Accumulation, AFileThatIsNoStateIsRefused) {
-    const std::string remedy = "; give a file that candela wrote as one";
-    EXPECT_EQ(error_after([](Image& image) { image.attributes.erase("candela.seed"); }),
-              "the attribute candela.seed is missing" + remedy);
-    EXPECT_EQ(error_after([](Image& image) { image.attributes["candela.seed"] = 7.0f; }),
-              "the attribute candela.seed is missing" + remedy);
-    for (const std::string seed : {"", "seven", "7x", "-1", "4294967296"}) {
-        EXPECT_EQ(error_after([&](Image& image) { image.attributes["candela.seed"] = seed; }),
-                  "its seed is \"" + seed + "\"" + remedy);
-    }
-    EXPECT_EQ(error_after([](Image& image) {
-                  std::erase_if(image.channels, [](const Channel& c) { return c.name == "Layer3.G"; });
-              }),
-              "the channel Layer3.G is missing" + remedy);
-}
-
-TEST(Accumulation, UnreadableAndUnwritableFilesAreNamed) {
-    const TemporaryDirectory folder;
-    const auto expect_named = [](const std::string& message, const std::filesystem::path& path) {
-        EXPECT_NE(message.find(path.string()), std::string::npos) << message;
-    };
-    expect_named(error_of([&] { load_accumulation(folder / "missing.exr"); }), folder / "missing.exr");
-    write_file_atomically(folder / "text.exr", "no image");
-    expect_named(error_of([&] { load_accumulation(folder / "text.exr"); }), folder / "text.exr");
-    const std::filesystem::path nowhere = folder / "none/state.exr";
-    expect_named(error_of([&] { save_accumulation(nowhere, sampled(LAYER_COUNT_COLOUR).state); }), nowhere);
-    EXPECT_EQ(folder.size(), 1);
 }
 
 }  // namespace

@@ -1,0 +1,86 @@
+// See checkpoints.h.
+#include "cli/checkpoints.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "base/file.h"
+#include "cli/console.h"
+
+namespace candela {
+
+void check_checkpoint(const RenderOptions& options) {
+    if (!options.checkpoint) return;
+    const std::string& path = *options.checkpoint;
+    for (const std::string& output : options.outputs) {
+        if (std::filesystem::path(output).lexically_normal() ==
+            std::filesystem::path(path).lexically_normal()) {
+            throw Error("--checkpoint: \"" + path + "\" is an output (-o) as well; give it a name of its own",
+                        ExitCode::usage);
+        }
+    }
+    check_writable(path);
+    std::error_code unreadable;  // What is wrong with it is found when it is read.
+    if (!options.resume && std::filesystem::exists(path, unreadable)) {
+        throw Error("--checkpoint: \"" + path +
+                        "\" exists; add --resume to go on from it, or remove it to start anew",
+                    ExitCode::usage);
+    }
+}
+
+std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Identity& identity,
+                                         const RenderSettings& settings, uint32_t target) {
+    if (!options.resume) return std::nullopt;
+    const std::string& path = *options.checkpoint;
+    std::error_code unreadable;
+    if (!std::filesystem::exists(path, unreadable)) {
+        if (!options.quiet) std::fprintf(stderr, "\"%s\" does not exist yet: starting anew\n", path.c_str());
+        return std::nullopt;
+    }
+    Checkpoint checkpoint = load_checkpoint(path);
+    const auto refuse = [&](const std::string& why, const std::string& remedy) {
+        throw Error("--resume: cannot go on from \"" + path + "\": " + why + "; " + remedy);
+    };
+    const std::string same = "render what it was made of, or give another --checkpoint";
+    const std::string different = difference(checkpoint.identity, identity);
+    if (!different.empty()) refuse(different, same);
+    const Accumulation& state = checkpoint.state;
+    if (state.first_sample != settings.first_sample) {
+        refuse("its first sample is " + std::to_string(state.first_sample) + ", not " +
+                   std::to_string(settings.first_sample),
+               same);
+    }
+    if ((state.layer_count == LAYER_COUNT_AOVS) != settings.aovs) {
+        refuse(std::string("it holds ") + (settings.aovs ? "no " : "") +
+                   "albedo and normals, which the outputs " + (settings.aovs ? "need" : "do not need"),
+               "give the outputs and --aov that it was made with");
+    }
+    if (state.most_samples() > target) {
+        refuse("it holds up to " + std::to_string(state.most_samples()) + " samples per pixel, but " +
+                   std::to_string(target) + " are asked for",
+               "ask for as many at least");
+    }
+    return checkpoint;
+}
+
+CheckpointWriter::CheckpointWriter(std::filesystem::path path, double every, Identity identity, Maker maker)
+    : path_(std::move(path)),
+      every_(every),
+      identity_(std::move(identity)),
+      maker_(std::move(maker)),
+      written_(std::chrono::steady_clock::now()) {}
+
+bool CheckpointWriter::due() const {
+    return std::chrono::steady_clock::now() - written_ >= every_;
+}
+
+void CheckpointWriter::write(const Accumulation& state, double render_seconds) {
+    try {
+        save_checkpoint(path_, identity_, maker_, render_seconds, state);
+    } catch (const Error& error) {
+        print_warning(std::string(error.what()) + "; the rendering goes on without this checkpoint");
+    }
+    written_ = std::chrono::steady_clock::now();
+}
+
+}  // namespace candela

@@ -1,0 +1,44 @@
+// The checkpoints of `candela render`: the one to continue from, and those that are written on the way.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "cli/render_options.h"
+#include "render/checkpoint.h"
+
+namespace candela {
+
+// Throws Error if --checkpoint could not be written, is an output at the same time (usage), or names a file
+// that exists already although there is no --resume (usage). To be called before any long work.
+void check_checkpoint(const RenderOptions& options);
+
+// What --resume says to continue from; nothing, which a line on stderr tells, if the file does not exist yet.
+// Throws Error if it is damaged, belongs to another rendering than `identity` or `settings`, or holds more
+// than `target` samples per pixel.
+std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Identity& identity,
+                                         const RenderSettings& settings, uint32_t target);
+
+// Writes checkpoints, the first after one interval. A write that fails is a warning: the rendering goes on,
+// the file keeps its old contents, and the next interval tries again.
+class CheckpointWriter {
+  public:
+    // `every`: seconds from the end of a write to the next.
+    CheckpointWriter(std::filesystem::path path, double every, Identity identity, Maker maker);
+
+    // The interval is over.
+    bool due() const;
+    // `render_seconds`: wall time that went into the state.
+    void write(const Accumulation& state, double render_seconds);
+
+  private:
+    std::filesystem::path path_;
+    std::chrono::duration<double> every_;
+    Identity identity_;
+    Maker maker_;
+    std::chrono::steady_clock::time_point written_;
+};
+
+}  // namespace candela

@@ -1,0 +1,62 @@
+// `candela merge`: from parts of one rendering, each of other samples, to the image of all of them.
+#include "render/merge.h"
+
+#include <cstdio>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/outputs.h"
+#include "cli/render_options.h"
+
+namespace candela {
+namespace {
+
+struct MergeArguments {
+    std::vector<std::string> parts;
+    RenderOptions options;  // The outputs alone.
+};
+
+ExitCode run(const MergeArguments& arguments, const std::string& command_line) {
+    check_outputs(arguments.options);
+    Merged merged = merge_files({arguments.parts.begin(), arguments.parts.end()});
+    for (const std::string& warning : merged.warnings)
+        print_warning(warning);
+    merged.image.attributes["candela.commandLine"] = command_line;
+    const std::string samples = std::get<std::string>(merged.image.attributes.at("candela.samples"));
+    const size_t count = arguments.parts.size();
+    write_images(arguments.options, std::move(merged.image));
+    std::printf("merged %zu part%s: samples %s\n", count, count == 1 ? "" : "s", samples.c_str());
+    flush_results();
+    return ExitCode::done;
+}
+
+}  // namespace
+
+Command add_merge_command(CLI::App& app, const std::string& command_line) {
+    CLI::App* const command =
+        app.add_subcommand("merge", "Join images of different samples of one rendering");
+    const auto arguments = std::make_shared<MergeArguments>();
+    command->add_option("PART", arguments->parts, "Images by candela render, usually with --samples (.exr)")
+        ->required()
+        ->type_name("")
+        ->take_all();
+    arguments->options.add_images_to(*command);
+    command->footer(
+        "Example:\n"
+        "  candela render box.json -o a.exr --samples 0..64\n"
+        "  candela render box.json -o b.exr --samples 64..128\n"
+        "  candela merge a.exr b.exr -o box.exr -o box.png\n\n"
+        "Scene, size, crop, camera, seed, sampler, estimator and depths must be the same, and no sample may "
+        "be in\n"
+        "two parts. A sample that no part has is a warning. The result is what one rendering of all samples "
+        "gives,\n"
+        "up to rounding (a few units of 2^-24), and can be merged again; parts by --half have three digits.");
+    return {command, [arguments, command_line] { return run(*arguments, command_line); }};
+}
+
+}  // namespace candela

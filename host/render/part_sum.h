@@ -1,0 +1,63 @@
+// PartSum: the arithmetic of `candela merge`: images of different samples of the same pixels become that of
+// all samples.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+
+namespace candela {
+
+// Sums, in double precision, of images that differ only in their samples. What is stored in the images is
+// rounded to floats (u = 2^-24), what happens here to doubles, which is nothing beside it. So the mean of
+// non-negative values is within 2 u (relative) of that of the unrounded ones: u for the parts, u for the
+// result; and within 3 u of that of an image of all samples, which is rounded, too. For values of both signs
+// (N) that holds of the mean of |part|.
+//
+// The sum of squared deviations of all N samples, N (N - 1) V for the Variance V, is that within the parts,
+// n (n - 1) Variance, and that between them, w d^2, where d is the difference of a part's mean from that of
+// the parts before, and w < n. Exact in reals. Rounded, the former is within u of V. The d are off by e <= 2
+// u M, for means up to M, and the sum of w (2 d e + e^2) is at most 4 u M sqrt(N sum(w d^2)) + 4 u^2 M^2 N by
+// Cauchy and Schwarz. With one more u for the result, V is off by less than
+// 3 u V + 4 u M sqrt(V / (N - 1)) + 4 u^2 M^2 / (N - 1).
+//
+// Ref: Chan, Golub, LeVeque, "Algorithms for Computing the Sample Variance" (1983), equation 2.1.
+class PartSum {
+  public:
+    // For images of `like`'s size whose channels of these names are wanted, in that order. Known are R, G, B,
+    // A, Albedo and N (means), Variance of R, G and B, SampleCount.V, and P and Z (the same in all images).
+    PartSum(const Image& like, std::vector<std::string> channels);
+    static bool knows(const std::string& channel);
+
+    // Adds an image that has all the channels and, if Variance is among them, R, G and B; counts[i] samples
+    // of pixel i.
+    void add(const Image& part, const std::vector<uint32_t>& counts);
+
+    // The channels of all samples, in 32 bits; means are 0 where there is no sample, and Variance is infinite
+    // where there are fewer than two. No attributes.
+    Image image() const;
+
+    const std::vector<uint64_t>& counts() const { return counts_; }
+
+  private:
+    enum class Kind { mean, variance, count, constant };
+    struct Sum {
+        std::string name;
+        Kind kind;
+        std::string mean_name;        // Of the channel whose variance it is.
+        std::vector<double> values;   // mean: sum of the samples; variance: sum of squared deviations.
+        std::vector<double> samples;  // variance: sum of the samples.
+    };
+    static Kind kind_of(const std::string& channel);
+    void add_mean(Sum& sum, const Channel& channel, const std::vector<uint32_t>& counts) const;
+    void add_variance(Sum& sum, const Image& part, const std::vector<uint32_t>& counts) const;
+
+    uvec2 full_;
+    PixelRect data_;
+    std::vector<uint64_t> counts_;  // Of the images so far.
+    std::vector<Sum> sums_;
+};
+
+}  // namespace candela

@@ -1,0 +1,82 @@
+// See steady_renderer.h.
+#include "render/steady_renderer.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+namespace candela {
+
+using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+// Copying the state may take this share of the time.
+static constexpr double LARGEST_SHARE_OF_HOLDING = 0.05;
+
+// The pause before a device is opened again, which doubles from try to try: a driver needs a moment to reset
+// it.
+static constexpr Seconds FIRST_PAUSE{0.1};
+
+SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
+    : source_(std::move(source)), on_failure_(std::move(on_failure)) {
+    open();
+    source_.settings.scene_access = renderer_->scene_access();
+    pipeline_seconds_ = renderer_->pipeline_seconds();
+    if (source_.positions) positions_ = renderer_->positions();
+    next_hold_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(source_.hold_seconds));
+}
+
+void SteadyRenderer::open() {
+    device_ = std::make_unique<vk::Device>(*source_.instance, source_.device, source_.pipeline_cache_file);
+    renderer_ = std::make_unique<Renderer>(*device_, *source_.scene, *source_.camera, source_.settings);
+    if (source_.state) renderer_->upload(*source_.state);
+}
+
+void SteadyRenderer::hold() {
+    const Clock::time_point start = Clock::now();
+    source_.state = renderer_->download();
+    const Clock::time_point now = Clock::now();
+    const Seconds pause =
+        std::max(Seconds(source_.hold_seconds), Seconds(now - start) / LARGEST_SHARE_OF_HOLDING);
+    next_hold_ = now + std::chrono::duration_cast<Clock::duration>(pause);
+}
+
+bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& keep_going) {
+    while (true) {
+        try {
+            if (!renderer_) open();
+            const double before = double(std::min(kept(), target)) / target;
+            const bool complete = renderer_->render(target, [&](double done) {
+                if (Clock::now() >= next_hold_) hold();
+                return keep_going(before + (1.0 - before) * done);
+            });
+            hold();
+            return complete;
+        } catch (const Error& error) {
+            recover(error);
+        }
+    }
+}
+
+// Gets rid of the device, or throws the error if it is of another kind or there is no hope left. While the
+// device is being opened again any error will do: a driver that is not ready has many ways to say so.
+void SteadyRenderer::recover(const Error& error) {
+    if (renderer_) {
+        if (error.code() != ExitCode::device_lost && error.code() != ExitCode::out_of_memory)
+            throw Error(error);
+        cause_ = error;
+        source_.settings.submission_seconds = renderer_->submission_seconds() / 2;
+    }
+    renderer_.reset();
+    device_.reset();
+
+    const uint64_t samples = source_.state ? source_.state->total_samples() : 0;
+    if (samples > samples_at_failure_) failures_in_a_row_ = 0;
+    samples_at_failure_ = samples;
+    ++failures_;
+    if (++failures_in_a_row_ == MOST_FAILURES) throw Error(*cause_);
+    on_failure_(error, kept(), source_.settings.submission_seconds);
+    std::this_thread::sleep_for(FIRST_PAUSE * (1u << (failures_in_a_row_ - 1)));
+}
+
+}  // namespace candela

@@ -1,0 +1,251 @@
+// Checkpoints as a user meets them: kill the program, fill the disk, forbid the place; what was rendered is
+// never lost, and the image has the same bits.
+#include "render/checkpoint.h"
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <random>
+#include <thread>
+
+#include "cli/cli_fixture.h"
+
+namespace candela {
+namespace {
+
+class CheckpointTest : public CliTest {
+  protected:
+    const std::string state_ = file("state.exr");
+
+    // A rendering of some samples with a checkpoint, as `render` of the fixture renders 4.
+    ProcessResult render_with(const Words& arguments) const {
+        return render(Words{"-o", file("a.exr"), "--checkpoint", state_} + arguments);
+    }
+    // The colours and all other channels of two images have the same bits.
+    static void expect_same_bits(const std::string& a, const std::string& b) {
+        const Image x = read_exr(a), y = read_exr(b);
+        ASSERT_EQ(x.channels.size(), y.channels.size());
+        for (size_t c = 0; c < x.channels.size(); ++c) {
+            ASSERT_EQ(x.channels[c].name, y.channels[c].name);
+            EXPECT_EQ(std::memcmp(x.channels[c].values.data(), y.channels[c].values.data(),
+                                  x.pixel_count() * sizeof(float)),
+                      0)
+                << x.channels[c].name;
+        }
+    }
+};
+
+TEST_F(CheckpointTest, AResumedRenderingHasTheSameBits) {
+    ASSERT_EQ(render({"-o", file("whole.exr"), "--spp", "9", "--report", file("whole.json")}).exit_code, 0);
+    const ProcessResult first = render_with({"--resume", "--spp", "4"});
+    EXPECT_EQ(first.exit_code, 0);
+    EXPECT_CONTAINS(first.err, "\"" + state_ + "\" does not exist yet: starting anew\n");
+    const ProcessResult second = render_with({"--resume", "--spp", "9", "--report", file("resumed.json")});
+    EXPECT_EQ(second.exit_code, 0) << second.err;
+    EXPECT_CONTAINS(second.err, "rendered 9 spp in ");
+    expect_same_bits(file("a.exr"), file("whole.exr"));
+    // The report speaks of the whole rendering.
+    const auto whole = nlohmann::json::parse(read_file(file("whole.json")));
+    const auto resumed = nlohmann::json::parse(read_file(file("resumed.json")));
+    for (const char* key : {"image_hash", "rays_per_sample", "samples", "spp", "complete"})
+        EXPECT_EQ(resumed[key], whole[key]) << key;
+    // With nothing left to do it gives the image again.
+    EXPECT_EQ(render_with({"--resume", "--spp", "9"}).exit_code, 0);
+    expect_same_bits(file("a.exr"), file("whole.exr"));
+}
+
+TEST_F(CheckpointTest, SignalsLeaveACheckpointAndAnImage) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        ProcessOptions terminal = options();
+        terminal.terminal = true;
+        const Words arguments = {"render", CORNELL_BOX, "-o",           file("a.exr"), "--size",  "32x32",
+                                 "--spp",  "16777216",  "--checkpoint", state_,        "--resume"};
+        Process process(call(arguments), terminal);
+        ASSERT_TRUE(process.wait_for_err("Msamples/s"));
+        process.send(signal);
+        EXPECT_EQ(process.finish().exit_code, 130);
+        const Accumulation state = load_checkpoint(state_).state;
+        const std::vector<float> counts = read_exr(file("a.exr")).find("SampleCount.V")->values;
+        for (size_t i = 0; i < counts.size(); ++i)
+            ASSERT_EQ(float(state.sample_count(i)), counts[i]);
+    }
+}
+
+// Twenty times the program is killed at a random moment and goes on: ten times somewhere, and ten times from
+// the moment on when the file was changed, five times of which at once: were it not replaced as a whole, it
+// would be half a file then. Whatever the moment, the file is there, and never goes back.
+TEST_F(CheckpointTest, TwentyKillsLoseNothing) {
+    constexpr int KILLS = 20;
+    const Words arguments = {"render", CORNELL_BOX, "-o",      file("a.exr"),
+                             "--size", "64x64",     "--quiet", "--spp"};
+    const Words checkpoint = {"--checkpoint", state_, "--checkpoint-every", "0.001s", "--resume"};
+    const ProcessOptions cached = options({{"CANDELA_NO_CACHE", ""}, {"XDG_CACHE_HOME", file("cache")}});
+    ASSERT_EQ(run_process(call(arguments + Words{"1"} + checkpoint), cached).exit_code, 0);
+    const auto written = [this] { return std::filesystem::last_write_time(state_); };
+    std::mt19937 random(20);
+    uint64_t samples = 0;
+    int advances = 0;
+    for (int i = 0; i < KILLS; ++i) {
+        const auto before = written();
+        Process process(call(arguments + Words{"16777216"} + checkpoint), cached);
+        const bool waits = i % 2 == 0;
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+        while (waits && written() == before && std::chrono::steady_clock::now() < deadline) {
+        }
+        const auto most = std::array{0, 500, 200, 500}[size_t(i) % 4];  // [ms]
+        if (most > 0) std::this_thread::sleep_for(std::chrono::milliseconds(random() % uint32_t(most)));
+        process.send(SIGKILL);
+        ASSERT_EQ(process.finish().signal, SIGKILL);
+        const uint64_t now = load_checkpoint(state_).state.total_samples();
+        EXPECT_GE(now, samples);
+        advances += now > samples ? 1 : 0;
+        samples = now;
+    }
+    EXPECT_GE(advances, 5);  // The first submissions after a start may find their pixels done.
+    const std::string spp = std::to_string(load_checkpoint(state_).state.most_samples() + 1);
+    EXPECT_EQ(run_process(call(arguments + Words{spp} + checkpoint), cached).exit_code, 0);
+    EXPECT_EQ(run_process(call(arguments + Words{spp, "-o", file("whole.exr")}), cached).exit_code, 0);
+    expect_same_bits(file("a.exr"), file("whole.exr"));
+}
+
+// A limit on the size of files stands for a full disk: the state takes more than the limit, the image less.
+TEST_F(CheckpointTest, AFullDiskKeepsTheOldCheckpointAndTheRendering) {
+    const Words limited = {"/bin/sh", "-c", "ulimit -f 16; exec \"$0\" \"$@\""};  // 8 KiB, in some shells 16.
+    const Words arguments = {"render",   CORNELL_BOX,          "-o",    file("b.png"),  "--size", "32x32",
+                             "--resume", "--checkpoint-every", "0.05s", "--checkpoint", state_};
+    ASSERT_EQ(candela(arguments + Words{"--spp", "4"}).exit_code, 0);
+    const std::string before = read_file(state_);
+    ASSERT_GT(before.size(), 16384u);
+    const ProcessResult result = run_process(limited + call(arguments + Words{"--spp", "200"}), options());
+    EXPECT_CONTAINS(result.err,
+                    "candela: warning: cannot write \"" + state_ +
+                        "\": File too large; free some space or choose another place; the rendering goes "
+                        "on without this checkpoint");
+    EXPECT_CONTAINS(result.err, "rendered 200 spp");
+    EXPECT_EQ(read_file(state_), before);
+    EXPECT_TRUE(std::filesystem::exists(file("b.png")));
+    for (const auto& entry : std::filesystem::directory_iterator(directory_.path()))
+        EXPECT_EQ(entry.path().filename().string().find(".candela"), std::string::npos);
+}
+
+TEST_F(CheckpointTest, AnUnwritablePlaceIsRefusedAtOnce) {
+    const auto error = [&](const std::string& place) {
+        const ProcessResult result =
+            candela({"render", file("no scene.json"), "-o", file("a.png"), "--checkpoint", place});
+        EXPECT_EQ(result.exit_code, 1);
+        return result.err;
+    };
+    EXPECT_CONTAINS(error(file("none/state.exr")), "none\" does not exist; create it first");
+    std::filesystem::create_directory(file("folder"));
+    EXPECT_CONTAINS(error(file("folder")), "it is a directory");
+    EXPECT_CONTAINS(error("/proc/state.exr"), "no file can be created in the directory \"/proc\"");
+}
+
+// The folder vanishes while rendering, and comes back: the next checkpoint is there.
+TEST_F(CheckpointTest, APlaceThatVanishesIsAWarningAndTriedAgain) {
+    std::filesystem::create_directory(file("gone"));
+    Process process(
+        call({"render", CORNELL_BOX, "--size", "32x32", "--spp", "16777216", "--time-limit", "2s", "-o",
+              file("a.png"), "--checkpoint", file("gone/state.exr"), "--checkpoint-every", "0.1s"}),
+        options());
+    while (!std::filesystem::exists(file("gone/state.exr")))
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::filesystem::rename(file("gone"), file("elsewhere"));
+    ASSERT_TRUE(process.wait_for_err("the rendering goes on without this checkpoint"));
+    std::filesystem::create_directory(file("gone"));
+    const ProcessResult result = process.finish();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_CONTAINS(result.err, "gone\" does not exist; create it first");
+    EXPECT_GT(load_checkpoint(file("gone/state.exr")).state.total_samples(), 0u);
+}
+
+TEST_F(CheckpointTest, AnExistingFileIsNeverOverwrittenUnasked) {
+    write("state.exr", "precious");
+    const ProcessResult result = render_with({});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.err, "candela: error: --checkpoint: \"" + state_ +
+                              "\" exists; add --resume to go on from it, or remove it to start anew\n");
+    EXPECT_EQ(read_file(state_), "precious");
+}
+
+TEST_F(CheckpointTest, WhatDoesNotFitIsRefusedWithTheReason) {
+    ASSERT_EQ(render_with({"--seed", "3"}).exit_code, 0);
+    const std::string before = read_file(state_);
+    const auto expect_refused = [&](const Words& arguments, const std::string& reason) {
+        const ProcessResult result = render_with(Words{"--resume", "--seed", "3"} + arguments);
+        EXPECT_EQ(result.exit_code, 1) << arguments[0];
+        EXPECT_EQ(result.err,
+                  "candela: error: --resume: cannot go on from \"" + state_ + "\": " + reason + "\n");
+        EXPECT_EQ(read_file(state_), before);
+    };
+    const std::string remedy = "; render what it was made of, or give another --checkpoint";
+    expect_refused({"--seed", "4"}, "its seed is 3, not 4" + remedy);
+    expect_refused({"--size", "32x33"},
+                   "its size is 32x32, not 32x33, its crop is 0,0,32,32, not 0,0,32,33" + remedy);
+    expect_refused({"--sampler", "stratified", "--max-depth", "5"},
+                   "its sampler is sobol, not stratified, its max depth is 4096, not 5" + remedy);
+    expect_refused({"--aov", "none"},
+                   "it holds albedo and normals, which the outputs do not need; give the outputs "
+                   "and --aov that it was made with");
+    expect_refused({"--spp", "3"},
+                   "it holds up to 4 samples per pixel, but 3 are asked for; ask for as many at least");
+
+    const ProcessResult part =
+        candela({"render", CORNELL_BOX, "-o", file("a.exr"), "--size", "32x32", "--seed", "3", "--samples",
+                 "4..9", "--checkpoint", state_, "--resume"});
+    EXPECT_EQ(part.exit_code, 1);
+    EXPECT_CONTAINS(part.err, "its first sample is 0, not 4" + remedy);
+    const ProcessResult scene = candela({"render", MESH, "-o", file("a.exr"), "--size", "32x32", "--seed",
+                                         "3", "--spp", "4", "--checkpoint", state_, "--resume"});
+    EXPECT_EQ(scene.exit_code, 1);
+    EXPECT_CONTAINS(scene.err, "its camera is at ");
+}
+
+TEST_F(CheckpointTest, AnotherDeviceIsAWarningAndDamageIsNot) {
+    ASSERT_EQ(render_with({}).exit_code, 0);
+    Checkpoint checkpoint = load_checkpoint(state_);
+    checkpoint.state.values[0] = 1000.0f;  // The red of the first pixel, to be seen again.
+    save_checkpoint(state_, checkpoint.identity, {.device = "Abacus", .driver = "1", .version = "0"},
+                    checkpoint.render_seconds, checkpoint.state);
+    const ProcessResult other = render_with({"--resume", "--spp", "5"});
+    EXPECT_EQ(other.exit_code, 0);
+    EXPECT_CONTAINS(other.err,
+                    "candela: warning: the checkpoint was made by Abacus, driver 1, candela 0, and this is ");
+    EXPECT_CONTAINS(other.err, ": the image is right, but not the same bits as if one had made it all");
+
+    EXPECT_GT(read_exr(file("a.exr")).find("R")->values[0], 100.0f) << "it was not continued but begun anew";
+
+    std::string bytes = read_file(state_);
+    bytes.resize(bytes.size() / 2);
+    write("state.exr", bytes);
+    const ProcessResult damaged = render_with({"--resume", "--spp", "6"});
+    EXPECT_EQ(damaged.exit_code, 1);
+    EXPECT_CONTAINS(damaged.err, "the file is damaged or incomplete");
+    EXPECT_EQ(read_file(state_), bytes);
+}
+
+TEST_F(CheckpointTest, OptionsThatMakeNoSenseAreRefused) {
+    const auto expect_usage = [&](const Words& arguments, const std::string& message) {
+        const ProcessResult result = candela(Words{"render", CORNELL_BOX, "-o", file("a.exr")} + arguments);
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_CONTAINS(result.err, message);
+    };
+    expect_usage({"--resume"}, "--resume requires --checkpoint");
+    expect_usage({"--checkpoint-every", "1s"}, "--checkpoint-every requires --checkpoint");
+    expect_usage(
+        {"--checkpoint", file("a.exr")},
+        "--checkpoint: \"" + file("a.exr") + "\" is an output (-o) as well; give it a name of its own");
+    expect_usage({"--samples", "0..4", "--spp", "4"}, "--samples");
+    for (const std::string range : {"4", "4..4", "5..4", "0..4,5..6", "0..16777217", "0-4"}) {
+        expect_usage({"--samples", range},
+                     "--samples: cannot use \"" + range +
+                         "\"; expected A..B: samples A to B-1, with A < B, each at most "
+                         "16777216");
+    }
+    expect_usage({"--checkpoint", file("s.exr"), "--checkpoint-every", "0"},
+                 "--checkpoint-every: cannot use \"0\"; expected a duration such as 90, 90s, 1.5m or 2h");
+}
+
+}  // namespace
+}  // namespace candela

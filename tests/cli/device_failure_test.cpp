@@ -1,0 +1,115 @@
+// A device that is lost, or out of memory, in the middle of a rendering. A Vulkan layer makes it fail
+// (tests/layers/device_fault.cpp); the program itself knows nothing of tests.
+#include <regex>
+
+#include "cli/cli_fixture.h"
+
+namespace candela {
+namespace {
+
+constexpr int OUT_OF_DEVICE_MEMORY = -2, INITIALIZATION_FAILED = -3, DEVICE_LOST = -4;  // Of VkResult.
+
+class DeviceFailure : public CliTest {
+  protected:
+    // 64x64 pixels take a dozen submissions. Before them come those of uploads and positions: up to 11,
+    // depending on the device's memory, and 8 more for the layers of a state.
+    const Words picture_ = {"--size", "64x64", "--spp", "128"};
+
+    // Each of the first `devices` devices runs so many submissions, and then answers with `result`.
+    ProcessResult render_on_failing(int devices, int submissions, int result, const Words& arguments = {},
+                                    int openings = 0) const {
+        return run_process(
+            call(Words{"render", CORNELL_BOX, "-o", file("a.exr"), "--report", file("a.json")} + picture_ +
+                 arguments),
+            options({{"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"},
+                     {"VK_ADD_LAYER_PATH", CANDELA_LAYERS},
+                     {"FAULT_DEVICES", std::to_string(devices)},
+                     {"FAULT_AFTER", std::to_string(submissions)},
+                     {"FAULT_RESULT", std::to_string(result)},
+                     {"FAULT_OPENINGS", std::to_string(openings)}}));
+    }
+    nlohmann::json report() const { return nlohmann::json::parse(read_file(file("a.json"))); }
+    // The hash of the image that a device makes that does not fail.
+    std::string undisturbed() const { return report_of(picture_)["image_hash"]; }
+    // What the warnings say: samples kept, and milliseconds of a submission from then on.
+    static std::vector<std::pair<int, double>> recoveries(const std::string& err) {
+        const std::regex pattern("going on from (\\d+) samples per pixel in submissions of ([0-9.]+) ms\n");
+        std::vector<std::pair<int, double>> result;
+        for (std::sregex_iterator match(err.begin(), err.end(), pattern), end; match != end; ++match)
+            result.emplace_back(std::stoi((*match)[1]), std::stod((*match)[2]));
+        return result;
+    }
+};
+
+TEST_F(DeviceFailure, ALostDeviceIsOpenedAgainAndTheImageHasTheSameBits) {
+    const ProcessResult result = render_on_failing(2, 12, DEVICE_LOST);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_CONTAINS(result.err, "candela: warning: vkQueueSubmit(");
+    EXPECT_CONTAINS(result.err, "VK_ERROR_DEVICE_LOST (-4)");
+    const auto warned = recoveries(result.err);
+    ASSERT_EQ(warned.size(), 2u) << result.err;
+    EXPECT_NEAR(warned[1].second, warned[0].second / 2, 0.001);  // Printed with three digits.
+    EXPECT_EQ(report()["device_failures"], 2);
+    EXPECT_EQ(report()["image_hash"], undisturbed());
+}
+
+// A checkpoint after every submission: each device gets a little further than the one before, so that more
+// than five may fail. (Copies of the state are submissions, too: four for its layers.)
+TEST_F(DeviceFailure, WhatTheHostHoldsIsNotRenderedAgain) {
+    const Words small = {"--size", "16x16", "--spp", "3000"};
+    const ProcessResult result = render_on_failing(
+        6, 28, DEVICE_LOST,
+        small + Words{"--aov", "none", "--checkpoint", file("state.exr"), "--checkpoint-every", "0.0001s"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const auto warned = recoveries(result.err);
+    EXPECT_EQ(warned.size(), 6u) << result.err;
+    EXPECT_GT(warned.front().first, 0);
+    EXPECT_GT(warned.back().first, warned.front().first);
+    // Nothing is lost, or counted twice.
+    const nlohmann::json undisturbed = report_of(small);
+    EXPECT_EQ(report()["image_hash"], undisturbed["image_hash"]);
+    // A sample of each pixel, 1/3000 of all, is traced again where a driver ends a long submission early;
+    // what was held first has 16 samples at least.
+    EXPECT_NEAR(report()["rays_per_sample"], undisturbed["rays_per_sample"], 0.01);
+}
+
+// The last state is written: here, what a checkpoint held.
+TEST_F(DeviceFailure, AfterFiveFailuresWithoutProgressTheErrorStands) {
+    const Words checkpoint = {"--checkpoint", file("state.exr"), "--resume"};
+    ASSERT_EQ(candela(Words{"render", CORNELL_BOX, "-o", file("b.exr"), "--size", "64x64", "--spp", "3"} +
+                      checkpoint)
+                  .exit_code,
+              0);
+    const ProcessResult result = render_on_failing(1000, 20, OUT_OF_DEVICE_MEMORY, checkpoint);
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_EQ(recoveries(result.err).size(), 4u);
+    EXPECT_CONTAINS(result.err, "VK_ERROR_OUT_OF_DEVICE_MEMORY (-2)");
+    EXPECT_CONTAINS(result.err, "going on from 3 samples per pixel");
+    EXPECT_CONTAINS(result.err, "rendered 3 of 128 spp");
+    EXPECT_CONTAINS(result.err, "candela: error: vkQueueSubmit(");
+    const Image image = read_exr(file("a.exr"));
+    EXPECT_EQ(image.find("R")->values, read_exr(file("b.exr")).find("R")->values);
+    EXPECT_EQ(image.find("Z")->values, read_exr(file("b.exr")).find("Z")->values);
+}
+
+// A driver that resets its device cannot open it at once.
+TEST_F(DeviceFailure, OpeningAgainIsTriedSeveralTimes) {
+    const ProcessResult result = render_on_failing(1, 12, DEVICE_LOST, {}, 2);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_CONTAINS(result.err, "VK_ERROR_INITIALIZATION_FAILED (-3)");
+    EXPECT_EQ(report()["device_failures"], 3);
+    const ProcessResult hopeless = render_on_failing(1, 12, DEVICE_LOST, {}, 4);
+    EXPECT_EQ(hopeless.exit_code, 4);
+    EXPECT_CONTAINS(hopeless.err, "candela: error: vkQueueSubmit(");
+}
+
+TEST_F(DeviceFailure, OtherErrorsAreNotTriedAgain) {
+    const ProcessResult result = render_on_failing(1, 12, INITIALIZATION_FAILED);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(recoveries(result.err).size(), 0u);
+    EXPECT_CONTAINS(result.err, "VK_ERROR_INITIALIZATION_FAILED (-3)");
+    EXPECT_FALSE(std::filesystem::exists(file("a.exr")));
+}
+
+}  // namespace
+}  // namespace candela

@@ -1,0 +1,47 @@
+// A renderer that outlives its device: here, that it copies the state to the host in time. What it does when
+// a device fails is in tests/cli/device_failure_test.cpp.
+#include "render/steady_renderer.h"
+
+#include "render_fixture.h"
+
+namespace candela {
+namespace {
+
+class SteadyRendererTest : public RenderTest {
+  protected:
+    // Renders 16 samples in many submissions, and counts how often a new state is held on the way.
+    int copies_on_the_way(double hold_seconds) const {
+        const Scene scene = cornell_box();
+        const GpuScene gpu_scene = build_gpu_scene(scene);
+        RenderSettings settings = settings_for(64, 64);
+        settings.submission_seconds = 1e-6;
+        SteadyRenderer renderer({.instance = &instance_,
+                                 .device = info_,
+                                 .pipeline_cache_file = std::nullopt,
+                                 .scene = &gpu_scene,
+                                 .camera = &scene.cameras[0],
+                                 .settings = settings,
+                                 .hold_seconds = hold_seconds},
+                                [](const Error&, uint32_t, double) {});
+        EXPECT_FALSE(renderer.state().has_value());
+        int copies = 0;
+        uint64_t samples = 0;
+        EXPECT_TRUE(renderer.render(16, [&](double) {
+            const uint64_t now = renderer.state() ? renderer.state()->total_samples() : 0;
+            EXPECT_GE(now, samples);
+            copies += now > samples ? 1 : 0;
+            samples = now;
+            return true;
+        }));
+        EXPECT_EQ(renderer.state()->total_samples(), 16u * 64 * 64);
+        return copies;
+    }
+};
+
+TEST_F(SteadyRendererTest, CopiesTheStateInTime) {
+    EXPECT_GE(copies_on_the_way(1e-6), 2);
+    EXPECT_EQ(copies_on_the_way(1000.0), 0);
+}
+
+}  // namespace
+}  // namespace candela
