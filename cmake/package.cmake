@@ -1,6 +1,8 @@
 # `cmake --install` puts the program into bin, the shared libraries that it brings along into lib, where its run path
 # finds them wherever both are moved to, and the scenes into share; `cpack` in the build folder makes an archive of that.
 #
+# Configure with -DCANDELA_VIEW=OFF for that: the libraries of the window system must be the system's own.
+#
 # What every system with a Vulkan driver has stays out: glibc and the run-time library of C++, of which a process should
 # have one, and drivers bring theirs.
 include(GNUInstallDirs)

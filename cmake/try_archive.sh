@@ -8,9 +8,17 @@ cd "$(dirname "$0")/.."
 GLIBC=2.36
 GLIBCXX=3.4.30  # GCC 12
 
+# The archive has no `candela view`: its window takes the system's own libraries, which cannot be brought along.
+build=build/release
+if ldd "$build/candela" | grep -q libglfw; then
+    build=build/archive
+    cmake --preset release -B "$build" -DCANDELA_VIEW=OFF
+    cmake --build "$build"
+fi
+
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cpack --config build/release/CPackConfig.cmake -B "$folder" >"$folder/cpack.log" || { cat "$folder/cpack.log"; exit 1; }
+cpack --config "$build/CPackConfig.cmake" -B "$folder" >"$folder/cpack.log" || { cat "$folder/cpack.log"; exit 1; }
 archive=$(ls "$folder"/candela-*.tar.gz)
 root=$folder/root
 mkdir -p "$root/opt" "$root/tmp" "$root/proc"

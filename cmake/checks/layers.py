@@ -16,6 +16,7 @@ MAY_INCLUDE = {
     "host/render": ["host/base", "host/scene", "host/bvh", "host/vk", "shaders/shared"],
     "host/selftest": ["host/base", "host/scene", "host/bvh", "host/vk", "host/render", "shaders/shared"],
     "host/bench": ["host/base", "host/scene", "host/bvh", "host/vk", "host/render", "host/selftest", "shaders/shared"],
+    "host/view": ["host/base", "host/scene", "host/vk", "host/render", "shaders/shared"],
     "host/cli": ["host", "shaders/shared"],
     "host": ["host", "shaders/shared"],
     "shaders/shared": ["host/base/math.h"],
@@ -34,15 +35,18 @@ DECLARE_BUFFERS = ("shaders/scene/scene_data.glsl", "shaders/probes/items.glsl")
 
 # Library -> what its includes look like, and the folders that may see it, even through other files.
 LIBRARIES = {
-    "GLM": (r"glm/", ["host/base", "host/scene", "host/bvh", "host/render", "host/selftest", "host/bench", "host/cli",
-                      "host"]),
+    "GLM": (r"glm/", ["host/base", "host/scene", "host/bvh", "host/render", "host/selftest", "host/bench", "host/view",
+                      "host/cli", "host"]),
     "stb": (r"stb_", ["host/base"]),
     "OpenEXR": (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex)", ["host/base"]),
     "nlohmann-json": (r"nlohmann/", ["host/scene", "host/cli"]),
     "tinyobjloader": (r"tiny_obj_loader", ["host/scene"]),
     "CLI11": (r"CLI/", ["host/cli"]),
-    "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/selftest", "host/bench", "host/cli", "host"]),
+    "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/selftest", "host/bench", "host/view",
+                                   "host/cli", "host"]),
     "Embree": (r"embree3/", ["host/bench"]),
+    "GLFW": (r"GLFW/", ["host/view"]),
+    "Dear ImGui": (r"imgui|backends/imgui", ["host/view"]),
 }
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)

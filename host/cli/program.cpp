@@ -20,6 +20,7 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
     // Commands take over the column width, but must not take over the footer, which therefore comes last.
     app.get_formatter()->column_width(36);
     std::vector<Command> commands{add_render_command(app, command_line),
+                                  add_view_command(app),
                                   add_info_command(app),
                                   add_devices_command(app),
                                   add_compare_command(app),
@@ -97,7 +98,7 @@ ExitCode run_program(int argc, const char* const* argv) {
         if (command.app->parsed()) return command.run();
     }
     throw Error(
-        "there is no command; give render, info, devices, compare, merge, selftest or bench, or see "
+        "there is no command; give render, view, info, devices, compare, merge, selftest or bench, or see "
         "candela --help",
         ExitCode::usage);
 }

@@ -11,5 +11,6 @@ extern const std::span<const uint32_t> render;
 extern const std::span<const uint32_t> render_storage;
 extern const std::span<const uint32_t> position;
 extern const std::span<const uint32_t> position_storage;
+extern const std::span<const uint32_t> display;  // Reads no scene.
 
 }  // namespace candela::kernels

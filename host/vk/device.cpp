@@ -23,14 +23,16 @@ static VkDevice create_device(const DeviceInfo& info) {
     // A device that offers this extension (MoltenVK) must be opened with it. Its name is in Vulkan's beta
     // header.
     const char* const portability = "VK_KHR_portability_subset";
-    const bool has_portability = has_extension(device_extensions(info.handle), portability);
+    std::vector<const char*> extensions;
+    if (has_extension(device_extensions(info.handle), portability)) extensions.push_back(portability);
+    if (info.presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
 
     VkDeviceCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
     create.queueCreateInfoCount = 1;
     create.pQueueCreateInfos = &queue;
-    create.enabledExtensionCount = has_portability ? 1 : 0;
-    create.ppEnabledExtensionNames = &portability;
+    create.enabledExtensionCount = uint32_t(extensions.size());
+    create.ppEnabledExtensionNames = extensions.data();
     VkDevice device = VK_NULL_HANDLE;
     VK_CHECK(vkCreateDevice(info.handle, &create, nullptr, &device));
     return device;

@@ -55,6 +55,7 @@ struct DeviceInfo {
     bool uint_texel_buffers = false;  // Reads R32G32B32A32_UINT uniform texel buffers.
     bool ray_query = false;           // Offers VK_KHR_ray_query; for information only.
     DeviceLimits limits;
+    bool presents = false;  // Is to be opened for a window: see presenter.h.
 
     VkPhysicalDevice handle = VK_NULL_HANDLE;
 

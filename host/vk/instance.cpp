@@ -76,8 +76,9 @@ static void require_validation_layer() {
     }
 }
 
-// Makes the instance; with a log, also the validation layer that writes to it.
-static VkInstance create_instance(MessageLog* log) {
+// Makes the instance with at least the extensions `required`; with a log, also the validation layer that
+// writes to it.
+static VkInstance create_instance(const std::vector<std::string>& required, MessageLog* log) {
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
     application.pApplicationName = "candela";
@@ -87,6 +88,8 @@ static VkInstance create_instance(MessageLog* log) {
     info.pApplicationInfo = &application;
 
     std::vector<const char*> extensions;
+    for (const std::string& name : required)
+        extensions.push_back(name.c_str());
     if (has_extension(instance_extensions(nullptr), VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
         extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
         info.flags |= VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR;  // Shows MoltenVK.
@@ -134,7 +137,7 @@ Instance::Instance(const Options& options) {
             ExitCode::no_device);
     }
     if (options.validation) log_ = std::make_unique<MessageLog>();
-    VkInstance instance = create_instance(log_.get());
+    VkInstance instance = create_instance(options.extensions, log_.get());
     volkLoadInstance(instance);
     instance_ = {instance, vkDestroyInstance};
     if (log_) {

@@ -19,7 +19,7 @@ TEST_F(Usage, VersionAndHelpGoToStdout) {
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_EQ(help.err, "");
     for (const char* command :
-         {"render", "info", "devices", "compare", "merge", "selftest", "bench", "Exit codes"}) {
+         {"render", "view", "info", "devices", "compare", "merge", "selftest", "bench", "Exit codes"}) {
         EXPECT_CONTAINS(help.out, command);
     }
 }
@@ -38,7 +38,7 @@ TEST_F(Usage, HelpOfRenderListsEveryOption) {
 
 TEST_F(Usage, UnknownWordsAreNamed) {
     const std::vector<std::pair<Words, const char*>> cases = {
-        {{}, "there is no command; give render, info, devices, compare, merge, selftest or bench"},
+        {{}, "there is no command; give render, view, info, devices, compare, merge, selftest or bench"},
         {{"trace"}, "unknown command \"trace\""},
         {{"--trace"}, "unknown argument \"--trace\""},
         {{"render", CORNELL_BOX, "-o", "x.png", "--trace"},

@@ -1,0 +1,161 @@
+// `candela view`: a window that shows how a scene's picture accumulates.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/file.h"
+#include "base/image_io.h"
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/interrupt.h"
+#include "cli/render_options.h"
+#include "cli/vulkan.h"
+#include "scene/loader.h"
+#include "view/controls.h"
+#include "view/viewer.h"
+#include "vk/device.h"
+#include "vk/instance.h"
+#include "vk/presenter.h"
+
+namespace candela {
+namespace {
+
+struct ViewArguments {
+    RenderOptions render;
+    std::optional<uint32_t> frames;
+    std::vector<std::string> screenshots;
+
+    // Declares them all on `app`; this object must stay where it is.
+    void add_to(CLI::App& app);
+    // Throws Error (usage) for options that do not go together, or if a screenshot could not be written.
+    void check() const;
+};
+
+void ViewArguments::add_to(CLI::App& app) {
+    app.option_defaults()->take_last();
+    app.add_option("SCENE", render.scene_file, "Scene file (.json)")->required()->type_name("");
+    add_value(
+        app, "--frames", frames, [](const std::string& text) { return parse_uint(text, 1, MAX_SPP); },
+        "a whole number from 1 to " + std::to_string(MAX_SPP),
+        "Close after N frames: N samples per pixel of the picture at rest")
+        ->type_name("N");
+    app.add_option("--screenshot", screenshots, "Then write the picture, .png or .exr; repeat it for several")
+        ->type_name("FILE")
+        ->take_all()
+        ->allow_extra_args(false);
+    render.add_development_to(app);
+    render.add_rendering_to(app);
+    render.add_camera_to(app);
+    app.get_option("--crop")->group("");  // Hidden: refused below, with the reason.
+    app.get_option("--spp")->description("Stop accumulating at so many samples per pixel (default: never)");
+}
+
+void ViewArguments::check() const {
+    if (render.picture.crop) {
+        throw Error("--crop: a window shows the whole picture; leave it out, or use candela render",
+                    ExitCode::usage);
+    }
+    if (frames && render.spp) {
+        throw Error("--frames and --spp both say how many samples there shall be; give one", ExitCode::usage);
+    }
+    if (!screenshots.empty() && !frames) {
+        throw Error("--screenshot: give --frames N too, which says when; P and X write pictures at any time",
+                    ExitCode::usage);
+    }
+    for (const std::string& path : screenshots)
+        image_format(path);
+    for (const std::string& path : screenshots)
+        check_writable(path);
+}
+
+#ifdef CANDELA_VIEW
+
+// All that this process may use, with the queue that can show pictures on `surface`.
+std::vector<vk::DeviceInfo> presenting_devices(const vk::Instance& instance, const vk::Surface& surface) {
+    std::vector<vk::DeviceInfo> devices = instance.devices();
+    for (vk::DeviceInfo& device : devices)
+        vk::choose_presenting_queue(device, surface.get());
+    return devices;
+}
+
+ExitCode view(const ViewArguments& arguments) {
+    arguments.check();
+    const RenderOptions& options = arguments.render;
+    Scene scene = load_scene(options.scene_file);
+    for (const std::string& warning : scene.warnings)
+        print_warning(warning);
+    const ViewState state{.camera = options.choose_camera(scene),
+                          .settings = options.settings(scene),
+                          .exposure_ev = float(options.exposure),
+                          .tonemap = options.tonemap};
+
+    const std::string name = std::filesystem::path(options.scene_file).stem().string();
+    Window window(state.settings.size, !arguments.frames, name);
+    vk::Instance::Options instance_wishes = instance_options();
+    instance_wishes.extensions = window.instance_extensions();
+    const vk::Instance instance(instance_wishes);
+    const auto make_surface = [&] { return window.make_surface(instance.handle()); };
+    vk::Surface surface = make_surface();
+    const vk::Device device(instance,
+                            vk::select_device(presenting_devices(instance, surface), options.device),
+                            pipeline_cache_file());
+    const InterruptGuard guard;
+    bool complete = false;
+    {
+        vk::Presenter presenter(device, std::move(surface), make_surface);
+        Viewer viewer(window, device, std::move(presenter), std::move(scene), state,
+                      {.name = name,
+                       .target = arguments.frames.value_or(options.spp.value_or(MAX_SPP)),
+                       .close_at_target = arguments.frames.has_value(),
+                       .stopped = [&guard] { return guard.interrupted(); },
+                       .say = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); }});
+        complete = viewer.run();
+        for (const std::string& path : arguments.screenshots) {
+            if (complete) viewer.save(path);
+        }
+    }
+    check_validation(instance);
+    if (guard.interrupted()) return ExitCode::interrupted;
+    if (arguments.frames && !complete) {
+        throw Error("the window was closed before it had shown " + std::to_string(*arguments.frames) +
+                    " frames; no screenshot was written");
+    }
+    return ExitCode::done;
+}
+
+#else
+
+ExitCode view(const ViewArguments& arguments) {
+    arguments.check();
+    throw Error(
+        "view: this program was built without a window, which takes GLFW and Dear ImGui; install "
+        "libglfw3-dev and "
+        "libimgui-dev and build it with cmake -DCANDELA_VIEW=ON, or use candela render");
+}
+
+#endif
+
+}  // namespace
+
+Command add_view_command(CLI::App& app) {
+    CLI::App* const command = app.add_subcommand("view", "Show in a window how a picture accumulates");
+    const auto arguments = std::make_shared<ViewArguments>();
+    arguments->add_to(*command);
+    command->footer(
+        std::string(
+            "The picture is as large as the window. While the camera moves it may be coarser; at rest it\n"
+            "accumulates what `candela render` would, bit for bit, up to --spp samples per pixel if given.\n"
+            "Files are written to the current folder: SCENE-1.png, SCENE-2.png, ...\n\n"
+            "Mouse and keys:\n") +
+        CONTROLS_HELP +
+        "\n\n"
+        "Example:\n"
+        "  candela view scenes/cornell-box.json --frames 64 --screenshot box.png");
+    return {command, [arguments] { return view(*arguments); }};
+}
+
+}  // namespace candela

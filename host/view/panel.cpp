@@ -1,0 +1,127 @@
+// See panel.h.
+#include "view/panel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <imgui.h>
+
+#include "view/controls.h"
+
+namespace candela {
+namespace {
+
+constexpr float WIDTH = 290.0f;          // [pixels]
+constexpr float LABEL_WIDTH = 90.0f;     // What labels leave of it.
+constexpr float EXPOSURE_RANGE = 10.0f;  // [EV] to either side.
+constexpr float INTENSITY_RANGE = 100.0f;
+constexpr int DEEPEST = 32;  // Bounces on the slider; one more stands for no limit.
+
+// In the order of Tonemap and of Estimator.
+constexpr std::array TONEMAPS{"linear", "reinhard", "aces", "agx", "neutral"};
+constexpr std::array ESTIMATORS{"bsdf", "light", "mis"};
+
+template <class Choice, size_t N>
+void choose(const char* label, Choice& choice, const std::array<const char*, N>& names) {
+    int index = int(choice);
+    if (ImGui::Combo(label, &index, names.data(), int(N))) choice = Choice(index);
+}
+
+void show_figures(const ViewFigures& figures) {
+    ImGui::Text("%.0f samples per pixel", std::floor(figures.samples));
+    ImGui::Text("%.2f Msamples/s", figures.samples_per_second / 1e6);
+    if (figures.error) {
+        ImGui::Text("estimated error %.2f %%", 100.0 * *figures.error);
+    } else {
+        ImGui::TextUnformatted("estimated error unknown yet");
+    }
+    ImGui::Text("%u x %u pixels, %.1f MiB on", figures.size.x, figures.size.y,
+                double(figures.device_bytes) / (1 << 20));
+    ImGui::PushTextWrapPos();
+    ImGui::TextUnformatted(figures.device.c_str());
+    ImGui::PopTextWrapPos();
+}
+
+void show_buttons(ViewState& state, ViewRequests& requests) {
+    if (ImGui::Button(state.paused ? "go on" : "pause")) state.paused = !state.paused;
+    ImGui::SameLine();
+    requests.restart |= ImGui::Button("restart");
+    ImGui::SameLine();
+    requests.save_png |= ImGui::Button("save PNG");
+    ImGui::SameLine();
+    requests.save_exr |= ImGui::Button("save EXR");
+}
+
+void show_camera(ViewState& state, ViewRequests& requests, std::span<const Camera> cameras,
+                 const Camera& home) {
+    if (ImGui::BeginCombo("camera", state.camera.name.c_str())) {
+        for (size_t i = 0; i < cameras.size(); ++i) {
+            if (ImGui::Selectable(cameras[i].name.c_str(), cameras[i].name == state.camera.name)) {
+                requests.camera = i;
+            }
+        }
+        ImGui::EndCombo();
+    }
+    requests.home |= ImGui::Button("camera back");
+    ImGui::SameLine();
+    requests.save_camera |= ImGui::Button("save camera");
+    const float distance = length(home.look_at - home.position);
+    Lens& lens = state.camera.lens;
+    constexpr ImGuiSliderFlags LOGARITHMIC = ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp;
+    ImGui::SliderFloat("aperture", &lens.radius, 0.0f, std::max(0.1f * distance, home.lens.radius), "%.4g m",
+                       LOGARITHMIC);
+    ImGui::SliderFloat("focus", &lens.focal_distance, 0.01f * distance, 100.0f * distance, "%.4g m",
+                       LOGARITHMIC);
+}
+
+void show_environment(ViewState& state) {
+    // Not SliderAngle(), which rounds the angle whether it is moved or not.
+    float degrees = glm::degrees(state.environment_rotation);
+    if (ImGui::SliderFloat("sky turned", &degrees, -180.0f, 180.0f, "%.0f deg",
+                           ImGuiSliderFlags_AlwaysClamp)) {
+        state.environment_rotation = glm::radians(degrees);
+    }
+    // Only when it is let go: another intensity takes new tables.
+    ImGui::SliderFloat("sky times", &state.intensity_slider, 1.0f / INTENSITY_RANGE, INTENSITY_RANGE, "%.3g",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemDeactivatedAfterEdit()) state.environment_intensity = state.intensity_slider;
+}
+
+void show_rendering(ViewState& state) {
+    RenderSettings& settings = state.settings;
+    choose("estimator", settings.estimator, ESTIMATORS);
+    int depth = int(std::min(settings.max_depth, uint32_t(DEEPEST + 1)));
+    const bool limited = settings.max_depth < DEPTH_SAFETY_LIMIT;
+    const std::string text = limited ? std::to_string(settings.max_depth) : "no limit";
+    if (ImGui::SliderInt("bounces", &depth, 0, DEEPEST + 1, text.c_str(), ImGuiSliderFlags_AlwaysClamp)) {
+        settings.max_depth = depth > DEEPEST ? DEPTH_SAFETY_LIMIT : uint32_t(depth);
+    }
+}
+
+}  // namespace
+
+void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& figures,
+                std::span<const Camera> cameras, const Camera& home, bool has_environment) {
+    ImGui::SetNextWindowPos(ImVec2(8.0f, 8.0f), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(WIDTH, 0.0f));
+    ImGui::SetNextWindowBgAlpha(0.75f);
+    ImGui::Begin("candela", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoNav);
+    ImGui::PushItemWidth(-LABEL_WIDTH);
+    show_figures(figures);
+    show_buttons(state, requests);
+    ImGui::Separator();
+    ImGui::SliderFloat("exposure", &state.exposure_ev, -EXPOSURE_RANGE, EXPOSURE_RANGE, "%.2f EV");
+    choose("tone map", state.tonemap, TONEMAPS);
+    ImGui::Separator();
+    show_camera(state, requests, cameras, home);
+    show_rendering(state);
+    if (has_environment) show_environment(state);
+    if (ImGui::CollapsingHeader("mouse and keys")) ImGui::TextUnformatted(CONTROLS_HELP);
+    // Last, so that nothing above moves when it appears.
+    if (!figures.message.empty()) ImGui::TextWrapped("%s", figures.message.c_str());
+    ImGui::PopItemWidth();
+    ImGui::End();
+}
+
+}  // namespace candela

@@ -1,0 +1,15 @@
+// The viewer's panel: figures, sliders and buttons.
+#pragma once
+
+#include <span>
+
+#include "view/view_state.h"
+
+namespace candela {
+
+// Shows the panel, within a frame of Dear ImGui, and applies to `state` and `requests` what the user does
+// there. `cameras` are the scene's; `home` is the camera that the sliders of the lens take their ranges from.
+void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& figures,
+                std::span<const Camera> cameras, const Camera& home, bool has_environment);
+
+}  // namespace candela

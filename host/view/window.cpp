@@ -1,0 +1,115 @@
+// See window.h.
+#include "view/window.h"
+
+// Before GLFW's header, which then declares what it has for Vulkan.
+#include <volk.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "base/error.h"
+#include "vk/check.h"
+
+namespace candela {
+namespace {
+
+// What GLFW said last; its callback has no other place to put it.
+std::string last_error;
+
+Error no_window() {
+    return Error("cannot open a window: " + last_error +
+                 "; run it where there is a display (see DISPLAY or WAYLAND_DISPLAY), or use candela render");
+}
+
+Window& window_of(GLFWwindow* window) {
+    return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+}  // namespace
+
+Window::Window(uvec2 size, bool resizable, const std::string& title) : title_(title) {
+    glfwSetErrorCallback([](int, const char* description) { last_error = description; });
+    if (glfwInit() == GLFW_FALSE) throw no_window();
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    glfwWindowHint(GLFW_RESIZABLE, resizable ? GLFW_TRUE : GLFW_FALSE);
+    window_ = glfwCreateWindow(int(size.x), int(size.y), title.c_str(), nullptr, nullptr);
+    if (window_ == nullptr) {
+        glfwTerminate();
+        throw no_window();
+    }
+    glfwSetWindowUserPointer(window_, this);
+    watch();
+}
+
+Window::~Window() {
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+}
+
+void Window::watch() {
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
+        Window& window = window_of(w);
+        window.activity_ = true;
+        if (action == GLFW_PRESS) window.keys_.push_back(key);
+    });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int, int, int) { window_of(w).activity_ = true; });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) { window_of(w).activity_ = true; });
+    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double) { window_of(w).activity_ = true; });
+    glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { window_of(w).activity_ = true; });
+    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { window_of(w).activity_ = true; });
+}
+
+std::vector<std::string> Window::instance_extensions() const {
+    uint32_t count = 0;
+    const char** names = glfwGetRequiredInstanceExtensions(&count);
+    // Null, too, where there is no Vulkan at all; then the instance says so.
+    return names == nullptr ? std::vector<std::string>{} : std::vector<std::string>(names, names + count);
+}
+
+vk::Surface Window::make_surface(VkInstance instance) const {
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    const VkResult result = glfwCreateWindowSurface(instance, window_, nullptr, &surface);
+    if (result == VK_ERROR_EXTENSION_NOT_PRESENT) {
+        throw Error("Vulkan cannot draw in windows here: " + last_error +
+                        "; install the driver of your GPU, or use candela render",
+                    ExitCode::no_device);
+    }
+    VK_CHECK(result);
+    return {surface, vkDestroySurfaceKHR, instance};
+}
+
+uvec2 Window::size() const {
+    int width = 0;
+    int height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    const bool minimised = glfwGetWindowAttrib(window_, GLFW_ICONIFIED) != GLFW_FALSE;
+    return minimised ? uvec2(0) : uvec2(width, height);
+}
+
+void Window::set_title(const std::string& title) {
+    if (title == title_) return;
+    title_ = title;
+    glfwSetWindowTitle(window_, title.c_str());
+}
+
+bool Window::closing() const {
+    return glfwWindowShouldClose(window_) != GLFW_FALSE;
+}
+
+void Window::close() {
+    glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+void Window::poll() {
+    glfwPollEvents();
+}
+
+void Window::wait(double seconds) {
+    glfwWaitEventsTimeout(seconds);
+}
+
+bool Window::is_down(int key) const {
+    return glfwGetKey(window_, key) == GLFW_PRESS;
+}
+
+}  // namespace candela

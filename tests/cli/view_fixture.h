@@ -1,0 +1,127 @@
+// What the tests of windows share: an X server without a screen (Xvfb), its pixels, and a hand at its mouse
+// and keys (xdotool). Where these are missing the tests are skipped, which CTest shows with the reason.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <thread>
+
+#include "cli/cli_fixture.h"
+
+namespace candela {
+
+class ViewTest : public CliTest {
+  protected:
+    static constexpr uvec2 SCREEN{800, 600};  // [pixels]
+
+    void SetUp() override {
+#ifndef CANDELA_VIEW
+        GTEST_SKIP()
+            << "this program was built without `candela view`: install libglfw3-dev and libimgui-dev";
+#endif
+        for (const char* program : {"Xvfb", "xdotool"}) {
+            if (run_process({"/usr/bin/env", "sh", "-c", std::string("command -v ") + program}).exit_code !=
+                0)
+                GTEST_SKIP() << program << " is not here: install xvfb and xdotool";
+        }
+        server_.emplace(Words{"/usr/bin/env", "Xvfb", "-displayfd", "2", "-nolisten", "tcp", "-noreset",
+                              "-screen", "0", "800x600x24", "-fbdir", file("")});
+        ASSERT_TRUE(server_->wait_for_err("\n")) << "Xvfb does not start";
+        // Warnings of the server may come before the number.
+        const std::string said = server_->err();
+        const size_t line = said.find_last_of('\n', said.size() - 2);
+        display_ = ":" + said.substr(line == std::string::npos ? 0 : line + 1);
+        display_.pop_back();
+    }
+
+    std::map<std::string, std::string> environment() const {
+        return {{"DISPLAY", display_}, {"CANDELA_VALIDATION", "1"}, {"CANDELA_NO_CACHE", "1"}};
+    }
+
+    // Starts `candela view` of a scene in the test's folder, where it writes its files. Without a window
+    // manager the window is at the top left of the screen.
+    Process& view(const Words& arguments, const std::string& scene = CORNELL_BOX) {
+        viewer_.emplace(Words{"/usr/bin/env", "-C", file(""), CANDELA_BINARY, "view", scene} + arguments,
+                        ProcessOptions{.environment = environment(), .timeout = 40.0});
+        return *viewer_;
+    }
+
+    // Runs xdotool, which takes several commands at once.
+    std::string xdotool(const Words& commands) const {
+        return run_process(Words{"/usr/bin/env", "xdotool"} + commands,
+                           ProcessOptions{.environment = environment()})
+            .out;
+    }
+    std::string title() const {
+        std::string text = xdotool({"search", "--name", " samples per pixel", "getwindowname"});
+        if (!text.empty()) text.pop_back();
+        return text;
+    }
+    // Waits until the condition holds; if it does not within a time, the test fails.
+    static void wait_until(const std::string& what, const std::function<bool()>& holds) {
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (!holds()) {
+            if (std::chrono::steady_clock::now() > deadline) {
+                ADD_FAILURE() << "waited in vain until " << what;
+                return;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+    }
+    void wait_for_title(const std::string& expected) const {
+        wait_until("the title is \"" + expected + "\"", [&] { return title() == expected; });
+    }
+    // Saves the picture of the scene of that name until it is at rest: of that size and with so many samples
+    // in every pixel.
+    Image picture_at_rest(const std::string& name, uvec2 size, float spp) const {
+        const std::string path = file(name + "-1.exr");
+        Image image;
+        const auto saved_at_rest = [&] {
+            // Not in the same frame as what was done before, which would show in the next picture only.
+            std::this_thread::sleep_for(std::chrono::milliseconds(300));
+            xdotool({"key", "x"});
+            wait_until(path + " is there", [&] { return std::filesystem::exists(path); });
+            image = read_exr(path);
+            std::filesystem::remove(path);
+            const std::vector<float>& counts = image.find("SampleCount.V")->values;
+            return image.full == size &&
+                   std::ranges::all_of(counts, [&](float count) { return count == spp; });
+        };
+        wait_until("the picture is at rest", saved_at_rest);
+        return image;
+    }
+
+    // The screen: words of blue, green, red and nothing, row-major. Xvfb keeps it in a file, X's window dump:
+    // 32-bit words, most significant byte first, of which 0 is the header's size and 19 the number of
+    // colours, each of twelve bytes, that follow it.
+    std::vector<uint32_t> screen() const {
+        const std::string bytes = read_file(file("Xvfb_screen0"));
+        const auto word = [&](size_t at) {
+            uint32_t value = 0;
+            for (size_t i = 0; i < 4; ++i)
+                value = value << 8 | static_cast<unsigned char>(bytes.at(4 * at + i));
+            return value;
+        };
+        std::vector<uint32_t> pixels(size_t{SCREEN.x} * SCREEN.y);
+        std::memcpy(pixels.data(), &bytes.at(word(0) + 12 * word(19)), pixels.size() * sizeof(uint32_t));
+        return pixels;
+    }
+    // How many of the window's codes differ by more than one step from what the image looks like.
+    static size_t wrong_codes(const std::vector<uint32_t>& screen, const Image& image);
+
+    // Closes the window as its user would and expects a clean end, which the validation layer has a say in.
+    void expect_clean_end() {
+        xdotool({"key", "Escape"});
+        const ProcessResult result = viewer_->finish();
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+    }
+
+    std::string display_;
+    std::optional<Process> server_;
+    std::optional<Process> viewer_;
+};
+
+}  // namespace candela

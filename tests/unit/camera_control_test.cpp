@@ -1,0 +1,129 @@
+// Moving a camera by hand: what an orbit, a pan, a dolly and a flight keep, and the camera as JSON.
+#include "view/camera_control.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "scene_fixture.h"
+
+namespace candela {
+namespace {
+
+// Positions are a few metres, and a movement rounds some ten times.
+constexpr float ROUNDING = 1e-5f;
+
+void expect_near(vec3 a, vec3 b) {
+    EXPECT_LT(length(a - b), ROUNDING)
+        << a.x << ' ' << a.y << ' ' << a.z << ", not " << b.x << ' ' << b.y << ' ' << b.z;
+}
+
+// Two metres from the origin, looking at it along -Z.
+Camera camera() {
+    Camera camera;
+    camera.name = "main";
+    camera.position = vec3(0, 0, 2);
+    camera.look_at = vec3(0);
+    camera.vertical_fov = PI / 2;
+    return camera;
+}
+
+// Where the pinhole camera shows a point: x to the right, y up, in heights of the picture from its centre.
+vec2 shown_at(const Camera& camera, vec3 point) {
+    const vec3 forward = normalize(camera.look_at - camera.position);
+    const vec3 right = normalize(cross(forward, camera.up));
+    const vec3 p = point - camera.position;
+    const float height = 2.0f * std::tan(0.5f * camera.vertical_fov) * dot(p, forward);
+    return vec2(dot(p, right), dot(p, cross(right, forward))) / height;
+}
+
+TEST(CameraControl, AQuarterOrbitComesFromTheSide) {
+    Camera moved = camera();
+    orbit(moved, PI / 2, 0.0f);
+    expect_near(moved.position, vec3(-2, 0, 0));  // So that what was in front has turned to the right.
+    expect_near(moved.look_at, vec3(0));
+    orbit(moved, -PI / 2, PI / 6);
+    expect_near(moved.position, vec3(0, 1, std::sqrt(3.0f)));
+}
+
+TEST(CameraControl, AnOrbitKeepsItsDistanceAndCanBeUndone) {
+    Camera moved = camera();
+    moved.up = normalize(vec3(0.3f, 1.0f, -0.2f));
+    const Camera before = moved;
+    for (int i = 0; i < 100; ++i) {
+        orbit(moved, 0.1f, 0.004f);
+        EXPECT_NEAR(length(moved.position - moved.look_at), 2.0f, ROUNDING);
+    }
+    for (int i = 0; i < 100; ++i)
+        orbit(moved, -0.1f, -0.004f);
+    EXPECT_LT(length(moved.position - before.position), 100 * ROUNDING);
+}
+
+// Beyond the pole the picture would stand on its head, and at it, have no right.
+TEST(CameraControl, AnOrbitStopsBeforeThePoles) {
+    for (const float direction : {1.0f, -1.0f}) {
+        Camera moved = camera();
+        for (int i = 0; i < 10; ++i)
+            orbit(moved, 0.5f, direction);
+        EXPECT_GT(moved.position.y * direction, 1.99f);
+        EXPECT_LT(moved.position.y * direction, 2.0f);
+        EXPECT_GT(length(cross(moved.look_at - moved.position, moved.up)), 0.01f);
+    }
+}
+
+TEST(CameraControl, APanMovesThePictureWithTheHand) {
+    Camera moved = camera();
+    moved.position = vec3(1, 2, 3);
+    moved.look_at = vec3(-1, 0, 1);
+    const vec3 point = moved.look_at;
+    pan(moved, vec2(0.25f, -0.125f));
+    EXPECT_LT(length(shown_at(moved, point) - vec2(0.25f, -0.125f)), ROUNDING);
+    EXPECT_NEAR(length(moved.look_at - moved.position), std::sqrt(12.0f), ROUNDING);
+}
+
+TEST(CameraControl, ADollyScalesTheDistanceAndNeverReachesIt) {
+    Camera moved = camera();
+    dolly(moved, 0.5f);
+    expect_near(moved.position, vec3(0, 0, 1));
+    dolly(moved, 3.0f);
+    expect_near(moved.position, vec3(0, 0, 3));
+    for (int i = 0; i < 1000; ++i)
+        dolly(moved, 0.5f);
+    EXPECT_GT(length(moved.look_at - moved.position), 0.0f);
+    dolly(moved, 2.0f);
+    EXPECT_TRUE(is_finite(moved.position));
+}
+
+TEST(CameraControl, AFlightGoesAlongTheCamerasAxes) {
+    Camera moved = camera();
+    orbit(moved, -PI / 2, 0.0f);  // Now it looks along -X, and its right is -Z.
+    fly(moved, vec3(1, 2, 3));
+    expect_near(moved.position, vec3(2 - 3, 2, -1));
+    expect_near(moved.look_at, vec3(-3, 2, -1));
+}
+
+// Numbers that no decimal fraction of few digits gives, and a lens with all that it can have.
+TEST(CameraControl, TheLoaderReadsItsJsonBackBitForBit) {
+    Camera saved = camera();
+    saved.position = vec3(1.0f / 3, -2e-7f, 12345.678f);
+    saved.look_at = vec3(std::nextafter(1.0f, 2.0f), 0.1f, -3e5f);
+    saved.up = vec3(0.1f, 0.7f, 0.2f);
+    for (const Lens& lens : {Lens{}, Lens{0.01f / 3, 7.1f, 0, 0.0f}, Lens{0.2f, 1e-3f, 6, 0.3f}}) {
+        saved.lens = lens;
+        for (const float fov : {0.1f, 0.686f, 1.0f / 3, 3.1f}) {
+            saved.vertical_fov = fov;
+            std::string text = camera_json(saved, "a \"view\"");
+            text.insert(text.rfind('}'), R"(, "shapes": [])");
+            SceneFolder folder;
+            const Scene scene = folder.load(text);
+            ASSERT_EQ(scene.cameras.size(), 1u);
+            EXPECT_EQ(scene.cameras[0].name, "a \"view\"");
+            Camera read = scene.cameras[0];
+            read.name = saved.name;
+            EXPECT_EQ(read, saved) << text;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace candela
