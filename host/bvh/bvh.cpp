@@ -89,9 +89,9 @@ Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
         *chosen = left;
         children.ranges[children.count++] = right;
     }
-    const auto all = std::span(children.ranges).first(children.count);
-    const auto leaves = std::ranges::stable_partition(all, std::not_fn(makes_leaf));
-    children.nodes = children.count - uint32_t(leaves.size());
+    const auto begin = children.ranges.begin();
+    const auto leaves = std::stable_partition(begin, begin + children.count, std::not_fn(makes_leaf));
+    children.nodes = uint32_t(leaves - begin);
     return children;
 }
 
