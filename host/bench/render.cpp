@@ -1,6 +1,7 @@
 // See render.h.
 #include "bench/render.h"
 
+#include "base/relative_error.h"
 #include "bench/clocks.h"
 
 namespace candela {
@@ -58,27 +59,6 @@ std::vector<Row> bench_render(const vk::Device& device, const BenchOptions& opti
     std::vector<Row> rows{speed, rays};
     if (task.reference) rows.push_back(relmse);
     return rows;
-}
-
-double relative_mse(const RgbPlanes& image, const RgbPlanes& reference) {
-    double sum = 0.0;
-    for (const auto& plane : reference) {
-        for (const float r : plane)
-            sum += double(r);
-    }
-    const double values = 3.0 * double(reference[0].size());
-    const double mean = sum / values;
-    const double floor = 0.01 * mean * mean;
-
-    double errors = 0.0;
-    for (size_t channel = 0; channel < 3; ++channel) {
-        for (size_t i = 0; i < reference[channel].size(); ++i) {
-            const double r = double(reference[channel][i]);
-            const double difference = double(image[channel][i]) - r;
-            errors += difference * difference / (r * r + floor);
-        }
-    }
-    return errors / values;
 }
 
 }  // namespace candela

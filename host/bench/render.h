@@ -29,9 +29,4 @@ struct RenderTask {
 // at most. Throws Error as Renderer does.
 std::vector<Row> bench_render(const vk::Device& device, const BenchOptions& options, const RenderTask& task);
 
-// Relative mean squared error: the mean over all pixels and channels of (x - r)^2 / (r^2 + 0.01 m^2), r the
-// reference and m its mean over all pixels and channels: so nothing depends on the unit of radiance, and
-// black pixels do not outweigh all others. Both have the same number of pixels.
-double relative_mse(const RgbPlanes& image, const RgbPlanes& reference);
-
 }  // namespace candela

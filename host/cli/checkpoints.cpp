@@ -64,15 +64,7 @@ std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Ide
 }
 
 CheckpointWriter::CheckpointWriter(std::filesystem::path path, double every, Identity identity, Maker maker)
-    : path_(std::move(path)),
-      every_(every),
-      identity_(std::move(identity)),
-      maker_(std::move(maker)),
-      written_(std::chrono::steady_clock::now()) {}
-
-bool CheckpointWriter::due() const {
-    return std::chrono::steady_clock::now() - written_ >= every_;
-}
+    : path_(std::move(path)), identity_(std::move(identity)), maker_(std::move(maker)), interval_(every) {}
 
 void CheckpointWriter::write(const Accumulation& state, double render_seconds) {
     try {
@@ -80,7 +72,7 @@ void CheckpointWriter::write(const Accumulation& state, double render_seconds) {
     } catch (const Error& error) {
         print_warning(std::string(error.what()) + "; the rendering goes on without this checkpoint");
     }
-    written_ = std::chrono::steady_clock::now();
+    interval_.restart();
 }
 
 }  // namespace candela

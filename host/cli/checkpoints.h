@@ -1,11 +1,11 @@
 // The checkpoints of `candela render`: the one to continue from, and those that are written on the way.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 
+#include "cli/interval.h"
 #include "cli/render_options.h"
 #include "render/checkpoint.h"
 
@@ -29,16 +29,15 @@ class CheckpointWriter {
     CheckpointWriter(std::filesystem::path path, double every, Identity identity, Maker maker);
 
     // The interval is over.
-    bool due() const;
+    bool due() const { return interval_.over(); }
     // `render_seconds`: wall time that went into the state.
     void write(const Accumulation& state, double render_seconds);
 
   private:
     std::filesystem::path path_;
-    std::chrono::duration<double> every_;
     Identity identity_;
     Maker maker_;
-    std::chrono::steady_clock::time_point written_;
+    Interval interval_;
 };
 
 }  // namespace candela

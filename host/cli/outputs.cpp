@@ -80,41 +80,73 @@ void use_half(Image& image) {
     }
 }
 
+void write_image(const RenderOptions& options, const std::string& path, const Image& image) {
+    if (image_format(path) == ImageFormat::exr) {
+        write_exr(path, image);
+    } else {
+        write_png(path, image.data.width(), image.data.height(),
+                  develop(image, options.tonemap, float(options.exposure)));
+    }
+}
+
+Json or_null(const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
+}
+
+// What --target-error and --reference add to the report.
+void add_convergence(Json& report, const RenderOptions& options, const RenderRecord& record) {
+    if (options.target_error) {
+        report["target_error"] = *options.target_error;
+        report["estimated_error"] = or_null(record.estimated_error);
+    }
+    if (options.reference) report["reference"] = *options.reference;
+    if (!options.target_error && !options.reference) return;
+    report["convergence"] = Json::array();
+    for (const ConvergencePoint& point : record.convergence) {
+        report["convergence"].push_back({{"spp", point.spp},
+                                         {"seconds", point.seconds},
+                                         {"relmse", or_null(point.relmse)},
+                                         {"estimated_error", or_null(point.estimate)}});
+    }
+}
+
 Json make_report(const RenderOptions& options, const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     const auto ratio = [](double a, double b) { return b > 0.0 ? a / b : 0.0; };
     const double samples = double(record.samples);
-    return {{"version", record.maker.version},
-            {"scene", options.scene_file},
-            {"device", record.maker.device},
-            {"driver", record.maker.driver},
-            {"width", settings.size.x},
-            {"height", settings.size.y},
-            {"crop", {settings.crop.x0, settings.crop.y0, settings.crop.x1, settings.crop.y1}},
-            {"spp", record.spp},
-            {"samples", samples_text(record)},
-            {"complete", record.complete},
-            {"seed", settings.seed},
-            {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},
-            {"sampler", name_of(settings.sampler, SAMPLER_NAMES)},
-            {"max_depth", settings.max_depth},
-            {"rr_depth", settings.rr_depth},
-            {"scene_buffers", name_of(settings.scene_access, SCENE_ACCESS_NAMES)},
-            {"primitives", record.primitives},
-            {"lights", record.lights},
-            {"load_seconds", record.load_seconds},
-            {"bvh_seconds", record.bvh_seconds},
-            {"pipeline_seconds", record.pipeline_seconds},
-            {"render_seconds", record.render_seconds},
-            {"cpu_seconds", record.cpu_seconds},
-            {"samples_per_second", ratio(samples, record.render_seconds)},
-            {"rays_per_sample", ratio(double(record.counters.rays), samples)},
-            {"device_bytes", record.device_bytes},
-            {"nonfinite_samples", record.counters.nonfinite_samples},
-            {"depth_limit_hits", record.counters.depth_limit_hits},
-            {"device_failures", record.device_failures},
-            {"image_hash", hexadecimal(record.image_hash)},
-            {"validation_messages", record.validation_messages}};
+    Json report{{"version", record.maker.version},
+                {"scene", options.scene_file},
+                {"device", record.maker.device},
+                {"driver", record.maker.driver},
+                {"width", settings.size.x},
+                {"height", settings.size.y},
+                {"crop", {settings.crop.x0, settings.crop.y0, settings.crop.x1, settings.crop.y1}},
+                {"spp", record.spp},
+                {"samples", samples_text(record)},
+                {"complete", record.complete},
+                {"seed", settings.seed},
+                {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},
+                {"sampler", name_of(settings.sampler, SAMPLER_NAMES)},
+                {"max_depth", settings.max_depth},
+                {"rr_depth", settings.rr_depth},
+                {"scene_buffers", name_of(settings.scene_access, SCENE_ACCESS_NAMES)},
+                {"primitives", record.primitives},
+                {"lights", record.lights},
+                {"load_seconds", record.load_seconds},
+                {"bvh_seconds", record.bvh_seconds},
+                {"pipeline_seconds", record.pipeline_seconds},
+                {"render_seconds", record.render_seconds},
+                {"cpu_seconds", record.cpu_seconds},
+                {"samples_per_second", ratio(samples, record.render_seconds)},
+                {"rays_per_sample", ratio(double(record.counters.rays), samples)},
+                {"device_bytes", record.device_bytes},
+                {"nonfinite_samples", record.counters.nonfinite_samples},
+                {"depth_limit_hits", record.counters.depth_limit_hits},
+                {"device_failures", record.device_failures},
+                {"image_hash", hexadecimal(record.image_hash)},
+                {"validation_messages", record.validation_messages}};
+    add_convergence(report, options, record);
+    return report;
 }
 
 void write_report(const std::string& target, const Json& report) {
@@ -163,17 +195,22 @@ void check_outputs(const RenderOptions& options) {
 void write_images(const RenderOptions& options, Image image) {
     if (options.half) use_half(image);
     Attempts attempts;
-    for (const std::string& path : options.outputs) {
-        attempts.attempt([&] {
-            if (image_format(path) == ImageFormat::exr) {
-                write_exr(path, image);
-            } else {
-                write_png(path, image.data.width(), image.data.height(),
-                          develop(image, options.tonemap, float(options.exposure)));
-            }
-        });
-    }
+    for (const std::string& path : options.outputs)
+        attempts.attempt([&] { write_image(options, path, image); });
     attempts.finish();
+}
+
+void write_current_images(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
+                          Image image) {
+    add_attributes(image, record, camera);
+    if (options.half) use_half(image);
+    for (const std::string& path : options.outputs) {
+        try {
+            write_image(options, path, image);
+        } catch (const Error& error) {
+            print_warning(std::string(error.what()) + "; the rendering goes on without this image");
+        }
+    }
 }
 
 void write_outputs(const RenderOptions& options, const RenderRecord& record, const Camera& camera,

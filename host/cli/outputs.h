@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/image.h"
+#include "cli/convergence.h"
 #include "cli/render_options.h"
 #include "render/identity.h"
 #include "render/renderer.h"
@@ -24,10 +27,12 @@ struct RenderRecord {
     double pipeline_seconds = 0.0;  // ... compiling kernels, an empty first dispatch included ...
     double render_seconds = 0.0;    // ... and rendering alone, before it was resumed as well.
     double cpu_seconds = 0.0;       // CPU time of the whole process while rendering; a resumed part alone.
-    bool complete = false;          // All samples asked for are there.
+    bool complete = false;          // All samples are there, or as many as the target error needs.
     uint32_t spp = 0;               // Samples that every pixel holds at least.
     uint32_t most_spp = 0;          // And the most that one holds.
     uint64_t samples = 0;           // Samples of all pixels together.
+    std::vector<ConvergencePoint> convergence;  // If a target error or a reference asks for it.
+    std::optional<double> estimated_error;      // The last one known.
     RenderCounters counters;
     uint32_t device_failures = 0;  // That were survived.
     uint64_t device_bytes = 0;
@@ -42,6 +47,11 @@ void check_outputs(const RenderOptions& options);
 // Writes all images as the options say. Where one fails, the others are written all the same; then the Error
 // is thrown.
 void write_images(const RenderOptions& options, Image image);
+
+// Writes all images, with attributes, in the middle of a rendering. What fails is a warning: the file keeps
+// its old contents.
+void write_current_images(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
+                          Image image);
 
 // Writes all images, with attributes, and the report. Where one fails, the others are written all the same;
 // then the Error is thrown.

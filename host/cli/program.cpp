@@ -25,6 +25,7 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
                                   add_devices_command(app),
                                   add_compare_command(app),
                                   add_merge_command(app, command_line),
+                                  add_plot_command(app),
                                   add_selftest_command(app),
                                   add_bench_command(app)};
     app.footer(
@@ -98,8 +99,8 @@ ExitCode run_program(int argc, const char* const* argv) {
         if (command.app->parsed()) return command.run();
     }
     throw Error(
-        "there is no command; give render, view, info, devices, compare, merge, selftest or bench, or see "
-        "candela --help",
+        "there is no command; give render, view, info, devices, compare, merge, plot, selftest or bench, or "
+        "see candela --help",
         ExitCode::usage);
 }
 

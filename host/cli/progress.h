@@ -1,4 +1,5 @@
-// The progress of a rendering on stderr: a live line on a terminal, now and then a plain line elsewhere.
+// The progress of a rendering on stderr: a live line on a terminal, now and then a plain line elsewhere, or
+// lines of JSON for programs.
 #pragma once
 
 #include <chrono>
@@ -6,28 +7,46 @@
 #include <optional>
 #include <string>
 
+#include "cli/render_options.h"
+
 namespace candela {
 
 class Progress {
   public:
     // `pixels` get `spp` samples each, of which the share `done` is there already, unless `time_limit` [s],
     // if given, is over before. The clock starts here.
-    Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit, bool quiet);
+    Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit,
+             ProgressStyle style);
     // Clears the live line, if there is one.
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    // Says that the share `done`, in [0, 1], of all samples is there; prints at most as often as fits the
-    // output.
-    void update(double done);
+    // Says that the share `done`, in [0, 1], of all samples is there, and what the error of the image is
+    // estimated to be; prints at most as often as fits the output.
+    void update(double done, std::optional<double> error);
+    // Clears the live line, so that others can print.
+    void clear();
+    // The last line of JSON, whose "state" says how it ended; to be called when all files are written.
+    void end(const std::string& state) const;
     // Wall time since the start [s].
     double seconds() const;
 
   private:
-    std::string line(double done, double now) const;
+    // How it stood at an update.
+    struct Status {
+        double done;
+        double seconds = 0.0;
+        std::optional<double> error = std::nullopt;
+    };
+    uint32_t spp_done() const;
+    double rate() const;
+    double seconds_left() const;
+    std::string line() const;
+    std::string json_line(const std::string& state) const;
 
-    enum class Output { none, plain, live };
+    enum class Output { none, plain, live, json };
+    static Output choose(ProgressStyle style);
 
     uint64_t pixels_;
     uint32_t spp_;
@@ -35,8 +54,8 @@ class Progress {
     std::optional<double> time_limit_;
     Output output_;
     std::chrono::steady_clock::time_point start_;
-    double printed_done_;           // When something was printed last: the share done ...
-    double printed_seconds_ = 0.0;  // ... and the time.
+    Status now_;      // At the last update ...
+    Status printed_;  // ... and when something was printed last.
 };
 
 }  // namespace candela

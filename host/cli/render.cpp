@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,7 +13,9 @@
 #include "cli/checkpoints.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/convergence.h"
 #include "cli/interrupt.h"
+#include "cli/interval.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
@@ -44,39 +47,6 @@ void print_details(const vk::Device& device, const GpuScene& scene, const Render
                  bytes_text(device.available_memory()).c_str(), bytes_text(scene.bytes()).c_str());
 }
 
-// Renders until all samples are there, the time is over or a signal comes; the record learns what it took.
-// Returns the Error if the device failed for good.
-std::optional<Error> trace(SteadyRenderer& renderer, const RenderOptions& options, uint32_t target,
-                           const InterruptGuard& guard, std::optional<CheckpointWriter>& checkpoints,
-                           RenderRecord& record) {
-    const PixelRect& crop = record.settings.crop;
-    const uint32_t held = renderer.state() ? renderer.state()->least_samples() : 0;
-    Progress progress(uint64_t{crop.width()} * crop.height(), target, double(held) / target,
-                      options.time_limit, options.quiet);
-    const double seconds_before = record.render_seconds;
-    const std::clock_t cpu_start = std::clock();
-    std::optional<Error> failure;
-    try {
-        record.complete = renderer.render(target, [&](double done) {
-            progress.update(done);
-            if (checkpoints && checkpoints->due()) {
-                renderer.hold();
-                checkpoints->write(*renderer.state(), seconds_before + progress.seconds());
-            }
-            return !guard.interrupted() && !(options.time_limit && progress.seconds() >= *options.time_limit);
-        });
-    } catch (const Error& error) {
-        if (!renderer.state()) throw;
-        failure = error;
-    }
-    record.render_seconds = seconds_before + progress.seconds();
-    record.cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
-    record.counters = renderer.state()->counters;
-    record.device_failures = renderer.failures();
-    if (checkpoints) checkpoints->write(*renderer.state(), record.render_seconds);
-    return failure;
-}
-
 Image collect_image(const SteadyRenderer& renderer, const AovSelection& aovs, RenderRecord& record) {
     const Accumulation& state = *renderer.state();
     record.samples = state.total_samples();
@@ -87,7 +57,94 @@ Image collect_image(const SteadyRenderer& renderer, const AovSelection& aovs, Re
     return image;
 }
 
-void print_outcome(const RenderRecord& record, uint32_t target, bool quiet) {
+// What is looked after while a rendering goes on.
+struct Upkeep {
+    std::optional<CheckpointWriter> checkpoints;
+    std::optional<Interval> images;  // From one writing of the outputs to the next.
+    Convergence convergence;
+    Progress progress;
+    double seconds_before = 0.0;  // Of rendering before it was resumed.
+
+    double seconds() const { return seconds_before + progress.seconds(); }
+};
+
+// Writes a checkpoint and the images if their times have come.
+void keep(SteadyRenderer& renderer, const RenderOptions& options, const Camera& camera,
+          const RenderRecord& record, Upkeep& upkeep) {
+    if (upkeep.checkpoints && upkeep.checkpoints->due()) {
+        renderer.hold();
+        upkeep.checkpoints->write(*renderer.state(), upkeep.seconds());
+    }
+    if (upkeep.images && upkeep.images->over()) {
+        renderer.hold();
+        RenderRecord current = record;
+        current.render_seconds = upkeep.seconds();
+        Image image = collect_image(renderer, options.written_aovs(), current);
+        write_current_images(options, current, camera, std::move(image));
+        upkeep.images->restart();
+    }
+}
+
+// Renders until all samples are there, the error is small enough or `keep_going` says no. Returns whether it
+// never did. Stops for a look at the error at fixed numbers of samples, and otherwise only at the end.
+bool render_and_look(SteadyRenderer& renderer, uint32_t target, Upkeep& upkeep,
+                     const std::function<bool()>& keep_going) {
+    Convergence& convergence = upkeep.convergence;
+    uint32_t held = 0;
+    if (renderer.state()) {
+        held = renderer.state()->least_samples();
+        convergence.look(*renderer.state(), upkeep.seconds());
+    }
+    while (held < target && !convergence.reached()) {
+        const uint32_t next = convergence.next(held, target);
+        const bool complete = renderer.render(next, [&](double done) {
+            upkeep.progress.update(done * next / target, convergence.estimate());
+            return keep_going();
+        });
+        if (!complete) return false;
+        held = next;
+        convergence.look(*renderer.state(), upkeep.seconds());
+        upkeep.progress.update(double(held) / target, convergence.estimate());
+    }
+    return true;
+}
+
+// Renders, with all that is to be looked after; the record learns what it took. Returns the Error if the
+// device failed for good.
+std::optional<Error> trace(SteadyRenderer& renderer, const RenderOptions& options, const Camera& camera,
+                           uint32_t target, const InterruptGuard& guard, Upkeep& upkeep,
+                           RenderRecord& record) {
+    const std::clock_t cpu_start = std::clock();
+    std::optional<Error> failure;
+    try {
+        record.complete = render_and_look(renderer, target, upkeep, [&] {
+            keep(renderer, options, camera, record, upkeep);
+            return !guard.interrupted() &&
+                   !(options.time_limit && upkeep.progress.seconds() >= *options.time_limit);
+        });
+    } catch (const Error& error) {
+        if (!renderer.state()) throw;
+        failure = error;
+    }
+    upkeep.progress.clear();
+    record.render_seconds = upkeep.seconds();
+    record.cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+    record.counters = renderer.state()->counters;
+    record.device_failures = renderer.failures();
+    record.convergence = upkeep.convergence.points();
+    record.estimated_error = upkeep.convergence.estimate();
+    if (upkeep.checkpoints) upkeep.checkpoints->write(*renderer.state(), record.render_seconds);
+    return failure;
+}
+
+// `, estimated error 0.0183 (target 0.02)`, or nothing.
+std::string error_text(const RenderOptions& options, const RenderRecord& record) {
+    if (!options.target_error) return "";
+    return ", estimated error " + (record.estimated_error ? fixed(*record.estimated_error, 4) : "unknown") +
+           " (target " + fixed(*options.target_error, 4) + ')';
+}
+
+void print_outcome(const RenderOptions& options, const RenderRecord& record, uint32_t target) {
     if (record.counters.nonfinite_samples > 0) {
         print_warning(std::to_string(record.counters.nonfinite_samples) +
                       " sample(s) were not finite and count as black");
@@ -97,11 +154,17 @@ void print_outcome(const RenderRecord& record, uint32_t target, bool quiet) {
                       std::to_string(DEPTH_SAFETY_LIMIT) + " bounces, and their light is missing");
     }
     if (record.spp == 0) print_warning("stopped before every pixel had a sample; those without are black");
-    if (quiet) return;
+    if (options.target_error && record.complete &&
+        !(record.estimated_error && *record.estimated_error <= *options.target_error)) {
+        print_warning("the target error was not reached with " + std::to_string(target) +
+                      " samples per pixel; allow more (--spp)");
+    }
+    if (options.quiet || options.progress == ProgressStyle::json) return;
     const std::string of_target = record.complete ? "" : " of " + std::to_string(target);
     const double rate = double(record.samples) / std::max(record.render_seconds, 1e-9);
-    std::fprintf(stderr, "rendered %u%s spp in %s (%s Msamples/s)\n", record.spp, of_target.c_str(),
-                 duration_text(record.render_seconds).c_str(), fixed(rate / 1e6, 2).c_str());
+    std::fprintf(stderr, "rendered %u%s spp in %s (%s Msamples/s)%s\n", record.spp, of_target.c_str(),
+                 duration_text(record.render_seconds).c_str(), fixed(rate / 1e6, 2).c_str(),
+                 error_text(options, record).c_str());
 }
 
 void warn_of_device_failure(const Error& error, uint32_t kept, double submission_seconds) {
@@ -118,7 +181,8 @@ void warn_of_maker(const Maker& before, const Maker& now) {
 
 // What is left to do once there is an instance.
 ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, const GpuScene& scene,
-                   const Camera& camera, uint32_t target, RenderRecord& record) {
+                   const Camera& camera, uint32_t target, std::optional<Image> reference,
+                   RenderRecord& record) {
     std::optional<Checkpoint> resumed = load_to_resume(options, record.identity, record.settings, target);
     const vk::DeviceInfo device = vk::select_device(instance.devices(), options.device);
     record.maker = {.device = device.name, .driver = device.driver, .version = CANDELA_VERSION};
@@ -140,19 +204,31 @@ ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, c
     record.settings.scene_access = renderer.scene_access();
     record.pipeline_seconds = renderer.pipeline_seconds();
     if (options.verbose) print_details(renderer.device(), scene, record);
-    std::optional<CheckpointWriter> checkpoints;
-    if (options.checkpoint)
-        checkpoints.emplace(*options.checkpoint, options.checkpoint_every, record.identity, record.maker);
+    const PixelRect& crop = record.settings.crop;
+    const uint32_t held = renderer.state() ? renderer.state()->least_samples() : 0;
+    Upkeep upkeep{
+        .checkpoints = {},
+        .images = {},
+        .convergence = Convergence(options.target_error, std::move(reference)),
+        .progress = Progress(uint64_t{crop.width()} * crop.height(), target, double(held) / target,
+                             options.time_limit, options.quiet ? ProgressStyle::none : options.progress),
+        .seconds_before = record.render_seconds};
+    if (options.checkpoint) {
+        upkeep.checkpoints.emplace(*options.checkpoint, options.checkpoint_every, record.identity,
+                                   record.maker);
+    }
+    if (options.write_every) upkeep.images.emplace(*options.write_every);
 
     // Before this line there is nothing to keep, and a signal ends the program at once.
     const InterruptGuard guard;
-    const std::optional<Error> failure = trace(renderer, options, target, guard, checkpoints, record);
+    const std::optional<Error> failure = trace(renderer, options, camera, target, guard, upkeep, record);
     const bool interrupted = guard.interrupted() && !record.complete;
     Image image = collect_image(renderer, aovs, record);
-    print_outcome(record, target, options.quiet);
+    print_outcome(options, record, target);
     record.validation_messages = instance.validation_messages().size();
     write_outputs(options, record, camera, std::move(image));
     if (failure) throw Error(*failure);
+    upkeep.progress.end(record.complete ? "done" : interrupted ? "interrupted" : "time limit");
     return interrupted ? ExitCode::interrupted : ExitCode::done;
 }
 
@@ -169,6 +245,8 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
         print_warning(warning);
     const Camera& camera = options.choose_camera(scene);
     record.settings = options.settings(scene);
+    std::optional<Image> reference;
+    if (options.reference) reference = load_reference(*options.reference, record.settings);
 
     const GpuScene gpu_scene = build_gpu_scene(scene);
     record.primitives = gpu_scene.id_count;
@@ -177,7 +255,8 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
     record.identity = make_identity(gpu_scene, camera, record.settings);
 
     const vk::Instance instance(instance_options());
-    const ExitCode code = render_on(instance, options, gpu_scene, camera, options.target_spp(scene), record);
+    const ExitCode code = render_on(instance, options, gpu_scene, camera, options.target_spp(scene),
+                                    std::move(reference), record);
     check_validation(instance);
     return code;
 }
@@ -195,6 +274,16 @@ Command add_render_command(CLI::App& app, const std::string& command_line) {
         "With --checkpoint a rendering survives the end of the program: the same command with --resume goes "
         "on,\n"
         "to the same bits. A script can always pass --resume, the first time as well.\n"
+        "--target-error compares the image with what it was at half as many samples, at powers of two from "
+        "16 "
+        "on. For\n"
+        "--sampler independent that is the error; where others converge faster, it is somewhat more. Light "
+        "that no\n"
+        "sample has found yet is not in it. A resumed rendering looks anew, and may take up to twice the "
+        "samples.\n"
+        "--progress json prints an object twice a second, and a last one, whose state is not \"rendering\", "
+        "when\n"
+        "all is written; after an error there is none.\n"
         "--samples 0..64 on one computer, --samples 64..128 on another: candela merge joins the parts.");
     return {command, [options, command_line] { return render(*options, command_line); }};
 }

@@ -38,6 +38,11 @@ static std::optional<SampleRange> parse_samples(const std::string& text) {
                                                                         : std::nullopt;
 }
 
+static std::optional<double> parse_error(const std::string& text) {
+    const auto value = parse_number(text);
+    return value && *value > 0.0 ? value : std::nullopt;
+}
+
 static constexpr const char* DURATIONS = "a duration such as 90, 90s, 1.5m or 2h";
 static constexpr const char* SAMPLING_GROUP = "Sampling (defaults: the scene's)";
 
@@ -48,6 +53,9 @@ void RenderOptions::add_to(CLI::App& app) {
     add_rendering_to(app);
     add_camera_to(app);
     app.option_defaults()->group(SAMPLING_GROUP);
+    add_value(app, "--target-error", target_error, parse_error, "a number above 0, such as 0.02",
+              "Stop at this estimated relative error, such as 0.02; --spp is the most")
+        ->type_name("E");
     add_value(app, "--time-limit", time_limit, parse_duration, DURATIONS,
               "Stop after 90, 90s, 1.5m, 2h even short of --spp (default: none)")
         ->type_name("TIME");
@@ -89,8 +97,15 @@ void RenderOptions::add_output_options(CLI::App& app) {
     add_value(app, "--aov", aovs, parse_aovs, std::string("all, none or a list of ") + AOV_NAMES,
               "EXR: none, all (default) or a list of " + std::string(AOV_NAMES))
         ->type_name("LIST");
-    app.add_option("--report", report, "Write figures of the run as JSON; - is standard output")
-        ->type_name("FILE|-");
+    add_value(app, "--write-every", write_every, parse_duration, DURATIONS,
+              "Write the images while rendering, too (default: at the end alone)")
+        ->type_name("TIME");
+    CLI::Option* const report_file =
+        app.add_option("--report", report, "Write figures of the run as JSON; - is standard output")
+            ->type_name("FILE|-");
+    app.add_option("--reference", reference, "Report the error against this image (.exr), as it falls")
+        ->type_name("FILE")
+        ->needs(report_file);
 }
 
 void RenderOptions::add_images_to(CLI::App& app) {
@@ -137,7 +152,10 @@ void RenderOptions::add_sampling_options(CLI::App& app) {
 void RenderOptions::add_message_options(CLI::App& app) {
     app.option_defaults()->group("Messages");
     CLI::Option* const quiet_flag =
-        app.add_flag("-q,--quiet", quiet, "No progress, only warnings and errors");
+        app.add_flag("-q,--quiet", quiet, "No progress, no summary, only warnings and errors");
+    add_choice(app, "--progress", progress, PROGRESS_NAMES,
+               "Lines on stderr: for people, as JSON, none (default: auto)")
+        ->excludes(quiet_flag);
     app.add_flag("-v,--verbose", verbose, "Also tell about device, scene and memory")->excludes(quiet_flag);
 }
 

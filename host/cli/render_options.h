@@ -28,6 +28,10 @@ inline constexpr Choices<Tonemap, 5> TONEMAP_NAMES{{{"linear", Tonemap::linear},
                                                     {"agx", Tonemap::agx},
                                                     {"neutral", Tonemap::neutral}}};
 
+enum class ProgressStyle { automatic, json, none };
+inline constexpr Choices<ProgressStyle, 3> PROGRESS_NAMES{
+    {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}}};
+
 // What stands on the command line; an empty optional leaves the choice to the scene file.
 struct RenderOptions {
     std::string scene_file;
@@ -35,13 +39,16 @@ struct RenderOptions {
     std::optional<std::string> report;  // "-": stdout.
     AovSelection aovs{true, true, true, true, true, true};
     bool half = false;
-    double exposure = 0.0;  // EV.
+    std::optional<double> write_every;     // Seconds.
+    std::optional<std::string> reference;  // An image to measure the error against.
+    double exposure = 0.0;                 // EV.
     Tonemap tonemap = Tonemap::linear;
 
     PictureOptions picture;
     std::optional<std::string> camera;
 
     std::optional<uint32_t> spp;
+    std::optional<double> target_error;  // Relative error of the image.
     std::optional<double> time_limit;    // Seconds.
     std::optional<SampleRange> samples;  // Instead of spp: these alone.
     std::optional<uint32_t> seed;
@@ -56,6 +63,7 @@ struct RenderOptions {
 
     std::optional<std::string> device;  // Index or part of the name.
     SceneAccess scene_access = SceneAccess::automatic;
+    ProgressStyle progress = ProgressStyle::automatic;
     bool quiet = false;
     bool verbose = false;
 
@@ -76,7 +84,7 @@ struct RenderOptions {
     // The camera of that name, by default the scene's first. Throws Error (usage) that lists the names if
     // there is none.
     const Camera& choose_camera(const Scene& scene) const;
-    // Samples per pixel to reach.
+    // Samples per pixel to reach, if no target error and no time limit ends it before.
     uint32_t target_spp(const Scene& scene) const {
         return samples ? samples->count() : spp.value_or(scene.integrator.spp);
     }

@@ -18,8 +18,8 @@ TEST_F(Usage, VersionAndHelpGoToStdout) {
     const ProcessResult help = candela({"--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_EQ(help.err, "");
-    for (const char* command :
-         {"render", "view", "info", "devices", "compare", "merge", "selftest", "bench", "Exit codes"}) {
+    for (const char* command : {"render", "view", "info", "devices", "compare", "merge", "plot", "selftest",
+                                "bench", "Exit codes"}) {
         EXPECT_CONTAINS(help.out, command);
     }
 }
@@ -27,18 +27,42 @@ TEST_F(Usage, VersionAndHelpGoToStdout) {
 TEST_F(Usage, HelpOfRenderListsEveryOption) {
     const ProcessResult help = candela({"render", "--help"});
     EXPECT_EQ(help.exit_code, 0);
-    for (const char* option :
-         {"--output",    "--aov",      "--half",      "--exposure",   "--tonemap",          "--report",
-          "--size",      "--crop",     "--camera",    "--spp",        "--time-limit",       "--seed",
-          "--max-depth", "--rr-depth", "--estimator", "--sampler",    "--device",           "--scene-buffers",
-          "--quiet",     "--verbose",  "--samples",   "--checkpoint", "--checkpoint-every", "--resume"}) {
+    for (const char* option : {"--output",
+                               "--aov",
+                               "--half",
+                               "--exposure",
+                               "--tonemap",
+                               "--report",
+                               "--size",
+                               "--crop",
+                               "--camera",
+                               "--spp",
+                               "--time-limit",
+                               "--seed",
+                               "--max-depth",
+                               "--rr-depth",
+                               "--estimator",
+                               "--sampler",
+                               "--device",
+                               "--scene-buffers",
+                               "--quiet",
+                               "--verbose",
+                               "--samples",
+                               "--checkpoint",
+                               "--checkpoint-every",
+                               "--resume",
+                               "--write-every",
+                               "--target-error",
+                               "--progress",
+                               "--reference"}) {
         EXPECT_CONTAINS(help.out, option);
     }
 }
 
 TEST_F(Usage, UnknownWordsAreNamed) {
     const std::vector<std::pair<Words, const char*>> cases = {
-        {{}, "there is no command; give render, view, info, devices, compare, merge, selftest or bench"},
+        {{},
+         "there is no command; give render, view, info, devices, compare, merge, plot, selftest or bench"},
         {{"trace"}, "unknown command \"trace\""},
         {{"--trace"}, "unknown argument \"--trace\""},
         {{"render", CORNELL_BOX, "-o", "x.png", "--trace"},

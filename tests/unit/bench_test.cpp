@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 
+#include "base/relative_error.h"
 #include "bench/meshes.h"
 #include "bench/render.h"
 #include "bench/report.h"

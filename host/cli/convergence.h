@@ -1,0 +1,57 @@
+// How the error of an image falls while it is rendered: what --target-error and --reference look at, at fixed
+// numbers of samples.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "render/accumulation.h"
+#include "render/renderer.h"
+
+namespace candela {
+
+// Reads the image that --reference names. Throws Error if it cannot be read, if its size or crop differs from
+// the settings', or if it lacks R, G or B, holds a value that is not finite, or is black.
+Image load_reference(const std::string& path, const RenderSettings& settings);
+
+// The image at one moment.
+struct ConvergencePoint {
+    uint32_t spp = 0;                // Samples that every pixel holds at least.
+    double seconds = 0.0;            // Wall time of rendering.
+    std::optional<double> estimate;  // Of its relative error; see estimate_relative_error().
+    std::optional<double> relmse;    // relative_mse() to the reference, if there is one.
+};
+
+class Convergence {
+  public:
+    // Nothing is estimated from fewer: they may not have found the light yet.
+    static constexpr uint32_t LEAST_SPP = 16;
+
+    // `target`: relative error to reach.
+    Convergence(std::optional<double> target, std::optional<Image> reference);
+
+    // The samples per pixel to render to before the next look(), if there are `spp`: the next power of two,
+    // and `most` at most, or at once if neither target nor reference asks for a look. It depends on nothing
+    // else, and never on time: so one rendering always ends with the same samples.
+    uint32_t next(uint32_t spp, uint32_t most) const;
+    // Measures the state after `seconds` of rendering.
+    void look(const Accumulation& state, double seconds);
+
+    // The estimate is at most the target.
+    bool reached() const;
+    // The last estimate; nothing if there is none yet.
+    std::optional<double> estimate() const;
+    // One for each look().
+    const std::vector<ConvergencePoint>& points() const { return points_; }
+
+  private:
+    std::optional<double> target_;
+    std::optional<Image> reference_;
+    std::optional<Image> before_;  // At the last look.
+    std::vector<ConvergencePoint> points_;
+};
+
+}  // namespace candela

@@ -1,0 +1,22 @@
+// Work that recurs while a rendering goes on.
+#pragma once
+
+#include <chrono>
+
+namespace candela {
+
+class Interval {
+  public:
+    // `seconds`: from the end of a piece of work to the next. The first one begins here.
+    explicit Interval(double seconds) : seconds_(seconds) {}
+
+    bool over() const { return std::chrono::steady_clock::now() - start_ >= seconds_; }
+    // Begins the next.
+    void restart() { start_ = std::chrono::steady_clock::now(); }
+
+  private:
+    std::chrono::duration<double> seconds_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace candela
