@@ -109,7 +109,8 @@ GpuScene build_gpu_scene(const Scene& scene) {
         append(gpu.primitives, pack(flat.primitives[i]));
         gpu.primitives_present |= 1u << flat.primitives[i].kind;
     }
-    if (flat.primitives.empty()) gpu.primitives.resize(PRIMITIVE_WORDS);  // A ray may ask for it all the same.
+    if (flat.primitives.empty())
+        gpu.primitives.resize(PRIMITIVE_WORDS);  // A ray may ask for it all the same.
 
     EnvironmentMap map;
     if (scene.environment) {

@@ -94,5 +94,22 @@ TEST_F(RouletteTest, AMirrorEndsNoMorePathsThanItMust) {
     expect_rays(scene, two, up_to_three(S, S * std::sqrt(double(REFLECTANCE) / S)));
 }
 
+// A floor that reflects half of its light as a mirror would and half diffusely, under a sky that is bright
+// only where the mirror shows it: if the number that chose the lobe decided who survives as well, one of them
+// would.
+TEST_F(RouletteTest, WhichLobeWasChosenDoesNotDecideWhoSurvives) {
+    Scene scene = scene_with_camera(vec3(0, 2, 0), vec3(0), 1e-3f);
+    scene.environment = Environment{.size = {1, 8}, .radiance = std::vector<vec3>(8, vec3(0.1f))};
+    scene.environment->radiance[0] = vec3(4);
+    const uint32_t phong = add_material(scene, PhongMaterial{vec3(0.4f), vec3(0.4f), 1e5f});
+    add_shape(scene, Disk{vec3(0), vec3(0, 0, 9), vec3(9, 0, 0)}, phong);
+    RenderSettings once = settings(0);
+    once.max_depth = 1;
+    RenderSettings never = once;
+    never.rr_depth = DEPTH_SAFETY_LIMIT;
+    ++never.seed;
+    expect_same_expectation(image_of(render(scene, once, SPP)), image_of(render(scene, never, SPP)));
+}
+
 }  // namespace
 }  // namespace candela
