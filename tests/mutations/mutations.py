@@ -85,6 +85,8 @@ GROUPS = [
         ("rays leave on the wrong side", "shaders/base/ray.glsl", "mix(offset, -offset,", "mix(-offset, offset,"),
         ("child boxes rounded inwards", "host/bvh/quantise.cpp",
          "std::ceil(steps(x)));\n        while (decode(q) < x)", "steps(x));\n        while (decode(q + 1) < x)"),
+        ("a single child left to visit is forgotten", TRAVERSAL, "met.count > 0u && t.pending.count > 0u",
+         "met.count > 0u && t.pending.count > 1u"),
         ("boxes without a margin, a little small", TRAVERSAL, "vec3 far = start + margin", "vec3 far = start - margin"),
         ("edges belong to no triangle", TRIANGLE, "any_negative(e) && any_positive(e)",
          "!(e.x * e.y > 0.0 && e.y * e.z > 0.0)"),
