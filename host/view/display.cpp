@@ -1,10 +1,10 @@
 // See display.h.
 #include "view/display.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 
 #include "render/kernels.h"
 #include "shared/constants.h"
@@ -67,7 +67,7 @@ void Display::draw(const vk::StorageImage& image, uvec2 size, Tonemap curve, flo
     kernel_->bind(DISPLAY_BINDING_OVERLAY, *overlay_);
     kernel_->bind(DISPLAY_BINDING_PICTURE, *picture_);
     kernel_->bind(DISPLAY_BINDING_SCREEN, *screen_);
-    std::memcpy(overlay_->mapped(), overlay.pixels.data(), overlay.pixels.size() * sizeof(uint32_t));
+    std::ranges::copy(std::as_bytes(std::span(overlay.pixels)), overlay_->mapped());
 
     const DisplayPush push{.size = size,
                            .image_size = {image.width(), image.height()},
