@@ -116,6 +116,12 @@ bool Presenter::make_swapchain(uint32_t width, uint32_t height) {
                   "vkGetPhysicalDeviceSurfaceCapabilitiesKHR")) {
         return false;
     }
+    if ((surface.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT) == 0) {
+        throw Error("device \"" + device_->info().name +
+                        "\" cannot copy pictures to this window; choose another device (candela devices "
+                        "lists them), or use candela render",
+                    ExitCode::no_device);
+    }
     VkExtent2D extent = surface.currentExtent;
     if (extent.width == UINT32_MAX) extent = {width, height};  // The window takes the picture's size.
     if (extent.width != width || extent.height != height) return false;

@@ -171,6 +171,27 @@ TEST_F(PresenterTest, OtherFailuresAreErrorsThatNameTheCall) {
     }
 }
 
+// Vulkan only promises that pictures can be drawn to a window.
+TEST_F(PresenterTest, AWindowThatTakesNoCopiesIsAnError) {
+    static PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR real;
+    real = vkGetPhysicalDeviceSurfaceCapabilitiesKHR;
+    vkGetPhysicalDeviceSurfaceCapabilitiesKHR = [](VkPhysicalDevice device, VkSurfaceKHR surface,
+                                                   VkSurfaceCapabilitiesKHR* capabilities) {
+        const VkResult result = real(device, surface, capabilities);
+        capabilities->supportedUsageFlags = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+        return result;
+    };
+    try {
+        show(0u);
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::no_device);
+        EXPECT_CONTAINS(std::string(error.what()),
+                        "cannot copy pictures to this window; choose another device");
+    }
+    vkGetPhysicalDeviceSurfaceCapabilitiesKHR = real;
+}
+
 }  // namespace
 }  // namespace candela
 
