@@ -68,10 +68,10 @@ uint32_t balanced_depth(uint32_t count) {
 }
 
 // Splits the range of a node, then the part that most rays would meet (the largest surface), until there are
-// four parts. The heuristic may take a single primitive
-// off at every split (boxes that grow exponentially). So wherever a child of all primitives but one might
-// be too deep for what is left of BVH_MAX_DEPTH levels, the node is split into equal parts, and those fit:
-// nodes on the way down kept to this rule.
+// four parts, or all are leaves. The heuristic may take a single primitive off at every split (boxes that
+// grow exponentially). So wherever a child of all primitives but one might be too deep for what is left of
+// BVH_MAX_DEPTH levels, the node is split into equal parts, and those fit: nodes on the way down kept to this
+// rule.
 Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
     const bool balanced = job.depth + 1 + balanced_depth(job.range.count - 1) >= BVH_MAX_DEPTH;
     const auto priority = [balanced](const PrimitiveRange& range) {
@@ -92,6 +92,7 @@ Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
     const auto begin = children.ranges.begin();
     const auto leaves = std::stable_partition(begin, begin + children.count, std::not_fn(makes_leaf));
     children.nodes = uint32_t(leaves - begin);
+    assert(children.count == BVH_WIDTH || children.nodes == 0);  // See bvh_child().
     return children;
 }
 

@@ -133,8 +133,7 @@ ExitCode view(const ViewArguments& arguments) {
     arguments.check();
     throw Error(
         "view: this program was built without a window, which takes GLFW and Dear ImGui; install "
-        "libglfw3-dev and "
-        "libimgui-dev and build it with cmake -DCANDELA_VIEW=ON, or use candela render");
+        "libglfw3-dev and libimgui-dev and build it with cmake -DCANDELA_VIEW=ON, or use candela render");
 }
 
 #endif

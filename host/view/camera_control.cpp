@@ -2,9 +2,8 @@
 #include "view/camera_control.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "scene/json.h"
 
@@ -39,24 +38,11 @@ void move(Camera& camera, vec3 shift) {
     camera.look_at += shift;
 }
 
-// The shortest number that reads back as the same double.
-std::string number(double value) {
+// The shortest text that reads back as the same number.
+template <class Number>
+std::string number(Number value) {
     char text[32];
-    for (int digits = 6; digits <= 17; ++digits) {
-        std::snprintf(text, sizeof text, "%.*g", digits, value);
-        if (std::strtod(text, nullptr) == value) break;
-    }
-    return text;
-}
-
-// The shortest number that reads back as the same float.
-std::string number(float value) {
-    char text[32];
-    for (int digits = 1; digits <= 9; ++digits) {
-        std::snprintf(text, sizeof text, "%.*g", digits, double(value));
-        if (std::strtof(text, nullptr) == value) break;
-    }
-    return text;
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 std::string vector(vec3 v) {

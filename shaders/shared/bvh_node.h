@@ -85,7 +85,7 @@ BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c) {
 }
 
 // The reference to child i. A ray may meet the box of a child that does not exist, which means nothing: it
-// gets the last child, at no harm.
+// gets the last child, at no harm, since where the builder leaves room all children are leaves.
 uint bvh_child(uvec2 children, uint i) {
     uint nodes = children.x >> 24u & 7u;
     uint last = children.x >> 27u;
