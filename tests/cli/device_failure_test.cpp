@@ -1,5 +1,6 @@
 // A device that is lost, or out of memory, in the middle of a rendering. A Vulkan layer makes it fail
 // (tests/layers/device_fault.cpp); the program itself knows nothing of tests.
+#include <csignal>
 #include <regex>
 
 #include "cli/cli_fixture.h"
@@ -13,20 +14,23 @@ class DeviceFailure : public CliTest {
   protected:
     // 64x64 pixels take a dozen submissions. Before them come those of uploads and positions: up to 11,
     // depending on the device's memory, and 8 more for the layers of a state.
-    const Words picture_ = {"--size", "64x64", "--spp", "128"};
+    Words picture_ = {"--size", "64x64", "--spp", "128"};
 
     // Each of the first `devices` devices runs so many submissions, and then answers with `result`.
+    Process start_on_failing(int devices, int submissions, int result, const Words& arguments = {},
+                             int openings = 0) const {
+        return Process(call(Words{"render", CORNELL_BOX, "-o", file("a.exr"), "--report", file("a.json")} +
+                            picture_ + arguments),
+                       options({{"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"},
+                                {"VK_ADD_LAYER_PATH", CANDELA_LAYERS},
+                                {"FAULT_DEVICES", std::to_string(devices)},
+                                {"FAULT_AFTER", std::to_string(submissions)},
+                                {"FAULT_RESULT", std::to_string(result)},
+                                {"FAULT_OPENINGS", std::to_string(openings)}}));
+    }
     ProcessResult render_on_failing(int devices, int submissions, int result, const Words& arguments = {},
                                     int openings = 0) const {
-        return run_process(
-            call(Words{"render", CORNELL_BOX, "-o", file("a.exr"), "--report", file("a.json")} + picture_ +
-                 arguments),
-            options({{"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"},
-                     {"VK_ADD_LAYER_PATH", CANDELA_LAYERS},
-                     {"FAULT_DEVICES", std::to_string(devices)},
-                     {"FAULT_AFTER", std::to_string(submissions)},
-                     {"FAULT_RESULT", std::to_string(result)},
-                     {"FAULT_OPENINGS", std::to_string(openings)}}));
+        return start_on_failing(devices, submissions, result, arguments, openings).finish();
     }
     nlohmann::json report() const { return nlohmann::json::parse(read_file(file("a.json"))); }
     // The hash of the image that a device makes that does not fail.
@@ -53,24 +57,31 @@ TEST_F(DeviceFailure, ALostDeviceIsOpenedAgainAndTheImageHasTheSameBits) {
     EXPECT_EQ(report()["image_hash"], undisturbed());
 }
 
-// A checkpoint after every submission: each device gets a little further than the one before, so that more
-// than five may fail. (Copies of the state are submissions, too: four for its layers.)
+// Copies of the state as often as may be: each device gets a little further than the one before, so that
+// more than five may fail. How far depends on their speed: the seventh renders until it is told to stop, and
+// then to the next whole number of samples. (Copies are submissions, too: four for the layers of a state.)
 TEST_F(DeviceFailure, WhatTheHostHoldsIsNotRenderedAgain) {
-    const Words small = {"--size", "16x16", "--spp", "3000"};
-    const ProcessResult result = render_on_failing(
-        6, 28, DEVICE_LOST,
-        small + Words{"--aov", "none", "--checkpoint", file("state.exr"), "--checkpoint-every", "0.0001s"});
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const Words checkpoint = {"--aov", "none", "--checkpoint", file("state.exr")};
+    picture_ = {"--size", "16x16"};
+    Process process = start_on_failing(
+        6, 28, DEVICE_LOST, checkpoint + Words{"--checkpoint-every", "0.0001s", "--spp", "16777216"});
+    ASSERT_TRUE(process.wait_for_err("going on from ", 6)) << process.err();
+    process.send(SIGINT);
+    const ProcessResult result = process.finish();
+    EXPECT_EQ(result.exit_code, 130);
     const auto warned = recoveries(result.err);
-    EXPECT_EQ(warned.size(), 6u) << result.err;
+    ASSERT_EQ(warned.size(), 6u) << result.err;
     EXPECT_GT(warned.front().first, 0);
     EXPECT_GT(warned.back().first, warned.front().first);
+
     // Nothing is lost, or counted twice.
-    const nlohmann::json undisturbed = report_of(small);
-    EXPECT_EQ(report()["image_hash"], undisturbed["image_hash"]);
-    // A sample of each pixel, 1/3000 of all, is traced again where a driver ends a long submission early;
-    // what was held first has 16 samples at least.
-    EXPECT_NEAR(report()["rays_per_sample"], undisturbed["rays_per_sample"], 0.01);
+    const std::string samples = report()["samples"];  // 0..N
+    const Words whole = picture_ + Words{"--spp", samples.substr(3)};
+    const nlohmann::json resumed = report_of(whole + checkpoint + Words{"--resume"});
+    const nlohmann::json undisturbed = report_of(whole);
+    EXPECT_EQ(resumed["image_hash"], undisturbed["image_hash"]);
+    // Samples of a pixel are traced again where a driver ends a long submission early: a few of thousands.
+    EXPECT_NEAR(resumed["rays_per_sample"], undisturbed["rays_per_sample"], 0.01);
 }
 
 // The last state is written: here, what a checkpoint held.

@@ -118,9 +118,16 @@ bool Process::read_some() {
     return true;
 }
 
-bool Process::wait_for_err(const std::string& text) {
-    while (result_.err.find(text) == std::string::npos) {
-        if (!read_some()) return false;
+bool Process::wait_for_err(const std::string& text, int times) {
+    size_t end = 0;
+    while (times > 0) {
+        const size_t found = result_.err.find(text, end);
+        if (found != std::string::npos) {
+            end = found + text.size();
+            --times;
+        } else if (!read_some()) {
+            return false;
+        }
     }
     return true;
 }

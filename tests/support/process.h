@@ -32,8 +32,9 @@ class Process {
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
 
-    // Waits until stderr contains `text`. Returns false if the program ended or ran out of time before.
-    bool wait_for_err(const std::string& text);
+    // Waits until stderr contains `text` so many times. Returns false if the program ended or ran out of time
+    // before.
+    bool wait_for_err(const std::string& text, int times = 1);
     // What it has written to stderr as far as that was waited for.
     const std::string& err() const { return result_.err; }
     void send(int signal) const;
