@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "render/kernels.h"
 #include "render/schedule.h"
+#include "shared/primitive.h"
 
 namespace candela {
 namespace {
@@ -82,6 +83,14 @@ uint32_t aperture_constant(const Lens& lens) {
     return lens.blades == 0 ? APERTURE_DISK : APERTURE_POLYGON;
 }
 
+// On a CPU alone: a GPU has no registers for a list, and gives its lanes other work to do while some wait. Of
+// triangles alone, since lanes go through the test of every kind that the scene has for every primitive.
+uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
+    const bool triangles = scene.primitives_present == 1u << PRIMITIVE_TRIANGLES;
+    const bool cpu = device.info().type == vk::DeviceType::cpu;
+    return cpu && triangles && scene.primitive_count <= LIST_MAX ? scene.primitive_count : 0;
+}
+
 uint32_t sampler_constant(SamplerKind sampler) {
     switch (sampler) {
         case SamplerKind::independent:
@@ -92,6 +101,14 @@ uint32_t sampler_constant(SamplerKind sampler) {
             break;
     }
     return SAMPLER_SOBOL;
+}
+
+// Those of make_constants, and what depends on the device.
+std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, const GpuScene& scene,
+                                                      const Camera& camera, const RenderSettings& settings) {
+    auto constants = make_constants(scene, camera, settings);
+    constants[CONSTANT_LIST] = list_constant(device, scene);
+    return constants;
 }
 
 }  // namespace
@@ -168,7 +185,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
     : device_(&check_memory(device, scene, settings)),
       settings_(settings),
       access_(choose_access(device, scene, settings.scene_access)),
-      constants_(make_constants(scene, camera, settings)),
+      constants_(kernel_constants(device, scene, camera, settings)),
       nodes_(scene_buffer(device, scene.nodes, access_, "nodes")),
       primitives_(scene_buffer(device, scene.primitives, access_, "primitives")),
       tables_(scene_buffer(device, scene.tables, access_, "tables")),
@@ -210,7 +227,7 @@ void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSe
     }
     samples_ = 0;
     counters_ = {};
-    const auto constants = make_constants(scene, camera, settings);
+    const auto constants = kernel_constants(*device_, scene, camera, settings);
     if (constants == constants_) return;
     constants_ = constants;
     compile();

@@ -36,7 +36,7 @@ struct RenderSettings {
 // The uniform record of a camera and settings for a scene.
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
-// The values of the specialization constants CONSTANT_* for them.
+// The values of the specialization constants CONSTANT_* for them; none that depends on the device.
 std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const Camera& camera,
                                                     const RenderSettings& settings);
 

@@ -51,6 +51,8 @@ void main() {
     uint first = uint(compensation.a);
     if (first >= tile.target_samples) return;
 
+    bvh_prepare();
+
     // One vertex per turn: a lane whose path has ended begins its next sample while its neighbours go on. The shadow
     // ray of a vertex and the path's next ray are traced one after the other, without waiting for the neighbours in
     // between; if the path has ended, the next ray is the next sample's.

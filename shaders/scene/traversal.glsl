@@ -7,6 +7,18 @@
 #include "scene/primitive.glsl"
 #include "scene/scene_data.glsl"
 
+// A tiny scene needs no tree: where all lanes go together, as on software Vulkan, they test all of its primitives in
+// less time than they take to find out which, since none waits for another. The primitives are read once and stay in
+// registers, or in what the driver makes of so many.
+layout(constant_id = CONSTANT_LIST) const uint LIST = 0u;
+
+Primitive list[LIST_MAX];
+
+// Before an invocation's first ray.
+void bvh_prepare() {
+    [[unroll]] for (int i = 0; i < int(LIST); ++i) list[i] = scene_primitive(uint(i));
+}
+
 // What a ray needs once for all boxes.
 struct RaySlabs {
     vec3 o;
@@ -133,7 +145,7 @@ struct Traversal {
     Pending pending;  // Siblings of `reference`; those further up are on the stack.
 };
 
-// Before the root, looking for hits with t in (0, t_max).
+// Before the root, looking for hits with t in (0, t_max). bvh_prepare comes first.
 Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack[0] = STACK_BOTTOM;
     Pending nothing = Pending(0u, uvec2(0u), 0u, 0u);
@@ -151,6 +163,12 @@ const uint NODES_PER_TURN = 12u;
 
 // Takes a ray some way on; not one that has ended.
 void bvh_advance(inout Traversal t) {
+    if (LIST > 0u) {
+        [[unroll]] for (int i = 0; i < int(LIST); ++i) primitive_intersect(t.ray, t.shear, list[i], uint(i), t.hit);
+        t.reference = REFERENCE_END;
+        return;
+    }
+
     // Go down, perhaps to a leaf. Where nothing is left to visit, wait: the stack is read once a turn.
     for (uint i = 0u; i < NODES_PER_TURN && (t.reference & BVH_LEAF_BIT) == 0u; ++i) {
         BvhNode node = scene_node(t.reference);
@@ -187,6 +205,7 @@ void bvh_advance(inout Traversal t) {
 
 // The closest hit with t > 0; Hit::t is FLOAT_MAX where there is none.
 Hit bvh_intersect(Ray ray) {
+    bvh_prepare();
     Traversal t = bvh_begin(ray, FLOAT_MAX, false);
     while (!bvh_ended(t)) bvh_advance(t);
     return t.hit;
@@ -194,6 +213,7 @@ Hit bvh_intersect(Ray ray) {
 
 // True if any primitive meets the ray with t in (0, t_max).
 bool bvh_occluded(Ray ray, float t_max) {
+    bvh_prepare();
     Traversal t = bvh_begin(ray, t_max, true);
     while (!bvh_ended(t)) bvh_advance(t);
     return t.hit.t < t_max;

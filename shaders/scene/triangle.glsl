@@ -78,12 +78,12 @@ vec4 triangles_intersect(Ray ray, RayShear shear, vec3 v0, vec3 v1, vec3 v2, vec
     // A point between three vertices has their range along z, but across, if the triangle is a sliver, the roundings of
     // the edge functions may have moved it away from the ray; where the box around the triangles begins and ends, is
     // certain. Without this, a box that is further away than t could hide it.
-    vec2 near = min(min(a.t, b.t), min(c.t, d.t));
-    vec2 far = max(max(a.t, b.t), max(c.t, d.t));
-    float begin = max(near.x, near.y);
-    float end = min(far.x, far.y);
-    t0 = min(max(t0, begin), end);
-    t1 = min(max(t1, begin), end);
+    vec2 near = lesser(lesser(a.t, b.t), lesser(c.t, d.t));
+    vec2 far = greater(greater(a.t, b.t), greater(c.t, d.t));
+    float begin = greater(near.x, near.y);
+    float end = lesser(far.x, far.y);
+    t0 = lesser(greater(t0, begin), end);
+    t1 = lesser(greater(t1, begin), end);
     bool meets0 = edges_meet(e0, det0) && t0 > 0.0;
     bool meets1 = edges_meet(e1, det1) && t1 > 0.0;
     if (beside || !(meets0 || meets1)) return vec4(-1.0);

@@ -225,6 +225,24 @@ INSTANTIATE_TEST_SUITE_P(Scenes, IdentityTest, testing::Values(cornell_box, scen
                              return scene.param == cornell_box ? "CornellBox" : "Everything";
                          });
 
+using ListTest = RenderTest;
+
+// A CPU goes through the primitives of a tiny scene one by one. A speck that no ray meets makes them one too
+// many for that: then the tree must find the same hits, with the same bits.
+TEST_F(ListTest, AListOfPrimitivesGivesTheBitsOfATree) {
+    RenderSettings settings = settings_for(37, 23);
+    settings.aovs = true;
+    Scene scene = cornell_box();
+    ASSERT_LE(build_gpu_scene(scene).primitive_count, LIST_MAX);
+    const Accumulation by_list = render(scene, settings, 16);
+    add_shape(scene, parallelogram(vec3(1000), vec3(1e-3f, 0, 0), vec3(0, 1e-3f, 0)), 0);
+    ASSERT_GT(build_gpu_scene(scene).primitive_count, LIST_MAX);
+    const Accumulation by_tree = render(scene, settings, 16);
+    ASSERT_EQ(by_list.values.size(), by_tree.values.size());
+    EXPECT_EQ(
+        std::memcmp(by_list.values.data(), by_tree.values.data(), by_list.values.size() * sizeof(float)), 0);
+}
+
 // Lavapipe reads the number of its threads when an instance lists its devices; other drivers ignore the
 // variable.
 TEST(ThreadsTest, OneThreadTwoOrAsManyAsTheDriverLikes) {
