@@ -43,13 +43,18 @@ double mean_of_neighbours(std::span<const float> plane, const PixelRect& rect, s
 
 }  // namespace
 
-double relative_mse(const RgbPlanes& image, const RgbPlanes& reference) {
+double darkness_of(const RgbPlanes& reference) {
     const double mean = mean_of(reference);
+    return DARKNESS * mean * mean;
+}
+
+double relative_mse(const RgbPlanes& image, const RgbPlanes& reference) {
+    const double darkness = darkness_of(reference);
     double sum = 0.0;
     for (size_t c = 0; c < 3; ++c) {
         for (size_t i = 0; i < image[c].size(); ++i) {
             const double r = reference[c][i], error = image[c][i] - r;
-            sum += error * error / (r * r + DARKNESS * mean * mean);
+            sum += error * error / (r * r + darkness);
         }
     }
     return sum / double(3 * image[0].size());
@@ -58,19 +63,23 @@ double relative_mse(const RgbPlanes& image, const RgbPlanes& reference) {
 // What a pixel's movement is relative to is its own value or the mean of its neighbours, whichever is darker:
 // a single bright sample would raise its own pixel and so hide its own error, and neighbours alone would
 // mislead at edges.
-std::optional<double> estimate_relative_error(const Image& before, const Image& now) {
-    const RgbPlanes first = *before.find_rgb(), both = *now.find_rgb();
-    const double mean = mean_of(both);
-    if (!(mean > 0.0) || !is_doubled(before, now)) return std::nullopt;
+std::optional<double> estimate_relative_error_by_half(const Image& half, const Image& mean) {
+    const RgbPlanes first = *half.find_rgb(), both = *mean.find_rgb();
+    const double darkness = darkness_of(both);
+    if (!(darkness > 0.0)) return std::nullopt;
     double sum = 0.0;
     for (size_t c = 0; c < 3; ++c) {
         for (size_t i = 0; i < both[c].size(); ++i) {
             const double x = both[c][i], moved = x - first[c][i];
-            const double r = std::min(x, mean_of_neighbours(both[c], now.data, i));
-            sum += moved * moved / (r * r + DARKNESS * mean * mean);
+            const double r = std::min(x, mean_of_neighbours(both[c], mean.data, i));
+            sum += moved * moved / (r * r + darkness);
         }
     }
     return std::sqrt(sum / double(3 * both[0].size()));
+}
+
+std::optional<double> estimate_relative_error(const Image& before, const Image& now) {
+    return is_doubled(before, now) ? estimate_relative_error_by_half(before, now) : std::nullopt;
 }
 
 }  // namespace candela

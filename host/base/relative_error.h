@@ -1,7 +1,8 @@
 // How far an image is from its expectation, as one number: measured against a reference, or estimated from
-// two stages of one rendering.
+// two stages or two halves of one rendering.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "base/image.h"
@@ -12,6 +13,12 @@ namespace candela {
 // reference's value and m the mean of all of them, which is not 0: so nothing depends on the unit of
 // radiance, and black pixels do not outweigh all others. Both have the same number of pixels.
 double relative_mse(const RgbPlanes& image, const RgbPlanes& reference);
+
+// What is added to the square of each pixel there, for a reference or an image in its place: 0.01 m^2.
+double darkness_of(const RgbPlanes& reference);
+
+// Nothing shall be estimated from fewer samples per pixel: they may not have found the light yet.
+inline constexpr uint32_t LEAST_ESTIMATED_SPP = 16;
 
 // Estimates the relative error of `now`, the square root of what relative_mse() would say if there were a
 // perfect reference, from how far it moved while the samples were doubled: `before` is the image of the first
@@ -24,5 +31,10 @@ double relative_mse(const RgbPlanes& image, const RgbPlanes& reference);
 // estimate is too large by the square root of that: it errs on the safe side. Light that no sample has found
 // yet is in no estimate.
 std::optional<double> estimate_relative_error(const Image& before, const Image& now);
+
+// The same of `mean`, the plain mean of `half` and another image that is independent of it: between them lies
+// the error of the mean, in the mean square, whatever their samplers and variances. Both have R, G and B.
+// Nothing if the mean is black.
+std::optional<double> estimate_relative_error_by_half(const Image& half, const Image& mean);
 
 }  // namespace candela

@@ -1,6 +1,7 @@
 // See checkpoints.h.
 #include "cli/checkpoints.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -42,9 +43,13 @@ std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Ide
         throw Error("--resume: cannot go on from \"" + path + "\": " + why + "; " + remedy);
     };
     const std::string same = "render what it was made of, or give another --checkpoint";
-    const std::string different = difference(checkpoint.identity, identity);
+    const std::string different = difference(checkpoint.header.identity, identity);
     if (!different.empty()) refuse(different, same);
-    const Accumulation& state = checkpoint.state;
+    const bool adaptive = checkpoint.states.size() > 1;
+    if (adaptive != options.adaptive) {
+        refuse(std::string("it was made with") + (adaptive ? " --adaptive" : "out --adaptive"), same);
+    }
+    const Accumulation& state = checkpoint.states.front();
     if (state.first_sample != settings.first_sample) {
         refuse("its first sample is " + std::to_string(state.first_sample) + ", not " +
                    std::to_string(settings.first_sample),
@@ -55,20 +60,22 @@ std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Ide
                    "albedo and normals, which the outputs " + (settings.aovs ? "need" : "do not need"),
                "give the outputs and --aov that it was made with");
     }
-    if (state.most_samples() > target) {
-        refuse("it holds up to " + std::to_string(state.most_samples()) + " samples per pixel, but " +
+    const uint32_t most = adaptive ? std::max(checkpoint.header.planned, samples_per_pixel(checkpoint.states))
+                                   : state.most_samples();
+    if (most > target) {
+        refuse("it holds up to " + std::to_string(most) + " samples per pixel, but " +
                    std::to_string(target) + " are asked for",
                "ask for as many at least");
     }
     return checkpoint;
 }
 
-CheckpointWriter::CheckpointWriter(std::filesystem::path path, double every, Identity identity, Maker maker)
-    : path_(std::move(path)), identity_(std::move(identity)), maker_(std::move(maker)), interval_(every) {}
+CheckpointWriter::CheckpointWriter(std::filesystem::path path, double every)
+    : path_(std::move(path)), interval_(every) {}
 
-void CheckpointWriter::write(const Accumulation& state, double render_seconds) {
+void CheckpointWriter::write(const CheckpointHeader& header, std::span<const Accumulation> states) {
     try {
-        save_checkpoint(path_, identity_, maker_, render_seconds, state);
+        save_checkpoint(path_, header, states);
     } catch (const Error& error) {
         print_warning(std::string(error.what()) + "; the rendering goes on without this checkpoint");
     }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 
 #include "cli/interval.h"
 #include "cli/render_options.h"
@@ -16,8 +17,8 @@ namespace candela {
 void check_checkpoint(const RenderOptions& options);
 
 // What --resume says to continue from; nothing, which a line on stderr tells, if the file does not exist yet.
-// Throws Error if it is damaged, belongs to another rendering than `identity` or `settings`, or holds more
-// than `target` samples per pixel.
+// Throws Error if it is damaged, belongs to another rendering than `identity` or `settings`, is adaptive
+// where the options are not or the other way round, or holds more than `target` samples per pixel.
 std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Identity& identity,
                                          const RenderSettings& settings, uint32_t target);
 
@@ -26,17 +27,14 @@ std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Ide
 class CheckpointWriter {
   public:
     // `every`: seconds from the end of a write to the next.
-    CheckpointWriter(std::filesystem::path path, double every, Identity identity, Maker maker);
+    CheckpointWriter(std::filesystem::path path, double every);
 
     // The interval is over.
     bool due() const { return interval_.over(); }
-    // `render_seconds`: wall time that went into the state.
-    void write(const Accumulation& state, double render_seconds);
+    void write(const CheckpointHeader& header, std::span<const Accumulation> states);
 
   private:
     std::filesystem::path path_;
-    Identity identity_;
-    Maker maker_;
     Interval interval_;
 };
 

@@ -44,11 +44,18 @@ uint32_t Convergence::next(uint32_t spp, uint32_t most) const {
     return std::min(std::bit_ceil(spp + 1), most);
 }
 
-void Convergence::look(const Accumulation& state, double seconds) {
+void Convergence::look(std::span<const Accumulation> states, double seconds) {
     if (!target_ && !reference_) return;
-    Image image = make_image(state, {.sample_count = true}, {});
-    ConvergencePoint point{.spp = state.least_samples(), .seconds = seconds, .estimate = {}, .relmse = {}};
-    if (before_ && point.spp >= LEAST_SPP) point.estimate = estimate_relative_error(*before_, image);
+    Image image = make_image(states, {.sample_count = true}, {});
+    ConvergencePoint point{
+        .spp = samples_per_pixel(states), .seconds = seconds, .estimate = {}, .relmse = {}};
+    if (point.spp >= LEAST_ESTIMATED_SPP) {
+        if (states.size() > 1) {
+            point.estimate = estimate_relative_error_by_half(make_image(states.first(2), {}, {}), image);
+        } else if (before_) {
+            point.estimate = estimate_relative_error(*before_, image);
+        }
+    }
     if (reference_) point.relmse = relative_mse(*image.find_rgb(), *reference_->find_rgb());
     points_.push_back(point);
     before_ = std::move(image);

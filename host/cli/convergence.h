@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,17 +20,14 @@ Image load_reference(const std::string& path, const RenderSettings& settings);
 
 // The image at one moment.
 struct ConvergencePoint {
-    uint32_t spp = 0;                // Samples that every pixel holds at least.
+    uint32_t spp = 0;                // As samples_per_pixel() says.
     double seconds = 0.0;            // Wall time of rendering.
-    std::optional<double> estimate;  // Of its relative error; see estimate_relative_error().
+    std::optional<double> estimate;  // Of its relative error; see relative_error.h.
     std::optional<double> relmse;    // relative_mse() to the reference, if there is one.
 };
 
 class Convergence {
   public:
-    // Nothing is estimated from fewer: they may not have found the light yet.
-    static constexpr uint32_t LEAST_SPP = 16;
-
     // `target`: relative error to reach.
     Convergence(std::optional<double> target, std::optional<Image> reference);
 
@@ -37,8 +35,8 @@ class Convergence {
     // and `most` at most, or at once if neither target nor reference asks for a look. It depends on nothing
     // else, and never on time: so one rendering always ends with the same samples.
     uint32_t next(uint32_t spp, uint32_t most) const;
-    // Measures the state after `seconds` of rendering.
-    void look(const Accumulation& state, double seconds);
+    // Measures the image of the states after `seconds` of rendering.
+    void look(std::span<const Accumulation> states, double seconds);
 
     // The estimate is at most the target.
     bool reached() const;

@@ -52,17 +52,6 @@ std::string samples_text(const RenderRecord& record) {
     return to_text({&held, 1});
 }
 
-void add_attributes(Image& image, const RenderRecord& record, const Camera& camera) {
-    image.attributes["worldToCamera"] = world_to_camera(camera);
-    image.attributes["worldToNDC"] = world_to_ndc(camera, record.settings.size);
-    image.attributes["samplesPerPixel"] = float(record.spp);
-    image.attributes["renderTimeSeconds"] = float(record.render_seconds);
-    image.attributes["candela.samples"] = samples_text(record);
-    set_maker(image, record.maker);
-    set_identity(image, record.identity);
-    image.attributes["candela.commandLine"] = record.command_line;
-}
-
 // Marks R G B A and Albedo as 16-bit. A channel that 16 bits cannot hold stays as it is, with a warning: the
 // samples are paid for.
 void use_half(Image& image) {
@@ -127,6 +116,7 @@ Json make_report(const RenderOptions& options, const RenderRecord& record) {
                 {"seed", settings.seed},
                 {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},
                 {"sampler", name_of(settings.sampler, SAMPLER_NAMES)},
+                {"adaptive", record.adaptive},
                 {"max_depth", settings.max_depth},
                 {"rr_depth", settings.rr_depth},
                 {"scene_buffers", name_of(settings.scene_access, SCENE_ACCESS_NAMES)},
@@ -180,6 +170,18 @@ class Attempts {
 };
 
 }  // namespace
+
+void add_attributes(Image& image, const RenderRecord& record, const Camera& camera) {
+    image.attributes["worldToCamera"] = world_to_camera(camera);
+    image.attributes["worldToNDC"] = world_to_ndc(camera, record.settings.size);
+    image.attributes["samplesPerPixel"] = float(record.spp);
+    image.attributes["renderTimeSeconds"] = float(record.render_seconds);
+    image.attributes["candela.samples"] = samples_text(record);
+    if (record.adaptive) image.attributes[ADAPTIVE_ATTRIBUTE] = "yes";
+    set_maker(image, record.maker);
+    set_identity(image, record.identity);
+    image.attributes["candela.commandLine"] = record.command_line;
+}
 
 void check_outputs(const RenderOptions& options) {
     if (options.outputs.empty()) {

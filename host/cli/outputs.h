@@ -19,6 +19,7 @@ struct RenderRecord {
     std::string command_line;
     Maker maker;
     Identity identity;
+    bool adaptive = false;
     RenderSettings settings;  // scene_access as it turned out.
     uint32_t primitives = 0;
     uint32_t lights = 0;
@@ -28,7 +29,7 @@ struct RenderRecord {
     double render_seconds = 0.0;    // ... and rendering alone, before it was resumed as well.
     double cpu_seconds = 0.0;       // CPU time of the whole process while rendering; a resumed part alone.
     bool complete = false;          // All samples are there, or as many as the target error needs.
-    uint32_t spp = 0;               // Samples that every pixel holds at least.
+    uint32_t spp = 0;               // Samples that every pixel holds at least; on average if adaptive.
     uint32_t most_spp = 0;          // And the most that one holds.
     uint64_t samples = 0;           // Samples of all pixels together.
     std::vector<ConvergencePoint> convergence;  // If a target error or a reference asks for it.
@@ -43,6 +44,10 @@ struct RenderRecord {
 // Throws Error if an output is missing, has an unknown extension (both: usage) or could not be written, or if
 // the report could not. To be called before any long work.
 void check_outputs(const RenderOptions& options);
+
+// Gives an image its attributes: the camera, and of the record the samples and their time, maker, identity
+// and command line.
+void add_attributes(Image& image, const RenderRecord& record, const Camera& camera);
 
 // Writes all images as the options say. Where one fails, the others are written all the same; then the Error
 // is thrown.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "cli/vulkan.h"
+#include "render/adaptive.h"
 #include "render/gpu_scene.h"
 #include "render/identity.h"
 #include "render/steady_renderer.h"
@@ -47,12 +49,13 @@ void print_details(const vk::Device& device, const GpuScene& scene, const Render
                  bytes_text(device.available_memory()).c_str(), bytes_text(scene.bytes()).c_str());
 }
 
-Image collect_image(const SteadyRenderer& renderer, const AovSelection& aovs, RenderRecord& record) {
-    const Accumulation& state = *renderer.state();
-    record.samples = state.total_samples();
-    record.spp = state.least_samples();
-    record.most_spp = state.most_samples();
-    Image image = make_image(state, aovs, renderer.positions());
+Image collect_image(SteadyRenderer& renderer, const AovSelection& aovs, RenderRecord& record) {
+    const std::span<const Accumulation> states = renderer.states();
+    const SampleCounts counts = count_samples(states);
+    record.samples = counts.total;
+    record.spp = samples_per_pixel(states);
+    record.most_spp = counts.most;
+    Image image = make_image(states, aovs, renderer.positions());
     record.image_hash = image_hash(image);
     return image;
 }
@@ -64,16 +67,25 @@ struct Upkeep {
     Convergence convergence;
     Progress progress;
     double seconds_before = 0.0;  // Of rendering before it was resumed.
+    uint32_t planned = 0;         // Of an adaptive rendering: see render_pass().
 
     double seconds() const { return seconds_before + progress.seconds(); }
 };
+
+void write_checkpoint(SteadyRenderer& renderer, const RenderRecord& record, double seconds, Upkeep& upkeep) {
+    upkeep.checkpoints->write({.identity = record.identity,
+                               .maker = record.maker,
+                               .render_seconds = seconds,
+                               .planned = upkeep.planned},
+                              renderer.states());
+}
 
 // Writes a checkpoint and the images if their times have come.
 void keep(SteadyRenderer& renderer, const RenderOptions& options, const Camera& camera,
           const RenderRecord& record, Upkeep& upkeep) {
     if (upkeep.checkpoints && upkeep.checkpoints->due()) {
         renderer.hold();
-        upkeep.checkpoints->write(*renderer.state(), upkeep.seconds());
+        write_checkpoint(renderer, record, upkeep.seconds(), upkeep);
     }
     if (upkeep.images && upkeep.images->over()) {
         renderer.hold();
@@ -87,23 +99,22 @@ void keep(SteadyRenderer& renderer, const RenderOptions& options, const Camera& 
 
 // Renders until all samples are there, the error is small enough or `keep_going` says no. Returns whether it
 // never did. Stops for a look at the error at fixed numbers of samples, and otherwise only at the end.
-bool render_and_look(SteadyRenderer& renderer, uint32_t target, Upkeep& upkeep,
+bool render_and_look(SteadyRenderer& renderer, bool adaptive, uint32_t target, Upkeep& upkeep,
                      const std::function<bool()>& keep_going) {
     Convergence& convergence = upkeep.convergence;
-    uint32_t held = 0;
-    if (renderer.state()) {
-        held = renderer.state()->least_samples();
-        convergence.look(*renderer.state(), upkeep.seconds());
-    }
+    uint32_t held = samples_per_pixel(renderer.states());
+    if (held > 0) convergence.look(renderer.states(), upkeep.seconds());
     while (held < target && !convergence.reached()) {
-        const uint32_t next = convergence.next(held, target);
-        const bool complete = renderer.render(next, [&](double done) {
+        const uint32_t next = adaptive ? next_pass_end(held, target) : convergence.next(held, target);
+        const auto update = [&](double done) {
             upkeep.progress.update(done * next / target, convergence.estimate());
             return keep_going();
-        });
+        };
+        const bool complete =
+            adaptive ? render_pass(renderer, next, upkeep.planned, update) : renderer.render(next, update);
         if (!complete) return false;
         held = next;
-        convergence.look(*renderer.state(), upkeep.seconds());
+        convergence.look(renderer.states(), upkeep.seconds());
         upkeep.progress.update(double(held) / target, convergence.estimate());
     }
     return true;
@@ -117,23 +128,23 @@ std::optional<Error> trace(SteadyRenderer& renderer, const RenderOptions& option
     const std::clock_t cpu_start = std::clock();
     std::optional<Error> failure;
     try {
-        record.complete = render_and_look(renderer, target, upkeep, [&] {
+        record.complete = render_and_look(renderer, options.adaptive, target, upkeep, [&] {
             keep(renderer, options, camera, record, upkeep);
             return !guard.interrupted() &&
                    !(options.time_limit && upkeep.progress.seconds() >= *options.time_limit);
         });
     } catch (const Error& error) {
-        if (!renderer.state()) throw;
+        if (count_samples(renderer.states()).total == 0) throw;
         failure = error;
     }
     upkeep.progress.clear();
     record.render_seconds = upkeep.seconds();
     record.cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
-    record.counters = renderer.state()->counters;
+    record.counters = total_counters(renderer.states());
     record.device_failures = renderer.failures();
     record.convergence = upkeep.convergence.points();
     record.estimated_error = upkeep.convergence.estimate();
-    if (upkeep.checkpoints) upkeep.checkpoints->write(*renderer.state(), record.render_seconds);
+    if (upkeep.checkpoints) write_checkpoint(renderer, record, record.render_seconds, upkeep);
     return failure;
 }
 
@@ -194,29 +205,29 @@ ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, c
                                   .scene = &scene,
                                   .camera = &camera,
                                   .settings = record.settings,
+                                  .states = {empty_state(record.settings)},
                                   .positions = aovs.needs_positions()};
+    if (options.adaptive) source.states = adaptive_states(record.settings);
     if (resumed) {
-        warn_of_maker(resumed->maker, record.maker);
-        record.render_seconds = resumed->render_seconds;
-        source.state = std::move(resumed->state);
+        warn_of_maker(resumed->header.maker, record.maker);
+        record.render_seconds = resumed->header.render_seconds;
+        source.states = std::move(resumed->states);
     }
     SteadyRenderer renderer(std::move(source), warn_of_device_failure);
     record.settings.scene_access = renderer.scene_access();
     record.pipeline_seconds = renderer.pipeline_seconds();
     if (options.verbose) print_details(renderer.device(), scene, record);
     const PixelRect& crop = record.settings.crop;
-    const uint32_t held = renderer.state() ? renderer.state()->least_samples() : 0;
+    const uint32_t held = samples_per_pixel(renderer.states());
     Upkeep upkeep{
         .checkpoints = {},
         .images = {},
         .convergence = Convergence(options.target_error, std::move(reference)),
         .progress = Progress(uint64_t{crop.width()} * crop.height(), target, double(held) / target,
                              options.time_limit, options.quiet ? ProgressStyle::none : options.progress),
-        .seconds_before = record.render_seconds};
-    if (options.checkpoint) {
-        upkeep.checkpoints.emplace(*options.checkpoint, options.checkpoint_every, record.identity,
-                                   record.maker);
-    }
+        .seconds_before = record.render_seconds,
+        .planned = resumed ? resumed->header.planned : 0};
+    if (options.checkpoint) upkeep.checkpoints.emplace(*options.checkpoint, options.checkpoint_every);
     if (options.write_every) upkeep.images.emplace(*options.write_every);
 
     // Before this line there is nothing to keep, and a signal ends the program at once.
@@ -245,6 +256,13 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
         print_warning(warning);
     const Camera& camera = options.choose_camera(scene);
     record.settings = options.settings(scene);
+    record.adaptive = options.adaptive;
+    const uint32_t target = options.target_spp(scene);
+    if (options.adaptive && target % 2 != 0) {
+        throw Error("--adaptive renders two halves: give an even number of samples per pixel (--spp), not " +
+                        std::to_string(target),
+                    ExitCode::usage);
+    }
     std::optional<Image> reference;
     if (options.reference) reference = load_reference(*options.reference, record.settings);
 
@@ -255,8 +273,8 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
     record.identity = make_identity(gpu_scene, camera, record.settings);
 
     const vk::Instance instance(instance_options());
-    const ExitCode code = render_on(instance, options, gpu_scene, camera, options.target_spp(scene),
-                                    std::move(reference), record);
+    const ExitCode code =
+        render_on(instance, options, gpu_scene, camera, target, std::move(reference), record);
     check_validation(instance);
     return code;
 }
@@ -281,6 +299,13 @@ Command add_render_command(CLI::App& app, const std::string& command_line) {
         "that no\n"
         "sample has found yet is not in it. A resumed rendering looks anew, and may take up to twice the "
         "samples.\n"
+        "--adaptive renders two halves with seeds of their own, each with its samples where the other has "
+        "most "
+        "noise,\n"
+        "and so without bias; the image is their mean, and the estimated error comes from how they differ. "
+        "It "
+        "holds\n"
+        "four states in memory instead of one. Its images cannot be merged.\n"
         "--progress json prints an object twice a second, and a last one, whose state is not \"rendering\", "
         "when\n"
         "all is written; after an error there is none.\n"

@@ -64,6 +64,8 @@ void RenderOptions::add_to(CLI::App& app) {
               "The samples A, A+1, ..., B-1 alone, as a part for candela merge")
         ->type_name("A..B")
         ->excludes(app.get_option("--spp"));
+    app.add_flag("--adaptive", adaptive, "Put the samples where the error is; --spp is the mean, and even")
+        ->excludes(app.get_option("--samples"));
     add_checkpoint_options(app);
     add_message_options(app);
 }

@@ -50,6 +50,7 @@ struct RenderOptions {
     std::optional<uint32_t> spp;
     std::optional<double> target_error;  // Relative error of the image.
     std::optional<double> time_limit;    // Seconds.
+    bool adaptive = false;               // Samples go where the error is.
     std::optional<SampleRange> samples;  // Instead of spp: these alone.
     std::optional<uint32_t> seed;
     std::optional<uint32_t> max_depth;  // DEPTH_SAFETY_LIMIT: unlimited.

@@ -1,7 +1,9 @@
 // The accumulation state on the host: what a renderer has gathered so far, and the image that it makes.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "base/image.h"
@@ -26,19 +28,41 @@ struct Accumulation {
     uint32_t seed = 0;
     uint32_t first_sample = 0;                  // Index of each pixel's first sample.
     uint32_t layer_count = LAYER_COUNT_COLOUR;  // LAYER_COUNT_COLOUR or LAYER_COUNT_AOVS.
-    std::vector<float> values;
-    RenderCounters counters{};  // Of all the work that went into it.
+    std::vector<float> values;                  // None: no pixel has a sample or a limit.
+    RenderCounters counters{};                  // Of all the work that went into it.
 
     size_t pixel_count() const { return size_t(rect.width()) * rect.height(); }
     // RGBA of a layer at pixel i of `rect`.
     const float* at(uint32_t layer, size_t i) const { return &values[(layer * pixel_count() + i) * 4]; }
-    uint32_t sample_count(size_t i) const { return uint32_t(at(LAYER_L_COMPENSATION, i)[3]); }
+    uint32_t sample_count(size_t i) const {
+        return values.empty() ? 0 : uint32_t(at(LAYER_L_COMPENSATION, i)[3]);
+    }
+    // How many rays a sample of pixel i took, on average.
+    double rays_per_sample(size_t i) const {
+        return double(at(LAYER_SQUARE_COMPENSATION, i)[3]) / std::max(1u, sample_count(i));
+    }
+    // The samples that pixel i gets at most, below 2^24; UINT32_MAX if it has no limit.
+    uint32_t limit(size_t i) const;
+    void set_limit(size_t i, uint32_t samples);
     // All samples of all pixels.
     uint64_t total_samples() const;
     // The samples of the pixel that holds fewest, and of the one that holds most.
     uint32_t least_samples() const;
     uint32_t most_samples() const;
 };
+
+// States are one; or two, whose samples are put together; or four, two and two, for two halves of a
+// rendering, each put together, whose image is the plain mean of theirs.
+
+struct SampleCounts {
+    uint64_t total = 0;  // Of all pixels.
+    uint32_t least = 0;  // Of the pixel that holds fewest ...
+    uint32_t most = 0;   // ... and of the one that holds most.
+};
+SampleCounts count_samples(std::span<const Accumulation> states);
+// Those that every pixel holds at least; of halves, what a pixel holds on average, rounded down.
+uint32_t samples_per_pixel(std::span<const Accumulation> states);
+RenderCounters total_counters(std::span<const Accumulation> states);
 
 // Which images beside R G B A.
 struct AovSelection {
@@ -55,10 +79,17 @@ struct AovSelection {
     bool needs_positions() const { return position || depth; }
 };
 
-// The image of the state: means over each pixel's own samples, in double precision; 0 where there are none. A
-// is the share of camera rays that hit something visible. `positions` holds x, y, z, depth per pixel,
-// row-major; may be empty if the selection does not ask for it.
-Image make_image(const Accumulation& state, const AovSelection& aovs, const std::vector<float>& positions);
+// The image of the states, the first of which has samples: means over each pixel's own samples, in double
+// precision, of a half alone where the other has none, and 0 where there are none at all. A is the share of
+// camera rays that hit something visible. `positions` holds x, y, z, depth per pixel, row-major; may be empty
+// if the selection does not ask for it.
+Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
+                 const std::vector<float>& positions);
+
+inline Image make_image(const Accumulation& state, const AovSelection& aovs,
+                        const std::vector<float>& positions) {
+    return make_image({&state, 1}, aovs, positions);
+}
 
 // FNV-1a (64 bits) of the float R, G, B of the image, pixel by pixel, row-major.
 uint64_t image_hash(const Image& image);

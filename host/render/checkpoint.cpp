@@ -13,15 +13,23 @@ namespace {
 
 constexpr const char* COMPONENTS[] = {"R", "G", "B", "A"};
 constexpr const char* CHECKSUM_ATTRIBUTE = "candela.checksum";
+constexpr const char* PLANNED_ATTRIBUTE = "candela.planned";
 constexpr const char* SECONDS_ATTRIBUTE = "candela.renderSeconds";
 
-std::string layer_channel(uint32_t layer, size_t component) {
-    return "Layer" + std::to_string(layer) + "." + COMPONENTS[component];
+// What names of the first state's channels and attributes begin with, and those of others.
+std::string prefix_of(size_t state) {
+    return state == 0 ? "" : "State" + std::to_string(state) + ".";
+}
+
+std::string channel_name(size_t state, uint32_t layer, size_t component) {
+    return prefix_of(state) + "Layer" + std::to_string(layer) + "." + COMPONENTS[component];
 }
 
 // Of all that is read back. OpenEXR's own checks miss many a flipped bit.
-uint64_t checksum(const Image& header, const std::vector<float>& values) {
-    uint64_t hash = hash_words(std::as_bytes(std::span(values)));
+uint64_t checksum(const Image& header, std::span<const Accumulation> states) {
+    uint64_t hash = FNV1A64_BASIS;
+    for (const Accumulation& state : states)
+        hash = hash_words(std::as_bytes(std::span(state.values)), hash);
     for (const auto& [name, attribute] : header.attributes) {
         const auto* const text = std::get_if<std::string>(&attribute);
         if (text == nullptr || !name.starts_with("candela.") || name == CHECKSUM_ATTRIBUTE) continue;
@@ -45,69 +53,93 @@ Number number_attribute(const Image& image, const std::string& attribute, const 
 
 // The whole numbers of a state, and the attributes that hold them.
 template <class State, class Each>
-void for_each_number(State& state, const Each& each) {
-    each("candela.firstSample", state.first_sample);
-    each("candela.seed", state.seed);
-    each("candela.rays", state.counters.rays);
-    each("candela.nonfiniteSamples", state.counters.nonfinite_samples);
-    each("candela.depthLimitHits", state.counters.depth_limit_hits);
+void for_each_number(State& state, const std::string& prefix, const Each& each) {
+    each("candela." + prefix + "firstSample", state.first_sample);
+    each("candela." + prefix + "seed", state.seed);
+    each("candela." + prefix + "rays", state.counters.rays);
+    each("candela." + prefix + "nonfiniteSamples", state.counters.nonfinite_samples);
+    each("candela." + prefix + "depthLimitHits", state.counters.depth_limit_hits);
 }
 
-}  // namespace
+// Those of the first that the image has.
+size_t count_states(const Image& image) {
+    size_t states = 1;
+    while (image.find(channel_name(states, 0, 0)) != nullptr)
+        ++states;
+    return states;
+}
 
-void save_checkpoint(const std::filesystem::path& path, const Identity& identity, const Maker& maker,
-                     double render_seconds, const Accumulation& state) {
-    Image image{.full = state.full, .data = state.rect, .channels = {}, .attributes = {}};
-    for_each_number(state, [&](const char* attribute, auto number) {
-        image.attributes[attribute] = std::to_string(number);
-    });
-    image.attributes[SECONDS_ATTRIBUTE] = std::to_string(render_seconds);
-    set_identity(image, identity);
-    set_maker(image, maker);
-    image.attributes[CHECKSUM_ATTRIBUTE] = hexadecimal(checksum(image, state.values));
+void add_layers(Image& image, size_t index, const Accumulation& state) {
     for (uint32_t layer = 0; layer < state.layer_count; ++layer) {
         for (size_t c = 0; c < 4; ++c) {
-            Channel& channel = image.add(layer_channel(layer, c));
+            Channel& channel = image.add(channel_name(index, layer, c));
             for (size_t i = 0; i < state.pixel_count(); ++i)
                 channel.values[i] = state.at(layer, i)[c];
         }
     }
-    write_exr(path, image);
 }
 
-Checkpoint load_checkpoint(const std::filesystem::path& path) {
-    const Image image = read_exr(path);
-    const std::string name = path.string();
-    Checkpoint checkpoint;
-    Accumulation& state = checkpoint.state;
-    state.full = image.full;
-    state.rect = image.data;
-    const std::string& expected = text_attribute(image, CHECKSUM_ATTRIBUTE, name);
-    if (image.find(layer_channel(LAYER_ALBEDO, 0)) != nullptr) state.layer_count = LAYER_COUNT_AOVS;
+Accumulation read_layers(const Image& image, size_t index, const std::string& name) {
+    Accumulation state{.full = image.full, .rect = image.data, .values = {}};
+    if (image.find(channel_name(index, LAYER_ALBEDO, 0)) != nullptr) state.layer_count = LAYER_COUNT_AOVS;
     state.values.resize(state.layer_count * state.pixel_count() * 4);
     for (uint32_t layer = 0; layer < state.layer_count; ++layer) {
         for (size_t c = 0; c < 4; ++c) {
-            const Channel* const channel = image.find(layer_channel(layer, c));
+            const Channel* const channel = image.find(channel_name(index, layer, c));
             if (channel == nullptr) {
-                throw Error(name + ": the channel " + layer_channel(layer, c) +
+                throw Error(name + ": the channel " + channel_name(index, layer, c) +
                             " is missing; give a checkpoint that candela render wrote, unchanged");
             }
             for (size_t i = 0; i < state.pixel_count(); ++i)
                 state.values[(layer * state.pixel_count() + i) * 4 + c] = channel->values[i];
         }
     }
-    if (hexadecimal(checksum(image, state.values)) != expected) {
+    return state;
+}
+
+}  // namespace
+
+void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& header,
+                     std::span<const Accumulation> states) {
+    const Accumulation& first = states.front();
+    Image image{.full = first.full, .data = first.rect, .channels = {}, .attributes = {}};
+    for (size_t index = 0; index < states.size(); ++index) {
+        for_each_number(states[index], prefix_of(index), [&](const std::string& attribute, auto number) {
+            image.attributes[attribute] = std::to_string(number);
+        });
+        add_layers(image, index, states[index]);
+    }
+    image.attributes[PLANNED_ATTRIBUTE] = std::to_string(header.planned);
+    image.attributes[SECONDS_ATTRIBUTE] = std::to_string(header.render_seconds);
+    set_identity(image, header.identity);
+    set_maker(image, header.maker);
+    image.attributes[CHECKSUM_ATTRIBUTE] = hexadecimal(checksum(image, states));
+    write_exr(path, image);
+}
+
+Checkpoint load_checkpoint(const std::filesystem::path& path) {
+    const Image image = read_exr(path);
+    const std::string name = path.string();
+    const std::string& expected = text_attribute(image, CHECKSUM_ATTRIBUTE, name);
+    Checkpoint checkpoint;
+    for (size_t index = 0; index < count_states(image); ++index)
+        checkpoint.states.push_back(read_layers(image, index, name));
+    if (hexadecimal(checksum(image, checkpoint.states)) != expected) {
         throw Error(
             name +
             ": the checkpoint is damaged: its contents do not have its checksum; use an undamaged copy, "
             "or remove the file to start anew");
     }
-    for_each_number(state, [&]<class Number>(const char* attribute, Number& number) {
-        number = number_attribute<Number>(image, attribute, name);
-    });
-    checkpoint.render_seconds = number_attribute<double>(image, SECONDS_ATTRIBUTE, name);
-    checkpoint.identity = identity_of(image, name);
-    checkpoint.maker = maker_of(image, name);
+    for (size_t index = 0; index < checkpoint.states.size(); ++index) {
+        for_each_number(checkpoint.states[index], prefix_of(index),
+                        [&]<class Number>(const std::string& attribute, Number& number) {
+                            number = number_attribute<Number>(image, attribute, name);
+                        });
+    }
+    checkpoint.header = {.identity = identity_of(image, name),
+                         .maker = maker_of(image, name),
+                         .render_seconds = number_attribute<double>(image, SECONDS_ATTRIBUTE, name),
+                         .planned = number_attribute<uint32_t>(image, PLANNED_ATTRIBUTE, name)};
     return checkpoint;
 }
 

@@ -2,24 +2,32 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "render/accumulation.h"
 #include "render/identity.h"
 
 namespace candela {
 
-struct Checkpoint {
+// What a checkpoint says of the states that it holds.
+struct CheckpointHeader {
     Identity identity;
     Maker maker;
-    double render_seconds = 0.0;  // Wall time that went into the state.
-    Accumulation state;
+    double render_seconds = 0.0;  // Wall time that went into the states.
+    uint32_t planned = 0;         // Of an adaptive rendering: see render_pass().
 };
 
-// Writes a checkpoint to a file, whole or not at all: a multilayer EXR of the state's layers, bit for bit,
-// with a checksum. Throws Error if that fails; the file then keeps its old contents.
-void save_checkpoint(const std::filesystem::path& path, const Identity& identity, const Maker& maker,
-                     double render_seconds, const Accumulation& state);
+struct Checkpoint {
+    CheckpointHeader header;
+    std::vector<Accumulation> states;
+};
+
+// Writes a checkpoint to a file, whole or not at all: a multilayer EXR of the states' layers, bit for bit,
+// with a checksum. All states have values. Throws Error if that fails; the file then keeps its old contents.
+void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& header,
+                     std::span<const Accumulation> states);
 
 // Reads it back. Throws Error if the file is not a checkpoint, or if any bit of it that matters has changed.
 Checkpoint load_checkpoint(const std::filesystem::path& path);

@@ -29,6 +29,9 @@ struct Maker {
     bool operator==(const Maker&) const = default;
 };
 
+// An attribute of the images of adaptive renderings.
+inline constexpr const char* ADAPTIVE_ATTRIBUTE = "candela.adaptive";
+
 // Not of the number of samples, the first sample, the AOVs or how the kernels read the scene.
 Identity make_identity(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 

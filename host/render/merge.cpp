@@ -80,6 +80,12 @@ Part describe(const std::filesystem::path& file, Image image) {
                                   "; give images (-o), no checkpoints or other files");
         }
     }
+    if (image.attributes.contains(ADAPTIVE_ATTRIBUTE)) {
+        refuse(
+            part.name,
+            "it was rendered with --adaptive: where its samples lie depends on what they found; render parts "
+            "with --samples");
+    }
     const std::string& samples = text_attribute(image, SAMPLES, part.name);
     const auto ranges = parse_ranges(samples);
     if (!ranges) {

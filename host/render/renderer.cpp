@@ -175,6 +175,15 @@ std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const
     return constants;
 }
 
+Accumulation empty_state(const RenderSettings& settings) {
+    return {.full = settings.size,
+            .rect = settings.crop,
+            .seed = settings.seed,
+            .first_sample = settings.first_sample,
+            .layer_count = layer_count(settings),
+            .values = {}};
+}
+
 uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings) {
     const uint64_t layer = uint64_t{settings.crop.width()} * settings.crop.height() * sizeof(vec4);
     return scene.bytes() + layer * (layer_count(settings) + 1);
@@ -260,19 +269,20 @@ double Renderer::dispatch(const vk::Kernel& kernel, const Tile& tile) {
     return commands_.submit_and_wait();
 }
 
-// Dispatches a tile until all its pixels hold their samples, and returns how long the device took [s]. Once
-// is enough, unless the driver ends loops that run for long, as lavapipe does: see render.comp.glsl.
-double Renderer::complete(const Tile& tile) {
-    double seconds = 0.0;
+// Dispatches a tile until all its pixels hold their samples. Once is enough, unless the driver ends loops
+// that run for long, as lavapipe does: see render.comp.glsl.
+Renderer::Work Renderer::complete(const Tile& tile) {
+    Work work;
     while (true) {
-        seconds += dispatch(*render_kernel_, tile);
+        work.seconds += dispatch(*render_kernel_, tile);
         uint32_t words[COUNTER_COUNT];
         std::memcpy(words, counter_buffer_.mapped(), sizeof words);
         std::memset(counter_buffer_.mapped(), 0, sizeof words);
         counters_.rays += uint64_t{words[COUNTER_RAYS_HIGH]} << 32 | words[COUNTER_RAYS_LOW];
         counters_.nonfinite_samples += words[COUNTER_NONFINITE];
         counters_.depth_limit_hits += words[COUNTER_DEPTH_LIMIT];
-        if (words[COUNTER_UNFINISHED] == 0) return seconds;
+        work.samples += words[COUNTER_SAMPLES];
+        if (words[COUNTER_UNFINISHED] == 0) return work;
         if (words[COUNTER_SAMPLES] == 0) {
             throw Error(
                 "the driver of " + device_->info().name +
@@ -285,7 +295,8 @@ double Renderer::complete(const Tile& tile) {
 bool Renderer::render(uint32_t target, const std::function<bool(double)>& keep_going) {
     Schedule schedule(image_size(), samples_, target, settings_.submission_seconds);
     while (!schedule.done()) {
-        schedule.advance(complete(schedule.next()));
+        const Work work = complete(schedule.next());
+        schedule.advance(work.seconds, work.samples);
         if (!keep_going(schedule.progress()) && !schedule.done()) return false;
     }
     samples_ = std::max(samples_, target);
@@ -293,13 +304,10 @@ bool Renderer::render(uint32_t target, const std::function<bool(double)>& keep_g
 }
 
 Accumulation Renderer::download() const {
-    return {.full = settings_.size,
-            .rect = settings_.crop,
-            .seed = settings_.seed,
-            .first_sample = settings_.first_sample,
-            .layer_count = image_.layers(),
-            .values = image_.download(0, image_.layers()),
-            .counters = counters_};
+    Accumulation state = empty_state(settings_);
+    state.values = image_.download(0, image_.layers());
+    state.counters = counters_;
+    return state;
 }
 
 void Renderer::upload(const Accumulation& state) {
@@ -309,7 +317,7 @@ void Renderer::upload(const Accumulation& state) {
             "the state does not fit: its size, crop, seed, first sample or set of images differs from this "
             "rendering's; render with the settings that it was made with");
     }
-    image_.upload(0, state.values);
+    if (!state.values.empty()) image_.upload(0, state.values);
     samples_ = state.least_samples();
     counters_ = state.counters;
 }

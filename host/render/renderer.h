@@ -44,6 +44,9 @@ std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const
 // names the device's limits if nothing does.
 SceneAccess choose_access(const vk::Device& device, const GpuScene& scene, SceneAccess wanted);
 
+// The state before the first sample: it holds no values yet.
+Accumulation empty_state(const RenderSettings& settings);
+
 // Bytes of device memory that rendering takes: scene, accumulation image and position image.
 uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings);
 
@@ -59,9 +62,9 @@ class Renderer {
     // the rotation of its environment; how it is read does not change.
     void reset(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
-    // Adds samples until every pixel holds `target`. Between submissions `keep_going(progress)` is asked,
-    // progress in [0, 1]; if it says no, rendering stops with pixels that may hold different numbers of
-    // samples. Returns whether the target was reached.
+    // Adds samples until every pixel holds `target`, or its limit if that is less. Between submissions
+    // `keep_going(progress)` is asked, progress in [0, 1]; if it says no, rendering stops with pixels that
+    // may hold different numbers of samples. Returns whether the target was reached.
     bool render(uint32_t target, const std::function<bool(double)>& keep_going);
 
     // The state so far, counters included, and continuing from a state of the same size, first sample and
@@ -85,12 +88,17 @@ class Renderer {
     }  // Wall time of compiling, first dispatch included.
 
   private:
+    struct Work {
+        double seconds = 0.0;  // That the device took.
+        uint64_t samples = 0;
+    };
+
     // Makes the render kernel for constants_ and image_, an empty first dispatch included.
     void compile();
     vk::Kernel make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage, bool counters,
                            const char* name) const;
     double dispatch(const vk::Kernel& kernel, const Tile& tile);
-    double complete(const Tile& tile);
+    Work complete(const Tile& tile);
     uvec2 image_size() const { return {settings_.crop.width(), settings_.crop.height()}; }
 
     const vk::Device* device_;

@@ -57,11 +57,16 @@ Tile Schedule::next() const {
     return {at_, min(tile, size_ - at_), pass_target_};
 }
 
-void Schedule::advance(double seconds) {
+// The budget is what a submission can do where no pixel has reached its limit. Where most have, what a
+// submission itself costs hides what a sample does: that is no reason to make it smaller.
+void Schedule::advance(double seconds, uint64_t samples) {
     const Tile tile = next();
-    const double samples = double(tile.size.x) * tile.size.y * (pass_target_ - pass_start_);
-    finished_ += uint64_t(samples);
-    budget_ = std::min(budget_ * LARGEST_GROWTH, submission_seconds_ * samples / std::max(seconds, 1e-9));
+    const uint64_t most = uint64_t{tile.size.x} * tile.size.y * (pass_target_ - pass_start_);
+    finished_ += most;
+    const double affordable = submission_seconds_ * double(samples) / std::max(seconds, 1e-9);
+    const double changed = std::min(budget_ * LARGEST_GROWTH, affordable);
+    const bool telling = samples == most || seconds > submission_seconds_ || changed > budget_;
+    if (telling && samples > 0) budget_ = changed;
     at_.x += tile.size.x;
     if (at_.x < size_.x) return;
     at_ = uvec2(0, at_.y + tile.size.y);

@@ -20,9 +20,10 @@ class Schedule {
     bool done() const { return pass_start_ >= target_; }
     // The next piece of work; not when done().
     Tile next() const;
-    // Says that next() was carried out in so many seconds.
-    void advance(double seconds);
-    // Samples carried out over all samples to carry out, in [0, 1].
+    // Says that next() was carried out in so many seconds, and how many samples it added: fewer than all
+    // where pixels have reached their limits.
+    void advance(double seconds, uint64_t samples);
+    // Samples carried out over all samples to carry out, in [0, 1], as if no pixel had a limit.
     double progress() const;
 
   private:

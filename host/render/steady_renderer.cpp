@@ -28,13 +28,27 @@ SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
 
 void SteadyRenderer::open() {
     device_ = std::make_unique<vk::Device>(*source_.instance, source_.device, source_.pipeline_cache_file);
+    source_.settings.seed = state().seed;
     renderer_ = std::make_unique<Renderer>(*device_, *source_.scene, *source_.camera, source_.settings);
-    if (source_.state) renderer_->upload(*source_.state);
+    renderer_->upload(state());
+    loaded_ = true;
+}
+
+void SteadyRenderer::load() {
+    source_.settings.seed = state().seed;
+    renderer_->reset(*source_.scene, *source_.camera, source_.settings);
+    renderer_->upload(state());
+    loaded_ = true;
+}
+
+void SteadyRenderer::select(size_t state) {
+    selected_ = state;
+    loaded_ = false;
 }
 
 void SteadyRenderer::hold() {
     const Clock::time_point start = Clock::now();
-    source_.state = renderer_->download();
+    state() = renderer_->download();
     const Clock::time_point now = Clock::now();
     const Seconds pause =
         std::max(Seconds(source_.hold_seconds), Seconds(now - start) / LARGEST_SHARE_OF_HOLDING);
@@ -45,7 +59,8 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
     while (true) {
         try {
             if (!renderer_) open();
-            const double before = double(std::min(kept(), target)) / target;
+            if (!loaded_) load();
+            const double before = double(std::min(state().least_samples(), target)) / target;
             const bool complete = renderer_->render(target, [&](double done) {
                 if (Clock::now() >= next_hold_) hold();
                 return keep_going(before + (1.0 - before) * done);
@@ -70,12 +85,12 @@ void SteadyRenderer::recover(const Error& error) {
     renderer_.reset();
     device_.reset();
 
-    const uint64_t samples = source_.state ? source_.state->total_samples() : 0;
-    if (samples > samples_at_failure_) failures_in_a_row_ = 0;
-    samples_at_failure_ = samples;
+    const SampleCounts samples = count_samples(source_.states);
+    if (samples.total > samples_at_failure_) failures_in_a_row_ = 0;
+    samples_at_failure_ = samples.total;
     ++failures_;
     if (++failures_in_a_row_ == MOST_FAILURES) throw Error(*cause_);
-    on_failure_(error, kept(), source_.settings.submission_seconds);
+    on_failure_(error, samples.least, source_.settings.submission_seconds);
     std::this_thread::sleep_for(FIRST_PAUSE * (1u << (failures_in_a_row_ - 1)));
 }
 

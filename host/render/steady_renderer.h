@@ -25,9 +25,9 @@ class SteadyRenderer {
         const GpuScene* scene;
         const Camera* camera;
         RenderSettings settings;
-        bool positions = false;                            // Whether positions() will be asked for.
-        std::optional<Accumulation> state = std::nullopt;  // To continue from.
-        double hold_seconds = 10.0;                        // From one copy of the state to the next.
+        std::vector<Accumulation> states;  // To continue from, one at least; each has a seed of its own.
+        bool positions = false;            // Whether positions() will be asked for.
+        double hold_seconds = 10.0;        // From one copy of the state to the next.
     };
     // Told of every failure that is survived: why, how many samples per pixel are kept at least, and how long
     // submissions will take from now on [s].
@@ -37,16 +37,19 @@ class SteadyRenderer {
     // Throws Error if that fails, or if the state does not fit.
     SteadyRenderer(Source source, OnFailure on_failure);
 
+    // Goes on with this one of the states(), as it is there now. The first is selected at the start.
+    void select(size_t state);
+
     // As Renderer::render(), but `progress` is the share of all samples up to the target. If the device
     // fails, it is opened anew and submissions become half as long. Throws the Error if that happens
-    // MOST_FAILURES times without progress of state(), which is then the last one.
+    // MOST_FAILURES times without progress of a state; the states are then the last ones.
     bool render(uint32_t target, const std::function<bool(double progress)>& keep_going);
 
-    // Copies the state from the device to the host. To be called from keep_going(), if at all: render() does
-    // it every hold_seconds, less often where copying takes long, and at its end.
+    // Copies the selected state from the device to the host. To be called from keep_going(), if at all:
+    // render() does it every hold_seconds, less often where copying takes long, and at its end.
     void hold();
-    // The state as last copied, or that of the source; none before the first copy.
-    const std::optional<Accumulation>& state() const { return source_.state; }
+    // The states as last copied, or those of the source.
+    std::vector<Accumulation>& states() { return source_.states; }
 
     // The device, until render() throws.
     const vk::Device& device() const { return *device_; }
@@ -62,11 +65,14 @@ class SteadyRenderer {
 
   private:
     void open();
-    uint32_t kept() const { return source_.state ? source_.state->least_samples() : 0; }
+    void load();
+    Accumulation& state() { return source_.states[selected_]; }
     void recover(const Error& error);
 
     Source source_;
     OnFailure on_failure_;
+    size_t selected_ = 0;
+    bool loaded_ = false;  // The renderer goes on from the selected state.
     std::unique_ptr<vk::Device> device_;
     std::unique_ptr<Renderer> renderer_;
     std::vector<float> positions_;
@@ -74,8 +80,8 @@ class SteadyRenderer {
     std::chrono::steady_clock::time_point next_hold_;
     std::optional<Error> cause_;  // Of the last failure that was not one of opening.
     uint32_t failures_ = 0;
-    uint32_t failures_in_a_row_ = 0;   // Since the state went on.
-    uint64_t samples_at_failure_ = 0;  // Of the state, at the last failure.
+    uint32_t failures_in_a_row_ = 0;   // Since a state went on.
+    uint64_t samples_at_failure_ = 0;  // Of all states, at the last failure.
 };
 
 }  // namespace candela

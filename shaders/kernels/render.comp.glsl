@@ -1,6 +1,6 @@
-// Brings every pixel of a tile to a number of samples: each invocation traces one path after the other for its pixel
-// and folds it into the accumulation image. Which samples a pixel still needs, its own count says, so that any cut of
-// the work into tiles and dispatches gives the same bits.
+// Brings every pixel of a tile to a number of samples, or to the pixel's limit if that is less: each invocation traces
+// one path after the other for its pixel and folds it into the accumulation image. Which samples a pixel still needs,
+// its own count says, so that any cut of the work into tiles and dispatches gives the same bits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -36,8 +36,8 @@ void main() {
 
     vec4 sum = layer_load(at, LAYER_L);
     vec4 compensation = layer_load(at, LAYER_L_COMPENSATION);
-    vec3 square_sum = layer_load(at, LAYER_SQUARE).rgb;
-    vec3 square_compensation = layer_load(at, LAYER_SQUARE_COMPENSATION).rgb;
+    vec4 square_sum = layer_load(at, LAYER_SQUARE);
+    vec4 square_compensation = layer_load(at, LAYER_SQUARE_COMPENSATION);
     vec3 albedo_sum = vec3(0.0);
     vec3 albedo_compensation = vec3(0.0);
     vec3 normal_sum = vec3(0.0);
@@ -49,7 +49,8 @@ void main() {
         normal_compensation = layer_load(at, LAYER_NORMAL_COMPENSATION).rgb;
     }
     uint first = uint(compensation.a);
-    if (first >= tile.target_samples) return;
+    uint target = square_sum.a > 0.0 ? min(tile.target_samples, uint(square_sum.a) - 1u) : tile.target_samples;
+    if (first >= target) return;
 
     bvh_prepare();
 
@@ -62,17 +63,18 @@ void main() {
     //
     // Lavapipe ends all loops of an invocation after 65 535 turns in sum, whatever their conditions say. What is not
     // folded then is dropped, and traced again by the next dispatch.
-    uint n = first;        // Samples folded, the first of which has the index parameters.first_sample,
-    uint started = first;  // and begun.
-    uint rays = 0u;
+    uint n = first;         // Samples folded, the first of which has the index parameters.first_sample,
+    uint started = first;   // and begun.
+    uint rays = 0u;         // Of the samples folded,
+    uint sample_rays = 0u;  // and of the one on its way.
     Sampler random;
     Path path;
     Estimate estimate;
     ShadowRay shadow = shadow_none();
     bool alive = false;  // The path goes on.
     bool ended = false;  // The sample's path has ended; its shadow ray may still be on its way.
-    while (n < tile.target_samples) {
-        if (!alive && started < tile.target_samples) {
+    while (n < target) {
+        if (!alive && started < target) {
             random = sampler_make(pixel, parameters.first_sample + started, parameters.seed);
             vec2 film = vec2(pixel) + unit_float(sampler_pair(random, PAIR_PIXEL));
             path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(random, PAIR_LENS))));
@@ -102,30 +104,33 @@ void main() {
             }
             if (estimate.cut) atomicAdd(counters[COUNTER_DEPTH_LIMIT], 1u);
             compensated_add(sum.rgb, compensation.rgb, estimate.L);
-            compensated_add(square_sum, square_compensation, estimate.L * estimate.L);
+            compensated_add(square_sum.rgb, square_compensation.rgb, estimate.L * estimate.L);
             sum.a += estimate.visible ? 1.0 : 0.0;
             if (HAS_AOVS) {
                 compensated_add(albedo_sum, albedo_compensation, estimate.albedo);
                 compensated_add(normal_sum, normal_compensation, estimate.normal);
             }
+            rays += sample_rays;
+            sample_rays = 0u;
             ++n;
         }
         if (alive) {
             if (path.depth == 0u) estimate = estimate_begin();
             alive = path_step(path, estimate, shadow, traversal.hit, random, parameters);
-            rays += shadow.t_max > 0.0 ? 2u : 1u;
+            sample_rays += shadow.t_max > 0.0 ? 2u : 1u;
             ended = !alive;
         }
     }
     count_rays(rays);
-    if (n < tile.target_samples) atomicAdd(counters[COUNTER_UNFINISHED], 1u);
+    if (n < target) atomicAdd(counters[COUNTER_UNFINISHED], 1u);
     atomicAdd(counters[COUNTER_SAMPLES], n - first);
     compensation.a = float(n);
+    square_compensation.a = min(square_compensation.a + float(rays), MAX_RAYS);
 
     layer_store(at, LAYER_L, sum);
     layer_store(at, LAYER_L_COMPENSATION, compensation);
-    layer_store(at, LAYER_SQUARE, vec4(square_sum, 0.0));
-    layer_store(at, LAYER_SQUARE_COMPENSATION, vec4(square_compensation, 0.0));
+    layer_store(at, LAYER_SQUARE, square_sum);
+    layer_store(at, LAYER_SQUARE_COMPENSATION, square_compensation);
     if (HAS_AOVS) {
         layer_store(at, LAYER_ALBEDO, vec4(albedo_sum, 0.0));
         layer_store(at, LAYER_ALBEDO_COMPENSATION, vec4(albedo_compensation, 0.0));

@@ -41,8 +41,8 @@ const uint PAIRS_PER_BOUNCE = 3u;
 // Layers of the accumulation image (rgba32f). The value of a sum is sum - compensation (Kahan).
 const uint LAYER_L = 0u;                    // rgb: sum of L; a: how many camera rays hit something visible.
 const uint LAYER_L_COMPENSATION = 1u;       // rgb; a: how many samples the pixel holds.
-const uint LAYER_SQUARE = 2u;               // rgb: sum of L^2.
-const uint LAYER_SQUARE_COMPENSATION = 3u;  // rgb.
+const uint LAYER_SQUARE = 2u;               // rgb: sum of L^2; a: the pixel's limit, see below.
+const uint LAYER_SQUARE_COMPENSATION = 3u;  // rgb; a: rays of the pixel's samples, MAX_RAYS at most.
 const uint LAYER_ALBEDO = 4u;               // rgb: sum of the first hit's albedo.
 const uint LAYER_ALBEDO_COMPENSATION = 5u;  // rgb.
 const uint LAYER_NORMAL = 6u;               // rgb: sum of the first hit's shading normal, world space.
@@ -50,8 +50,13 @@ const uint LAYER_NORMAL_COMPENSATION = 7u;  // rgb.
 const uint LAYER_COUNT_COLOUR = 4u;         // Layers of an image without AOVs ...
 const uint LAYER_COUNT_AOVS = 8u;           // ... and of one with them.
 
+// Whole numbers up to here are floats, whose sums do not depend on how they are cut.
+const float MAX_RAYS = 16777216.0;
+
+// A pixel's limit is 0 if there is none, or one more than the samples that it gets at most.
+
 // Words of the counter buffer: what one submission did.
-const uint COUNTER_RAYS_LOW = 0u;  // Rays traced, 64 bits in two words.
+const uint COUNTER_RAYS_LOW = 0u;  // Rays of the samples folded, 64 bits in two words.
 const uint COUNTER_RAYS_HIGH = 1u;
 const uint COUNTER_NONFINITE = 2u;    // Samples that were not finite and added nothing.
 const uint COUNTER_DEPTH_LIMIT = 3u;  // Paths cut at DEPTH_SAFETY_LIMIT.

@@ -65,7 +65,7 @@ TEST_F(CheckpointTest, SignalsLeaveACheckpointAndAnImage) {
         ASSERT_TRUE(process.wait_for_err("Msamples/s"));
         process.send(signal);
         EXPECT_EQ(process.finish().exit_code, 130);
-        const Accumulation state = load_checkpoint(state_).state;
+        const Accumulation state = load_checkpoint(state_).states.at(0);
         const std::vector<float> counts = read_exr(file("a.exr")).find("SampleCount.V")->values;
         for (size_t i = 0; i < counts.size(); ++i)
             ASSERT_EQ(float(state.sample_count(i)), counts[i]);
@@ -97,13 +97,13 @@ TEST_F(CheckpointTest, TwentyKillsLoseNothing) {
         if (most > 0) std::this_thread::sleep_for(std::chrono::milliseconds(random() % uint32_t(most)));
         process.send(SIGKILL);
         ASSERT_EQ(process.finish().signal, SIGKILL);
-        const uint64_t now = load_checkpoint(state_).state.total_samples();
+        const uint64_t now = load_checkpoint(state_).states.at(0).total_samples();
         EXPECT_GE(now, samples);
         advances += now > samples ? 1 : 0;
         samples = now;
     }
     EXPECT_GE(advances, 5);  // The first submissions after a start may find their pixels done.
-    const std::string spp = std::to_string(load_checkpoint(state_).state.most_samples() + 1);
+    const std::string spp = std::to_string(load_checkpoint(state_).states.at(0).most_samples() + 1);
     EXPECT_EQ(run_process(call(arguments + Words{spp} + checkpoint), cached).exit_code, 0);
     EXPECT_EQ(run_process(call(arguments + Words{spp, "-o", file("whole.exr")}), cached).exit_code, 0);
     expect_same_bits(file("a.exr"), file("whole.exr"));
@@ -157,7 +157,7 @@ TEST_F(CheckpointTest, APlaceThatVanishesIsAWarningAndTriedAgain) {
     const ProcessResult result = process.finish();
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_CONTAINS(result.err, "gone\" does not exist; create it first");
-    EXPECT_GT(load_checkpoint(file("gone/state.exr")).state.total_samples(), 0u);
+    EXPECT_GT(load_checkpoint(file("gone/state.exr")).states.at(0).total_samples(), 0u);
 }
 
 TEST_F(CheckpointTest, AnExistingFileIsNeverOverwrittenUnasked) {
@@ -205,9 +205,9 @@ TEST_F(CheckpointTest, WhatDoesNotFitIsRefusedWithTheReason) {
 TEST_F(CheckpointTest, AnotherDeviceIsAWarningAndDamageIsNot) {
     ASSERT_EQ(render_with({}).exit_code, 0);
     Checkpoint checkpoint = load_checkpoint(state_);
-    checkpoint.state.values[0] = 1000.0f;  // The red of the first pixel, to be seen again.
-    save_checkpoint(state_, checkpoint.identity, {.device = "Abacus", .driver = "1", .version = "0"},
-                    checkpoint.render_seconds, checkpoint.state);
+    checkpoint.states[0].values[0] = 1000.0f;  // The red of the first pixel, to be seen again.
+    checkpoint.header.maker = {.device = "Abacus", .driver = "1", .version = "0"};
+    save_checkpoint(state_, checkpoint.header, checkpoint.states);
     const ProcessResult other = render_with({"--resume", "--spp", "5"});
     EXPECT_EQ(other.exit_code, 0);
     EXPECT_CONTAINS(other.err,

@@ -18,11 +18,25 @@
 namespace candela {
 
 inline const std::string CORNELL_BOX = std::string(CANDELA_SCENES) + "/cornell-box.json";
+inline const std::string DEPTH_OF_FIELD = std::string(CANDELA_SCENES) + "/depth-of-field.json";
 inline const std::string MESH = std::string(CANDELA_SCENES) + "/mesh.json";
 
 // A driver list that names no driver: a computer without Vulkan.
 inline const std::map<std::string, std::string> NO_DRIVER = {{"VK_DRIVER_FILES", "/nonexistent.json"},
                                                              {"VK_ICD_FILENAMES", "/nonexistent.json"}};
+
+// The variables that put tests/layers/device_fault.cpp before the driver: each of the first `devices` devices
+// runs so many submissions, and then answers with `result`, a VkResult; then so many openings fail.
+inline std::map<std::string, std::string> failing_device(int devices, int submissions, int result,
+                                                         int openings = 0) {
+    return {{"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"},
+            {"VK_ADD_LAYER_PATH", CANDELA_LAYERS},
+            {"FAULT_DEVICES", std::to_string(devices)},
+            {"FAULT_AFTER", std::to_string(submissions)},
+            {"FAULT_RESULT", std::to_string(result)},
+            {"FAULT_OPENINGS", std::to_string(openings)}};
+}
+inline constexpr int OUT_OF_DEVICE_MEMORY = -2, INITIALIZATION_FAILED = -3, DEVICE_LOST = -4;  // VkResult.
 
 using Words = std::vector<std::string>;
 

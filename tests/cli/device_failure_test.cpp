@@ -8,25 +8,17 @@
 namespace candela {
 namespace {
 
-constexpr int OUT_OF_DEVICE_MEMORY = -2, INITIALIZATION_FAILED = -3, DEVICE_LOST = -4;  // Of VkResult.
-
 class DeviceFailure : public CliTest {
   protected:
     // 64x64 pixels take a dozen submissions. Before them come those of uploads and positions: up to 11,
     // depending on the device's memory, and 8 more for the layers of a state.
     Words picture_ = {"--size", "64x64", "--spp", "128"};
 
-    // Each of the first `devices` devices runs so many submissions, and then answers with `result`.
     Process start_on_failing(int devices, int submissions, int result, const Words& arguments = {},
                              int openings = 0) const {
         return Process(call(Words{"render", CORNELL_BOX, "-o", file("a.exr"), "--report", file("a.json")} +
                             picture_ + arguments),
-                       options({{"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"},
-                                {"VK_ADD_LAYER_PATH", CANDELA_LAYERS},
-                                {"FAULT_DEVICES", std::to_string(devices)},
-                                {"FAULT_AFTER", std::to_string(submissions)},
-                                {"FAULT_RESULT", std::to_string(result)},
-                                {"FAULT_OPENINGS", std::to_string(openings)}}));
+                       options(failing_device(devices, submissions, result, openings)));
     }
     ProcessResult render_on_failing(int devices, int submissions, int result, const Words& arguments = {},
                                     int openings = 0) const {
@@ -82,6 +74,16 @@ TEST_F(DeviceFailure, WhatTheHostHoldsIsNotRenderedAgain) {
     EXPECT_EQ(resumed["image_hash"], undisturbed["image_hash"]);
     // Samples of a pixel are traced again where a driver ends a long submission early: a few of thousands.
     EXPECT_NEAR(resumed["rays_per_sample"], undisturbed["rays_per_sample"], 0.01);
+}
+
+// Of the four states of an adaptive rendering, three are held while a device fails that renders the fourth.
+// To change from one to another takes 16 submissions and more.
+TEST_F(DeviceFailure, AnAdaptiveRenderingGoesOnInEveryState) {
+    picture_ = {"--size", "48x48", "--spp", "64", "--adaptive"};
+    const ProcessResult result = render_on_failing(2, 40, DEVICE_LOST);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(recoveries(result.err).size(), 2u);
+    EXPECT_EQ(report()["image_hash"], undisturbed());
 }
 
 // The last state is written: here, what a checkpoint held.

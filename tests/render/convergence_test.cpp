@@ -1,7 +1,10 @@
 // The error that is estimated from one rendering is the one that a converged image shows.
+#include "cli/convergence.h"
+
 #include <cmath>
 
 #include "base/relative_error.h"
+#include "render/adaptive.h"
 #include "render_fixture.h"
 #include "scene/loader.h"
 #include "scene/names.h"
@@ -13,6 +16,27 @@ class ConvergenceTest : public RenderTest {
   protected:
     static constexpr uint32_t SIZE = 48, SPP = 128, REFERENCE_SPP = 1024;
 
+    // An adaptive rendering of SPP samples on average, at its end.
+    ConvergencePoint adaptive_point(const Scene& scene, const GpuScene& gpu_scene,
+                                    const Image& reference) const {
+        const RenderSettings chosen = settings(SamplerKind::sobol, 1);
+        SteadyRenderer renderer({.instance = &instance_,
+                                 .device = info_,
+                                 .pipeline_cache_file = std::nullopt,
+                                 .scene = &gpu_scene,
+                                 .camera = &scene.cameras[0],
+                                 .settings = chosen,
+                                 .states = adaptive_states(chosen)},
+                                [](const Error&, uint32_t, double) { FAIL() << "the device failed"; });
+        uint32_t planned = 0;
+        for (uint32_t end = 0; end < SPP;) {
+            end = next_pass_end(end, SPP);
+            EXPECT_TRUE(render_pass(renderer, end, planned, [](double) { return true; }));
+        }
+        Convergence convergence({}, reference);
+        convergence.look(renderer.states(), 1.0);
+        return convergence.points().at(0);
+    }
     static Image counted(const Accumulation& state) { return make_image(state, {.sample_count = true}, {}); }
     static RenderSettings settings(SamplerKind sampler, uint32_t seed) {
         RenderSettings s = settings_for(SIZE, SIZE);
@@ -49,6 +73,11 @@ TEST_F(ConvergenceTest, TheEstimatedErrorIsTheTrueOneForEverySampler) {
             EXPECT_GT(estimate, error * 0.77 / std::sqrt(1.0 + 1.0 / 8.0)) << name << ", " << word;
             EXPECT_LT(estimate, error * 1.23 * 1.15 * faster) << name << ", " << word;
         }
+        // Of two halves nothing has to be assumed.
+        const ConvergencePoint halves = adaptive_point(scene, gpu_scene, reference);
+        const double error = std::sqrt(*halves.relmse);
+        EXPECT_GT(*halves.estimate, error * 0.77 / std::sqrt(1.0 + 1.0 / 8.0)) << name;
+        EXPECT_LT(*halves.estimate, error * 1.23 * 1.15) << name;
     }
 }
 

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <numeric>
 
 #include "render/checkpoint.h"
 #include "render_fixture.h"
@@ -121,11 +122,13 @@ TEST_P(IdentityTest, AStateThatWentThroughAFile) {
         Renderer r = renderer(s);
         size_t submissions = 0;
         r.render(SPP, [&](double) { return ++submissions < 30; });
-        save_checkpoint(folder / "state.exr", make_identity(gpu_scene_, scene_.cameras[0], s), {}, 1.0,
-                        r.download());
+        const Accumulation state = r.download();
+        save_checkpoint(folder / "state.exr",
+                        {.identity = make_identity(gpu_scene_, scene_.cameras[0], s), .maker = {}},
+                        {&state, 1});
     }
     Renderer r = renderer(settings());
-    r.upload(load_checkpoint(folder / "state.exr").state);
+    r.upload(load_checkpoint(folder / "state.exr").states.at(0));
     finish(r);
     expect_same_bits(r.download(), in_one_go(settings()));
 }
@@ -134,7 +137,7 @@ TEST_P(IdentityTest, AStateThatWentThroughAFile) {
 TEST_P(IdentityTest, SamplesThatBeginLater) {
     const Accumulation whole = in_one_go(settings());
     const size_t pixels = whole.pixel_count();
-    std::vector<float> folded(whole.layer_count * pixels * 4);
+    std::vector<float> folded(whole.layer_count * pixels * 4), rays(pixels);
     Renderer r = renderer(settings());
     for (uint32_t n = 0; n < SPP; ++n) {
         RenderSettings s = settings();
@@ -142,6 +145,8 @@ TEST_P(IdentityTest, SamplesThatBeginLater) {
         r.reset(gpu_scene_, scene_.cameras[0], s);
         finish(r, 1);
         const Accumulation one = r.download();
+        for (size_t i = 0; i < pixels; ++i)
+            rays[i] += one.at(LAYER_SQUARE_COMPENSATION, i)[3];
         for (uint32_t layer = 0; layer < whole.layer_count; layer += 2) {
             float* const sum = &folded[layer * pixels * 4];
             float* const compensation = sum + pixels * 4;
@@ -153,8 +158,11 @@ TEST_P(IdentityTest, SamplesThatBeginLater) {
             }
         }
     }
-    for (size_t i = 0; i < pixels; ++i)
+    for (size_t i = 0; i < pixels; ++i) {
         folded[(LAYER_L_COMPENSATION * pixels + i) * 4 + 3] = float(SPP);
+        folded[(LAYER_SQUARE_COMPENSATION * pixels + i) * 4 + 3] = rays[i];
+    }
+    EXPECT_EQ(std::accumulate(rays.begin(), rays.end(), 0.0), double(whole.counters.rays));
     EXPECT_EQ(std::memcmp(folded.data(), whole.values.data(), folded.size() * sizeof(float)), 0);
 }
 

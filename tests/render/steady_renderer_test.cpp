@@ -21,19 +21,20 @@ class SteadyRendererTest : public RenderTest {
                                  .scene = &gpu_scene,
                                  .camera = &scene.cameras[0],
                                  .settings = settings,
+                                 .states = {empty_state(settings)},
                                  .hold_seconds = hold_seconds},
                                 [](const Error&, uint32_t, double) {});
-        EXPECT_FALSE(renderer.state().has_value());
+        EXPECT_EQ(count_samples(renderer.states()).total, 0u);
         int copies = 0;
         uint64_t samples = 0;
         EXPECT_TRUE(renderer.render(16, [&](double) {
-            const uint64_t now = renderer.state() ? renderer.state()->total_samples() : 0;
+            const uint64_t now = count_samples(renderer.states()).total;
             EXPECT_GE(now, samples);
             copies += now > samples ? 1 : 0;
             samples = now;
             return true;
         }));
-        EXPECT_EQ(renderer.state()->total_samples(), 16u * 64 * 64);
+        EXPECT_EQ(count_samples(renderer.states()).total, 16u * 64 * 64);
         return copies;
     }
 };

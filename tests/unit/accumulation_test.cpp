@@ -70,6 +70,77 @@ TEST(Accumulation, VarianceIsThatOfTheMean) {
     }
 }
 
+// Two states are put together as if one had all samples. Of four, two and two, the image is the plain mean,
+// although here one half has n samples in pixel i, and the other 2n, which are twice as bright.
+TEST(Accumulation, HalvesAreAveragedWhateverTheyHold) {
+    const auto scaled = [](double factor) {
+        Accumulation state = sampled(LAYER_COUNT_AOVS).state;
+        for (size_t i = 0; i < state.pixel_count(); ++i) {
+            for (int c = 0; c < 3; ++c) {
+                set_sum(state, LAYER_L, i, c, factor * double(state.at(LAYER_L, i)[c]));
+                set_sum(state, LAYER_SQUARE, i, c, factor * factor * double(state.at(LAYER_SQUARE, i)[c]));
+            }
+        }
+        return state;
+    };
+    const Accumulation one = scaled(1.0), twice = scaled(2.0);
+    const Accumulation none{.full = one.full, .rect = one.rect, .layer_count = one.layer_count, .values = {}};
+    const Image single = make_image(one, ALL, some_positions(6));
+
+    const Image pooled = make_image(std::vector{one, twice}, ALL, some_positions(6));
+    const Image halves = make_image(std::vector{one, none, twice, twice}, ALL, some_positions(6));
+    const Image first_half = make_image(std::vector{one, twice, none, none}, ALL, some_positions(6));
+    for (size_t i = 0; i < 6; ++i) {
+        for (const char* name : {"R", "G", "B"}) {
+            const float mean = single.find(name)->values[i];
+            EXPECT_FLOAT_EQ(pooled.find(name)->values[i], 1.5f * mean);
+            EXPECT_FLOAT_EQ(halves.find(name)->values[i], 1.5f * mean);
+            EXPECT_FLOAT_EQ(first_half.find(name)->values[i], 1.5f * mean);
+        }
+        for (const char* name : {"A", "Albedo.G", "N.X", "P.Z", "Z"})
+            EXPECT_FLOAT_EQ(halves.find(name)->values[i], single.find(name)->values[i]) << name;
+        EXPECT_EQ(pooled.find("SampleCount.V")->values[i], float(2 * i));
+        EXPECT_EQ(halves.find("SampleCount.V")->values[i], float(3 * i));
+        EXPECT_EQ(first_half.find("Variance.G")->values[i], INFINITE);
+    }
+    // Of independent halves: a quarter of the sum of their variances. The second half is `twice` two times:
+    // its samples have four times the variance of one, and there are 2n of them.
+    for (size_t i = 2; i < 6; ++i) {
+        const double n = double(i), variance = double(single.find("Variance.R")->values[i]);
+        const double second = 4.0 * variance * (n - 1.0) / (2.0 * n - 1.0);
+        EXPECT_NEAR(halves.find("Variance.R")->values[i], 0.25 * (variance + second), 1e-5 * variance);
+    }
+}
+
+TEST(Accumulation, StatesAreCountedTogether) {
+    const Accumulation one = sampled(LAYER_COUNT_COLOUR).state;
+    const Accumulation none{.full = one.full, .rect = one.rect, .values = {}};
+    const std::vector states{one, none, one, one};
+    const SampleCounts counts = count_samples(states);
+    EXPECT_EQ(counts.total, 3u * 15);
+    EXPECT_EQ(counts.least, 0u);
+    EXPECT_EQ(counts.most, 3u * 5);
+    EXPECT_EQ(samples_per_pixel(states), 3u * 15 / 6);
+    EXPECT_EQ(samples_per_pixel({&one, 1}), 0u);
+    EXPECT_EQ(total_counters(states).rays, 3u * one.counters.rays);
+    EXPECT_EQ(total_counters(states).nonfinite_samples, 9u);
+    EXPECT_EQ(total_counters(states).depth_limit_hits, 12u);
+}
+
+TEST(Accumulation, LimitsAreKeptInTheState) {
+    Accumulation state = sampled(LAYER_COUNT_COLOUR).state;
+    const Image before = make_image(state, {.variance = true, .sample_count = true}, {});
+    EXPECT_EQ(state.limit(2), UINT32_MAX);
+    state.set_limit(2, 0);
+    state.set_limit(3, (1u << 24) - 1);
+    EXPECT_EQ(state.limit(1), UINT32_MAX);
+    EXPECT_EQ(state.limit(2), 0u);
+    EXPECT_EQ(state.limit(3), (1u << 24) - 1);
+    const Image after = make_image(state, {.variance = true, .sample_count = true}, {});
+    for (size_t c = 0; c < before.channels.size(); ++c)
+        EXPECT_EQ(before.channels[c].values, after.channels[c].values);
+}
+
 TEST(Accumulation, OnlyTheChannelsAskedForAreThere) {
     const Sampled s = sampled(LAYER_COUNT_COLOUR);
     EXPECT_EQ(make_image(s.state, {}, {}).channels.size(), 4u);

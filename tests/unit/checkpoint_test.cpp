@@ -15,30 +15,37 @@
 namespace candela {
 namespace {
 
-const Identity IDENTITY{
-    .settings = {"40x30", "10,20,13,22", "4294967294", "sobol", "mis", "7", "3", "at 1 2 3"},
-    .hash = 0x123456789abcdef0u};
-const Maker MAKER{.device = "GPU", .driver = "1.2", .version = "0.1"};
+const CheckpointHeader HEADER{
+    .identity = {.settings = {"40x30", "10,20,13,22", "4294967294", "sobol", "mis", "7", "3", "at 1 2 3"},
+                 .hash = 0x123456789abcdef0u},
+    .maker = {.device = "GPU", .driver = "1.2", .version = "0.1"},
+    .render_seconds = 12.5,
+    .planned = 64};
 
 class CheckpointFile : public testing::Test {
   protected:
-    void save(const Accumulation& state) const { save_checkpoint(file_, IDENTITY, MAKER, 12.5, state); }
+    using States = std::vector<Accumulation>;
 
-    static void expect_same(const Checkpoint& loaded, const Accumulation& state) {
-        EXPECT_EQ(loaded.identity.settings, IDENTITY.settings);
-        EXPECT_EQ(loaded.identity.hash, IDENTITY.hash);
-        EXPECT_EQ(loaded.maker, MAKER);
-        EXPECT_EQ(loaded.render_seconds, 12.5);
-        EXPECT_EQ(loaded.state.full, state.full);
-        EXPECT_EQ(loaded.state.rect, state.rect);
-        EXPECT_EQ(loaded.state.seed, state.seed);
-        EXPECT_EQ(loaded.state.first_sample, state.first_sample);
-        EXPECT_EQ(loaded.state.layer_count, state.layer_count);
-        EXPECT_EQ(loaded.state.counters, state.counters);
-        ASSERT_EQ(loaded.state.values.size(), state.values.size());
-        EXPECT_EQ(
-            std::memcmp(loaded.state.values.data(), state.values.data(), state.values.size() * sizeof(float)),
-            0);
+    void save(const States& states) const { save_checkpoint(file_, HEADER, states); }
+
+    static void expect_same(const Checkpoint& loaded, const States& states) {
+        EXPECT_EQ(loaded.header.identity.settings, HEADER.identity.settings);
+        EXPECT_EQ(loaded.header.identity.hash, HEADER.identity.hash);
+        EXPECT_EQ(loaded.header.maker, HEADER.maker);
+        EXPECT_EQ(loaded.header.render_seconds, HEADER.render_seconds);
+        EXPECT_EQ(loaded.header.planned, HEADER.planned);
+        ASSERT_EQ(loaded.states.size(), states.size());
+        for (size_t i = 0; i < states.size(); ++i) {
+            const Accumulation &a = loaded.states[i], &b = states[i];
+            EXPECT_EQ(a.full, b.full);
+            EXPECT_EQ(a.rect, b.rect);
+            EXPECT_EQ(a.seed, b.seed);
+            EXPECT_EQ(a.first_sample, b.first_sample);
+            EXPECT_EQ(a.layer_count, b.layer_count);
+            EXPECT_EQ(a.counters, b.counters);
+            ASSERT_EQ(a.values.size(), b.values.size());
+            EXPECT_EQ(std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)), 0);
+        }
     }
 
     TemporaryDirectory folder_;
@@ -51,20 +58,34 @@ TEST_F(CheckpointFile, KeepsEveryBit) {
         state.values[5] = -0.0f;
         state.values[6] = 0x1p-149f;
         state.values[7] = INFINITE;
-        save(state);
-        expect_same(load_checkpoint(file_), state);
+        save({state});
+        expect_same(load_checkpoint(file_), {state});
     }
+}
+
+TEST_F(CheckpointFile, KeepsSeveralStates) {
+    States states(4, sampled(LAYER_COUNT_AOVS).state);
+    for (uint32_t i = 0; i < states.size(); ++i) {
+        states[i].seed ^= i << 30;
+        states[i].counters.rays += i;
+        states[i].values[i] = 100.0f + float(i);
+        states[i].set_limit(i, 1000 * i);
+    }
+    save(states);
+    const Checkpoint loaded = load_checkpoint(file_);
+    expect_same(loaded, states);
+    EXPECT_EQ(loaded.states[3].limit(3), 3000u);
 }
 
 // Bytes that no reader looks at may change; any other change must be noticed.
 TEST_F(CheckpointFile, DamageIsNoticed) {
-    const Accumulation state = sampled(LAYER_COUNT_COLOUR).state;
-    save(state);
+    const States states = {sampled(LAYER_COUNT_COLOUR).state};
+    save(states);
     const std::string good = read_file(file_);
     const size_t refused = count_refused(good, std::string("\0\1", 2), 400, [&](const std::string& bytes) {
         if (bytes == good) throw Error("nothing was changed");
         write_quickly(file_, bytes);
-        expect_same(load_checkpoint(file_), state);
+        expect_same(load_checkpoint(file_), states);
     });
     EXPECT_GT(refused, 250u);
 }
@@ -72,7 +93,7 @@ TEST_F(CheckpointFile, DamageIsNoticed) {
 // What OpenEXR itself would not notice: values and attributes that are exchanged for others.
 TEST_F(CheckpointFile, ChangesThatLeaveAValidFileAreNoticed) {
     const auto after = [this](const std::function<void(Image&)>& change) {
-        save(sampled(LAYER_COUNT_COLOUR).state);
+        save({2, sampled(LAYER_COUNT_COLOUR).state});
         Image image = read_exr(file_);
         change(image);
         write_exr(file_, image);
@@ -86,7 +107,7 @@ TEST_F(CheckpointFile, ChangesThatLeaveAValidFileAreNoticed) {
     EXPECT_EQ(after([](Image& image) { image.channels[9].values[4] += 0x1p-10f; }), damaged);
     for (const char* attribute :
          {"candela.seed", "candela.firstSample", "candela.rays", "candela.renderSeconds", "candela.driver",
-          "candela.sampler", "candela.identity"}) {
+          "candela.sampler", "candela.identity", "candela.planned", "candela.State1.seed"}) {
         EXPECT_EQ(after([&](Image& image) { image.attributes[attribute] = std::string("1"); }), damaged);
     }
     EXPECT_EQ(after([](Image& image) { image.full.x += 1; }), damaged);
@@ -98,6 +119,11 @@ TEST_F(CheckpointFile, ChangesThatLeaveAValidFileAreNoticed) {
             std::erase_if(image.channels, [](const Channel& c) { return c.name == "Layer3.G"; });
         }),
         name + "the channel Layer3.G is missing; give a checkpoint that candela render wrote, unchanged");
+    EXPECT_EQ(after([](Image& image) {
+                  std::erase_if(image.channels,
+                                [](const Channel& c) { return c.name.starts_with("State1."); });
+              }),
+              damaged);
 }
 
 TEST_F(CheckpointFile, UnreadableAndUnwritableFilesAreNamed) {
@@ -109,7 +135,7 @@ TEST_F(CheckpointFile, UnreadableAndUnwritableFilesAreNamed) {
     expect_named(error_of([&] { load_checkpoint(folder_ / "text.exr"); }), folder_ / "text.exr");
     const std::filesystem::path nowhere = folder_ / "none/state.exr";
     expect_named(
-        error_of([&] { save_checkpoint(nowhere, IDENTITY, MAKER, 0.0, sampled(LAYER_COUNT_COLOUR).state); }),
+        error_of([&] { save_checkpoint(nowhere, HEADER, States{sampled(LAYER_COUNT_COLOUR).state}); }),
         nowhere);
     EXPECT_EQ(folder_.size(), 1);
 }

@@ -61,6 +61,27 @@ TEST_F(RelativeErrorEstimate, IsTheErrorOfIndependentSamples) {
     EXPECT_NEAR(ratio(noise), 1.0, 4.0 * std::sqrt(2.0) * 0.5 * std::sqrt(2.0 / 4096) + 0.01);
 }
 
+// Halves may have any variances: here one has a hundred times that of the other.
+TEST_F(RelativeErrorEstimate, ByAHalfIsTheErrorOfTheirMean) {
+    std::normal_distribution<double> noise(0.0, 1.0);
+    const Image a = image_of(SIZE, SIZE, 8, [&](size_t) { return 1.0 + 0.002 * noise(random_); });
+    const Image b = image_of(SIZE, SIZE, 99, [&](size_t) { return 1.0 + 0.02 * noise(random_); });
+    const RgbPlanes x = *a.find_rgb(), y = *b.find_rgb();
+    const Image mean = image_of(SIZE, SIZE, 107, [&](size_t i) { return 0.5 * (x[0][i] + y[0][i]); });
+    // The three channels of each half have noise of their own; of the mean, that of the first ones.
+    const auto one_channel = [&](const RgbPlanes& planes) {
+        return image_of(SIZE, SIZE, 1, [&](size_t i) { return double(planes[0][i]); });
+    };
+    const double expected = 0.5 * std::sqrt(0.002 * 0.002 + 0.02 * 0.02) / std::sqrt(1.01);
+    for (const Image& half : {one_channel(x), one_channel(y)}) {
+        EXPECT_NEAR(*estimate_relative_error_by_half(half, mean) / expected, 1.0,
+                    4.0 * 0.5 * std::sqrt(2.0 / 4096) + 0.01);
+    }
+    EXPECT_FALSE(estimate_relative_error(a, mean)) << "the counts are not doubled";
+    const Image black = image_of(SIZE, SIZE, 1, [](size_t) { return 0.0; });
+    EXPECT_FALSE(estimate_relative_error_by_half(black, black));
+}
+
 // One value in a hundred is 20 too bright, in either half: so some 82 pixels of 4096 are 10 too bright, and
 // have moved by as much. For 8 * 2 % of them a neighbour is bright, too; that makes the mean of the
 // neighbours 1 + 10 / 8 instead of 1, and takes four fifths of the pixel's square away. So the ratio is the

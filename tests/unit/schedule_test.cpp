@@ -2,9 +2,12 @@
 #include "render/schedule.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "shared/constants.h"
 
 namespace candela {
 namespace {
@@ -42,7 +45,7 @@ Rendering carry_out(uvec2 size, uint32_t first, uint32_t target, double submissi
         EXPECT_GT(tile.target_samples, before);
         const double work = double(tile.size.x) * tile.size.y * (tile.target_samples - before);
         const double seconds = device.overhead + work * device.seconds_per_sample;
-        schedule.advance(seconds);
+        schedule.advance(seconds, uint64_t(work));
         if (++r.submissions > 10) r.longest = std::max(r.longest, seconds);
         EXPECT_GE(schedule.progress(), progress);
         progress = schedule.progress();
@@ -100,7 +103,7 @@ TEST(Schedule, GrowthIsBoundedWhenSubmissionsTakeNoTime) {
     for (double most = 4096; !schedule.done(); most *= 4) {
         const Tile tile = schedule.next();
         EXPECT_LE(double(tile.size.x) * tile.size.y, most);
-        schedule.advance(0.0);
+        schedule.advance(0.0, uint64_t{tile.size.x} * tile.size.y);
     }
 }
 
@@ -108,16 +111,43 @@ TEST(Schedule, GrowthIsBoundedWhenSubmissionsTakeNoTime) {
 // than eight samples or twofold.
 TEST(Schedule, PassesAreShortWhileTheImageIsYoung) {
     Schedule schedule(uvec2(512, 512), 0, 1000, 0.05);
-    uint32_t reached = 0;
+    uint32_t before = 0, reached = 0;
     while (!schedule.done()) {
         const Tile tile = schedule.next();
         if (tile.origin == uvec2(0, 0)) {
             EXPECT_LE(tile.target_samples, reached == 0 ? 1u : std::max(8u, 2 * reached));
-            reached = tile.target_samples;
+            before = std::exchange(reached, tile.target_samples);
         }
-        schedule.advance(1e-6 * double(tile.size.x) * tile.size.y);
+        const uint64_t pixels = uint64_t{tile.size.x} * tile.size.y;
+        schedule.advance(1e-6 * double(pixels), pixels * (reached - before));
     }
     EXPECT_EQ(reached, 1000u);
+}
+
+// Of 512 x 512 pixels only every sixteenth row of groups goes on; all others have reached their limits. A
+// submission that finds a row takes no longer than one may, however little the ones before it had to do, and
+// those are not made smaller.
+TEST(Schedule, PixelsAtTheirLimitsNeitherHideWorkNorMakeSubmissionsSmall) {
+    constexpr double SECONDS_PER_SAMPLE = 1e-6, OVERHEAD = 1e-4;
+    constexpr uint32_t BEFORE = 64, TARGET = 128;
+    Schedule schedule(uvec2(512, 512), BEFORE, TARGET, 0.05);
+    size_t submissions = 0;
+    uint64_t done = 0;
+    while (!schedule.done()) {
+        const Tile tile = schedule.next();
+        uint64_t busy = 0;
+        for (uint32_t y = tile.origin.y; y < tile.origin.y + tile.size.y; ++y)
+            busy += y / WORKGROUP_SIZE % 16 == 0 ? tile.size.x : 0;
+        const uint64_t samples = busy * (TARGET - BEFORE);
+        const double seconds = OVERHEAD + SECONDS_PER_SAMPLE * double(samples);
+        EXPECT_LE(seconds, 0.05 + OVERHEAD);
+        schedule.advance(seconds, samples);
+        done += samples;
+        ++submissions;
+    }
+    EXPECT_EQ(done, 512u * 512 / 16 * (TARGET - BEFORE));
+    // All of it, if every pixel were busy, is 336 submissions; 70 more until the budget has grown.
+    EXPECT_LE(submissions, 336u + 70u);
 }
 
 }  // namespace
