@@ -20,7 +20,7 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
     // Commands take over the column width, but must not take over the footer, which therefore comes last.
     app.get_formatter()->column_width(36);
     std::vector<Command> commands{add_render_command(app, command_line),
-                                  add_view_command(app),
+                                  add_view_command(app, command_line),
                                   add_info_command(app),
                                   add_devices_command(app),
                                   add_compare_command(app),

@@ -12,9 +12,12 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/interrupt.h"
+#include "cli/outputs.h"
 #include "cli/render_options.h"
 #include "cli/vulkan.h"
+#include "render/identity.h"
 #include "scene/loader.h"
+#include "version.h"
 #include "view/controls.h"
 #include "view/viewer.h"
 #include "vk/device.h"
@@ -74,15 +77,31 @@ void ViewArguments::check() const {
 
 #ifdef CANDELA_VIEW
 
-// All that this process may use, with the queue that can show pictures on `surface`.
-std::vector<vk::DeviceInfo> presenting_devices(const vk::Instance& instance, const vk::Surface& surface) {
+// The device that the options ask for, or the best, with the queue that can show pictures in the window.
+vk::DeviceInfo choose_device(const vk::Instance& instance, const Window& window,
+                             const std::optional<std::string>& wanted) {
+    const vk::Surface surface = window.make_surface(instance.handle());
     std::vector<vk::DeviceInfo> devices = instance.devices();
     for (vk::DeviceInfo& device : devices)
         vk::choose_presenting_queue(device, surface.get());
-    return devices;
+    return vk::select_device(devices, wanted);
 }
 
-ExitCode view(const ViewArguments& arguments) {
+// The attributes of the image that `candela render` would have made.
+void add_attributes(Image& image, const ViewedPicture& picture, const vk::DeviceInfo& device,
+                    const std::string& command_line) {
+    RenderRecord record;
+    record.command_line = command_line;
+    record.maker = {.device = device.name, .driver = device.driver, .version = CANDELA_VERSION};
+    record.identity = make_identity(picture.scene, picture.camera, picture.settings);
+    record.settings = picture.settings;
+    record.render_seconds = picture.seconds;
+    record.spp = picture.state.least_samples();
+    record.most_spp = picture.state.most_samples();
+    add_attributes(image, record, picture.camera);
+}
+
+ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     arguments.check();
     const RenderOptions& options = arguments.render;
     Scene scene = load_scene(options.scene_file);
@@ -98,21 +117,22 @@ ExitCode view(const ViewArguments& arguments) {
     vk::Instance::Options instance_wishes = instance_options();
     instance_wishes.extensions = window.instance_extensions();
     const vk::Instance instance(instance_wishes);
-    const auto make_surface = [&] { return window.make_surface(instance.handle()); };
-    vk::Surface surface = make_surface();
-    const vk::Device device(instance,
-                            vk::select_device(presenting_devices(instance, surface), options.device),
-                            pipeline_cache_file());
+    const vk::DeviceInfo device = choose_device(instance, window, options.device);
     const InterruptGuard guard;
     bool complete = false;
     {
-        vk::Presenter presenter(device, std::move(surface), make_surface);
-        Viewer viewer(window, device, std::move(presenter), std::move(scene), state,
-                      {.name = name,
+        Viewer viewer(window, instance, std::move(scene), state,
+                      {.device = device,
+                       .pipeline_cache_file = pipeline_cache_file(),
+                       .name = name,
                        .target = arguments.frames.value_or(options.spp.value_or(MAX_SPP)),
                        .close_at_target = arguments.frames.has_value(),
                        .stopped = [&guard] { return guard.interrupted(); },
-                       .say = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); }});
+                       .say = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); },
+                       .add_attributes =
+                           [&](Image& image, const ViewedPicture& picture) {
+                               add_attributes(image, picture, device, command_line);
+                           }});
         complete = viewer.run();
         for (const std::string& path : arguments.screenshots) {
             if (complete) viewer.save(path);
@@ -129,7 +149,7 @@ ExitCode view(const ViewArguments& arguments) {
 
 #else
 
-ExitCode view(const ViewArguments& arguments) {
+ExitCode view(const ViewArguments& arguments, const std::string&) {
     arguments.check();
     throw Error(
         "view: this program was built without a window, which takes GLFW and Dear ImGui; install "
@@ -140,7 +160,7 @@ ExitCode view(const ViewArguments& arguments) {
 
 }  // namespace
 
-Command add_view_command(CLI::App& app) {
+Command add_view_command(CLI::App& app, const std::string& command_line) {
     CLI::App* const command = app.add_subcommand("view", "Show in a window how a picture accumulates");
     const auto arguments = std::make_shared<ViewArguments>();
     arguments->add_to(*command);
@@ -148,13 +168,15 @@ Command add_view_command(CLI::App& app) {
         std::string(
             "The picture is as large as the window. While the camera moves it may be coarser; at rest it\n"
             "accumulates what `candela render` would, bit for bit, up to --spp samples per pixel if given.\n"
-            "Files are written to the current folder: SCENE-1.png, SCENE-2.png, ...\n\n"
+            "Files are written to the current folder: SCENE-1.png, SCENE-2.png, ... An EXR is what `candela "
+            "render`\n"
+            "would write, for candela merge and compare as well.\n\n"
             "Mouse and keys:\n") +
         CONTROLS_HELP +
         "\n\n"
         "Example:\n"
         "  candela view scenes/cornell-box.json --frames 64 --screenshot box.png");
-    return {command, [arguments] { return view(*arguments); }};
+    return {command, [arguments, command_line] { return view(*arguments, command_line); }};
 }
 
 }  // namespace candela

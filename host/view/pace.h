@@ -1,11 +1,10 @@
-// What the viewer decides by numbers alone: how coarse the picture is while the camera moves, and how large
-// the error of the picture is.
+// What the viewer decides by numbers alone: how coarse the picture is while the camera moves, and when to
+// look at the error of a picture at rest.
 #pragma once
 
-#include <optional>
+#include <cstdint>
 
 #include "base/math.h"
-#include "render/accumulation.h"
 
 namespace candela {
 
@@ -25,11 +24,9 @@ uint32_t next_scale(uint32_t scale, double seconds);
 // `size` divided by `scale`, at least 1 in each direction.
 uvec2 scaled_size(uvec2 size, uint32_t scale);
 
-// The estimated relative error of the picture: the root of the mean, over pixels and channels, of V / (x^2 +
-// 0.01 m^2), where x is the mean of a pixel's samples, V its variance and m the mean of the picture, as in
-// the relMSE of `candela bench`. Of the pixels that have two samples at least; nothing if there is none, or
-// for a black picture. The variance is that of independent samples: with the other samplers the error is
-// usually smaller.
-std::optional<double> relative_error(const Accumulation& state);
+// Up to how many samples per pixel to render before the next look at a picture that has `spp` of them and
+// shall get `target`: a power of two, beginning with the first that the estimate of its error takes, and
+// `target` at most.
+uint32_t next_look(uint32_t spp, uint32_t target);
 
 }  // namespace candela

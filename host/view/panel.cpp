@@ -111,7 +111,8 @@ void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& fig
     show_figures(figures);
     show_buttons(state, requests);
     ImGui::Separator();
-    ImGui::SliderFloat("exposure", &state.exposure_ev, -EXPOSURE_RANGE, EXPOSURE_RANGE, "%.2f EV");
+    ImGui::SliderFloat("exposure", &state.exposure_ev, -EXPOSURE_RANGE, EXPOSURE_RANGE, "%.2f EV",
+                       ImGuiSliderFlags_AlwaysClamp);
     choose("tone map", state.tonemap, TONEMAPS);
     ImGui::Separator();
     show_camera(state, requests, cameras, home);

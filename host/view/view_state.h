@@ -42,7 +42,7 @@ struct ViewFigures {
     uvec2 size{0, 0};      // Of the picture right now; smaller than the window while the camera moves.
     double samples = 0.0;  // Per pixel, in the mean.
     double samples_per_second = 0.0;  // Of all pixels together.
-    std::optional<double> error;      // Relative; see relative_error().
+    std::optional<double> error;      // Relative, as estimated last; see estimate_relative_error().
     std::string message;              // What happened last.
 };
 

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <thread>
 #include <utility>
 
-#include "base/error.h"
-#include "base/file.h"
-#include "base/image_io.h"
-#include "view/camera_control.h"
+#include "render/steady_renderer.h"
 #include "view/controls.h"
 #include "view/pace.h"
 #include "view/panel.h"
@@ -30,11 +28,8 @@ constexpr double IDLE_SECONDS = 0.1;
 // takes several drawings to appear.
 constexpr double LIVELY_SECONDS = 0.5;
 
-// Otherwise drawing and estimating the error may take these shares of the time, and the error is estimated
-// once a second.
+// Otherwise drawing may take this share of the time.
 constexpr double DRAWING_SHARE = 0.1;
-constexpr double ERROR_SHARE = 0.02;
-constexpr double ERROR_SECONDS = 1.0;
 
 // The rate is a mean over about so long [s].
 constexpr double RATE_SECONDS = 0.5;
@@ -42,14 +37,9 @@ constexpr double RATE_SECONDS = 0.5;
 // After a pause the camera flies no farther than in so long [s].
 constexpr double LONGEST_FRAME = 0.1;
 
-double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
-    return std::chrono::duration<double>(to - from).count();
-}
-
-std::chrono::steady_clock::time_point later(std::chrono::steady_clock::time_point when, double seconds) {
-    return when + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                      std::chrono::duration<double>(seconds));
-}
+// The pause before a lost device is opened again [s], which doubles from try to try: a driver needs a moment
+// to reset it.
+constexpr double FIRST_PAUSE = 0.1;
 
 // Settings for the whole of a picture of another size.
 RenderSettings resized(RenderSettings settings, uvec2 size) {
@@ -60,26 +50,25 @@ RenderSettings resized(RenderSettings settings, uvec2 size) {
 
 }  // namespace
 
-Viewer::Viewer(Window& window, const vk::Device& device, vk::Presenter presenter, Scene scene,
-               ViewState state, ViewerOptions options)
+Viewer::Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewState state,
+               ViewerOptions options)
     : window_(window),
-      device_(device),
-      presenter_(std::move(presenter)),
+      instance_(instance),
       scene_(std::move(scene)),
       gpu_scene_(build_gpu_scene(scene_)),
       state_(std::move(state)),
       options_(std::move(options)),
       home_(state_.camera),
       gui_(window),
-      display_(device, presenter_.blue_first()),
       next_scale_(FIRST_SCALE) {
     state_.settings.submission_seconds = SUBMISSION_SECONDS;
+    state_.settings.aovs = true;  // EXRs hold them.
     if (scene_.environment) {
         radiance_ = scene_.environment->radiance;
         state_.environment_rotation = scene_.environment->rotation;
     }
-    renderer_ = std::make_unique<Renderer>(device_, gpu_scene_, state_.camera, state_.settings);
-    figures_.device = device.info().name;
+    figures_.device = options_.device.name;
+    begin();
 }
 
 bool Viewer::ended() const {
@@ -92,48 +81,114 @@ bool Viewer::changed_lately() const {
 
 bool Viewer::run() {
     while (true) {
-        begin();
-        const bool complete =
-            renderer_->render(options_.target, [this](double progress) { return step(progress); });
-        if (complete && scale_ == 1 && options_.close_at_target) return true;
-        while (!restart_ && !ended()) {
-            frame();
-            window_.wait(IDLE_SECONDS);
+        try {
+            if (restart_ || !renderer_) begin();
+            const bool complete = accumulate();
+            if (complete && scale_ == 1 && options_.close_at_target) return true;
+            while (!restart_ && !ended()) {
+                frame();
+                window_.wait(IDLE_SECONDS);
+            }
+            if (ended()) return complete && scale_ == 1;
+        } catch (const Error& error) {
+            recover(error);
         }
-        if (ended()) return complete && scale_ == 1;
     }
 }
 
-// Clears the picture and sets the renderer to what the user wants by now.
+void Viewer::open() {
+    const auto make_surface = [this] { return window_.make_surface(instance_.handle()); };
+    device_ = std::make_unique<vk::Device>(instance_, options_.device, options_.pipeline_cache_file);
+    presenter_ = std::make_unique<vk::Presenter>(*device_, make_surface(), make_surface);
+    display_ = std::make_unique<Display>(*device_, presenter_->blue_first());
+}
+
+// Gets rid of the device, or throws the error if it is of another kind or there is no hope left. While the
+// device is being opened again any error will do: a driver that is not ready has many ways to say so.
+void Viewer::recover(const Error& error) {
+    if (renderer_) {
+        if (error.code() != ExitCode::device_lost && error.code() != ExitCode::out_of_memory)
+            throw Error(error);
+        cause_ = error;
+        state_.settings.submission_seconds /= 2;
+    }
+    renderer_.reset();
+    display_.reset();
+    presenter_.reset();
+    device_.reset();
+    const uint64_t samples = copy_.state() ? copy_.state()->total_samples() : 0;
+    if (samples > samples_at_failure_) failures_ = 0;
+    samples_at_failure_ = samples;
+    if (++failures_ == SteadyRenderer::MOST_FAILURES) {
+        save_copy();
+        throw Error(cause_.value_or(error));
+    }
+    const uint32_t kept = copy_.state() && !restart_ ? copy_.state()->least_samples() : 0;
+    tell(std::string(error.what()) + "; opening the device again, and going on from " + std::to_string(kept) +
+         " samples per pixel");
+    std::this_thread::sleep_for(std::chrono::duration<double>(FIRST_PAUSE * (1u << (failures_ - 1))));
+}
+
+// Begins a picture of what the user wants by now or, if that is shown already but the device is another, goes
+// on with it.
 void Viewer::begin() {
-    if (rebuild_) {
+    restart_ |= outdated();
+    if (intensity_ != state_.environment_intensity) {
+        intensity_ = state_.environment_intensity;
         for (size_t i = 0; i < radiance_.size(); ++i)
-            scene_.environment->radiance[i] = state_.environment_intensity * radiance_[i];
+            scene_.environment->radiance[i] = intensity_ * radiance_[i];
         gpu_scene_ = build_gpu_scene(scene_);
         renderer_.reset();  // Before the next one takes memory.
-        renderer_ = std::make_unique<Renderer>(device_, gpu_scene_, state_.camera, state_.settings);
+    }
+    if (restart_) {
+        copy_.clear();
+        samples_at_failure_ = 0;
+        render_seconds_ = 0.0;
     }
     begun_ = Clock::now();
-    moving_ = changed_lately();
+    moving_ = !copy_.state() && changed_lately();
     scale_ = moving_ ? next_scale_ : 1;
     gpu_scene_.environment_rotation = state_.environment_rotation;
-    const RenderSettings settings = resized(state_.settings, scaled_size(state_.settings.size, scale_));
-    renderer_->reset(gpu_scene_, state_.camera, settings);
-    figures_.size = settings.size;
-    figures_.device_bytes = device_bytes(gpu_scene_, settings);
-    figures_.samples = 0.0;
-    figures_.error.reset();
-    restart_ = rebuild_ = false;
+    camera_ = state_.camera;
+    settings_ = resized(state_.settings, scaled_size(state_.settings.size, scale_));
+    if (!device_) open();
+    if (renderer_) {
+        renderer_->reset(gpu_scene_, camera_, settings_);
+    } else {
+        renderer_ = std::make_unique<Renderer>(*device_, gpu_scene_, camera_, settings_);
+    }
+    if (copy_.state()) renderer_->upload(*copy_.state());
+    spp_ = copy_.state() ? copy_.state()->least_samples() : 0;
+    figures_.size = settings_.size;
+    figures_.device_bytes = device_bytes(gpu_scene_, settings_);
+    figures_.samples = spp_;
+    figures_.error = copy_.error();
+    restart_ = false;
     is_first_ = true;
     measured_from_ = next_draw_ = Clock::now();
-    measured_samples_ = 0.0;
+    measured_samples_ = double(spp_) * figures_.size.x * figures_.size.y;
+}
+
+// Renders until the picture has all samples, if nothing stops it before. Returns whether it has them.
+bool Viewer::accumulate() {
+    while (spp_ < options_.target) {
+        stop_ = scale_ > 1 ? options_.target : next_look(spp_, options_.target);
+        if (!renderer_->render(stop_, [this](double progress) { return step(progress); })) return false;
+        spp_ = stop_;
+        if (scale_ > 1 || restart_ || ended()) break;
+        copy_.look(*renderer_, spp_, seconds_between(begun_, Clock::now()));
+        figures_.error = copy_.error();
+        measured_from_ = Clock::now();
+    }
+    return spp_ == options_.target;
 }
 
 void Viewer::measure(double progress) {
     const double pixels = double(figures_.size.x) * figures_.size.y;
-    const double samples = std::round(progress * pixels * options_.target);  // There are no halves.
+    const double samples = std::round((spp_ + progress * (stop_ - spp_)) * pixels);  // There are no halves.
     figures_.samples = samples / pixels;
     const double seconds = seconds_between(measured_from_, Clock::now());
+    render_seconds_ += seconds;
     if (seconds <= 0.0) return;
     const double rate = (samples - measured_samples_) / seconds;
     double& mean = figures_.samples_per_second;
@@ -150,6 +205,7 @@ bool Viewer::step(double progress) {
     if (moving_ && !whole) return !ended();
     if (moving_ && is_first_) next_scale_ = next_scale(scale_, seconds_between(begun_, Clock::now()));
     is_first_ = false;
+    if (scale_ == 1 && copy_.due()) copy_.take(*renderer_);
     if (window_.take_activity()) last_activity_ = Clock::now();
     const bool lively = seconds_between(last_activity_, Clock::now()) < LIVELY_SECONDS;
     if (lively || Clock::now() >= next_draw_) frame();
@@ -166,7 +222,6 @@ void Viewer::frame() {
     const Clock::time_point start = Clock::now();
     const double seconds = std::min(seconds_between(last_frame_, start), LONGEST_FRAME);
     last_frame_ = start;
-    const ViewState before = state_;
     gui_.begin();
     ViewRequests requests = apply_controls(window_, state_, seconds);
     if (state_.panel) {
@@ -175,11 +230,11 @@ void Viewer::frame() {
     const uvec2 size = window_.size();
     const Overlay& overlay = gui_.end(size);
     apply(requests);
-    note_changes(before);
-    update_figures();
+    note_changes();
+    update_title();
     if (size.x > 0 && size.y > 0) {
-        display_.draw(renderer_->accumulation(), size, state_.tonemap, state_.exposure_ev, overlay);
-        presenter_.show(display_.screen(), size.x, size.y);
+        display_->draw(renderer_->accumulation(), size, state_.tonemap, state_.exposure_ev, overlay);
+        presenter_->show(display_->screen(), size.x, size.y);
     }
     next_draw_ = later(Clock::now(), seconds_between(start, Clock::now()) / DRAWING_SHARE);
 }
@@ -190,13 +245,7 @@ void Viewer::apply(const ViewRequests& requests) {
     if (requests.camera || requests.home) state_.camera = home_;
     if (requests.focus) set_focus(*requests.focus);
     if (requests.restart) restart_ = true;
-    if (requests.save_png) save_as_next(".png", [this](const std::string& path) { save(path); });
-    if (requests.save_exr) save_as_next(".exr", [this](const std::string& path) { save(path); });
-    if (requests.save_camera) {
-        save_as_next("-camera.json", [this](const std::string& path) {
-            write_file_atomically(path, camera_json(state_.camera, "view"));
-        });
-    }
+    save_as_asked(requests);
 }
 
 void Viewer::set_focus(vec2 place) {
@@ -213,61 +262,34 @@ void Viewer::set_focus(vec2 place) {
     tell(text);
 }
 
-// Decides what must begin anew.
-void Viewer::note_changes(const ViewState& before) {
+// Whether the picture in the making is no longer what the user wants.
+bool Viewer::outdated() const {
+    const RenderSettings& wanted = state_.settings;
+    return state_.camera != camera_ || scaled_size(wanted.size, scale_) != settings_.size ||
+           wanted.estimator != settings_.estimator || wanted.max_depth != settings_.max_depth ||
+           state_.environment_rotation != gpu_scene_.environment_rotation ||
+           state_.environment_intensity != intensity_;
+}
+
+// Decides whether to begin anew.
+void Viewer::note_changes() {
     const uvec2 size = window_.size();
     if (!options_.close_at_target && size.x > 0 && size.y > 0 && size != state_.settings.size) {
         state_.settings = resized(state_.settings, size);
     }
-    const RenderSettings& a = before.settings;
-    const RenderSettings& b = state_.settings;
-    rebuild_ |= before.environment_intensity != state_.environment_intensity;
-    const bool changed = rebuild_ || before.camera != state_.camera || a.size != b.size ||
-                         a.estimator != b.estimator || a.max_depth != b.max_depth ||
-                         before.environment_rotation != state_.environment_rotation;
-    if (changed) last_change_ = Clock::now();
-    if (changed || (scale_ > 1 && !changed_lately())) restart_ = true;
+    if (outdated()) last_change_ = Clock::now();
+    if (outdated() || (scale_ > 1 && !changed_lately())) restart_ = true;
 }
 
-void Viewer::update_figures() {
-    const Clock::time_point start = Clock::now();
-    if (figures_.samples >= 2.0 && scale_ == 1 && !restart_ && start >= next_error_) {
-        figures_.error = relative_error(renderer_->download());
-        const double seconds = seconds_between(start, Clock::now());
-        next_error_ = later(Clock::now(), std::max(ERROR_SECONDS, seconds / ERROR_SHARE));
+void Viewer::update_title() {
+    std::string title =
+        options_.name + ": " + std::to_string(uint32_t(figures_.samples)) + " samples per pixel";
+    if (figures_.error) {
+        char text[48];
+        std::snprintf(text, sizeof text, ", estimated error %.2f %%", 100.0 * *figures_.error);
+        title += text;
     }
-    const std::string state = scale_ > 1 ? ", moving" : state_.paused ? ", paused" : "";
-    window_.set_title(options_.name + ": " + std::to_string(uint32_t(figures_.samples)) +
-                      " samples per pixel" + state);
-}
-
-void Viewer::save(const std::filesystem::path& path) {
-    const Accumulation state = renderer_->download();
-    if (image_format(path) == ImageFormat::png) {
-        const Image image = make_image(state, {}, {});
-        write_png(path, state.rect.width(), state.rect.height(),
-                  develop(image, state_.tonemap, state_.exposure_ev));
-    } else {
-        const AovSelection aovs{.position = true, .depth = true, .variance = true, .sample_count = true};
-        write_exr(path, make_image(state, aovs, renderer_->positions()));
-    }
-}
-
-// Writes to the first file NAME-1, NAME-2, ... that is not there yet. A failure is told; the user may try
-// again.
-void Viewer::save_as_next(const std::string& extension,
-                          const std::function<void(const std::string&)>& write) {
-    std::string path;
-    uint32_t number = 0;
-    do {
-        path = options_.name + "-" + std::to_string(++number) + extension;
-    } while (std::filesystem::exists(path));
-    try {
-        write(path);
-        tell("wrote " + path);
-    } catch (const Error& error) {
-        tell(error.what());
-    }
+    window_.set_title(title + (scale_ > 1 ? ", moving" : state_.paused ? ", paused" : ""));
 }
 
 void Viewer::tell(const std::string& message) {

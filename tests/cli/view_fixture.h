@@ -9,7 +9,9 @@
 #include <optional>
 #include <thread>
 
+#include "base/tonemap.h"
 #include "cli/cli_fixture.h"
+#include "render/accumulation.h"
 
 namespace candela {
 
@@ -43,9 +45,11 @@ class ViewTest : public CliTest {
 
     // Starts `candela view` of a scene in the test's folder, where it writes its files. Without a window
     // manager the window is at the top left of the screen.
-    Process& view(const Words& arguments, const std::string& scene = CORNELL_BOX) {
+    Process& view(const Words& arguments, const std::string& scene = CORNELL_BOX,
+                  std::map<std::string, std::string> variables = {}) {
+        variables.merge(environment());
         viewer_.emplace(Words{"/usr/bin/env", "-C", file(""), CANDELA_BINARY, "view", scene} + arguments,
-                        ProcessOptions{.environment = environment(), .timeout = 40.0});
+                        ProcessOptions{.environment = std::move(variables), .timeout = 40.0});
         return *viewer_;
     }
 
@@ -110,7 +114,17 @@ class ViewTest : public CliTest {
         return pixels;
     }
     // How many of the window's codes differ by more than one step from what the image looks like.
-    static size_t wrong_codes(const std::vector<uint32_t>& screen, const Image& image);
+    static size_t wrong_codes(const std::vector<uint32_t>& screen, const Image& image) {
+        const std::vector<uint8_t> codes = develop(image, Tonemap::linear, 0.0f);
+        const uint32_t width = image.data.width();
+        size_t wrong = 0;
+        for (size_t i = 0; i < image.pixel_count(); ++i) {
+            const uint32_t shown = screen[i / width * SCREEN.x + i % width];
+            for (size_t c = 0; c < 3; ++c)
+                wrong += std::abs(int(shown >> (16 - 8 * c) & 255u) - int(codes[3 * i + c])) > 1;
+        }
+        return wrong;
+    }
 
     // Closes the window as its user would and expects a clean end, which the validation layer has a say in.
     void expect_clean_end() {
@@ -122,6 +136,23 @@ class ViewTest : public CliTest {
     std::string display_;
     std::optional<Process> server_;
     std::optional<Process> viewer_;
+};
+
+// The tests of `candela view`.
+class View : public ViewTest {
+  protected:
+    // What `candela render` makes of the scene.
+    Image rendered(const Words& arguments, const std::string& scene = CORNELL_BOX) const {
+        const ProcessResult result = candela(
+            Words{"render", scene, "-q", "-o", file("rendered.exr"), "-o", file("rendered.png")} + arguments);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return read_exr(file("rendered.exr"));
+    }
+    // The same pictures, bit for bit.
+    static void expect_same_rgb(const Image& a, const Image& b) {
+        EXPECT_EQ(a.full, b.full);
+        EXPECT_EQ(image_hash(a), image_hash(b));
+    }
 };
 
 }  // namespace candela

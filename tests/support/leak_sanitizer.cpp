@@ -1,4 +1,4 @@
-// Compiled into the test programs of the sanitizer build only: which leaks are not ours but the driver's and
+// Compiled into the programs of the sanitizer build only: which leaks are not ours but the driver's and
 // the validation layer's (Mesa 22.3 and Khronos 1.3.239 leak a little per instance and per submission).
 
 // Frames of a library that was unloaded have no name any more, and no suppression would match them.

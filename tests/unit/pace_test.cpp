@@ -1,9 +1,10 @@
-// How coarse a moving picture is, and the estimate of a picture's error.
+// How coarse a moving picture is, and when one at rest is looked at.
 #include "view/pace.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include "base/relative_error.h"
+#include "render/sample_range.h"
 
 namespace candela {
 namespace {
@@ -35,51 +36,15 @@ TEST(Pace, TheScaleSettles) {
     }
 }
 
-// A state in which every pixel holds `samples` samples, half of them `low` and half of them `high`.
-Accumulation state_of(uint32_t samples, float low, float high) {
-    constexpr size_t PIXELS = 6;
-    Accumulation state;
-    state.full = uvec2(3, 2);
-    state.rect = {0, 0, 3, 2};
-    state.values.assign(PIXELS * 4 * LAYER_COUNT_COLOUR, 0.0f);
-    for (size_t i = 0; i < PIXELS; ++i) {
-        const auto at = [&](uint32_t layer) { return &state.values[(layer * PIXELS + i) * 4]; };
-        for (int c = 0; c < 3; ++c) {
-            at(LAYER_L)[c] = float(samples) / 2 * (low + high);
-            at(LAYER_SQUARE)[c] = float(samples) / 2 * (low * low + high * high);
-        }
-        at(LAYER_L_COMPENSATION)[3] = float(samples);
-    }
-    return state;
-}
-
-// n samples m - d and m + d in equal parts have the variance n/(n - 1) d^2, and their mean has the variance
-// d^2 / (n - 1). The image holds it as a float, whose rounding the root halves.
-TEST(Pace, TheRelativeErrorIsTheStandardErrorOverTheMean) {
-    EXPECT_NEAR(*relative_error(state_of(2, 1.0f, 3.0f)), 1.0 / (2.0 * std::sqrt(1.01)), 1e-7);
-    EXPECT_NEAR(*relative_error(state_of(16, 1.0f, 3.0f)), 1.0 / std::sqrt(15.0) / (2.0 * std::sqrt(1.01)),
-                1e-7);
-    EXPECT_EQ(*relative_error(state_of(16, 2.0f, 2.0f)), 0.0);
-}
-
-// Half of the pixels, whose value is 0, have the variance 0; the mean of the others, of value 2, is 1: they
-// give 1 / (4 + 0.01) each.
-TEST(Pace, TheRelativeErrorIsMeasuredByThePixelAndThePicture) {
-    Accumulation state = state_of(2, 1.0f, 3.0f);
-    const size_t floats = state.pixel_count() * 4;
-    for (size_t i = 0; i < state.values.size(); ++i) {
-        if (i % floats < floats / 2 && i % 4 < 3) state.values[i] = 0.0f;
-    }
-    EXPECT_NEAR(*relative_error(state), std::sqrt(0.5 / 4.01), 1e-7);
-    // Pixels with a single sample do not count.
-    for (size_t i = 0; i < state.pixel_count() / 2; ++i)
-        state.values[LAYER_L_COMPENSATION * floats + 4 * i + 3] = 1.0f;
-    EXPECT_NEAR(*relative_error(state), 1.0 / (2.0 * std::sqrt(1.01)), 1e-7);
-}
-
-TEST(Pace, TheRelativeErrorIsUnknownFromOneSampleOrOfBlack) {
-    EXPECT_FALSE(relative_error(state_of(1, 1.0f, 1.0f)).has_value());
-    EXPECT_FALSE(relative_error(state_of(4, 0.0f, 0.0f)).has_value());
+// The stages that the estimate of `render --target-error` compares, from half of its first on.
+TEST(Pace, APictureIsLookedAtAtPowersOfTwo) {
+    EXPECT_EQ(next_look(0, 1000), LEAST_ESTIMATED_SPP / 2);
+    EXPECT_EQ(next_look(LEAST_ESTIMATED_SPP / 2, 1000), LEAST_ESTIMATED_SPP);
+    EXPECT_EQ(next_look(16, 1000), 32u);
+    EXPECT_EQ(next_look(33, 1000), 64u);
+    EXPECT_EQ(next_look(512, 1000), 1000u);
+    EXPECT_EQ(next_look(0, 3), 3u);
+    EXPECT_EQ(next_look(MAX_SPP / 2, MAX_SPP), MAX_SPP);
 }
 
 }  // namespace

@@ -1,0 +1,41 @@
+// PictureCopy: the host's copy of the picture that accumulates on the device, which outlives the device, and
+// the error of the picture as estimated from such copies.
+#pragma once
+
+#include <optional>
+
+#include "base/image.h"
+#include "render/renderer.h"
+#include "view/clock.h"
+
+namespace candela {
+
+class PictureCopy {
+  public:
+    // Forgets the picture: another begins.
+    void clear();
+
+    // Copies the picture as it is now. To be called when it is due(): every ten seconds, or less often where
+    // that would take more than a twentieth of the time.
+    void take(const Renderer& renderer);
+    bool due() const { return Clock::now() >= next_; }
+
+    // Copies the picture when all its pixels hold `spp` samples, and estimates its error, as `candela render
+    // --target-error` does, if they held half of that at the last look and LEAST_ESTIMATED_SPP are there.
+    // A look that takes both more than a tenth of a second and more than a twentieth of `seconds`, those that
+    // the picture took so far, is left out.
+    void look(const Renderer& renderer, uint32_t spp, double seconds);
+
+    const std::optional<Accumulation>& state() const { return state_; }
+    // Relative; the last estimate, if there is one.
+    std::optional<double> error() const { return error_; }
+
+  private:
+    std::optional<Accumulation> state_;
+    std::optional<Image> seen_;  // At the last look.
+    std::optional<double> error_;
+    double look_seconds_ = 0.0;  // How long a look takes; of any picture.
+    Clock::time_point next_;
+};
+
+}  // namespace candela

@@ -1,0 +1,62 @@
+// See viewer.h. The files that the viewer writes.
+#include "base/error.h"
+#include "base/file.h"
+#include "base/image_io.h"
+#include "view/camera_control.h"
+#include "view/viewer.h"
+
+namespace candela {
+
+// `positions` may be empty: then the image lacks P and Z, which take a device.
+void Viewer::write_radiance(const std::filesystem::path& path, const Accumulation& state,
+                            const std::vector<float>& positions) {
+    const bool placed = !positions.empty();
+    Image image = make_image(state, {true, true, placed, placed, true, true}, positions);
+    options_.add_attributes(image, {gpu_scene_, camera_, settings_, state, render_seconds_});
+    write_exr(path, image);
+}
+
+void Viewer::save(const std::filesystem::path& path) {
+    const Accumulation state = renderer_->download();
+    if (image_format(path) == ImageFormat::png) {
+        const Image image = make_image(state, {}, {});
+        write_png(path, state.rect.width(), state.rect.height(),
+                  develop(image, state_.tonemap, state_.exposure_ev));
+    } else {
+        write_radiance(path, state, renderer_->positions());
+    }
+}
+
+void Viewer::save_copy() {
+    if (!copy_.state() || restart_) return;
+    save_as_next(".exr", [this](const std::string& path) { write_radiance(path, *copy_.state(), {}); });
+}
+
+void Viewer::save_as_asked(const ViewRequests& requests) {
+    if (requests.save_png) save_as_next(".png", [this](const std::string& path) { save(path); });
+    if (requests.save_exr) save_as_next(".exr", [this](const std::string& path) { save(path); });
+    if (requests.save_camera) {
+        save_as_next("-camera.json", [this](const std::string& path) {
+            write_file_atomically(path, camera_json(state_.camera, "view"));
+        });
+    }
+}
+
+// Writes to the first file NAME-1, NAME-2, ... that is not there yet. A failure is told; the user may try
+// again.
+void Viewer::save_as_next(const std::string& extension,
+                          const std::function<void(const std::string&)>& write) {
+    std::string path;
+    uint32_t number = 0;
+    do {
+        path = options_.name + "-" + std::to_string(++number) + extension;
+    } while (std::filesystem::exists(path));
+    try {
+        write(path);
+        tell("wrote " + path);
+    } catch (const Error& error) {
+        tell(error.what());
+    }
+}
+
+}  // namespace candela

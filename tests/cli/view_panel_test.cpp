@@ -1,0 +1,236 @@
+// The panel of `candela view`, the mouse and the keys: whether each does what it says.
+#include "cli/view_fixture.h"
+#include "scene/scene.h"
+
+namespace candela {
+namespace {
+
+// The saved camera, put into the scene, gives `candela render` the very picture that the window showed.
+TEST_F(View, ADragTurnsTheCameraAndTheSavedCameraGivesTheSamePicture) {
+    view({"--size", "320x240", "--spp", "4"});
+    const Image before = picture_at_rest("cornell-box", {320, 240}, 4);
+    xdotool({"mousemove", "310", "200", "mousedown", "1"});
+    bool moved = false;
+    for (int i = 0; i < 10; ++i) {
+        xdotool({"mousemove_relative", "--", "-4", "2"});
+        moved |= title().find(", moving") != std::string::npos;
+    }
+    xdotool({"mouseup", "1"});
+    EXPECT_TRUE(moved);
+    xdotool({"mousemove", "310", "200", "click", "4", "keydown", "shift", "mousedown", "1"});
+    xdotool({"mousemove_relative", "--", "-9", "9"});
+    xdotool({"mousemove_relative", "--", "-9", "9"});
+    xdotool({"mouseup", "1", "keyup", "shift"});
+    xdotool({"keydown", "w", "keydown", "d", "sleep", "0.2", "keyup", "w", "keyup", "d"});
+    const Image after = picture_at_rest("cornell-box", {320, 240}, 4);
+    EXPECT_NE(image_hash(before), image_hash(after));
+
+    xdotool({"key", "c"});
+    const std::string camera = file("cornell-box-1-camera.json");
+    wait_until("the camera is there", [&] { return std::filesystem::exists(camera); });
+    auto scene = nlohmann::json::parse(read_file(CORNELL_BOX), nullptr, true, true);
+    scene["cameras"] = nlohmann::json::parse(read_file(camera))["cameras"];
+    const Image again = rendered({"--size", "320x240", "--spp", "4"}, write("scene.json", scene.dump()));
+    expect_same_rgb(after, again);
+
+    xdotool({"key", "Home"});
+    expect_same_rgb(before, picture_at_rest("cornell-box", {320, 240}, 4));
+    expect_clean_end();
+}
+
+// Sliders at their left ends: no bounces, as --max-depth 0; the sky turned by -180 degrees and at a hundredth
+// of its brightness, as scenes with such skies; and another camera.
+TEST_F(View, ThePanelChangesThePicture) {
+    const uvec2 size(310, 380);
+    const auto slide_left = [&](const std::string& name, const char* y) {
+        wait_for_title(name + ": 1 samples per pixel");
+        xdotool({"mousemove", "20", y, "mousedown", "1", "sleep", "0.3", "mouseup", "1"});
+        return picture_at_rest(name, size, 1);
+    };
+    view({"--size", "310x380", "--spp", "1"});
+    expect_same_rgb(slide_left("cornell-box", "322"),
+                    rendered({"--size", "310x380", "--spp", "1", "--max-depth", "0"}));
+    expect_clean_end();
+
+    auto scene = nlohmann::json::parse(read_file(DEPTH_OF_FIELD), nullptr, true, true);
+    scene["environment"]["file"] = std::string(CANDELA_SCENES) + "/dusk.hdr";
+    view({"--size", "310x380", "--spp", "1"}, write("dusk.json", scene.dump()));
+    // The panel alone changes nothing.
+    expect_same_rgb(picture_at_rest("dusk", size, 1),
+                    rendered({"--size", "310x380", "--spp", "1"}, file("dusk.json")));
+    scene["environment"]["rotation"] = -180;
+    expect_same_rgb(slide_left("dusk", "345"),
+                    rendered({"--size", "310x380", "--spp", "1"}, write("turned.json", scene.dump())));
+    // The second entry of "camera".
+    for (const auto& [x, y] : {std::pair("150", "207"), std::pair("60", "248")}) {
+        xdotool({"mousemove", x, y, "sleep", "0.3", "mousedown", "1", "sleep", "0.3", "mouseup", "1", "sleep",
+                 "0.3"});
+    }
+    expect_same_rgb(
+        picture_at_rest("dusk", size, 1),
+        rendered({"--size", "310x380", "--spp", "1", "--camera", "pinhole"}, file("turned.json")));
+    expect_clean_end();
+
+    scene["environment"] = {{"radiance", {1, 1, 1}}};
+    view({"--size", "310x380", "--spp", "1"}, write("even.json", scene.dump()));
+    scene["environment"] = {{"radiance", {0.01, 0.01, 0.01}}};
+    expect_same_rgb(slide_left("even", "368"),
+                    rendered({"--size", "310x380", "--spp", "1"}, write("dark.json", scene.dump())));
+    expect_clean_end();
+}
+
+class ViewControls : public View {
+  protected:
+    static Words click_at(const char* x, const char* y) { return {"mousemove", x, y, "click", "1"}; }
+    // Does it, and waits until the screen has changed and rests again.
+    void act(const Words& how) const {
+        const std::vector<uint32_t> before = screen();
+        xdotool(how);
+        wait_until("the screen has changed", [&] { return screen() != before; });
+        wait_until("the screen rests", [&] {
+            const std::vector<uint32_t> now = screen();
+            std::this_thread::sleep_for(std::chrono::milliseconds(250));
+            return screen() == now;
+        });
+    }
+    // Types a number into the slider at that height.
+    void type(const char* y, const std::string& number) const {
+        act(Words{"keydown", "ctrl"} + click_at("100", y));
+        xdotool({"keyup", "ctrl"});
+        act({"type", number});
+        act({"keydown", "Return"});
+        xdotool({"keyup", "Return"});
+    }
+    // Chooses entry n, counted from 0, of the list at that height.
+    void choose(int y, int n) const {
+        act(click_at("100", std::to_string(y).c_str()));
+        act(click_at("60", std::to_string(y + 24 + 17 * n).c_str()));
+    }
+    // Presses that key, or clicks at that place, for the next file of the name, and waits until it is there.
+    std::string saved(const Words& how, const std::string& name) const {
+        xdotool(how);
+        wait_until(name + " is there", [&] { return std::filesystem::exists(file(name)); });
+        return file(name);
+    }
+    Camera saved_camera() const {
+        const std::string path = saved({"key", "c"}, "cornell-box-1-camera.json");
+        const nlohmann::json saved = nlohmann::json::parse(read_file(path))["cameras"]["view"];
+        std::filesystem::remove(path);
+        const auto vector = [&](const char* key) {
+            return vec3(saved[key][0].get<float>(), saved[key][1].get<float>(), saved[key][2].get<float>());
+        };
+        Camera camera;
+        camera.position = vector("position");
+        camera.look_at = vector("look_at");
+        camera.up = vector("up");
+        return camera;
+    }
+};
+
+// What is typed belongs to the slider and moves nothing, though E and 2 are among it.
+TEST_F(ViewControls, WhatIsSetInThePanelIsRendered) {
+    const Words settings{"--size", "310x380", "--spp", "1", "--max-depth", "1"};
+    view(settings);
+    wait_for_title("cornell-box: 1 samples per pixel");
+    type("157", "1000");
+    const std::string brightest = read_file(saved({"key", "p"}, "cornell-box-1.png"));
+    rendered(settings + Words{"--exposure", "10"});
+    EXPECT_TRUE(brightest == read_file(file("rendered.png")));
+
+    type("157", "1.5");
+    choose(180, 3);
+    type("253", "2e-2");
+    type("276", "0.7");
+    choose(299, 1);
+    const Image image = picture_at_rest("cornell-box", {310, 380}, 1);
+    const std::string shown = read_file(saved({"key", "p"}, "cornell-box-2.png"));
+    auto scene = nlohmann::json::parse(read_file(CORNELL_BOX), nullptr, true, true);
+    scene["cameras"]["main"]["lens"] = {{"radius", 0.02}, {"focal_distance", 0.7}};
+    const Words development{"--exposure", "1.5", "--tonemap", "agx", "--estimator", "light"};
+    expect_same_rgb(image, rendered(settings + development, write("scene.json", scene.dump())));
+    EXPECT_TRUE(shown == read_file(file("rendered.png")));
+    expect_clean_end();
+}
+
+TEST_F(ViewControls, TheButtonsDoWhatTheKeysDo) {
+    view({"--size", "310x380"});
+    wait_until("there are samples", [&] { return title() > "cornell-box: 2"; });
+    xdotool(click_at("30", "134"));
+    wait_until("it is paused", [&] { return title().find(", paused") != std::string::npos; });
+    const std::string paused = title();
+    EXPECT_EQ(read_exr(saved(click_at("236", "134"), "cornell-box-1.exr")).full, uvec2(310, 380));
+    const std::string png = read_file(saved(click_at("164", "134"), "cornell-box-1.png"));
+    EXPECT_EQ(png.substr(1, 3), "PNG");
+    EXPECT_EQ(title(), paused);
+    xdotool(click_at("95", "134"));
+    wait_until("it begins anew", [&] { return title() != paused; });
+    xdotool(click_at("30", "134"));
+    wait_until("it goes on", [&] { return title().find(", paused") == std::string::npos; });
+
+    const vec3 home = saved_camera().position;
+    xdotool({"mousemove", "305", "375", "click", "4"});
+    wait_until("the camera has moved", [&] { return saved_camera().position != home; });
+    xdotool(click_at("58", "230"));
+    EXPECT_EQ(saved_camera().position, home);
+    saved(click_at("150", "230"), "cornell-box-1-camera.json");
+    expect_clean_end();
+}
+
+// In the frame of the camera: right, up, forwards. A turn and a step of the wheel leave what is looked at
+// where it is, and everything else moves it along with the camera.
+TEST_F(ViewControls, MouseAndKeysMoveTheCameraTheirWay) {
+    view({"--size", "200x200", "--spp", "1"});
+    wait_for_title("cornell-box: 1 samples per pixel");
+    xdotool({"key", "Tab"});
+    // In two steps, the first of which tells it from a click.
+    const auto drag = [](const char* button, const char* x, const char* y) {
+        return Words{"mousemove", "100",
+                     "100",       "mousedown",
+                     button,      "sleep",
+                     "0.2",       "mousemove_relative",
+                     "--",        x,
+                     y,           "sleep",
+                     "0.2",       "mousemove_relative",
+                     "--",        x,
+                     y,           "sleep",
+                     "0.2"};
+    };
+    struct Move {
+        Words begin, end;
+        vec3 direction;
+        bool about;  // What is looked at.
+    };
+    const Move moves[] = {
+        {{"keydown", "w"}, {"keyup", "w"}, {0, 0, 1}, false},
+        {{"keydown", "s"}, {"keyup", "s"}, {0, 0, -1}, false},
+        {{"keydown", "d"}, {"keyup", "d"}, {1, 0, 0}, false},
+        {{"keydown", "a"}, {"keyup", "a"}, {-1, 0, 0}, false},
+        {{"keydown", "e"}, {"keyup", "e"}, {0, 1, 0}, false},
+        {{"keydown", "q"}, {"keyup", "q"}, {0, -1, 0}, false},
+        {drag("2", "9", "0"), {"mouseup", "2"}, {-1, 0, 0}, false},
+        {drag("3", "0", "9"), {"mouseup", "3"}, {0, 1, 0}, false},
+        {drag("1", "9", "0"), {"mouseup", "1"}, {-1, 0, 0}, true},
+        {drag("1", "0", "9"), {"mouseup", "1"}, {0, 1, 0}, true},
+        {{"click", "4"}, {"sleep", "0"}, {0, 0, 1}, true},
+        {{"click", "5"}, {"sleep", "0"}, {0, 0, -1}, true},
+    };
+    for (const Move& move : moves) {
+        const Camera before = saved_camera();
+        xdotool(move.begin);
+        Camera after;
+        wait_until("the camera has moved",
+                   [&] { return (after = saved_camera()).position != before.position; });
+        xdotool(move.end);
+        const vec3 forward = normalize(before.look_at - before.position);
+        const vec3 right = normalize(cross(forward, before.up));
+        const vec3 shift = after.position - before.position;
+        const vec3 seen(dot(shift, right), dot(shift, cross(right, forward)), dot(shift, forward));
+        // Of a turn by up to half a radian, the chord has an angle of up to a quarter with where it begins.
+        EXPECT_GT(dot(normalize(seen), move.direction), std::cos(0.25f)) << move.begin.back();
+        EXPECT_EQ(after.look_at == before.look_at, move.about) << move.begin.back();
+    }
+    expect_clean_end();
+}
+
+}  // namespace
+}  // namespace candela
