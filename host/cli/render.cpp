@@ -279,37 +279,30 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
     return code;
 }
 
+constexpr const char* FOOTER = R"(Example:
+  candela render scenes/cornell-box.json -o box.exr -o box.png --spp 256 --size 512x512
+
+Ctrl-C stops early and writes the image so far (exit code 130); a second Ctrl-C ends at once.
+
+With --checkpoint a rendering survives the end of the program: the same command with --resume goes on, to
+the same bits. A script can always pass --resume, the first time as well.
+--target-error compares the image with what it was at half as many samples, at powers of two from 16 on. For
+--sampler independent that is the error; where others converge faster, it is somewhat more. Light that no
+sample has found yet is not in it. A resumed rendering looks anew, and may take up to twice the samples.
+--adaptive renders two halves with seeds of their own, each with its samples where the other says that they
+remove most noise for their time: so without bias. The image is their mean, and the estimated error comes
+from how they differ. It holds four states in memory instead of one, and its images cannot be merged.
+--progress json prints an object twice a second, and a last one, whose state is not "rendering", when all is
+written; after an error there is none.
+--samples 0..64 on one computer, --samples 64..128 on another: candela merge joins the parts.)";
+
 }  // namespace
 
 Command add_render_command(CLI::App& app, const std::string& command_line) {
     CLI::App* const command = app.add_subcommand("render", "Render a scene to image files");
     const auto options = std::make_shared<RenderOptions>();
     options->add_to(*command);
-    command->footer(
-        "Example:\n"
-        "  candela render scenes/cornell-box.json -o box.exr -o box.png --spp 256 --size 512x512\n\n"
-        "Ctrl-C stops early and writes the image so far (exit code 130); a second Ctrl-C ends at once.\n\n"
-        "With --checkpoint a rendering survives the end of the program: the same command with --resume goes "
-        "on,\n"
-        "to the same bits. A script can always pass --resume, the first time as well.\n"
-        "--target-error compares the image with what it was at half as many samples, at powers of two from "
-        "16 "
-        "on. For\n"
-        "--sampler independent that is the error; where others converge faster, it is somewhat more. Light "
-        "that no\n"
-        "sample has found yet is not in it. A resumed rendering looks anew, and may take up to twice the "
-        "samples.\n"
-        "--adaptive renders two halves with seeds of their own, each with its samples where the other has "
-        "most "
-        "noise,\n"
-        "and so without bias; the image is their mean, and the estimated error comes from how they differ. "
-        "It "
-        "holds\n"
-        "four states in memory instead of one. Its images cannot be merged.\n"
-        "--progress json prints an object twice a second, and a last one, whose state is not \"rendering\", "
-        "when\n"
-        "all is written; after an error there is none.\n"
-        "--samples 0..64 on one computer, --samples 64..128 on another: candela merge joins the parts.");
+    command->footer(FOOTER);
     return {command, [options, command_line] { return render(*options, command_line); }};
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/relative_error.h"
+#include "render/sample_range.h"
 
 namespace candela {
 namespace {
@@ -108,8 +109,9 @@ void plan_extra_samples(const Accumulation& other_even, uint32_t even, uint32_t 
     std::vector<double> before(pixels);
     for (size_t i = 0; i < pixels; ++i)
         before[i] = extra.limit(i) == UINT32_MAX ? 0.0 : extra.limit(i);
+    const double most = std::min(LARGEST_SHARE * half, MAX_SPP - 1.0);
     const auto extra_of = [&](size_t i, double factor) {
-        return std::max(before[i], std::min(factor * weights[i], LARGEST_SHARE * half) - even);
+        return std::max(before[i], std::min(factor * weights[i], most) - even);
     };
     const double factor = solve_factor(half - even, [&](double f) {
         double sum = 0.0;

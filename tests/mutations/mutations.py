@@ -27,7 +27,7 @@ BSDFS = ("BsdfTest*:Phong*:Dielectric*:Warp*", "Albedo*:SkyFurnace*:*Dielectric*
 LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
-GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*")
+GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 
 GROUPS = [
     (INTEGRATOR, [
@@ -89,6 +89,8 @@ GROUPS = [
          "std::ceil(steps(x)));\n        while (decode(q) < x)", "steps(x));\n        while (decode(q + 1) < x)"),
         ("a single child left to visit is forgotten", TRAVERSAL, "met.count > 0u && t.pending.count > 0u",
          "met.count > 0u && t.pending.count > 1u"),
+        ("the last of a list of primitives forgotten", TRAVERSAL, "i < int(LIST); ++i) primitive_intersect",
+         "i < int(LIST) - 1; ++i) primitive_intersect"),
         ("boxes without a margin, a little small", TRAVERSAL, "vec3 far = start + margin", "vec3 far = start - margin"),
         ("edges belong to no triangle", TRIANGLE, "any_negative(e) && any_positive(e)",
          "!(e.x * e.y > 0.0 && e.y * e.z > 0.0)"),

@@ -158,5 +158,33 @@ TEST_F(AdaptiveTest, TheExpectationStaysThoughTheSamplesGoWhereLightWasFound) {
         << "mean " << means.mean() << ", not " << 0.8 * FORM_FACTOR << "; t = " << t;
 }
 
+// The mean of renderings with many seeds, whose deviations from it tell its variance.
+TEST_F(AdaptiveTest, TheMeansAreThoseOfUniformSampling) {
+    constexpr uint32_t SIZE = 32, SPP = 64, SEEDS = 50;
+    const Scene scene = cornell_box();
+    const RenderSettings settings = independent_settings(SIZE, Estimator::mis, 1);
+    Adaptive adaptive(*this, scene, settings);
+    std::vector<RunningMoments> moments(size_t{3} * SIZE * SIZE);
+    for (uint32_t seed = 0; seed < SEEDS; ++seed) {
+        const Image image = make_image(adaptive.render(SPP, 1000 + seed), {}, {});
+        for (size_t c = 0; c < 3; ++c) {
+            for (size_t i = 0; i < image.pixel_count(); ++i)
+                moments[c * image.pixel_count() + i].add(plane(image, "", c)[i]);
+        }
+    }
+    Image mean{.full = settings.size, .data = settings.crop, .channels = {}, .attributes = {}};
+    for (size_t c = 0; c < 3; ++c) {
+        const auto add = [&](const std::string& name, const auto& value) {
+            std::vector<float>& values = mean.add(name).values;
+            for (size_t i = 0; i < values.size(); ++i)
+                values[i] = float(value(moments[c * values.size() + i]));
+        };
+        add(std::string(1, "RGB"[c]), [](const RunningMoments& pixel) { return pixel.mean(); });
+        add(std::string("Variance.") + "RGB"[c],
+            [](const RunningMoments& pixel) { return pixel.variance_of_mean(); });
+    }
+    expect_same_expectation(mean, image_of(render(scene, settings, SPP * SEEDS)));
+}
+
 }  // namespace
 }  // namespace candela

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "render/sample_range.h"
+
 namespace candela {
 namespace {
 
@@ -128,6 +130,8 @@ TEST(Adaptive, EveryPixelKeepsItsEvenSamplesAndNoneGetsMoreThanItsShare) {
     EXPECT_EQ(extra.limit(7 * WIDTH + 7) + EVEN, 16u * 64);
     EXPECT_EQ(extra.limit(8), 0u);
     EXPECT_EQ(extra.limit(8 * WIDTH), 0u);
+    plan_extra_samples(one_group, EVEN, 1u << 22, extra);
+    EXPECT_EQ(extra.limit(0) + EVEN, MAX_SPP - 1);
 }
 
 TEST(Adaptive, ALimitNeverFalls) {
