@@ -128,8 +128,8 @@ TEST_F(AdaptiveTest, ItGoesOnToTheSameBitsFromAnyMoment) {
         EXPECT_EQ(whole.channels[c].values, resumed.channels[c].values) << whole.channels[c].name;
 }
 
-// All pixels are one point under a lamp so small that a neighbourhood's first samples find it once or twice,
-// or not at all. Neighbourhoods without a find get few samples, those with one get many; were those the
+// All pixels are one point under a lamp so small that a work group's first samples find it once or twice,
+// or not at all. Groups without a find get few samples, those with one get many; were those the
 // samples of the same half, each find would be outvoted, and the picture too dark by a third.
 TEST_F(AdaptiveTest, TheExpectationStaysThoughTheSamplesGoWhereLightWasFound) {
     constexpr uint32_t SPP = 128, SEEDS = 100;
