@@ -61,7 +61,7 @@ void for_each_number(State& state, const std::string& prefix, const Each& each) 
     each("candela." + prefix + "depthLimitHits", state.counters.depth_limit_hits);
 }
 
-// Those of the first that the image has.
+// How many states the image holds.
 size_t count_states(const Image& image) {
     size_t states = 1;
     while (image.find(channel_name(states, 0, 0)) != nullptr)

@@ -4,32 +4,20 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/relative_error.h"
-#include "render_fixture.h"
-#include "scene/loader.h"
+#include "steady_fixture.h"
 
 namespace candela {
 namespace {
 
-class AdaptiveTest : public RenderTest {
+class AdaptiveTest : public SteadyTest {
   protected:
-    static Scene scene_of(const char* name) {
-        return load_scene(std::string(CANDELA_SCENES) + "/" + name + ".json");
-    }
     // Renders adaptively, pass after pass, and starts anew for every seed.
     class Adaptive {
       public:
         Adaptive(const AdaptiveTest& test, const Scene& scene, const RenderSettings& settings)
             : scene_(build_gpu_scene(scene)),
               settings_(settings),
-              renderer_({.instance = &test.instance_,
-                         .device = test.info_,
-                         .pipeline_cache_file = std::nullopt,
-                         .scene = &scene_,
-                         .camera = &scene.cameras[0],
-                         .settings = settings,
-                         .states = adaptive_states(settings)},
-                        [](const Error&, uint32_t, double) { FAIL() << "the device failed"; }) {}
+              renderer_(test.steady_renderer(scene, scene_, settings, adaptive_states(settings))) {}
 
         const std::vector<Accumulation>& render(uint32_t spp, uint32_t seed) {
             settings_.seed = seed;
@@ -48,7 +36,6 @@ class AdaptiveTest : public RenderTest {
             }
             return renderer_.states();
         }
-        Image image(uint32_t spp, uint32_t seed) { return make_image(render(spp, seed), {}, {}); }
 
       private:
         GpuScene scene_;
@@ -98,14 +85,7 @@ TEST_F(AdaptiveTest, ItGoesOnToTheSameBitsFromAnyMoment) {
     uint32_t planned = 0;
     std::vector<Accumulation> states = adaptive_states(settings);
     const auto render_some = [&](int submissions) {
-        SteadyRenderer renderer({.instance = &instance_,
-                                 .device = info_,
-                                 .pipeline_cache_file = std::nullopt,
-                                 .scene = &gpu_scene,
-                                 .camera = &scene.cameras[0],
-                                 .settings = settings,
-                                 .states = std::move(states)},
-                                [](const Error&, uint32_t, double) { FAIL() << "the device failed"; });
+        SteadyRenderer renderer = steady_renderer(scene, gpu_scene, settings, std::move(states));
         bool complete = true;
         for (uint32_t end = 0; complete && end < SPP;) {
             end = next_pass_end(end, SPP);

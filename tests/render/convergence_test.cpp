@@ -5,14 +5,14 @@
 
 #include "base/relative_error.h"
 #include "render/adaptive.h"
-#include "render_fixture.h"
 #include "scene/loader.h"
 #include "scene/names.h"
+#include "steady_fixture.h"
 
 namespace candela {
 namespace {
 
-class ConvergenceTest : public RenderTest {
+class ConvergenceTest : public SteadyTest {
   protected:
     static constexpr uint32_t SIZE = 48, SPP = 128, REFERENCE_SPP = 1024;
 
@@ -20,14 +20,7 @@ class ConvergenceTest : public RenderTest {
     ConvergencePoint adaptive_point(const Scene& scene, const GpuScene& gpu_scene,
                                     const Image& reference) const {
         const RenderSettings chosen = settings(SamplerKind::sobol, 1);
-        SteadyRenderer renderer({.instance = &instance_,
-                                 .device = info_,
-                                 .pipeline_cache_file = std::nullopt,
-                                 .scene = &gpu_scene,
-                                 .camera = &scene.cameras[0],
-                                 .settings = chosen,
-                                 .states = adaptive_states(chosen)},
-                                [](const Error&, uint32_t, double) { FAIL() << "the device failed"; });
+        SteadyRenderer renderer = steady_renderer(scene, gpu_scene, chosen, adaptive_states(chosen));
         uint32_t planned = 0;
         for (uint32_t end = 0; end < SPP;) {
             end = next_pass_end(end, SPP);

@@ -2,12 +2,12 @@
 // a device fails is in tests/cli/device_failure_test.cpp.
 #include "render/steady_renderer.h"
 
-#include "render_fixture.h"
+#include "steady_fixture.h"
 
 namespace candela {
 namespace {
 
-class SteadyRendererTest : public RenderTest {
+class SteadyRendererTest : public SteadyTest {
   protected:
     // Renders 16 samples in many submissions, and counts how often a new state is held on the way.
     int copies_on_the_way(double hold_seconds) const {
@@ -15,15 +15,8 @@ class SteadyRendererTest : public RenderTest {
         const GpuScene gpu_scene = build_gpu_scene(scene);
         RenderSettings settings = settings_for(64, 64);
         settings.submission_seconds = 1e-6;
-        SteadyRenderer renderer({.instance = &instance_,
-                                 .device = info_,
-                                 .pipeline_cache_file = std::nullopt,
-                                 .scene = &gpu_scene,
-                                 .camera = &scene.cameras[0],
-                                 .settings = settings,
-                                 .states = {empty_state(settings)},
-                                 .hold_seconds = hold_seconds},
-                                [](const Error&, uint32_t, double) {});
+        SteadyRenderer renderer =
+            steady_renderer(scene, gpu_scene, settings, {empty_state(settings)}, hold_seconds);
         EXPECT_EQ(count_samples(renderer.states()).total, 0u);
         int copies = 0;
         uint64_t samples = 0;

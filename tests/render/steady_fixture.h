@@ -1,0 +1,30 @@
+// What the tests share that render several states, or on a renderer that outlives its device.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "render/steady_renderer.h"
+#include "render_fixture.h"
+
+namespace candela {
+
+class SteadyTest : public RenderTest {
+  protected:
+    // A renderer for the scene's first camera that goes on from `states`. No device may fail.
+    SteadyRenderer steady_renderer(const Scene& scene, const GpuScene& gpu_scene,
+                                   const RenderSettings& settings, std::vector<Accumulation> states,
+                                   double hold_seconds = 10.0) const {
+        return SteadyRenderer({.instance = &instance_,
+                               .device = info_,
+                               .pipeline_cache_file = std::nullopt,
+                               .scene = &gpu_scene,
+                               .camera = &scene.cameras[0],
+                               .settings = settings,
+                               .states = std::move(states),
+                               .hold_seconds = hold_seconds},
+                              [](const Error&, uint32_t, double) { FAIL() << "the device failed"; });
+    }
+};
+
+}  // namespace candela
