@@ -1,10 +1,12 @@
-// Builds the tree from the root down, straight to 4 children a node: what a binary build and a collapse give,
-// without the binary tree. Large ranges are tasks of their own, whose pieces are joined in depth-first order.
-// What a task does follows from its range alone, so the number of threads never changes the result.
+// Builds the tree from the root down. Large ranges are tasks of their own, split straight into the children
+// of one node; a smaller one becomes a binary tree, which is then turned into wide nodes at the least cost.
+// The pieces are joined in depth-first order. What a task does follows from its range alone, so the number of
+// threads never changes the result.
 #include "bvh/bvh.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <functional>
 #include <memory>
@@ -13,6 +15,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "bvh/collapse.h"
 #include "bvh/measure.h"
 #include "bvh/quantise.h"
 #include "bvh/split.h"
@@ -59,21 +62,24 @@ bool makes_leaf(const PrimitiveRange& range) {
     return range.count == 1;
 }
 
-// Levels of nodes over `count` primitives if each splits into four equal parts.
+// Levels of nodes over `count` primitives if each splits into two equal parts.
 uint32_t balanced_depth(uint32_t count) {
-    uint32_t depth = 0;
-    for (; count > 1; count = (count + 3) / 4)
-        ++depth;
-    return depth;
+    return uint32_t(std::bit_width(count - 1));
+}
+
+// Whether a range at that depth must be split into equal parts. The heuristic may take a single primitive off
+// at every split (boxes that grow exponentially). So wherever a child of all primitives but one might be too
+// deep for what is left of BVH_MAX_DEPTH levels, the parts are equal, and those fit: nodes on the way down
+// kept to this rule. A binary tree may follow it level by level: a wide node stands for one of its levels at
+// least.
+bool must_balance(uint32_t depth, uint32_t count) {
+    return depth + 1 + balanced_depth(count - 1) >= BVH_MAX_DEPTH;
 }
 
 // Splits the range of a node, then the part that most rays would meet (the largest surface), until there are
-// four parts, or all are leaves. The heuristic may take a single primitive off at every split (boxes that
-// grow exponentially). So wherever a child of all primitives but one might be too deep for what is left of
-// BVH_MAX_DEPTH levels, the node is split into equal parts, and those fit: nodes on the way down kept to this
-// rule.
+// BVH_WIDTH parts, or all are leaves.
 Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
-    const bool balanced = job.depth + 1 + balanced_depth(job.range.count - 1) >= BVH_MAX_DEPTH;
+    const bool balanced = must_balance(job.depth, job.range.count);
     const auto priority = [balanced](const PrimitiveRange& range) {
         return std::make_pair(balanced ? 0.0 : half_area(Box(range.bounds)), range.count);
     };
@@ -92,7 +98,6 @@ Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
     const auto begin = children.ranges.begin();
     const auto leaves = std::stable_partition(begin, begin + children.count, std::not_fn(makes_leaf));
     children.nodes = uint32_t(leaves - begin);
-    assert(children.count == BVH_WIDTH || children.nodes == 0);  // See bvh_child().
     return children;
 }
 
@@ -110,26 +115,64 @@ void put_node(std::span<const PrimitiveRef> refs, const Children& children, Piec
         piece.order.push_back(refs[children.ranges[c].first].index);
 }
 
+// The binary tree below `root`; both arrays in the same order.
+struct BinaryTree {
+    std::vector<BinaryNode> nodes;
+    std::vector<PrimitiveRange> ranges;
+};
+
+BinaryTree build_binary(std::span<PrimitiveRef> refs, const Job& root) {
+    BinaryTree tree;
+    std::vector<uint32_t> depths;
+    const size_t count = 2 * size_t(root.range.count) - 1;
+    tree.nodes.reserve(count);
+    tree.ranges.reserve(count);
+    depths.reserve(count);
+    const auto add = [&](const PrimitiveRange& range, uint32_t depth) {
+        tree.nodes.push_back({.area = half_area(Box(range.bounds))});
+        tree.ranges.push_back(range);
+        depths.push_back(depth);
+    };
+    add(root.range, root.depth);
+    for (uint32_t i = 0; i < tree.nodes.size(); ++i) {
+        const PrimitiveRange range = tree.ranges[i];
+        if (makes_leaf(range)) continue;
+        const bool balanced = must_balance(depths[i], range.count);
+        const auto [left, right] = balanced ? split_median(refs, range) : split_sah(refs, range);
+        tree.nodes[i].left = uint32_t(tree.nodes.size());
+        add(left, depths[i] + 1);
+        add(right, depths[i] + 1);
+    }
+    return tree;
+}
+
 // Builds the whole subtree of `root`.
 void build_subtree(std::span<PrimitiveRef> refs, const Job& root, Piece& piece) {
+    BinaryTree tree = build_binary(refs, root);
+    find_least_costs(tree.nodes);
     struct Pending {
-        Job job;
+        uint32_t binary;
         uint32_t index;
     };
     piece.nodes.resize(1);
-    std::vector<Pending> stack{{root, 0}};
+    std::vector<Pending> stack{{0, 0}};
     while (!stack.empty()) {
         const Pending next = stack.back();
         stack.pop_back();
-        const Children children = open_children(refs, next.job);
+        WideChildren wide = wide_children(tree.nodes, next.binary);
+        const auto begin = wide.indices.begin();
+        const auto is_node = [&](uint32_t binary) { return tree.nodes[binary].left != 0; };
+        const auto leaves = std::stable_partition(begin, begin + wide.count, is_node);
+        Children children{{}, wide.count, uint32_t(leaves - begin)};
+        for (uint32_t c = 0; c < wide.count; ++c)
+            children.ranges[c] = tree.ranges[wide.indices[c]];
         put_node(refs, children, piece, next.index);
         const auto first = uint32_t(piece.nodes.size());
         piece.nodes.resize(first + children.nodes);
         for (uint32_t c = children.nodes; c-- > 0;)
-            stack.push_back({{children.ranges[c], next.job.depth + 1}, first + c});
+            stack.push_back({wide.indices[c], first + c});
     }
 }
-
 // Builds what one task stands for: a subtree, or a node and the tasks of its children.
 void run_task(std::span<PrimitiveRef> refs, const Task& task, TaskQueue<Task>& queue) {
     Piece& piece = *task.piece;
@@ -169,8 +212,11 @@ void join_pieces(std::unique_ptr<Piece> root, Bvh& bvh) {
         stack.pop_back();
         Piece& piece = *next.piece;
         const auto nodes_before = uint32_t(bvh.nodes.size()), order_before = uint32_t(bvh.order.size());
-        for (PackedBvhNode& node : piece.nodes)
-            node[2] += uvec4(0u, 0u, nodes_before - 1, order_before);
+        for (PackedBvhNode& packed : piece.nodes) {
+            BvhNode node = unpack(packed);
+            node.children += uvec2(nodes_before - 1, order_before);
+            packed = pack(node);
+        }
         bvh.nodes[next.index] = piece.nodes.front();
         bvh.nodes.insert(bvh.nodes.end(), piece.nodes.begin() + 1, piece.nodes.end());
         bvh.order.insert(bvh.order.end(), piece.order.begin(), piece.order.end());

@@ -1,5 +1,5 @@
-// A 4-wide bounding volume hierarchy over boxes, one in a leaf: built with the surface area heuristic,
-// quantised to 48 bytes a node, the same bytes for any number of threads.
+// A 7-wide bounding volume hierarchy over boxes, one in a leaf: built with the surface area heuristic,
+// quantised to 64 bytes a node, the same bytes for any number of threads.
 #pragma once
 
 #include <cstdint>

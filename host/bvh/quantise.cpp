@@ -63,13 +63,17 @@ BvhNode quantise(std::span<const Box> boxes) {
         bounds.extend(box);
 
     // A child that does not exist keeps the inverted box [255, 0].
-    BvhNode node{bounds.lo, vec3(1), uvec3(0xFFFFFFFFu), uvec3(0), uvec2(0)};
+    BvhNode node{.origin = bounds.lo,
+                 .scale = vec3(1),
+                 .q_lo = {uvec3(0xFFFFFFFFu), uvec3(0xFFFFFFu)},
+                 .q_hi = {uvec3(0), uvec3(0)},
+                 .children = uvec2(0)};
     for (int a = 0; a < 3; ++a) {
         const GridAxis axis(bounds.lo[a], bounds.hi[a]);
         node.scale[a] = axis.scale;
         for (size_t i = 0; i < boxes.size(); ++i) {
-            node.q_lo[a] ^= (LAST_STEP ^ axis.at_most(boxes[i].lo[a])) << 8 * i;
-            node.q_hi[a] |= axis.at_least(boxes[i].hi[a]) << 8 * i;
+            node.q_lo[i / 4][a] ^= (LAST_STEP ^ axis.at_most(boxes[i].lo[a])) << 8 * (i % 4);
+            node.q_hi[i / 4][a] |= axis.at_least(boxes[i].hi[a]) << 8 * (i % 4);
         }
     }
     return node;

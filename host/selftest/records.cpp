@@ -36,6 +36,13 @@ class Fields {
         const uvec3 xyz = u3();
         return {xyz.x, xyz.y, xyz.z, u()};
     }
+    // Of 24 bits.
+    uint u24() { return keep(0x00A00001u + uint(words.size()) * 0x00000203u); }
+    uvec3 u24_3() {
+        const uint x = u24();
+        const uint y = u24();
+        return {x, y, u24()};
+    }
     vec2 f2() {
         const float x = f();
         return {x, f()};
@@ -73,7 +80,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 121> words;
+    std::array<uint, 127> words;
 };
 
 // Where the tables begin if a word that belongs to nothing comes first, and each table has two records.
@@ -117,9 +124,12 @@ Records filled(Fields& fields) {
     r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);
     for (const int axis : {0, 1, 2})
         fields.keep(floatBitsToUint(r.node.scale[axis]));
-    r.node.q_lo = fields.u3();
-    r.node.q_hi = fields.u3();
-    r.node.children = fields.u2();
+    r.node.q_lo[0] = fields.u3();
+    r.node.q_lo[1] = fields.u24_3();
+    r.node.q_hi[0] = fields.u3();
+    r.node.q_hi[1] = fields.u24_3();
+    r.node.children.x = fields.u24();
+    r.node.children.y = fields.u();
     r.triangles = {.kind = fields.keep(PRIMITIVE_TRIANGLES),
                    .a = fields.f3(),
                    .b = fields.f3(),

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 121u
+#define RESULT_WORDS 127u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -38,8 +38,10 @@ void put_node(uint i) {
     BvhNode node = scene_node(i);
     put(node.origin);
     put(node.scale);
-    put(node.q_lo);
-    put(node.q_hi);
+    put(node.q_lo[0]);
+    put(node.q_lo[1]);
+    put(node.q_hi[0]);
+    put(node.q_hi[1]);
     put(node.children);
 }
 

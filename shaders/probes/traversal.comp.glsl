@@ -9,7 +9,7 @@
 #include "scene/traversal.glsl"
 
 Hit brute_force(Ray ray) {
-    RayShear shear = ray_shear(ray.d);
+    RayShear shear = ray_shear(ray.d, reciprocals(ray.d));
     Hit hit = Hit(FLOAT_MAX, 0u, vec2(0.0));
     for (uint i = 0u; i < primitive_count; ++i) primitive_intersect(ray, shear, scene_primitive(i), i, hit);
     return hit;

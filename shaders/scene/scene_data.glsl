@@ -32,12 +32,7 @@ Parameters scene_parameters() {
 
 BvhNode scene_node(uint i) {
     i *= BVH_NODE_WORDS;
-    return bvh_node_unpack(FETCH(nodes, i), FETCH(nodes, i + 1u), FETCH(nodes, i + 2u));
-}
-
-// Where the children of a node are; see bvh_child.
-uvec2 scene_node_children(uint i) {
-    return FETCH(nodes, i * BVH_NODE_WORDS + 2u).zw;
+    return bvh_node_unpack(FETCH(nodes, i), FETCH(nodes, i + 1u), FETCH(nodes, i + 2u), FETCH(nodes, i + 3u));
 }
 
 // Primitive at that position in leaf order.

@@ -22,11 +22,13 @@ vec3 turn(vec3 v, uint kz) {
     return kz == 0u ? v.yzx : kz == 1u ? v.zxy : v;
 }
 
-RayShear ray_shear(vec3 d) {
+// inv_d: reciprocals(d).
+RayShear ray_shear(vec3 d, vec3 inv_d) {
     vec3 a = abs(d);
     uint kz = a.x > a.y ? (a.x > a.z ? 0u : 2u) : (a.y > a.z ? 1u : 2u);
     vec3 e = turn(d, kz);
-    return RayShear(kz, vec3(e.x / e.z, e.y / e.z, 1.0 / e.z), reciprocals(e).xy);
+    vec3 inv = turn(inv_d, kz);
+    return RayShear(kz, vec3(e.x / e.z, e.y / e.z, inv.z), inv.xy);
 }
 
 // A vertex as the ray sees it: across the ray, and along it [lengths of d's longest component].

@@ -1,15 +1,17 @@
-// Record of a node of the 4-wide BVH, 3 words of uvec4 (48 bytes).
+// Record of a node of the 7-wide BVH, 4 words of uvec4 (64 bytes, one line of most caches).
 //
-//   0: origin.xyz, exponents (byte a: biased exponent of scale on axis a)
-//   1: q_lo.xyz, q_hi.x (byte i of each: child i)
-//   2: q_hi.yz, children.xy
+//   0: origin.xyz, exponents (byte a: biased exponent of scale on axis a) and byte 3 of children.y
+//   1: q_lo[0].xyz, q_hi[0].x (byte i of each: child i)
+//   2: q_hi[0].yz, q_lo[1].xy
+//   3: q_lo[1].z, q_hi[1].xyz (byte i of [1]: child 4 + i; byte 3: one of children.x and children.y, as
+//   below)
 //
 // The box of child i is [origin + q_lo * scale, origin + q_hi * scale] in float arithmetic. The product is
 // exact, so a fused multiply-add gives the same box. It is rounded outwards: it contains all that is below
 // it.
 //
 // Children that are nodes come first and stand side by side in the array of nodes, as do those that are
-// primitives in leaf order; so it takes two words to say where all are (bvh_child reads them).
+// primitives in leaf order; so it takes two numbers to say where all are (bvh_child reads them).
 #ifndef SHARED_BVH_NODE_H
 #define SHARED_BVH_NODE_H
 
@@ -20,37 +22,38 @@
 namespace candela {
 #endif
 
-const uint BVH_NODE_WORDS = 3u;
-const uint BVH_WIDTH = 4u;
+const uint BVH_NODE_WORDS = 4u;
+const uint BVH_WIDTH = 7u;
 
-// No tree has more levels of nodes than this; the builder sees to it. A balanced tree over 2^28 primitives
-// has 14 levels; the rest lets the surface area heuristic be unbalanced. (A sphere of 10 M triangles has 19
+// No tree has more levels of nodes than this; the builder sees to it. Halving 2^26 primitives takes 26
+// levels; the rest lets the surface area heuristic be unbalanced. (A sphere of 10 M triangles has DEPTH10M
 // levels.)
-const uint BVH_MAX_DEPTH = 32u;
+const uint BVH_MAX_DEPTH = 48u;
 
-// A tree has fewer nodes than this: a reference to a group of nodes keeps 24 bits for the first, as does an
-// entry of traversal's stack.
+// A tree has fewer nodes than this: 24 bits for the index of a node leave one for each child in a word of
+// traversal's stack.
 const uint BVH_MAX_NODES = 1u << 24u;
 
 // A tree has at most so many primitives.
-const uint BVH_MAX_PRIMITIVES = 0x0FFFFFFFu;
+const uint BVH_MAX_PRIMITIVES = (1u << 26u) - 1u;
 
 // A reference has this bit set and is a position in leaf order; or it is the index of a node.
 const uint BVH_LEAF_BIT = 0x80000000u;
 
 // A decoded node.
 struct BvhNode {
-    vec3 origin;  // World space [m].
-    vec3 scale;   // Metres per step, on each axis a positive normal power of two.
-    uvec3 q_lo;   // Byte i of each component: child i.
-    uvec3 q_hi;
-    uvec2 children;  // Where they are.
+    vec3 origin;    // World space [m].
+    vec3 scale;     // Metres per step, on each axis a positive normal power of two.
+    uvec3 q_lo[2];  // Byte i of each component of [0]: child i; of [1]: child 4 + i.
+    uvec3 q_hi[2];
+    uvec2 children;  // Where they are: the first node; and the first primitive, with numbers of children
+                     // above it.
 };
 
 #ifdef __cplusplus
 
 using PackedBvhNode = std::array<uvec4, BVH_NODE_WORDS>;
-static_assert(sizeof(PackedBvhNode) == 48);
+static_assert(sizeof(PackedBvhNode) == 64);
 
 inline vec3 uintBitsToFloat(uvec3 v) {
     return std::bit_cast<vec3>(v);
@@ -58,56 +61,70 @@ inline vec3 uintBitsToFloat(uvec3 v) {
 
 inline PackedBvhNode pack(const BvhNode& n) {
     const uvec3 exponent = std::bit_cast<uvec3>(n.scale) >> 23u;
-    return {words(n.origin, exponent.x | exponent.y << 8 | exponent.z << 16), uvec4(n.q_lo, n.q_hi.x),
-            uvec4(n.q_hi.y, n.q_hi.z, n.children)};
+    const uvec3 node_bytes = uvec3(n.children.x, n.children.x >> 8u, n.children.x >> 16u) << 24u;
+    const uvec3 primitive_bytes = uvec3(n.children.y, n.children.y >> 8u, n.children.y >> 16u) << 24u;
+    const uvec3 q_lo = (n.q_lo[1] & 0xFFFFFFu) | node_bytes;
+    const uvec3 q_hi = (n.q_hi[1] & 0xFFFFFFu) | primitive_bytes;
+    return {words(n.origin, exponent.x | exponent.y << 8 | exponent.z << 16 | (n.children.y & 0xFF000000u)),
+            uvec4(n.q_lo[0], n.q_hi[0].x), uvec4(n.q_hi[0].y, n.q_hi[0].z, q_lo.x, q_lo.y),
+            uvec4(q_lo.z, q_hi.x, q_hi.y, q_hi.z)};
 }
 
 // The children of a node: `nodes` of them from index `first_node`, the rest of `count` (1 .. BVH_WIDTH) from
 // position `first_primitive` in leaf order.
 inline uvec2 bvh_children(uint nodes, uint first_node, uint count, uint first_primitive) {
-    return {first_node | nodes << 24u | (count - 1u) << 27u, first_primitive};
+    return {first_node, first_primitive | nodes << 26u | (count - 1u) << 29u};
 }
 
-inline BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c);
+inline BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d);
 inline uint bvh_child(uvec2 children, uint i);
+inline uint bvh_last_child(uvec2 children);
 
 #endif
 
 // Decodes a record. Both languages read this, so that the host checks the very boxes that the device sees.
-BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c) {
+BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     BvhNode n;
     n.origin = uintBitsToFloat(uvec3(a));
     n.scale = uintBitsToFloat((uvec3(a.w, a.w >> 8, a.w >> 16) & 0xFFu) << 23u);
-    n.q_lo = uvec3(b);
-    n.q_hi = uvec3(b.w, c.x, c.y);
-    n.children = uvec2(c.z, c.w);
+    n.q_lo[0] = uvec3(b);
+    n.q_hi[0] = uvec3(b.w, c.x, c.y);
+    uvec3 lo = uvec3(c.z, c.w, d.x);
+    uvec3 hi = uvec3(d.y, d.z, d.w);
+    n.q_lo[1] = lo & 0xFFFFFFu;
+    n.q_hi[1] = hi & 0xFFFFFFu;
+    n.children.x = lo.x >> 24u | lo.y >> 24u << 8u | lo.z >> 24u << 16u;
+    n.children.y = hi.x >> 24u | hi.y >> 24u << 8u | hi.z >> 24u << 16u | a.w >> 24u << 24u;
     return n;
 }
 
-// The reference to child i. A ray may meet the box of a child that does not exist, which means nothing: it
-// gets the last child, at no harm, since where the builder leaves room all children are leaves.
+// The last of a node's children, which are 0 .. bvh_last_child.
+uint bvh_last_child(uvec2 children) {
+    return children.y >> 29u;
+}
+
+// The reference to child i.
 uint bvh_child(uvec2 children, uint i) {
-    uint nodes = children.x >> 24u & 7u;
-    uint last = children.x >> 27u;
-    if (i > last) i = last;
-    return i < nodes ? (children.x & (BVH_MAX_NODES - 1u)) + i : BVH_LEAF_BIT | (children.y + i - nodes);
+    uint nodes = children.y >> 26u & 7u;
+    return i < nodes ? children.x + i : BVH_LEAF_BIT | ((children.y & BVH_MAX_PRIMITIVES) + i - nodes);
 }
 
 #ifdef __cplusplus
 
 inline BvhNode unpack(const PackedBvhNode& n) {
-    return bvh_node_unpack(n[0], n[1], n[2]);
+    return bvh_node_unpack(n[0], n[1], n[2], n[3]);
 }
 
 // How many children a node has. (The root of an empty tree has one that does not exist.)
 inline uint bvh_child_count(const BvhNode& n) {
-    return (n.children.x >> 27u) + 1u;
+    return bvh_last_child(n.children) + 1u;
 }
 
 // The decoded box of child i, in 0 .. BVH_WIDTH - 1.
 inline Box child_box(const BvhNode& n, uint i) {
-    return {n.origin + vec3((n.q_lo >> 8u * i) & 0xFFu) * n.scale,
-            n.origin + vec3((n.q_hi >> 8u * i) & 0xFFu) * n.scale};
+    const uint shift = 8u * (i % 4u);
+    return {n.origin + vec3((n.q_lo[i / 4u] >> shift) & 0xFFu) * n.scale,
+            n.origin + vec3((n.q_hi[i / 4u] >> shift) & 0xFFu) * n.scale};
 }
 
 inline bool is_leaf(uint reference) {

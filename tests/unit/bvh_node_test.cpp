@@ -37,41 +37,49 @@ Box cube(float lo, float hi) {
 }
 
 TEST(BvhNode, PacksAndUnpacksEveryField) {
-    const BvhNode node{vec3(1.5f, -2.0f, 3e30f), vec3(0x1p-126f, 1.0f, 0x1p127f),
-                       uvec3(0x01020304u, 0x05060708u, 0x090A0B0Cu),
-                       uvec3(0xF1F2F3F4u, 0xF5F6F7F8u, 0xF9FAFBFCu), bvh_children(2u, 1234567u, 3u, 89u)};
+    const BvhNode node{vec3(1.5f, -2.0f, 3e30f),
+                       vec3(0x1p-126f, 1.0f, 0x1p127f),
+                       {uvec3(0x01020304u, 0x05060708u, 0x090A0B0Cu), uvec3(0x112233u, 0x445566u, 0x778899u)},
+                       {uvec3(0xF1F2F3F4u, 0xF5F6F7F8u, 0xF9FAFBFCu), uvec3(0xA1A2A3u, 0xA4A5A6u, 0xA7A8A9u)},
+                       uvec2(0xC3C2C1u, 0xD4D3D2D1u)};
     const PackedBvhNode words = pack(node);
-    EXPECT_EQ(words[0].w, 1u | 127u << 8 | 254u << 16);
+    EXPECT_EQ(words[0].w, 0xD4FE7F01u);
     EXPECT_EQ(words[1], uvec4(0x01020304u, 0x05060708u, 0x090A0B0Cu, 0xF1F2F3F4u));
-    EXPECT_EQ(words[2], uvec4(0xF5F6F7F8u, 0xF9FAFBFCu, node.children));
+    EXPECT_EQ(words[2], uvec4(0xF5F6F7F8u, 0xF9FAFBFCu, 0xC1112233u, 0xC2445566u));
+    EXPECT_EQ(words[3], uvec4(0xC3778899u, 0xD1A1A2A3u, 0xD2A4A5A6u, 0xD3A7A8A9u));
     const BvhNode back = unpack(words);
     EXPECT_EQ(back.origin, node.origin);
     EXPECT_EQ(back.scale, node.scale);
-    EXPECT_EQ(back.q_lo, node.q_lo);
-    EXPECT_EQ(back.q_hi, node.q_hi);
+    for (const int group : {0, 1}) {
+        EXPECT_EQ(back.q_lo[group], node.q_lo[group]);
+        EXPECT_EQ(back.q_hi[group], node.q_hi[group]);
+    }
     EXPECT_EQ(back.children, node.children);
 }
 
 TEST(BvhNode, ChildBoxReadsTheBytesOfItsChild) {
-    const BvhNode node{vec3(10, 20, 30), vec3(1, 2, 4), uvec3(0x04030201u, 0x08070605u, 0x0C0B0A09u),
-                       uvec3(0x44434241u, 0x48474645u, 0x4C4B4A49u), uvec2(0)};
-    const Box box = child_box(node, 2);
-    EXPECT_EQ(box.lo, vec3(10 + 3, 20 + 2 * 7, 30 + 4 * 11));
-    EXPECT_EQ(box.hi, vec3(10 + 0x43, 20 + 2 * 0x47, 30 + 4 * 0x4B));
+    const BvhNode node{vec3(10, 20, 30),
+                       vec3(1, 2, 4),
+                       {uvec3(0x04030201u, 0x08070605u, 0x0C0B0A09u), uvec3(0x131211u, 0x161514u, 0x191817u)},
+                       {uvec3(0x44434241u, 0x48474645u, 0x4C4B4A49u), uvec3(0x535251u, 0x565554u, 0x595857u)},
+                       uvec2(0)};
+    EXPECT_EQ(child_box(node, 2).lo, vec3(10 + 3, 20 + 2 * 7, 30 + 4 * 11));
+    EXPECT_EQ(child_box(node, 2).hi, vec3(10 + 0x43, 20 + 2 * 0x47, 30 + 4 * 0x4B));
+    EXPECT_EQ(child_box(node, 5).lo, vec3(10 + 0x12, 20 + 2 * 0x15, 30 + 4 * 0x18));
+    EXPECT_EQ(child_box(node, 5).hi, vec3(10 + 0x52, 20 + 2 * 0x55, 30 + 4 * 0x58));
 }
 
-TEST(BvhNode, ChildrenAreNodesThenPrimitivesAndAnyOtherIsTheLast) {
+TEST(BvhNode, ChildrenAreNodesThenPrimitives) {
     for (const uint32_t node : {1u, 99u, BVH_MAX_NODES - BVH_WIDTH}) {
         for (const uint32_t primitive : {0u, 77u, BVH_MAX_PRIMITIVES - BVH_WIDTH}) {
             for (uint32_t count = 1; count <= BVH_WIDTH; ++count) {
                 for (uint32_t nodes = 0; nodes <= count; ++nodes) {
                     const uvec2 children = bvh_children(nodes, node, count, primitive);
-                    for (uint32_t i = 0; i < BVH_WIDTH; ++i) {
-                        const uint32_t existing = std::min(i, count - 1);
-                        const uint32_t reference = bvh_child(children, i);
-                        EXPECT_EQ(reference, existing < nodes
-                                                 ? node + existing
-                                                 : BVH_LEAF_BIT | (primitive + existing - nodes));
+                    EXPECT_EQ(children.x, node);  // The other bits are traversal's.
+                    EXPECT_EQ(bvh_last_child(children), count - 1);
+                    for (uint32_t i = 0; i < count; ++i) {
+                        EXPECT_EQ(bvh_child(children, i),
+                                  i < nodes ? node + i : BVH_LEAF_BIT | (primitive + i - nodes));
                     }
                 }
             }
@@ -81,9 +89,11 @@ TEST(BvhNode, ChildrenAreNodesThenPrimitivesAndAnyOtherIsTheLast) {
 
 TEST(BvhNode, ChildrenThatDoNotExistGetAnInvertedBox) {
     const BvhNode node = quantise(std::vector<Box>{cube(0, 1), cube(2, 3)});
-    EXPECT_EQ(node.q_lo.x >> 16, 0xFFFFu);
-    EXPECT_EQ(node.q_hi.x >> 16, 0u);
-    EXPECT_EQ(quantise({}).q_lo, uvec3(0xFFFFFFFFu));
+    EXPECT_EQ(node.q_lo[0].x >> 16, 0xFFFFu);
+    EXPECT_EQ(node.q_hi[0].x >> 16, 0u);
+    EXPECT_EQ(node.q_lo[1].x, 0xFFFFFFu);
+    EXPECT_EQ(node.q_hi[1].x, 0u);
+    EXPECT_EQ(quantise({}).q_lo[0], uvec3(0xFFFFFFFFu));
 }
 
 TEST(BvhNode, RoundsOutwardsOnAnyRange) {
@@ -92,7 +102,7 @@ TEST(BvhNode, RoundsOutwardsOnAnyRange) {
     for (int trial = 0; trial < 20000; ++trial) {
         const float centre = unit(generator) * std::pow(10.0f, exponent(generator));
         const float size = std::pow(10.0f, exponent(generator));
-        std::vector<Box> boxes(1 + size_t(trial % 4));
+        std::vector<Box> boxes(1 + size_t(trial) % BVH_WIDTH);
         for (Box& box : boxes) {
             for (int corner = 0; corner < 2; ++corner) {
                 const float x = unit(generator), y = unit(generator), z = unit(generator);

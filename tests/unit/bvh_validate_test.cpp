@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bvh/bvh.h"
+#include "bvh/quantise.h"
 #include "bvh_boxes.h"
 
 namespace candela {
@@ -26,6 +27,8 @@ class BvhValidate : public testing::Test {
         changed.children = children;
         bvh_.nodes[i] = pack(changed);
     }
+    // Where the primitives among the children of a node are.
+    uint32_t first_position(size_t i) const { return node(i).children.y & BVH_MAX_PRIMITIVES; }
     static std::string at(size_t node) { return "node " + std::to_string(node) + ": "; }
 };
 
@@ -49,21 +52,21 @@ TEST_F(BvhValidate, SeesAPrimitiveTwice) {
     expect_problem("order names primitive " + std::to_string(bvh_.order[3]) + " twice");
 }
 
-// The root of a thousand boxes has four nodes; the last node of all has leaves alone.
+// The root of a thousand boxes has seven nodes; the last node of all has leaves alone.
 TEST_F(BvhValidate, SeesANodeOutOfRange) {
     const auto size = uint32_t(bvh_.nodes.size());
-    set_children(0, bvh_children(4, size - 3, 4, 0));
+    set_children(0, bvh_children(7, size - 6, 7, 0));
     expect_problem(at(0) + "reference to node " + std::to_string(size) + ", which is out of range");
 }
 
 TEST_F(BvhValidate, SeesACycle) {
-    set_children(1, bvh_children(4, 0, 4, 0));
+    set_children(1, bvh_children(7, 0, 7, 0));
     expect_problem(at(1) + "reference back to node 0");
 }
 
 TEST_F(BvhValidate, SeesANodeTwice) {
-    set_children(1, bvh_children(4, 4, 4, 0));
-    expect_problem(at(1) + "second reference to node 4");
+    set_children(1, bvh_children(7, 7, 7, 0));
+    expect_problem(at(1) + "second reference to node 7");
 }
 
 TEST_F(BvhValidate, SeesALeafOutOfRange) {
@@ -74,9 +77,10 @@ TEST_F(BvhValidate, SeesALeafOutOfRange) {
 
 TEST_F(BvhValidate, SeesALeafThatIsLost) {
     const size_t last = bvh_.nodes.size() - 1;
-    ASSERT_GT(bvh_child_count(node(last)), 1u);
-    const uint32_t lost = leaf_position(bvh_child(node(last).children, BVH_WIDTH - 1));
-    set_children(last, bvh_children(0, 0, bvh_child_count(node(last)) - 1, node(last).children.y));
+    const uint32_t count = bvh_child_count(node(last));
+    ASSERT_GT(count, 1u);
+    const uint32_t lost = leaf_position(bvh_child(node(last).children, count - 1));
+    set_children(last, bvh_children(0, 0, count - 1, first_position(last)));
     expect_problem("position " + std::to_string(lost) + " of order: in no leaf");
 }
 
@@ -89,17 +93,17 @@ TEST_F(BvhValidate, SeesALeafTwice) {
 TEST_F(BvhValidate, SeesANodeThatNothingRefersTo) {
     const size_t last = bvh_.nodes.size() - 1;
     bvh_.nodes.push_back(bvh_.nodes.back());
-    expect_problem(at(last + 1) + "second leaf with position " + std::to_string(node(last).children.y));
+    expect_problem(at(last + 1) + "second leaf with position " + std::to_string(first_position(last)));
     bvh_.nodes.pop_back();
-    set_children(0, bvh_children(3, 1, 3, 0));
-    expect_problem(at(4) + "no reference to it");
+    set_children(0, bvh_children(6, 1, 6, 0));
+    expect_problem(at(7) + "no reference to it");
 }
 
 TEST_F(BvhValidate, SeesABoxThatIsTooSmall) {
     const size_t last = bvh_.nodes.size() - 1;
     BvhNode changed = node(last);
-    changed.q_lo.y &= ~0xFFu;
-    changed.q_hi.y &= ~0xFFu;
+    changed.q_lo[0].y &= ~0xFFu;
+    changed.q_hi[0].y &= ~0xFFu;
     bvh_.nodes[last] = pack(changed);
     expect_problem(at(last) + "the box of child 0 does not contain what is below it");
 }
@@ -127,17 +131,18 @@ TEST_F(BvhValidate, SeesWrongMeasures) {
 
 // A chain of nodes with three leaves each, as a builder without a bound would make it.
 TEST(BvhValidateStack, SeesATreeThatIsTooDeep) {
-    constexpr uint32_t LEVELS = 33;
+    constexpr uint32_t LEVELS = 49;
     const std::vector<Box> boxes(size_t(3) * LEVELS, Box{vec3(0), vec3(1)});
     Bvh bvh = build_bvh(boxes);
     bvh.nodes.clear();
     for (uint32_t i = 0; i < LEVELS; ++i) {
         const bool last = i + 1 == LEVELS;
-        bvh.nodes.push_back(pack(BvhNode{vec3(0), vec3(1), uvec3(0), uvec3(0x01010101u),
-                                         bvh_children(last ? 0 : 1, i + 1, last ? 3 : 4, 3 * i)}));
+        BvhNode node = quantise(std::vector(4, Box{vec3(0), vec3(1)}));
+        node.children = bvh_children(last ? 0 : 1, i + 1, last ? 3 : 4, 3 * i);
+        bvh.nodes.push_back(pack(node));
     }
     bvh.depth = LEVELS;
-    EXPECT_EQ(validate(bvh, boxes), "depth is 33, more than BVH_MAX_DEPTH, 32");
+    EXPECT_EQ(validate(bvh, boxes), "depth is 49, more than BVH_MAX_DEPTH, 48");
 }
 
 }  // namespace
