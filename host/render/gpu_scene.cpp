@@ -140,8 +140,10 @@ GpuScene build_gpu_scene(const Scene& scene) {
         gpu.materials_present |= 1u << packed.model;
     }
     gpu.table_starts.lights = uint(gpu.tables.size());
-    for (const Light& light : flat.lights)
+    for (const Light& light : flat.lights) {
         append(gpu.tables, pack(light));
+        gpu.lights_present |= 1u << light.kind;
+    }
     gpu.table_starts.light_alias = uint(gpu.tables.size());
     if (gpu.light_count > 0) append(gpu.tables, build_alias_table(flat.powers));
     if (scene.environment) {

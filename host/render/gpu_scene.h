@@ -28,6 +28,7 @@ struct GpuScene {
     uint32_t environment = ENVIRONMENT_NONE;
     uint32_t materials_present = 0;   // Bit i: a material of model i.
     uint32_t primitives_present = 0;  // Bit i: a primitive of kind i.
+    uint32_t lights_present = 0;      // Bit i: a light of kind i.
 
     uint32_t bvh_depth = 1;  // Levels of nodes.
 

@@ -172,6 +172,8 @@ std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const
     constants[CONSTANT_MATERIALS] = scene.materials_present;
     constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
     constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
+    constants[CONSTANT_LIGHTS] = scene.lights_present;
+    constants[CONSTANT_ONE_LIGHT] = scene.light_count == 1;
     return constants;
 }
 

@@ -37,8 +37,8 @@ LightSample area_light_sample_at(Light l, vec3 p_reference, vec3 p, vec3 n, floa
 // A point on the light from u in [0,1)^2; pdf includes the probability of having chosen this light.
 LightSample area_light_sample_li(Light l, vec3 p_reference, vec2 u) {
     vec2 b = u;
-    if (l.kind == LIGHT_TRIANGLE) b = warp_triangle(u);
-    if (l.kind == LIGHT_DISK) b = warp_disk(u);
+    if (is_light(l, LIGHT_TRIANGLE)) b = warp_triangle(u);
+    if (is_light(l, LIGHT_DISK)) b = warp_disk(u);
     return area_light_sample_at(l, p_reference, l.p + b.x * l.e1 + b.y * l.e2, normalize(cross(l.e1, l.e2)), 0.0);
 }
 

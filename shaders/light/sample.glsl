@@ -2,6 +2,19 @@
 #ifndef LIGHT_SAMPLE_GLSL
 #define LIGHT_SAMPLE_GLSL
 
+#include "shared/constants.h"
+#include "shared/light.h"
+
+// Bit i: the scene has a light of kind i.
+layout(constant_id = CONSTANT_LIGHTS) const uint LIGHTS = 0xFFFFFFFFu;
+
+// True if the light is of that kind. Kinds that the scene does not have leave no code in the kernel, and a scene of one
+// kind needs no branch.
+bool is_light(Light l, const uint kind) {
+    if ((LIGHTS & 1u << kind) == 0u) return false;
+    return (LIGHTS & ~(1u << kind)) == 0u || l.kind == kind;
+}
+
 // Shadow rays end a little before a light, lest they meet it: from far away, its point is rounded by more than
 // offset_origin moves it.
 const float LIGHT_T_MAX = 1.0 - 1.0 / 524288.0;

@@ -95,7 +95,9 @@ const uint CONSTANT_MATERIALS = 6u;    // Bit i: some material has the model i (
 const uint CONSTANT_PRIMITIVES = 7u;   // Bit i: some primitive is of the kind i (PRIMITIVE_*).
 const uint CONSTANT_BVH_DEPTH = 8u;    // Levels of the tree's nodes.
 const uint CONSTANT_LIST = 9u;         // So many primitives are tested one by one, without the tree; 0: none.
-const uint CONSTANT_COUNT = 10u;
+const uint CONSTANT_LIGHTS = 10u;      // Bit i: some light is of the kind i (LIGHT_*).
+const uint CONSTANT_ONE_LIGHT = 11u;   // 1: there is but one light.
+const uint CONSTANT_COUNT = 12u;
 
 // The longest list of primitives that a kernel tests one by one.
 const uint LIST_MAX = 16u;

@@ -366,6 +366,19 @@ TEST(GpuScene, KindsOfPrimitivesArePresentOnlyIfTheyAre) {
               1u << PRIMITIVE_TRIANGLES | 1u << PRIMITIVE_SPHERE | 1u << PRIMITIVE_DISK);
 }
 
+TEST(GpuScene, KindsOfLightsArePresentOnlyIfTheyAre) {
+    const Emission emission{.radiance = vec3(1)};
+    const Shape quad{.geometry = SQUARE, .material = 0, .emission = emission};
+    const Shape sphere{.geometry = Sphere{}, .material = 0, .emission = emission};
+    Scene scene = scene_of({quad, Shape{.geometry = Sphere{}, .material = 0, .emission = {}}});
+    EXPECT_EQ(build_gpu_scene(scene).lights_present, 1u << LIGHT_PARALLELOGRAM);
+    EXPECT_EQ(build_gpu_scene(scene_of({})).lights_present, 0u);
+    scene.shapes.push_back(sphere);
+    scene.environment = Environment{.size = {1, 2}, .radiance = {vec3(1), vec3(2)}};
+    EXPECT_EQ(build_gpu_scene(scene).lights_present,
+              1u << LIGHT_PARALLELOGRAM | 1u << LIGHT_SPHERE | 1u << LIGHT_ENVIRONMENT);
+}
+
 TEST(GpuScene, AnEmptySceneIsARootWithoutChildren) {
     const GpuScene gpu = build_gpu_scene(scene_of({}));
     EXPECT_EQ(gpu.primitive_count, 0u);
