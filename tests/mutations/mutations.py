@@ -61,8 +61,9 @@ GROUPS = [
         ("Schlick's angle on the wrong side of the glass", FRESNEL, "eta >= 1.0 ? cos_o : cos_t", "cos_o"),
     ]),
     (LIGHTS, [
-        ("lights off by one", LIGHT_SAMPLER, "scene_light(choice.i)",
-         "scene_light((choice.i + 1u) % scene_parameters().light_count)"),
+        ("lights off by one", LIGHT_SAMPLER, "i = choice.i;",
+         "i = (choice.i + 1u) % scene_parameters().light_count;"),
+        ("surfaces taken for the first of the lights", LIGHT_SAMPLER, "ONE_LIGHT ? 0u : light", "0u"),
         ("lights chosen with a wrong probability", WARP, "column.y < entry.threshold",
          "column.y < entry.threshold / 2u"),
         ("what the choice of a light leaves not used again", LIGHT_SAMPLER, "u.x = uint(choice.rest * 16777216.0) << 8u",
