@@ -19,7 +19,7 @@ void main() {
     vec3 wi = item_floats(3u).xyz;
     if (dot(wi, n) < 0.0) n = -n;
     Ray ray = Ray(offset_origin(p, n), wi);
-    put(triangles_intersect(ray, ray_shear(ray.d, reciprocals(ray.d)), v0, v1, v2, v2).x);
+    put(triangles_intersect(ray, ray_shear(ray.d, reciprocals(ray.d)), v0, v1, v2, v2).t);
     put(ray.o);
     put(n);
 }

@@ -10,7 +10,7 @@
 
 Hit brute_force(Ray ray) {
     RayShear shear = ray_shear(ray.d, reciprocals(ray.d));
-    Hit hit = Hit(FLOAT_MAX, 0u, vec2(0.0));
+    Hit hit = Hit(FLOAT_MAX, 0u);
     for (uint i = 0u; i < primitive_count; ++i) primitive_intersect(ray, shear, scene_primitive(i), i, hit);
     return hit;
 }
@@ -21,7 +21,7 @@ void main() {
     Hit hit = bvh_intersect(ray);
     put(hit.t);
     put(hit_id(hit));
-    put(hit.b);
+    put(hit_coordinates(ray, scene_primitive(hit.place / 2u), hit));
     Hit reference = brute_force(ray);
     put(reference.t);
     put(hit_id(reference));

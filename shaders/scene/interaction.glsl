@@ -37,6 +37,7 @@ Interaction interaction_at(Ray ray, Hit hit) {
     Primitive primitive = scene_primitive(hit.place / 2u);
     Surface surface = scene_surface(hit.place / 2u);
     vec3 a = primitive.a;
+    vec2 at = hit_coordinates(ray, primitive, hit);
     Interaction s;
     s.p_error = 0.0;
     if (is_kind(primitive.kind, PRIMITIVE_SPHERE)) {
@@ -45,16 +46,16 @@ Interaction interaction_at(Ray ray, Hit hit) {
         s.p_error = sphere_error(a, primitive.b.x);
     } else if (is_kind(primitive.kind, PRIMITIVE_DISK)) {
         s.n = normalize(cross(primitive.b, primitive.c));
-        s.p = a + hit.b.x * primitive.b + hit.b.y * primitive.c;
+        s.p = a + at.x * primitive.b + at.y * primitive.c;
     } else {
         bool second = (hit.place & 1u) != 0u;
         vec3 b = second ? primitive.c : primitive.b;
         vec3 c = second ? primitive.d : primitive.c;
         s.n = normalize(cross(b - a, c - a));
-        s.p = (1.0 - hit.b.x - hit.b.y) * a + hit.b.x * b + hit.b.y * c;
+        s.p = (1.0 - at.x - at.y) * a + at.x * b + at.y * c;
     }
     s.ns = s.n;
-    if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit.place, hit.b, s.n);
+    if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit.place, at, s.n);
     s.wo = -normalize(ray.d);
     s.front = dot(s.wo, s.n) >= 0.0;
     if (!s.front) {

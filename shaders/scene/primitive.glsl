@@ -22,24 +22,33 @@ bool is_kind(uint kind, const uint asked) {
 struct Hit {
     float t;     // In lengths of ray.d.
     uint place;  // Twice its position in leaf order, and 1 more for the second of two triangles.
-    vec2 b;      // Surface coordinates: of a triangle the barycentric ones of its second and third vertex, of a disk
-                 // those in its axes.
 };
+
+// A hit of the primitive at that position.
+Hit triangles_hit(TrianglesHit found, uint position) {
+    return Hit(found.t, 2u * position + uint(found.second));
+}
 
 // Keeps the hit of the primitive at that position if it is nearer than `hit`.
 void primitive_intersect(Ray ray, RayShear shear, Primitive p, uint position, inout Hit hit) {
-    vec4 found;  // t, which is not above 0 where the ray misses; b; which of two triangles.
+    Hit found = Hit(0.0, 2u * position);
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) {
-        found = vec4(sphere_intersect(ray, p.a, p.b.x), 0.0, 0.0, 0.0);
+        found.t = sphere_intersect(ray, p.a, p.b.x);
     } else if (is_kind(p.kind, PRIMITIVE_DISK)) {
-        found = vec4(disk_intersect(ray, p.a, p.b, p.c), 0.0);
+        found.t = disk_intersect(ray, p.a, p.b, p.c).x;
     } else {
-        found = triangles_intersect(ray, shear, p.a, p.b, p.c, p.d);
+        found = triangles_hit(triangles_intersect(ray, shear, p.a, p.b, p.c, p.d), position);
     }
-    uint place = 2u * position + uint(found.w);
-    if (found.x > 0.0 && (found.x < hit.t || (found.x == hit.t && place < hit.place))) {
-        hit = Hit(found.x, place, found.yz);
-    }
+    if (found.t > 0.0 && (found.t < hit.t || (found.t == hit.t && found.place < hit.place))) hit = found;
+}
+
+// Surface coordinates of a hit of that primitive: of a triangle the barycentric ones of its second and third vertex, of a
+// disk those in its axes. (Few hits are asked for them, and traversal keeps the less.)
+vec2 hit_coordinates(Ray ray, Primitive p, Hit hit) {
+    if (is_kind(p.kind, PRIMITIVE_SPHERE)) return vec2(0.0);
+    if (is_kind(p.kind, PRIMITIVE_DISK)) return disk_intersect(ray, p.a, p.b, p.c).yz;
+    bool second = (hit.place & 1u) != 0u;
+    return triangle_coordinates(ray, p.a, second ? p.c : p.b, second ? p.d : p.c);
 }
 
 #endif

@@ -167,7 +167,7 @@ Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack_nodes[0] = pending_none().nodes;
     RaySlabs slabs = ray_slabs(ray);
     RayShear shear = ray_shear(ray.d, slabs.inv_d);
-    return Traversal(ray, slabs, shear, any_hit, Hit(t_max, 0u, vec2(0.0)), 0u, pending_none());
+    return Traversal(ray, slabs, shear, any_hit, Hit(t_max, 0u), 0u, pending_none());
 }
 
 bool bvh_ended(Traversal t) {

@@ -56,14 +56,14 @@ bool edges_meet(vec3 e, float det) {
     return !(any_negative(e) && any_positive(e)) && det != 0.0;
 }
 
-// Where a ray meets the triangles v0 v1 v2 and v0 v2 v3, the nearer one if both: distance t in lengths of ray.d,
-// barycentric coordinates of the second and the third vertex, and which triangle (0 or 1; 0 if equally near). t is not
-// above 0 where the ray misses.
-vec4 triangles_intersect(Ray ray, RayShear shear, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
-    ShearedVertex a = shear_vertex(ray, shear, v0);
-    ShearedVertex b = shear_vertex(ray, shear, v1);
-    ShearedVertex c = shear_vertex(ray, shear, v2);
-    ShearedVertex d = shear_vertex(ray, shear, v3);
+// Where a ray meets two triangles.
+struct TrianglesHit {
+    float t;      // In lengths of ray.d; not above 0 where the ray misses.
+    bool second;  // Which one it meets.
+};
+
+// Where a ray meets the triangles a b c and a c d, the nearer one if both, the first if they are equally near.
+TrianglesHit triangles_intersect(RayShear shear, ShearedVertex a, ShearedVertex b, ShearedVertex c, ShearedVertex d) {
     // Far from triangles that are small against their distance, the edge functions below are nothing but rounding
     // errors; so ask first whether the rectangle around them holds the origin. Comparisons do not round.
     vec4 x = vec4(a.p.x, b.p.x, c.p.x, d.p.x);
@@ -88,9 +88,26 @@ vec4 triangles_intersect(Ray ray, RayShear shear, vec3 v0, vec3 v1, vec3 v2, vec
     t1 = lesser(greater(t1, begin), end);
     bool meets0 = edges_meet(e0, det0) && t0 > 0.0;
     bool meets1 = edges_meet(e1, det1) && t1 > 0.0;
-    if (beside || !(meets0 || meets1)) return vec4(-1.0);
     bool second = meets1 && !(meets0 && t0 <= t1);
-    return second ? vec4(t1, e1.yz / det1, 1.0) : vec4(t0, e0.yz / det0, 0.0);
+    float t = beside || !(meets0 || meets1) ? -1.0 : second ? t1 : t0;
+    return TrianglesHit(t, second);
+}
+
+// The same, the vertices in world space.
+TrianglesHit triangles_intersect(Ray ray, RayShear shear, vec3 a, vec3 b, vec3 c, vec3 d) {
+    return triangles_intersect(shear, shear_vertex(ray, shear, a), shear_vertex(ray, shear, b),
+                               shear_vertex(ray, shear, c), shear_vertex(ray, shear, d));
+}
+
+// Barycentric coordinates of the second and the third vertex of a triangle where the ray meets it.
+vec2 triangle_coordinates(Ray ray, vec3 a, vec3 b, vec3 c) {
+    RayShear shear = ray_shear(ray.d, reciprocals(ray.d));
+    ShearedVertex va = shear_vertex(ray, shear, a);
+    ShearedVertex vb = shear_vertex(ray, shear, b);
+    ShearedVertex vc = shear_vertex(ray, shear, c);
+    vec3 e = vec3(edge_function(vb, vc), edge_function(vc, va), edge_function(va, vb));
+    precise float det = e.x + e.y + e.z;
+    return e.yz / det;
 }
 
 #endif
