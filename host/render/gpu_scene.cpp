@@ -2,8 +2,10 @@
 #include "render/gpu_scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <numeric>
+#include <span>
 
 #include "bvh/bvh.h"
 #include "render/alias_table.h"
@@ -53,6 +55,22 @@ Bvh build_bvh_over(const std::vector<Primitive>& primitives) {
     for (const Primitive& primitive : primitives)
         boxes.push_back(bounds(primitive));
     return build_bvh(boxes);
+}
+
+// For each corner of the first primitives in leaf order the first one in the same place, to the bit.
+std::array<uint32_t, LIST_MAX> list_corners(const std::vector<Primitive>& primitives,
+                                            std::span<const uint32_t> order) {
+    std::array<uint32_t, LIST_MAX> result{};
+    std::vector<std::array<uint32_t, 3>> corners;
+    for (size_t i = 0; i < std::min<size_t>(order.size(), LIST_MAX); ++i) {
+        const Primitive& p = primitives[order[i]];
+        for (const vec3& corner : {p.a, p.b, p.c, p.d}) {
+            corners.push_back(std::bit_cast<std::array<uint32_t, 3>>(corner));
+            const auto first = uint32_t(std::ranges::find(corners, corners.back()) - corners.begin());
+            result[i] |= first << 8u * ((corners.size() - 1) % 4);
+        }
+    }
+    return result;
 }
 
 // Adds the environment to the lights, with the power that falls onto the scene: that on a disk as wide as the
@@ -109,6 +127,7 @@ GpuScene build_gpu_scene(const Scene& scene) {
         append(gpu.primitives, pack(flat.primitives[i]));
         gpu.primitives_present |= 1u << flat.primitives[i].kind;
     }
+    gpu.list_corners = list_corners(flat.primitives, bvh.order);
     if (flat.primitives.empty())
         gpu.primitives.resize(PRIMITIVE_WORDS);  // A ray may ask for it all the same.
 

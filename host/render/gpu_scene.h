@@ -1,6 +1,7 @@
 // Scene -> records: the arrays that the device reads, made without any device.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "scene/scene.h"
@@ -26,9 +27,10 @@ struct GpuScene {
     // What the kernels must know of: see CONSTANT_*.
     bool has_normals = false;
     uint32_t environment = ENVIRONMENT_NONE;
-    uint32_t materials_present = 0;   // Bit i: a material of model i.
-    uint32_t primitives_present = 0;  // Bit i: a primitive of kind i.
-    uint32_t lights_present = 0;      // Bit i: a light of kind i.
+    uint32_t materials_present = 0;                 // Bit i: a material of model i.
+    uint32_t primitives_present = 0;                // Bit i: a primitive of kind i.
+    uint32_t lights_present = 0;                    // Bit i: a light of kind i.
+    std::array<uint32_t, LIST_MAX> list_corners{};  // Of the first primitives; see CONSTANT_LIST_CORNERS.
 
     uint32_t bvh_depth = 1;  // Levels of nodes.
 

@@ -108,6 +108,8 @@ std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, 
                                                       const Camera& camera, const RenderSettings& settings) {
     auto constants = make_constants(scene, camera, settings);
     constants[CONSTANT_LIST] = list_constant(device, scene);
+    if (constants[CONSTANT_LIST] > 0)
+        std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS]);
     return constants;
 }
 

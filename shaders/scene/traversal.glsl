@@ -4,19 +4,13 @@
 #extension GL_EXT_control_flow_attributes : require
 
 #include "base/math.glsl"
+#include "scene/list.glsl"
 #include "scene/primitive.glsl"
 #include "scene/scene_data.glsl"
 
-// A tiny scene needs no tree: where all lanes go together, as on software Vulkan, they test all of its primitives in
-// less time than they take to find out which, since none waits for another. The primitives are read once and stay in
-// registers, or in what the driver makes of so many.
-layout(constant_id = CONSTANT_LIST) const uint LIST = 0u;
-
-Primitive list[LIST_MAX];
-
 // Before an invocation's first ray.
 void bvh_prepare() {
-    [[unroll]] for (int i = 0; i < int(LIST); ++i) list[i] = scene_primitive(uint(i));
+    list_prepare();
 }
 
 // What a ray needs once for all boxes.
@@ -182,7 +176,7 @@ const uint NODES_PER_TURN = 12u;
 // Takes a ray some way on; not one that has ended.
 void bvh_advance(inout Traversal t) {
     if (LIST > 0u) {
-        [[unroll]] for (int i = 0; i < int(LIST); ++i) primitive_intersect(t.ray, t.shear, list[i], uint(i), t.hit);
+        list_intersect(t.ray, t.shear, t.hit);
         t.reference = REFERENCE_END;
         return;
     }

@@ -1,6 +1,7 @@
 // Scene -> records: which lights come out and how likely they are, the order of ids, normals and tables.
 #include "render/gpu_scene.h"
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <set>
@@ -377,6 +378,31 @@ TEST(GpuScene, KindsOfLightsArePresentOnlyIfTheyAre) {
     scene.environment = Environment{.size = {1, 2}, .radiance = {vec3(1), vec3(2)}};
     EXPECT_EQ(build_gpu_scene(scene).lights_present,
               1u << LIGHT_PARALLELOGRAM | 1u << LIGHT_SPHERE | 1u << LIGHT_ENVIRONMENT);
+}
+
+// Two squares with a common edge and a triangle of its own: 4 + 2 + 3 places.
+TEST(GpuScene, OfCornersInOnePlaceTheFirstIsNamed) {
+    const Quad next = parallelogram(vec3(1, 0, 0), vec3(1, 0, 1), vec3(0, 1, 0));
+    const TriangleMesh triangle{
+        .positions = {vec3(5), vec3(6, 5, 5), vec3(5, 6, 5)}, .normals = {}, .triangles = {uvec3(0, 1, 2)}};
+    const GpuScene gpu =
+        build_gpu_scene(scene_of({Shape{.geometry = SQUARE, .material = 0, .emission = {}},
+                                  Shape{.geometry = next, .material = 0, .emission = {}},
+                                  Shape{.geometry = triangle, .material = 0, .emission = {}}}));
+    ASSERT_EQ(gpu.primitive_count, 3u);
+    std::vector<vec3> corners;
+    for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
+        const uvec4* w = &gpu.primitives[i * PRIMITIVE_WORDS];
+        const vec3 d = std::bit_cast<vec3>(uvec3(w[0].w, w[1].w, w[2].w));
+        corners.insert(corners.end(), {floats(w[0]), floats(w[1]), floats(w[2]), d});
+    }
+    std::set<uint32_t> named;
+    for (uint32_t i = 0; i < corners.size(); ++i) {
+        const uint32_t first = gpu.list_corners[i / 4] >> 8 * (i % 4) & 255u;
+        EXPECT_EQ(first, uint32_t(std::ranges::find(corners, corners[i]) - corners.begin()));
+        named.insert(first);
+    }
+    EXPECT_EQ(named.size(), 9u);
 }
 
 TEST(GpuScene, AnEmptySceneIsARootWithoutChildren) {

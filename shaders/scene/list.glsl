@@ -1,0 +1,70 @@
+// The triangles of a tiny scene, one by one.
+//
+// Where all lanes go together, as on software Vulkan, they test all of few primitives in less time than they take to find
+// out by a tree which, since none waits for another. The vertices are read once and stay in registers, or in what the
+// driver makes of so many; and what a ray asks of a vertex, it asks once for all primitives that share it.
+#ifndef SCENE_LIST_GLSL
+#define SCENE_LIST_GLSL
+#extension GL_EXT_control_flow_attributes : require
+
+#include "scene/primitive.glsl"
+#include "scene/scene_data.glsl"
+
+// How many there are; 0: the scene has a tree.
+layout(constant_id = CONSTANT_LIST) const uint LIST = 0u;
+
+// Where else their corners are: see CONSTANT_LIST_CORNERS.
+#define LIST_CORNERS(i) layout(constant_id = CONSTANT_LIST_CORNERS + i) const uint LIST_CORNERS_##i = 0u
+LIST_CORNERS(0);
+LIST_CORNERS(1);
+LIST_CORNERS(2);
+LIST_CORNERS(3);
+LIST_CORNERS(4);
+LIST_CORNERS(5);
+LIST_CORNERS(6);
+LIST_CORNERS(7);
+LIST_CORNERS(8);
+LIST_CORNERS(9);
+LIST_CORNERS(10);
+LIST_CORNERS(11);
+LIST_CORNERS(12);
+LIST_CORNERS(13);
+LIST_CORNERS(14);
+LIST_CORNERS(15);
+
+vec3 list_vertices[4u * LIST_MAX];
+
+// Before an invocation's first ray.
+void list_prepare() {
+    [[unroll]] for (int i = 0; i < int(LIST); ++i) {
+        Primitive p = scene_primitive(uint(i));
+        list_vertices[4 * i] = p.a;
+        list_vertices[4 * i + 1] = p.b;
+        list_vertices[4 * i + 2] = p.c;
+        list_vertices[4 * i + 3] = p.d;
+    }
+}
+
+// Keeps the nearest hit of all if it is nearer than `hit`.
+void list_intersect(Ray ray, RayShear shear, inout Hit hit) {
+    uint corners[LIST_MAX] =
+        uint[](LIST_CORNERS_0, LIST_CORNERS_1, LIST_CORNERS_2, LIST_CORNERS_3, LIST_CORNERS_4, LIST_CORNERS_5,
+               LIST_CORNERS_6, LIST_CORNERS_7, LIST_CORNERS_8, LIST_CORNERS_9, LIST_CORNERS_10, LIST_CORNERS_11,
+               LIST_CORNERS_12, LIST_CORNERS_13, LIST_CORNERS_14, LIST_CORNERS_15);
+    ShearedVertex v[4u * LIST_MAX];
+    [[unroll]] for (int i = 0; i < int(LIST); ++i) {
+        [[unroll]] for (int k = 0; k < 4; ++k) {
+            int corner = 4 * i + k;
+            int first = int(corners[i] >> 8 * k & 255u);
+            if (first == corner) {
+                v[corner] = shear_vertex(ray, shear, list_vertices[corner]);
+            } else {
+                v[corner] = v[first];
+            }
+        }
+        TrianglesHit found = triangles_intersect(shear, v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]);
+        if (found.t > 0.0 && found.t < hit.t) hit = triangles_hit(found, uint(i));
+    }
+}
+
+#endif
