@@ -222,7 +222,7 @@ void Renderer::compile() {
     render_kernel_->bind(BINDING_IMAGE, image_);
     render_kernel_->bind(BINDING_COUNTERS, counter_buffer_);
     // Some drivers compile at the first dispatch.
-    dispatch(*render_kernel_, Tile{.origin = {0, 0}, .size = {0, 0}, .target_samples = 0});
+    dispatch(*render_kernel_, Tile{.origin = {0, 0}, .size = {0, 0}, .stride = {1, 1}, .target_samples = 0});
     pipeline_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -265,11 +265,13 @@ vk::Kernel Renderer::make_kernel(std::span<const uint32_t> texel, std::span<cons
 }
 
 // Runs one tile and returns how long the device took [s].
-double Renderer::dispatch(const vk::Kernel& kernel, const Tile& tile) {
+double Renderer::dispatch(const vk::Kernel& kernel, Tile tile) {
     const auto groups = [](uint32_t pixels) {
         return std::max(1u, (pixels + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE);
     };
-    commands_.dispatch(kernel, bytes_of(tile), {groups(tile.size.x), groups(tile.size.y), 1});
+    const uvec2 count(groups(tile.size.x), groups(tile.size.y));
+    if (device_->info().type == vk::DeviceType::cpu) tile.stride = spreading_stride(count);
+    commands_.dispatch(kernel, bytes_of(tile), {count.x, count.y, 1});
     return commands_.submit_and_wait();
 }
 
@@ -333,8 +335,8 @@ std::vector<float> Renderer::positions() {
     kernel.bind(BINDING_IMAGE, image);
     const uint32_t rows = std::max(1u, POSITION_PIXELS / size.x);
     for (uint32_t y = 0; y < size.y; y += rows) {
-        dispatch(kernel,
-                 {.origin = {0, y}, .size = {size.x, std::min(rows, size.y - y)}, .target_samples = 0});
+        const uvec2 tile(size.x, std::min(rows, size.y - y));
+        dispatch(kernel, {.origin = {0, y}, .size = tile, .stride = {1, 1}, .target_samples = 0});
     }
     return image.download(0, 1);
 }

@@ -97,7 +97,7 @@ class Renderer {
     void compile();
     vk::Kernel make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage, bool counters,
                            const char* name) const;
-    double dispatch(const vk::Kernel& kernel, const Tile& tile);
+    double dispatch(const vk::Kernel& kernel, Tile tile);
     Work complete(const Tile& tile);
     uvec2 image_size() const { return {settings_.crop.width(), settings_.crop.height()}; }
 

@@ -2,6 +2,7 @@
 #include "render/schedule.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "shared/constants.h"
 
@@ -21,6 +22,15 @@ constexpr double LARGEST_GROWTH = 4;
 // each other. Passes of half as many samples as there are were seen to cost a seventh more.
 constexpr uint32_t SECOND_PASS_TARGET = 8;
 constexpr uint32_t LARGEST_PASS = 64;
+
+// A number without a common divisor with n, near n's golden section: so its multiples modulo n lie all over
+// n, whichever few in a row one takes.
+uint32_t stride_over(uint32_t n) {
+    auto stride = uint32_t(0.618 * n);
+    while (std::gcd(stride, n) != 1)
+        ++stride;
+    return stride;
+}
 
 uint32_t whole_groups(double pixels) {
     return std::max(WORKGROUP_SIZE, uint32_t(std::min(pixels, 1e9)) / WORKGROUP_SIZE * WORKGROUP_SIZE);
@@ -54,7 +64,7 @@ Tile Schedule::next() const {
     if (at_.x > 0 || pixels < double(size_.x) * WORKGROUP_SIZE) {
         tile = uvec2(whole_groups(pixels / WORKGROUP_SIZE), WORKGROUP_SIZE);
     }
-    return {at_, min(tile, size_ - at_), pass_target_};
+    return {.origin = at_, .size = min(tile, size_ - at_), .stride = {1, 1}, .target_samples = pass_target_};
 }
 
 // The budget is what a submission can do where no pixel has reached its limit. Where most have, what a
@@ -77,6 +87,10 @@ void Schedule::advance(double seconds, uint64_t samples) {
 
 double Schedule::progress() const {
     return total_ == 0 ? 1.0 : double(finished_) / double(total_);
+}
+
+uvec2 spreading_stride(uvec2 groups) {
+    return {stride_over(groups.x), stride_over(groups.y)};
 }
 
 }  // namespace candela

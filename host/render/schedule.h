@@ -40,4 +40,9 @@ class Schedule {
     uvec2 at_{0, 0};        // Where the next tile begins.
 };
 
+// Tile::stride for so many work groups that lets any number of neighbours in the order of their indices lie
+// all over the tile. Lavapipe gives each of its threads as many of them beforehand, one after the other: half
+// of a tile that shows the sky would else be done long before the other half.
+uvec2 spreading_stride(uvec2 groups);
+
 }  // namespace candela

@@ -29,8 +29,10 @@ void count_rays(uint rays) {
 }
 
 void main() {
-    if (any(greaterThanEqual(gl_GlobalInvocationID.xy, tile.size))) return;
-    uvec2 at = tile.origin + gl_GlobalInvocationID.xy;
+    uvec2 group = gl_WorkGroupID.xy * tile.stride % gl_NumWorkGroups.xy;
+    uvec2 at = group * WORKGROUP_SIZE + gl_LocalInvocationID.xy;
+    if (any(greaterThanEqual(at, tile.size))) return;
+    at += tile.origin;
     Parameters parameters = scene_parameters();
     uvec2 pixel = parameters.crop + at;
 

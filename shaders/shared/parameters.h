@@ -57,6 +57,7 @@ struct Parameters {
 struct Tile {
     uvec2 origin;
     uvec2 size;
+    uvec2 stride;  // Group i of the dispatch is at place i * stride modulo their number, axis by axis.
     uint target_samples;
 };
 

@@ -2,6 +2,7 @@
 #include "render/schedule.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -148,6 +149,30 @@ TEST(Schedule, PixelsAtTheirLimitsNeitherHideWorkNorMakeSubmissionsSmall) {
     EXPECT_EQ(done, 512u * 512 / 16 * (TARGET - BEFORE));
     // All of it, if every pixel were busy, is 336 submissions; 70 more until the budget has grown.
     EXPECT_LE(submissions, 336u + 70u);
+}
+
+// However many threads share the groups of a row or a column out among them, one run each, all see all of it:
+// as many groups of the first half as of the second, within a tenth of all and three. (In the order of their
+// places it would be half of all for two threads.)
+TEST(SpreadingStride, EveryThreadSeesAllOfATile) {
+    for (uint32_t n = 1; n <= 600; ++n) {
+        SCOPED_TRACE(n);
+        const uint32_t stride = spreading_stride(uvec2(n, 1)).x;
+        EXPECT_EQ(spreading_stride(uvec2(1, n)).y, stride);
+        std::vector<bool> taken(n);
+        for (const uint32_t threads : {2u, 3u, 8u, 16u}) {
+            for (uint32_t thread = 0; thread < threads; ++thread) {
+                int balance = 0;
+                for (uint32_t i = n * thread / threads; i < n * (thread + 1) / threads; ++i) {
+                    const uint32_t place = i * stride % n;
+                    taken[place] = true;
+                    balance += 2 * place < n ? 1 : -1;
+                }
+                EXPECT_LE(std::abs(balance), int(3 + n / 10));
+            }
+        }
+        EXPECT_EQ(std::ranges::count(taken, true), n);
+    }
 }
 
 }  // namespace
