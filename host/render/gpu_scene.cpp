@@ -136,6 +136,7 @@ GpuScene build_gpu_scene(const Scene& scene) {
         map = build_environment_map(*scene.environment);
         add_environment_light(flat, map, bvh.bounds);
         gpu.environment = scene.environment->visible ? ENVIRONMENT_VISIBLE : ENVIRONMENT_HIDDEN;
+        gpu.even_sky = map.even;
         gpu.environment_size = scene.environment->size;
         gpu.environment_rotation = scene.environment->rotation;
     }

@@ -27,6 +27,7 @@ struct GpuScene {
     // What the kernels must know of: see CONSTANT_*.
     bool has_normals = false;
     uint32_t environment = ENVIRONMENT_NONE;
+    bool even_sky = false;
     uint32_t materials_present = 0;                 // Bit i: a material of model i.
     uint32_t primitives_present = 0;                // Bit i: a primitive of kind i.
     uint32_t lights_present = 0;                    // Bit i: a light of kind i.

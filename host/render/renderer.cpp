@@ -171,6 +171,7 @@ std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const
     constants[CONSTANT_HAS_AOVS] = settings.aovs;
     constants[CONSTANT_APERTURE] = aperture_constant(camera.lens);
     constants[CONSTANT_ENVIRONMENT] = scene.environment;
+    constants[CONSTANT_EVEN_SKY] = scene.even_sky;
     constants[CONSTANT_MATERIALS] = scene.materials_present;
     constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
     constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;

@@ -306,11 +306,12 @@ TEST(GpuScene, ASkyThatIsEvenOrLightsNothingIsNotSampled) {
     empty.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(2)}};
     Scene even = black;
     even.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(1)}};
-    for (const Scene& scene : {black, empty, even}) {
-        const GpuScene gpu = build_gpu_scene(scene);
+    for (const Scene* scene : {&black, &empty, &even}) {
+        const GpuScene gpu = build_gpu_scene(*scene);
         EXPECT_EQ(gpu.light_count, 0u);
         EXPECT_EQ(gpu.environment, ENVIRONMENT_VISIBLE);
         EXPECT_EQ(texel(gpu, 0).pdf, 0.0f);
+        EXPECT_EQ(gpu.even_sky, scene != &empty);
     }
 }
 
