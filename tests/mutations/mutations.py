@@ -13,6 +13,7 @@ FRESNEL = "shaders/bsdf/fresnel.glsl"
 WARP = "shaders/base/warp.glsl"
 SAMPLER = "shaders/base/sampler.glsl"
 TRAVERSAL = "shaders/scene/traversal.glsl"
+LIST = "shaders/scene/list.glsl"
 TRIANGLE = "shaders/scene/triangle.glsl"
 PRIMITIVE = "shaders/scene/primitive.glsl"
 INTERACTION = "shaders/scene/interaction.glsl"
@@ -90,8 +91,9 @@ GROUPS = [
          "std::ceil(steps(x)));\n        while (decode(q) < x)", "steps(x));\n        while (decode(q + 1) < x)"),
         ("a single child left to visit is forgotten", TRAVERSAL, "down && pending_any(t.pending)",
          "down && bitCount(t.pending.nodes >> PENDING_SHIFT) > 1"),
-        ("the last of a list of primitives forgotten", TRAVERSAL, "i < int(LIST); ++i) primitive_intersect",
-         "i < int(LIST) - 1; ++i) primitive_intersect"),
+        ("the last of a list of primitives forgotten", LIST, "if (found.t > 0.0 &&",
+         "if (i < int(LIST) - 1 && found.t > 0.0 &&"),
+        ("a shared vertex of a list taken for its neighbour", LIST, "v[corner] = v[first];", "v[corner] = v[first ^ 1];"),
         ("boxes without a margin, a little small", TRAVERSAL, "vec3 far = start + margin", "vec3 far = start - margin"),
         ("edges belong to no triangle", TRIANGLE, "any_negative(e) && any_positive(e)",
          "!(e.x * e.y > 0.0 && e.y * e.z > 0.0)"),
