@@ -23,10 +23,12 @@ constexpr double LARGEST_GROWTH = 4;
 constexpr uint32_t SECOND_PASS_TARGET = 8;
 constexpr uint32_t LARGEST_PASS = 64;
 
+constexpr double GOLDEN_SECTION = 0.618;
+
 // A number without a common divisor with n, near n's golden section: so its multiples modulo n lie all over
 // n, whichever few in a row one takes.
 uint32_t stride_over(uint32_t n) {
-    auto stride = uint32_t(0.618 * n);
+    auto stride = uint32_t(GOLDEN_SECTION * n);
     while (std::gcd(stride, n) != 1)
         ++stride;
     return stride;

@@ -3,106 +3,16 @@
 
 #include <algorithm>
 #include <cstring>
-#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "shared/bvh_node.h"
-#include "shared/light.h"
 #include "shared/material.h"
-#include "shared/primitive.h"
-#include "support/scene_builders.h"
+#include "unit/packed_scene.h"
 
 namespace candela {
 namespace {
-
-vec3 floats(uvec4 word) {
-    return std::bit_cast<vec3>(uvec3(word));
-}
-
-Light light(const GpuScene& gpu, uint32_t i) {
-    const uvec4* w = &gpu.tables[gpu.table_starts.lights + i * LIGHT_WORDS];
-    return {
-        w[0].w, floats(w[0]), floats(w[1]), floats(w[2]), floats(w[3]), w[1].w, std::bit_cast<float>(w[3].w)};
-}
-
-// Entry i of the alias table that begins at that word.
-AliasEntry entry(const GpuScene& gpu, uint32_t start, uint32_t i) {
-    const uvec4 w = gpu.tables[start + i / 2];
-    return i % 2 == 0 ? AliasEntry{w.x, w.y} : AliasEntry{w.z, w.w};
-}
-
-// The probability of each light as a shader draws it: column i is kept for fractions below its threshold, of
-// 2^32.
-std::vector<double> light_probabilities(const GpuScene& gpu) {
-    std::vector<double> probability(gpu.light_count);
-    for (uint32_t i = 0; i < gpu.light_count; ++i) {
-        const AliasEntry e = entry(gpu, gpu.table_starts.light_alias, i);
-        const double kept = double(e.threshold) * 0x1p-32;
-        probability[i] += kept / gpu.light_count;
-        probability[e.alias] += (1.0 - kept) / gpu.light_count;
-    }
-    return probability;
-}
-
-double area(const Light& l) {
-    return double(length(cross(l.e1, l.e2))) * (l.kind == LIGHT_TRIANGLE ? 0.5 : 1.0);
-}
-
-// A triangle of the scene, and what its surface says.
-struct Triangle {
-    vec3 a, b, c;
-    Surface surface;
-    uvec3 normals{0};  // Packed; 0 if it has none.
-};
-
-// All triangles by id, from the primitives in leaf order; ids are 0, 1, 2 ...
-std::vector<Triangle> triangles(const GpuScene& gpu) {
-    std::map<uint32_t, Triangle> by_id;
-    for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
-        const uvec4* w = &gpu.primitives[i * PRIMITIVE_WORDS];
-        const uvec4 s = gpu.tables[gpu.table_starts.surfaces + i];
-        const Surface surface{uvec2(s.x, s.y), s.z & 0x7FFFFFFFu, s.z >> 31, s.w};
-        const vec3 d = std::bit_cast<vec3>(uvec3(w[0].w, w[1].w, w[2].w));
-        const uvec4 n = gpu.has_normals ? gpu.tables[gpu.table_starts.normals + i] : uvec4(0);
-        EXPECT_TRUE(
-            by_id.insert({s.x, {floats(w[0]), floats(w[1]), floats(w[2]), surface, uvec3(n)}}).second);
-        if (s.y == s.x) {
-            EXPECT_EQ(d, floats(w[2])) << "a triangle alone repeats its last vertex";
-            continue;
-        }
-        const uvec3 second(n.x, n.z, n.w);
-        EXPECT_TRUE(by_id.insert({s.y, {floats(w[0]), floats(w[2]), d, surface, second}}).second);
-    }
-    EXPECT_EQ(by_id.size(), gpu.id_count);
-    std::vector<Triangle> all;
-    for (const auto& [id, triangle] : by_id) {
-        EXPECT_EQ(id, all.size());
-        all.push_back(triangle);
-    }
-    return all;
-}
-
-// Whether the corners are these, in this order, from whichever one on.
-bool same_corners(const Triangle& t, vec3 a, vec3 b, vec3 c) {
-    const auto is = [&](vec3 x, vec3 y, vec3 z) { return t.a == x && t.b == y && t.c == z; };
-    return is(a, b, c) || is(b, c, a) || is(c, a, b);
-}
-
-Shape emitter(Quad quad, vec3 radiance, bool two_sided = false) {
-    return {
-        .geometry = quad, .material = 0, .emission = Emission{.radiance = radiance, .two_sided = two_sided}};
-}
-
-Scene scene_of(std::vector<Shape> shapes) {
-    Scene scene;
-    add_diffuse(scene, vec3(0.25f, 0.5f, 0.75f));
-    scene.shapes = std::move(shapes);
-    return scene;
-}
-
-const Quad SQUARE = parallelogram(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
 
 TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
     const Quad slanted = parallelogram(vec3(100, -50, 3), vec3(1, 0.3f, 0.1f), vec3(-0.2f, 1.7f, 0.3f));
