@@ -302,7 +302,7 @@ TEST(GpuScene, OfCornersInOnePlaceTheFirstIsNamed) {
                                   Shape{.geometry = triangle, .material = 0, .emission = {}}}));
     ASSERT_EQ(gpu.primitive_count, 3u);
     std::vector<vec3> corners;
-    for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
+    for (size_t i = 0; i < gpu.primitive_count; ++i) {
         const uvec4* w = &gpu.primitives[i * PRIMITIVE_WORDS];
         const vec3 d = std::bit_cast<vec3>(uvec3(w[0].w, w[1].w, w[2].w));
         corners.insert(corners.end(), {floats(w[0]), floats(w[1]), floats(w[2]), d});
