@@ -88,15 +88,17 @@ void main() {
         Ray next = path.ray;
         if (shadowed) next = shadow.ray;
         Traversal traversal = bvh_begin(next, shadowed ? shadow.t_max : FLOAT_MAX, shadowed);
-        if (!shadowed && !alive) traversal.reference = REFERENCE_END;
+        if (!shadowed && !alive) bvh_end(traversal);
+        bool lit = false;
         while (!bvh_ended(traversal)) {
             bvh_advance(traversal);
             if (traversal.any_hit && bvh_ended(traversal)) {
-                if (traversal.hit.t == shadow.t_max) estimate.L += shadow.Ld;
+                lit = traversal.hit.t == shadow.t_max;
                 if (alive) traversal = bvh_begin(path.ray, FLOAT_MAX, false);
             }
         }
         if (!bvh_ended(traversal)) break;
+        if (lit) estimate.L += shadow.Ld;
 
         if (ended) {
             // A sample whose value or square is not finite adds zero and is counted.

@@ -37,60 +37,47 @@ ivec4 ordered_bits(vec4 x) {
 // Four boxes and a ray.
 struct BoxHits {
     bvec4 met;
-    uvec4 t;  // Where the ray enters the box, as the bits of a float, with the box's slot in the low 3 bits; greater
-              // than all of those where it does not meet the box.
+    ivec4 t;  // Where the ray enters each box, as the bits of a float.
 };
-
-const uint BOX_MISS = 0xFFFFFFFFu;
 
 // Intersects a ray, clipped to [0, t_max], with the boxes whose nearer planes lie at `near + q_near * scale` along
 // the ray, axis by axis, and the others at `far + q_far * scale`; byte i of q: box i.
-BoxHits boxes_intersect(uvec3 q_near, uvec3 q_far, vec3 scale, vec3 near, vec3 far, float t_max, uvec4 slots) {
+BoxHits boxes_intersect(uvec3 q_near, uvec3 q_far, vec3 scale, vec3 near, vec3 far, float t_max) {
     ivec4 t_near = max(max(ordered_bits(bytes(q_near.x) * scale.x + near.x),
                            ordered_bits(bytes(q_near.y) * scale.y + near.y)),
                        max(ordered_bits(bytes(q_near.z) * scale.z + near.z), ivec4(0)));
     ivec4 t_far = min(min(ordered_bits(bytes(q_far.x) * scale.x + far.x),
                           ordered_bits(bytes(q_far.y) * scale.y + far.y)),
                       min(ordered_bits(bytes(q_far.z) * scale.z + far.z), ordered_bits(vec4(t_max))));
-    bvec4 met = lessThanEqual(t_near, t_far);
-    return BoxHits(met, mix(uvec4(BOX_MISS), (uvec4(t_near) & ~7u) | slots, met));
+    return BoxHits(lessThanEqual(t_near, t_far), t_near);
 }
 
-// Children of a node that are still to be visited.
-struct Pending {
-    uint nodes;       // Bit PENDING_SHIFT + i: child i; below those bits BvhNode::children.x.
-    uint primitives;  // BvhNode::children.y
+// The children of a node whose boxes a ray meets.
+struct NodeHits {
+    uint nodes;    // Bit i: child i, a node.
+    uint leaves;   // Bit i: the primitive i places behind the node's first.
+    uint nearest;  // The one of `nodes` that the ray enters first, if there is any.
 };
 
-const uint PENDING_SHIFT = 24u;
-
-Pending pending_none() {
-    return Pending(0u, 0u);
+bvec4 both(bvec4 a, bvec4 b) {
+    return bvec4(a.x && b.x, a.y && b.y, a.z && b.z, a.w && b.w);
 }
 
-bool pending_any(Pending p) {
-    return p.nodes >> PENDING_SHIFT != 0u;
+// The ones of four boxes that are nodes, where each is that child of a node of which so many are: where the ray enters
+// them, with the child in the low 3 bits; or more than any of those.
+uvec4 node_order(BoxHits hits, uvec4 children, uint node_count) {
+    const uint miss = 0xFFFFFFFFu;
+    bvec4 nodes = both(hits.met, lessThan(children, uvec4(node_count)));
+    return mix(uvec4(miss), (uvec4(hits.t) & ~7u) | children, nodes);
 }
 
-// The lowest slot of those, of which there is one at least.
-uint pending_slot(Pending p) {
-    return uint(findLSB(p.nodes >> PENDING_SHIFT));
-}
-
-// Takes the child at a slot out of them; returns its reference.
-uint pending_take(inout Pending p, uint slot) {
-    p.nodes ^= 1u << PENDING_SHIFT << slot;
-    return bvh_child(uvec2(p.nodes & (BVH_MAX_NODES - 1u), p.primitives), slot);
-}
-
-// The children of a node whose boxes the ray meets, clipped to [0, t_max]; `nearest` is the slot of the one that it
-// enters first, if there is any.
+// The children of a node whose boxes the ray meets, clipped to [0, t_max].
 //
 // Conservative: both ends of every slab are moved outwards by 2^-20 of the largest number that took part in the
 // sum, which covers the roundings of the difference, the reciprocal (2.5 ulp in Vulkan) and the products, as well
 // as those of the bounds in triangles_intersect. So a triangle is never culled by a box that contains it.
 // Ref: Ize 2013, Robust BVH Ray Traversal, for the problem; the bound is our own, for quantised boxes.
-Pending node_intersect(BvhNode node, RaySlabs ray, float t_max, out uint nearest) {
+NodeHits node_intersect(BvhNode node, RaySlabs ray, float t_max) {
     vec3 scale = node.scale * ray.inv_d;
     vec3 start = (node.origin - ray.o) * ray.inv_d;
     vec3 margin = (abs(start) + 256.0 * abs(scale)) * (1.0 / 1048576.0);
@@ -98,114 +85,131 @@ Pending node_intersect(BvhNode node, RaySlabs ray, float t_max, out uint nearest
     vec3 far = start + margin;
     bvec3 negative = lessThan(ray.inv_d, vec3(0.0));
     BoxHits a = boxes_intersect(mix(node.q_lo[0], node.q_hi[0], negative), mix(node.q_hi[0], node.q_lo[0], negative),
-                                scale, near, far, t_max, uvec4(0u, 1u, 2u, 3u));
+                                scale, near, far, t_max);
     BoxHits b = boxes_intersect(mix(node.q_lo[1], node.q_hi[1], negative), mix(node.q_hi[1], node.q_lo[1], negative),
-                                scale, near, far, t_max, uvec4(4u, 5u, 6u, 7u));
-    uvec3 t = min(a.t.xyz, b.t.xyz);
-    nearest = min(min(t.x, t.y), min(t.z, a.t.w)) & 7u;
-    uvec4 slots = mix(uvec4(0u), uvec4(1u, 2u, 4u, 8u) << PENDING_SHIFT, a.met);
-    slots.xyz |= mix(uvec3(0u), uvec3(16u, 32u, 64u) << PENDING_SHIFT, b.met.xyz);
-    uint met = slots.x | slots.y | slots.z | slots.w;
-    // From very far away, all boxes of a node are met, even those of children that do not exist; none of these begins
-    // before one that does.
-    uint existing = (2u << PENDING_SHIFT << bvh_last_child(node.children)) - 1u;
-    return Pending(node.children.x | (met & existing), node.children.y);
+                                scale, near, far, t_max);
+    uint node_count = bvh_node_count(node.children);
+    uvec4 first = node_order(a, uvec4(0u, 1u, 2u, 3u), node_count);
+    first.xyz = min(first.xyz, node_order(b, uvec4(4u, 5u, 6u, 7u), node_count).xyz);
+    uvec4 bits = mix(uvec4(0u), uvec4(1u, 2u, 4u, 8u), a.met);
+    bits.xyz |= mix(uvec3(0u), uvec3(16u, 32u, 64u), b.met.xyz);
+    // From very far away, all boxes of a node are met, even those of children that do not exist.
+    uint met = (bits.x | bits.y | bits.z | bits.w) & (2u << bvh_last_child(node.children)) - 1u;
+    return NodeHits(met & (1u << node_count) - 1u, met >> node_count,
+                    min(min(first.x, first.y), min(first.z, first.w)) & 7u);
+}
+
+// Children of a node that are still to be visited, all of them nodes: bit PENDING_SHIFT + i: child i; below those bits
+// the index of the first.
+const uint PENDING_SHIFT = 24u;
+const uint PENDING_NONE = 0u;
+
+bool pending_any(uint pending) {
+    return pending >> PENDING_SHIFT != 0u;
+}
+
+// The lowest of them; undefined if there is none.
+uint pending_first(uint pending) {
+    return uint(findLSB(pending >> PENDING_SHIFT));
+}
+
+// The index of one of them.
+uint pending_node(uint pending, uint child) {
+    return (pending & (BVH_MAX_NODES - 1u)) + child;
+}
+
+// Without the lowest, if there is any.
+uint pending_rest(uint pending) {
+    return pending & (pending - (1u << PENDING_SHIFT));
 }
 
 // Levels of the scene's tree.
 layout(constant_id = CONSTANT_BVH_DEPTH) const uint BVH_DEPTH = BVH_MAX_DEPTH;
 
-// The stack of bvh_advance, its top at 0: the children left to visit of each node on the way down, and none below
-// them. All of it moves with every entry, so that no index depends on the ray and the arrays become registers: on
-// software Vulkan a store to an indexed array takes longer than moving fourteen words. (The loops count with signed
-// numbers, or lavapipe 22.3 would not unroll them.) Handed to a function as an argument they would be copied.
-uint stack_nodes[BVH_DEPTH];
-uint stack_primitives[BVH_DEPTH];
+// The stack of bvh_advance, its top at 0: what is left to visit of each node on the way down, and none below them. All
+// of it moves with every entry, so that no index depends on the ray and the array becomes registers: on software Vulkan
+// a store to an indexed array takes longer than moving ten words. (The loops count with signed numbers, or lavapipe
+// 22.3 would not unroll them.) Handed to a function as an argument it would be copied.
+uint stack[BVH_DEPTH];
 
-// Puts p on the stack if it is asked to. It selects instead of branching, and from the bottom up: so lavapipe 22.3
-// moves every word once, otherwise twice.
-void stack_push(Pending p, bool push) {
-    [[unroll]] for (int k = int(BVH_DEPTH) - 1; k > 0; --k) {
-        stack_nodes[k] = mix(stack_nodes[k], stack_nodes[k - 1], push);
-        stack_primitives[k] = mix(stack_primitives[k], stack_primitives[k - 1], push);
-    }
-    stack_nodes[0] = mix(stack_nodes[0], p.nodes, push);
-    stack_primitives[0] = mix(stack_primitives[0], p.primitives, push);
+// Takes the top away if `pop`, or puts `pending` there if `push`. It selects instead of branching, or lavapipe 22.3
+// would move every word twice.
+void stack_move(bool pop, bool push, uint pending) {
+    [[unroll]] for (int k = 0; k < int(BVH_DEPTH) - 1; ++k) stack[k] = mix(stack[k], stack[k + 1], pop);
+    [[unroll]] for (int k = int(BVH_DEPTH) - 1; k > 0; --k) stack[k] = mix(stack[k], stack[k - 1], push);
+    stack[0] = mix(stack[0], pending, push);
 }
 
-Pending stack_pop() {
-    Pending p = Pending(stack_nodes[0], stack_primitives[0]);
-    [[unroll]] for (int k = 1; k < int(BVH_DEPTH); ++k) {
-        stack_nodes[k - 1] = stack_nodes[k];
-        stack_primitives[k - 1] = stack_primitives[k];
-    }
-    return p;
-}
-
-// Nothing to visit. (As a leaf, further than any.)
-const uint REFERENCE_END = 0xFFFFFFFFu;
+// In place of a node: there is none.
+const uint NODE_NONE = 0xFFFFFFFFu;
 
 // A ray on its way through the tree.
 struct Traversal {
     Ray ray;
     RaySlabs slabs;
     RayShear shear;
-    bool any_hit;     // The first hit is the end.
-    Hit hit;          // The nearest so far; t is t_max where there is none.
-    uint reference;   // To be visited next.
-    Pending pending;  // Siblings of `reference`; those further up are on the stack.
+    bool any_hit;    // The first hit is the end.
+    Hit hit;         // The nearest so far; t is t_max where there is none.
+    uint node;       // To be visited next,
+    uint pending;    // and then its siblings; those further up are on the stack.
+    uint leaves;     // To be tested before: bit i: the primitive at
+    uint first_leaf; // + i in leaf order.
 };
 
 // Before the root, looking for hits with t in (0, t_max). bvh_prepare comes first.
 Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
-    stack_nodes[0] = pending_none().nodes;
+    stack[0] = PENDING_NONE;
     RaySlabs slabs = ray_slabs(ray);
     RayShear shear = ray_shear(ray.d, slabs.inv_d);
-    return Traversal(ray, slabs, shear, any_hit, Hit(t_max, 0u), 0u, pending_none());
+    return Traversal(ray, slabs, shear, any_hit, Hit(t_max, 0u), 0u, PENDING_NONE, 0u, 0u);
+}
+
+// Without any node left to visit.
+void bvh_end(inout Traversal t) {
+    t.node = NODE_NONE;
+    t.leaves = 0u;
 }
 
 bool bvh_ended(Traversal t) {
-    return t.reference == REFERENCE_END;
+    return t.node == NODE_NONE && t.leaves == 0u;
 }
 
-// So many nodes a ray may visit before those that have come to a leaf go on. Where lanes go together and none skips
-// what others do, as on software Vulkan, fewer would mean more tests of leaves for few rays, and more would mean that
-// most rays wait for the one that has furthest to go.
-const uint NODES_PER_TURN = 12u;
-
-// Takes a ray some way on; not one that has ended.
+// Takes a ray on to the next leaves, and past them; not one that has ended.
+//
+// Leaves are tested as soon as they are met, and never wait on the stack, of which one word a level is enough then. On
+// software Vulkan the rays of neighbouring lanes wait for each other at the end of either loop.
 void bvh_advance(inout Traversal t) {
     if (LIST > 0u) {
         list_intersect(t.ray, t.shear, t.hit);
-        t.reference = REFERENCE_END;
+        bvh_end(t);
         return;
     }
 
-    // Go on, perhaps to a leaf: first to the nearest child, then to its siblings as they come, then up.
-    for (uint i = 0u; i < NODES_PER_TURN && (t.reference & BVH_LEAF_BIT) == 0u; ++i) {
-        uint slot;
-        Pending met = node_intersect(scene_node(t.reference), t.slabs, t.hit.t, slot);
-        bool down = pending_any(met);
-        stack_push(t.pending, down && pending_any(t.pending));
-        t.pending.nodes = mix(t.pending.nodes, met.nodes, down);
-        t.pending.primitives = mix(t.pending.primitives, met.primitives, down);
-        if (!pending_any(t.pending)) t.pending = stack_pop();
-        slot = mix(pending_slot(t.pending), slot, down);
-        t.reference = REFERENCE_END;
-        if (pending_any(t.pending)) t.reference = pending_take(t.pending, slot);
+    // Go on: to the nearest child, or to the siblings as they come, or up.
+    while (t.leaves == 0u && t.node != NODE_NONE) {
+        bool siblings = pending_any(t.pending);
+        uint next = mix(stack[0], t.pending, siblings);
+        uint next_node = mix(NODE_NONE, pending_node(next, pending_first(next)), pending_any(next));
+
+        BvhNode node = scene_node(t.node);
+        NodeHits met = node_intersect(node, t.slabs, t.hit.t);
+        t.leaves = met.leaves;
+        t.first_leaf = bvh_first_primitive(node.children);
+        bool down = met.nodes != 0u;
+        uint others = met.nodes & ~(1u << met.nearest);
+        stack_move(!down && !siblings, down && siblings, t.pending);
+        t.pending = mix(pending_rest(next), node.children.x | others << PENDING_SHIFT, down);
+        t.node = mix(next_node, node.children.x + met.nearest, down);
     }
-    if ((t.reference & BVH_LEAF_BIT) == 0u || t.reference == REFERENCE_END) return;
 
-    // Test the leaf.
+    // Test the leaves.
     float t_max = t.hit.t;
-    uint position = t.reference & ~BVH_LEAF_BIT;
-    primitive_intersect(t.ray, t.shear, scene_primitive(position), position, t.hit);
-    t.reference = REFERENCE_END;
-    if (t.any_hit && t.hit.t < t_max) return;
-
-    // Find what is next.
-    if (!pending_any(t.pending)) t.pending = stack_pop();
-    if (pending_any(t.pending)) t.reference = pending_take(t.pending, pending_slot(t.pending));
+    while (t.leaves != 0u) {
+        uint position = t.first_leaf + uint(findLSB(t.leaves));
+        t.leaves &= t.leaves - 1u;
+        primitive_intersect(t.ray, t.shear, scene_primitive(position), position, t.hit);
+    }
+    if (t.any_hit && t.hit.t < t_max) bvh_end(t);
 }
 
 // The closest hit with t > 0; Hit::t is FLOAT_MAX where there is none.

@@ -11,7 +11,7 @@
 // it.
 //
 // Children that are nodes come first and stand side by side in the array of nodes, as do those that are
-// primitives in leaf order; so it takes two numbers to say where all are (bvh_child reads them).
+// primitives in leaf order; so it takes two numbers to say where all are.
 #ifndef SHARED_BVH_NODE_H
 #define SHARED_BVH_NODE_H
 
@@ -77,7 +77,8 @@ inline uvec2 bvh_children(uint nodes, uint first_node, uint count, uint first_pr
 }
 
 inline BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d);
-inline uint bvh_child(uvec2 children, uint i);
+inline uint bvh_node_count(uvec2 children);
+inline uint bvh_first_primitive(uvec2 children);
 inline uint bvh_last_child(uvec2 children);
 
 #endif
@@ -98,21 +99,31 @@ BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     return n;
 }
 
+// How many of a node's children are nodes: children.x and those behind it, the first of its children.
+uint bvh_node_count(uvec2 children) {
+    return children.y >> 26u & 7u;
+}
+
+// Position in leaf order of the first of its children that are primitives.
+uint bvh_first_primitive(uvec2 children) {
+    return children.y & BVH_MAX_PRIMITIVES;
+}
+
 // The last of a node's children, which are 0 .. bvh_last_child.
 uint bvh_last_child(uvec2 children) {
     return children.y >> 29u;
-}
-
-// The reference to child i.
-uint bvh_child(uvec2 children, uint i) {
-    uint nodes = children.y >> 26u & 7u;
-    return i < nodes ? children.x + i : BVH_LEAF_BIT | ((children.y & BVH_MAX_PRIMITIVES) + i - nodes);
 }
 
 #ifdef __cplusplus
 
 inline BvhNode unpack(const PackedBvhNode& n) {
     return bvh_node_unpack(n[0], n[1], n[2], n[3]);
+}
+
+// The reference to child i.
+inline uint bvh_child(uvec2 children, uint i) {
+    const uint nodes = bvh_node_count(children);
+    return i < nodes ? children.x + i : BVH_LEAF_BIT | (bvh_first_primitive(children) + i - nodes);
 }
 
 // How many children a node has. (The root of an empty tree has one that does not exist.)
