@@ -137,7 +137,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     path.beta *= path_transmittance(path, hit.t);
 
     // Add what the surface emits; light samples of the vertex before may already account for a part.
-    if (s.light != NO_LIGHT) add_emission(path, estimate, light_of_surface(s.light), s, hit.t);
+    if (s.light != NO_LIGHT) add_emission(path, estimate, light_at(s.light), s, hit.t);
 
     // End at the last scattering vertex.
     if (path.depth == parameters.max_depth) {

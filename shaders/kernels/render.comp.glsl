@@ -55,6 +55,7 @@ void main() {
     if (first >= target) return;
 
     bvh_prepare();
+    light_prepare();
 
     // One vertex per turn: a lane whose path has ended begins its next sample while its neighbours go on. The shadow
     // ray of a vertex and the path's next ray are traced one after the other, without waiting for the neighbours in

@@ -10,15 +10,23 @@
 // A scene with one light alone needs not choose.
 layout(constant_id = CONSTANT_ONE_LIGHT) const bool ONE_LIGHT = false;
 
-// The light that a surface is.
-Light light_of_surface(uint light) {
-    return scene_light(ONE_LIGHT ? 0u : light);
+// That light, which an invocation reads once.
+Light only_light;
+
+// Before an invocation's first light sample.
+void light_prepare() {
+    if (ONE_LIGHT) only_light = scene_light(0u);
+}
+
+Light light_at(uint i) {
+    if (ONE_LIGHT) return only_light;
+    return scene_light(i);
 }
 
 // A point on one of the lights, seen from p_reference, from 2 x 32 random bits. The first word chooses the light as
 // well, if there are several, and what the choice leaves of it is uniform again: so the points of a light are as well
 // spread as those of a sampler are. The 8 low bits of `fill` are random too, and become those of the word. The scene
-// has at least one light.
+// has at least one light; light_prepare comes first.
 // Ref: Walker 1977, An Efficient Method for Generating Discrete Random Variables with General Distributions.
 LightSample light_sample_li(vec3 p_reference, uvec2 u, uint fill) {
     uint i = 0u;
@@ -28,7 +36,7 @@ LightSample light_sample_li(vec3 p_reference, uvec2 u, uint fill) {
         i = choice.i;
         u.x = uint(choice.rest * 16777216.0) << 8u | (fill & 255u);
     }
-    Light l = scene_light(i);
+    Light l = light_at(i);
     if (is_light(l, LIGHT_ENVIRONMENT)) return environment_light_sample_li(u);
     if (is_light(l, LIGHT_SPHERE)) return sphere_light_sample_li(l, p_reference, unit_float(u));
     return area_light_sample_li(l, p_reference, unit_float(u));

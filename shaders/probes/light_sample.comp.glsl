@@ -13,6 +13,7 @@
 void main() {
     if (past_end()) return;
     vec3 from = item_floats(0u).xyz;
+    light_prepare();
     LightSample s = light_sample_li(from, item(1u).xy, item(0u).w);
     put(s.wi);
     put(s.Li);
