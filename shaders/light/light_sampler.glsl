@@ -18,6 +18,7 @@ void light_prepare() {
     if (ONE_LIGHT) only_light = scene_light(0u);
 }
 
+// The light at that place in the table of lights.
 Light light_at(uint i) {
     if (ONE_LIGHT) return only_light;
     return scene_light(i);

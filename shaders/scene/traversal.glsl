@@ -59,6 +59,7 @@ struct NodeHits {
     uint nearest;  // The one of `nodes` that the ray enters first, if there is any.
 };
 
+// Whether both hold, component by component.
 bvec4 both(bvec4 a, bvec4 b) {
     return bvec4(a.x && b.x, a.y && b.y, a.z && b.z, a.w && b.w);
 }
@@ -148,12 +149,12 @@ struct Traversal {
     Ray ray;
     RaySlabs slabs;
     RayShear shear;
-    bool any_hit;    // The first hit is the end.
-    Hit hit;         // The nearest so far; t is t_max where there is none.
-    uint node;       // To be visited next,
-    uint pending;    // and then its siblings; those further up are on the stack.
-    uint leaves;     // To be tested before: bit i: the primitive at
-    uint first_leaf; // + i in leaf order.
+    bool any_hit;     // The first hit is the end.
+    Hit hit;          // The nearest so far; t is t_max where there is none.
+    uint node;        // To be visited next,
+    uint pending;     // and then its siblings; those further up are on the stack.
+    uint leaves;      // To be tested before: bit i: the primitive i places behind
+    uint first_leaf;  // this position in leaf order.
 };
 
 // Before the root, looking for hits with t in (0, t_max). bvh_prepare comes first.
@@ -164,7 +165,7 @@ Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     return Traversal(ray, slabs, shear, any_hit, Hit(t_max, 0u), 0u, PENDING_NONE, 0u, 0u);
 }
 
-// Without any node left to visit.
+// With no node left to visit, and no leaf to be tested.
 void bvh_end(inout Traversal t) {
     t.node = NODE_NONE;
     t.leaves = 0u;
@@ -187,6 +188,7 @@ void bvh_advance(inout Traversal t) {
 
     // Go on: to the nearest child, or to the siblings as they come, or up.
     while (t.leaves == 0u && t.node != NODE_NONE) {
+        // What is next if this node has no child to visit.
         bool siblings = pending_any(t.pending);
         uint next = mix(stack[0], t.pending, siblings);
         uint next_node = mix(NODE_NONE, pending_node(next, pending_first(next)), pending_any(next));
