@@ -13,23 +13,14 @@ void bvh_prepare() {
     list_prepare();
 }
 
-// What a ray needs once for all boxes.
-struct RaySlabs {
-    vec3 o;
-    vec3 inv_d;
-};
-
-RaySlabs ray_slabs(Ray ray) {
-    return RaySlabs(ray.o, reciprocals(ray.d));
-}
-
 // The four bytes of a word as floats.
 vec4 bytes(uint word) {
     return vec4(uvec4(word, word >> 8u, word >> 16u, word >> 24u) & 255u);
 }
 
-// The bits of a float, as an integer that orders numbers >= 0 as the floats do and is negative for all others.
-// Comparing those is one instruction where floats, for the sake of NaN, take three on software Vulkan.
+// The bits of a float, as an integer that orders numbers >= 0 as the floats do, is negative for all others, and orders
+// those the other way round. Comparing integers is one instruction where floats, for the sake of NaN, take three on
+// software Vulkan.
 ivec4 ordered_bits(vec4 x) {
     return floatBitsToInt(x);
 }
@@ -37,15 +28,19 @@ ivec4 ordered_bits(vec4 x) {
 // Four boxes and a ray.
 struct BoxHits {
     bvec4 met;
-    ivec4 t;  // Where the ray enters each box, as the bits of a float.
+    ivec4 t;  // Where the ray enters each box, as the bits of a float, or a negative number if it begins inside.
 };
 
 // Intersects a ray, clipped to [0, t_max], with the boxes whose nearer planes lie at `near + q_near * scale` along
 // the ray, axis by axis, and the others at `far + q_far * scale`; byte i of q: box i.
+//
+// There is no need to clip to 0. A box that lies behind the ray has a far plane behind it, and all its near planes
+// further behind. The order of negative integers makes t_far the far plane that is least behind, t_near the near plane
+// that is most behind, and t_near the greater of the two: the box is not met.
 BoxHits boxes_intersect(uvec3 q_near, uvec3 q_far, vec3 scale, vec3 near, vec3 far, float t_max) {
     ivec4 t_near = max(max(ordered_bits(bytes(q_near.x) * scale.x + near.x),
                            ordered_bits(bytes(q_near.y) * scale.y + near.y)),
-                       max(ordered_bits(bytes(q_near.z) * scale.z + near.z), ivec4(0)));
+                       ordered_bits(bytes(q_near.z) * scale.z + near.z));
     ivec4 t_far = min(min(ordered_bits(bytes(q_far.x) * scale.x + far.x),
                           ordered_bits(bytes(q_far.y) * scale.y + far.y)),
                       min(ordered_bits(bytes(q_far.z) * scale.z + far.z), ordered_bits(vec4(t_max))));
@@ -66,38 +61,38 @@ bvec4 both(bvec4 a, bvec4 b) {
 
 // The ones of four boxes that are nodes, where each is that child of a node of which so many are: where the ray enters
 // them, with the child in the low 3 bits; or more than any of those.
-uvec4 node_order(BoxHits hits, uvec4 children, uint node_count) {
-    const uint miss = 0xFFFFFFFFu;
+ivec4 node_order(BoxHits hits, uvec4 children, uint node_count) {
+    const int miss = 0x7FFFFFFF;
     bvec4 nodes = both(hits.met, lessThan(children, uvec4(node_count)));
-    return mix(uvec4(miss), (uvec4(hits.t) & ~7u) | children, nodes);
+    return mix(ivec4(miss), (hits.t & ~7) | ivec4(children), nodes);
 }
 
-// The children of a node whose boxes the ray meets, clipped to [0, t_max].
+// The children of a node whose boxes the ray meets, clipped to [0, t_max]; inv_d: reciprocals(ray.d).
 //
 // Conservative: both ends of every slab are moved outwards by 2^-20 of the largest number that took part in the
 // sum, which covers the roundings of the difference, the reciprocal (2.5 ulp in Vulkan) and the products, as well
 // as those of the bounds in triangles_intersect. So a triangle is never culled by a box that contains it.
 // Ref: Ize 2013, Robust BVH Ray Traversal, for the problem; the bound is our own, for quantised boxes.
-NodeHits node_intersect(BvhNode node, RaySlabs ray, float t_max) {
-    vec3 scale = node.scale * ray.inv_d;
-    vec3 start = (node.origin - ray.o) * ray.inv_d;
+NodeHits node_intersect(BvhNode node, Ray ray, vec3 inv_d, float t_max) {
+    vec3 scale = node.scale * inv_d;
+    vec3 start = (node.origin - ray.o) * inv_d;
     vec3 margin = (abs(start) + 256.0 * abs(scale)) * (1.0 / 1048576.0);
     vec3 near = start - margin;
     vec3 far = start + margin;
-    bvec3 negative = lessThan(ray.inv_d, vec3(0.0));
+    bvec3 negative = lessThan(inv_d, vec3(0.0));
     BoxHits a = boxes_intersect(mix(node.q_lo[0], node.q_hi[0], negative), mix(node.q_hi[0], node.q_lo[0], negative),
                                 scale, near, far, t_max);
     BoxHits b = boxes_intersect(mix(node.q_lo[1], node.q_hi[1], negative), mix(node.q_hi[1], node.q_lo[1], negative),
                                 scale, near, far, t_max);
     uint node_count = bvh_node_count(node.children);
-    uvec4 first = node_order(a, uvec4(0u, 1u, 2u, 3u), node_count);
+    ivec4 first = node_order(a, uvec4(0u, 1u, 2u, 3u), node_count);
     first.xyz = min(first.xyz, node_order(b, uvec4(4u, 5u, 6u, 7u), node_count).xyz);
     uvec4 bits = mix(uvec4(0u), uvec4(1u, 2u, 4u, 8u), a.met);
     bits.xyz |= mix(uvec3(0u), uvec3(16u, 32u, 64u), b.met.xyz);
     // From very far away, all boxes of a node are met, even those of children that do not exist.
     uint met = (bits.x | bits.y | bits.z | bits.w) & (2u << bvh_last_child(node.children)) - 1u;
     return NodeHits(met & (1u << node_count) - 1u, met >> node_count,
-                    min(min(first.x, first.y), min(first.z, first.w)) & 7u);
+                    uint(min(min(first.x, first.y), min(first.z, first.w))) & 7u);
 }
 
 // Children of a node that are still to be visited, all of them nodes: bit PENDING_SHIFT + i: child i; below those bits
@@ -127,17 +122,19 @@ uint pending_rest(uint pending) {
 // Levels of the scene's tree.
 layout(constant_id = CONSTANT_BVH_DEPTH) const uint BVH_DEPTH = BVH_MAX_DEPTH;
 
-// The stack of bvh_advance, its top at 0: what is left to visit of each node on the way down, and none below them. All
-// of it moves with every entry, so that no index depends on the ray and the array becomes registers: on software Vulkan
-// a store to an indexed array takes longer than moving ten words. (The loops count with signed numbers, or lavapipe
-// 22.3 would not unroll them.) Handed to a function as an argument it would be copied.
-uint stack[BVH_DEPTH];
+// The stack of bvh_advance, its top at 0: what is left to visit of each node on the way down, and none below them. The
+// root has no siblings, and those of the node to be visited are not here. All of it moves with every entry, so that no
+// index depends on the ray and the array becomes registers: on software Vulkan a store to an indexed array takes longer
+// than moving ten words. (The loops count with signed numbers, or lavapipe 22.3 would not unroll them.) Handed to a
+// function as an argument it would be copied.
+const int STACK_WORDS = BVH_DEPTH > 1u ? int(BVH_DEPTH) - 1 : 1;
+uint stack[STACK_WORDS];
 
 // Takes the top away if `pop`, or puts `pending` there if `push`. It selects instead of branching, or lavapipe 22.3
 // would move every word twice.
 void stack_move(bool pop, bool push, uint pending) {
-    [[unroll]] for (int k = 0; k < int(BVH_DEPTH) - 1; ++k) stack[k] = mix(stack[k], stack[k + 1], pop);
-    [[unroll]] for (int k = int(BVH_DEPTH) - 1; k > 0; --k) stack[k] = mix(stack[k], stack[k - 1], push);
+    [[unroll]] for (int k = 0; k < STACK_WORDS - 1; ++k) stack[k] = mix(stack[k], stack[k + 1], pop);
+    [[unroll]] for (int k = STACK_WORDS - 1; k > 0; --k) stack[k] = mix(stack[k], stack[k - 1], push);
     stack[0] = mix(stack[0], pending, push);
 }
 
@@ -147,7 +144,7 @@ const uint NODE_NONE = 0xFFFFFFFFu;
 // A ray on its way through the tree.
 struct Traversal {
     Ray ray;
-    RaySlabs slabs;
+    vec3 inv_d;  // reciprocals(ray.d)
     RayShear shear;
     bool any_hit;     // The first hit is the end.
     Hit hit;          // The nearest so far; t is t_max where there is none.
@@ -160,9 +157,8 @@ struct Traversal {
 // Before the root, looking for hits with t in (0, t_max). bvh_prepare comes first.
 Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack[0] = PENDING_NONE;
-    RaySlabs slabs = ray_slabs(ray);
-    RayShear shear = ray_shear(ray.d, slabs.inv_d);
-    return Traversal(ray, slabs, shear, any_hit, Hit(t_max, 0u), 0u, PENDING_NONE, 0u, 0u);
+    vec3 inv_d = reciprocals(ray.d);
+    return Traversal(ray, inv_d, ray_shear(ray.d, inv_d), any_hit, Hit(t_max, 0u), 0u, PENDING_NONE, 0u, 0u);
 }
 
 // With no node left to visit, and no leaf to be tested.
@@ -194,7 +190,7 @@ void bvh_advance(inout Traversal t) {
         uint next_node = mix(NODE_NONE, pending_node(next, pending_first(next)), pending_any(next));
 
         BvhNode node = scene_node(t.node);
-        NodeHits met = node_intersect(node, t.slabs, t.hit.t);
+        NodeHits met = node_intersect(node, t.ray, t.inv_d, t.hit.t);
         t.leaves = met.leaves;
         t.first_leaf = bvh_first_primitive(node.children);
         bool down = met.nodes != 0u;
