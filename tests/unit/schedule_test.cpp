@@ -109,14 +109,14 @@ TEST(Schedule, GrowthIsBoundedWhenSubmissionsTakeNoTime) {
 }
 
 // An early stop leaves an even image: a first look at all pixels, and then none is ahead of another by more
-// than eight samples or twofold.
+// than eight samples or fourfold.
 TEST(Schedule, PassesAreShortWhileTheImageIsYoung) {
     Schedule schedule(uvec2(512, 512), 0, 1000, 0.05);
     uint32_t before = 0, reached = 0;
     while (!schedule.done()) {
         const Tile tile = schedule.next();
         if (tile.origin == uvec2(0, 0)) {
-            EXPECT_LE(tile.target_samples, reached == 0 ? 1u : std::max(8u, 2 * reached));
+            EXPECT_LE(tile.target_samples, reached == 0 ? 1u : std::max(8u, 4 * reached));
             before = std::exchange(reached, tile.target_samples);
         }
         const uint64_t pixels = uint64_t{tile.size.x} * tile.size.y;
