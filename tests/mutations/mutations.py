@@ -64,7 +64,7 @@ GROUPS = [
     (LIGHTS, [
         ("lights off by one", LIGHT_SAMPLER, "i = choice.i;",
          "i = (choice.i + 1u) % scene_parameters().light_count;"),
-        ("surfaces taken for the first of the lights", LIGHT_SAMPLER, "ONE_LIGHT ? 0u : light", "0u"),
+        ("surfaces taken for the first of the lights", PATH, "light_at(s.light)", "light_at(0u)"),
         ("lights chosen with a wrong probability", WARP, "column.y < entry.threshold",
          "column.y < entry.threshold / 2u"),
         ("what the choice of a light leaves not used again", LIGHT_SAMPLER, "u.x = uint(choice.rest * 16777216.0) << 8u",
@@ -91,6 +91,8 @@ GROUPS = [
          "std::ceil(steps(x)));\n        while (decode(q) < x)", "steps(x));\n        while (decode(q + 1) < x)"),
         ("a single child left to visit is forgotten", TRAVERSAL, "down && siblings",
          "down && bitCount(t.pending >> PENDING_SHIFT) > 1"),
+        ("the stack a word too short", TRAVERSAL, "BVH_DEPTH > 1u ? int(BVH_DEPTH) - 1",
+         "BVH_DEPTH > 2u ? int(BVH_DEPTH) - 2"),
         ("the leaves of a node but one forgotten", TRAVERSAL, "t.leaves &= t.leaves - 1u;", "t.leaves = 0u;"),
         ("the last of a list of primitives forgotten", LIST, "if (found.t > 0.0 &&",
          "if (i < int(LIST) - 1 && found.t > 0.0 &&"),
