@@ -42,7 +42,10 @@ std::vector<Row> bench_render(const vk::Device& device, const BenchOptions& opti
     const bool by_cpu_time = works_on_cpu(device.info());
     const GpuScene scene = build_gpu_scene(task.scene);
     RenderSettings settings = task.settings;
-    if (task.seconds) settings.submission_seconds = std::min(LONGEST_SUBMISSION, *task.seconds / SUBMISSIONS);
+    if (task.seconds) {
+        settings.submission_seconds = std::min(LONGEST_SUBMISSION, *task.seconds / SUBMISSIONS);
+        settings.pass_growth = EVEN_PASS_GROWTH;
+    }
 
     Row speed{.subject = task.name, .what = "samples", .unit = "Msamples/s"};
     Row rays{.subject = task.name, .what = "rays per sample"};

@@ -190,7 +190,8 @@ RenderSettings RenderOptions::settings(const Scene& scene) const {
             .max_depth = std::min(depth, DEPTH_SAFETY_LIMIT),
             .rr_depth = rr_depth.value_or(proposed.rr_depth),
             .aovs = written_aovs().needs_layers(),
-            .scene_access = scene_access};
+            .scene_access = scene_access,
+            .pass_growth = time_limit || write_every ? EVEN_PASS_GROWTH : PASS_GROWTH};
 }
 
 }  // namespace candela

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "render/kernels.h"
-#include "render/schedule.h"
 #include "shared/primitive.h"
 
 namespace candela {
@@ -300,7 +299,7 @@ Renderer::Work Renderer::complete(const Tile& tile) {
 }
 
 bool Renderer::render(uint32_t target, const std::function<bool(double)>& keep_going) {
-    Schedule schedule(image_size(), samples_, target, settings_.submission_seconds);
+    Schedule schedule(image_size(), samples_, target, settings_.submission_seconds, settings_.pass_growth);
     while (!schedule.done()) {
         const Work work = complete(schedule.next());
         schedule.advance(work.seconds, work.samples);

@@ -7,6 +7,7 @@
 
 #include "render/accumulation.h"
 #include "render/gpu_scene.h"
+#include "render/schedule.h"
 #include "scene/scene.h"
 #include "shared/parameters.h"
 #include "vk/buffer.h"
@@ -31,6 +32,7 @@ struct RenderSettings {
     bool aovs = false;  // Accumulate albedo and normal as well.
     SceneAccess scene_access = SceneAccess::automatic;
     double submission_seconds = 0.0;  // How long a submission should take; 0: what suits the device.
+    uint32_t pass_growth = PASS_GROWTH;
 };
 
 // The uniform record of a camera and settings for a scene.

@@ -17,12 +17,11 @@ constexpr double FIRST_BUDGET = 4096;
 constexpr double LARGEST_GROWTH = 4;
 
 // Where the image takes several submissions per pass, the first pass takes one sample of every pixel, for a
-// quick look; the second goes on to this many, and later ones to so many times as many as there are, but not
-// by more than so many at once. Within a pass, neighbours of unequal path lengths each go on with their own
-// next sample; at its end they wait for each other, which takes as long as about two samples. A driver that
-// ends an invocation's loops after 65 535 turns leaves 511 for each sample of the largest pass.
+// quick look; the second goes on to this many, and later ones add so many at most. Within a pass, neighbours
+// of unequal path lengths each go on with their own next sample; at its end they wait for each other, which
+// takes as long as about two samples. A driver that ends an invocation's loops after 65 535 turns leaves 511
+// for each sample of the largest pass.
 constexpr uint32_t SECOND_PASS_TARGET = 8;
-constexpr uint32_t PASS_GROWTH = 4;
 constexpr uint32_t LARGEST_PASS = 128;
 
 constexpr double GOLDEN_SECTION = 0.618;
@@ -42,10 +41,12 @@ uint32_t whole_groups(double pixels) {
 
 }  // namespace
 
-Schedule::Schedule(uvec2 size, uint32_t first_sample, uint32_t target, double submission_seconds)
+Schedule::Schedule(uvec2 size, uint32_t first_sample, uint32_t target, double submission_seconds,
+                   uint32_t growth)
     : size_(size),
       target_(target),
       submission_seconds_(submission_seconds),
+      growth_(growth),
       budget_(FIRST_BUDGET),
       total_(uint64_t{size.x} * size.y * (std::max(first_sample, target) - first_sample)),
       pass_start_(first_sample),
@@ -56,8 +57,7 @@ Schedule::Schedule(uvec2 size, uint32_t first_sample, uint32_t target, double su
 void Schedule::begin_pass() {
     const double affordable = budget_ / (double(size_.x) * size_.y);
     const uint32_t usual =
-        pass_start_ == 0 ? 1
-                         : std::clamp((PASS_GROWTH - 1) * pass_start_, SECOND_PASS_TARGET - 1, LARGEST_PASS);
+        pass_start_ == 0 ? 1 : std::clamp((growth_ - 1) * pass_start_, SECOND_PASS_TARGET - 1, LARGEST_PASS);
     const uint32_t samples = std::max(usual, uint32_t(std::min(affordable, double(target_))));
     pass_target_ = pass_start_ + std::min(samples, target_ - std::min(pass_start_, target_));
     at_ = uvec2(0, 0);

@@ -8,14 +8,20 @@
 
 namespace candela {
 
+// Of Schedule, where an image is rendered to its end; and where rendering may stop, or be looked at, at any
+// time.
+inline constexpr uint32_t PASS_GROWTH = 4;
+inline constexpr uint32_t EVEN_PASS_GROWTH = 2;
+
 // Brings an image to a number of samples per pixel in passes over the whole image. A pass adds one sample per
-// pixel at first and more as the image fills, so that an early stop leaves an even image; it is cut into
-// tiles of whole rows, or parts of rows where even those are too much.
+// pixel at first and more as the image fills; it is cut into tiles of whole rows, or parts of rows where even
+// those are too much. Fewer passes cost less, more leave a more even image when rendering stops early.
 class Schedule {
   public:
     // `size`: pixels of the image; `first_sample`: samples that every pixel holds already; `target`: samples
-    // that every pixel shall hold; `submission_seconds`: how long a submission should take.
-    Schedule(uvec2 size, uint32_t first_sample, uint32_t target, double submission_seconds);
+    // that every pixel shall hold; `submission_seconds`: how long a submission should take; `growth`: a pass,
+    // but for the first two, ends with at most so many times as many samples as it began with.
+    Schedule(uvec2 size, uint32_t first_sample, uint32_t target, double submission_seconds, uint32_t growth);
 
     bool done() const { return pass_start_ >= target_; }
     // The next piece of work; not when done().
@@ -32,6 +38,7 @@ class Schedule {
     uvec2 size_;
     uint32_t target_;
     double submission_seconds_;
+    uint32_t growth_;
     double budget_;  // Samples (of single pixels) in the next submission.
     uint64_t total_;
     uint64_t finished_ = 0;

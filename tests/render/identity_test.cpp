@@ -53,6 +53,7 @@ TEST_P(IdentityTest, ManySmallSubmissions) {
     s.submission_seconds = 10.0;
     const Accumulation whole = in_one_go(s);
     s.submission_seconds = 1e-6;  // A work group at a time, after the first submission.
+    s.pass_growth = EVEN_PASS_GROWTH;
     Renderer r = renderer(s);
     size_t submissions = 0;
     EXPECT_TRUE(r.render(SPP, [&](double) { return ++submissions > 0; }));
@@ -105,6 +106,7 @@ TEST_P(IdentityTest, SeveralCalls) {
 TEST_P(IdentityTest, AnInterruptionBetweenSubmissions) {
     RenderSettings s = settings();
     s.submission_seconds = 1e-6;
+    s.pass_growth = EVEN_PASS_GROWTH;
     Renderer r = renderer(s);
     size_t submissions = 0;
     EXPECT_FALSE(r.render(SPP, [&](double) { return ++submissions < 23; }));
@@ -119,6 +121,7 @@ TEST_P(IdentityTest, AStateThatWentThroughAFile) {
     {
         RenderSettings s = settings();
         s.submission_seconds = 1e-6;
+        s.pass_growth = EVEN_PASS_GROWTH;
         Renderer r = renderer(s);
         size_t submissions = 0;
         r.render(SPP, [&](double) { return ++submissions < 30; });

@@ -107,6 +107,7 @@ TEST_F(PictureIdentity, WhatChangesNoSampleIsNoPartOfIt) {
     expect_same([](RenderSettings& s) { s.aovs = true; });
     expect_same([](RenderSettings& s) { s.scene_access = SceneAccess::storage_buffers; });
     expect_same([](RenderSettings& s) { s.submission_seconds = 1.0; });
+    expect_same([](RenderSettings& s) { s.pass_growth = EVEN_PASS_GROWTH; });
 }
 
 TEST_F(PictureIdentity, AnImageCarriesIt) {

@@ -27,7 +27,7 @@ struct Rendering {
 
 Rendering carry_out(uvec2 size, uint32_t first, uint32_t target, double submission_seconds,
                     const Device& device) {
-    Schedule schedule(size, first, target, submission_seconds);
+    Schedule schedule(size, first, target, submission_seconds, PASS_GROWTH);
     Rendering r{std::vector<uint32_t>(size_t(size.x) * size.y, first)};
     double progress = 0.0;
     while (!schedule.done()) {
@@ -79,11 +79,11 @@ TEST(Schedule, GoesOnFromTheSamplesThatAreThere) {
 
 TEST(Schedule, ThereIsNothingToDoAtTheTarget) {
     for (const uint32_t first : {7u, 9u}) {
-        const Schedule schedule(uvec2(64, 64), first, 7, 0.05);
+        const Schedule schedule(uvec2(64, 64), first, 7, 0.05, PASS_GROWTH);
         EXPECT_TRUE(schedule.done());
         EXPECT_EQ(schedule.progress(), 1.0);
     }
-    EXPECT_TRUE(Schedule(uvec2(64, 64), 0, 0, 0.05).done());
+    EXPECT_TRUE(Schedule(uvec2(64, 64), 0, 0, 0.05, PASS_GROWTH).done());
 }
 
 // The least piece of work is a group of 8 x 8 pixels; where that is affordable, submissions end up near their
@@ -100,7 +100,7 @@ TEST(Schedule, SubmissionsAreAsLongAsWanted) {
 
 // 4096 pixels at first, then four times as many at most in each submission.
 TEST(Schedule, GrowthIsBoundedWhenSubmissionsTakeNoTime) {
-    Schedule schedule(uvec2(4096, 4096), 0, 1, 0.05);
+    Schedule schedule(uvec2(4096, 4096), 0, 1, 0.05, PASS_GROWTH);
     for (double most = 4096; !schedule.done(); most *= 4) {
         const Tile tile = schedule.next();
         EXPECT_LE(double(tile.size.x) * tile.size.y, most);
@@ -109,20 +109,23 @@ TEST(Schedule, GrowthIsBoundedWhenSubmissionsTakeNoTime) {
 }
 
 // An early stop leaves an even image: a first look at all pixels, and then none is ahead of another by more
-// than eight samples or fourfold.
+// than eight samples or `growth` times as many.
 TEST(Schedule, PassesAreShortWhileTheImageIsYoung) {
-    Schedule schedule(uvec2(512, 512), 0, 1000, 0.05);
-    uint32_t before = 0, reached = 0;
-    while (!schedule.done()) {
-        const Tile tile = schedule.next();
-        if (tile.origin == uvec2(0, 0)) {
-            EXPECT_LE(tile.target_samples, reached == 0 ? 1u : std::max(8u, 4 * reached));
-            before = std::exchange(reached, tile.target_samples);
+    for (const uint32_t growth : {EVEN_PASS_GROWTH, PASS_GROWTH}) {
+        Schedule schedule(uvec2(512, 512), 0, 1000, 0.05, growth);
+        uint32_t before = 0, reached = 0;
+        while (!schedule.done()) {
+            const Tile tile = schedule.next();
+            if (tile.origin == uvec2(0, 0)) {
+                before = std::exchange(reached, tile.target_samples);
+                EXPECT_LE(reached, before == 0 ? 1u : std::max(8u, growth * before));
+                EXPECT_LE(reached - before, 128u);
+            }
+            const uint64_t pixels = uint64_t{tile.size.x} * tile.size.y;
+            schedule.advance(1e-6 * double(pixels), pixels * (reached - before));
         }
-        const uint64_t pixels = uint64_t{tile.size.x} * tile.size.y;
-        schedule.advance(1e-6 * double(pixels), pixels * (reached - before));
+        EXPECT_EQ(reached, 1000u);
     }
-    EXPECT_EQ(reached, 1000u);
 }
 
 // Of 512 x 512 pixels only every sixteenth row of groups goes on; all others have reached their limits. A
@@ -131,7 +134,7 @@ TEST(Schedule, PassesAreShortWhileTheImageIsYoung) {
 TEST(Schedule, PixelsAtTheirLimitsNeitherHideWorkNorMakeSubmissionsSmall) {
     constexpr double SECONDS_PER_SAMPLE = 1e-6, OVERHEAD = 1e-4;
     constexpr uint32_t BEFORE = 64, TARGET = 128;
-    Schedule schedule(uvec2(512, 512), BEFORE, TARGET, 0.05);
+    Schedule schedule(uvec2(512, 512), BEFORE, TARGET, 0.05, PASS_GROWTH);
     size_t submissions = 0;
     uint64_t done = 0;
     while (!schedule.done()) {
