@@ -32,7 +32,7 @@ struct RenderSettings {
     bool aovs = false;  // Accumulate albedo and normal as well.
     SceneAccess scene_access = SceneAccess::automatic;
     double submission_seconds = 0.0;  // How long a submission should take; 0: what suits the device.
-    uint32_t pass_growth = PASS_GROWTH;
+    uint32_t pass_growth = PASS_GROWTH;  // See Schedule; changes no bit.
 };
 
 // The uniform record of a camera and settings for a scene.
