@@ -31,7 +31,7 @@ struct RenderSettings {
     uint32_t rr_depth = 3;
     bool aovs = false;  // Accumulate albedo and normal as well.
     SceneAccess scene_access = SceneAccess::automatic;
-    double submission_seconds = 0.0;  // How long a submission should take; 0: what suits the device.
+    double submission_seconds = 0.0;     // How long a submission should take; 0: what suits the device.
     uint32_t pass_growth = PASS_GROWTH;  // See Schedule; changes no bit.
 };
 
