@@ -5,7 +5,7 @@ file(WRITE ${OUTPUT} "// Generated from ${NAME}.comp.glsl.
 #include <cstdint>
 #include <span>
 namespace candela::kernels {
-static constexpr std::uint32_t words[] = {\n${words}};
+static constexpr std::uint32_t ${NAME}_words[] = {\n${words}};
 extern const std::span<const std::uint32_t> ${NAME};
-const std::span<const std::uint32_t> ${NAME}{words};
+const std::span<const std::uint32_t> ${NAME}{${NAME}_words};
 }\n")

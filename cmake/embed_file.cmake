@@ -5,7 +5,7 @@ get_filename_component(file ${INPUT} NAME)
 file(WRITE ${OUTPUT} "// Generated from ${file}.
 #include <string_view>
 namespace candela::embedded {
-static constexpr char bytes[] = {\n${bytes}};
+static constexpr char ${NAME}_bytes[] = {\n${bytes}};
 extern const std::string_view ${NAME};
-const std::string_view ${NAME}{bytes, sizeof bytes};
+const std::string_view ${NAME}{${NAME}_bytes, sizeof ${NAME}_bytes};
 }\n")

@@ -18,10 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string quoted(const fs::path& path) {
-    return '"' + path.string() + '"';
-}
-
 [[noreturn]] void fail_to_read(const fs::path& path, const std::string& reason) {
     throw Error("cannot read " + quoted(path) + ": " + reason);
 }
@@ -145,6 +141,10 @@ fs::path writable_target(const fs::path& path) {
 }
 
 }  // namespace
+
+std::string quoted(const fs::path& path) {
+    return '"' + path.string() + '"';
+}
 
 void check_readable(const fs::path& path) {
     std::error_code error;

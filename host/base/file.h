@@ -8,6 +8,9 @@
 
 namespace candela {
 
+// The path in quotation marks, as messages show it.
+std::string quoted(const std::filesystem::path& path);
+
 // Throws Error if `path` cannot be read: it is missing, a directory or a device, or may not be opened.
 void check_readable(const std::filesystem::path& path);
 

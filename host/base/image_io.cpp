@@ -35,10 +35,6 @@ std::string describe_unknown(const fs::path& path, const std::string& supported)
 
 }  // namespace
 
-std::string quoted(const fs::path& path) {
-    return '"' + path.string() + '"';
-}
-
 void check_pixel_count(const fs::path& path, uint64_t width, uint64_t height, uint64_t max_pixels) {
     if (width * height <= max_pixels) return;
     throw Error("cannot read " + quoted(path) + ": its " + std::to_string(width) + 'x' +

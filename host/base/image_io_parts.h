@@ -3,15 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
 
 namespace candela {
 
 // Pixels along either side of an image that is read; more can only be a damaged header.
 inline constexpr uint32_t MAX_IMAGE_SIDE = 1 << 20;
-
-// The path in quotation marks, as messages show it.
-std::string quoted(const std::filesystem::path& path);
 
 // Throws Error if width * height exceeds `max_pixels`; both sides are at most MAX_IMAGE_SIDE.
 void check_pixel_count(const std::filesystem::path& path, uint64_t width, uint64_t height,

@@ -56,9 +56,9 @@ std::string samples_text(const RenderRecord& record) {
 // samples are paid for.
 void use_half(Image& image) {
     constexpr float LARGEST_HALF = 65504.0f;
-    constexpr std::string_view COLOURS[] = {"R", "G", "B", "A", "Albedo.R", "Albedo.G", "Albedo.B"};
+    constexpr std::string_view COLOUR_CHANNELS[] = {"R", "G", "B", "A", "Albedo.R", "Albedo.G", "Albedo.B"};
     for (Channel& channel : image.channels) {
-        if (std::ranges::find(COLOURS, channel.name) == std::end(COLOURS)) continue;
+        if (std::ranges::find(COLOUR_CHANNELS, channel.name) == std::end(COLOUR_CHANNELS)) continue;
         channel.half = std::ranges::all_of(
             channel.values, [](float v) { return !std::isfinite(v) || std::abs(v) <= LARGEST_HALF; });
         if (!channel.half) {

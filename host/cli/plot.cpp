@@ -15,7 +15,7 @@
 namespace candela {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 struct PlotArguments {
     std::vector<std::string> reports;

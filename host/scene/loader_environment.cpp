@@ -1,6 +1,4 @@
 // The environment: a constant sky, or one from an image.
-#include <limits>
-
 #include "base/error.h"
 #include "scene/environment.h"
 #include "scene/geometry.h"
@@ -24,7 +22,6 @@ Environment load(const Node& file, const std::filesystem::path& folder, std::vec
 
 // Multiplies all radiance by the intensity that stands at `node`.
 void scale(Environment& environment, const Node& node) {
-    constexpr double FLOAT_MAX = std::numeric_limits<float>::max();
     const double intensity = node.non_negative();
     for (vec3& radiance : environment.radiance) {
         const glm::dvec3 scaled = intensity * glm::dvec3(radiance);

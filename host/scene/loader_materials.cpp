@@ -1,6 +1,5 @@
 // Materials: one reader for each model, in a table by the name of its type.
 #include <array>
-#include <limits>
 
 #include "scene/loader_parts.h"
 #include "scene/names.h"
@@ -11,7 +10,6 @@ namespace {
 using glm::dvec3;
 using Model = decltype(Material::model);
 
-constexpr float FLOAT_MAX = std::numeric_limits<float>::max();
 
 Model read_diffuse(const Node& node) {
     node.allow_only({"type", "reflectance"});

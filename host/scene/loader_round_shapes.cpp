@@ -1,7 +1,6 @@
 // Spheres and disks: read, transformed and checked.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "scene/loader_parts.h"
 
@@ -10,7 +9,6 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double FLOAT_MIN = std::numeric_limits<float>::min();
 
 dvec3 center_of(const Node& node) {
     const auto center = node.find("center");

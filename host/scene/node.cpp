@@ -4,14 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace candela {
 namespace {
-
-constexpr double FLOAT_MAX = std::numeric_limits<float>::max();
-constexpr double FLOAT_MIN = std::numeric_limits<float>::min();
 
 // The least number of characters to insert, delete or replace that turns `a` into `b`.
 // Ref: Wagner, Fischer, "The String-to-String Correction Problem" (1974).

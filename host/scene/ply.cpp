@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<std::string_view, 6> COORDINATES{"x", "y", "z", "nx", "ny", "nz"};
 
 // What the rows of a file hold, as they stand.
-struct Polygons {
+struct PlyPolygons {
     std::vector<vec3> positions;
     std::vector<vec3> normals;
     std::vector<uint32_t> corners;  // Of all polygons, one after the other.
@@ -71,7 +71,7 @@ class BodyReader {
     BodyReader(const PlyHeader& header, bool with_normals, Rows rows, PlyPosition& position)
         : header_(header), with_normals_(with_normals), rows_(rows), position_(position) {}
 
-    Polygons read(std::vector<std::string>& warnings) {
+    PlyPolygons read(std::vector<std::string>& warnings) {
         for (const PlyElement& element : header_.elements) {
             const size_t row_size = element.least_size(header_.format);
             if (row_size > 0) read_element(element, row_size);
@@ -184,10 +184,10 @@ class BodyReader {
     Rows rows_;
     PlyPosition& position_;
     std::vector<size_t> slots_;  // Of each property of a vertex: its index in COORDINATES, or SKIPPED.
-    Polygons polygons_;
+    PlyPolygons polygons_;
 };
 
-TriangleMesh build_mesh(Polygons polygons) {
+TriangleMesh build_mesh(PlyPolygons polygons) {
     TriangleMesh mesh{std::move(polygons.positions), std::move(polygons.normals), {}};
     mesh.triangles.reserve(polygons.corners.size() - 2 * polygons.sizes.size());
     std::vector<vec3> positions;

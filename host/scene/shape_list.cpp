@@ -2,7 +2,6 @@
 #include "scene/shape_list.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "scene/mesh.h"
@@ -10,7 +9,6 @@
 namespace candela {
 
 vec3 rounded(const Node& node, glm::dvec3 p) {
-    constexpr double FLOAT_MAX = std::numeric_limits<float>::max();
     if (!glm::all(glm::lessThanEqual(abs(p), glm::dvec3(FLOAT_MAX)))) {
         node.fail("the transform moves a point out of the range of 32-bit floats");
     }
