@@ -102,16 +102,6 @@ uint32_t sampler_constant(SamplerKind sampler) {
     return SAMPLER_SOBOL;
 }
 
-// Those of make_constants, and what depends on the device.
-std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, const GpuScene& scene,
-                                                      const Camera& camera, const RenderSettings& settings) {
-    auto constants = make_constants(scene, camera, settings);
-    constants[CONSTANT_LIST] = list_constant(device, scene);
-    if (constants[CONSTANT_LIST] > 0)
-        std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS]);
-    return constants;
-}
-
 }  // namespace
 
 // Texel buffers wherever they hold the scene: on a CPU they are several times faster, on a GPU no slower.
@@ -179,6 +169,32 @@ std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const
     return constants;
 }
 
+std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, const GpuScene& scene,
+                                                      const Camera& camera, const RenderSettings& settings) {
+    auto constants = make_constants(scene, camera, settings);
+    constants[CONSTANT_LIST] = list_constant(device, scene);
+    if (constants[CONSTANT_LIST] > 0)
+        std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS]);
+    return constants;
+}
+
+vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, SceneAccess access,
+                       std::span<const uint32_t> constants) {
+    const bool render = which == RenderKernel::render;
+    const bool texels = access == SceneAccess::texel_buffers;
+    const auto scene_type = texels ? vk::BindingType::texel_buffer : vk::BindingType::storage_buffer;
+    std::vector<vk::Binding> bindings{{BINDING_NODES, scene_type},
+                                      {BINDING_PRIMITIVES, scene_type},
+                                      {BINDING_TABLES, scene_type},
+                                      {BINDING_PARAMETERS, vk::BindingType::uniform_buffer},
+                                      {BINDING_IMAGE, vk::BindingType::storage_image}};
+    if (render) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
+    const auto texel = render ? kernels::render : kernels::position;
+    const auto storage = render ? kernels::render_storage : kernels::position_storage;
+    const char* const name = render ? "render" : "position";
+    return {device, texels ? texel : storage, bindings, sizeof(Tile), constants, name};
+}
+
 Accumulation empty_state(const RenderSettings& settings) {
     return {.full = settings.size,
             .rect = settings.crop,
@@ -217,8 +233,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
 
 void Renderer::compile() {
     const auto start = std::chrono::steady_clock::now();
-    render_kernel_ =
-        std::make_unique<vk::Kernel>(make_kernel(kernels::render, kernels::render_storage, true, "render"));
+    render_kernel_ = std::make_unique<vk::Kernel>(scene_kernel(RenderKernel::render));
     render_kernel_->bind(BINDING_IMAGE, image_);
     render_kernel_->bind(BINDING_COUNTERS, counter_buffer_);
     // Some drivers compile at the first dispatch.
@@ -246,17 +261,8 @@ void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSe
     compile();
 }
 
-vk::Kernel Renderer::make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage,
-                                 bool counters, const char* name) const {
-    const bool texels = access_ == SceneAccess::texel_buffers;
-    const auto scene_type = texels ? vk::BindingType::texel_buffer : vk::BindingType::storage_buffer;
-    std::vector<vk::Binding> bindings{{BINDING_NODES, scene_type},
-                                      {BINDING_PRIMITIVES, scene_type},
-                                      {BINDING_TABLES, scene_type},
-                                      {BINDING_PARAMETERS, vk::BindingType::uniform_buffer},
-                                      {BINDING_IMAGE, vk::BindingType::storage_image}};
-    if (counters) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
-    vk::Kernel kernel(*device_, texels ? texel : storage, bindings, sizeof(Tile), constants_, name);
+vk::Kernel Renderer::scene_kernel(RenderKernel which) const {
+    vk::Kernel kernel = make_kernel(*device_, which, access_, constants_);
     kernel.bind(BINDING_NODES, nodes_);
     kernel.bind(BINDING_PRIMITIVES, primitives_);
     kernel.bind(BINDING_TABLES, tables_);
@@ -331,7 +337,7 @@ void Renderer::upload(const Accumulation& state) {
 std::vector<float> Renderer::positions() {
     const uvec2 size = image_size();
     vk::StorageImage image(*device_, size.x, size.y, 1, "position");
-    vk::Kernel kernel = make_kernel(kernels::position, kernels::position_storage, false, "position");
+    vk::Kernel kernel = scene_kernel(RenderKernel::position);
     kernel.bind(BINDING_IMAGE, image);
     const uint32_t rows = std::max(1u, POSITION_PIXELS / size.x);
     for (uint32_t y = 0; y < size.y; y += rows) {

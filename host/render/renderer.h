@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <span>
 
 #include "render/accumulation.h"
 #include "render/gpu_scene.h"
@@ -42,9 +43,19 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
 std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const Camera& camera,
                                                     const RenderSettings& settings);
 
+// All of them, those that depend on the device included.
+std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, const GpuScene& scene,
+                                                      const Camera& camera, const RenderSettings& settings);
+
 // `wanted`, or, for `automatic`, what suits the device and holds the scene. Throws Error (out_of_memory) that
 // names the device's limits if nothing does.
 SceneAccess choose_access(const vk::Device& device, const GpuScene& scene, SceneAccess wanted);
+
+// The renderer's kernels, compiled for kernel_constants() and not bound to anything; `access` is not
+// `automatic`.
+enum class RenderKernel { render, position };
+vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, SceneAccess access,
+                       std::span<const uint32_t> constants);
 
 // The state before the first sample: it holds no values yet.
 Accumulation empty_state(const RenderSettings& settings);
@@ -97,8 +108,8 @@ class Renderer {
 
     // Makes the render kernel for constants_ and image_, an empty first dispatch included.
     void compile();
-    vk::Kernel make_kernel(std::span<const uint32_t> texel, std::span<const uint32_t> storage, bool counters,
-                           const char* name) const;
+    // That kernel, bound to the scene.
+    vk::Kernel scene_kernel(RenderKernel which) const;
     double dispatch(const vk::Kernel& kernel, Tile tile);
     Work complete(const Tile& tile);
     uvec2 image_size() const { return {settings_.crop.width(), settings_.crop.height()}; }

@@ -36,6 +36,13 @@ uint32_t curve_constant(Tonemap curve) {
 
 }  // namespace
 
+vk::Kernel make_display_kernel(const vk::Device& device, Tonemap curve, bool blue_first) {
+    std::array<uint32_t, DISPLAY_CONSTANT_COUNT> constants{};
+    constants[DISPLAY_CONSTANT_CURVE] = curve_constant(curve);
+    constants[DISPLAY_CONSTANT_BLUE_FIRST] = blue_first;
+    return {device, kernels::display, BINDINGS, sizeof(DisplayPush), constants, "display"};
+}
+
 Display::Display(const vk::Device& device, bool blue_first)
     : device_(&device), blue_first_(blue_first), commands_(device) {}
 
@@ -48,21 +55,15 @@ void Display::resize(uvec2 size) {
     size_ = size;
 }
 
-void Display::make_kernel(Tonemap curve) {
-    std::array<uint32_t, DISPLAY_CONSTANT_COUNT> constants{};
-    constants[DISPLAY_CONSTANT_CURVE] = curve_constant(curve);
-    constants[DISPLAY_CONSTANT_BLUE_FIRST] = blue_first_;
-    kernel_ = std::make_unique<vk::Kernel>(*device_, kernels::display, BINDINGS,
-                                           uint32_t(sizeof(DisplayPush)), constants, "display");
-    curve_ = curve;
-}
-
 void Display::draw(const vk::StorageImage& image, uvec2 size, Tonemap curve, float exposure_ev,
                    const Overlay& overlay) {
     assert(size.x > 0 && size.y > 0);
     assert(overlay.rect.x1 <= size.x && overlay.rect.y1 <= size.y);
     if (size != size_) resize(size);
-    if (!kernel_ || curve != curve_) make_kernel(curve);
+    if (!kernel_ || curve != curve_) {
+        kernel_ = std::make_unique<vk::Kernel>(make_display_kernel(*device_, curve, blue_first_));
+        curve_ = curve;
+    }
     kernel_->bind(DISPLAY_BINDING_IMAGE, image);
     kernel_->bind(DISPLAY_BINDING_OVERLAY, *overlay_);
     kernel_->bind(DISPLAY_BINDING_PICTURE, *picture_);

@@ -23,10 +23,13 @@ struct Overlay {
     std::vector<uint32_t> pixels;
 };
 
+// The kernel that develops, compiled for a tone curve and not bound to anything. `blue_first`: the order of
+// the bytes on the screen, see vk::Presenter.
+vk::Kernel make_display_kernel(const vk::Device& device, Tonemap curve, bool blue_first);
+
 class Display {
   public:
-    // `blue_first`: the order of the bytes on the screen, see vk::Presenter. `device` must outlive the
-    // display.
+    // `blue_first` as for the kernel. `device` must outlive the display.
     Display(const vk::Device& device, bool blue_first);
 
     // Develops the mean of the samples in `image` (layers LAYER_*, of any size: it is stretched over the
@@ -41,7 +44,6 @@ class Display {
 
   private:
     void resize(uvec2 size);
-    void make_kernel(Tonemap curve);
 
     const vk::Device* device_;
     bool blue_first_;
