@@ -55,7 +55,8 @@ struct DeviceInfo {
     bool uint_texel_buffers = false;  // Reads R32G32B32A32_UINT uniform texel buffers.
     bool ray_query = false;           // Offers VK_KHR_ray_query; for information only.
     DeviceLimits limits;
-    bool presents = false;  // Is to be opened for a window: see presenter.h.
+    bool presents = false;    // Is to be opened for a window: see presenter.h.
+    bool statistics = false;  // Is to be opened for statistics of compiled kernels, which it must offer.
 
     VkPhysicalDevice handle = VK_NULL_HANDLE;
 
