@@ -1,6 +1,7 @@
 # The tests that read the sources, the shaders and the documents. Their label is `check`, and `quick` but for those
 # that take longer; a tool that is not here shows as a skipped test.
 find_program(SPIRV_VAL NAMES spirv-val REQUIRED)
+find_program(SPIRV_CROSS NAMES spirv-cross REQUIRED)
 # Debian's own interpreter first, since the package python3-jsonschema belongs to it.
 find_program(PYTHON3 NAMES python3 HINTS /usr/bin REQUIRED)
 find_program(CLANG_FORMAT NAMES clang-format-14)
@@ -37,6 +38,7 @@ foreach(file IN LISTS spirv probe_spirv test_spirv)
     cmake_path(GET file STEM name)
     candela_check(spirv_val.${name} ${SPIRV_VAL} --target-env vulkan1.2 ${file})
 endforeach()
+candela_check(metal ${PYTHON3} cmake/checks/metal.py ${SPIRV_CROSS} ${spirv} ${probe_spirv} ${test_spirv})
 
 # What AMD's compiler makes of the kernels: Mesa's RADV compiles for a chip that is not there, and nothing runs. About
 # three seconds each. The driver is Mesa's own, whatever driver the other tests run on.
