@@ -21,6 +21,9 @@ constexpr double CPU_SUBMISSION_SECONDS = 0.25;
 // Rays of the position kernel per submission: one per pixel, far below a watchdog's patience.
 constexpr uint32_t POSITION_PIXELS = 1u << 20;
 
+// All that Vulkan promises of maxComputeWorkGroupInvocations, so that no device need be asked.
+static_assert(WORKGROUP_SIZE * WORKGROUP_SIZE <= 128);
+
 template <class T>
 std::span<const std::byte> bytes_of(const T& value) {
     return std::as_bytes(std::span(&value, 1));
