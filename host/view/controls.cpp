@@ -43,18 +43,19 @@ void apply_mouse(ViewState& state, ViewRequests& requests) {
     }
 }
 
-void apply_flight(const Window& window, Camera& camera, double seconds) {
+// As if these keys were down for so long.
+void fly_by(const std::set<int>& keys, Camera& camera, double seconds) {
     const auto axis = [&](int forth, int back) {
-        return float(window.is_down(forth)) - float(window.is_down(back));
+        return float(keys.contains(forth)) - float(keys.contains(back));
     };
     const vec3 direction(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
                          axis(GLFW_KEY_W, GLFW_KEY_S));
     if (direction == vec3(0.0f)) return;
     const float speed = length(camera.look_at - camera.position) * float(seconds / FLIGHT_SECONDS);
-    fly(camera, direction * speed * (ImGui::GetIO().KeyShift ? FAST : 1.0f));
+    candela::fly(camera, direction * speed * (ImGui::GetIO().KeyShift ? FAST : 1.0f));
 }
 
-void apply_key(int key, ViewState& state, ViewRequests& requests) {
+void apply_press(int key, ViewState& state, ViewRequests& requests) {
     switch (key) {
         case GLFW_KEY_SPACE:
             state.paused = !state.paused;
@@ -87,15 +88,26 @@ void apply_key(int key, ViewState& state, ViewRequests& requests) {
 
 }  // namespace
 
-ViewRequests apply_controls(Window& window, ViewState& state, double seconds) {
+ViewRequests Controls::apply(const Input* input, ViewState& state, double seconds) {
     ViewRequests requests;
     apply_mouse(state, requests);
-    const bool typing = ImGui::GetIO().WantTextInput;
-    for (const int key : window.take_keys()) {
-        if (!typing) apply_key(key, state, requests);
-    }
-    if (!typing) apply_flight(window, state.camera, seconds);
+    const KeyInput* const key = input == nullptr ? nullptr : std::get_if<KeyInput>(input);
+    if (key != nullptr) apply_key(*key, state, requests, seconds);
     return requests;
+}
+
+// A key that goes up was down until now; fly() will not see it any more, or has not seen it at all.
+void Controls::apply_key(const KeyInput& key, ViewState& state, ViewRequests& requests, double seconds) {
+    if (!key.down) {
+        if (held_.erase(key.key) > 0) fly_by({key.key}, state.camera, seconds);
+    } else if (!ImGui::GetIO().WantTextInput) {
+        held_.insert(key.key);
+        apply_press(key.key, state, requests);
+    }
+}
+
+void Controls::fly(Camera& camera, double seconds) const {
+    if (!ImGui::GetIO().WantTextInput) fly_by(held_, camera, seconds);
 }
 
 }  // namespace candela

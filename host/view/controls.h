@@ -1,8 +1,10 @@
 // The viewer's mouse and keys.
 #pragma once
 
+#include <set>
+
+#include "view/input.h"
 #include "view/view_state.h"
-#include "view/window.h"
 
 namespace candela {
 
@@ -18,8 +20,19 @@ inline constexpr const char* CONTROLS_HELP =
     "C      save camera  Home camera back\n"
     "Tab    panel        Esc  close";
 
-// Applies what was done with mouse and keys since the last frame, `seconds` ago, to the camera; to be called
-// within a frame of Dear ImGui, whose widgets come first.
-ViewRequests apply_controls(Window& window, ViewState& state, double seconds);
+// `seconds`: since the last frame.
+class Controls {
+  public:
+    // Applies to the camera and the rest what the user does, null if nothing; to be called within a turn of
+    // Gui, whose input that is.
+    ViewRequests apply(const Input* input, ViewState& state, double seconds);
+    // Moves the camera as the keys that are down say; to be called once a frame.
+    void fly(Camera& camera, double seconds) const;
+
+  private:
+    void apply_key(const KeyInput& key, ViewState& state, ViewRequests& requests, double seconds);
+
+    std::set<int> held_;  // Keys that went down where nothing was typed, and have not gone up yet.
+};
 
 }  // namespace candela

@@ -1,14 +1,29 @@
 // See gui.h.
 #include "view/gui.h"
 
+#include <algorithm>
+#include <cfloat>
+#include <iterator>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
 
 #include "view/rasterise.h"
 
 namespace candela {
+namespace {
 
-Gui::Gui(Window& window) {
+// Where Dear ImGui takes the mouse for absent.
+constexpr vec2 NOWHERE(-FLT_MAX);
+
+// The time passes once in a frame; its further turns take next to none [s].
+constexpr float INSTANT = 1e-6f;
+
+}  // namespace
+
+Gui::Gui(Window& window) : window_(window), mouse_(NOWHERE) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
@@ -18,7 +33,9 @@ Gui::Gui(Window& window) {
     io.Fonts->Flags |= ImFontAtlasFlags_NoBakedLines;
     io.Fonts->Build();
     ImGui::StyleColorsDark();
-    ImGui_ImplGlfw_InitForOther(window.handle(), true);
+    ImGui_ImplGlfw_InitForOther(window.handle(), false);
+    // Else newer versions ask the system for the mouse, which may be farther by now than what is dealt with.
+    ImGui_ImplGlfw_CursorEnterCallback(window.handle(), GLFW_TRUE);
 }
 
 Gui::~Gui() {
@@ -26,12 +43,24 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
-void Gui::begin() {
+void Gui::begin_frame() {
     ImGui_ImplGlfw_NewFrame();
+}
+
+void Gui::begin_turn(const Input* input) {
+    if (input != nullptr) std::visit([this](const auto& what) { take(what); }, *input);
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = ImVec2(mouse_.x, mouse_.y);
+    std::ranges::copy(buttons_, std::begin(io.MouseDown));
     ImGui::NewFrame();
 }
 
-const Overlay& Gui::end(uvec2 size) {
+void Gui::end_turn() {
+    ImGui::EndFrame();
+    ImGui::GetIO().DeltaTime = INSTANT;
+}
+
+const Overlay& Gui::draw(uvec2 size) {
     ImGui::Render();
     unsigned char* alpha = nullptr;
     int width = 0;
@@ -39,6 +68,36 @@ const Overlay& Gui::end(uvec2 size) {
     ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&alpha, &width, &height);
     rasterise(*ImGui::GetDrawData(), alpha, uvec2(width, height), size, overlay_);
     return overlay_;
+}
+
+void Gui::take(const KeyInput& input) {
+    ImGui_ImplGlfw_KeyCallback(window_.handle(), input.key, input.scancode,
+                               input.down ? GLFW_PRESS : GLFW_RELEASE, input.modifiers);
+}
+
+void Gui::take(const CharacterInput& input) {
+    ImGui_ImplGlfw_CharCallback(window_.handle(), input.code);
+}
+
+void Gui::take(const ButtonInput& input) {
+    if (size_t(input.button) < buttons_.size()) buttons_[size_t(input.button)] = input.down;
+}
+
+void Gui::take(const MoveInput& input) {
+    mouse_ = input.place;
+}
+
+// A drag goes on outside.
+void Gui::take(const LeaveInput&) {
+    if (std::ranges::none_of(buttons_, [](bool down) { return down; })) mouse_ = NOWHERE;
+}
+
+void Gui::take(const WheelInput& input) {
+    ImGui_ImplGlfw_ScrollCallback(window_.handle(), input.steps.x, input.steps.y);
+}
+
+void Gui::take(const FocusInput& input) {
+    ImGui_ImplGlfw_WindowFocusCallback(window_.handle(), int(input.focused));
 }
 
 }  // namespace candela

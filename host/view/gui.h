@@ -1,12 +1,17 @@
 // Gui: Dear ImGui over a window, from the window's input to an overlay.
 #pragma once
 
+#include <array>
+
 #include "view/display.h"
 #include "view/window.h"
 
 namespace candela {
 
-// One at a time. Between begin() and end() the widgets of Dear ImGui may be called.
+// One at a time. A frame has one turn or more: Dear ImGui takes all that it hears before a turn for one
+// moment, in which a key that went down and up was never down, and the mouse was where it is last. So each
+// thing that the user does gets a turn of its own, and what comes of it does not depend on how long a frame
+// takes.
 class Gui {
   public:
     // `window` must outlive it.
@@ -15,11 +20,26 @@ class Gui {
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    void begin();
-    // What the widgets look like, in a window of `size` pixels; valid until the next call.
-    const Overlay& end(uvec2 size);
+    // Takes in the window's size and the time.
+    void begin_frame();
+    // Between the two the widgets of Dear ImGui may be called. `input`: what the user does, null if nothing.
+    void begin_turn(const Input* input);
+    void end_turn();
+    // What the widgets looked like in the last turn, in a window of `size` pixels; valid until the next call.
+    const Overlay& draw(uvec2 size);
 
   private:
+    void take(const KeyInput& input);
+    void take(const CharacterInput& input);
+    void take(const ButtonInput& input);
+    void take(const MoveInput& input);
+    void take(const LeaveInput& input);
+    void take(const WheelInput& input);
+    void take(const FocusInput& input);
+
+    Window& window_;
+    vec2 mouse_;
+    std::array<bool, 5> buttons_{};  // Which are down.
     Overlay overlay_;
 };
 

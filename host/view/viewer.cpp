@@ -21,10 +21,6 @@ constexpr double REST_SECONDS = 0.25;
 // How long a window with nothing to do waits for its user at a time [s].
 constexpr double IDLE_SECONDS = 0.1;
 
-// So long after the user did something [s] the window is drawn after every submission: what the panel opens
-// takes several drawings to appear.
-constexpr double LIVELY_SECONDS = 0.5;
-
 // The rate is a mean over about so long [s].
 constexpr double RATE_SECONDS = 0.5;
 
@@ -197,9 +193,7 @@ bool Viewer::step(double progress) {
     if (moving_ && is_first_) next_scale_ = next_scale(scale_, seconds_between(begun_, Clock::now()));
     is_first_ = false;
     if (scale_ == 1 && copy_.due()) copy_.take(*renderer_);
-    if (window_.take_activity()) last_activity_ = Clock::now();
-    const bool lively = seconds_between(last_activity_, Clock::now()) < LIVELY_SECONDS;
-    if (lively || Clock::now() >= next_draw_) frame();
+    if (window_.take_activity() || Clock::now() >= next_draw_) frame();
     while (state_.paused && whole && !restart_ && !ended()) {
         window_.wait(IDLE_SECONDS);
         frame();
@@ -219,10 +213,6 @@ bool Viewer::outdated() const {
 
 // Decides whether to begin anew.
 void Viewer::note_changes() {
-    const uvec2 size = window_.size();
-    if (!options_.close_at_target && size.x > 0 && size.y > 0 && size != state_.settings.size) {
-        state_.settings = resized(state_.settings, size);
-    }
     if (outdated()) last_change_ = Clock::now();
     if (outdated() || (scale_ > 1 && !changed_lately())) restart_ = true;
 }

@@ -16,6 +16,7 @@
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include "view/clock.h"
+#include "view/controls.h"
 #include "view/display.h"
 #include "view/gui.h"
 #include "view/picture_copy.h"
@@ -75,6 +76,7 @@ class Viewer {
     void measure(double progress);
     bool step(double progress);
     void frame();
+    void turn(const Input* input);
     void apply(const ViewRequests& requests);
     void set_focus(vec2 place);
     bool outdated() const;
@@ -98,6 +100,7 @@ class Viewer {
     Camera home_;
 
     Gui gui_;
+    Controls controls_;
     ViewFigures figures_;
 
     // All null between the loss of a device and the opening of the next.
@@ -125,8 +128,8 @@ class Viewer {
     bool restart_ = true;  // The picture no longer shows what it shall.
     Clock::time_point begun_;
     Clock::time_point last_change_;
-    Clock::time_point last_activity_;
     Clock::time_point last_frame_;
+    double frame_seconds_ = 0.0;  // From the last frame to this one, if it was not long.
     Clock::time_point next_draw_;
     // For the rate: since when the device has worked without a break, and what had been done then.
     Clock::time_point measured_from_;

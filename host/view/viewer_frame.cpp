@@ -1,6 +1,7 @@
 // See viewer.h. What the user sees and does between two submissions.
 #include <algorithm>
 #include <cstdio>
+#include <deque>
 #include <string>
 
 #include "view/controls.h"
@@ -18,26 +19,44 @@ constexpr double LONGEST_FRAME = 0.1;
 
 }  // namespace
 
-// One turn of the user interface: what the user did, the panel, and what is on the screen.
+// Deals with all that the user did, and shows what is there. A change of the picture takes effect before
+// anything but motions is dealt with: what is saved then shows what was done before.
 void Viewer::frame() {
     const Clock::time_point start = Clock::now();
-    const double seconds = std::min(seconds_between(last_frame_, start), LONGEST_FRAME);
+    frame_seconds_ = std::min(seconds_between(last_frame_, start), LONGEST_FRAME);
     last_frame_ = start;
-    gui_.begin();
-    ViewRequests requests = apply_controls(window_, state_, seconds);
-    if (state_.panel) {
-        show_panel(state_, requests, figures_, scene_.cameras, home_, scene_.environment.has_value());
-    }
     const uvec2 size = window_.size();
-    const Overlay& overlay = gui_.end(size);
-    apply(requests);
+    const bool visible = size.x > 0 && size.y > 0;
+    if (visible && !options_.close_at_target) state_.settings.size = size;
     note_changes();
+    gui_.begin_frame();
+    std::deque<Input>& inputs = window_.inputs();
+    while (!inputs.empty() && (!restart_ || is_motion(inputs.front()))) {
+        const Input input = inputs.front();
+        inputs.pop_front();
+        turn(&input);
+        if (!is_motion(input)) turn(nullptr);  // Dear ImGui says then only that typing has ended.
+    }
+    controls_.fly(state_.camera, frame_seconds_);
+    turn(nullptr);
     update_title();
-    if (size.x > 0 && size.y > 0) {
-        display_->draw(renderer_->accumulation(), size, state_.tonemap, state_.exposure_ev, overlay);
+    if (visible) {
+        display_->draw(renderer_->accumulation(), size, state_.tonemap, state_.exposure_ev, gui_.draw(size));
         presenter_->show(display_->screen(), size.x, size.y);
     }
     next_draw_ = later(Clock::now(), seconds_between(start, Clock::now()) / DRAWING_SHARE);
+}
+
+// One turn of the user interface: the mouse and keys, then the panel.
+void Viewer::turn(const Input* input) {
+    gui_.begin_turn(input);
+    ViewRequests requests = controls_.apply(input, state_, frame_seconds_);
+    if (state_.panel) {
+        show_panel(state_, requests, figures_, scene_.cameras, home_, scene_.environment.has_value());
+    }
+    gui_.end_turn();
+    apply(requests);
+    note_changes();
 }
 
 void Viewer::apply(const ViewRequests& requests) {

@@ -46,15 +46,30 @@ Window::~Window() {
     glfwTerminate();
 }
 
+void Window::add(const Input& input) {
+    inputs_.push_back(input);
+    activity_ = true;
+}
+
 void Window::watch() {
-    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
-        Window& window = window_of(w);
-        window.activity_ = true;
-        if (action == GLFW_PRESS) window.keys_.push_back(key);
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
+        // A key that is held repeats itself, which is nothing that its user does.
+        if (action != GLFW_REPEAT) window_of(w).add(KeyInput{key, scancode, action == GLFW_PRESS, modifiers});
     });
-    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int, int, int) { window_of(w).activity_ = true; });
-    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) { window_of(w).activity_ = true; });
-    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double) { window_of(w).activity_ = true; });
+    glfwSetCharCallback(window_,
+                        [](GLFWwindow* w, unsigned int code) { window_of(w).add(CharacterInput{code}); });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
+        window_of(w).add(ButtonInput{button, action == GLFW_PRESS});
+    });
+    glfwSetCursorPosCallback(
+        window_, [](GLFWwindow* w, double x, double y) { window_of(w).add(MoveInput{vec2(x, y)}); });
+    glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
+        if (entered == GLFW_FALSE) window_of(w).add(LeaveInput{});
+    });
+    glfwSetScrollCallback(
+        window_, [](GLFWwindow* w, double x, double y) { window_of(w).add(WheelInput{vec2(x, y)}); });
+    glfwSetWindowFocusCallback(
+        window_, [](GLFWwindow* w, int focused) { window_of(w).add(FocusInput{focused != GLFW_FALSE}); });
     glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { window_of(w).activity_ = true; });
     glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { window_of(w).activity_ = true; });
 }
@@ -106,10 +121,6 @@ void Window::poll() {
 
 void Window::wait(double seconds) {
     glfwWaitEventsTimeout(seconds);
-}
-
-bool Window::is_down(int key) const {
-    return glfwGetKey(window_, key) == GLFW_PRESS;
 }
 
 }  // namespace candela

@@ -1,11 +1,13 @@
 // Window: one window of the system, with Vulkan's surface for it and what the user does in it. Made by GLFW.
 #pragma once
 
+#include <deque>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/math.h"
+#include "view/input.h"
 #include "vk/presenter.h"
 
 struct GLFWwindow;
@@ -38,21 +40,21 @@ class Window {
     // long [s].
     void poll();
     void wait(double seconds);
-    // Whether the user did anything since the last call.
+    // Whether the window changed, or the user did anything, since the last call.
     bool take_activity() { return std::exchange(activity_, false); }
-    // The keys (GLFW_KEY_*) that went down since the last call, in order.
-    std::vector<int> take_keys() { return std::exchange(keys_, {}); }
-    bool is_down(int key) const;
+    // What the user did, in that order, as far as it was taken in; who deals with the first removes it.
+    std::deque<Input>& inputs() { return inputs_; }
 
     GLFWwindow* handle() const { return window_; }
 
   private:
     void watch();
+    void add(const Input& input);
 
     GLFWwindow* window_ = nullptr;
     std::string title_;
     bool activity_ = false;
-    std::vector<int> keys_;
+    std::deque<Input> inputs_;
 };
 
 }  // namespace candela

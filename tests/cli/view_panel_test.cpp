@@ -1,4 +1,6 @@
 // The panel of `candela view`, the mouse and the keys: whether each does what it says.
+#include <csignal>
+
 #include "cli/view_fixture.h"
 #include "scene/scene.h"
 
@@ -149,6 +151,43 @@ TEST_F(ViewControls, WhatIsSetInThePanelIsRendered) {
     const Words development{"--exposure", "1.5", "--tonemap", "agx", "--estimator", "light"};
     expect_same_rgb(image, rendered(settings + development, write("scene.json", scene.dump())));
     EXPECT_TRUE(shown == read_file(file("rendered.png")));
+    expect_clean_end();
+}
+
+// All that is done while the program stands still reaches it at once, and counts as if it had waited for
+// each.
+TEST_F(ViewControls, WhatIsDoneDuringAStallIsDoneInItsOrder) {
+    const Words settings{"--size", "310x380", "--spp", "1", "--max-depth", "1"};
+    const Process& process = view(settings);
+    wait_for_title("cornell-box: 1 samples per pixel");
+    process.send(SIGSTOP);
+    // The next thing begins before Return is let go.
+    const auto typed = [&](const char* y, const std::string& number, const Words& next) {
+        xdotool(Words{"keydown", "ctrl"} + click_at("100", y) + Words{"keyup", "ctrl"});
+        xdotool({"type", number});
+        xdotool(Words{"keydown", "Return"} + next + Words{"keyup", "Return"});
+    };
+    const auto chosen = [&](int y, int n) {
+        xdotool(click_at("100", std::to_string(y).c_str()) +
+                click_at("60", std::to_string(y + 24 + 17 * n).c_str()));
+    };
+    typed("157", "1.5", {});
+    chosen(180, 3);
+    typed("253", "2e-2", {});
+    typed("276", "0.7", {"key", "c"});
+    chosen(299, 1);
+    xdotool({"key", "x"});
+    process.send(SIGCONT);
+    const std::string saved = file("cornell-box-1.exr");
+    wait_until("it is saved", [&] { return std::filesystem::exists(saved); });
+    EXPECT_EQ(std::get<std::string>(read_exr(saved).attributes.at("candela.estimator")), "light");
+    std::filesystem::remove(saved);
+    EXPECT_TRUE(std::filesystem::exists(file("cornell-box-1-camera.json")));
+    const Image image = picture_at_rest("cornell-box", {310, 380}, 1);
+    auto scene = nlohmann::json::parse(read_file(CORNELL_BOX), nullptr, true, true);
+    scene["cameras"]["main"]["lens"] = {{"radius", 0.02}, {"focal_distance", 0.7}};
+    const Words development{"--exposure", "1.5", "--tonemap", "agx", "--estimator", "light"};
+    expect_same_rgb(image, rendered(settings + development, write("scene.json", scene.dump())));
     expect_clean_end();
 }
 
