@@ -211,10 +211,10 @@ bool Viewer::outdated() const {
            state_.environment_intensity != intensity_;
 }
 
-// Decides whether to begin anew.
 void Viewer::note_changes() {
-    if (outdated()) last_change_ = Clock::now();
-    if (outdated() || (scale_ > 1 && !changed_lately())) restart_ = true;
+    if (!outdated()) return;
+    last_change_ = Clock::now();
+    restart_ = true;
 }
 
 }  // namespace candela

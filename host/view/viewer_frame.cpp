@@ -39,6 +39,7 @@ void Viewer::frame() {
     }
     controls_.fly(state_.camera, frame_seconds_);
     turn(nullptr);
+    if (scale_ > 1 && !changed_lately()) restart_ = true;  // The camera rests.
     update_title();
     if (visible) {
         display_->draw(renderer_->accumulation(), size, state_.tonemap, state_.exposure_ev, gui_.draw(size));
