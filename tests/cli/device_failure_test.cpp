@@ -50,13 +50,15 @@ TEST_F(DeviceFailure, ALostDeviceIsOpenedAgainAndTheImageHasTheSameBits) {
 }
 
 // Copies of the state as often as may be: each device gets a little further than the one before, so that
-// more than five may fail. How far depends on their speed: the seventh renders until it is told to stop, and
-// then to the next whole number of samples. (Copies are submissions, too: four for the layers of a state.)
+// more than five may fail. A picture of one work group does, however few samples a submission takes: of a
+// larger one, a slow device would begin with the same group each time. How far they get depends on their
+// speed: the seventh renders until it is told to stop, and then to the next whole number of samples. (Copies
+// are submissions, too: four for the layers of a state.)
 TEST_F(DeviceFailure, WhatTheHostHoldsIsNotRenderedAgain) {
     const Words checkpoint = {"--aov", "none", "--checkpoint", file("state.exr")};
-    picture_ = {"--size", "16x16"};
+    picture_ = {"--size", "8x8"};
     Process process = start_on_failing(
-        6, 28, DEVICE_LOST, checkpoint + Words{"--checkpoint-every", "0.0001s", "--spp", "16777216"});
+        6, 28, DEVICE_LOST, checkpoint + Words{"--checkpoint-every", "1e-9s", "--spp", "16777216"});
     ASSERT_TRUE(process.wait_for_err("going on from ", 6)) << process.err();
     process.send(SIGINT);
     const ProcessResult result = process.finish();

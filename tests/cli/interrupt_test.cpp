@@ -1,28 +1,30 @@
 // Progress on a terminal and elsewhere, and Ctrl-C.
 #include <algorithm>
-#include <chrono>
 #include <csignal>
-#include <thread>
+#include <regex>
 
 #include "cli/cli_fixture.h"
+#include "support/wait.h"
 
 namespace candela {
 namespace {
 
 class Interrupt : public CliTest {
   protected:
-    // Starts a rendering that would take for ever; stderr is a terminal.
-    Process start(const std::string& size) const {
+    // A rendering that would take for ever. Its first submission gives every pixel a sample.
+    Words endless() const {
+        return call({"render", CORNELL_BOX, "-o", file("a.exr"), "-o", file("a.png"), "--size", "32x32",
+                     "--spp", "16777216", "--report", file("r.json")});
+    }
+    static ProcessOptions on_terminal() {
         ProcessOptions terminal = options();
         terminal.terminal = true;
-        return Process(call({"render", CORNELL_BOX, "-o", file("a.exr"), "-o", file("a.png"), "--size", size,
-                             "--spp", "16777216", "--report", file("r.json")}),
-                       terminal);
+        return terminal;
     }
 
     // A signal in the middle of rendering ends it with what there is.
     void expect_partial_image(int signal) const {
-        Process process = start("32x32");
+        Process process(endless(), on_terminal());
         ASSERT_TRUE(process.wait_for_err("Msamples/s"));
         process.send(signal);
         const ProcessResult result = process.finish();
@@ -46,12 +48,13 @@ TEST_F(Interrupt, TerminationWritesWhatThereIs) {
     expect_partial_image(SIGTERM);
 }
 
-// The picture is so large that the program would still be writing for a while after the first signal.
+// It cannot end by itself after the first signal, since nobody reads what it has to say then.
 TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
-    Process process = start("1024x1024");
-    ASSERT_TRUE(process.wait_for_err("Msamples/s"));
+    Process process(endless(), options());
+    wait_until("it renders", [&] { return process.catches(SIGINT) && process.catches(SIGTERM); });
+    process.block_err();
     process.send(SIGTERM);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    wait_until("it has the signal", [&] { return !process.catches(SIGINT); });
     process.send(SIGINT);
     EXPECT_EQ(process.finish().signal, SIGINT);
     EXPECT_FALSE(std::filesystem::exists(file("a.exr")));
@@ -59,20 +62,22 @@ TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
 }
 
 TEST_F(Interrupt, ATerminalGetsALiveLineWithRateAndTimeLeft) {
-    ProcessOptions terminal = options();
-    terminal.terminal = true;
-    const Words arguments = {"render", CORNELL_BOX, "-o",       file("a.png"),  "--size",
-                             "32x32",  "--spp",     "16777216", "--time-limit", "0.5"};
-    const std::string live = run_process(call(arguments), terminal).err;
-    EXPECT_CONTAINS(live, "\r\x1b[K0 %, ");
-    EXPECT_CONTAINS(live, " of 16777216 spp, ");
-    EXPECT_CONTAINS(live, " Msamples/s, 0.");
-    EXPECT_CONTAINS(live, " s left");
+    Process process(endless() + Words{"--time-limit", "50"}, on_terminal());
+    ASSERT_TRUE(process.wait_for_err(" s left"));
+    const std::regex line(
+        "\r\x1b\\[K0 %, \\d+ of 16777216 spp, \\d+\\.\\d\\d Msamples/s, (\\d+\\.\\d) s left");
+    std::smatch match;
+    ASSERT_TRUE(std::regex_search(process.err(), match, line)) << process.err();
+    EXPECT_LE(std::stod(match[1]), 50.0);
+    process.send(SIGINT);
+    process.finish();
 
-    terminal.environment["TERM"] = "dumb";
-    EXPECT_EQ(run_process(call(arguments), terminal).err.find('\x1b'), std::string::npos);
-    EXPECT_EQ(candela(arguments).err.find('\x1b'), std::string::npos);
-    EXPECT_EQ(run_process(call(arguments + Words{"--quiet"}), terminal).err, "");
+    const Words brief = endless() + Words{"--time-limit", "0.5"};
+    ProcessOptions dumb = on_terminal();
+    dumb.environment["TERM"] = "dumb";
+    EXPECT_EQ(run_process(brief, dumb).err.find('\x1b'), std::string::npos);
+    EXPECT_EQ(run_process(brief, options()).err.find('\x1b'), std::string::npos);
+    EXPECT_EQ(run_process(brief + Words{"--quiet"}, on_terminal()).err, "");
 }
 
 }  // namespace

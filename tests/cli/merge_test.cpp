@@ -85,7 +85,7 @@ TEST_F(MergeTest, PartsAgreeWithOneRunWithinRounding) {
 // next samples may join it.
 TEST_F(MergeTest, AnInterruptedPartCountsWhereItHasSamples) {
     const Words size = {"--size", "128x128", "--aov", "samples"};
-    const std::string stopped = part("stopped.exr", "3..9", size + Words{"--time-limit", "0.0001s"});
+    const std::string stopped = part("stopped.exr", "3..9", size + Words{"--time-limit", "1e-9s"});
     const std::string next = part("next.exr", "4..6", size), before = part("before.exr", "0..3", size);
     const Image some = read_exr(stopped);
     EXPECT_EQ(std::get<std::string>(some.attributes.at("candela.samples")), "3..4");

@@ -3,15 +3,14 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
-#include <functional>
 #include <optional>
-#include <thread>
+#include <sstream>
 
 #include "base/tonemap.h"
 #include "cli/cli_fixture.h"
 #include "render/accumulation.h"
+#include "support/wait.h"
 
 namespace candela {
 
@@ -31,12 +30,16 @@ class ViewTest : public CliTest {
         }
         server_.emplace(Words{"/usr/bin/env", "Xvfb", "-displayfd", "2", "-nolisten", "tcp", "-noreset",
                               "-screen", "0", "800x600x24", "-fbdir", file("")});
-        ASSERT_TRUE(server_->wait_for_err("\n")) << "Xvfb does not start";
-        // Warnings of the server may come before the number.
-        const std::string said = server_->err();
-        const size_t line = said.find_last_of('\n', said.size() - 2);
-        display_ = ":" + said.substr(line == std::string::npos ? 0 : line + 1);
-        display_.pop_back();
+        // Its number is a line; warnings may come before.
+        std::string line;
+        for (int lines = 1; line.empty() || line.find_first_not_of("0123456789") != std::string::npos;
+             ++lines) {
+            ASSERT_TRUE(server_->wait_for_err("\n", lines)) << "Xvfb does not start: " << server_->err();
+            std::istringstream said(server_->err());
+            for (int i = 0; i < lines; ++i)
+                std::getline(said, line);
+        }
+        display_ = ":" + line;
     }
 
     std::map<std::string, std::string> environment() const {
@@ -49,7 +52,7 @@ class ViewTest : public CliTest {
                   std::map<std::string, std::string> variables = {}) {
         variables.merge(environment());
         viewer_.emplace(Words{"/usr/bin/env", "-C", file(""), CANDELA_BINARY, "view", scene} + arguments,
-                        ProcessOptions{.environment = std::move(variables), .timeout = 40.0});
+                        ProcessOptions{.environment = std::move(variables)});
         return *viewer_;
     }
 
@@ -59,42 +62,50 @@ class ViewTest : public CliTest {
                            ProcessOptions{.environment = environment()})
             .out;
     }
+    // Of the window of `candela view`, which has one as soon as it hears its user; before, nothing.
     std::string title() const {
         std::string text = xdotool({"search", "--name", " samples per pixel", "getwindowname"});
         if (!text.empty()) text.pop_back();
         return text;
     }
-    // Waits until the condition holds; if it does not within a time, the test fails.
-    static void wait_until(const std::string& what, const std::function<bool()>& holds) {
-        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-        while (!holds()) {
-            if (std::chrono::steady_clock::now() > deadline) {
-                ADD_FAILURE() << "waited in vain until " << what;
-                return;
-            }
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
-    }
     void wait_for_title(const std::string& expected) const {
         wait_until("the title is \"" + expected + "\"", [&] { return title() == expected; });
     }
+    // What the title says; -1 if there is none.
+    int samples() const {
+        const std::string text = title();
+        return text.empty() ? -1 : std::stoi(text.substr(text.find(": ") + 2));
+    }
+    bool says(const std::string& word) const {
+        return title().find(", " + word) != std::string::npos;
+    }
+
+    // Presses a key when the window has the keyboard.
+    void press(const std::string& key) const {
+        wait_until("the window has the keyboard", [&] {
+            const std::string focused = xdotool({"getwindowfocus", "-f", "getwindowname"});
+            return focused.find(" samples per pixel") != std::string::npos;
+        });
+        xdotool({"key", key});
+    }
+    // Presses that key, which saves the next file of that name; returns its path.
+    std::string saved_by(const std::string& key, const std::string& name) const {
+        press(key);
+        wait_until(name + " is there", [&] { return std::filesystem::exists(file(name)); });
+        return file(name);
+    }
     // Saves the picture of the scene of that name until it is at rest: of that size and with so many samples
-    // in every pixel.
+    // in every pixel. What is saved shows all that was done before.
     Image picture_at_rest(const std::string& name, uvec2 size, float spp) const {
-        const std::string path = file(name + "-1.exr");
         Image image;
-        const auto saved_at_rest = [&] {
-            // Not in the same frame as what was done before, which would show in the next picture only.
-            std::this_thread::sleep_for(std::chrono::milliseconds(300));
-            xdotool({"key", "x"});
-            wait_until(path + " is there", [&] { return std::filesystem::exists(path); });
+        wait_until("the picture is at rest", [&] {
+            const std::string path = saved_by("x", name + "-1.exr");
             image = read_exr(path);
             std::filesystem::remove(path);
             const std::vector<float>& counts = image.find("SampleCount.V")->values;
             return image.full == size &&
                    std::ranges::all_of(counts, [&](float count) { return count == spp; });
-        };
-        wait_until("the picture is at rest", saved_at_rest);
+        });
         return image;
     }
 
@@ -126,9 +137,18 @@ class ViewTest : public CliTest {
         return wrong;
     }
 
+    // Whether the screen is black but for the pointer, which rests far from the window.
+    bool shows_nothing(uvec2 size) const {
+        const std::vector<uint32_t> pixels = screen();
+        for (uint32_t i = 0; i < size.x * size.y; ++i) {
+            if ((pixels[i / size.x * SCREEN.x + i % size.x] & 0xFFFFFFu) != 0) return false;
+        }
+        return true;
+    }
+
     // Closes the window as its user would and expects a clean end, which the validation layer has a say in.
     void expect_clean_end() {
-        xdotool({"key", "Escape"});
+        press("Escape");
         const ProcessResult result = viewer_->finish();
         EXPECT_EQ(result.exit_code, 0) << result.err;
     }

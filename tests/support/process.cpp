@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -13,6 +14,8 @@
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "support/wait.h"
 
 extern char** environ;
 
@@ -61,10 +64,7 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
 
 }  // namespace
 
-Process::Process(const std::vector<std::string>& arguments, const ProcessOptions& options)
-    : deadline_(std::chrono::steady_clock::now() +
-                std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                    std::chrono::duration<double>(options.timeout))) {
+Process::Process(const std::vector<std::string>& arguments, const ProcessOptions& options) {
     const Channel out = make_pipe();
     const Channel err = options.terminal ? make_terminal() : make_pipe();
     posix_spawn_file_actions_t actions;
@@ -96,9 +96,9 @@ Process::~Process() {
 
 // Waits for output and appends it to the result. Returns false when both streams have ended, or if time is
 // up.
-bool Process::read_some() {
+bool Process::read_some(Time end) {
     const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - std::chrono::steady_clock::now());
+        std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
     std::array<pollfd, 2> streams{{{out_, POLLIN, 0}, {err_, POLLIN, 0}}};
     if (out_ < 0 && err_ < 0) return false;
     const int ready = ::poll(streams.data(), streams.size(), int(std::max<int64_t>(left.count(), 0)));
@@ -119,13 +119,14 @@ bool Process::read_some() {
 }
 
 bool Process::wait_for_err(const std::string& text, int times) {
-    size_t end = 0;
+    const Time end = std::chrono::steady_clock::now() + PATIENCE;
+    size_t seen = 0;
     while (times > 0) {
-        const size_t found = result_.err.find(text, end);
+        const size_t found = result_.err.find(text, seen);
         if (found != std::string::npos) {
-            end = found + text.size();
+            seen = found + text.size();
             --times;
-        } else if (!read_some()) {
+        } else if (!read_some(end)) {
             return false;
         }
     }
@@ -136,10 +137,32 @@ void Process::send(int signal) const {
     ::kill(pid_, signal);
 }
 
-ProcessResult Process::finish() {
-    while (read_some()) {
+// /proc tells as a mask in hexadecimal digits, with the first signal in its lowest bit.
+bool Process::catches(int signal) const {
+    std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+    const std::string key = "SigCgt:";
+    for (std::string line; std::getline(status, line);) {
+        if (line.rfind(key, 0) == 0)
+            return (std::stoull(line.substr(key.size()), nullptr, 16) >> (signal - 1) & 1u) != 0;
     }
-    if (out_ >= 0 || err_ >= 0) ::kill(pid_, SIGKILL);  // Out of time.
+    return false;
+}
+
+void Process::block_err() const {
+    const std::string path = "/proc/" + std::to_string(pid_) + "/fd/2";
+    const int err = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+    if (err < 0) throw std::runtime_error("cannot open " + path);
+    const std::array<char, 4096> blanks{};
+    while (::write(err, blanks.data(), blanks.size()) > 0) {
+    }
+    ::close(err);
+}
+
+ProcessResult Process::finish() {
+    const Time end = std::chrono::steady_clock::now() + PATIENCE;
+    while (read_some(end)) {
+    }
+    if (out_ >= 0 || err_ >= 0) ::kill(pid_, SIGKILL);  // It hangs.
     int status = 0;
     ::waitpid(pid_, &status, 0);
     pid_ = -1;

@@ -13,7 +13,6 @@ namespace candela {
 struct ProcessOptions {
     std::map<std::string, std::string> environment;  // In addition to ours, or instead of it.
     bool terminal = false;                           // stderr is a terminal, not a pipe.
-    double timeout = 120.0;                          // After that many seconds the program is killed.
 };
 
 struct ProcessResult {
@@ -32,22 +31,26 @@ class Process {
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
 
-    // Waits until stderr contains `text` so many times. Returns false if the program ended or ran out of time
-    // before.
+    // Waits until stderr contains `text` so many times. Returns false if the program ended or hung (see
+    // PATIENCE) before.
     bool wait_for_err(const std::string& text, int times = 1);
     // What it has written to stderr as far as that was waited for.
     const std::string& err() const { return result_.err; }
     void send(int signal) const;
-    // Waits for the end.
+    // Whether the program deals with this signal itself.
+    bool catches(int signal) const;
+    // Fills its stderr, a pipe: from now on it waits for ever where it writes there.
+    void block_err() const;
+    // Waits for the end; kills the program if it hangs.
     ProcessResult finish();
 
   private:
-    bool read_some();
+    using Time = std::chrono::steady_clock::time_point;
+    bool read_some(Time end);
 
     pid_t pid_ = -1;
     int out_ = -1;
     int err_ = -1;
-    std::chrono::steady_clock::time_point deadline_;
     ProcessResult result_;
 };
 
