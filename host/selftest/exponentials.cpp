@@ -38,7 +38,8 @@ std::vector<Exponentials> run_exponentials(const vk::Device& device, const std::
 // In units of 2^-24 of the result: s = f / (2 + f) carries a division, 5 by Vulkan's rules (2.5 ulp), and a
 // sum, 1; where the mantissa is taken from the rounded 1 + x, below -0.2929, that is off by 1/2 of itself and
 // the logarithm by 1/2 / (0.7 * 0.35) = 2 at most, just there; the additions of the series, multiplied by
-// less than 0.36 where they add to an exponent, are less than 1 more.
+// less than 0.36 where they add to an exponent, are less than 1 more. Vulkan lets a device round sums and
+// products to either neighbour, not the nearer one alone: all but the division may count twice.
 Evidence test_logarithm(const vk::Device& device) {
     std::vector<float> x = of_every_size(-1.0 + 0x1p-24);
     add_neighbours(x, -0.2929f);
@@ -53,14 +54,17 @@ Evidence test_logarithm(const vk::Device& device) {
     Evidence evidence;
     for (size_t i = 0; i < x.size(); ++i) {
         const double expected = std::log1p(double(x[i]));
-        evidence.expect(std::abs(double(values[i].log1p) - expected) <= 8 * 0x1p-24 * -expected,
+        evidence.expect(std::abs(double(values[i].log1p) - expected) <= 11 * 0x1p-24 * -expected,
                         [&] { return words("log1p(", x[i], ") = ", values[i].log1p); });
     }
     return evidence;
 }
 
-// exp(x) = 2^k (1 + p): p <= 0.42 has the roundings of its series, 1.5, and of x - k log(2), less than 1 of
-// 0.35; the final product and sum add 1. expm1 cancels at worst at k = -1, p = 0.41: 0.3 out of 0.5.
+// exp(x) = 2^k (1 + p), in units of 2^-24 of the result, where it is worst, at |x - k log(2)| = 0.35: that is
+// off by 1/4; p, in [-0.3, 0.42], by 2.4 of itself (a product, a sum, what the rest of the series leaves),
+// which is 0.7 of 1 + p; the sum adds 0.7; the last product is exact. That is less than 2. expm1 cancels at
+// worst at k = -1, p = 0.41: 0.3 out of 0.5; less than 3. And twice that, since a device may round to either
+// neighbour.
 Evidence test_exponentials(const vk::Device& device) {
     constexpr float LEAST = -87.0f;
     std::vector<float> x = of_every_size(double(LEAST));
@@ -72,8 +76,8 @@ Evidence test_exponentials(const vk::Device& device) {
         if (x[i] < LEAST) continue;
         const double exp = std::exp(double(x[i])), expm1 = std::expm1(double(x[i]));
         evidence.expect(
-            std::abs(double(values[i].exp) - exp) <= 3 * 0x1p-24 * exp &&
-                std::abs(double(values[i].expm1) - expm1) <= 3 * 0x1p-24 * -expm1,
+            std::abs(double(values[i].exp) - exp) <= 4 * 0x1p-24 * exp &&
+                std::abs(double(values[i].expm1) - expm1) <= 6 * 0x1p-24 * -expm1,
             [&] { return words("exp(", x[i], ") = ", values[i].exp, ", less 1: ", values[i].expm1); });
     }
     return evidence;

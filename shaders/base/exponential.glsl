@@ -1,5 +1,7 @@
 // Exponential and logarithm to the last digits of a float: the built-in functions are too coarse for narrow lobes (at
 // an exponent of 10^5 an error of 2^-22 in the logarithm is one of 2 % in the power), and differ between drivers.
+// Errors are stated for sums and products that are rounded to the nearest number; Vulkan lets a device take either
+// neighbour, which may double them.
 #ifndef BASE_EXPONENTIAL_GLSL
 #define BASE_EXPONENTIAL_GLSL
 
@@ -42,11 +44,12 @@ ExpParts exp_parts(float x) {
     return ExpParts(p, uintBitsToFloat(uint(int(k) + 127) << 23u));
 }
 
-// exp(x) for x <= 0, within 3 * 2^-24 of itself; 0 below x = -87, where floats become denormal.
+// exp(x) for x <= 0, within 2 * 2^-24 of itself; 0 below x = -87, where floats become denormal. The product is exact.
+// (scale + scale * p would be denormal on the way, and a device may flush that to zero.)
 float exp_nonpositive(float x) {
     if (x < -87.0) return 0.0;
     ExpParts e = exp_parts(x);
-    return e.scale + e.scale * e.p;
+    return e.scale * (1.0 + e.p);
 }
 
 // exp(x) - 1 for x <= 0, within 3 * 2^-24 of itself also where x is tiny.
