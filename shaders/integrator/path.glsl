@@ -78,11 +78,13 @@ void add_emission(Path path, inout Estimate estimate, Light l, Interaction s, fl
     estimate.L += emission_weight(path, pdf_light) * path.beta * area_light_le(l, s.front);
 }
 
-// Share of the light that the medium around the path's ray lets through over that distance [m], which may be infinite.
-// Ref: Beer and Lambert's law.
+// Share of the light that the medium around the path's ray lets through over that distance [m], which may be infinite:
+// then it is cut to a finite one, lest infinity be multiplied by 0. (Compilers that take all numbers for finite may leave
+// a min with FLOAT_MAX out.) Ref: Beer and Lambert's law.
 vec3 path_transmittance(Path path, float distance) {
+    const float far = 1e30;
     if ((MATERIALS & MATERIALS_DIELECTRIC) == 0u) return vec3(1.0);
-    return exp(-min(distance, FLOAT_MAX) * path.absorption);
+    return exp(-min(distance, far) * path.absorption);
 }
 
 // The ray from s towards a point on a light, and the radiance that this point sends through s to the path's beginning,

@@ -4,16 +4,16 @@
 
 #include "base/ray.glsl"
 
-// Distance t in lengths of ray.d, and (x, y) of the point center + x e1 + y e2 with x^2 + y^2 <= 1 that the ray meets;
-// t is not above 0 where it misses.
+// Distance t in lengths of ray.d, and (x, y) of the point center + x e1 + y e2 that the ray meets; t is not above 0 where
+// x^2 + y^2 > 1, and the ray misses. (Asked again for a hit at the rim, a compiler may round it beyond: x and y hold.)
 vec3 disk_intersect(Ray ray, vec3 center, vec3 e1, vec3 e2) {
     vec3 n = cross(e1, e2);
     float approach = dot(ray.d, n);
     if (approach == 0.0) return vec3(-1.0);
-    float t = dot(center - ray.o, n) / approach;
+    precise float t = dot(center - ray.o, n) / approach;
     vec3 p = (ray.o - center) + t * ray.d;
     vec2 b = vec2(dot(cross(p, e2), n), dot(cross(e1, p), n)) / dot(n, n);
-    return dot(b, b) <= 1.0 ? vec3(t, b) : vec3(-1.0);
+    return vec3(dot(b, b) <= 1.0 ? t : -1.0, b);
 }
 
 #endif

@@ -14,12 +14,12 @@ float sphere_intersect(Ray ray, vec3 center, float radius) {
     float a = dot(ray.d, ray.d);
     float b = -dot(f, ray.d);
     vec3 nearest = f + (b / a) * ray.d;
-    float discriminant = radius * radius - dot(nearest, nearest);
+    precise float discriminant = radius * radius - dot(nearest, nearest);
     if (discriminant <= 0.0) return -1.0;  // So q is not 0.
     float root = sqrt(a * discriminant);
     float q = b >= 0.0 ? b + root : b - root;
-    float t0 = (dot(f, f) - radius * radius) / q;
-    float t1 = q / a;
+    precise float t0 = (dot(f, f) - radius * radius) / q;
+    precise float t1 = q / a;
     return min(t0, t1) > 0.0 ? min(t0, t1) : max(t0, t1);
 }
 
