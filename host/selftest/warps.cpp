@@ -136,6 +136,8 @@ Evidence test_power_cosines(const vk::Device& device) {
     return evidence;
 }
 
+// The sine of a direction has a root, by Vulkan's table off by 9 * 2^-24, and the cosine or sine of the angle
+// around, by 4; its square, on which its height rests, twice that.
 Evidence test_sphere_and_cones(const vk::Device& device) {
     Evidence evidence;
     for (const float h_max : {1e-8f, 1e-3f, 0.5f, 1.0f, 2.0f}) {
@@ -143,7 +145,7 @@ Evidence test_sphere_and_cones(const vk::Device& device) {
         const std::vector<WarpResult> results = run_warps(device, 8, {.h_max = h_max});
         for (const WarpResult& r : results) {
             evidence.expect(std::abs(length(glm::dvec3(r.cone)) - 1.0) <= 0x1p-20 &&
-                                height(r.cone) <= double(h_max) * (1.0 + 0x1p-20),
+                                height(r.cone) <= double(h_max) * (1.0 + 0x1p-19),
                             [&] { return words(name, ": ", r.cone.x, ' ', r.cone.y, ' ', r.cone.z); });
         }
         const auto coordinates = [h_max](const WarpResult& r) {
@@ -158,14 +160,16 @@ Evidence test_sphere_and_cones(const vk::Device& device) {
     return evidence;
 }
 
-// Uniform over the area, and within the sides but for some roundings.
+// Uniform over the area, and within the sides but for some roundings: the angle of a corner has a division
+// of 2.5 ulp of a turn, 16 * 2^-24, its cosine and sine 4, over a distance of 1/2 at least from the centre to
+// a side; and the square has twice all that.
 Evidence test_polygons(const vk::Device& device) {
     Evidence evidence;
     for (const uint32_t corners : {3u, 4u, 5u, 6u, 64u}) {
         const std::string name = words("polygon of ", corners);
         const std::vector<WarpResult> results = run_warps(device, 10, {.corners = corners});
         for (const WarpResult& r : results) {
-            evidence.expect(in_polygon(r.polygon, corners).x <= 1.0 + 0x1p-20,
+            evidence.expect(in_polygon(r.polygon, corners).x <= 1.0 + 0x1p-17,
                             [&] { return words(name, ": ", r.polygon.x, ' ', r.polygon.y); });
         }
         test_uniformity(

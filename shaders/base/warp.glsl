@@ -104,7 +104,7 @@ AliasChoice warp_alias_choice(uvec2 column, AliasEntry entry) {
 }
 
 // Weight of a sample drawn with density pdf where another strategy has density pdf_other (same measure), one
-// sample each; power heuristic with exponent 2. 0 where pdf is 0; an infinite pdf wins.
+// sample each; power heuristic with exponent 2. 0 where pdf is 0; 1 where it is beyond all comparison.
 // Ref: Veach 1997, Robust Monte Carlo Methods for Light Transport Simulation, section 9.2.4.
 float power_heuristic(float pdf, float pdf_other) {
     if (pdf == 0.0) return 0.0;

@@ -130,7 +130,8 @@ TEST_F(MathTest, CompensatedSumsKeepSmallAddends) {
 
 TEST_F(MathTest, ThePowerHeuristicIsAPartitionOfOne) {
     Random random(3);
-    std::vector<Item> items{{vec3(0.0f, 1.0f, 0.0f)}, {vec3(1.0f, 0.0f, 0.0f)},  {vec3(INFINITE, 1.0f, 0.0f)},
+    const float largest = std::numeric_limits<float>::max();
+    std::vector<Item> items{{vec3(0.0f, 1.0f, 0.0f)}, {vec3(1.0f, 0.0f, 0.0f)},  {vec3(largest, 1.0f, 0.0f)},
                             {vec3(3.0f, 4.0f, 0.0f)}, {vec3(1e30f, 1.0f, 0.0f)}, {vec3(1e-30f, 1.0f, 0.0f)}};
     for (int i = 0; i < 1000; ++i) {
         const float exponent = 20.0f * random.unit() - 10.0f;

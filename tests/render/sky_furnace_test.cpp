@@ -22,13 +22,16 @@ class SkyFurnaceTest : public RenderTest {
         add_shape(scene, Sphere{}, add_material(scene, model));
         return scene;
     }
-    // Every sample must be 1 but for rounding: a path of so few vertices rounds less than 16 times.
+    // Every sample must be 1 but for rounding. Where a device is as coarse as Vulkan allows, a vertex in
+    // glass costs some 28 units of 2^-24: the exponential of 0 that the medium lets through is off by 3 ulp
+    // (6 units), each of the divisions by eta, by its square and of its inverse by 2.5 (5 units, twice where
+    // it is squared). Paths of up to 9 vertices: 2^-16.
     void expect_invisible(const Scene& scene, const RenderSettings& settings) const {
         const Image image = image_of(render(scene, settings, 16));
         EXPECT_EQ(coverage(image), 1.0);
         for (size_t c = 0; c < 3; ++c) {
             for (const float value : plane(image, "", c))
-                ASSERT_NEAR(value, 1.0f, 0x1p-20);
+                ASSERT_NEAR(value, 1.0f, 0x1p-16);
         }
     }
     // The mean over the image must be 1 within its noise; roulette and light samples have some.
