@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/vulkan.h"
@@ -23,6 +24,7 @@ using Json = nlohmann::ordered_json;
 
 struct SelftestOptions {
     std::optional<std::string> device;
+    Effort effort = Effort::full;
     bool json = false;
 };
 
@@ -33,12 +35,13 @@ std::string probability_text(double p) {
     return text;
 }
 
-void print_heading(const vk::DeviceInfo& device, double level) {
+void print_heading(const vk::DeviceInfo& device, Effort effort, double level) {
     std::printf("candela %s selftest\n", CANDELA_VERSION);
     std::printf("device   %u: %s (%s)\n", device.index, device.name.c_str(), vk::to_string(device.type));
     std::printf("driver   %s\n", device.driver.c_str());
     std::printf("Vulkan   %s\n", vk::version_text(device.api_version).c_str());
-    std::printf("system   %s\n\n", system_text().c_str());
+    std::printf("system   %s\n", system_text().c_str());
+    std::printf("effort   %s\n\n", name_of(effort, EFFORT_NAMES).c_str());
     std::printf("p is how often chance gives a result as odd; %s or less fails a check.\n",
                 probability_text(level).c_str());
     std::printf("Chance fails a correct device with a probability of %s at most, in all.\n\n",
@@ -95,8 +98,8 @@ Json to_json(const CheckResult& result, double level) {
             {"seconds", result.seconds}};
 }
 
-void print_json(const std::vector<CheckResult>& results, const vk::DeviceInfo& device, double level,
-                size_t failed) {
+void print_json(const std::vector<CheckResult>& results, const vk::DeviceInfo& device, Effort effort,
+                double level, size_t failed) {
     Json checks = Json::array();
     for (const CheckResult& result : results)
         checks.push_back(to_json(result, level));
@@ -106,6 +109,7 @@ void print_json(const std::vector<CheckResult>& results, const vk::DeviceInfo& d
                          {"driver", device.driver},
                          {"vulkan", vk::version_text(device.api_version)},
                          {"system", system_text()},
+                         {"effort", name_of(effort, EFFORT_NAMES)},
                          {"false_alarm_probability", SELFTEST_ALPHA},
                          {"p_limit", level},
                          {"checks", checks},
@@ -137,16 +141,18 @@ ExitCode selftest(const SelftestOptions& options) {
     const vk::Instance instance(instance_options());
     const std::vector<vk::DeviceInfo> devices = instance.devices();
     const vk::Device device(instance, vk::select_device(devices, options.device), pipeline_cache_file());
-    const ExitCode code = run_selftest(selftest_checks(device), device.info(), options.json);
+    const ExitCode code =
+        run_selftest(selftest_checks(device, options.effort), options.effort, device.info(), options.json);
     check_validation(instance);
     return code;
 }
 
 }  // namespace
 
-ExitCode run_selftest(const std::vector<Check>& checks, const vk::DeviceInfo& device, bool json) {
+ExitCode run_selftest(const std::vector<Check>& checks, Effort effort, const vk::DeviceInfo& device,
+                      bool json) {
     const double level = check_level(checks.size());
-    if (!json) print_heading(device, level);
+    if (!json) print_heading(device, effort, level);
     std::vector<CheckResult> results;
     std::optional<Error> lost;
     for (size_t i = 0; i < checks.size() && !lost; ++i) {
@@ -162,7 +168,7 @@ ExitCode run_selftest(const std::vector<Check>& checks, const vk::DeviceInfo& de
     const auto passed = std::ranges::count(results, true, &CheckResult::passed);
     const size_t failed = checks.size() - size_t(passed);
     if (json) {
-        print_json(results, device, level, failed);
+        print_json(results, device, effort, level, failed);
     } else {
         print_verdict(results, checks.size(), failed);
     }
@@ -179,6 +185,9 @@ Command add_selftest_command(CLI::App& app) {
         ->add_option("--device", options->device,
                      "Index or part of the name (default: the best; see candela devices)")
         ->type_name("D");
+    add_choice(*command, "--effort", options->effort, EFFORT_NAMES,
+               "quick: a sixteenth of the samples, rays and images, for devices on which full (the default) "
+               "takes many minutes; records, random numbers, warps and BSDFs as in full");
     command->add_flag("--json", options->json, "Print JSON for programs");
     command->footer(
         "Paste what it prints into a bug report. Seeds are fixed: one device always gets the same verdict.\n"

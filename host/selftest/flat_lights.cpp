@@ -105,12 +105,12 @@ Scene scene_of_flat_lights() {
     return scene;
 }
 
-Evidence test_flat_light_points(const vk::Device& device) {
+Evidence test_flat_light_points(const vk::Device& device, Effort effort) {
     constexpr size_t CELLS = 8;
     Evidence evidence;
     std::vector<double> chosen(LIGHTS.size());
     std::vector<Histogram> points(LIGHTS.size(), Histogram(CELLS));
-    const std::vector<LightItem> items = random_items(200000);
+    const std::vector<LightItem> items = random_items(sized(effort, 200000));
     const std::vector<LightSample> samples =
         sample_lights(device, build_gpu_scene(scene_of_flat_lights()), items);
     for (size_t k = 0; k < items.size(); ++k) {

@@ -89,13 +89,13 @@ Scene room_of_lights() {
 
 }  // namespace
 
-Evidence test_furnace(const vk::Device& device) {
+Evidence test_furnace(const vk::Device& device, Effort effort) {
     Evidence evidence;
     uint32_t seed = 0;
     for (const float albedo : {0.0f, 0.5f, 0.8f, 0.95f}) {
         const Scene scene = furnace(albedo);
         for (const Estimator estimator : {Estimator::bsdf, Estimator::mis}) {
-            const Image image = render(device, scene, estimator, seed++, 64, evidence);
+            const Image image = render(device, scene, estimator, seed++, sized(effort, 64), evidence);
             const RgbPlanes planes = image.find_rgb().value();
             for (const std::span<const float> pixels : planes) {
                 evidence.add_p_value(
@@ -107,21 +107,21 @@ Evidence test_furnace(const vk::Device& device) {
     return evidence;
 }
 
-Evidence test_estimators(const vk::Device& device) {
-    constexpr uint32_t SPP = 256;
+Evidence test_estimators(const vk::Device& device, Effort effort) {
+    const uint32_t spp = sized(effort, 256);
     const Scene scene = room_of_lights();
     Evidence evidence;
-    const Image mis = render(device, scene, Estimator::mis, 1, SPP, evidence);
-    test_same_expectation("light", render(device, scene, Estimator::light, 2, SPP, evidence), mis, evidence);
-    test_same_expectation("bsdf", render(device, scene, Estimator::bsdf, 3, SPP, evidence), mis, evidence);
+    const Image mis = render(device, scene, Estimator::mis, 1, spp, evidence);
+    test_same_expectation("light", render(device, scene, Estimator::light, 2, spp, evidence), mis, evidence);
+    test_same_expectation("bsdf", render(device, scene, Estimator::bsdf, 3, spp, evidence), mis, evidence);
     return evidence;
 }
 
-Evidence test_cornell_box(const vk::Device& device) {
-    constexpr uint32_t SPP = 512;
+Evidence test_cornell_box(const vk::Device& device, Effort effort) {
+    const uint32_t spp = sized(effort, 512);
     Evidence evidence;
     const Image reference = decode_exr(embedded::cornell_box_exr, "cornell-box.exr");
-    test_same_expectation("Cornell box", render(device, cornell_box(), Estimator::mis, 1, SPP, evidence),
+    test_same_expectation("Cornell box", render(device, cornell_box(), Estimator::mis, 1, spp, evidence),
                           reference, evidence);
     return evidence;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "selftest/effort.h"
 #include "selftest/evidence.h"
 #include "selftest/probe.h"
 #include "selftest/probes.h"
@@ -22,14 +23,14 @@ std::vector<LightItem> random_light_items(vec3 from, size_t count, uint32_t seed
 // power.
 Scene scene_of_flat_lights();
 // Lights are chosen by their power, and points uniformly by area.
-Evidence test_flat_light_points(const vk::Device& device);
+Evidence test_flat_light_points(const vk::Device& device, Effort effort);
 // A sample says what arrives and how likely it was; its shadow ray ends just before the light.
 Evidence test_flat_light_values(const vk::Device& device, SceneAccess access);
 
 // Spheres are sampled uniformly over the solid angle that they fill, from inside over their area; disks over
 // their area. Densities and radiance belong to the points, and nothing is in between.
-Evidence test_spheres_from_outside(const vk::Device& device);
-Evidence test_spheres_from_inside(const vk::Device& device);
-Evidence test_disks(const vk::Device& device);
+Evidence test_spheres_from_outside(const vk::Device& device, Effort effort);
+Evidence test_spheres_from_inside(const vk::Device& device, Effort effort);
+Evidence test_disks(const vk::Device& device, Effort effort);
 
 }  // namespace candela

@@ -12,7 +12,7 @@ namespace candela {
 namespace {
 
 constexpr size_t CELLS = 16;
-constexpr size_t SAMPLES = 100000;
+constexpr uint32_t SAMPLES = 100000;
 constexpr vec3 RADIANCE(3, 2, 1);
 
 GpuScene scene_of(const decltype(Shape::geometry)& geometry, bool two_sided) {
@@ -52,7 +52,8 @@ const std::vector<Place> OUTSIDE{
 // inverse root to Vulkan, is off by 9, and two divisions by 5 each: 16 more and some roundings. wi has the
 // error of the axis, an inverse root of 4 and some roundings, and of a direction around it, a root of 9 and
 // sines of 4: 2^-19.
-void test_sphere_from_outside(const vk::Device& device, const Place& place, Evidence& evidence) {
+void test_sphere_from_outside(const vk::Device& device, const Place& place, uint32_t samples,
+                              Evidence& evidence) {
     const Sphere& sphere = place.sphere;
     const vec3 from = place.from;
     const glm::dvec3 to_center = glm::dvec3(sphere.center) - glm::dvec3(from);
@@ -63,7 +64,7 @@ void test_sphere_from_outside(const vk::Device& device, const Place& place, Evid
     Histogram points(CELLS);
     size_t met = 0, outside = 0;
     for (const LightSample& s :
-         sample_lights(device, scene_of(sphere, false), random_light_items(from, SAMPLES, 80))) {
+         sample_lights(device, scene_of(sphere, false), random_light_items(from, samples, 80))) {
         const glm::dvec3 wi(s.wi), chord = wi - axis;
         const double h = 0.5 * dot(chord, chord);
         outside += h > h_max;
@@ -81,30 +82,30 @@ void test_sphere_from_outside(const vk::Device& device, const Place& place, Evid
     const std::string name = words("sphere of radius ", sphere.radius, ' ', length(to_center), " m away");
     evidence.add_p_value(name, points.uniformity());
     // Rays past the limb: the centre's distance carries 4 roundings, which count in radii.
-    const double limb = std::min(1.0, 2.0 * 8 * 0x1p-24 / sine) * SAMPLES;
-    evidence.expect(double(met) >= SAMPLES - 10.0 - 2.0 * limb && double(outside) <= 10.0 + 2.0 * limb, [&] {
-        return words(name, ": of ", SAMPLES, " samples ", met, " meet it, ", outside, " are beside it");
+    const double limb = std::min(1.0, 2.0 * 8 * 0x1p-24 / sine) * samples;
+    evidence.expect(double(met) >= samples - 10.0 - 2.0 * limb && double(outside) <= 10.0 + 2.0 * limb, [&] {
+        return words(name, ": of ", samples, " samples ", met, " meet it, ", outside, " are beside it");
     });
 }
 
 }  // namespace
 
-Evidence test_spheres_from_outside(const vk::Device& device) {
+Evidence test_spheres_from_outside(const vk::Device& device, Effort effort) {
     Evidence evidence;
     for (const Place& place : OUTSIDE)
-        test_sphere_from_outside(device, place, evidence);
+        test_sphere_from_outside(device, place, sized(effort, SAMPLES), evidence);
     return evidence;
 }
 
 // The point is uniform over the whole area; the density is that of the area, taken to solid angle. From
 // inside, a sphere shines only if it is two-sided.
-Evidence test_spheres_from_inside(const vk::Device& device) {
+Evidence test_spheres_from_inside(const vk::Device& device, Effort effort) {
     const Sphere sphere{vec3(1, 2, 3), 2.0f};
     Evidence evidence;
     for (const vec3 from : {vec3(1, 2, 3), vec3(2, 3, 3), vec3(1, 2, 4.99f)}) {
         Histogram points(CELLS);
-        for (const LightSample& s :
-             sample_lights(device, scene_of(sphere, true), random_light_items(from, SAMPLES, 81))) {
+        for (const LightSample& s : sample_lights(device, scene_of(sphere, true),
+                                                  random_light_items(from, sized(effort, SAMPLES), 81))) {
             const glm::dvec3 n =
                 normalize(glm::dvec3(from) + glm::dvec3(s.shadow) - glm::dvec3(sphere.center));
             const glm::dvec3 to_light = glm::dvec3(sphere.center) + 2.0 * n - glm::dvec3(from);
@@ -128,13 +129,13 @@ Evidence test_spheres_from_inside(const vk::Device& device) {
 }
 
 // An ellipse, in the coordinates of its axes; its front is where cross(e1, e2) points.
-Evidence test_disks(const vk::Device& device) {
+Evidence test_disks(const vk::Device& device, Effort effort) {
     const Disk disk{.center = vec3(1, 2, 3), .e1 = vec3(2, 0, 0), .e2 = vec3(1, 3, 0)};
     Evidence evidence;
     for (const vec3 from : {vec3(0, 0, 5), vec3(1, 2, 3.5f), vec3(4, 0, -20)}) {
         Histogram points(CELLS);
-        for (const LightSample& s :
-             sample_lights(device, scene_of(disk, false), random_light_items(from, SAMPLES, 83))) {
+        for (const LightSample& s : sample_lights(device, scene_of(disk, false),
+                                                  random_light_items(from, sized(effort, SAMPLES), 83))) {
             const glm::dvec3 p(glm::dvec3(from) + glm::dvec3(s.shadow));  // Moved along z alone.
             const double y = (p.y - 2.0) / 3.0, x = (p.x - 1.0 - y) / 2.0;
             points.add({x * x + y * y, turn_of(y, x)});

@@ -55,19 +55,25 @@ Evidence through_both_buffers(const vk::Device& device) {
     return evidence;
 }
 
+// A test that is the same for every effort: what it asks has no random part, or takes no time to speak of.
+template <Evidence (*test)(const vk::Device&)>
+Evidence always(const vk::Device& device, Effort) {
+    return test(device);
+}
+
 // A check, made of one test or several.
 struct Row {
     const char* name;
     const char* unit;
-    std::vector<Evidence (*)(const vk::Device&)> tests;
+    std::vector<Evidence (*)(const vk::Device&, Effort)> tests;
 };
 
 std::vector<Row> rows() {
     return {
-        {"hashes", "values", {test_integer_functions}},
-        {"samplers", "pairs", {test_all_samplers}},
-        {"exp and log", "values", {test_logarithm, test_exponentials}},
-        {"records", "values", {through_both_buffers<test_records>, test_octahedral_normals}},
+        {"hashes", "values", {always<test_integer_functions>}},
+        {"samplers", "pairs", {always<test_all_samplers>}},
+        {"exp and log", "values", {always<test_logarithm>, always<test_exponentials>}},
+        {"records", "values", {always<through_both_buffers<test_records>>, always<test_octahedral_normals>}},
         {"rays in closed meshes", "rays", {test_closed_meshes}},
         {"rays at nasty meshes", "rays", {test_nasty_mesh}},
         {"rays at spheres",
@@ -75,28 +81,31 @@ std::vector<Row> rows() {
          {test_rays_outside_spheres, test_rays_within_spheres, test_points_on_spheres, test_rays_at_disks}},
         {"warps",
          "samples",
-         {test_basic_warps, test_power_cosines, test_sphere_and_cones, test_polygons, test_visible_normals}},
-        {"BSDFs", "samples", {test_bsdfs}},
-        {"BSDFs at extremes", "samples", {test_extreme_bsdfs}},
-        {"flat lights", "samples", {test_flat_light_points, through_both_buffers<test_flat_light_values>}},
+         {always<test_basic_warps>, always<test_power_cosines>, always<test_sphere_and_cones>,
+          always<test_polygons>, always<test_visible_normals>}},
+        {"BSDFs", "samples", {always<test_bsdfs>}},
+        {"BSDFs at extremes", "samples", {always<test_extreme_bsdfs>}},
+        {"flat lights",
+         "samples",
+         {test_flat_light_points, always<through_both_buffers<test_flat_light_values>>}},
         {"round lights", "samples", {test_spheres_from_outside, test_spheres_from_inside, test_disks}},
-        {"skies", "samples", {test_sky_lookup, test_sky_samples, test_choice_of_sky}},
+        {"skies", "samples", {always<test_sky_lookup>, test_sky_samples, test_choice_of_sky}},
         {"furnace", "images", {test_furnace}},
         {"bsdf = light = mis", "images", {test_estimators}},
-        {"identical bits", "images", {test_identical_bits}},
+        {"identical bits", "images", {always<test_identical_bits>}},
         {"Cornell box", "images", {test_cornell_box}},
     };
 }
 
 }  // namespace
 
-std::vector<Check> selftest_checks(const vk::Device& device) {
+std::vector<Check> selftest_checks(const vk::Device& device, Effort effort) {
     std::vector<Check> checks;
     for (const Row& row : rows()) {
-        const auto run = [&device, tests = row.tests] {
+        const auto run = [&device, effort, tests = row.tests] {
             Evidence evidence;
             for (const auto& test : tests)
-                evidence.add(test(device));
+                evidence.add(test(device, effort));
             return evidence;
         };
         checks.push_back({row.name, row.unit, run});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "selftest/effort.h"
 #include "selftest/evidence.h"
 #include "vk/device.h"
 
@@ -23,7 +24,7 @@ struct Check {
 };
 
 // All checks, in the order from small parts to whole images. They refer to `device`.
-std::vector<Check> selftest_checks(const vk::Device& device);
+std::vector<Check> selftest_checks(const vk::Device& device, Effort effort);
 
 // The level at which each of so many checks is judged: SELFTEST_ALPHA, Sidak-corrected.
 double check_level(size_t checks);

@@ -99,12 +99,12 @@ struct SkyCounts {
     Histogram within;  // Of all texels: columns, and cosines of the colatitude.
 };
 
-void test_samples_of(const vk::Device& device, const Environment& sky, Evidence& evidence) {
+void test_samples_of(const vk::Device& device, const Environment& sky, uint32_t samples, Evidence& evidence) {
     const std::string name = words("sky of ", sky.size.x, 'x', sky.size.y);
     SkyCounts counts(sky);
     size_t at_borders = 0;
     for (const LightSample& s :
-         sample_lights(device, build_gpu_scene(scene_under(sky)), random_light_items(vec3(0), 200000, 91))) {
+         sample_lights(device, build_gpu_scene(scene_under(sky)), random_light_items(vec3(0), samples, 91))) {
         const glm::dvec3 w(s.wi);
         const glm::dvec2 place = place_of(sky, w);
         counts.add(sky, place);
@@ -180,16 +180,16 @@ Evidence test_sky_lookup(const vk::Device& device) {
     return evidence;
 }
 
-Evidence test_sky_samples(const vk::Device& device) {
+Evidence test_sky_samples(const vk::Device& device, Effort effort) {
     Evidence evidence;
     for (const uvec2 size : {uvec2(2, 1), uvec2(1, 5), uvec2(7, 1), uvec2(5, 9), uvec2(32, 16)})
-        test_samples_of(device, random_sky(size, -2.5f), evidence);
+        test_samples_of(device, random_sky(size, -2.5f), sized(effort, 200000), evidence);
     return evidence;
 }
 
 // A panel of one square metre beside a sky of radiance 1 in the mean: powers over pi of 10 and of (0.71 m)^2
 // * 4 pi.
-Evidence test_choice_of_sky(const vk::Device& device) {
+Evidence test_choice_of_sky(const vk::Device& device, Effort effort) {
     Scene scene = scene_of_mesh({});
     scene.shapes = {{.geometry = parallelogram(vec3(-0.5f, -10, 0.5f), vec3(1, 0, 0), vec3(0, 0, -1)),
                      .material = 0,
@@ -198,8 +198,8 @@ Evidence test_choice_of_sky(const vk::Device& device) {
     const double sky_power = 0.5 * 4.0 * M_PI, pmf = sky_power / (10.0 + sky_power);
     std::vector<double> counts(2);
     Evidence evidence;
-    for (const LightSample& s :
-         sample_lights(device, build_gpu_scene(scene), random_light_items(vec3(0), 100000, 92))) {
+    for (const LightSample& s : sample_lights(device, build_gpu_scene(scene),
+                                              random_light_items(vec3(0), sized(effort, 100000), 92))) {
         const bool of_the_sky = s.Li.x == 0.5f || s.Li.x == 1.5f;
         ++counts[of_the_sky ? 1 : 0];
         const double pdf = pmf * double(s.Li.x) / (4.0 * M_PI);

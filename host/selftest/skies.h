@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "selftest/effort.h"
 #include "selftest/evidence.h"
 #include "vk/device.h"
 
@@ -24,9 +25,9 @@ std::vector<SkyTexel> look_up(const vk::Device& device, const Environment& sky,
 Evidence test_sky_lookup(const vk::Device& device);
 
 // Texels are sampled by luminance times solid angle, and within a texel uniformly over its solid angle.
-Evidence test_sky_samples(const vk::Device& device);
+Evidence test_sky_samples(const vk::Device& device, Effort effort);
 
 // The sky and another light are chosen by their power.
-Evidence test_choice_of_sky(const vk::Device& device);
+Evidence test_choice_of_sky(const vk::Device& device, Effort effort);
 
 }  // namespace candela

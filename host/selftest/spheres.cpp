@@ -14,7 +14,7 @@
 namespace candela {
 namespace {
 
-constexpr size_t COUNT = 20000;
+constexpr uint32_t COUNT = 20000;
 
 struct InteractionItem {
     vec3 o;
@@ -56,9 +56,10 @@ std::vector<InteractionResult> run(const vk::Device& device, const decltype(Shap
 }
 
 // Rays at points of the sphere, from around it or from within.
-std::vector<InteractionItem> items(const Sphere& sphere, bool from_inside, uint32_t side, uint32_t seed) {
+std::vector<InteractionItem> items(Effort effort, const Sphere& sphere, bool from_inside, uint32_t side,
+                                   uint32_t seed) {
     Random random(seed);
-    std::vector<InteractionItem> items(COUNT);
+    std::vector<InteractionItem> items(sized(effort, COUNT));
     for (InteractionItem& item : items) {
         const vec3 n = random.direction();
         const vec3 target = sphere.center + sphere.radius * n;
@@ -97,10 +98,10 @@ bool meets_far_side(const Sphere& sphere, const InteractionResult& r) {
     return std::abs(double(r.next_t) - far) <= 1e-2 * radius + 4.0 * double(r.p_error);
 }
 
-void test_rays_within(const vk::Device& device, const Sphere& sphere, bool from_inside, uint32_t seed,
-                      Evidence& evidence) {
+void test_rays_within(const vk::Device& device, Effort effort, const Sphere& sphere, bool from_inside,
+                      uint32_t seed, Evidence& evidence) {
     const std::string name = name_of(sphere) + (from_inside ? ", from inside" : "");
-    const std::vector<InteractionItem> rays = items(sphere, from_inside, from_inside ? 0 : 1, seed);
+    const std::vector<InteractionItem> rays = items(effort, sphere, from_inside, from_inside ? 0 : 1, seed);
     std::vector<InteractionItem> both = rays;
     const std::vector<InteractionResult> first = run(device, sphere, rays);
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -123,11 +124,11 @@ void test_rays_within(const vk::Device& device, const Sphere& sphere, bool from_
 
 // The direction of the second ray lies in the hemisphere of the normal where it starts, down to grazing
 // angles: the outside of a sphere cannot be seen from there.
-Evidence test_rays_outside_spheres(const vk::Device& device) {
+Evidence test_rays_outside_spheres(const vk::Device& device, Effort effort) {
     Evidence evidence;
     uint32_t seed = 110;
     for (const Sphere& sphere : SPHERES) {
-        std::vector<InteractionItem> rays = items(sphere, false, 0, seed++);
+        std::vector<InteractionItem> rays = items(effort, sphere, false, 0, seed++);
         std::vector<InteractionResult> results = run(device, sphere, rays);
         // Once more, at a grazing angle to the normals that were found.
         for (size_t i = 0; i < rays.size(); ++i)
@@ -148,21 +149,21 @@ Evidence test_rays_outside_spheres(const vk::Device& device) {
     return evidence;
 }
 
-Evidence test_rays_within_spheres(const vk::Device& device) {
+Evidence test_rays_within_spheres(const vk::Device& device, Effort effort) {
     Evidence evidence;
     uint32_t seed = 130;
     for (const Sphere& sphere : SPHERES) {
         for (const bool from_inside : {false, true})
-            test_rays_within(device, sphere, from_inside, seed, evidence);
+            test_rays_within(device, effort, sphere, from_inside, seed, evidence);
         ++seed;
     }
     return evidence;
 }
 
-Evidence test_points_on_spheres(const vk::Device& device) {
+Evidence test_points_on_spheres(const vk::Device& device, Effort effort) {
     Evidence evidence;
     for (const Sphere& sphere : SPHERES) {
-        for (const InteractionResult& r : run(device, sphere, items(sphere, false, 0, 150))) {
+        for (const InteractionResult& r : run(device, sphere, items(effort, sphere, false, 0, 150))) {
             if (r.t == NO_HIT) continue;
             const glm::dvec3 p(r.p), n(r.n), from_center = p - glm::dvec3(sphere.center);
             const double error = double(r.p_error);
@@ -182,7 +183,7 @@ Evidence test_points_on_spheres(const vk::Device& device) {
     return evidence;
 }
 
-Evidence test_rays_at_disks(const vk::Device& device) {
+Evidence test_rays_at_disks(const vk::Device& device, Effort effort) {
     Evidence evidence;
     for (const float radius : {1e-3f, 1.0f, 1e3f}) {
         for (const vec3 center : {vec3(0), vec3(0, -1, 0), vec3(100, 200, -300)}) {
@@ -191,7 +192,7 @@ Evidence test_rays_at_disks(const vk::Device& device) {
             const Disk disk{
                 .center = center, .e1 = e1, .e2 = cross(e1, normalize(cross(e1, random.direction())))};
             std::vector<InteractionItem> rays;
-            for (size_t i = 0; i < COUNT; ++i) {
+            for (size_t i = 0; i < sized(effort, COUNT); ++i) {
                 const vec3 target = center + 0.7f * random.unit() * disk.e1 + 0.7f * random.unit() * disk.e2;
                 const vec3 o = center + 2.0f * radius * random.direction();
                 rays.push_back({.o = o,

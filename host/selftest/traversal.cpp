@@ -82,7 +82,7 @@ Evidence compare_with_brute_force(const std::vector<TraversalResult>& results) {
     return evidence;
 }
 
-Evidence test_closed_meshes(const vk::Device& device) {
+Evidence test_closed_meshes(const vk::Device& device, Effort effort) {
     struct Place {
         vec3 centre;
         float scale;
@@ -92,8 +92,8 @@ Evidence test_closed_meshes(const vk::Device& device) {
                                         Place{vec3(1000, -2000, 3000), 1.0f}}) {
         const TriangleMesh mesh =
             transformed(sphere_mesh(16, 24), [&, c = centre, s = scale](vec3 p) { return c + s * p; });
-        Rays rays = random_rays(2000, centre, 0.5f * scale, 15);
-        append(rays, rays_at_features(mesh, 8000, centre, 0.5f * scale, 16));
+        Rays rays = random_rays(sized(effort, 2000), centre, 0.5f * scale, 15);
+        append(rays, rays_at_features(mesh, sized(effort, 8000), centre, 0.5f * scale, 16));
         for (const int axis : {0, 1, 2}) {
             for (const float sign : {-1.0f, 1.0f}) {
                 vec3 d(0.0f);
@@ -109,12 +109,12 @@ Evidence test_closed_meshes(const vk::Device& device) {
     return evidence;
 }
 
-Evidence test_nasty_mesh(const vk::Device& device) {
+Evidence test_nasty_mesh(const vk::Device& device, Effort effort) {
     const TriangleMesh mesh = nasty_mesh(1600);
     Rays rays;
     for (const float scale : {1e-3f, 1e-1f, 1e1f, 1e3f}) {
-        append(rays, random_rays(1250, vec3(0), scale, 22));
-        append(rays, rays_at_features(mesh, 3750, vec3(0), scale, 23));
+        append(rays, random_rays(sized(effort, 1250), vec3(0), scale, 22));
+        append(rays, rays_at_features(mesh, sized(effort, 3750), vec3(0), scale, 23));
     }
     Evidence evidence;
     test_rays(device, mesh, rays, evidence);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "selftest/effort.h"
 #include "selftest/evidence.h"
 #include "selftest/probe.h"
 #include "selftest/probes.h"
@@ -31,10 +32,10 @@ Evidence compare_with_brute_force(const std::vector<TraversalResult>& results);
 // From inside closed meshes at vertices, into edges and along the axes, at three scales and far from the
 // origin, where the grid of floats is coarse: every ray has the hit of brute force through either kind of
 // buffer, and there is one.
-Evidence test_closed_meshes(const vk::Device& device);
+Evidence test_closed_meshes(const vk::Device& device, Effort effort);
 
 // The same, but that rays may miss, for a nasty_mesh().
-Evidence test_nasty_mesh(const vk::Device& device);
+Evidence test_nasty_mesh(const vk::Device& device, Effort effort);
 
 size_t hits(const std::vector<TraversalResult>& results);
 

@@ -18,6 +18,7 @@ TEST_F(SelftestCommand, PassesOnThisDevice) {
     EXPECT_NE(report["device"], "");
     EXPECT_NE(report["driver"], "");
     EXPECT_NE(report["system"], "");
+    EXPECT_EQ(report["effort"], "full");
     EXPECT_EQ(report["checks"].size(), 17u);
     for (const auto& check : report["checks"]) {
         EXPECT_EQ(check["passed"], true) << check;
@@ -29,16 +30,32 @@ TEST_F(SelftestCommand, PassesOnThisDevice) {
     }
 }
 
+// As many checks, of which those of rays ask less.
+TEST_F(SelftestCommand, QuickPassesWithFewerSamples) {
+    const ProcessResult result = selftest({"--json", "--effort", "quick"});
+    ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+    const auto report = nlohmann::json::parse(result.out);
+    EXPECT_EQ(report["effort"], "quick");
+    EXPECT_EQ(report["checks"].size(), 17u);
+    for (const auto& check : report["checks"]) {
+        if (check["name"] == "rays in closed meshes") EXPECT_LT(check["compared"], 10000);
+    }
+}
+
 TEST_F(SelftestCommand, HelpSaysHowOftenChanceFailsIt) {
     const ProcessResult help = candela({"selftest", "--help"});
     EXPECT_EQ(help.exit_code, 0);
-    for (const char* part : {"--device", "--json", "a probability of 0.001 at most", "Exit code: 0"})
+    for (const char* part :
+         {"--device", "--effort", "--json", "a probability of 0.001 at most", "Exit code: 0"})
         EXPECT_CONTAINS(help.out, part);
 }
 
 TEST_F(SelftestCommand, UnknownDevicesAndWordsAreRefused) {
     EXPECT_EQ(candela({"selftest", "--device", "abacus"}).exit_code, 3);
     EXPECT_EQ(candela({"selftest"}, NO_DRIVER).exit_code, 3);
+    const ProcessResult effort = candela({"selftest", "--effort", "some"});
+    EXPECT_EQ(effort.exit_code, 2);
+    EXPECT_CONTAINS(effort.err, "--effort: cannot use \"some\"; expected quick|full");
     const ProcessResult word = candela({"selftest", "now"});
     EXPECT_EQ(word.exit_code, 2);
     EXPECT_CONTAINS(word.err, "unknown argument \"now\"; see candela selftest --help");

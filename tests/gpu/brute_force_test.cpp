@@ -69,7 +69,7 @@ class BruteForceTest : public TraversalTest {
 
 // On software Vulkan, about 10 ns of processor time each.
 TEST_F(BruteForceTest, ABillionPairsOfRaysAndTriangles) {
-    expect_brute_force_over_meshes(1e9, 210);
+    expect_brute_force_over_meshes(sized(test_effort(), 1'000'000'000), 210);
 }
 
 using SlowBruteForceTest = BruteForceTest;

@@ -10,6 +10,7 @@
 #include "selftest/evidence.h"
 #include "selftest/probe.h"
 #include "selftest/probes.h"
+#include "support/effort.h"
 
 namespace candela {
 

@@ -44,11 +44,11 @@ TEST_F(EnvironmentTest, EveryDirectionHasItsTexel) {
 }
 
 TEST_F(EnvironmentTest, SamplesFollowTheLightOfTheSky) {
-    expect_holds(test_sky_samples(device()));
+    expect_holds(test_sky_samples(device(), test_effort()));
 }
 
 TEST_F(EnvironmentTest, TheSkyAndOtherLightsAreChosenByPower) {
-    expect_holds(test_choice_of_sky(device()));
+    expect_holds(test_choice_of_sky(device(), test_effort()));
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ class EscapeTest : public DeviceTest {
 };
 
 TEST_F(EscapeTest, NoneOfTenMillionRaysLeavesAClosedMesh) {
-    expect_no_escapes(10'000'000);
+    expect_no_escapes(sized(test_effort(), 10'000'000));
 }
 
 using SlowEscapeTest = EscapeTest;

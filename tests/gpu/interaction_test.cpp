@@ -9,19 +9,19 @@ namespace {
 using InteractionTest = DeviceTest;
 
 TEST_F(InteractionTest, ARayFromOutsideASphereDoesNotMeetIt) {
-    expect_holds(test_rays_outside_spheres(device()));
+    expect_holds(test_rays_outside_spheres(device(), test_effort()));
 }
 
 TEST_F(InteractionTest, ARayWithinASphereMeetsItsFarSide) {
-    expect_holds(test_rays_within_spheres(device()));
+    expect_holds(test_rays_within_spheres(device(), test_effort()));
 }
 
 TEST_F(InteractionTest, PointsLieOnTheSphere) {
-    expect_holds(test_points_on_spheres(device()));
+    expect_holds(test_points_on_spheres(device(), test_effort()));
 }
 
 TEST_F(InteractionTest, ARayFromADiskDoesNotMeetIt) {
-    expect_holds(test_rays_at_disks(device()));
+    expect_holds(test_rays_at_disks(device(), test_effort()));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@ namespace candela {
 namespace {
 
 TEST_F(LightTest, LightsAreChosenByPowerAndPointsByArea) {
-    expect_holds(test_flat_light_points(device()));
+    expect_holds(test_flat_light_points(device(), test_effort()));
 }
 
 TEST_F(LightTest, ASampleSaysWhatArrivesAndHowLikelyItWas) {

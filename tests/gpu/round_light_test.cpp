@@ -5,15 +5,15 @@ namespace candela {
 namespace {
 
 TEST_F(LightTest, ASphereIsUniformOverTheSolidAngleThatItFills) {
-    expect_holds(test_spheres_from_outside(device()));
+    expect_holds(test_spheres_from_outside(device(), test_effort()));
 }
 
 TEST_F(LightTest, ASphereFromInsideIsUniformOverItsArea) {
-    expect_holds(test_spheres_from_inside(device()));
+    expect_holds(test_spheres_from_inside(device(), test_effort()));
 }
 
 TEST_F(LightTest, ADiskIsUniformOverItsArea) {
-    expect_holds(test_disks(device()));
+    expect_holds(test_disks(device(), test_effort()));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ TEST_F(TraversalTest, TriangleSoup) {
 }
 
 TEST_F(TraversalTest, NothingEscapesFromAClosedMesh) {
-    expect_holds(test_closed_meshes(device()));
+    expect_holds(test_closed_meshes(device(), test_effort()));
 }
 
 // Needles a million times longer than wide.

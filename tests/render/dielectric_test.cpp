@@ -68,7 +68,7 @@ class DielectricTest : public RenderTest {
     // Light of RADIANCE must reach the camera with that share. Roundings: some ten vertices of some ten each.
     void expect_share(const Scene& scene, uint32_t spp, glm::dvec3 share) const {
         const RenderSettings settings = independent_settings(32, Estimator::mis, 1);
-        expect_mean(image_of(render(scene, settings, spp)), glm::dvec3(RADIANCE) * share, 1e-5);
+        expect_mean(image_of(render(scene, settings, samples(spp))), glm::dvec3(RADIANCE) * share, 1e-5);
     }
 };
 
@@ -160,7 +160,8 @@ TEST_F(DielectricTest, ALampWithinTheGlass) {
         SCOPED_TRACE(int(estimator));
         RenderSettings settings = independent_settings(32, estimator, 2);
         settings.max_depth = 2;  // Into the glass, and once off the floor: no light that came off the glass.
-        const Image image = image_of(render(scene, settings, estimator == Estimator::bsdf ? 4096 : 1024));
+        const Image image =
+            image_of(render(scene, settings, samples(estimator == Estimator::bsdf ? 4096 : 1024)));
         expect_mean(image, glm::dvec3(RADIANCE) * out * irradiance_over_pi, 2e-5);
     }
 }

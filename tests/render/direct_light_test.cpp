@@ -37,7 +37,7 @@ class DirectLightTest : public RenderTest {
     // most around an extremum, and elsewhere linearly, which cancels over the pixels; 5e-5 in sum.
     void expect_radiance(const Scene& scene, Estimator estimator, uint32_t spp, double form_factor) const {
         const glm::dvec3 expected = glm::dvec3(REFLECTANCE) * glm::dvec3(RADIANCE) * form_factor;
-        expect_mean(image_of(render(scene, settings(estimator), spp)), expected, 5e-5);
+        expect_mean(image_of(render(scene, settings(estimator), samples(spp))), expected, 5e-5);
     }
     void expect_black(const Scene& scene) const {
         for (const Estimator estimator : {Estimator::bsdf, Estimator::light, Estimator::mis}) {

@@ -31,7 +31,7 @@ class EnvironmentLightTest : public RenderTest {
         for (const Estimator estimator : {Estimator::light, Estimator::mis, Estimator::bsdf}) {
             SCOPED_TRACE(int(estimator));
             const uint32_t spp = estimator == Estimator::bsdf ? bsdf_spp : light_spp;
-            expect_mean(image_of(render(scene, settings(estimator), spp)), expected, 1e-5);
+            expect_mean(image_of(render(scene, settings(estimator), samples(spp))), expected, 1e-5);
         }
     }
 };

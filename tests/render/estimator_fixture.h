@@ -29,8 +29,8 @@ inline void expect_same_means(const std::vector<RunningMoments>& a, const std::v
 
 inline void expect_same_expectation(const Replicates& a, const Replicates& b) {
     for (size_t c = 0; c < 3; ++c) {
-        EXPECT_LE(std::sqrt(a.means[c].variance_of_mean()), LARGEST_ERROR * a.means[c].mean());
-        EXPECT_LE(std::sqrt(b.means[c].variance_of_mean()), LARGEST_ERROR * b.means[c].mean());
+        EXPECT_LE(std::sqrt(a.means[c].variance_of_mean()), largest_error() * a.means[c].mean());
+        EXPECT_LE(std::sqrt(b.means[c].variance_of_mean()), largest_error() * b.means[c].mean());
     }
     expect_same_means(a.means, b.means);
     expect_same_means(a.blocks, b.blocks);
@@ -47,7 +47,7 @@ class EstimatorTest : public RenderTest {
         return s;
     }
     Image image(const Scene& scene, const RenderSettings& settings, uint32_t spp) const {
-        return image_of(render(scene, settings, spp));
+        return image_of(render(scene, settings, samples(spp)));
     }
     // SEEDS renderings, the first with the seed of the settings.
     Replicates replicates(const Scene& scene, RenderSettings settings, uint32_t spp) const {
@@ -67,7 +67,7 @@ class EstimatorTest : public RenderTest {
         }
         return result;
     }
-    // Samples per pixel: what each estimator needs for LARGEST_ERROR.
+    // Samples per pixel: what each estimator needs for largest_error().
     void expect_estimators_agree(const Scene& scene, uint32_t bsdf_spp, uint32_t spp) const {
         const Image mis = image(scene, settings(Estimator::mis, 1), spp);
         {

@@ -24,7 +24,7 @@ class FurnaceTest : public RenderTest {
             for (const float value : plane(image, "", c))
                 pixels.add(value);
             const double error = std::sqrt(pixels.variance_of_mean());
-            EXPECT_LE(error, LARGEST_ERROR * expected);
+            EXPECT_LE(error, largest_error() * expected);
             const double beyond_rounding =
                 std::max(0.0, std::abs(pixels.mean() - expected) - 0x1p-20 * expected);
             if (beyond_rounding == 0.0) continue;
@@ -40,7 +40,7 @@ TEST_F(FurnaceTest, EveryRaySeesTheGeometricSeries) {
     for (const float albedo : {0.0f, 0.5f, 0.8f, 0.95f}) {
         for (const Estimator estimator : {Estimator::bsdf, Estimator::mis}) {
             SCOPED_TRACE(testing::Message() << "albedo " << albedo << ", estimator " << int(estimator));
-            expect_mean(render(furnace(albedo), settings(estimator, seed++), 128),
+            expect_mean(render(furnace(albedo), settings(estimator, seed++), samples(128)),
                         1.0 / (1.0 - double(albedo)));
         }
     }
@@ -54,7 +54,7 @@ TEST_F(FurnaceTest, MaxDepthTruncatesTheSeries) {
             SCOPED_TRACE(testing::Message() << "max depth " << depth << ", estimator " << int(estimator));
             RenderSettings s = settings(estimator, seed++);
             s.max_depth = depth;
-            expect_mean(render(furnace(0.8f), s, 128), (1.0 - std::pow(0.8, depth + 1.0)) / 0.2);
+            expect_mean(render(furnace(0.8f), s, samples(128)), (1.0 - std::pow(0.8, depth + 1.0)) / 0.2);
         }
     }
 }

@@ -120,7 +120,7 @@ TEST_P(BlurTest, IsAnImageOfTheAperture) {
     const float lamp_radius = LAMP_SLOPE * p.lamp;
     add_shape(scene, Disk{vec3(0, 0, -p.lamp), vec3(lamp_radius, 0, 0), vec3(0, lamp_radius, 0)}, 0,
               Emission{vec3(RADIANCE), false});
-    const Image image = image_of(render(scene, settings(2), 2048));
+    const Image image = image_of(render(scene, settings(2), samples(2048)));
     const Blur blur{image, 2.0 * HALF_WIDTH / SIZE};
     const auto expect = [&](const char* what, std::pair<double, double> mean, double expected,
                             double systematic) {
@@ -134,7 +134,7 @@ TEST_P(BlurTest, IsAnImageOfTheAperture) {
     const double lamp_area = M_PI * double(LAMP_SLOPE) * double(LAMP_SLOPE);
     const double film_area = 4.0 * HALF_WIDTH * HALF_WIDTH;
     const ImageMean energy = image_mean(image, 0);
-    EXPECT_LE(energy.error, 4.0 * LARGEST_ERROR * energy.mean);
+    EXPECT_LE(energy.error, 4.0 * largest_error() * energy.mean);
     expect("energy", {energy.mean, energy.error}, double(RADIANCE) * lamp_area / film_area,
            1e-5 * energy.mean);
 

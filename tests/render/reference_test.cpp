@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 struct Reference {
     const char* name;
-    uint32_t spp;  // Samples per pixel, for LARGEST_PIXEL_ERROR.
+    uint32_t spp;  // Samples per pixel, for largest_pixel_error().
 };
 
 void PrintTo(const Reference& reference, std::ostream* os) {
@@ -37,7 +37,9 @@ constexpr std::array REFERENCES{
 
 // The median over pixels of the standard error over the mean may not be larger: else the test would accept
 // anything.
-constexpr double LARGEST_PIXEL_ERROR = 0.03;
+double largest_pixel_error() {
+    return 15.0 * largest_error();
+}
 
 // Each scene is tested three times (pixels, blocks, mean); a correct renderer fails any of them all with the
 // probability TEST_ALPHA.
@@ -126,8 +128,8 @@ TEST_P(ReferenceTest, AnIndependentRendererMakesTheSamePicture) {
     const Scene scene = load_scene(scene_file(name));
     RenderSettings settings = independent_settings(reference.full.x, Estimator::mis, 1);
     settings.max_depth = scene.integrator.max_depth.value_or(DEPTH_SAFETY_LIMIT);
-    const Image image = image_of(render(scene, settings, spp));
-    EXPECT_LE(median_relative_error(image), LARGEST_PIXEL_ERROR);
+    const Image image = image_of(render(scene, settings, samples(spp)));
+    EXPECT_LE(median_relative_error(image), largest_pixel_error());
     EXPECT_TRUE(agree(image, reference, fs::path(CANDELA_FAILURES) / name));
 }
 

@@ -9,6 +9,7 @@
 #include "gpu/vk_fixture.h"
 #include "render/gpu_scene.h"
 #include "render/renderer.h"
+#include "support/effort.h"
 #include "support/scene_builders.h"
 #include "vk/device.h"
 
@@ -41,7 +42,10 @@ inline Image image_of(const Accumulation& state) {
 inline constexpr double TEST_ALPHA = 1e-5;
 
 // No measured standard error may be larger than this share of the mean: else the test would accept anything.
-inline constexpr double LARGEST_ERROR = 0.002;
+// It is four times as large where there is a sixteenth of the samples.
+inline double largest_error() {
+    return 0.002 * (test_effort() == Effort::quick ? 4.0 : 1.0);
+}
 
 // Red, green or blue (0, 1, 2) of a layer that the image has, row-major.
 inline std::span<const float> plane(const Image& image, std::string_view layer, size_t channel) {
@@ -72,7 +76,7 @@ inline void expect_mean(const Image& image, glm::dvec3 expected, double systemat
     for (size_t c = 0; c < 3; ++c) {
         const ImageMean m = image_mean(image, c);
         const double value = expected[int(c)];
-        EXPECT_LE(m.error, LARGEST_ERROR * value);
+        EXPECT_LE(m.error, largest_error() * value);
         const double beyond = std::max(0.0, std::abs(m.mean - value) - systematic * value);
         if (beyond == 0.0) continue;
         EXPECT_GT(normal_p_value(beyond / m.error), TEST_ALPHA)
@@ -109,7 +113,7 @@ inline void expect_same_expectation(const Image& a, const Image& b) {
             << "means " << image_mean(a, c).mean << " and " << image_mean(b, c).mean << "; t = " << t;
         for (const Image* image : {&a, &b}) {
             const ImageMean m = image_mean(*image, c);
-            EXPECT_LE(m.error, LARGEST_ERROR * m.mean);
+            EXPECT_LE(m.error, largest_error() * m.mean);
         }
     }
     const Comparison comparison = compare(a, b, {.alpha = TEST_ALPHA});

@@ -15,7 +15,7 @@ struct CountMoments {
 class RouletteTest : public RenderTest {
   protected:
     static constexpr uint32_t SIZE = 32;
-    static constexpr uint32_t SPP = 256;
+    static uint32_t spp() { return samples(256); }
 
     static RenderSettings settings(uint32_t rr_depth) {
         RenderSettings s = independent_settings(SIZE, Estimator::bsdf, 9);
@@ -24,11 +24,11 @@ class RouletteTest : public RenderTest {
     }
     // A path must have that many rays: a z-test over all paths, whose variance is known as well.
     void expect_rays(const Scene& scene, const RenderSettings& settings, CountMoments rays) const {
-        constexpr double PATHS = double(SIZE) * SIZE * SPP;
+        const double paths = double(SIZE) * SIZE * spp();
         Renderer renderer(device(), build_gpu_scene(scene), scene.cameras[0], settings);
-        renderer.render(SPP, [](double) { return true; });
-        const double mean = double(renderer.counters().rays) / PATHS;
-        const double error = std::sqrt((rays.square - rays.mean * rays.mean) / PATHS);
+        renderer.render(spp(), [](double) { return true; });
+        const double mean = double(renderer.counters().rays) / paths;
+        const double error = std::sqrt((rays.square - rays.mean * rays.mean) / paths);
         EXPECT_GT(normal_p_value((mean - rays.mean) / error), TEST_ALPHA)
             << mean << " rays a path, not " << rays.mean << "; z = " << (mean - rays.mean) / error;
     }
@@ -108,7 +108,7 @@ TEST_F(RouletteTest, WhichLobeWasChosenDoesNotDecideWhoSurvives) {
     RenderSettings never = once;
     never.rr_depth = DEPTH_SAFETY_LIMIT;
     ++never.seed;
-    expect_same_expectation(image_of(render(scene, once, SPP)), image_of(render(scene, never, SPP)));
+    expect_same_expectation(image_of(render(scene, once, spp())), image_of(render(scene, never, spp())));
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ class RoundLightTest : public RenderTest {
         const glm::dvec3 expected = glm::dvec3(REFLECTANCE) * glm::dvec3(RADIANCE) * form_factor;
         const auto test = [&](Estimator estimator, uint32_t spp) {
             SCOPED_TRACE(int(estimator));
-            if (spp > 0) expect_mean(image_of(render(scene, settings(estimator), spp)), expected, 6e-5);
+            if (spp > 0)
+                expect_mean(image_of(render(scene, settings(estimator), samples(spp))), expected, 6e-5);
         };
         test(Estimator::light, light_spp);
         test(Estimator::mis, light_spp);

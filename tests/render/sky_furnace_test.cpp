@@ -36,7 +36,7 @@ class SkyFurnaceTest : public RenderTest {
     }
     // The mean over the image must be 1 within its noise; roulette and light samples have some.
     void expect_invisible_on_average(const Scene& scene, const RenderSettings& settings, uint32_t spp) const {
-        const Image image = image_of(render(scene, settings, spp));
+        const Image image = image_of(render(scene, settings, samples(spp)));
         expect_mean(image, glm::dvec3(1.0),
                     0x1p-18);  // Paths of some ten vertices, each rounds some ten times.
     }
@@ -162,7 +162,7 @@ class AlbedoTest : public RenderTest {
     // relative error of 2^-17 for the narrowest lobes.
     void expect_albedo(const Scene& scene, Estimator estimator, uint32_t spp, glm::dvec3 albedo) const {
         const RenderSettings settings = independent_settings(32, estimator, 11);
-        expect_mean(image_of(render(scene, settings, spp)), albedo, QUADRATURE_ERROR);
+        expect_mean(image_of(render(scene, settings, samples(spp))), albedo, QUADRATURE_ERROR);
     }
 };
 

@@ -123,7 +123,7 @@ class Selftest : public testing::Test {
         testing::internal::CaptureStderr();
         ExitCode code = ExitCode::done;
         try {
-            code = run_selftest(checks, device, json);
+            code = run_selftest(checks, Effort::quick, device, json);
         } catch (const Error& error) {
             code = error.code();
         }
@@ -143,6 +143,7 @@ TEST_F(Selftest, TellsWhatItRanOnAndThatAllPassed) {
     expect_out("Abacus 3 (CPU)\n");
     expect_out("beads 1.0\n");
     expect_out("1.2.3\n");
+    expect_out("effort   quick\n");
     expect_out("a probability of 0.001 at most");
     // 1 - (1 - 10^-3)^(1/2)
     expect_out("; 0.0005 or less fails a check.");
@@ -180,6 +181,7 @@ TEST_F(Selftest, PrintsTheSameAsJson) {
     EXPECT_EQ(report["device"], "Abacus 3");
     EXPECT_EQ(report["driver"], "beads 1.0");
     EXPECT_EQ(report["vulkan"], "1.2.3");
+    EXPECT_EQ(report["effort"], "quick");
     EXPECT_EQ(report["false_alarm_probability"], 1e-3);
     EXPECT_NEAR(report["p_limit"].get<double>(), 1.0 - std::pow(0.999, 1.0 / 3.0), 1e-12);
     EXPECT_EQ(report["failed"], 2);
