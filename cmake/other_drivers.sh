@@ -1,0 +1,129 @@
+#!/bin/sh
+# Tries candela on two drivers other than the system's, and compares their images with its own:
+#   lavapipe of the Mesa in Debian 12's backports, a compiler that differs much from the stock one's;
+#   SwiftShader, of Chromium, which shares nothing with Mesa: four lanes, denormal numbers flushed to zero, and texel
+#   buffers of no more than 65 536 elements.
+# Both are unpacked below build/, beside the system's, which stays as it is, and are downloaded once. Needs build/ci (sh
+# cmake/test.sh) on Debian 12; elsewhere it says so and exits with 3. It tells how long each step took, for information.
+#
+# usage: sh cmake/other_drivers.sh          all tests that need a device, on both
+#        sh cmake/other_drivers.sh quick    SwiftShader alone, and what a foreign driver breaks first
+set -eu
+cd "$(dirname "$0")/.."
+extent=${1:-full}
+folder=$PWD/build/other-drivers
+packages=$folder/packages
+mesa=$folder/root/usr/lib/x86_64-linux-gnu
+chromium=$folder/root/usr/lib/chromium
+candela=build/ci/candela
+
+case $extent in
+    full | quick) ;;
+    *) echo "usage: sh cmake/other_drivers.sh [quick]" >&2; exit 2 ;;
+esac
+if ! grep -qs '^VERSION_CODENAME=bookworm$' /etc/os-release || [ "$(uname -m)" != x86_64 ]; then
+    echo "Nothing was tried: the other drivers come as packages of Debian 12 for x86-64, and this is another system."
+    exit 3
+fi
+[ -x "$candela" ] || { echo "There is no $candela; run sh cmake/test.sh first." >&2; exit 1; }
+
+# mirror SUITE: where apt finds it; nothing if it does not know.
+mirror() {
+    apt-get indextargets --format '$(REPO_URI)' "Codename: $1" | head -n 1
+}
+
+# unpack SUITE MIRROR NAME...: downloads packages and unpacks them into $folder/root, without installing them. Apt works
+# with lists of its own, so that it needs no root and asks for what the mirror has today.
+unpack() {
+    suite=$1
+    [ -n "$2" ] || { echo "apt knows no mirror of Debian 12." >&2; exit 1; }
+    lists=$folder/apt/$suite
+    mkdir -p "$lists/partial" "$lists/cache/archives/partial" "$packages"
+    echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $2 $suite main" >"$lists/sources.list"
+    apt="apt-get -qq -o Dir::Etc::sourcelist=$lists/sources.list -o Dir::Etc::sourceparts=- -o Dir::State::lists=$lists
+         -o Dir::Cache=$lists/cache -o APT::Get::List-Cleanup=0 -o APT::Sandbox::User=$(id -un)"
+    $apt update
+    shift 2
+    for name in "$@"; do
+        (cd "$packages" && $apt download "$name/$suite")
+        dpkg-deb -x "$packages/$name"_*.deb "$folder/root"
+    done
+}
+
+# describe LIBRARY: a driver, for Vulkan's loader. The packages' own descriptions do not say where the library is now.
+describe() {
+    echo '{"file_format_version": "1.0.0", "ICD": {"library_path": "'"$1"'", "api_version": "1.2.0"}}'
+}
+
+# on DRIVER COMMAND...: runs it on that driver alone. (Mesa's needs the libdrm beside it, SwiftShader none.)
+on() {
+    icd=$folder/$1.json
+    shift
+    env VK_ICD_FILENAMES="$icd" VK_DRIVER_FILES="$icd" LD_LIBRARY_PATH="$mesa" "$@"
+}
+
+# step NAME COMMAND...: runs it, and tells how long it took.
+step() {
+    echo "== $1"
+    begin=$(date +%s)
+    name=$1
+    shift
+    "$@"
+    echo "== $name: $(($(date +%s) - begin)) s"
+}
+
+# tests DRIVER EFFORT CTEST-OPTION...: runs tests, with the validation layer, as they all do.
+tests() {
+    driver=$1
+    effort=$2
+    shift 2
+    on "$driver" CANDELA_TEST_EFFORT="$effort" ctest --preset ci "$@"
+}
+
+# compare DRIVER SIZE SCENE...: its images with those of the system's driver. Other seeds, so that the samples of the
+# two are independent and their difference is judged by its noise alone.
+compare() {
+    driver=$1
+    options="--size $2 --spp 64 --sampler independent --aov variance --quiet"
+    shift 2
+    for scene in "$@"; do
+        echo "$scene:"
+        "$candela" render "scenes/$scene.json" $options --seed 1 -o "$folder/first.exr"
+        on "$driver" "$candela" render "scenes/$scene.json" $options --seed 2 -o "$folder/second.exr"
+        "$candela" compare "$folder/second.exr" "$folder/first.exr" --z 0.001
+    done
+}
+
+if [ ! -f "$folder/swiftshader.json" ]; then
+    if [ -n "$(mirror bookworm-security)" ]; then
+        unpack bookworm-security "$(mirror bookworm-security)" chromium-common
+    else
+        unpack bookworm "$(mirror bookworm)" chromium-common
+    fi
+    describe "$chromium/libvk_swiftshader.so" >"$folder/swiftshader.json"
+fi
+if [ "$extent" = full ] && [ ! -f "$folder/mesa.json" ]; then
+    unpack bookworm-backports "$(mirror bookworm)" libdrm2 libdrm-amdgpu1 mesa-vulkan-drivers
+    describe "$mesa/libvulkan_lvp.so" >"$folder/mesa.json"
+fi
+dpkg-deb -W "$packages"/chromium-common_*.deb
+"$candela" devices
+on swiftshader "$candela" devices
+if [ "$extent" = quick ]; then
+    step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
+    # Records, exponentials, traversal and identical bits; what pictures' statistics tell, the self-test tells in brief.
+    step "SwiftShader: tests" tests swiftshader quick -R '^gpu\.(Records|Exponential|Traversal)Test|IdentityTest'
+    step "SwiftShader: images" compare swiftshader 64x48 showcase
+    exit
+fi
+
+dpkg-deb -W "$packages"/mesa-vulkan-drivers_*.deb
+on mesa "$candela" devices
+scenes="cornell-box cornell-glossy cornell-glass environment depth-of-field veach-mis showcase mesh"
+step "Mesa: selftest" on mesa "$candela" selftest
+step "Mesa: tests" tests mesa full -L '^(gpu|render)$'
+step "Mesa: images" compare mesa 128x96 $scenes
+# SwiftShader takes 30 to 70 times as long as lavapipe: a sixteenth of the samples, a quarter of the pixels.
+step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
+step "SwiftShader: tests" tests swiftshader quick -L '^(gpu|render)$'
+step "SwiftShader: images" compare swiftshader 64x48 $scenes
