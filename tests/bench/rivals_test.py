@@ -11,6 +11,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 RIVALS = Path(__file__).resolve().parent / "rivals"
 sys.path.insert(0, str(RIVALS))
@@ -125,12 +126,24 @@ class Runs(unittest.TestCase):
         times = renderers.without_start({"cpu": 5, "wall": 4}, {"cpu": 13, "wall": 8}, 5)
         self.assertEqual(times, {"cpu": 10, "wall": 5})
 
-    def test_candelas_time_grows_with_its_samples(self):
+    def test_candelas_time_is_that_of_its_further_samples(self):
         job = renderers.Job(ROOT / "scenes/cornell-box.json", depth=1, width=16, threads=1)
-        with tempfile.TemporaryDirectory() as folder:
+        reports = []
+        run = renderers.run
+
+        def recorded(command):
+            text = run(command)
+            reports.append(json.loads(text))
+            return text
+
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(renderers, "run", recorded):
             figures = renderers.Candela(CANDELA).render(job, 64, 0, Path(folder, "a.exr"))
             self.assertEqual(exr.read(Path(folder, "a.exr"))[:2], (16, 16))
-        self.assertGreater(figures["cpu"], 0)
+        self.assertEqual([report["spp"] for report in reports], [1, 64])
+        for what, key in (("cpu", "cpu_seconds"), ("wall", "render_seconds")):
+            first, all_samples = (report[key] for report in reports)
+            self.assertGreater(first, 0)
+            self.assertAlmostEqual(figures[what], 64 / 63 * (all_samples - first))
         self.assertTrue(1 < figures["rays"] < 3, figures)  # A camera ray; where there are walls, two more.
 
     def test_what_is_unknown_or_missing_is_told_with_its_remedy(self):
