@@ -34,7 +34,7 @@ struct FocusInput {
 using Input =
     std::variant<KeyInput, CharacterInput, ButtonInput, MoveInput, LeaveInput, WheelInput, FocusInput>;
 
-// Of these there may be many in a row, and only their sum counts.
+// Of these there may be a thousand a second: they wait for no picture.
 inline bool is_motion(const Input& input) {
     return std::holds_alternative<MoveInput>(input) || std::holds_alternative<WheelInput>(input);
 }

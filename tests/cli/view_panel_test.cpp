@@ -165,6 +165,14 @@ TEST_F(ViewControls, WhatIsDoneDuringAStallIsDoneInItsOrder) {
     scene["cameras"]["main"]["lens"] = {{"radius", 0.02}, {"focal_distance", 0.7}};
     const Words development{"--exposure", "1.5", "--tonemap", "agx", "--estimator", "light"};
     expect_same_rgb(image, rendered(settings + development, write("scene.json", scene.dump())));
+
+    // A key that goes down and up meanwhile was down.
+    std::filesystem::remove(file("cornell-box-1-camera.json"));
+    const vec3 home = saved_camera().position;
+    process.send(SIGSTOP);
+    xdotool({"key", "w"});
+    process.send(SIGCONT);
+    EXPECT_NE(saved_camera().position, home);
     expect_clean_end();
 }
 
