@@ -5,7 +5,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 repetitions=${1:-50}
-windows='View|Presenter'
+windows='View\.|ViewControls|ViewUsage|Presenter'
 signals='Interrupt|CheckpointTest|AdaptiveCli.AResumed|AnInterrupted|OneFailing'
 intervals='Progressive|TimeLimit|ByTheClock|CpuTime|IsTimed'
 devices='DeviceFailure|SteadyRenderer'
