@@ -10,7 +10,6 @@ namespace {
 using glm::dvec3;
 using Model = decltype(Material::model);
 
-
 Model read_diffuse(const Node& node) {
     node.allow_only({"type", "reflectance"});
     return DiffuseMaterial{vec3(node.require("reflectance").reflectance())};

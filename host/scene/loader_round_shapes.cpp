@@ -9,7 +9,6 @@ namespace {
 
 using glm::dvec3;
 
-
 dvec3 center_of(const Node& node) {
     const auto center = node.find("center");
     return center ? center->vector() : dvec3(0.0);

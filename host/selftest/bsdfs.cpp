@@ -12,21 +12,21 @@
 namespace candela {
 namespace {
 
-// Cells of equal size in a chart, FINE^2 points in each.
-constexpr size_t CELLS = 16, FINE = 20;
-constexpr size_t ALONG = CELLS * FINE;
-static_assert(ALONG * ALONG == BSDF_CASE_SAMPLES);
-constexpr size_t REST = CELLS * CELLS;  // What is in no cell.
+// Cells of equal size in a chart, BSDF_FINE^2 points in each.
+constexpr size_t BSDF_CELLS = 16, BSDF_FINE = 20;
+constexpr size_t BSDF_ALONG = BSDF_CELLS * BSDF_FINE;
+static_assert(BSDF_ALONG * BSDF_ALONG == BSDF_CASE_SAMPLES);
+constexpr size_t BSDF_REST = BSDF_CELLS * BSDF_CELLS;  // What is in no cell.
 
 ChartPoint point_of(const BsdfCase& c, size_t i) {
-    const size_t row = i / ALONG, column = i % ALONG;
-    const double a = (double(row) + 0.5) / ALONG, b = (double(column) + 0.5) / ALONG;
+    const size_t row = i / BSDF_ALONG, column = i % BSDF_ALONG;
+    const double a = (double(row) + 0.5) / BSDF_ALONG, b = (double(column) + 0.5) / BSDF_ALONG;
     return std::visit([&](const auto& chart) { return chart.at(a, b); }, c.chart);
 }
 
 size_t cell_of(const BsdfCase& c, const Histogram& cells, vec3 w) {
     const auto at = std::visit([&](const auto& chart) { return chart.find(glm::dvec3(w)); }, c.chart);
-    return at ? cells.cell(at->x, at->y) : REST;
+    return at ? cells.cell(at->x, at->y) : BSDF_REST;
 }
 
 // One-sided: the probability of a mean at least as far above 1, beyond rounding, if it is 1.
@@ -98,33 +98,33 @@ std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& 
 // it jumps to 0, and all that the chart does not show, are one cell together with the samples that failed:
 // what is left of 1.
 void test_density(const BsdfCase& c, const std::vector<BsdfResult>& results, Evidence& evidence) {
-    std::vector<double> expected(REST + 1), counts(REST + 1);
-    std::vector<bool> above(REST + 1, true);
-    const Histogram cells(CELLS);
+    std::vector<double> expected(BSDF_REST + 1), counts(BSDF_REST + 1);
+    std::vector<bool> above(BSDF_REST + 1, true);
+    const Histogram cells(BSDF_CELLS);
     for (size_t i = 0; i < results.size(); ++i) {
-        const size_t cell = i / ALONG / FINE * CELLS + i % ALONG / FINE;
+        const size_t cell = i / BSDF_ALONG / BSDF_FINE * BSDF_CELLS + i % BSDF_ALONG / BSDF_FINE;
         const double solid_angle = point_of(c, i).solid_angle / double(results.size());
         expected[cell] += double(results[i].pdf_of_wi) * solid_angle;
         above[cell] = above[cell] && results[i].pdf_of_wi > 0.0f;
-        ++counts[results[i].pdf > 0.0f ? cell_of(c, cells, results[i].wi) : REST];
+        ++counts[results[i].pdf > 0.0f ? cell_of(c, cells, results[i].wi) : BSDF_REST];
     }
-    expected[REST] = 1.0;
-    for (size_t cell = 0; cell < REST; ++cell) {
+    expected[BSDF_REST] = 1.0;
+    for (size_t cell = 0; cell < BSDF_REST; ++cell) {
         if (above[cell]) {
-            expected[REST] -= expected[cell];
+            expected[BSDF_REST] -= expected[cell];
         } else {
             expected[cell] = 0.0;
-            counts[REST] += std::exchange(counts[cell], 0.0);
+            counts[BSDF_REST] += std::exchange(counts[cell], 0.0);
         }
     }
     // Where nothing is left, the error of the integral is: a few times 10^-4.
-    const double rest = expected[REST];
+    const double rest = expected[BSDF_REST];
     evidence.expect(rest >= -1e-3, [&] { return words(c.name, ": the density adds up to ", 1.0 - rest); });
     if (!(rest >= 1e-3)) {
-        evidence.expect(counts[REST] <= 2e-3 * double(results.size()), [&] {
-            return words(c.name, ": ", counts[REST], " samples are where the density leaves no room");
+        evidence.expect(counts[BSDF_REST] <= 2e-3 * double(results.size()), [&] {
+            return words(c.name, ": ", counts[BSDF_REST], " samples are where the density leaves no room");
         });
-        expected[REST] = counts[REST] = 0.0;
+        expected[BSDF_REST] = counts[BSDF_REST] = 0.0;
     }
     evidence.add_p_value(c.name, pearson_p_value(counts, expected));
 }

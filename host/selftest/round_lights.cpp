@@ -11,8 +11,8 @@
 namespace candela {
 namespace {
 
-constexpr size_t CELLS = 16;
-constexpr uint32_t SAMPLES = 100000;
+constexpr size_t LIGHT_CELLS = 16;
+constexpr uint32_t LIGHT_SAMPLES = 100000;
 constexpr vec3 RADIANCE(3, 2, 1);
 
 GpuScene scene_of(const decltype(Shape::geometry)& geometry, bool two_sided) {
@@ -61,7 +61,7 @@ void test_sphere_from_outside(const vk::Device& device, const Place& place, uint
     const double h_max = sine * sine / (1.0 + root), pdf = 1.0 / (2.0 * M_PI * h_max);
     const glm::dvec3 axis = normalize(to_center);
     const auto [x, y] = axes_around(axis);
-    Histogram points(CELLS);
+    Histogram points(LIGHT_CELLS);
     size_t met = 0, outside = 0;
     for (const LightSample& s :
          sample_lights(device, scene_of(sphere, false), random_light_items(from, samples, 80))) {
@@ -93,7 +93,7 @@ void test_sphere_from_outside(const vk::Device& device, const Place& place, uint
 Evidence test_spheres_from_outside(const vk::Device& device, Effort effort) {
     Evidence evidence;
     for (const Place& place : OUTSIDE)
-        test_sphere_from_outside(device, place, sized(effort, SAMPLES), evidence);
+        test_sphere_from_outside(device, place, sized(effort, LIGHT_SAMPLES), evidence);
     return evidence;
 }
 
@@ -103,9 +103,10 @@ Evidence test_spheres_from_inside(const vk::Device& device, Effort effort) {
     const Sphere sphere{vec3(1, 2, 3), 2.0f};
     Evidence evidence;
     for (const vec3 from : {vec3(1, 2, 3), vec3(2, 3, 3), vec3(1, 2, 4.99f)}) {
-        Histogram points(CELLS);
-        for (const LightSample& s : sample_lights(device, scene_of(sphere, true),
-                                                  random_light_items(from, sized(effort, SAMPLES), 81))) {
+        Histogram points(LIGHT_CELLS);
+        for (const LightSample& s :
+             sample_lights(device, scene_of(sphere, true),
+                           random_light_items(from, sized(effort, LIGHT_SAMPLES), 81))) {
             const glm::dvec3 n =
                 normalize(glm::dvec3(from) + glm::dvec3(s.shadow) - glm::dvec3(sphere.center));
             const glm::dvec3 to_light = glm::dvec3(sphere.center) + 2.0 * n - glm::dvec3(from);
@@ -133,9 +134,9 @@ Evidence test_disks(const vk::Device& device, Effort effort) {
     const Disk disk{.center = vec3(1, 2, 3), .e1 = vec3(2, 0, 0), .e2 = vec3(1, 3, 0)};
     Evidence evidence;
     for (const vec3 from : {vec3(0, 0, 5), vec3(1, 2, 3.5f), vec3(4, 0, -20)}) {
-        Histogram points(CELLS);
-        for (const LightSample& s : sample_lights(device, scene_of(disk, false),
-                                                  random_light_items(from, sized(effort, SAMPLES), 83))) {
+        Histogram points(LIGHT_CELLS);
+        for (const LightSample& s : sample_lights(
+                 device, scene_of(disk, false), random_light_items(from, sized(effort, LIGHT_SAMPLES), 83))) {
             const glm::dvec3 p(glm::dvec3(from) + glm::dvec3(s.shadow));  // Moved along z alone.
             const double y = (p.y - 2.0) / 3.0, x = (p.x - 1.0 - y) / 2.0;
             points.add({x * x + y * y, turn_of(y, x)});

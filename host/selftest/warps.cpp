@@ -16,14 +16,14 @@
 namespace candela {
 namespace {
 
-constexpr size_t CELLS = 8;         // Along each axis of a histogram.
-constexpr size_t SAMPLES = 400000;  // In so many cells, they tell a density that is 2 % off.
+constexpr size_t WARP_CELLS = 8;         // Along each axis of a histogram.
+constexpr size_t WARP_SAMPLES = 400000;  // In so many cells, they tell a density that is 2 % off.
 
 // Adds the p-value of the hypothesis that coordinates(result), in [0, 1]^2, are uniform.
 template <class Coordinates>
 void test_uniformity(const std::string& name, const std::vector<WarpResult>& results,
                      const Coordinates& coordinates, Evidence& evidence) {
-    Histogram points(CELLS);
+    Histogram points(WARP_CELLS);
     for (const WarpResult& r : results)
         points.add(coordinates(r));
     evidence.add_p_value(name, points.uniformity());
@@ -54,8 +54,8 @@ glm::dvec2 in_polygon(vec2 p, uint32_t corners) {
 // The density is D(n) max(0, w.n) over the projected area of all facets that w sees, which a sum over the
 // cells gives as well as Smith's formula does; it is continuous, so that the midpoint rule is good to 10^-3.
 std::vector<double> visible_normals(vec3 w, float alpha) {
-    constexpr size_t FINE = 32, ALONG = CELLS * FINE;
-    std::vector<double> expected(CELLS * CELLS);
+    constexpr size_t FINE = 32, ALONG = WARP_CELLS * FINE;
+    std::vector<double> expected(WARP_CELLS * WARP_CELLS);
     for (size_t i = 0; i < ALONG * ALONG; ++i) {
         const size_t row = i / ALONG, column = i % ALONG;
         const double t = 1.0 - (double(row) + 0.5) / ALONG;
@@ -64,14 +64,14 @@ std::vector<double> visible_normals(vec3 w, float alpha) {
         const glm::dvec3 n = normalize(glm::dvec3(r * std::cos(phi), r * std::sin(phi), 1.0));
         // D n.z^4 is the density of slopes, uniform in (a, b): what is left of it is 1 / n.z.
         const double share = std::max(0.0, dot(glm::dvec3(w), n)) / n.z * 2.0 * t;
-        expected[row / FINE * CELLS + column / FINE] += share;
+        expected[row / FINE * WARP_CELLS + column / FINE] += share;
     }
     return expected;
 }
 
 void test_visible_normals_of(const vk::Device& device, vec3 w, float alpha, Evidence& evidence) {
     const std::string name = words("visible normals of roughness ", alpha, ", cosine ", w.z);
-    Histogram points(CELLS);
+    Histogram points(WARP_CELLS);
     for (const WarpResult& result : run_warps(device, 11, {.w = w, .alpha = alpha})) {
         const glm::dvec3 n(result.normal);
         evidence.expect(std::abs(length(n) - 1.0) <= 0x1p-20 && n.z > 0.0,
@@ -93,7 +93,7 @@ void test_visible_normals_of(const vk::Device& device, vec3 w, float alpha, Evid
 
 std::vector<WarpResult> run_warps(const vk::Device& device, uint32_t seed, const WarpItem& parameters) {
     Random random(seed);
-    std::vector<WarpItem> items(SAMPLES, parameters);
+    std::vector<WarpItem> items(WARP_SAMPLES, parameters);
     for (WarpItem& item : items)
         item.u = random.square();
     return probe<WarpResult>(device, kernels::warp, items);
