@@ -199,7 +199,7 @@ ExitCode bench(const BenchArguments& arguments) {
     const vk::Instance instance(instance_options());
     const std::vector<vk::DeviceInfo> devices = instance.devices();
     const vk::Device device(instance, vk::select_device(devices, arguments.render.device),
-                            pipeline_cache_file());
+                            pipeline_cache_folder());
     BenchArguments told = arguments;
     told.bench.scene_access = arguments.render.scene_access;
     told.bench.progress = [table](const std::string& text) { print_progress(text, table); };

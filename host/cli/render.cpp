@@ -201,7 +201,7 @@ ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, c
     const AovSelection aovs = options.written_aovs();
     SteadyRenderer::Source source{.instance = &instance,
                                   .device = device,
-                                  .pipeline_cache_file = pipeline_cache_file(),
+                                  .pipeline_cache_folder = pipeline_cache_folder(),
                                   .scene = &scene,
                                   .camera = &camera,
                                   .settings = record.settings,

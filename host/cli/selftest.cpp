@@ -140,7 +140,7 @@ void print_progress(size_t done, const std::vector<Check>& checks, bool json) {
 ExitCode selftest(const SelftestOptions& options) {
     const vk::Instance instance(instance_options());
     const std::vector<vk::DeviceInfo> devices = instance.devices();
-    const vk::Device device(instance, vk::select_device(devices, options.device), pipeline_cache_file());
+    const vk::Device device(instance, vk::select_device(devices, options.device), pipeline_cache_folder());
     const ExitCode code =
         run_selftest(selftest_checks(device, options.effort), options.effort, device.info(), options.json);
     check_validation(instance);

@@ -123,7 +123,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     {
         Viewer viewer(window, instance, std::move(scene), state,
                       {.device = device,
-                       .pipeline_cache_file = pipeline_cache_file(),
+                       .pipeline_cache_folder = pipeline_cache_folder(),
                        .name = name,
                        .target = arguments.frames.value_or(options.spp.value_or(MAX_SPP)),
                        .close_at_target = arguments.frames.has_value(),

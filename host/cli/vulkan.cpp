@@ -33,14 +33,13 @@ void check_validation(const vk::Instance& instance) {
     }
 }
 
-std::optional<std::filesystem::path> pipeline_cache_file() {
+std::optional<std::filesystem::path> pipeline_cache_folder() {
     if (is_on("CANDELA_NO_CACHE")) return std::nullopt;
-    const std::filesystem::path name = std::filesystem::path("candela") / "pipelines.bin";
     // The XDG specification: a relative path is to be ignored.
     const std::filesystem::path cache = environment("XDG_CACHE_HOME");
-    if (cache.is_absolute()) return cache / name;
+    if (cache.is_absolute()) return cache / "candela";
     const std::filesystem::path home = environment("HOME");
-    return home.is_absolute() ? std::optional(home / ".cache" / name) : std::nullopt;
+    return home.is_absolute() ? std::optional(home / ".cache" / "candela") : std::nullopt;
 }
 
 }  // namespace candela

@@ -14,8 +14,8 @@ vk::Instance::Options instance_options();
 // Throws Error if the validation layer has found fault with anything so far.
 void check_validation(const vk::Instance& instance);
 
-// Where compiled kernels are kept: candela/pipelines.bin in $XDG_CACHE_HOME or ~/.cache. None if there is no
+// The folder where compiled kernels are kept: candela in $XDG_CACHE_HOME or ~/.cache. None if there is no
 // such place or CANDELA_NO_CACHE is set.
-std::optional<std::filesystem::path> pipeline_cache_file();
+std::optional<std::filesystem::path> pipeline_cache_folder();
 
 }  // namespace candela

@@ -27,7 +27,7 @@ SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
 }
 
 void SteadyRenderer::open() {
-    device_ = std::make_unique<vk::Device>(*source_.instance, source_.device, source_.pipeline_cache_file);
+    device_ = std::make_unique<vk::Device>(*source_.instance, source_.device, source_.pipeline_cache_folder);
     source_.settings.seed = state().seed;
     renderer_ = std::make_unique<Renderer>(*device_, *source_.scene, *source_.camera, source_.settings);
     renderer_->upload(state());

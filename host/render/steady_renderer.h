@@ -21,7 +21,7 @@ class SteadyRenderer {
     struct Source {
         const vk::Instance* instance;
         vk::DeviceInfo device;
-        std::optional<std::filesystem::path> pipeline_cache_file;
+        std::optional<std::filesystem::path> pipeline_cache_folder;
         const GpuScene* scene;
         const Camera* camera;
         RenderSettings settings;

@@ -85,7 +85,7 @@ bool Viewer::run() {
 
 void Viewer::open() {
     const auto make_surface = [this] { return window_.make_surface(instance_.handle()); };
-    device_ = std::make_unique<vk::Device>(instance_, options_.device, options_.pipeline_cache_file);
+    device_ = std::make_unique<vk::Device>(instance_, options_.device, options_.pipeline_cache_folder);
     presenter_ = std::make_unique<vk::Presenter>(*device_, make_surface(), make_surface);
     display_ = std::make_unique<Display>(*device_, presenter_->blue_first());
 }

@@ -39,7 +39,7 @@ struct ViewedPicture {
 
 struct ViewerOptions {
     vk::DeviceInfo device;  // After choose_presenting_queue().
-    std::optional<std::filesystem::path> pipeline_cache_file;
+    std::optional<std::filesystem::path> pipeline_cache_folder;
     std::string name;               // Of the scene, for the title and for files.
     uint32_t target = 0;            // Samples per pixel to stop at, above 0.
     bool close_at_target = false;   // End there, and keep the picture's size whatever the window's.

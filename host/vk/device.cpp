@@ -2,7 +2,6 @@
 #include "vk/device.h"
 
 #include <fstream>
-#include <utility>
 #include <vector>
 
 #include <unistd.h>
@@ -44,7 +43,7 @@ static VkDevice create_device(const DeviceInfo& info) {
 }
 
 Device::Device(const Instance& instance, const DeviceInfo& info,
-               std::optional<std::filesystem::path> pipeline_cache_file)
+               const std::optional<std::filesystem::path>& pipeline_cache_folder)
     : info_(info), debug_names_(instance.validation()) {
     if (!info.reason.empty()) {
         throw Error("device \"" + info.name + "\" will not do: " + info.reason, ExitCode::no_device);
@@ -54,7 +53,7 @@ Device::Device(const Instance& instance, const DeviceInfo& info,
     vkGetDeviceQueue(device_.get(), info.queue_family, 0, &queue_);
     VkPhysicalDeviceProperties properties{};
     vkGetPhysicalDeviceProperties(info.handle, &properties);
-    pipeline_cache_.emplace(device_.get(), properties, std::move(pipeline_cache_file));
+    pipeline_cache_.emplace(device_.get(), properties, pipeline_cache_folder);
 }
 
 // Bytes of RAM that programs can still have; where the system does not tell, all of its RAM.

@@ -19,10 +19,11 @@ namespace candela::vk {
 // time.
 class Device {
   public:
-    // Opens the device that `info` (from instance.devices()) describes. Compiled kernels are kept in
-    // `pipeline_cache_file`, if given. Throws an Error if the device will not do or cannot be opened.
+    // Opens the device that `info` (from instance.devices()) describes. Compiled kernels are kept in a
+    // file in `pipeline_cache_folder`, if given. Throws an Error if the device will not do or cannot be
+    // opened.
     Device(const Instance& instance, const DeviceInfo& info,
-           std::optional<std::filesystem::path> pipeline_cache_file = std::nullopt);
+           const std::optional<std::filesystem::path>& pipeline_cache_folder = std::nullopt);
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
 

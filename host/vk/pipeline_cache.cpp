@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 #include <system_error>
-#include <utility>
 
 #include <unistd.h>
 
@@ -47,10 +46,23 @@ static std::vector<char> load(const std::filesystem::path& file,
     return data;
 }
 
+// "pipelines-" and the UUID in hexadecimal digits.
+static std::string file_name(const VkPhysicalDeviceProperties& properties) {
+    std::string name = "pipelines-";
+    for (const uint8_t byte : properties.pipelineCacheUUID) {
+        name += "0123456789abcdef"[byte >> 4];
+        name += "0123456789abcdef"[byte & 15];
+    }
+    return name;
+}
+
 PipelineCache::PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& properties,
-                             std::optional<std::filesystem::path> file)
-    : device_(device), file_(std::move(file)) {
-    if (file_) loaded_ = load(*file_, properties);
+                             const std::optional<std::filesystem::path>& folder)
+    : device_(device) {
+    if (folder) {
+        file_ = *folder / file_name(properties);
+        loaded_ = load(*file_, properties);
+    }
     VkPipelineCacheCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
     info.initialDataSize = loaded_.size();

@@ -13,10 +13,11 @@ namespace candela::vk {
 
 class PipelineCache {
   public:
-    // Creates the cache and fills it from `file`, if that is given and was written for the same device and
-    // driver; a file that is missing, damaged or foreign is ignored.
+    // Creates the cache and fills it from its file in `folder`, if that is given. The file is named by the
+    // device's cache UUID, so that each device and driver has one of its own; one that is missing, damaged or
+    // foreign is ignored.
     PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& properties,
-                  std::optional<std::filesystem::path> file);
+                  const std::optional<std::filesystem::path>& folder);
     // Saves the cache to the file if it changed. Failure is silent: the next run compiles again.
     ~PipelineCache();
     PipelineCache(const PipelineCache&) = delete;

@@ -17,7 +17,7 @@ class SteadyTest : public RenderTest {
                                    double hold_seconds = 10.0) const {
         return SteadyRenderer({.instance = &instance_,
                                .device = info_,
-                               .pipeline_cache_file = std::nullopt,
+                               .pipeline_cache_folder = std::nullopt,
                                .scene = &gpu_scene,
                                .camera = &scene.cameras[0],
                                .settings = settings,
