@@ -45,6 +45,7 @@ unpack() {
     $apt update
     shift 2
     for name in "$@"; do
+        rm -f "$packages/$name"_*.deb  # Of an earlier try.
         (cd "$packages" && $apt download "$name/$suite")
         dpkg-deb -x "$packages/$name"_*.deb "$folder/root"
     done
@@ -111,8 +112,10 @@ dpkg-deb -W "$packages"/chromium-common_*.deb
 on swiftshader "$candela" devices
 if [ "$extent" = quick ]; then
     step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
-    # Records, exponentials, traversal and identical bits; what pictures' statistics tell, the self-test tells in brief.
-    step "SwiftShader: tests" tests swiftshader quick -R '^gpu\.(Records|Exponential|Traversal)Test|IdentityTest'
+    # Records, exponentials, traversal and identical bits, of the scene that has everything. What the statistics of
+    # pictures tell, the self-test tells in brief.
+    step "SwiftShader: tests" \
+        tests swiftshader quick -R '^gpu\.(Records|Exponential|Traversal)Test|IdentityTest.*/Everything'
     step "SwiftShader: images" compare swiftshader 64x48 showcase
     exit
 fi
@@ -125,5 +128,6 @@ step "Mesa: tests" tests mesa full -L '^(gpu|render)$'
 step "Mesa: images" compare mesa 128x96 $scenes
 # SwiftShader takes 30 to 70 times as long as lavapipe: a sixteenth of the samples, a quarter of the pixels.
 step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
-step "SwiftShader: tests" tests swiftshader quick -L '^(gpu|render)$'
+# Left out: bounds that hold for one number of samples alone; and what they judge, an estimate, is the host's work.
+step "SwiftShader: tests" tests swiftshader quick -L '^(gpu|render)$' -E ConvergenceTest
 step "SwiftShader: images" compare swiftshader 64x48 $scenes

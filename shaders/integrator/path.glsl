@@ -79,8 +79,8 @@ void add_emission(Path path, inout Estimate estimate, Light l, Interaction s, fl
 }
 
 // Share of the light that the medium around the path's ray lets through over that distance [m], which may be infinite:
-// then it is cut to a finite one, lest infinity be multiplied by 0. (Compilers that take all numbers for finite may leave
-// a min with FLOAT_MAX out.) Ref: Beer and Lambert's law.
+// then it is cut to a finite one, lest infinity be multiplied by 0. (Compilers that take all numbers for finite may
+// leave a min with FLOAT_MAX out.) Ref: Beer and Lambert's law.
 vec3 path_transmittance(Path path, float distance) {
     const float far = 1e30;
     if ((MATERIALS & MATERIALS_DIELECTRIC) == 0u) return vec3(1.0);

@@ -52,7 +52,7 @@ TEST_F(SamplerErrorTest, SobolIsNowhereWorseThanIndependent) {
         scenes.emplace_back(name, load_scene(CANDELA_SCENES "/" + name + ".json"));
     const double level = sidak_level(TEST_ALPHA, scenes.size());
     for (const auto& [name, scene] : scenes) {
-        const Image reference = image(scene, SamplerKind::stratified, 1, REFERENCE_SPP);
+        const Image reference = image(scene, SamplerKind::stratified, 1, samples(REFERENCE_SPP));
         const RunningMoments sobol = squared_errors(image(scene, SamplerKind::sobol, 2, SPP), reference);
         const RunningMoments independent =
             squared_errors(image(scene, SamplerKind::independent, 3, SPP), reference);
