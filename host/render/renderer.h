@@ -110,7 +110,7 @@ class Renderer {
     void compile();
     // That kernel, bound to the scene.
     vk::Kernel scene_kernel(RenderKernel which) const;
-    double dispatch(const vk::Kernel& kernel, Tile tile);
+    void record(const vk::Kernel& kernel, Tile tile);
     Work complete(const Tile& tile);
     uvec2 image_size() const { return {settings_.crop.width(), settings_.crop.height()}; }
 
@@ -126,7 +126,8 @@ class Renderer {
     vk::Buffer primitives_;
     vk::Buffer tables_;
     vk::Buffer parameters_;
-    vk::Buffer counter_buffer_;
+    vk::Buffer counter_buffer_;  // On the device, of one submission,
+    vk::Buffer counts_;          // and what the host sees of it.
     vk::StorageImage image_;
     vk::Commands commands_;
     std::unique_ptr<vk::Kernel> render_kernel_;

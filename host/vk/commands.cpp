@@ -5,6 +5,7 @@
 #include <chrono>
 #include <string>
 
+#include "vk/buffer.h"
 #include "vk/check.h"
 #include "vk/kernel.h"
 
@@ -89,6 +90,21 @@ void Commands::dispatch(const Kernel& kernel, std::span<const std::byte> push_co
     vkCmdDispatch(buffer_, groups[0], groups[1], groups[2]);
 }
 
+void Commands::clear(const Buffer& buffer) {
+    vkCmdFillBuffer(buffer_, buffer.handle(), 0, VK_WHOLE_SIZE, 0);
+    memory_barrier(buffer_, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+}
+
+void Commands::copy(const Buffer& from, const Buffer& to) {
+    assert(from.size() == to.size());
+    memory_barrier(buffer_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
+    const VkBufferCopy region{0, 0, from.size()};
+    vkCmdCopyBuffer(buffer_, from.handle(), to.handle(), 1, &region);
+}
+
 double Commands::submit_and_wait() {
     memory_barrier(buffer_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                    VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
@@ -117,7 +133,7 @@ double Commands::submit_and_wait() {
 double Commands::elapsed_by_timestamps() const {
     std::array<uint64_t, 2> ticks{};
     VK_CHECK(vkGetQueryPoolResults(device_->handle(), timestamps_.get(), 0, 2, sizeof ticks, ticks.data(),
-                                   sizeof ticks[0], VK_QUERY_RESULT_64_BIT));
+                                   sizeof ticks[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
     // The counter wraps around after so many bits.
     const uint32_t bits = device_->info().timestamp_bits;
     const uint64_t mask = bits < 64 ? (uint64_t{1} << bits) - 1 : ~uint64_t{0};

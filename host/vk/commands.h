@@ -13,6 +13,7 @@
 
 namespace candela::vk {
 
+class Buffer;
 class Kernel;
 
 // Submissions follow each other: each sees all that the host and earlier submissions wrote, and the host sees
@@ -27,6 +28,11 @@ class Commands {
     // groups.
     void dispatch(const Kernel& kernel, std::span<const std::byte> push_constants,
                   const std::array<uint32_t, 3>& groups);
+
+    // Fills a buffer with zeros, before the dispatches that follow.
+    void clear(const Buffer& buffer);
+    // Copies a buffer to another of the same size, after the dispatches before.
+    void copy(const Buffer& from, const Buffer& to);
 
     // Runs what was recorded, waits until it is done and returns how long the device worked on it [s]: by the
     // device's clock if it has one, else from submit to finish by the host's. Then recording starts afresh.

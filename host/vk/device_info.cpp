@@ -95,6 +95,7 @@ static void query_properties(DeviceInfo& info) {
     vkGetPhysicalDeviceProperties2(info.handle, &properties);
 
     info.driver = std::string(driver.driverName) + ", " + driver.driverInfo;
+    info.driver_id = driver.driverID;
     info.subgroup_size = subgroup.subgroupSize;
     info.timestamp_period = properties.properties.limits.timestampPeriod;
     info.limits = device_limits(properties.properties.limits);
@@ -137,6 +138,8 @@ static void query_formats(DeviceInfo& info) {
     info.limits.max_image_bytes = image.maxResourceSize;
 }
 
+// The largest device-local heap; sets `reason` if there is none, as where a driver compiles for hardware that
+// is not there.
 static void query_memory(DeviceInfo& info) {
     VkPhysicalDeviceMemoryProperties memory{};
     vkGetPhysicalDeviceMemoryProperties(info.handle, &memory);
@@ -145,6 +148,7 @@ static void query_memory(DeviceInfo& info) {
             info.device_heap = std::max(info.device_heap, heap.size);
         }
     }
+    if (info.device_heap == 0) info.reason = "it has no memory (its device-local heaps have 0 bytes)";
 }
 
 DeviceInfo query_device(VkPhysicalDevice physical_device, uint32_t index) {
@@ -161,9 +165,9 @@ DeviceInfo query_device(VkPhysicalDevice physical_device, uint32_t index) {
         return info;
     }
     query_properties(info);
-    query_memory(info);
     info.ray_query = has_extension(device_extensions(physical_device), "VK_KHR_ray_query");
     query_queues(info);
+    if (info.reason.empty()) query_memory(info);
     if (info.reason.empty()) query_formats(info);
     return info;
 }

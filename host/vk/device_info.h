@@ -47,6 +47,7 @@ struct DeviceInfo {
     std::string reason;        // Why the device will not do; empty if it will.
 
     std::string driver;               // Name and version, e.g. "llvmpipe, Mesa 22.3.6 (LLVM 15.0.6)".
+    VkDriverId driver_id{};           // Which driver it is, of all that Vulkan's registry knows.
     uint32_t queue_family = 0;        // The first family that computes.
     uint32_t timestamp_bits = 0;      // Valid bits of a timestamp; 0: the queue writes none.
     double timestamp_period = 0;      // [ns] per tick.
@@ -60,6 +61,9 @@ struct DeviceInfo {
 
     VkPhysicalDevice handle = VK_NULL_HANDLE;
 
+    // True on Mesa's software driver, which compiles kernels for vectors of the CPU: it wants other loops
+    // than GPUs, and than other software drivers.
+    bool is_lavapipe() const { return driver_id == VK_DRIVER_ID_MESA_LLVMPIPE; }
     // True if device and host use the same memory, so that the host can write device memory directly.
     bool shares_host_memory() const { return type == DeviceType::cpu || type == DeviceType::integrated; }
 };
@@ -74,10 +78,10 @@ bool has_extension(std::span<const VkExtensionProperties> extensions, std::strin
 // Asks the driver for everything above. `index` is the device's place in the instance's list.
 DeviceInfo query_device(VkPhysicalDevice physical_device, uint32_t index);
 
-// Picks a device. Without a request: the first that will do, in the order discrete, integrated, virtual, CPU,
-// other. A request is an index, or a part of a name in any case. Throws an Error (no_device) that lists what
-// there is if nothing or more than one device matches, and one that gives the reason if the device asked for
-// will not do.
+// Picks a device. Without a request: the first that will do, in the order discrete, integrated, virtual, CPU
+// (lavapipe before others), other. A request is an index, or a part of a name in any case. Throws an Error
+// (no_device) that lists what there is if nothing or more than one device matches, and one that gives the
+// reason if the device asked for will not do.
 const DeviceInfo& select_device(std::span<const DeviceInfo> devices,
                                 const std::optional<std::string>& request);
 

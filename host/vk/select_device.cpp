@@ -28,10 +28,16 @@ static std::string list(std::span<const DeviceInfo> devices) {
     return text;
 }
 
+// True if `a` suits a renderer better than `b`, whatever their places in the list.
+static bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
+    if (a.type != b.type) return a.type < b.type;
+    return a.type == DeviceType::cpu && a.is_lavapipe() && !b.is_lavapipe();
+}
+
 static const DeviceInfo& select_default(std::span<const DeviceInfo> devices) {
     const DeviceInfo* best = nullptr;
     for (const DeviceInfo& device : devices) {
-        if (device.reason.empty() && (best == nullptr || device.type < best->type)) best = &device;
+        if (device.reason.empty() && (best == nullptr || is_better(device, *best))) best = &device;
     }
     if (best == nullptr) {
         throw Error("no Vulkan device here will do: " + list(devices) +

@@ -10,6 +10,7 @@
 layout(local_size_x = WORKGROUP_SIZE, local_size_y = WORKGROUP_SIZE) in;
 
 layout(constant_id = CONSTANT_HAS_AOVS) const bool HAS_AOVS = true;
+layout(constant_id = CONSTANT_GROUP_COUNTERS) const bool GROUP_COUNTERS = true;
 
 layout(binding = BINDING_IMAGE, rgba32f) uniform image2DArray accumulation;
 layout(std430, binding = BINDING_COUNTERS) buffer CountersBlock { uint counters[COUNTER_COUNT]; };
@@ -23,12 +24,34 @@ void layer_store(uvec2 at, uint layer, vec4 value) {
     imageStore(accumulation, ivec3(at, layer), value);
 }
 
-void count_rays(uint rays) {
-    uint before = atomicAdd(counters[COUNTER_RAYS_LOW], rays);
-    if (before + rays < before) atomicAdd(counters[COUNTER_RAYS_HIGH], 1u);
+// What the invocations of a work group have counted, if GROUP_COUNTERS: on a GPU they would queue for the same words of
+// the buffer.
+shared uint group_counters[COUNTER_COUNT];
+
+void count(uint counter, uint n) {
+    if (GROUP_COUNTERS) {
+        atomicAdd(group_counters[counter], n);
+    } else {
+        atomicAdd(counters[counter], n);
+    }
 }
 
-void main() {
+void count_rays(uint rays) {
+    uint before = GROUP_COUNTERS ? atomicAdd(group_counters[COUNTER_RAYS_LOW], rays)
+                                 : atomicAdd(counters[COUNTER_RAYS_LOW], rays);
+    if (before + rays < before) count(COUNTER_RAYS_HIGH, 1u);
+}
+
+// Adds the group's counts to the counters; one invocation for each.
+void flush_counters() {
+    uint counter = gl_LocalInvocationIndex;
+    if (counter >= COUNTER_COUNT || group_counters[counter] == 0u) return;
+    uint n = group_counters[counter];
+    uint before = atomicAdd(counters[counter], n);
+    if (counter == COUNTER_RAYS_LOW && before + n < before) atomicAdd(counters[COUNTER_RAYS_HIGH], 1u);
+}
+
+void render_pixel() {
     uvec2 group = gl_WorkGroupID.xy * tile.stride % gl_NumWorkGroups.xy;
     uvec2 at = group * WORKGROUP_SIZE + gl_LocalInvocationID.xy;
     if (any(greaterThanEqual(at, tile.size))) return;
@@ -104,10 +127,10 @@ void main() {
         if (ended) {
             // A sample whose value or square is not finite adds zero and is counted.
             if (!is_finite(estimate.L * estimate.L)) {
-                atomicAdd(counters[COUNTER_NONFINITE], 1u);
+                count(COUNTER_NONFINITE, 1u);
                 estimate.L = vec3(0.0);
             }
-            if (estimate.cut) atomicAdd(counters[COUNTER_DEPTH_LIMIT], 1u);
+            if (estimate.cut) count(COUNTER_DEPTH_LIMIT, 1u);
             compensated_add(sum.rgb, compensation.rgb, estimate.L);
             compensated_add(square_sum.rgb, square_compensation.rgb, estimate.L * estimate.L);
             sum.a += estimate.visible ? 1.0 : 0.0;
@@ -127,8 +150,8 @@ void main() {
         }
     }
     count_rays(rays);
-    if (n < target) atomicAdd(counters[COUNTER_UNFINISHED], 1u);
-    atomicAdd(counters[COUNTER_SAMPLES], n - first);
+    if (n < target) count(COUNTER_UNFINISHED, 1u);
+    count(COUNTER_SAMPLES, n - first);
     compensation.a = float(n);
     square_compensation.a = min(square_compensation.a + float(rays), MAX_RAYS);
 
@@ -141,5 +164,17 @@ void main() {
         layer_store(at, LAYER_ALBEDO_COMPENSATION, vec4(albedo_compensation, 0.0));
         layer_store(at, LAYER_NORMAL, vec4(normal_sum, 0.0));
         layer_store(at, LAYER_NORMAL_COMPENSATION, vec4(normal_compensation, 0.0));
+    }
+}
+
+void main() {
+    if (GROUP_COUNTERS) {
+        if (gl_LocalInvocationIndex < COUNTER_COUNT) group_counters[gl_LocalInvocationIndex] = 0u;
+        barrier();
+    }
+    render_pixel();
+    if (GROUP_COUNTERS) {
+        barrier();
+        flush_counters();
     }
 }

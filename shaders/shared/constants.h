@@ -98,9 +98,10 @@ const uint CONSTANT_LIST = 9u;         // So many primitives are tested one by o
 const uint CONSTANT_LIGHTS = 10u;      // Bit i: some light is of the kind i (LIGHT_*).
 const uint CONSTANT_ONE_LIGHT = 11u;   // 1: there is but one light.
 const uint CONSTANT_EVEN_SKY = 12u;    // 1: the environment is the same everywhere.
+const uint CONSTANT_GROUP_COUNTERS = 13u;  // 1: a work group adds its counts to the counters as one.
 // From here on LIST_MAX constants, one for each primitive of the list. Byte c of number i: which of the
 // list's corners, 4 j + k for corner k of primitive j, is the first at the same place as corner c.
-const uint CONSTANT_LIST_CORNERS = 13u;
+const uint CONSTANT_LIST_CORNERS = 14u;
 
 // The longest list of primitives that a kernel tests one by one.
 const uint LIST_MAX = 16u;

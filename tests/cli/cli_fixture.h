@@ -25,16 +25,24 @@ inline const std::string MESH = std::string(CANDELA_SCENES) + "/mesh.json";
 inline const std::map<std::string, std::string> NO_DRIVER = {{"VK_DRIVER_FILES", "/nonexistent.json"},
                                                              {"VK_ICD_FILENAMES", "/nonexistent.json"}};
 
-// The variables that put tests/layers/device_fault.cpp before the driver: each of the first `devices` devices
+// The variables that put tests/layers/device_fault.cpp before the driver.
+inline const std::map<std::string, std::string> FAULT_LAYER = {
+    {"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"}, {"VK_ADD_LAYER_PATH", CANDELA_LAYERS}};
+
+inline std::map<std::string, std::string> operator+(std::map<std::string, std::string> a,
+                                                    const std::map<std::string, std::string>& b) {
+    a.insert(b.begin(), b.end());
+    return a;
+}
+
+// Each of the first `devices` devices
 // runs so many submissions, and then answers with `result`, a VkResult; then so many openings fail.
 inline std::map<std::string, std::string> failing_device(int devices, int submissions, int result,
                                                          int openings = 0) {
-    return {{"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"},
-            {"VK_ADD_LAYER_PATH", CANDELA_LAYERS},
-            {"FAULT_DEVICES", std::to_string(devices)},
-            {"FAULT_AFTER", std::to_string(submissions)},
-            {"FAULT_RESULT", std::to_string(result)},
-            {"FAULT_OPENINGS", std::to_string(openings)}};
+    return FAULT_LAYER + std::map<std::string, std::string>{{"FAULT_DEVICES", std::to_string(devices)},
+                                                            {"FAULT_AFTER", std::to_string(submissions)},
+                                                            {"FAULT_RESULT", std::to_string(result)},
+                                                            {"FAULT_OPENINGS", std::to_string(openings)}};
 }
 inline constexpr int OUT_OF_DEVICE_MEMORY = -2, INITIALIZATION_FAILED = -3, DEVICE_LOST = -4;  // VkResult.
 
@@ -47,10 +55,12 @@ inline Words operator+(Words a, const Words& b) {
 
 class CliTest : public testing::Test {
   protected:
-    // The call of candela with these arguments, and its environment: with validation, without a cache.
+    // The call of candela with these arguments, and its environment: with validation, and compiled
+    // kernels kept between tests.
     static Words call(const Words& arguments) { return Words{CANDELA_BINARY} + arguments; }
     static ProcessOptions options(std::map<std::string, std::string> environment = {}) {
-        environment.insert({{"CANDELA_VALIDATION", "1"}, {"CANDELA_NO_CACHE", "1"}, {"TERM", "xterm"}});
+        environment.insert(
+            {{"CANDELA_VALIDATION", "1"}, {"XDG_CACHE_HOME", CANDELA_CACHE}, {"TERM", "xterm"}});
         return {.environment = std::move(environment)};
     }
     static ProcessResult candela(const Words& arguments,

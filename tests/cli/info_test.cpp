@@ -136,5 +136,22 @@ TEST_F(Devices, NoDriverIsAnErrorWithARemedy) {
     }
 }
 
+// As where drivers are installed, and the hardware is not.
+TEST_F(Devices, DriversWithoutADeviceAreAnErrorWithARemedy) {
+    const ProcessResult result =
+        candela({"devices"}, FAULT_LAYER + std::map<std::string, std::string>{
+                                               {"FAULT_ENUMERATION", std::to_string(INITIALIZATION_FAILED)}});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_CONTAINS(result.err, "Vulkan finds no device; install the driver of your GPU");
+}
+
+// As where a driver compiles for hardware that is not there.
+TEST_F(Devices, OneWithoutMemoryWillNotDo) {
+    const ProcessResult result =
+        candela({"devices"}, FAULT_LAYER + std::map<std::string, std::string>{{"FAULT_MEMORY", "1"}});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_CONTAINS(result.out, "no: it has no memory (its device-local heaps have 0 bytes)");
+}
+
 }  // namespace
 }  // namespace candela

@@ -1,6 +1,7 @@
 // A Vulkan layer that makes devices fail, for tests of what a program does then. Each of the first
 // FAULT_DEVICES devices that are opened runs FAULT_AFTER submissions; all others it answers with the VkResult
-// FAULT_RESULT, as a lost device would. After the first device, FAULT_OPENINGS times none can be opened.
+// FAULT_RESULT, as a lost device would. After the first device, FAULT_OPENINGS times none can be opened. With
+// FAULT_ENUMERATION, a VkResult, no device is found; with FAULT_MEMORY=1 all have memory heaps of 0 bytes.
 #include <cstdlib>
 #include <cstring>
 
@@ -73,11 +74,32 @@ VKAPI_ATTR VkResult VKAPI_CALL queue_submit(VkQueue queue, uint32_t count, const
     return next_submit(queue, count, infos, fence);
 }
 
+VKAPI_ATTR VkResult VKAPI_CALL enumerate_devices(VkInstance instance, uint32_t* count,
+                                                 VkPhysicalDevice* list) {
+    const int result = number("FAULT_ENUMERATION");
+    if (result != 0) return static_cast<VkResult>(result);
+    return reinterpret_cast<PFN_vkEnumeratePhysicalDevices>(
+        next_instance_function(instance, "vkEnumeratePhysicalDevices"))(instance, count, list);
+}
+
+VKAPI_ATTR void VKAPI_CALL memory_properties(VkPhysicalDevice device,
+                                             VkPhysicalDeviceMemoryProperties* properties) {
+    reinterpret_cast<PFN_vkGetPhysicalDeviceMemoryProperties>(
+        next_instance_function(the_instance, "vkGetPhysicalDeviceMemoryProperties"))(device, properties);
+    if (number("FAULT_MEMORY") == 0) return;
+    for (uint32_t i = 0; i < properties->memoryHeapCount; ++i)
+        properties->memoryHeaps[i].size = 0;
+}
+
 PFN_vkVoidFunction own_function(const char* name) {
     if (std::strcmp(name, "vkCreateInstance") == 0)
         return reinterpret_cast<PFN_vkVoidFunction>(create_instance);
     if (std::strcmp(name, "vkCreateDevice") == 0) return reinterpret_cast<PFN_vkVoidFunction>(create_device);
     if (std::strcmp(name, "vkQueueSubmit") == 0) return reinterpret_cast<PFN_vkVoidFunction>(queue_submit);
+    if (std::strcmp(name, "vkEnumeratePhysicalDevices") == 0)
+        return reinterpret_cast<PFN_vkVoidFunction>(enumerate_devices);
+    if (std::strcmp(name, "vkGetPhysicalDeviceMemoryProperties") == 0)
+        return reinterpret_cast<PFN_vkVoidFunction>(memory_properties);
     return nullptr;
 }
 

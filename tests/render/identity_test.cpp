@@ -213,6 +213,21 @@ TEST_P(IdentityTest, TexelAndStorageBuffers) {
     expect_same_bits(in_one_go(s), texels);
 }
 
+// What other drivers get than lavapipe: counters that a work group adds up first, and a tree for few
+// primitives.
+TEST_P(IdentityTest, TunedForLavapipeOrNot) {
+    const Accumulation tuned = in_one_go(settings());
+    vk::DeviceInfo info = info_;
+    info.driver_id = info_.is_lavapipe() ? VkDriverId{} : VK_DRIVER_ID_MESA_LLVMPIPE;
+    const vk::Device device(instance_, info);
+    Renderer renderer(device, gpu_scene_, scene_.cameras[0], settings());
+    finish(renderer);
+    const Accumulation other = renderer.download();
+    expect_same_bits(other, tuned);
+    EXPECT_EQ(other.counters.rays, tuned.counters.rays);
+    EXPECT_EQ(other.counters.depth_limit_hits, tuned.counters.depth_limit_hits);
+}
+
 TEST_P(IdentityTest, AovsLeaveTheColoursAlone) {
     const Accumulation with = in_one_go(settings());
     RenderSettings s = settings();

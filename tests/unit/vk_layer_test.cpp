@@ -62,6 +62,17 @@ TEST(SelectDevice, TakesTheFirstOfEquals) {
     EXPECT_EQ(select_device(devices, std::nullopt).index, 0u);
 }
 
+TEST(SelectDevice, PrefersLavapipeAmongCpusAlone) {
+    std::vector<DeviceInfo> devices{make_device(0, "a", DeviceType::cpu),
+                                    make_device(1, "b", DeviceType::cpu),
+                                    make_device(2, "c", DeviceType::cpu)};
+    devices[0].driver_id = VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
+    devices[1].driver_id = devices[2].driver_id = VK_DRIVER_ID_MESA_LLVMPIPE;
+    EXPECT_EQ(select_device(devices, std::nullopt).index, 1u);
+    devices[0].type = DeviceType::virtual_gpu;
+    EXPECT_EQ(select_device(devices, std::nullopt).index, 0u);
+}
+
 TEST(SelectDevice, TakesAnIndexOrAPartOfTheNameInAnyCase) {
     EXPECT_EQ(selected("0"), 0u);
     EXPECT_EQ(selected("2"), 2u);
