@@ -5,7 +5,6 @@ find_program(SPIRV_CROSS NAMES spirv-cross REQUIRED)
 # Debian's own interpreter first, since the package python3-jsonschema belongs to it.
 find_program(PYTHON3 NAMES python3 HINTS /usr/bin REQUIRED)
 find_program(CLANG_FORMAT NAMES clang-format-14)
-find_program(RUN_CLANG_TIDY NAMES run-clang-tidy)
 
 # candela_check(NAME COMMAND...) adds a test of the sources.
 function(candela_check name)
@@ -59,11 +58,3 @@ if(CLANG_FORMAT)
 else()
     candela_check(format ${CMAKE_COMMAND} -E echo "skipped: clang-format 14 is not here")
 endif()
-
-# Minutes of all cores, and nothing that a run of the program could tell: the label `lint` runs by its own preset.
-if(RUN_CLANG_TIDY)
-    candela_check(lint ${RUN_CLANG_TIDY} -quiet -p ${CMAKE_BINARY_DIR} ^${CMAKE_SOURCE_DIR}/host/)
-else()
-    candela_check(lint ${CMAKE_COMMAND} -E echo "skipped: clang-tidy is not here")
-endif()
-set_tests_properties(lint PROPERTIES LABELS lint RUN_SERIAL TRUE)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs what is missing, builds candela with warnings as errors, and runs all tests and checks, but for the slow ones
-# and the linter, on the Vulkan device that it finds.   usage: sh cmake/test.sh
+# Installs what is missing, builds candela with warnings as errors, and runs all tests and checks, but for the slow ones,
+# on the Vulkan device that it finds.   usage: sh cmake/test.sh
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/setup.sh

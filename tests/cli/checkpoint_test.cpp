@@ -33,6 +33,44 @@ class CheckpointTest : public CliTest {
                 << x.channels[c].name;
         }
     }
+
+    // So many times the program is killed at a random moment and goes on: every second time somewhere, else
+    // in turn as soon as the file was changed (were it not replaced as a whole, it would be half a file then)
+    // and a while after it had more samples, which the first submissions after a start may not add. Whatever
+    // the moment, the file is there, and never goes back.
+    void expect_kills_lose_nothing(int kills) const {
+        const Words arguments = {"render", CORNELL_BOX, "-o",      file("a.exr"),
+                                 "--size", "64x64",     "--quiet", "--spp"};
+        const Words checkpoint = {"--checkpoint", state_, "--checkpoint-every", "0.001s", "--resume"};
+        ASSERT_EQ(run_process(call(arguments + Words{"1"} + checkpoint), options()).exit_code, 0);
+        const auto written = [this] { return std::filesystem::last_write_time(state_); };
+        const auto held = [this] { return load_checkpoint(state_).states.at(0).total_samples(); };
+        std::mt19937 random{uint32_t(kills)};
+        uint64_t samples = 0;
+        int advances = 0;
+        for (int i = 0; i < kills; ++i) {
+            const auto before = written();
+            Process process(call(arguments + Words{"16777216"} + checkpoint), options());
+            if (i % 4 == 0) {
+                while (written() == before) {
+                }
+            } else {
+                if (i % 4 == 2) wait_until("it went on", [&] { return held() > samples; });
+                std::this_thread::sleep_for(std::chrono::milliseconds(random() % (i % 4 == 2 ? 200 : 500)));
+            }
+            process.send(SIGKILL);
+            ASSERT_EQ(process.finish().signal, SIGKILL);
+            const uint64_t now = held();
+            EXPECT_GE(now, samples);
+            advances += now > samples ? 1 : 0;
+            samples = now;
+        }
+        EXPECT_GE(advances, kills / 4);
+        const std::string spp = std::to_string(load_checkpoint(state_).states.at(0).most_samples() + 1);
+        EXPECT_EQ(run_process(call(arguments + Words{spp} + checkpoint), options()).exit_code, 0);
+        EXPECT_EQ(run_process(call(arguments + Words{spp, "-o", file("whole.exr")}), options()).exit_code, 0);
+        expect_same_bits(file("a.exr"), file("whole.exr"));
+    }
 };
 
 TEST_F(CheckpointTest, AResumedRenderingHasTheSameBits) {
@@ -71,44 +109,14 @@ TEST_F(CheckpointTest, SignalsLeaveACheckpointAndAnImage) {
     }
 }
 
-// Twenty times the program is killed at a random moment and goes on: ten times somewhere, five times as soon
-// as the file was changed (were it not replaced as a whole, it would be half a file then), and five times a
-// while after it had more samples, which the first submissions after a start may not add. Whatever the
-// moment, the file is there, and never goes back.
-TEST_F(CheckpointTest, TwentyKillsLoseNothing) {
-    constexpr int KILLS = 20;
-    const Words arguments = {"render", CORNELL_BOX, "-o",      file("a.exr"),
-                             "--size", "64x64",     "--quiet", "--spp"};
-    const Words checkpoint = {"--checkpoint", state_, "--checkpoint-every", "0.001s", "--resume"};
-    const ProcessOptions cached = options({{"CANDELA_NO_CACHE", ""}, {"XDG_CACHE_HOME", file("cache")}});
-    ASSERT_EQ(run_process(call(arguments + Words{"1"} + checkpoint), cached).exit_code, 0);
-    const auto written = [this] { return std::filesystem::last_write_time(state_); };
-    const auto held = [this] { return load_checkpoint(state_).states.at(0).total_samples(); };
-    std::mt19937 random(20);
-    uint64_t samples = 0;
-    int advances = 0;
-    for (int i = 0; i < KILLS; ++i) {
-        const auto before = written();
-        Process process(call(arguments + Words{"16777216"} + checkpoint), cached);
-        if (i % 4 == 0) {
-            while (written() == before) {
-            }
-        } else {
-            if (i % 4 == 2) wait_until("it went on", [&] { return held() > samples; });
-            std::this_thread::sleep_for(std::chrono::milliseconds(random() % (i % 4 == 2 ? 200 : 500)));
-        }
-        process.send(SIGKILL);
-        ASSERT_EQ(process.finish().signal, SIGKILL);
-        const uint64_t now = held();
-        EXPECT_GE(now, samples);
-        advances += now > samples ? 1 : 0;
-        samples = now;
-    }
-    EXPECT_GE(advances, 5);
-    const std::string spp = std::to_string(load_checkpoint(state_).states.at(0).most_samples() + 1);
-    EXPECT_EQ(run_process(call(arguments + Words{spp} + checkpoint), cached).exit_code, 0);
-    EXPECT_EQ(run_process(call(arguments + Words{spp, "-o", file("whole.exr")}), cached).exit_code, 0);
-    expect_same_bits(file("a.exr"), file("whole.exr"));
+TEST_F(CheckpointTest, FiveKillsLoseNothing) {
+    expect_kills_lose_nothing(5);
+}
+
+using SlowCheckpointTest = CheckpointTest;
+
+TEST_F(SlowCheckpointTest, TwentyKillsLoseNothing) {
+    expect_kills_lose_nothing(20);
 }
 
 // A limit on the size of files stands for a full disk: the state takes more than the limit, the image less.

@@ -43,7 +43,7 @@ class ViewTest : public CliTest {
     }
 
     std::map<std::string, std::string> environment() const {
-        return {{"DISPLAY", display_}, {"CANDELA_VALIDATION", "1"}, {"CANDELA_NO_CACHE", "1"}};
+        return {{"DISPLAY", display_}, {"CANDELA_VALIDATION", "1"}, {"XDG_CACHE_HOME", CANDELA_CACHE}};
     }
 
     // Starts `candela view` of a scene in the test's folder, where it writes its files. Without a window

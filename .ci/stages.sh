@@ -1,0 +1,19 @@
+# Sourced by run and nightly: stages, and how long each took.
+took=()
+
+# stage NAME COMMAND...: runs it; when the script ends, all stages are listed with their minutes, a failed one last.
+stage() {
+    running=$1 began=$SECONDS
+    echo "=== $1"
+    "${@:2}"
+    took+=("$(printf '%-14s %5d s' "$1" $((SECONDS - began)))")
+    running=
+}
+
+report() {
+    printf '%s\n' "${took[@]}"
+    [ -z "$running" ] || echo "$running failed after $((SECONDS - began)) s"
+    echo "all stages     $(printf '%5d' $SECONDS) s"
+}
+running=
+trap report EXIT
