@@ -27,6 +27,7 @@ void layer_store(uvec2 at, uint layer, vec4 value) {
 // What the invocations of a work group have counted, if GROUP_COUNTERS: on a GPU they would queue for the same words of
 // the buffer.
 shared uint group_counters[COUNTER_COUNT];
+shared uint group_finished;  // Invocations that have nothing more to count.
 
 void count(uint counter, uint n) {
     if (GROUP_COUNTERS) {
@@ -42,13 +43,19 @@ void count_rays(uint rays) {
     if (before + rays < before) count(COUNTER_RAYS_HIGH, 1u);
 }
 
-// Adds the group's counts to the counters; one invocation for each.
+// The last invocation of the group to come here adds the group's counts to the counters. (One invocation for each
+// counter would have to keep its number while it traces, in a register.)
 void flush_counters() {
-    uint counter = gl_LocalInvocationIndex;
-    if (counter >= COUNTER_COUNT || group_counters[counter] == 0u) return;
-    uint n = group_counters[counter];
-    uint before = atomicAdd(counters[counter], n);
-    if (counter == COUNTER_RAYS_LOW && before + n < before) atomicAdd(counters[COUNTER_RAYS_HIGH], 1u);
+    memoryBarrierShared();
+    if (atomicAdd(group_finished, 1u) + 1u < WORKGROUP_SIZE * WORKGROUP_SIZE) return;
+    memoryBarrierShared();
+    uint rays = group_counters[COUNTER_RAYS_LOW];
+    uint before = atomicAdd(counters[COUNTER_RAYS_LOW], rays);
+    uint carry = before + rays < before ? 1u : 0u;
+    for (uint i = COUNTER_RAYS_LOW + 1u; i < COUNTER_COUNT; ++i) {
+        uint n = group_counters[i] + (i == COUNTER_RAYS_HIGH ? carry : 0u);
+        if (n > 0u) atomicAdd(counters[i], n);
+    }
 }
 
 void render_pixel() {
@@ -170,11 +177,9 @@ void render_pixel() {
 void main() {
     if (GROUP_COUNTERS) {
         if (gl_LocalInvocationIndex < COUNTER_COUNT) group_counters[gl_LocalInvocationIndex] = 0u;
+        if (gl_LocalInvocationIndex == 0u) group_finished = 0u;
         barrier();
     }
     render_pixel();
-    if (GROUP_COUNTERS) {
-        barrier();
-        flush_counters();
-    }
+    if (GROUP_COUNTERS) flush_counters();
 }
