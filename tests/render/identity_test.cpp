@@ -253,8 +253,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, IdentityTest, testing::Values(cornell_box, scen
 
 using ListTest = RenderTest;
 
-// A CPU goes through the primitives of a tiny scene one by one. A speck that no ray meets makes them one too
-// many for that: then the tree must find the same hits, with the same bits.
+// Lavapipe goes through the primitives of a tiny scene one by one. A speck that no ray meets makes them one
+// too many for that: then the tree must find the same hits, with the same bits.
 TEST_F(ListTest, AListOfPrimitivesGivesTheBitsOfATree) {
     RenderSettings settings = settings_for(37, 23);
     settings.aovs = true;
