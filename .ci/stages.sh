@@ -1,7 +1,7 @@
 # Sourced by run and nightly: stages, and how long each took.
 took=()
 
-# stage NAME COMMAND...: runs it; when the script ends, all stages are listed with their minutes, a failed one last.
+# stage NAME COMMAND...: runs it; when the script ends, all stages are listed with their seconds, a failed one last.
 stage() {
     running=$1 began=$SECONDS
     echo "=== $1"

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "render/kernels.h"
-#include "shared/primitive.h"
 
 namespace candela {
 namespace {
@@ -68,47 +67,6 @@ vk::Buffer scene_buffer(const vk::Device& device, const std::vector<uvec4>& word
     return buffer;
 }
 
-// Without lights there is nothing to choose a sample from.
-uint32_t estimator_constant(Estimator estimator, uint32_t light_count) {
-    if (light_count == 0) return ESTIMATOR_BSDF;
-    switch (estimator) {
-        case Estimator::bsdf:
-            return ESTIMATOR_BSDF;
-        case Estimator::light:
-            return ESTIMATOR_LIGHT;
-        case Estimator::mis:
-            break;
-    }
-    return ESTIMATOR_MIS;
-}
-
-uint32_t aperture_constant(const Lens& lens) {
-    if (lens.radius == 0.0f) return APERTURE_PINHOLE;
-    return lens.blades == 0 ? APERTURE_DISK : APERTURE_POLYGON;
-}
-
-// On lavapipe alone: a GPU has no registers for a list, and gives its lanes other work to do while some wait;
-// on SwiftShader the list takes 2.4 times as long as the tree. Of triangles alone, since lanes go through the
-// test of every kind that the scene has for every primitive.
-uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
-    const bool triangles = scene.primitives_present == 1u << PRIMITIVE_TRIANGLES;
-    return device.info().is_lavapipe() && triangles && scene.primitive_count <= LIST_MAX
-               ? scene.primitive_count
-               : 0;
-}
-
-uint32_t sampler_constant(SamplerKind sampler) {
-    switch (sampler) {
-        case SamplerKind::independent:
-            return SAMPLER_INDEPENDENT;
-        case SamplerKind::stratified:
-            return SAMPLER_STRATIFIED;
-        case SamplerKind::sobol:
-            break;
-    }
-    return SAMPLER_SOBOL;
-}
-
 }  // namespace
 
 // Texel buffers wherever they hold the scene: on a CPU they are several times faster, on a GPU no slower.
@@ -156,34 +114,6 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .focal_distance = lens.focal_distance,
             .blades = lens.blades,
             .first_sample = settings.first_sample};
-}
-
-std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const Camera& camera,
-                                                    const RenderSettings& settings) {
-    std::array<uint32_t, CONSTANT_COUNT> constants{};
-    constants[CONSTANT_SAMPLER] = sampler_constant(settings.sampler);
-    constants[CONSTANT_ESTIMATOR] = estimator_constant(settings.estimator, scene.light_count);
-    constants[CONSTANT_HAS_NORMALS] = scene.has_normals;
-    constants[CONSTANT_HAS_AOVS] = settings.aovs;
-    constants[CONSTANT_APERTURE] = aperture_constant(camera.lens);
-    constants[CONSTANT_ENVIRONMENT] = scene.environment;
-    constants[CONSTANT_EVEN_SKY] = scene.even_sky;
-    constants[CONSTANT_MATERIALS] = scene.materials_present;
-    constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
-    constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
-    constants[CONSTANT_LIGHTS] = scene.lights_present;
-    constants[CONSTANT_ONE_LIGHT] = scene.light_count == 1;
-    return constants;
-}
-
-std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, const GpuScene& scene,
-                                                      const Camera& camera, const RenderSettings& settings) {
-    auto constants = make_constants(scene, camera, settings);
-    constants[CONSTANT_LIST] = list_constant(device, scene);
-    if (constants[CONSTANT_LIST] > 0)
-        std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS]);
-    constants[CONSTANT_GROUP_COUNTERS] = !device.info().is_lavapipe();
-    return constants;
 }
 
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, SceneAccess access,
