@@ -1,33 +1,17 @@
 #!/bin/sh
-# Runs clang-tidy over the sources in host/ that differ from the merge base with origin/main, or include a header that
-# does; over all of them where there is no older base or the rules differ, or with `all`.   usage: sh cmake/lint.sh [all]
+# Runs clang-tidy over the sources in host/: in the batches in which they are compiled, since it looks at every header
+# that a file includes, and at each batch's once; or, four times as long, each on its own.
+#   usage: sh cmake/lint.sh [alone]
 set -eu
 cd "$(dirname "$0")/.."
+preset=ci
+[ "${1:-}" != alone ] || preset=debug
 
-# changed BASE: the files of ours that differ from the commit BASE, each on a line.
-changed() {
-    git diff --name-only --diff-filter=d "$1" -- host shaders/shared
-}
-
-# sources BASE: the sources that `changed` names, or that include a header that it names.
-sources() {
-    changed "$1" | grep '^host/.*\.cpp$' || true
-    changed "$1" | grep '\.h$' | sed 's,^host/,,; s,^shaders/,,' | while read -r header; do
-        grep -rlF "#include \"$header\"" host --include='*.cpp' || true
-    done
-}
-
-base=$(git merge-base HEAD origin/main 2>/dev/null || true)
-if [ "${1:-}" = all ] || [ -z "$base" ] || [ "$base" = "$(git rev-parse HEAD)" ] ||
-    ! git diff --quiet "$base" -- .clang-tidy; then
-    files=$(find host -name '*.cpp')
-    echo "clang-tidy: all sources of host/"
-else
-    files=$(sources "$base" | sort -u)
-    echo "clang-tidy: what changed since $base:" $files
-fi
-[ -n "$files" ] || exit 0
-
-# Each file on its own, with what CMake generates when it configures.
-cmake --preset debug >build/lint.log || { cat build/lint.log; exit 1; }
-printf '%s\n' $files | xargs -P "$(nproc)" -n 1 clang-tidy -quiet -p build/debug
+# CMake writes the batches when it configures.
+mkdir -p build
+cmake --preset $preset >build/lint.log || { cat build/lint.log; exit 1; }
+sed -n 's/^ *"file": "\(.*\)",*$/\1/p' build/$preset/compile_commands.json |
+    grep -E "^$PWD/(host|build/$preset/host/CMakeFiles)/" >build/lint.files
+echo "clang-tidy: $(wc -l <build/lint.files) files"
+# A batch includes sources, and is the only file that may.
+xargs -P "$(nproc)" -n 1 clang-tidy -quiet -checks=-bugprone-suspicious-include -p build/$preset <build/lint.files
