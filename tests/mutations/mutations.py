@@ -19,6 +19,7 @@ PRIMITIVE = "shaders/scene/primitive.glsl"
 INTERACTION = "shaders/scene/interaction.glsl"
 CAMERA = "shaders/scene/camera.glsl"
 RENDER = "shaders/kernels/render.comp.glsl"
+SCENE_BUFFERS = "host/render/scene_buffers.cpp"
 
 # What a group runs: filters for the tests of shaders and for those of whole images, each quick for what it tells.
 INTEGRATOR = ("Interaction*",
@@ -29,6 +30,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
+DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*")
 
 GROUPS = [
     (INTEGRATOR, [
@@ -106,5 +108,17 @@ GROUPS = [
          "bool second = !meets0;"),
         ("the first triangle's normals on the second", INTERACTION, "normals.yz = normals.zw;",
          "normals.yz = normals.yz;"),
+    ]),
+    (DEVICES, [
+        ("a work group's counts in the place of those before", RENDER, "if (n > 0u) atomicAdd(counters[i], n);",
+         "if (n > 0u) atomicExchange(counters[i], n);"),
+        ("an invocation hands on the work group's counts before all are there", RENDER,
+         "if (atomicAdd(group_finished, 1u) + 1u <", "if (atomicAdd(group_finished, 1u) + 9u <"),
+        ("the first array of the scene decides how all are read", SCENE_BUFFERS, "arrays[i].size()) << i",
+         "arrays[0].size()) << i"),
+        ("an array bound where the kernel does not read it", SCENE_BUFFERS, "storage ? unread_texels_ : arrays_[i]",
+         "unread_texels_"),
+        ("an exponential of Vulkan's precision", "shaders/base/exponential.glsl", "return e.scale * (1.0 + e.p);",
+         "return exp(x);"),
     ]),
 ]
