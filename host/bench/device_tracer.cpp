@@ -25,10 +25,8 @@ class DeviceTracer : public RayTracer {
         : device_(&device),
           batch_(std::min(batch, largest_batch(device.limits()))),
           scene_(device, scene, access),
-          closest_(make_kernel(scene, access == SceneAccess::texel_buffers ? kernels::closest_hit
-                                                                           : kernels::closest_hit_storage)),
-          any_(make_kernel(
-              scene, access == SceneAccess::texel_buffers ? kernels::any_hit : kernels::any_hit_storage)),
+          closest_(make_probe(device, kernels::closest_hit, traversal_constants(scene), &scene_, "bench")),
+          any_(make_probe(device, kernels::any_hit, traversal_constants(scene), &scene_, "bench")),
           commands_(device) {}
 
     void prepare(const RaySet& set) override {
@@ -77,16 +75,6 @@ class DeviceTracer : public RayTracer {
         vk::Buffer rays;
         vk::Buffer hits;
     };
-
-    vk::Kernel make_kernel(const GpuScene& scene, std::span<const uint32_t> spirv) const {
-        auto bindings = scene_.bindings();
-        bindings.push_back({PROBE_ITEMS, vk::BindingType::texel_buffer});
-        bindings.push_back({PROBE_RESULTS, vk::BindingType::storage_buffer});
-        vk::Kernel kernel(*device_, spirv, bindings, sizeof(ProbeCounts), traversal_constants(scene),
-                          "bench");
-        scene_.bind_to(kernel);
-        return kernel;
-    }
 
     const vk::Device* device_;
     size_t batch_;  // Rays of a dispatch at most.

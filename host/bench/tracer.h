@@ -31,9 +31,9 @@ class RayTracer {
     virtual std::vector<uint32_t> results() const = 0;
 };
 
-// The kernels closest_hit and any_hit of shaders/probes on a scene's records, one ray per invocation;
-// `access` is not `automatic`. A dispatch has as many rays as the device allows, but at most `batch`. Wall
-// time is the device's own where it has a clock. `device` must outlive the tracer.
+// The kernels closest_hit and any_hit of shaders/probes on a scene's records, one ray per invocation. A
+// dispatch has as many rays as the device allows, but at most `batch`. Wall time is the device's own where it
+// has a clock. `device` must outlive the tracer.
 std::unique_ptr<RayTracer> make_device_tracer(const vk::Device& device, const GpuScene& scene,
                                               SceneAccess access, size_t batch = SIZE_MAX);
 

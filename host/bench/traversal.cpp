@@ -61,7 +61,7 @@ void add_rows(const vk::Device& device, const BenchOptions& options, const std::
     options.progress("traversal: " + subject);
     const GpuScene gpu = build_gpu_scene(scene);
     assert(gpu.primitives_present == 1u << PRIMITIVE_TRIANGLES);
-    const auto ours = make_device_tracer(device, gpu, choose_access(device, gpu, options.scene_access));
+    const auto ours = make_device_tracer(device, gpu, options.scene_access);
     const auto rival = make_embree_tracer(triangles);
 
     const auto closest_hits = [&](const RaySet& set) {

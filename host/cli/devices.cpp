@@ -31,7 +31,6 @@ Json describe(const vk::DeviceInfo& info, bool is_default) {
             {"memory_bytes", info.device_heap},
             {"subgroup_size", info.subgroup_size},
             {"timestamps", info.timestamp_bits > 0},
-            {"texel_buffers", info.uint_texel_buffers},
             {"ray_query", info.ray_query},
             {"limits",
              {{"maxTexelBufferElements", limits.max_texel_buffer_elements},
@@ -60,7 +59,6 @@ void print(const vk::DeviceInfo& info, bool is_default) {
               info.type == vk::DeviceType::cpu ? "the computer's free RAM" : bytes_text(info.device_heap));
     print_row("subgroup size", std::to_string(info.subgroup_size));
     print_row("timestamps", yes_or_no(info.timestamp_bits > 0));
-    print_row("texel buffers", yes_or_no(info.uint_texel_buffers));
     print_row("ray query (not used)", yes_or_no(info.ray_query));
     print_row("maxTexelBufferElements", std::to_string(info.limits.max_texel_buffer_elements));
     print_row("maxStorageBufferRange", bytes_text(info.limits.max_storage_buffer_range));

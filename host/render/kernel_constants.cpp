@@ -72,6 +72,7 @@ std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const
 std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, const GpuScene& scene,
                                                       const Camera& camera, const RenderSettings& settings) {
     auto constants = make_constants(scene, camera, settings);
+    constants[CONSTANT_STORAGE_ARRAYS] = choose_storage_arrays(device, scene, settings.scene_access);
     constants[CONSTANT_LIST] = list_constant(device, scene);
     if (constants[CONSTANT_LIST] > 0)
         std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS]);

@@ -30,10 +30,6 @@ std::span<const std::byte> bytes_of(const T& value) {
     return std::as_bytes(std::span(&value, 1));
 }
 
-uint64_t largest_array(const GpuScene& scene) {
-    return std::max({scene.nodes.size(), scene.primitives.size(), scene.tables.size()});
-}
-
 uint32_t layer_count(const RenderSettings& settings) {
     return settings.aovs ? LAYER_COUNT_AOVS : LAYER_COUNT_COLOUR;
 }
@@ -58,34 +54,7 @@ const vk::Device& check_memory(const vk::Device& device, const GpuScene& scene,
     return device;
 }
 
-vk::Buffer scene_buffer(const vk::Device& device, const std::vector<uvec4>& words, SceneAccess access,
-                        const char* name) {
-    const auto usage =
-        access == SceneAccess::texel_buffers ? vk::BufferUsage::texel : vk::BufferUsage::storage;
-    vk::Buffer buffer(device, words.size() * sizeof(uvec4), usage, name);
-    buffer.upload(std::as_bytes(std::span(words)));
-    return buffer;
-}
-
 }  // namespace
-
-// Texel buffers wherever they hold the scene: on a CPU they are several times faster, on a GPU no slower.
-SceneAccess choose_access(const vk::Device& device, const GpuScene& scene, SceneAccess wanted) {
-    if (wanted != SceneAccess::automatic) return wanted;
-    const uint64_t texels = largest_array(scene);
-    const uint64_t bytes = texels * sizeof(uvec4);
-    const vk::DeviceLimits& limits = device.limits();
-    if (device.info().uint_texel_buffers && texels <= limits.max_texel_buffer_elements) {
-        return SceneAccess::texel_buffers;
-    }
-    if (bytes <= limits.max_storage_buffer_range) return SceneAccess::storage_buffers;
-    throw Error("the largest array of the scene needs " + std::to_string(texels) + " texels (" +
-                    std::to_string(bytes) + " bytes), but " + device.info().name +
-                    " allows maxTexelBufferElements = " + std::to_string(limits.max_texel_buffer_elements) +
-                    " and maxStorageBufferRange = " + std::to_string(limits.max_storage_buffer_range) +
-                    " bytes; use a smaller scene, or another device (candela devices lists them)",
-                ExitCode::out_of_memory);
-}
 
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
     const vec3 forward = normalize(camera.look_at - camera.position);
@@ -116,21 +85,13 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .first_sample = settings.first_sample};
 }
 
-vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, SceneAccess access,
-                       std::span<const uint32_t> constants) {
+vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, std::span<const uint32_t> constants) {
     const bool render = which == RenderKernel::render;
-    const bool texels = access == SceneAccess::texel_buffers;
-    const auto scene_type = texels ? vk::BindingType::texel_buffer : vk::BindingType::storage_buffer;
-    std::vector<vk::Binding> bindings{{BINDING_NODES, scene_type},
-                                      {BINDING_PRIMITIVES, scene_type},
-                                      {BINDING_TABLES, scene_type},
-                                      {BINDING_PARAMETERS, vk::BindingType::uniform_buffer},
-                                      {BINDING_IMAGE, vk::BindingType::storage_image}};
+    std::vector<vk::Binding> bindings = SceneBuffers::bindings();
+    bindings.push_back({BINDING_IMAGE, vk::BindingType::storage_image});
     if (render) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
-    const auto texel = render ? kernels::render : kernels::position;
-    const auto storage = render ? kernels::render_storage : kernels::position_storage;
-    const char* const name = render ? "render" : "position";
-    return {device, texels ? texel : storage, bindings, sizeof(Tile), constants, name};
+    const auto spirv = render ? kernels::render : kernels::position;
+    return {device, spirv, bindings, sizeof(Tile), constants, render ? "render" : "position"};
 }
 
 Accumulation empty_state(const RenderSettings& settings) {
@@ -151,17 +112,12 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
                    const RenderSettings& settings)
     : device_(&check_memory(device, scene, settings)),
       settings_(settings),
-      access_(choose_access(device, scene, settings.scene_access)),
       constants_(kernel_constants(device, scene, camera, settings)),
-      nodes_(scene_buffer(device, scene.nodes, access_, "nodes")),
-      primitives_(scene_buffer(device, scene.primitives, access_, "primitives")),
-      tables_(scene_buffer(device, scene.tables, access_, "tables")),
-      parameters_(device, PARAMETERS_WORDS * sizeof(uvec4), vk::BufferUsage::uniform, "parameters"),
+      scene_(device, scene, make_parameters(scene, camera, settings), constants_[CONSTANT_STORAGE_ARRAYS]),
       counter_buffer_(device, COUNTER_BYTES, vk::BufferUsage::storage, "counters"),
       counts_(device, COUNTER_BYTES, vk::BufferUsage::readback, "counts"),
       image_(device, image_size().x, image_size().y, layer_count(settings), "accumulation"),
       commands_(device) {
-    parameters_.upload(bytes_of(pack(make_parameters(scene, camera, settings))));
     if (settings_.submission_seconds == 0.0) {
         const bool cpu = device.info().type == vk::DeviceType::cpu;
         settings_.submission_seconds = cpu ? CPU_SUBMISSION_SECONDS : GPU_SUBMISSION_SECONDS;
@@ -184,7 +140,7 @@ void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSe
     const double submission_seconds = settings_.submission_seconds;
     settings_ = settings;
     if (settings_.submission_seconds == 0.0) settings_.submission_seconds = submission_seconds;
-    parameters_.upload(bytes_of(pack(make_parameters(scene, camera, settings))));
+    scene_.set(make_parameters(scene, camera, settings));
     const uvec2 size = image_size();
     if (size == uvec2(image_.width(), image_.height()) && layer_count(settings) == image_.layers()) {
         image_.clear();
@@ -194,18 +150,16 @@ void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSe
     }
     samples_ = 0;
     counters_ = {};
-    const auto constants = kernel_constants(*device_, scene, camera, settings);
+    auto constants = kernel_constants(*device_, scene, camera, settings);
+    constants[CONSTANT_STORAGE_ARRAYS] = scene_.storage_arrays();
     if (constants == constants_) return;
     constants_ = constants;
     compile();
 }
 
 vk::Kernel Renderer::scene_kernel(RenderKernel which) const {
-    vk::Kernel kernel = make_kernel(*device_, which, access_, constants_);
-    kernel.bind(BINDING_NODES, nodes_);
-    kernel.bind(BINDING_PRIMITIVES, primitives_);
-    kernel.bind(BINDING_TABLES, tables_);
-    kernel.bind(BINDING_PARAMETERS, parameters_);
+    vk::Kernel kernel = make_kernel(*device_, which, constants_);
+    scene_.bind_to(kernel);
     return kernel;
 }
 

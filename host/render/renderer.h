@@ -8,6 +8,7 @@
 
 #include "render/accumulation.h"
 #include "render/gpu_scene.h"
+#include "render/scene_buffers.h"
 #include "render/schedule.h"
 #include "scene/scene.h"
 #include "shared/parameters.h"
@@ -17,9 +18,6 @@
 #include "vk/kernel.h"
 
 namespace candela {
-
-// How kernels read the scene. Both ways give the same bits.
-enum class SceneAccess { automatic, texel_buffers, storage_buffers };
 
 struct RenderSettings {
     uvec2 size{512, 512};  // Pixels of the whole picture.
@@ -43,19 +41,13 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
 std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const Camera& camera,
                                                     const RenderSettings& settings);
 
-// All of them, those that depend on the device included.
+// All of them, those that depend on the device included. Throws Error as choose_storage_arrays() does.
 std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, const GpuScene& scene,
                                                       const Camera& camera, const RenderSettings& settings);
 
-// `wanted`, or, for `automatic`, what suits the device and holds the scene. Throws Error (out_of_memory) that
-// names the device's limits if nothing does.
-SceneAccess choose_access(const vk::Device& device, const GpuScene& scene, SceneAccess wanted);
-
-// The renderer's kernels, compiled for kernel_constants() and not bound to anything; `access` is not
-// `automatic`.
+// The renderer's kernels, compiled for kernel_constants() and not bound to anything.
 enum class RenderKernel { render, position };
-vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, SceneAccess access,
-                       std::span<const uint32_t> constants);
+vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, std::span<const uint32_t> constants);
 
 // The state before the first sample: it holds no values yet.
 Accumulation empty_state(const RenderSettings& settings);
@@ -93,7 +85,8 @@ class Renderer {
     // The sums of samples, layers LAYER_*, for kernels that show them; another image after a reset() to
     // another size.
     const vk::StorageImage& accumulation() const { return image_; }
-    SceneAccess scene_access() const { return access_; }
+    // Which arrays of the scene are read as storage buffers: see CONSTANT_STORAGE_ARRAYS.
+    uint32_t storage_arrays() const { return scene_.storage_arrays(); }
     // How long a submission should take [s].
     double submission_seconds() const { return settings_.submission_seconds; }
     double pipeline_seconds() const {
@@ -116,16 +109,12 @@ class Renderer {
 
     const vk::Device* device_;
     RenderSettings settings_;
-    SceneAccess access_;
     std::array<uint32_t, CONSTANT_COUNT> constants_;
     RenderCounters counters_;
     double pipeline_seconds_ = 0.0;
     uint32_t samples_ = 0;  // That every pixel holds at least.
 
-    vk::Buffer nodes_;
-    vk::Buffer primitives_;
-    vk::Buffer tables_;
-    vk::Buffer parameters_;
+    SceneBuffers scene_;
     vk::Buffer counter_buffer_;  // On the device, of one submission,
     vk::Buffer counts_;          // and what the host sees of it.
     vk::StorageImage image_;

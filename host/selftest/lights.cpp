@@ -8,9 +8,7 @@ namespace candela {
 std::vector<LightSample> sample_lights(const vk::Device& device, const GpuScene& scene,
                                        const std::vector<LightItem>& items, SceneAccess access) {
     const DeviceScene on_device(device, scene, access);
-    const bool texels = access == SceneAccess::texel_buffers;
-    return probe<LightSample>(device, texels ? kernels::light_sample : kernels::light_sample_storage, items,
-                              {}, &on_device);
+    return probe<LightSample>(device, kernels::light_sample, items, {}, &on_device);
 }
 
 std::vector<LightItem> random_light_items(vec3 from, size_t count, uint32_t seed) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/constants.h"
+#include "vk/buffer.h"
 #include "vk/commands.h"
 
 namespace candela {
@@ -26,40 +28,11 @@ Parameters parameters_of(const GpuScene& scene) {
 
 DeviceScene::DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access,
                          const Parameters& parameters)
-    : texels_(access == SceneAccess::texel_buffers),
-      primitive_count_(scene.primitive_count),
-      nodes_(upload(device, scene.nodes)),
-      primitives_(upload(device, scene.primitives)),
-      tables_(upload(device, scene.tables)),
-      parameters_(device, PARAMETERS_WORDS * sizeof(uvec4), vk::BufferUsage::uniform, "parameters") {
-    const auto words = pack(parameters);
-    parameters_.upload(std::as_bytes(std::span(words)));
-}
+    : primitive_count_(scene.primitive_count),
+      buffers_(device, scene, parameters, choose_storage_arrays(device, scene, access)) {}
 
 DeviceScene::DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access)
     : DeviceScene(device, scene, access, parameters_of(scene)) {}
-
-std::vector<vk::Binding> DeviceScene::bindings() const {
-    const auto type = texels_ ? vk::BindingType::texel_buffer : vk::BindingType::storage_buffer;
-    return {{BINDING_NODES, type},
-            {BINDING_PRIMITIVES, type},
-            {BINDING_TABLES, type},
-            {BINDING_PARAMETERS, vk::BindingType::uniform_buffer}};
-}
-
-void DeviceScene::bind_to(vk::Kernel& kernel) const {
-    kernel.bind(BINDING_NODES, nodes_);
-    kernel.bind(BINDING_PRIMITIVES, primitives_);
-    kernel.bind(BINDING_TABLES, tables_);
-    kernel.bind(BINDING_PARAMETERS, parameters_);
-}
-
-vk::Buffer DeviceScene::upload(const vk::Device& device, const std::vector<uvec4>& words) const {
-    const auto usage = texels_ ? vk::BufferUsage::texel : vk::BufferUsage::storage;
-    vk::Buffer buffer(device, words.size() * sizeof(uvec4), usage, "records");
-    buffer.upload(std::as_bytes(std::span(words)));
-    return buffer;
-}
 
 std::vector<uint32_t> traversal_constants(const GpuScene& scene) {
     std::vector<uint32_t> constants(CONSTANT_COUNT);
@@ -68,14 +41,31 @@ std::vector<uint32_t> traversal_constants(const GpuScene& scene) {
     return constants;
 }
 
+std::vector<uint32_t> sampler_constants(uint32_t sampler) {
+    std::vector<uint32_t> constants(CONSTANT_COUNT);
+    constants[CONSTANT_SAMPLER] = sampler;
+    return constants;
+}
+
+vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv,
+                      std::vector<uint32_t> constants, const DeviceScene* scene, const std::string& name) {
+    std::vector<vk::Binding> bindings{{PROBE_ITEMS, vk::BindingType::texel_buffer},
+                                      {PROBE_RESULTS, vk::BindingType::storage_buffer}};
+    if (scene != nullptr) {
+        const auto of_scene = SceneBuffers::bindings();
+        bindings.insert(bindings.end(), of_scene.begin(), of_scene.end());
+        if (constants.empty()) constants.resize(1);
+        constants[CONSTANT_STORAGE_ARRAYS] = scene->buffers().storage_arrays();
+    }
+    vk::Kernel kernel(device, spirv, bindings, sizeof(ProbeCounts), constants, name);
+    if (scene != nullptr) scene->buffers().bind_to(kernel);
+    return kernel;
+}
+
 std::vector<uint32_t> run_probe(const vk::Device& device, std::span<const uint32_t> spirv,
                                 std::span<const std::byte> items, size_t item_words, size_t result_words,
                                 const std::vector<uint32_t>& constants, const DeviceScene* scene) {
-    auto bindings = scene == nullptr ? std::vector<vk::Binding>{} : scene->bindings();
-    bindings.push_back({PROBE_ITEMS, vk::BindingType::texel_buffer});
-    bindings.push_back({PROBE_RESULTS, vk::BindingType::storage_buffer});
-    vk::Kernel kernel(device, spirv, bindings, sizeof(ProbeCounts), constants, "probe");
-    if (scene != nullptr) scene->bind_to(kernel);
+    vk::Kernel kernel = make_probe(device, spirv, constants, scene, "probe");
     vk::Commands commands(device);
 
     const size_t item_bytes = item_words * sizeof(uvec4);

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "render/gpu_scene.h"
-#include "render/renderer.h"
+#include "render/scene_buffers.h"
 #include "shared/parameters.h"
-#include "vk/buffer.h"
 #include "vk/device.h"
 #include "vk/kernel.h"
 
@@ -19,26 +19,24 @@ namespace candela {
 // A scene's records on the device, for probes that include scene/scene_data.glsl.
 class DeviceScene {
   public:
-    // `parameters` go to the device as they are. `access` is not `automatic`.
+    // `parameters` go to the device as they are.
     DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access,
                 const Parameters& parameters);
     // With the parameters that concern the scene alone.
     DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access);
 
     uint32_t primitive_count() const { return primitive_count_; }
-    std::vector<vk::Binding> bindings() const;
-    void bind_to(vk::Kernel& kernel) const;
+    const SceneBuffers& buffers() const { return buffers_; }
 
   private:
-    vk::Buffer upload(const vk::Device& device, const std::vector<uvec4>& words) const;
-
-    bool texels_;
     uint32_t primitive_count_;
-    vk::Buffer nodes_, primitives_, tables_, parameters_;
+    SceneBuffers buffers_;
 };
 
 // Specialization constants of probes that trace rays: what is in the scene.
 std::vector<uint32_t> traversal_constants(const GpuScene& scene);
+// And of those that draw samples, by SAMPLER_*.
+std::vector<uint32_t> sampler_constants(uint32_t sampler);
 
 // What shaders/probes/items.glsl declares: bindings, push constants, and invocations in a work group.
 inline constexpr uint32_t PROBE_ITEMS = 6, PROBE_RESULTS = 7;
@@ -48,8 +46,13 @@ struct ProbeCounts {
     uint32_t primitives;
 };
 
+// The probe `spirv`, bound to the scene unless that is null. `constants` are its specialization constants,
+// none or from CONSTANT_STORAGE_ARRAYS on, which the scene sets; `name` is for messages.
+vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv,
+                      std::vector<uint32_t> constants, const DeviceScene* scene, const std::string& name);
+
 // Runs the probe `spirv` on all items, `item_words` uvec4 each; returns `result_words` words for each, in
-// order. `constants` are its specialization constants; `scene` may be null.
+// order. `constants` and `scene` are those of make_probe().
 std::vector<uint32_t> run_probe(const vk::Device& device, std::span<const uint32_t> spirv,
                                 std::span<const std::byte> items, size_t item_words, size_t result_words,
                                 const std::vector<uint32_t>& constants, const DeviceScene* scene);

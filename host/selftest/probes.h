@@ -1,5 +1,4 @@
 // The probes as SPIR-V, compiled from shaders/probes at build time, and what the larger ones read and write.
-// NAME reads a scene through texel buffers, NAME_storage through storage buffers.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +9,8 @@
 
 namespace candela::kernels {
 
-extern const std::span<const uint32_t> any_hit, any_hit_storage, bsdf, closest_hit, closest_hit_storage,
-    environment, escape, exponential, frame, hash, interaction, light_sample, light_sample_storage, math,
-    octahedral, records, records_storage, sampler, spawn, traversal, traversal_storage, warp;
+extern const std::span<const uint32_t> any_hit, bsdf, closest_hit, environment, escape, exponential, frame,
+    hash, interaction, light_sample, math, octahedral, records, sampler, spawn, traversal, warp;
 
 }  // namespace candela::kernels
 

@@ -211,14 +211,12 @@ Evidence test_records(const vk::Device& device, SceneAccess access) {
     const Records records = filled(fields);
     assert(fields.words.size() == Result{}.words.size());
     const DeviceScene on_device(device, packed(records), access, records.parameters);
-    const bool texels = access == SceneAccess::texel_buffers;
-    const Result read = probe<Result>(device, texels ? kernels::records : kernels::records_storage,
-                                      std::vector<Item>(1), {}, &on_device)[0];
+    const Result read = probe<Result>(device, kernels::records, std::vector<Item>(1), {}, &on_device)[0];
     Evidence evidence;
     for (size_t i = 0; i < fields.words.size(); ++i) {
         evidence.expect(read.words[i] == fields.words[i], [&] {
-            return words("word ", i, ", through ", texels ? "texel" : "storage", " buffers: ", read.words[i],
-                         " instead of ", fields.words[i]);
+            return words("word ", i, ", storage buffers ", on_device.buffers().storage_arrays(), ": ",
+                         read.words[i], " instead of ", fields.words[i]);
         });
     }
     return evidence;

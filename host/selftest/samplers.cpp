@@ -80,7 +80,8 @@ Evidence test_integer_functions(const vk::Device& device) {
 
 Evidence test_sampler(const vk::Device& device, uint32_t sampler) {
     const std::vector<SampleOfPair> samples = samples_of_pairs();
-    const std::vector<uvec2> results = probe<uvec2>(device, kernels::sampler, samples, {sampler});
+    const std::vector<uvec2> results =
+        probe<uvec2>(device, kernels::sampler, samples, sampler_constants(sampler));
     Evidence evidence;
     for (size_t i = 0; i < samples.size(); ++i) {
         const SampleOfPair& s = samples[i];

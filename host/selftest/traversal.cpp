@@ -60,9 +60,7 @@ Rays rays_at_features(const TriangleMesh& mesh, size_t count, vec3 centre, float
 std::vector<TraversalResult> trace(const vk::Device& device, const GpuScene& scene, const Rays& rays,
                                    SceneAccess access) {
     const DeviceScene on_device(device, scene, access);
-    const bool texels = access == SceneAccess::texel_buffers;
-    return probe<TraversalResult>(device, texels ? kernels::traversal : kernels::traversal_storage, rays,
-                                  traversal_constants(scene), &on_device);
+    return probe<TraversalResult>(device, kernels::traversal, rays, traversal_constants(scene), &on_device);
 }
 
 Evidence compare_with_brute_force(const std::vector<TraversalResult>& results) {

@@ -119,12 +119,14 @@ static void query_queues(DeviceInfo& info) {
     info.timestamp_bits = family->timestampValidBits;
 }
 
-// The formats that kernels use; sets `reason` if accumulation images cannot be had.
+// The formats that kernels use, which Vulkan promises; sets `reason` if one cannot be had.
 static void query_formats(DeviceInfo& info) {
     VkFormatProperties texel{};
     vkGetPhysicalDeviceFormatProperties(info.handle, VK_FORMAT_R32G32B32A32_UINT, &texel);
-    info.uint_texel_buffers = (texel.bufferFeatures & VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT) != 0;
-
+    if ((texel.bufferFeatures & VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT) == 0) {
+        info.reason = "it has no uniform texel buffers of format R32G32B32A32_UINT";
+        return;
+    }
     VkImageFormatProperties image{};
     const VkResult result = vkGetPhysicalDeviceImageFormatProperties(
         info.handle, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,

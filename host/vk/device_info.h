@@ -46,15 +46,14 @@ struct DeviceInfo {
     uint32_t api_version = 0;  // As VK_MAKE_API_VERSION packs it.
     std::string reason;        // Why the device will not do; empty if it will.
 
-    std::string driver;               // Name and version, e.g. "llvmpipe, Mesa 22.3.6 (LLVM 15.0.6)".
-    VkDriverId driver_id{};           // Which driver it is, of all that Vulkan's registry knows.
-    uint32_t queue_family = 0;        // The first family that computes.
-    uint32_t timestamp_bits = 0;      // Valid bits of a timestamp; 0: the queue writes none.
-    double timestamp_period = 0;      // [ns] per tick.
-    uint32_t subgroup_size = 0;       // Invocations.
-    uint64_t device_heap = 0;         // The largest device-local heap [bytes]; a fiction on a CPU.
-    bool uint_texel_buffers = false;  // Reads R32G32B32A32_UINT uniform texel buffers.
-    bool ray_query = false;           // Offers VK_KHR_ray_query; for information only.
+    std::string driver;           // Name and version, e.g. "llvmpipe, Mesa 22.3.6 (LLVM 15.0.6)".
+    VkDriverId driver_id{};       // Which driver it is, of all that Vulkan's registry knows.
+    uint32_t queue_family = 0;    // The first family that computes.
+    uint32_t timestamp_bits = 0;  // Valid bits of a timestamp; 0: the queue writes none.
+    double timestamp_period = 0;  // [ns] per tick.
+    uint32_t subgroup_size = 0;   // Invocations.
+    uint64_t device_heap = 0;     // The largest device-local heap [bytes]; a fiction on a CPU.
+    bool ray_query = false;       // Offers VK_KHR_ray_query; for information only.
     DeviceLimits limits;
     bool presents = false;    // Is to be opened for a window: see presenter.h.
     bool statistics = false;  // Is to be opened for statistics of compiled kernels, which it must offer.

@@ -78,13 +78,15 @@ const char* buffers_name(SceneAccess access) {
 }
 
 std::vector<CompiledKernel> describe_all(const vk::Device& device, const std::string& name,
-                                         std::span<const uint32_t> constants,
+                                         const GpuScene& scene, const Camera& camera, RenderSettings settings,
                                          const std::vector<SceneAccess>& accesses) {
     std::vector<CompiledKernel> rows;
     for (const SceneAccess access : accesses) {
+        settings.scene_access = access;
+        const auto constants = kernel_constants(device, scene, camera, settings);
         for (const RenderKernel which : {RenderKernel::render, RenderKernel::position}) {
             rows.push_back(described(device, name, buffers_name(access),
-                                     [&] { return make_kernel(device, which, access, constants); }));
+                                     [&] { return make_kernel(device, which, constants); }));
         }
     }
     return rows;
@@ -127,8 +129,8 @@ std::vector<CompiledKernel> compile_scene_kernels(const vk::Device& device, cons
                                                   const RenderSettings& settings,
                                                   const std::vector<SceneAccess>& accesses) {
     const GpuScene gpu_scene = build_gpu_scene(scene);
-    if (!device.info().statistics) return time_all(device, name, gpu_scene, camera, settings, accesses);
-    return describe_all(device, name, kernel_constants(device, gpu_scene, camera, settings), accesses);
+    const auto compile_all = device.info().statistics ? describe_all : time_all;
+    return compile_all(device, name, gpu_scene, camera, settings, accesses);
 }
 
 CompiledKernel compile_display_kernel(const vk::Device& device) {

@@ -11,7 +11,7 @@ class SamplerTest : public DeviceTest {
   protected:
     // One pair of words for each of them, by SAMPLER_*.
     std::vector<uvec2> pairs(uint32_t sampler, const std::vector<SampleOfPair>& samples) const {
-        return map<uvec2>(kernels::sampler, samples, {sampler});
+        return map<uvec2>(kernels::sampler, samples, sampler_constants(sampler));
     }
     // The first `count` pairs of a (pixel, seed, pair).
     std::vector<uvec2> first_points(uint32_t sampler, SampleOfPair set, uint32_t count) const {

@@ -1,9 +1,11 @@
 // The contract: N samples give the same bits however the work was cut into submissions, sessions, files and
 // threads, however the scene is read, and in a crop as in the whole.
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <numeric>
+#include <set>
 
 #include "render/checkpoint.h"
 #include "render_fixture.h"
@@ -211,6 +213,27 @@ TEST_P(IdentityTest, TexelAndStorageBuffers) {
     const Accumulation texels = in_one_go(s);
     s.scene_access = SceneAccess::storage_buffers;
     expect_same_bits(in_one_go(s), texels);
+}
+
+// Each array is read through a texel buffer if that may hold it, whatever the others need.
+TEST_P(IdentityTest, BuffersThatSuitEachArray) {
+    const Accumulation whole = in_one_go(settings());
+    const std::array sizes{gpu_scene_.nodes.size(), gpu_scene_.primitives.size(), gpu_scene_.tables.size()};
+    std::set<uint32_t> choices;
+    for (const size_t limit : sizes) {
+        vk::DeviceInfo info = info_;
+        info.limits.max_texel_buffer_elements = uint32_t(limit);
+        const vk::Device device(instance_, info);
+        Renderer renderer(device, gpu_scene_, scene_.cameras[0], settings());
+        const uint32_t larger = uint32_t{sizes[0] > limit} << BINDING_NODES |
+                                uint32_t{sizes[1] > limit} << BINDING_PRIMITIVES |
+                                uint32_t{sizes[2] > limit} << BINDING_TABLES;
+        EXPECT_EQ(renderer.storage_arrays(), larger);
+        choices.insert(larger);
+        finish(renderer);
+        expect_same_bits(renderer.download(), whole);
+    }
+    EXPECT_EQ(choices.size(), sizes.size());
 }
 
 // What other drivers get than lavapipe: counters that a work group adds up first, and a tree for few
