@@ -124,10 +124,10 @@ dpkg-deb -W "$packages"/mesa-vulkan-drivers_*.deb
 on mesa "$candela" devices
 scenes="cornell-box cornell-glossy cornell-glass environment depth-of-field veach-mis showcase mesh"
 step "Mesa: selftest" on mesa "$candela" selftest
-step "Mesa: tests" tests mesa full -L '^(gpu|render)$'
+step "Mesa: tests" tests mesa full -L '^(vk|gpu|render)$'
 step "Mesa: images" compare mesa 128x96 $scenes
 # SwiftShader takes 30 to 70 times as long as lavapipe: a sixteenth of the samples, a quarter of the pixels.
 step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
 # Left out: bounds that hold for one number of samples alone; and what they judge, an estimate, is the host's work.
-step "SwiftShader: tests" tests swiftshader quick -L '^(gpu|render)$' -E ConvergenceTest
+step "SwiftShader: tests" tests swiftshader quick -L '^(vk|gpu|render)$' -E ConvergenceTest
 step "SwiftShader: images" compare swiftshader 64x48 $scenes

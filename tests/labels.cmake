@@ -4,12 +4,13 @@
 # slow: suites that begin with Slow. They run by `ctest --preset slow` alone.
 # quick: the most telling tests, all together under a minute on two cores; here by what their names begin with.
 set(quick_unit ".")
-set(quick_gpu Vk Math Sampler Warp Records Interaction Traversal LightTest Dielectric BsdfTest.SamplesFollowTheDensity)
+set(quick_vk ".")
+set(quick_gpu Math Sampler Warp Records Interaction Traversal LightTest Dielectric BsdfTest.SamplesFollowTheDensity)
 set(quick_render FurnaceTest.EveryRay Roulette DirectLightTest.Under SkyFurnaceTest.AnIdealMirror
     EstimatorTest.AgreeOnManyKindsOfLights IdentityTest.AStateThatWentThroughAFile)
 set(quick_cli Usage)
 
-foreach(kind IN ITEMS unit gpu render cli)
+foreach(kind IN ITEMS unit vk gpu render cli)
     set(unmatched ${quick_${kind}})
     foreach(test IN LISTS ${kind}_tests_TESTS)
         if(test MATCHES "^${kind}\\.([^.]*/)?Slow")

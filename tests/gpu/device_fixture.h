@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "gpu/vk_fixture.h"
 #include "selftest/evidence.h"
 #include "selftest/probe.h"
 #include "selftest/probes.h"
 #include "support/effort.h"
+#include "vk/vk_fixture.h"
 
 namespace candela {
 

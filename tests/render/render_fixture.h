@@ -6,12 +6,12 @@
 
 #include "base/compare.h"
 #include "base/statistics.h"
-#include "gpu/vk_fixture.h"
 #include "render/gpu_scene.h"
 #include "render/renderer.h"
 #include "support/effort.h"
 #include "support/scene_builders.h"
 #include "vk/device.h"
+#include "vk/vk_fixture.h"
 
 namespace candela {
 
