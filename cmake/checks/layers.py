@@ -12,7 +12,7 @@ MAY_INCLUDE = {
     "host/base": [],
     "host/scene": ["host/base"],
     "host/bvh": ["host/base", "shaders/shared"],
-    "host/vk": ["host/base/error.h"],
+    "host/vk": ["host/base/error.h", "host/base/file.h"],
     "host/render": ["host/base", "host/scene", "host/bvh", "host/vk", "shaders/shared"],
     "host/selftest": ["host/base", "host/scene", "host/bvh", "host/vk", "host/render", "shaders/shared"],
     "host/bench": ["host/base", "host/scene", "host/bvh", "host/vk", "host/render", "host/selftest", "shaders/shared"],

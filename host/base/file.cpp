@@ -1,17 +1,17 @@
-// Reading and atomic writing of files, through POSIX calls: the standard library has no fsync.
+// Reading and atomic writing of files, through POSIX calls: the standard library tells neither what kind of
+// file it has opened nor what a mount or a sticky directory forbids.
 #include "base/file.h"
 
 #include <array>
-#include <atomic>
 #include <cerrno>
-#include <fstream>
 #include <system_error>
-#include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/temporary_file.h"
 
 namespace candela {
 namespace {
@@ -30,9 +30,14 @@ std::string describe(int error) {
     return std::generic_category().message(error);
 }
 
+// The folder that holds a file.
+fs::path folder_of(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
 // Throws the Error for a system call that failed with `error` while `target` was being written.
 [[noreturn]] void fail_to_write(const fs::path& path, const fs::path& target, int error) {
-    const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    const fs::path directory = folder_of(target);
     std::error_code ignored;
     if ((error == ENOENT || error == ENOTDIR) && !fs::is_directory(directory, ignored)) {
         fail_to_write(path, "the directory " + quoted(directory) + " does not exist; create it first");
@@ -53,65 +58,14 @@ std::string describe(int error) {
     }
 }
 
-// A new, empty file beside `target`; removed with this object unless commit() gave it the target's name.
-class TemporarySibling {
-  public:
-    // `path` is what the user called the target.
-    TemporarySibling(fs::path path, fs::path target) : path_(std::move(path)), target_(std::move(target)) {
-        do {
-            name_ = new_name(target_);
-            file_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        } while (file_ < 0 && errno == EEXIST);  // Another's, or left behind by a process that was killed.
-        if (file_ < 0) fail_to_write(path_, target_, errno);
-    }
-    TemporarySibling(const TemporarySibling&) = delete;
-    TemporarySibling& operator=(const TemporarySibling&) = delete;
-    ~TemporarySibling() {
-        ::close(file_);
-        if (!committed_) ::unlink(name_.c_str());
-    }
-
-    void write(std::string_view bytes) {
-        while (!bytes.empty()) {
-            const ssize_t written = ::write(file_, bytes.data(), bytes.size());
-            if (written >= 0) {
-                bytes.remove_prefix(size_t(written));
-            } else if (errno != EINTR) {
-                fail_to_write(path_, target_, errno);
-            }
-        }
-    }
-
-    void commit() {
-        if (::fsync(file_) != 0) fail_to_write(path_, target_, errno);
-        if (::rename(name_.c_str(), target_.c_str()) != 0) fail_to_write(path_, target_, errno);
-        committed_ = true;
-    }
-
-  private:
-    // Short whatever the target is called, so that it never exceeds the longest name allowed.
-    static fs::path new_name(const fs::path& target) {
-        static std::atomic<unsigned> counter = 0;
-        const std::string unique = std::to_string(::getpid()) + '-' + std::to_string(counter++);
-        return target.parent_path() / (".candela-" + unique + ".tmp");
-    }
-
-    fs::path path_;
-    fs::path target_;
-    fs::path name_;
-    int file_ = -1;
-    bool committed_ = false;
-};
-
-// The file that `path` means once symbolic links are followed, even if it does not exist yet.
+// The file that `path` means once symbolic links are followed, even if it does not exist yet; a link, if they
+// lead in a circle.
 fs::path follow_links(const fs::path& path) {
     constexpr int MOST_LINKS = 40;  // As in the Linux kernel.
     fs::path target = path;
     std::error_code ignored;
-    for (int i = 0; fs::is_symlink(fs::symlink_status(target, ignored)); ++i) {
-        if (i == MOST_LINKS) fail_to_write(path, describe(ELOOP) + "; choose another place");
+    for (int i = 0; i < MOST_LINKS && fs::is_symlink(fs::symlink_status(target, ignored)); ++i)
         target = target.parent_path() / fs::read_symlink(target, ignored);
-    }
     return target;
 }
 
@@ -140,6 +94,85 @@ fs::path writable_target(const fs::path& path) {
     return target;
 }
 
+// Throws Error if `target` is a file that may be written to, but in whose place no other may be put.
+void check_replaceable(const fs::path& path, const fs::path& target) {
+    struct statx file {};
+    if (::statx(AT_FDCWD, target.c_str(), 0, STATX_BASIC_STATS, &file) != 0) return;  // It is new.
+    if ((file.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0) {
+        fail_to_write(
+            path, "the file is mounted by itself, and cannot be replaced; mount the folder that holds it");
+    }
+    if ((file.stx_attributes & STATX_ATTR_APPEND) != 0) {
+        fail_to_write(path,
+                      "the file may only grow (chattr +a), and cannot be replaced; choose another name");
+    }
+    struct stat folder {};
+    const uid_t user = ::geteuid();
+    if (user != 0 && file.stx_uid != user && ::stat(folder_of(target).c_str(), &folder) == 0 &&
+        (folder.st_mode & S_ISVTX) != 0 && folder.st_uid != user) {
+        fail_to_write(path, "the file belongs to another user, and in the directory " +
+                                quoted(folder_of(target)) +
+                                " only its owner may replace it; choose another name");
+    }
+}
+
+// Gives a finished file the name of its target, or, if that has become impossible, one beside it: then it
+// throws an Error that says so.
+void put_in_place(const fs::path& path, TemporaryFile& file) {
+    try {
+        file.commit();
+    } catch (const std::system_error& error) {
+        fs::path kept;
+        try {
+            kept = file.commit_beside();
+        } catch (const std::system_error&) {
+            throw std::system_error(error);
+        }
+        fail_to_write(path, "no file can be put in its place (" + describe(error.code().value()) +
+                                "); what was to be written is in " + quoted(kept));
+    }
+}
+
+// An open file.
+class Descriptor {
+  public:
+    Descriptor(const fs::path& path, int flags) {
+        do {
+            file_ = ::open(path.c_str(), flags | O_CLOEXEC);
+        } while (file_ < 0 && errno == EINTR);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() {
+        if (is_open()) ::close(file_);
+    }
+
+    bool is_open() const { return file_ >= 0; }
+    bool is_regular() const {
+        struct stat status {};
+        return is_open() && ::fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
+    }
+
+    // Appends all bytes from here on. Returns false, with errno, if reading fails.
+    bool read_all(std::string& bytes) const {
+        struct stat status {};
+        if (::fstat(file_, &status) == 0 && status.st_size > 0) bytes.reserve(size_t(status.st_size));
+        std::array<char, 65536> buffer;
+        while (true) {
+            const ssize_t count = ::read(file_, buffer.data(), buffer.size());
+            if (count == 0) return true;
+            if (count > 0) {
+                bytes.append(buffer.data(), size_t(count));
+            } else if (errno != EINTR) {
+                return false;
+            }
+        }
+    }
+
+  private:
+    int file_ = -1;
+};
+
 }  // namespace
 
 std::string quoted(const fs::path& path) {
@@ -167,29 +200,60 @@ void check_readable(const fs::path& path) {
 
 std::string read_file(const fs::path& path) {
     check_readable(path);
-    std::ifstream file(path, std::ios::binary);
+    const Descriptor file(path, O_RDONLY);
     std::string bytes;
-    std::error_code unknown_size;  // Of what is no file of its own, such as a pipe.
-    const uintmax_t size = fs::file_size(path, unknown_size);
-    if (!unknown_size) bytes.reserve(size);
-    std::array<char, 65536> buffer;
-    do {
-        errno = 0;  // Streams do not promise to set it, but those of Unix do.
-        file.read(buffer.data(), buffer.size());
-        bytes.append(buffer.data(), size_t(file.gcount()));
-    } while (file);
-    if (!file.eof()) fail_to_read(path, describe(errno) + "; check the file and its disk");
+    if (!file.is_open() || !file.read_all(bytes))
+        fail_to_read(path, describe(errno) + "; check the file and its disk");
+    return bytes;
+}
+
+std::optional<std::string> read_regular_file(const fs::path& path) {
+    // Without O_NONBLOCK a pipe would wait for somebody who writes.
+    const Descriptor file(path, O_RDONLY | O_NONBLOCK);
+    std::string bytes;
+    if (!file.is_regular() || !file.read_all(bytes)) return std::nullopt;
     return bytes;
 }
 
 void check_writable(const fs::path& path) {
-    const TemporarySibling probe(path, writable_target(path));
+    const fs::path target = writable_target(path);
+    remove_abandoned_files(folder_of(target));
+    check_replaceable(path, target);
+    try {
+        const TemporaryFile probe(target);
+    } catch (const std::system_error& error) {
+        fail_to_write(path, target, error.code().value());
+    }
 }
 
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
-    TemporarySibling file(path, writable_target(path));
-    file.write(bytes);
-    file.commit();
+    const fs::path target = writable_target(path);
+    try {
+        TemporaryFile file(target);
+        file.write(bytes);
+        file.flush();
+        put_in_place(path, file);
+    } catch (const std::system_error& error) {
+        fail_to_write(path, target, error.code().value());
+    }
+}
+
+bool is_same_file(const fs::path& a, const fs::path& b) {
+    std::error_code ignored;
+    if (fs::exists(a, ignored) && fs::exists(b, ignored)) return fs::equivalent(a, b, ignored);
+    const auto place = [&](const fs::path& path) {
+        const fs::path target = follow_links(path);
+        return fs::weakly_canonical(folder_of(target), ignored) / target.filename();
+    };
+    return place(a) == place(b);
+}
+
+void create_private_folders(const fs::path& folder) {
+    std::error_code ignored;
+    if (folder.has_relative_path() && !fs::exists(folder, ignored)) {
+        create_private_folders(folder.parent_path());
+        ::mkdir(folder.c_str(), 0700);
+    }
 }
 
 }  // namespace candela

@@ -253,9 +253,9 @@ void write_exr(const fs::path& path, const Image& image) {
 }
 
 Image read_exr(const fs::path& path, uint64_t max_pixels) {
-    check_readable(path);
-    const char* const name = path.c_str();
-    return read_from(name, path, max_pixels);
+    const std::string bytes = read_file(path);
+    MemoryFile file(bytes, path.string());
+    return read_from(file, path, max_pixels);
 }
 
 Image decode_exr(std::string_view bytes, const std::string& name) {

@@ -4,14 +4,10 @@
 
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
-#include <system_error>
 
-#include <unistd.h>
-
+#include "base/file.h"
 #include "vk/check.h"
 
 namespace candela::vk {
@@ -38,10 +34,11 @@ static bool fits_device(std::span<const char> data, const VkPhysicalDeviceProper
 // The data of the file, or nothing if it is missing, damaged or foreign.
 static std::vector<char> load(const std::filesystem::path& file,
                               const VkPhysicalDeviceProperties& properties) {
-    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes = read_regular_file(file).value_or("");
     uint64_t expected = 0;
-    stream.read(reinterpret_cast<char*>(&expected), sizeof expected);
-    std::vector<char> data{std::istreambuf_iterator<char>(stream), {}};
+    if (bytes.size() < sizeof expected) return {};
+    std::memcpy(&expected, bytes.data(), sizeof expected);
+    std::vector<char> data(bytes.begin() + sizeof expected, bytes.end());
     if (hash(data) != expected || !fits_device(data, properties)) return {};
     return data;
 }
@@ -75,7 +72,7 @@ PipelineCache::PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& 
 PipelineCache::~PipelineCache() {
     try {
         if (file_) save();
-    } catch (...) {  // Out of memory: the next run compiles again.
+    } catch (...) {  // No memory, or no place on the disk: the next run compiles again.
     }
 }
 
@@ -87,20 +84,12 @@ void PipelineCache::save() const {
     data.resize(size);
     if (data == loaded_) return;
 
-    // Written beside its place and renamed, so that no other run ever sees half a file.
-    std::error_code ignored;
-    if (file_->has_parent_path()) std::filesystem::create_directories(file_->parent_path(), ignored);
-    std::filesystem::path temporary = *file_;
-    temporary += ".";
-    temporary += std::to_string(getpid());
-    temporary += ".tmp";
-    std::ofstream stream(temporary, std::ios::binary);
     const uint64_t checksum = hash(data);
-    stream.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-    stream.write(data.data(), std::streamsize(data.size()));
-    stream.close();
-    if (stream) std::filesystem::rename(temporary, *file_, ignored);
-    std::filesystem::remove(temporary, ignored);  // Still there only if something failed.
+    std::string bytes(sizeof checksum, '\0');
+    std::memcpy(bytes.data(), &checksum, sizeof checksum);
+    bytes.append(data.begin(), data.end());
+    create_private_folders(file_->parent_path());
+    write_file_atomically(*file_, bytes);
 }
 
 }  // namespace candela::vk

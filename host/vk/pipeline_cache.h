@@ -15,10 +15,11 @@ class PipelineCache {
   public:
     // Creates the cache and fills it from its file in `folder`, if that is given. The file is named by the
     // device's cache UUID, so that each device and driver has one of its own; one that is missing, damaged or
-    // foreign is ignored.
+    // foreign is ignored, and so is what is no file.
     PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& properties,
                   const std::optional<std::filesystem::path>& folder);
-    // Saves the cache to the file if it changed. Failure is silent: the next run compiles again.
+    // Saves the cache to the file if it changed, in a folder for this user alone. Failure is silent: the next
+    // run compiles again.
     ~PipelineCache();
     PipelineCache(const PipelineCache&) = delete;
     PipelineCache& operator=(const PipelineCache&) = delete;

@@ -25,9 +25,9 @@ inline const std::string MESH = std::string(CANDELA_SCENES) + "/mesh.json";
 inline const std::map<std::string, std::string> NO_DRIVER = {{"VK_DRIVER_FILES", "/nonexistent.json"},
                                                              {"VK_ICD_FILENAMES", "/nonexistent.json"}};
 
-// The variables that put tests/layers/device_fault.cpp before the driver.
+// The variables that put tests/faults/device_fault.cpp before the driver.
 inline const std::map<std::string, std::string> FAULT_LAYER = {
-    {"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"}, {"VK_ADD_LAYER_PATH", CANDELA_LAYERS}};
+    {"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"}, {"VK_ADD_LAYER_PATH", CANDELA_FAULTS}};
 
 inline std::map<std::string, std::string> operator+(std::map<std::string, std::string> a,
                                                     const std::map<std::string, std::string>& b) {

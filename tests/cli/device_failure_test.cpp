@@ -1,5 +1,5 @@
 // A device that is lost, or out of memory, in the middle of a rendering. A Vulkan layer makes it fail
-// (tests/layers/device_fault.cpp); the program itself knows nothing of tests.
+// (tests/faults/device_fault.cpp); the program itself knows nothing of tests.
 #include <csignal>
 #include <regex>
 

@@ -1,6 +1,7 @@
 // Files: read whole, written whole or not at all, with errors that say what to do; and the hash of bytes.
 #include "base/file.h"
 
+#include <array>
 #include <csignal>
 #include <fstream>
 #include <span>
@@ -9,12 +10,15 @@
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/hash.h"
+#include "base/temporary_file.h"
 #include "base_fixture.h"
 
 namespace candela {
@@ -87,6 +91,27 @@ TEST(File, ReadsBackEveryByteThatItWrote) {
         EXPECT_EQ(read_file(directory / "file"), bytes);
         EXPECT_EQ(directory.size(), 1);
     }
+}
+
+TEST(File, OfACacheIsARegularOneOrNothing) {
+    const TemporaryDirectory directory;
+    write_file_atomically(directory / "file", "bytes");
+    EXPECT_EQ(read_regular_file(directory / "file"), "bytes");
+    ASSERT_EQ(::mkfifo((directory / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(read_regular_file(directory / "pipe"), std::nullopt);
+    EXPECT_EQ(read_regular_file(directory.path()), std::nullopt);
+    EXPECT_EQ(read_regular_file("/dev/zero"), std::nullopt);
+    EXPECT_EQ(read_regular_file(directory / "missing"), std::nullopt);
+}
+
+TEST(File, PrivateFoldersAreForThisUserAlone) {
+    const TemporaryDirectory directory;
+    create_private_folders(directory / "a/b");
+    EXPECT_EQ(fs::status(directory / "a").permissions(), fs::perms(0700));
+    EXPECT_EQ(fs::status(directory / "a/b").permissions(), fs::perms(0700));
+    write_file_atomically(directory / "file", "");
+    create_private_folders(directory / "file/b");
+    EXPECT_EQ(directory.size(), 2);
 }
 
 TEST(File, ReadsAPipe) {
@@ -200,15 +225,108 @@ TEST(File, KeepsTheOldFileAndNoTemporaryOneWhenTheDiskIsFull) {
     EXPECT_EQ(directory.size(), 1);
 }
 
+// Starts a process that writes a temporary file beside `target` and waits; once it is there the process is
+// killed, if `killed`, or else ends when this object does.
+class Writer {
+  public:
+    Writer(const fs::path& target, bool killed) {
+        std::array<int, 2> there{};
+        EXPECT_EQ(::pipe2(there.data(), O_CLOEXEC), 0);
+        pid_ = ::fork();
+        if (pid_ == 0) {
+            TemporaryFile file(target);
+            file.write("half");
+            EXPECT_EQ(::write(there[1], "x", 1), 1);
+            while (true)
+                ::pause();
+        }
+        char byte = 0;
+        EXPECT_EQ(::read(there[0], &byte, 1), 1);
+        ::close(there[0]);
+        ::close(there[1]);
+        if (killed) kill();
+    }
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+    ~Writer() { kill(); }
+
+  private:
+    void kill() {
+        if (pid_ <= 0) return;
+        ::kill(pid_, SIGKILL);
+        ::waitpid(pid_, nullptr, 0);
+        pid_ = -1;
+    }
+
+    pid_t pid_ = -1;
+};
+
+TEST(File, RemovesWhatKilledProcessesLeftBehind) {
+    const TemporaryDirectory directory;
+    const Writer dead(directory / "out.exr", true);
+    EXPECT_EQ(directory.size(), 1);
+    check_writable(directory / "out.exr");
+    EXPECT_EQ(directory.size(), 0);
+}
+
 TEST(File, LeavesTheTemporaryFilesOfOthersAlone) {
     const TemporaryDirectory directory;
-    for (int i = 0; i < 1000; ++i) {
-        std::ofstream(directory /
-                      (".candela-" + std::to_string(::getpid()) + '-' + std::to_string(i) + ".tmp"));
-    }
+    const Writer living(directory / "out.exr", false);
+    // Of another computer, whose processes nobody can ask for from here; and what only looks like one.
+    for (const char* name : {".candela-0123456789abcdef-1-0.tmp", ".candela-.tmp", "candela.tmp"})
+        std::ofstream(directory / name) << "half";
+    check_writable(directory / "out.exr");
     write_file_atomically(directory / "out.exr", "image");
     EXPECT_EQ(read_file(directory / "out.exr"), "image");
-    EXPECT_EQ(directory.size(), 1001);
+    EXPECT_EQ(directory.size(), 5);
+}
+
+TEST(File, GivesAReplacedFileItsPermissions) {
+    const TemporaryDirectory directory;
+    const fs::path file = directory / "out.exr";
+    for (const mode_t mode : {0600, 0640, 0666, 0755}) {
+        std::ofstream(file) << "old";
+        ASSERT_EQ(::chmod(file.c_str(), mode), 0);
+        write_file_atomically(file, "new");
+        EXPECT_EQ(fs::status(file).permissions(), fs::perms(mode));
+    }
+}
+
+// A file of root's in a folder of root's where everybody may create files and only their owners replace them.
+class AnothersFile : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (::geteuid() != 0) GTEST_SKIP() << "only root can make a file that belongs to somebody else";
+        std::ofstream(file_) << "old";
+        ASSERT_EQ(::chmod(file_.c_str(), 0666), 0);
+        ASSERT_EQ(::chmod(directory_.path().c_str(), 01777), 0);
+    }
+
+    const TemporaryDirectory directory_;
+    const fs::path file_ = directory_ / "out.exr";
+};
+
+TEST_F(AnothersFile, IsRefusedBeforehand) {
+    const Unprivileged unprivileged;
+    EXPECT_EQ(error_of([&] { check_writable(file_); }),
+              "cannot write \"" + file_.string() +
+                  "\": the file belongs to another user, and in the directory \"" +
+                  directory_.path().string() + "\" only its owner may replace it; choose another name");
+    check_writable(directory_ / "new.exr");
+}
+
+TEST_F(AnothersFile, LetsWhatIsFinishedTakeANameBesideIt) {
+    const Unprivileged unprivileged;
+    for (const std::string name : {"out-1.exr", "out-2.exr"}) {
+        EXPECT_EQ(error_of([&] { write_file_atomically(file_, name); }),
+                  "cannot write \"" + file_.string() +
+                      "\": no file can be put in its place (Operation not permitted); what was to be written "
+                      "is in \"" +
+                      (directory_ / name).string() + '"');
+        EXPECT_EQ(read_file(directory_ / name), name);
+    }
+    EXPECT_EQ(read_file(file_), "old");
+    EXPECT_EQ(directory_.size(), 3);
 }
 
 TEST(File, WritesThroughSymbolicLinks) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "vk/buffer.h"
@@ -280,6 +281,26 @@ TEST_F(VkPipelineCache, EachDeviceHasAFileOfItsOwn) {
     }
     EXPECT_EQ(files().size(), 2u);
     EXPECT_EQ(contents(first), good);
+}
+
+TEST_F(VkPipelineCache, IsForThisUserAlone) {
+    use_cache();
+    EXPECT_EQ(std::filesystem::status(directory_).permissions(), std::filesystem::perms(0700));
+}
+
+// A folder, a pipe that nobody writes to, and a device without end.
+TEST_F(VkPipelineCache, WhatIsNoFileIsLeftAlone) {
+    use_cache();
+    const std::filesystem::path place = file();
+    const auto fill = [&](const std::function<void()>& make) {
+        std::filesystem::remove(place);
+        make();
+        use_cache();
+        EXPECT_FALSE(std::filesystem::is_regular_file(place));
+    };
+    fill([&] { std::filesystem::create_directory(place); });
+    fill([&] { ASSERT_EQ(::mkfifo(place.c_str(), 0600), 0); });
+    fill([&] { std::filesystem::create_symlink("/dev/zero", place); });
 }
 
 TEST_F(VkPipelineCache, AFileThatCannotBeWrittenIsNoError) {

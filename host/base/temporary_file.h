@@ -1,0 +1,38 @@
+// TemporaryFile: what is written to a file until all of it is on the disk.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace candela {
+
+// A new, empty file beside `target`, whose permissions it has if there is such a file. Removed with this
+// object unless commit() gave it the target's name. Its own name says which process of which computer it
+// belongs to, and it is locked as long as that lives. All functions throw std::system_error.
+class TemporaryFile {
+  public:
+    explicit TemporaryFile(std::filesystem::path target);
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+    ~TemporaryFile();
+
+    void write(std::string_view bytes);
+    // Waits until the bytes are on the disk.
+    void flush();
+    // Takes the target's place.
+    void commit();
+    // Takes a free name like the target's instead, such as box-1.exr, and returns the path.
+    std::filesystem::path commit_beside();
+
+  private:
+    std::filesystem::path target_;
+    std::filesystem::path name_;
+    int file_ = -1;
+    bool committed_ = false;
+};
+
+// Removes what processes left in the folder that were killed while they wrote, on this computer and since it
+// was started: only then is it known that they live no longer.
+void remove_abandoned_files(const std::filesystem::path& folder);
+
+}  // namespace candela
