@@ -12,6 +12,8 @@ int main(int argc, char** argv) {
     using candela::ExitCode;
     // A file that may not grow further is an error of writing like any other, not the end.
     std::signal(SIGXFSZ, SIG_IGN);
+    // And whoever reads the messages may go away.
+    std::signal(SIGPIPE, SIG_IGN);
     try {
         return int(candela::run_program(argc, argv));
     } catch (const candela::Error& error) {

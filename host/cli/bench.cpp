@@ -17,6 +17,7 @@
 #include "cli/bench_options.h"
 #include "cli/bench_report.h"
 #include "cli/command.h"
+#include "cli/command_files.h"
 #include "cli/console.h"
 #include "cli/vulkan.h"
 #include "scene/loader.h"
@@ -184,12 +185,19 @@ std::vector<Row> run_group(BenchGroup group, const vk::Device& device, const Ben
 
 ExitCode bench(const BenchArguments& arguments) {
     const bool table = arguments.json != "-";
+    CommandFiles files;
+    for (const std::string& scene : arguments.scenes)
+        files.read("SCENE", scene);
+    if (arguments.reference) files.read("--reference", *arguments.reference);
+    if (arguments.json) files.write("--json", *arguments.json);
     if (arguments.json && table) check_writable(*arguments.json);
     if (arguments.reference && arguments.scenes.size() > 1)
         throw Error("--reference: one image cannot be the reference of " +
                         std::to_string(arguments.scenes.size()) + " scenes; give one scene",
                     ExitCode::usage);
     std::vector<RenderTask> tasks = make_tasks(arguments);
+    for (const RenderTask& task : tasks)
+        files.read_all("the scene's file", task.scene.files);
     Image reference;  // The task refers to it.
     if (arguments.reference) {
         reference = read_exr(*arguments.reference);

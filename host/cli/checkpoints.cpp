@@ -13,13 +13,6 @@ namespace candela {
 void check_checkpoint(const RenderOptions& options) {
     if (!options.checkpoint) return;
     const std::string& path = *options.checkpoint;
-    for (const std::string& output : options.outputs) {
-        if (std::filesystem::path(output).lexically_normal() ==
-            std::filesystem::path(path).lexically_normal()) {
-            throw Error("--checkpoint: \"" + path + "\" is an output (-o) as well; give it a name of its own",
-                        ExitCode::usage);
-        }
-    }
     check_writable(path);
     std::error_code unreadable;  // What is wrong with it is found when it is read.
     if (!options.resume && std::filesystem::exists(path, unreadable)) {

@@ -12,8 +12,8 @@
 
 namespace candela {
 
-// Throws Error if --checkpoint could not be written, is an output at the same time (usage), or names a file
-// that exists already although there is no --resume (usage). To be called before any long work.
+// Throws Error if --checkpoint could not be written, or names a file that exists already although there is no
+// --resume (usage). To be called before any long work.
 void check_checkpoint(const RenderOptions& options);
 
 // What --resume says to continue from; nothing, which a line on stderr tells, if the file does not exist yet.

@@ -11,6 +11,7 @@
 #include "base/image_io.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/command_files.h"
 #include "cli/console.h"
 
 namespace candela {
@@ -72,6 +73,10 @@ ExitCode run(const CompareArguments& arguments) {
                 "--heatmap: cannot use \"" + *arguments.heatmap + "\"; expected a file name ending in .png",
                 ExitCode::usage);
         }
+        CommandFiles files;
+        files.read("A", arguments.a);
+        files.read("B", arguments.b);
+        files.write("--heatmap", *arguments.heatmap);
         check_writable(*arguments.heatmap);
     }
     const Image a = read_exr(arguments.a);

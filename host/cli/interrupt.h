@@ -1,12 +1,13 @@
-// Ctrl-C and termination, caught so that what is rendered so far can be kept.
+// Ctrl-C, termination and the end of the terminal, caught so that what is rendered so far can be kept.
 #pragma once
 
+#include <array>
 #include <csignal>
 
 namespace candela {
 
-// While it lives, the first SIGINT or SIGTERM only sets a flag; a second one ends the program at once. One at
-// a time.
+// While it lives, the first SIGINT, SIGTERM or SIGHUP only sets a flag; a second one ends the program at
+// once. A SIGHUP that was ignored before, as by nohup, stays so. One at a time.
 class InterruptGuard {
   public:
     InterruptGuard();
@@ -17,9 +18,10 @@ class InterruptGuard {
     // Whether a signal has arrived.
     bool interrupted() const;
 
+    static constexpr std::array SIGNALS{SIGINT, SIGTERM, SIGHUP};
+
   private:
-    struct sigaction old_interrupt_ {};
-    struct sigaction old_terminate_ {};
+    std::array<struct sigaction, SIGNALS.size()> old_;
 };
 
 }  // namespace candela

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/command_files.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/render_options.h"
@@ -22,6 +23,9 @@ struct MergeArguments {
 };
 
 ExitCode run(const MergeArguments& arguments, const std::string& command_line) {
+    CommandFiles files;  // The parts are all read before anything is written: one of them may be the output.
+    for (const std::string& path : arguments.options.outputs)
+        files.write("-o", path);
     check_outputs(arguments.options);
     Merged merged = merge_files({arguments.parts.begin(), arguments.parts.end()});
     for (const std::string& warning : merged.warnings)

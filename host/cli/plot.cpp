@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "cli/command.h"
+#include "cli/command_files.h"
 #include "cli/curve_chart.h"
 
 namespace candela {
@@ -50,6 +51,10 @@ ExitCode run(const PlotArguments& arguments) {
         throw Error("-o: cannot use \"" + arguments.output + "\"; expected a file name ending in .svg",
                     ExitCode::usage);
     }
+    CommandFiles files;
+    for (const std::string& path : arguments.reports)
+        files.read("REPORT", path);
+    files.write("-o", arguments.output);
     std::vector<Curve> curves;
     for (const std::string& path : arguments.reports)
         curves.push_back(read_curve(path));

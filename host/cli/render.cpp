@@ -13,6 +13,7 @@
 
 #include "cli/checkpoints.h"
 #include "cli/command.h"
+#include "cli/command_files.h"
 #include "cli/console.h"
 #include "cli/convergence.h"
 #include "cli/interrupt.h"
@@ -243,7 +244,20 @@ ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, c
     return interrupted ? ExitCode::interrupted : ExitCode::done;
 }
 
+// The files that the command line names.
+CommandFiles files_of(const RenderOptions& options) {
+    CommandFiles files;
+    files.read("SCENE", options.scene_file);
+    if (options.reference) files.read("--reference", *options.reference);
+    for (const std::string& path : options.outputs)
+        files.write("-o", path);
+    if (options.report) files.write("--report", *options.report);
+    if (options.checkpoint) files.write("--checkpoint", *options.checkpoint);
+    return files;
+}
+
 ExitCode render(const RenderOptions& options, const std::string& command_line) {
+    CommandFiles files = files_of(options);
     check_outputs(options);
     check_checkpoint(options);
     RenderRecord record;
@@ -251,6 +265,7 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
 
     const auto start = std::chrono::steady_clock::now();
     const Scene scene = load_scene(options.scene_file);
+    files.read_all("the scene's file", scene.files);
     record.load_seconds = seconds_since(start);
     for (const std::string& warning : scene.warnings)
         print_warning(warning);

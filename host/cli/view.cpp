@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/image_io.h"
 #include "cli/command.h"
+#include "cli/command_files.h"
 #include "cli/console.h"
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
@@ -102,9 +103,14 @@ void add_attributes(Image& image, const ViewedPicture& picture, const vk::Device
 }
 
 ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
+    CommandFiles files;
+    files.read("SCENE", arguments.render.scene_file);
+    for (const std::string& path : arguments.screenshots)
+        files.write("--screenshot", path);
     arguments.check();
     const RenderOptions& options = arguments.render;
     Scene scene = load_scene(options.scene_file);
+    files.read_all("the scene's file", scene.files);
     for (const std::string& warning : scene.warnings)
         print_warning(warning);
     const ViewState state{.camera = options.choose_camera(scene),

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "base/error.h"
 
@@ -21,7 +22,29 @@ static bool is_on(const char* name) {
     return !value.empty() && value != "0";
 }
 
+// Where programs keep what they can make again; nothing if the environment does not tell. The XDG
+// specification has a relative path ignored.
+static std::optional<std::filesystem::path> cache_home() {
+    const std::filesystem::path cache = environment("XDG_CACHE_HOME");
+    if (cache.is_absolute()) return cache;
+    const std::filesystem::path home = environment("HOME");
+    return home.is_absolute() ? std::optional(home / ".cache") : std::nullopt;
+}
+
+// Mesa writes to its cache through memory: where the disk is full, that is the end of the program by SIGBUS.
+static void keep_drivers_off_full_disks() {
+    constexpr uintmax_t ENOUGH = uintmax_t{64} << 20;
+    std::filesystem::path folder = environment("MESA_SHADER_CACHE_DIR");
+    if (folder.empty()) folder = cache_home().value_or("/");
+    std::error_code ignored;
+    while (folder.has_relative_path() && !std::filesystem::exists(folder, ignored))
+        folder = folder.parent_path();
+    if (std::filesystem::space(folder, ignored).available < ENOUGH)
+        ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
+}
+
 vk::Instance::Options instance_options() {
+    keep_drivers_off_full_disks();
     return {.validation = is_on("CANDELA_VALIDATION")};
 }
 
@@ -35,11 +58,8 @@ void check_validation(const vk::Instance& instance) {
 
 std::optional<std::filesystem::path> pipeline_cache_folder() {
     if (is_on("CANDELA_NO_CACHE")) return std::nullopt;
-    // The XDG specification: a relative path is to be ignored.
-    const std::filesystem::path cache = environment("XDG_CACHE_HOME");
-    if (cache.is_absolute()) return cache / "candela";
-    const std::filesystem::path home = environment("HOME");
-    return home.is_absolute() ? std::optional(home / ".cache" / "candela") : std::nullopt;
+    const auto home = cache_home();
+    return home ? std::optional(*home / "candela") : std::nullopt;
 }
 
 }  // namespace candela

@@ -8,7 +8,8 @@
 
 namespace candela {
 
-// The options of the instance: validation is on if CANDELA_VALIDATION is set to anything but "" or "0".
+// The options of the instance: validation is on if CANDELA_VALIDATION is set to anything but "" or "0". Has
+// the drivers that it will load keep no files of their own where the disk has less than 64 MiB left.
 vk::Instance::Options instance_options();
 
 // Throws Error if the validation layer has found fault with anything so far.

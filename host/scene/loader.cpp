@@ -62,7 +62,7 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
     const Node shapes = root.require("shapes");
     read_shapes(shapes, folder, scene);
     if (const auto environment = root.find("environment")) {
-        scene.environment = read_environment(*environment, folder, scene.warnings);
+        scene.environment = read_environment(*environment, folder, scene);
     }
 
     if (scene.shapes.empty() && !scene.environment) {

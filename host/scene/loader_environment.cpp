@@ -34,8 +34,7 @@ void scale(Environment& environment, const Node& node) {
 
 }  // namespace
 
-Environment read_environment(const Node& node, const std::filesystem::path& folder,
-                             std::vector<std::string>& warnings) {
+Environment read_environment(const Node& node, const std::filesystem::path& folder, Scene& scene) {
     node.allow_only({"file", "radiance", "rotation", "intensity", "visible"});
     const auto file = node.find("file");
     const auto radiance = node.find("radiance");
@@ -43,7 +42,10 @@ Environment read_environment(const Node& node, const std::filesystem::path& fold
         node.fail(R"(the environment needs either "file", an image, or "radiance", a constant)");
     }
     Environment environment;
-    if (file) environment = load(*file, folder, warnings);
+    if (file) {
+        environment = load(*file, folder, scene.warnings);
+        scene.files.push_back(folder / file->string());
+    }
     if (radiance) environment.radiance = {vec3(radiance->rgb())};
     const bool reported = file && !gives_light(environment);  // By load_environment().
     if (const auto rotation = node.find("rotation")) {
@@ -56,7 +58,7 @@ Environment read_environment(const Node& node, const std::filesystem::path& fold
     if (const auto intensity = node.find("intensity")) scale(environment, *intensity);
     if (const auto visible = node.find("visible")) environment.visible = visible->boolean();
     if (!gives_light(environment) && !reported) {
-        warnings.push_back(node.place() + ": the environment is black: it gives no light");
+        scene.warnings.push_back(node.place() + ": the environment is black: it gives no light");
     }
     return environment;
 }

@@ -51,6 +51,7 @@ void add_surfaces(const Node& file, const ObjParts& obj, ShapeList& shapes) {
     Scene& scene = shapes.scene();
     const MtlLibrary library = read_from(file, [&] { return load_mtl_libraries(path, obj.libraries); });
     warn(file, library.warnings, scene);
+    scene.files.insert(scene.files.end(), library.files.begin(), library.files.end());
     for (const ObjPart& part : obj.parts) {
         if (!part.material) {
             const std::string faces = std::to_string(part.faces) + (part.faces == 1 ? " face" : " faces");
@@ -72,7 +73,9 @@ void read_obj_with_materials(const Node& node, ShapeList& shapes) {
     const Node file = node.require("file");
     const Transform transform = ShapeList::transform_of(node);
     const MeshNormals normals = normals_of(node);
-    ObjParts obj = read_from(file, [&] { return load_obj_parts(shapes.path_of(file.string()), normals); });
+    const std::filesystem::path path = shapes.path_of(file.string());
+    ObjParts obj = read_from(file, [&] { return load_obj_parts(path, normals); });
+    shapes.scene().files.push_back(path);
     const auto has_material = [](const ObjPart& part) { return part.material.has_value(); };
     if (std::none_of(obj.parts.begin(), obj.parts.end(), has_material)) {
         node.fail(
@@ -107,7 +110,9 @@ void read_whole(const Node& node, ShapeList& shapes, Load load) {
     const Transform transform = ShapeList::transform_of(node);
     const Node file = node.require("file");
     const MeshNormals normals = normals_of(node);
-    TriangleMesh mesh = read_from(file, [&] { return load(file, shapes.path_of(file.string()), normals); });
+    const std::filesystem::path path = shapes.path_of(file.string());
+    TriangleMesh mesh = read_from(file, [&] { return load(file, path, normals); });
+    shapes.scene().files.push_back(path);
     move_to_world(file, transform, mesh);
     shapes.add_mesh(node, surface, transform, std::move(mesh));
 }

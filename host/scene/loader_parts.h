@@ -16,9 +16,9 @@ Camera read_camera(const Node& node, const Film& film);
 // Reads the material that stands under its name.
 Material read_material(const Node& node);
 
-// Reads the light from infinitely far away. Its file is relative to `folder`; what is odd goes to `warnings`.
-Environment read_environment(const Node& node, const std::filesystem::path& folder,
-                             std::vector<std::string>& warnings);
+// Reads the light from infinitely far away. Its file is relative to `folder`; that and what is odd go to
+// scene.files and scene.warnings.
+Environment read_environment(const Node& node, const std::filesystem::path& folder, Scene& scene);
 
 // Reads the list of shapes into scene.shapes and scene.warnings, and appends to scene.materials those that
 // the shapes bring along: black for an emitter without one, and the materials of OBJ files. Files are

@@ -12,6 +12,7 @@ namespace candela {
 
 struct MtlLibrary {
     std::map<std::string, MtlMaterial, std::less<>> materials;
+    std::vector<std::filesystem::path> files;
     std::vector<std::string> warnings;  // `file: ...` or `file:line: ...`.
 };
 

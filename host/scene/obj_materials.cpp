@@ -44,13 +44,13 @@ std::vector<std::filesystem::path> find_libraries(const std::filesystem::path& o
 
 MtlLibrary load_mtl_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& names) {
     MtlLibrary all;
-    std::vector<std::filesystem::path> paths;
     for (const ObjName& name : names) {
         for (const std::filesystem::path& path : find_libraries(obj, name)) {
-            if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
+            if (std::find(all.files.begin(), all.files.end(), path) == all.files.end())
+                all.files.push_back(path);
         }
     }
-    for (const std::filesystem::path& path : paths) {
+    for (const std::filesystem::path& path : all.files) {
         MtlLibrary library = load_mtl(path);
         all.materials.merge(library.materials);  // Keeps those that are there.
         std::move(library.warnings.begin(), library.warnings.end(), std::back_inserter(all.warnings));

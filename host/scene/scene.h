@@ -3,6 +3,7 @@
 // of GPUs.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
@@ -148,8 +149,9 @@ struct Scene {
     IntegratorSettings integrator;
     std::vector<Material> materials;
     std::vector<Shape> shapes;
-    std::optional<Environment> environment;  // None: black.
-    std::vector<std::string> warnings;       // What the loader found odd but usable, each with its place.
+    std::optional<Environment> environment;    // None: black.
+    std::vector<std::filesystem::path> files;  // That the scene file names: meshes, materials, images.
+    std::vector<std::string> warnings;         // What the loader found odd but usable, each with its place.
 };
 
 }  // namespace candela

@@ -31,7 +31,7 @@ struct MeshPart {
     TriangleMesh mesh;
 };
 
-// The shapes of a scene while they are read. Appends to the scene's shapes, materials and warnings.
+// The shapes of a scene while they are read. Appends to the scene's shapes, materials, files and warnings.
 class ShapeList {
   public:
     // Files are relative to `folder`. scene.materials holds exactly the materials that the scene file

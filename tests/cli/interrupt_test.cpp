@@ -48,6 +48,28 @@ TEST_F(Interrupt, TerminationWritesWhatThereIs) {
     expect_partial_image(SIGTERM);
 }
 
+TEST_F(Interrupt, TheEndOfTheTerminalWritesWhatThereIs) {
+    expect_partial_image(SIGHUP);
+}
+
+TEST_F(Interrupt, NohupLetsItGoOn) {
+    Process process(Words{"/bin/sh", "-c", "trap '' HUP; exec \"$@\"", "sh"} + endless(), options());
+    wait_until("it renders", [&] { return process.catches(SIGINT) && process.catches(SIGTERM); });
+    EXPECT_FALSE(process.catches(SIGHUP));
+    process.send(SIGHUP);
+    process.send(SIGINT);
+    EXPECT_EQ(process.finish().exit_code, 130);
+}
+
+TEST_F(Interrupt, MessagesThatNobodyReadsDoNotEndIt) {
+    Process process(
+        call({"render", CORNELL_BOX, "-o", file("a.exr"), "--size", "32x32", "--spp", "4", "--verbose"}),
+        options());
+    process.close_err();
+    EXPECT_EQ(process.finish().exit_code, 0);
+    EXPECT_EQ(std::ranges::min(read_exr(file("a.exr")).find("SampleCount.V")->values), 4.0f);
+}
+
 // It cannot end by itself after the first signal, since nobody reads what it has to say then.
 TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
     Process process(endless(), options());

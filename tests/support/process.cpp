@@ -158,6 +158,11 @@ void Process::block_err() const {
     ::close(err);
 }
 
+void Process::close_err() {
+    ::close(err_);
+    err_ = -1;
+}
+
 ProcessResult Process::finish() {
     const Time end = std::chrono::steady_clock::now() + PATIENCE;
     while (read_some(end)) {
