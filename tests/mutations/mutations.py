@@ -30,7 +30,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
-DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*")
+DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
     (INTEGRATOR, [
@@ -114,8 +114,8 @@ GROUPS = [
          "if (n > 0u) atomicExchange(counters[i], n);"),
         ("an invocation hands on the work group's counts before all are there", RENDER,
          "if (atomicAdd(group_finished, 1u) + 1u <", "if (atomicAdd(group_finished, 1u) + 9u <"),
-        ("the first array of the scene decides how all are read", SCENE_BUFFERS, "arrays[i].size()) << i",
-         "arrays[0].size()) << i"),
+        ("the first array of the scene decides how all are read", SCENE_BUFFERS, "arrays[i].size())} << i",
+         "arrays[0].size())} << i"),
         ("an array bound where the kernel does not read it", SCENE_BUFFERS, "storage ? unread_texels_ : arrays_[i]",
          "unread_texels_"),
         ("an exponential of Vulkan's precision", "shaders/base/exponential.glsl", "return e.scale * (1.0 + e.p);",
