@@ -38,7 +38,7 @@ LIBRARIES = {
     "GLM": (r"glm/", ["host/base", "host/scene", "host/bvh", "host/render", "host/selftest", "host/bench", "host/view",
                       "host/cli", "host"]),
     "stb": (r"stb_", ["host/base"]),
-    "OpenEXR": (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex)", ["host/base"]),
+    "OpenEXR": (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex|openexr)", ["host/base"]),
     "nlohmann-json": (r"nlohmann/", ["host/scene", "host/cli"]),
     "tinyobjloader": (r"tiny_obj_loader", ["host/scene"]),
     "CLI11": (r"CLI/", ["host/cli"]),

@@ -49,10 +49,10 @@ ImageFormat image_format(const fs::path& path) {
     throw Error(describe_unknown(path, ".exr, .png"), ExitCode::usage);
 }
 
-Image read_image(const fs::path& path, uint64_t max_pixels) {
+Image read_image(const fs::path& path, const ImageLimits& limits) {
     const std::string extension = extension_of(path);
-    if (extension == ".exr") return read_exr(path, max_pixels);
-    if (extension == ".hdr" || extension == ".pic") return read_hdr(path, max_pixels);
+    if (extension == ".exr") return read_exr(path, limits);
+    if (extension == ".hdr" || extension == ".pic") return read_hdr(path, limits);
     throw Error(describe_unknown(path, ".exr, .hdr"));
 }
 

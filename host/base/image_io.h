@@ -1,11 +1,13 @@
 // Image files: OpenEXR in and out, Radiance HDR in, PNG out. The only interface to the libraries that do it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/image.h"
 
@@ -26,27 +28,39 @@ ImageFormat image_format(const std::filesystem::path& path);
 // whole or not at all.
 void write_exr(const std::filesystem::path& path, const Image& image);
 
-// Reads all channels of the first part of an OpenEXR file, of any type, as 32-bit floats (`half` remembers
-// 16-bit ones), and the attributes that an Image can hold; matrices are turned back into glm's convention.
-// The result is placed relative to the display window. Throws Error if the file is missing, no OpenEXR file,
-// damaged or incomplete, uses what an Image cannot hold (overscan or subsampled channels), or has more than
-// `max_pixels`, which is found before they are read.
-Image read_exr(const std::filesystem::path& path, uint64_t max_pixels = UINT64_MAX);
+// What of an image is read.
+struct ImageLimits {
+    // With more it is refused, which is found before any are read.
+    uint64_t max_pixels = uint64_t{1} << 30;
+    // The only channels whose values are read; all if none is named. The others are there, without values.
+    std::vector<std::string_view> channels{};
+
+    bool wants(std::string_view channel) const {
+        return channels.empty() || std::ranges::find(channels, channel) != channels.end();
+    }
+};
+
+// Reads the first part of an OpenEXR file, scan lines or tiles, of any type, as 32-bit floats (`half`
+// remembers 16-bit ones), and the attributes that an Image can hold; matrices are turned back into glm's
+// convention. The result is placed relative to the display window. Throws Error if the file is missing, no
+// OpenEXR file, damaged or incomplete, uses what an Image cannot hold (overscan, subsampled channels, deep
+// pixels), or exceeds the limits. No more memory is taken than the file's bytes may stand for.
+Image read_exr(const std::filesystem::path& path, const ImageLimits& limits = {});
 
 // The same for the bytes of an OpenEXR file; `name` is what messages call it.
-Image decode_exr(std::string_view bytes, const std::string& name);
+Image decode_exr(std::string_view bytes, const std::filesystem::path& name, const ImageLimits& limits = {});
 
 // Reads a Radiance picture, flat or in either of the format's run-length encodings, as the channels R, G and
 // B. Mantissas m and exponent e stand for m 2^(e - 136) exactly, divided by what the header's lines EXPOSURE
 // and COLORCORR say the file was multiplied by. Colours are taken as they are, whatever the line PRIMARIES
 // says. Throws Error if the file is missing, no Radiance picture, damaged or incomplete, has XYZ colours or
-// rows in another order than -Y +X, or has more than `max_pixels`, which is found before they are read.
+// rows in another order than -Y +X, or exceeds the limits.
 // Ref: Ward, "Real Pixels", Graphics Gems II (1991); "Radiance File Formats" (1994), "Picture File Format".
-Image read_hdr(const std::filesystem::path& path, uint64_t max_pixels = UINT64_MAX);
+Image read_hdr(const std::filesystem::path& path, const ImageLimits& limits = {});
 
 // read_exr() or read_hdr(), as the extension of `path` says: .exr, .hdr or .pic, whatever its case. Throws
 // Error as these do, and for any other extension.
-Image read_image(const std::filesystem::path& path, uint64_t max_pixels = UINT64_MAX);
+Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
 
 // Writes 8-bit RGB, row-major from the top, 3 * width * height bytes, without loss. Throws Error if the file
 // cannot be written or the picture is larger than the encoder's limit of 2^30 bytes. The file appears whole

@@ -26,10 +26,10 @@ class HdrReader {
   public:
     explicit HdrReader(const fs::path& path) : path_(path), bytes_(read_file(path)) {}
 
-    Image read(uint64_t max_pixels) {
+    Image read(const ImageLimits& limits) {
         read_header();
         const uvec2 size = read_size();
-        check_pixel_count(path_, size.x, size.y, max_pixels);
+        check_pixel_count(path_, size.x, size.y, limits.max_pixels);
         Image image;
         image.full = size;
         image.data = {0, 0, size.x, size.y};
@@ -202,9 +202,9 @@ class HdrReader {
 
 }  // namespace
 
-Image read_hdr(const fs::path& path, uint64_t max_pixels) {
+Image read_hdr(const fs::path& path, const ImageLimits& limits) {
     try {
-        return HdrReader(path).read(max_pixels);
+        return HdrReader(path).read(limits);
     } catch (const std::bad_alloc&) {
         throw Error("cannot read " + quoted(path) +
                     ": there is not enough memory for its pixels; use a smaller image or a larger machine");

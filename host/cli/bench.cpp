@@ -200,7 +200,7 @@ ExitCode bench(const BenchArguments& arguments) {
         files.read_all("the scene's file", task.scene.files);
     Image reference;  // The task refers to it.
     if (arguments.reference) {
-        reference = read_exr(*arguments.reference);
+        reference = read_exr(*arguments.reference, {.channels = {"R", "G", "B"}});
         tasks[0].reference = reference_planes(*arguments.reference, reference, tasks[0]);
     }
 

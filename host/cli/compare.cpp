@@ -79,8 +79,9 @@ ExitCode run(const CompareArguments& arguments) {
         files.write("--heatmap", *arguments.heatmap);
         check_writable(*arguments.heatmap);
     }
-    const Image a = read_exr(arguments.a);
-    const Image b = read_exr(arguments.b);
+    const ImageLimits compared{.channels = {"R", "G", "B", "Variance.R", "Variance.G", "Variance.B"}};
+    const Image a = read_exr(arguments.a, compared);
+    const Image b = read_exr(arguments.b, compared);
     const CompareOptions options{.alpha = arguments.alpha.value_or(CompareOptions{}.alpha),
                                  .relmse = arguments.relmse};
     const Comparison comparison = compare(a, b, options);

@@ -13,7 +13,7 @@
 namespace candela {
 
 Image load_reference(const std::string& path, const RenderSettings& settings) {
-    Image reference = read_exr(path);
+    Image reference = read_exr(path, {.channels = {"R", "G", "B"}});
     const auto refuse = [&](const std::string& why) { throw Error("--reference: \"" + path + "\" " + why); };
     const auto describe = [](uvec2 full, const PixelRect& rect) {
         return std::to_string(full.x) + 'x' + std::to_string(full.y) + " pixels, crop " +

@@ -54,7 +54,7 @@ std::string describe_unusable(size_t count, size_t texels) {
 
 Environment load_environment(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const std::string name = file.string();
-    const Image image = read_image(file, MAX_TEXELS);
+    const Image image = read_image(file, {.max_pixels = MAX_TEXELS, .channels = {"R", "G", "B", "Y"}});
     check_complete(image, name);
     const RgbPlanes colours = find_colours(image, name);
 

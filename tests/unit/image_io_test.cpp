@@ -65,9 +65,13 @@ TEST(ImageIo, ReadsTheFormatsThatItKnowsByExtension) {
         EXPECT_EQ(read_image(directory / name).find("R")->values[0], 1.0f);
     }
     // The limit on pixels reaches the readers.
-    EXPECT_NE(error_of([&] { read_image(directory / "a.EXR", 1); }).find("2x1 pixels are more than the 1"),
+    EXPECT_NE(error_of([&] {
+                  read_image(directory / "a.EXR", {.max_pixels = 1});
+              }).find("2x1 pixels are more than the 1"),
               std::string::npos);
-    EXPECT_NE(error_of([&] { read_image(directory / "a.hdr", 0); }).find("1x1 pixels are more than the 0"),
+    EXPECT_NE(error_of([&] {
+                  read_image(directory / "a.hdr", {.max_pixels = 0});
+              }).find("1x1 pixels are more than the 0"),
               std::string::npos);
     EXPECT_EQ(error_of([] { read_image("sky.jpg"); }),
               "image file \"sky.jpg\" has the unknown extension \".jpg\" (supported: .exr, .hdr)");
