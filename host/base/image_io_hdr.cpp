@@ -34,9 +34,10 @@ class HdrReader {
         image.full = size;
         image.data = {0, 0, size.x, size.y};
         image.channels = {{"R", {}}, {"G", {}}, {"B", {}}};
+        check_bytes(size);
+        for (Channel& channel : image.channels)
+            channel.values.reserve(image.pixel_count());
         std::vector<Rgbe> row(size.x);
-        // The channels grow with the rows, so that a short file whose header claims a huge picture ends
-        // before the memory does.
         for (row_ = 1; row_ <= size.y; ++row_) {
             read_row(row);
             append(row, image);
@@ -127,6 +128,17 @@ class HdrReader {
         return {uint32_t(width), uint32_t(height)};
     }
 
+    // Runs make a row of any length of sixteen bytes. No picture that somebody sees by is like that: throws
+    // Error if the file claims far more pixels than the newer encoding, which has 16 a byte at most, could
+    // hold.
+    void check_bytes(uvec2 size) const {
+        constexpr uint64_t PIXELS_PER_BYTE = 64, SLACK = uint64_t{1} << 20;
+        if (uint64_t{size.x} * size.y > PIXELS_PER_BYTE * bytes_.size() + SLACK) {
+            fail("its " + std::to_string(size.x) + 'x' + std::to_string(size.y) + " pixels are more than " +
+                 std::to_string(bytes_.size()) + " bytes are taken for; make the image smaller");
+        }
+    }
+
     // Each row has an encoding of its own. Two bytes of 2 and then the width announce the newer one, which no
     // pixel of the older one can look like: its greatest mantissa would be at least 128.
     void read_row(std::vector<Rgbe>& row) {
@@ -182,16 +194,21 @@ class HdrReader {
     [[noreturn]] void fail_run() const { fail_damaged("a run of pixels exceeds " + row_name()); }
 
     void append(const std::vector<Rgbe>& row, Image& image) const {
-        constexpr int BIAS = 128 + 8;  // Of the exponent; mantissas count 1/256.
         for (size_t c = 0; c < 3; ++c) {
             std::vector<float>& values = image.channels[c].values;
-            for (const Rgbe& pixel : row) {
-                // Exponent 0 is black, whatever the mantissas.
-                const float value = pixel[3] == 0 ? 0.0f : std::ldexp(float(pixel[c]), pixel[3] - BIAS);
-                values.push_back(value / divisor_[int(c)]);
-            }
+            for (const Rgbe& pixel : row)
+                values.push_back(float(pixel[c]) * SCALES[pixel[3]] / divisor_[int(c)]);
         }
     }
+
+    // What a mantissa counts, by the exponent; 0 is black, whatever the mantissas.
+    static inline const std::array<float, 256> SCALES = [] {
+        constexpr int BIAS = 128 + 8;  // Of the exponent; mantissas count 1/256.
+        std::array<float, 256> scales{};
+        for (int exponent = 1; exponent < 256; ++exponent)
+            scales[size_t(exponent)] = std::ldexp(1.0f, exponent - BIAS);
+        return scales;
+    }();
 
     const fs::path& path_;
     std::string bytes_;
