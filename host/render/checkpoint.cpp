@@ -2,11 +2,13 @@
 #include "render/checkpoint.h"
 
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/image_io.h"
+#include "render/sample_range.h"
 
 namespace candela {
 namespace {
@@ -15,6 +17,14 @@ constexpr const char* COMPONENTS[] = {"R", "G", "B", "A"};
 constexpr const char* CHECKSUM_ATTRIBUTE = "candela.checksum";
 constexpr const char* PLANNED_ATTRIBUTE = "candela.planned";
 constexpr const char* SECONDS_ATTRIBUTE = "candela.renderSeconds";
+constexpr const char* FORMAT_ATTRIBUTE = "candela.checkpoint";
+constexpr const char* STATES_ATTRIBUTE = "candela.states";
+
+// Of the file; larger in a version whose checkpoints older ones would not understand.
+constexpr uint32_t FORMAT = 1;
+
+// Of a rendering, and of an adaptive one: see adaptive.h.
+constexpr size_t PLAIN_STATES = 1, ADAPTIVE_STATES = 4;
 
 // What names of the first state's channels and attributes begin with, and those of others.
 std::string prefix_of(size_t state) {
@@ -97,6 +107,60 @@ Accumulation read_layers(const Image& image, size_t index, const std::string& na
     return state;
 }
 
+[[noreturn]] void fail_damaged(const std::string& name, const std::string& what) {
+    throw Error(name + ": the checkpoint is damaged: " + what +
+                "; use an undamaged copy, or remove the file to start anew");
+}
+
+// Throws Error if a newer version wrote the file, or if it does not hold as many states as it says.
+void check_format(const Image& image, const std::string& name) {
+    const auto format = number_attribute<uint32_t>(image, FORMAT_ATTRIBUTE, name);
+    if (format > FORMAT) {
+        throw Error(name + ": the checkpoint was made by a newer version of candela (its format is " +
+                    std::to_string(format) + ", and " + std::to_string(FORMAT) +
+                    " is the newest known here); go on with that version");
+    }
+    const auto states = number_attribute<size_t>(image, STATES_ATTRIBUTE, name);
+    if (states != PLAIN_STATES && states != ADAPTIVE_STATES)
+        fail_damaged(name, "it says that it holds " + std::to_string(states) + " states, not 1 or 4");
+    if (states != count_states(image)) fail_damaged(name, "it does not hold as many states as it says");
+}
+
+bool is_count(float value, float most) {
+    return value >= 0.0f && value <= most && value == std::floor(value);
+}
+
+// What a renderer relies on, and no checksum of a forger's tells.
+void check_state(const Accumulation& state, const std::string& name) {
+    for (size_t i = 0; i < state.pixel_count(); ++i) {
+        const float samples = state.at(LAYER_L_COMPENSATION, i)[3];
+        const auto expect = [&](bool holds, const char* what) {
+            if (!holds)
+                fail_damaged(name,
+                             "pixel " + std::to_string(i) + " of a state has no whole number of " + what);
+        };
+        expect(is_count(samples, MAX_SPP), "samples");
+        expect(is_count(state.at(LAYER_L, i)[3], samples), "visible samples");
+        expect(is_count(state.at(LAYER_SQUARE, i)[3], MAX_SPP), "samples as its limit");
+        expect(is_count(state.at(LAYER_SQUARE_COMPENSATION, i)[3], MAX_RAYS), "rays");
+    }
+}
+
+// The states of one rendering differ in their seeds, as adaptive_states() says.
+void check_together(const Checkpoint& checkpoint, const std::string& name) {
+    const Accumulation& first = checkpoint.states.front();
+    for (size_t i = 0; i < checkpoint.states.size(); ++i) {
+        const Accumulation& state = checkpoint.states[i];
+        if (state.seed != (first.seed ^ uint32_t(i) << 30) || state.first_sample != first.first_sample ||
+            state.layer_count != first.layer_count)
+            fail_damaged(name, "its states are not those of one rendering");
+    }
+    const CheckpointHeader& header = checkpoint.header;
+    if (!(header.render_seconds >= 0.0 && std::isfinite(header.render_seconds)))
+        fail_damaged(name, "its rendering time is none");
+    if (header.planned > MAX_SPP) fail_damaged(name, "it plans more samples than a pixel can hold");
+}
+
 }  // namespace
 
 void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& header,
@@ -109,6 +173,8 @@ void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& 
         });
         add_layers(image, index, states[index]);
     }
+    image.attributes[FORMAT_ATTRIBUTE] = std::to_string(FORMAT);
+    image.attributes[STATES_ATTRIBUTE] = std::to_string(states.size());
     image.attributes[PLANNED_ATTRIBUTE] = std::to_string(header.planned);
     image.attributes[SECONDS_ATTRIBUTE] = std::to_string(header.render_seconds);
     set_identity(image, header.identity);
@@ -121,25 +187,24 @@ Checkpoint load_checkpoint(const std::filesystem::path& path) {
     const Image image = read_exr(path);
     const std::string name = path.string();
     const std::string& expected = text_attribute(image, CHECKSUM_ATTRIBUTE, name);
+    check_format(image, name);
     Checkpoint checkpoint;
     for (size_t index = 0; index < count_states(image); ++index)
         checkpoint.states.push_back(read_layers(image, index, name));
-    if (hexadecimal(checksum(image, checkpoint.states)) != expected) {
-        throw Error(
-            name +
-            ": the checkpoint is damaged: its contents do not have its checksum; use an undamaged copy, "
-            "or remove the file to start anew");
-    }
+    if (hexadecimal(checksum(image, checkpoint.states)) != expected)
+        fail_damaged(name, "its contents do not have its checksum");
     for (size_t index = 0; index < checkpoint.states.size(); ++index) {
         for_each_number(checkpoint.states[index], prefix_of(index),
                         [&]<class Number>(const std::string& attribute, Number& number) {
                             number = number_attribute<Number>(image, attribute, name);
                         });
+        check_state(checkpoint.states[index], name);
     }
     checkpoint.header = {.identity = identity_of(image, name),
                          .maker = maker_of(image, name),
                          .render_seconds = number_attribute<double>(image, SECONDS_ATTRIBUTE, name),
                          .planned = number_attribute<uint32_t>(image, PLANNED_ATTRIBUTE, name)};
+    check_together(checkpoint, name);
     return checkpoint;
 }
 

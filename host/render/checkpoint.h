@@ -25,11 +25,13 @@ struct Checkpoint {
 };
 
 // Writes a checkpoint to a file, whole or not at all: a multilayer EXR of the states' layers, bit for bit,
-// with a checksum. All states have values. Throws Error if that fails; the file then keeps its old contents.
+// with a checksum. There are one or four states, and all have values. Throws Error if that fails; the file
+// then keeps its old contents.
 void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& header,
                      std::span<const Accumulation> states);
 
-// Reads it back. Throws Error if the file is not a checkpoint, or if any bit of it that matters has changed.
+// Reads it back. Throws Error if the file is not a checkpoint, if any bit of it that matters has changed, if
+// it holds what no renderer leaves, or if a newer version wrote it.
 Checkpoint load_checkpoint(const std::filesystem::path& path);
 
 }  // namespace candela

@@ -1,6 +1,7 @@
 // The file of a checkpoint: it keeps every bit, and a damaged one is refused.
 #include "render/checkpoint.h"
 
+#include <cmath>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -48,6 +49,14 @@ class CheckpointFile : public testing::Test {
         }
     }
 
+    // Those of an adaptive rendering.
+    static States four_states() {
+        States states(4, sampled(LAYER_COUNT_COLOUR).state);
+        for (uint32_t i = 0; i < states.size(); ++i)
+            states[i].seed ^= i << 30;
+        return states;
+    }
+
     TemporaryDirectory folder_;
     std::filesystem::path file_ = folder_ / "state.exr";
 };
@@ -55,9 +64,9 @@ class CheckpointFile : public testing::Test {
 TEST_F(CheckpointFile, KeepsEveryBit) {
     for (const uint32_t layers : {LAYER_COUNT_COLOUR, LAYER_COUNT_AOVS}) {
         Accumulation state = sampled(layers).state;
-        state.values[5] = -0.0f;
-        state.values[6] = 0x1p-149f;
-        state.values[7] = INFINITE;
+        state.values[4] = -0.0f;
+        state.values[5] = 0x1p-149f;
+        state.values[6] = INFINITE;
         save({state});
         expect_same(load_checkpoint(file_), {state});
     }
@@ -68,7 +77,7 @@ TEST_F(CheckpointFile, KeepsSeveralStates) {
     for (uint32_t i = 0; i < states.size(); ++i) {
         states[i].seed ^= i << 30;
         states[i].counters.rays += i;
-        states[i].values[i] = 100.0f + float(i);
+        states[i].values[4 * i] = 100.0f + float(i);
         states[i].set_limit(i, 1000 * i);
     }
     save(states);
@@ -93,7 +102,7 @@ TEST_F(CheckpointFile, DamageIsNoticed) {
 // What OpenEXR itself would not notice: values and attributes that are exchanged for others.
 TEST_F(CheckpointFile, ChangesThatLeaveAValidFileAreNoticed) {
     const auto after = [this](const std::function<void(Image&)>& change) {
-        save({2, sampled(LAYER_COUNT_COLOUR).state});
+        save(four_states());
         Image image = read_exr(file_);
         change(image);
         write_exr(file_, image);
@@ -121,9 +130,72 @@ TEST_F(CheckpointFile, ChangesThatLeaveAValidFileAreNoticed) {
         name + "the channel Layer3.G is missing; give a checkpoint that candela render wrote, unchanged");
     EXPECT_EQ(after([](Image& image) {
                   std::erase_if(image.channels,
-                                [](const Channel& c) { return c.name.starts_with("State1."); });
+                                [](const Channel& c) { return c.name.starts_with("State3."); });
               }),
-              damaged);
+              name +
+                  "the checkpoint is damaged: it does not hold as many states as it says; use an undamaged "
+                  "copy, or "
+                  "remove the file to start anew");
+}
+
+// With a checksum that is right.
+TEST_F(CheckpointFile, WhatNoRendererLeavesIsRefused) {
+    const auto expect_refused = [this](const States& states, const std::string& what) {
+        save(states);
+        EXPECT_EQ(error_of([&] { load_checkpoint(file_); }),
+                  file_.string() + ": the checkpoint is damaged: " + what +
+                      "; use an undamaged copy, or remove the file to start anew");
+    };
+    for (const size_t count : {2u, 3u, 5u}) {
+        expect_refused(States(count, sampled(LAYER_COUNT_COLOUR).state),
+                       "it says that it holds " + std::to_string(count) + " states, not 1 or 4");
+    }
+    const auto expect_alpha_refused = [&](uint32_t layer, const std::string& what) {
+        for (const float bad : {-1.0f, 0.5f, 16777218.0f, INFINITE, std::nanf("")}) {
+            for (States states : {States{four_states()[0]}, four_states()}) {
+                std::vector<float>& values = states.back().values;
+                values[(layer * states.back().pixel_count() + 2) * 4 + 3] = bad;
+                expect_refused(states, "pixel 2 of a state has no whole number of " + what);
+            }
+        }
+    };
+    expect_alpha_refused(LAYER_L_COMPENSATION, "samples");
+    expect_alpha_refused(LAYER_L, "visible samples");
+    expect_alpha_refused(LAYER_SQUARE, "samples as its limit");
+    expect_alpha_refused(LAYER_SQUARE_COMPENSATION, "rays");
+    States states = four_states();
+    states[2].seed += 1;
+    expect_refused(states, "its states are not those of one rendering");
+    states = four_states();
+    states[1].first_sample += 1;
+    expect_refused(states, "its states are not those of one rendering");
+}
+
+TEST_F(CheckpointFile, HeadersThatNoRendererLeavesAreRefused) {
+    const auto message = [this](const CheckpointHeader& header) {
+        save_checkpoint(file_, header, States{sampled(LAYER_COUNT_COLOUR).state});
+        return error_of([&] { load_checkpoint(file_); });
+    };
+    for (const double seconds : {-1.0, double(INFINITE), std::nan("")}) {
+        CheckpointHeader header = HEADER;
+        header.render_seconds = seconds;
+        EXPECT_NE(message(header).find("its rendering time is none"), std::string::npos);
+    }
+    CheckpointHeader header = HEADER;
+    header.planned = (1u << 24) + 1;
+    EXPECT_NE(message(header).find("it plans more samples than a pixel can hold"), std::string::npos);
+}
+
+TEST_F(CheckpointFile, ANewerFormatIsRefused) {
+    save({sampled(LAYER_COUNT_COLOUR).state});
+    Image image = read_exr(file_);
+    image.attributes["candela.checkpoint"] = std::string("2");
+    write_exr(file_, image);
+    EXPECT_EQ(error_of([&] { load_checkpoint(file_); }),
+              file_.string() +
+                  ": the checkpoint was made by a newer version of candela (its format is 2, and 1 is the "
+                  "newest known "
+                  "here); go on with that version");
 }
 
 TEST_F(CheckpointFile, UnreadableAndUnwritableFilesAreNamed) {
