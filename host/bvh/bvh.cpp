@@ -28,8 +28,6 @@ namespace {
 // A range larger than this is a task of its own: small enough for many tasks a thread, large enough that
 // taking a task costs nothing against it.
 constexpr uint32_t TASK_SIZE = 8192;
-// Coordinates below it leave room to add, subtract and scale boxes in float arithmetic.
-constexpr float MAX_COORDINATE = 1e37f;
 
 // A piece of the tree, with references from its first node and its first position. Either a whole subtree, or
 // one node of whose children those that are nodes begin pieces of their own.

@@ -192,8 +192,10 @@ Renderer::Work Renderer::complete(const Tile& tile) {
         if (words[COUNTER_SAMPLES] == 0) {
             throw Error(
                 "the driver of " + device_->info().name +
-                " ends loops before a single path is finished; allow fewer bounces (--max-depth), or use "
-                "another device (candela devices lists them)");
+                " ends loops before a single path is finished: paths are too long, or rays meet too many "
+                "shapes "
+                "in the same place; allow fewer bounces (--max-depth), remove shapes that lie on each other, "
+                "or use another device (candela devices lists them)");
         }
     }
 }

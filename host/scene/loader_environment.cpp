@@ -11,7 +11,7 @@ namespace {
 Environment load(const Node& file, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
     try {
         std::vector<std::string> odd;
-        Environment environment = load_environment(folder / file.string(), odd);
+        Environment environment = load_environment(folder / file.file_name(), odd);
         for (const std::string& warning : odd)
             warnings.push_back(file.place() + ": " + warning);
         return environment;

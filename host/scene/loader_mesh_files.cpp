@@ -47,7 +47,7 @@ std::string name_of(const Node& file, const ObjPart& part) {
 void add_surfaces(const Node& file, const ObjParts& obj, ShapeList& shapes) {
     const auto is_there = [&](const ObjPart& part) { return shapes.find_file_surface(name_of(file, part)); };
     if (std::all_of(obj.parts.begin(), obj.parts.end(), is_there)) return;
-    const std::filesystem::path path = shapes.path_of(file.string());
+    const std::filesystem::path path = shapes.path_of(file.file_name());
     Scene& scene = shapes.scene();
     const MtlLibrary library = read_from(file, [&] { return load_mtl_libraries(path, obj.libraries); });
     warn(file, library.warnings, scene);
@@ -73,7 +73,7 @@ void read_obj_with_materials(const Node& node, ShapeList& shapes) {
     const Node file = node.require("file");
     const Transform transform = ShapeList::transform_of(node);
     const MeshNormals normals = normals_of(node);
-    const std::filesystem::path path = shapes.path_of(file.string());
+    const std::filesystem::path path = shapes.path_of(file.file_name());
     ObjParts obj = read_from(file, [&] { return load_obj_parts(path, normals); });
     shapes.scene().files.push_back(path);
     const auto has_material = [](const ObjPart& part) { return part.material.has_value(); };
@@ -110,7 +110,7 @@ void read_whole(const Node& node, ShapeList& shapes, Load load) {
     const Transform transform = ShapeList::transform_of(node);
     const Node file = node.require("file");
     const MeshNormals normals = normals_of(node);
-    const std::filesystem::path path = shapes.path_of(file.string());
+    const std::filesystem::path path = shapes.path_of(file.file_name());
     TriangleMesh mesh = read_from(file, [&] { return load(file, path, normals); });
     shapes.scene().files.push_back(path);
     move_to_world(file, transform, mesh);

@@ -25,11 +25,10 @@ double greatest(dvec3 v) {
     return std::max({size.x, size.y, size.z});
 }
 
-// Throws Error if the box center +- reach does not fit into floats. False comparisons catch NaN as well.
+// Throws Error if the box center +- reach goes too far. False comparisons catch NaN as well.
 void check_reach(const Node& node, dvec3 center, dvec3 reach) {
-    constexpr double MOST = 3.4e38;  // Leaves room for the rounding of the sum.
-    if (!glm::all(glm::lessThan(abs(center) + reach, dvec3(MOST)))) {
-        node.fail("the shape reaches out of the range of 32-bit floats; check its numbers and its transform");
+    if (!glm::all(glm::lessThan(abs(center) + reach, dvec3(double(MAX_COORDINATE))))) {
+        node.fail("the shape reaches beyond 1e37 along an axis; check its numbers and its transform");
     }
 }
 

@@ -135,6 +135,12 @@ const std::string& Node::string() const {
     return *value;
 }
 
+const std::string& Node::file_name() const {
+    if (string().find('\0') != std::string::npos)
+        fail("a file name cannot hold the character U+0000; remove it");
+    return string();
+}
+
 double Node::number() const {
     const double* value = std::get_if<double>(&value_->data);
     if (value == nullptr) fail_expected("a number");

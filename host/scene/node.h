@@ -55,6 +55,8 @@ class Node {
     bool is_string() const { return std::holds_alternative<std::string>(value_->data); }
     bool boolean() const;
     const std::string& string() const;
+    // A string that can name a file.
+    const std::string& file_name() const;
     // A number that a float can hold.
     double number() const;
     // A number in [lo, hi], compared as floats: what is written like a limit is within it.

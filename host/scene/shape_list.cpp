@@ -9,8 +9,8 @@
 namespace candela {
 
 vec3 rounded(const Node& node, glm::dvec3 p) {
-    if (!glm::all(glm::lessThanEqual(abs(p), glm::dvec3(FLOAT_MAX)))) {
-        node.fail("the transform moves a point out of the range of 32-bit floats");
+    if (!glm::all(glm::lessThanEqual(abs(p), glm::dvec3(double(MAX_COORDINATE))))) {
+        node.fail("a point of the shape lies beyond 1e37 along an axis; check its numbers and its transform");
     }
     return vec3(p);
 }

@@ -97,7 +97,7 @@ TEST(SceneShapes, CheckSpheres) {
     const std::string small =
         "the transform makes the sphere too small for 32-bit floats; use greater factors";
     const std::string reach =
-        "the shape reaches out of the range of 32-bit floats; check its numbers and its transform";
+        "the shape reaches beyond 1e37 along an axis; check its numbers and its transform";
     folder.expect_error(marked(R"("radius": 1e-20, "transform": [{"scale": 1e-19}])"), small);
     folder.expect_error(marked(R"("transform": [{"scale": 1e30}, {"scale": 1e10}])"), reach);
     folder.expect_error(marked(R"("center": [0, -2e38, 0], "radius": 2e38)"), reach);
@@ -175,11 +175,29 @@ TEST(SceneShapes, CheckDisks) {
     folder.expect_error(
         marked(R"("transform": [{"matrix": [1, 1e8, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}])"), narrow);
     const std::string reach =
-        "the shape reaches out of the range of 32-bit floats; check its numbers and its transform";
+        "the shape reaches beyond 1e37 along an axis; check its numbers and its transform";
     folder.expect_error(marked(R"("center": [3e38, 0, 0], "radius": 1e38)"), reach);
     folder.expect_error(marked(R"("transform": [{"scale": 1e30}, {"scale": 1e10}])"), reach);
-    EXPECT_NO_THROW(folder.load(scene_of(R"({"type": "disk", "normal": [0, 0, 1], "center": [3e38, 0, 0],
-        "radius": 3e37, "emission": 1})")));
+    EXPECT_NO_THROW(folder.load(scene_of(R"({"type": "disk", "normal": [0, 0, 1], "center": [9e36, 0, 0],
+        "radius": 9e35, "emission": 1})")));
+}
+
+TEST(SceneShapes, ReachNoFurtherThanBoxesCan) {
+    SceneFolder folder;
+    folder.expect_error(
+        scene_of(R"({"type": "quad", "material": "white",
+                                     "vertices": [[0, 0, 0], [1, 0, 0], @[1, 2e37, 0], [0, 2e37, 0]]})"),
+        "a point of the shape lies beyond 1e37 along an axis; check its numbers and its transform");
+}
+
+TEST(SceneShapes, FilesHaveNamesThatASystemTakes) {
+    SceneFolder folder;
+    const std::string cause = "a file name cannot hold the character U+0000; remove it";
+    for (const char* type : {"obj", "ply"}) {
+        folder.expect_error(
+            scene_of(std::string(R"({"type": ")") + type + R"(", "file": @"a\u0000b", "material": "white"})"),
+            cause);
+    }
 }
 
 }  // namespace
