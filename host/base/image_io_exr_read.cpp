@@ -162,7 +162,7 @@ class ExrFile {
     const std::string_view& bytes_;
     const fs::path& path_;
     exr_context_t context_ = nullptr;
-    exr_decode_pipeline_t decoder_ = EXR_DECODE_PIPELINE_INITIALIZER;
+    exr_decode_pipeline_t decoder_{};
     bool decoder_is_ready_ = false;
 };
 

@@ -128,13 +128,20 @@ void TemporaryFile::commit() {
 fs::path TemporaryFile::commit_beside() {
     const std::string stem = target_.stem().string(), extension = target_.extension().string();
     for (int i = 1; !committed_; ++i) {
-        target_.replace_filename(stem + '-' + std::to_string(i) + extension);
+        std::string name = stem;
+        name += '-' + std::to_string(i) + extension;
+        target_.replace_filename(name);
         // Once there is a file of that name, and it is ours, it can be replaced.
         const int placeholder =
             retried([&] { return ::open(target_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600); });
         if (placeholder >= 0) {
             ::close(placeholder);
-            commit();
+            if (::rename(name_.c_str(), target_.c_str()) != 0) {
+                const int error = errno;
+                ::unlink(target_.c_str());
+                throw std::system_error(error, std::generic_category(), "rename");
+            }
+            committed_ = true;
         } else if (errno != EEXIST) {
             fail("open");
         }
