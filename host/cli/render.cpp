@@ -297,7 +297,8 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
 constexpr const char* FOOTER = R"(Example:
   candela render scenes/cornell-box.json -o box.exr -o box.png --spp 256 --size 512x512
 
-Ctrl-C stops early and writes the image so far (exit code 130); a second Ctrl-C ends at once.
+Ctrl-C stops early and writes the image so far (exit code 130), and so does the end of the terminal, unless
+nohup is there; a second Ctrl-C ends at once.
 
 With --checkpoint a rendering survives the end of the program: the same command with --resume goes on, to
 the same bits. A script can always pass --resume, the first time as well.
