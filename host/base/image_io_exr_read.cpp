@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <ImfFrameBuffer.h>
 #include <ImfIO.h>
@@ -164,6 +165,7 @@ class ExrFile {
     exr_context_t context_ = nullptr;
     exr_decode_pipeline_t decoder_{};
     bool decoder_is_ready_ = false;
+    std::vector<float> unwanted_;
 };
 
 void ExrFile::read_windows(Image& image) const {
@@ -224,17 +226,19 @@ void ExrFile::decode(const Chunk& chunk, Image& image, const ImageLimits& limits
         check(exr_decoding_initialize(context_, PART, &info, &decoder_));
         decoder_is_ready_ = true;
     }
+    // What nobody asked for has to go somewhere: the library skips no channel of an uncompressed file.
     const uint32_t width = image.data.width();
+    unwanted_.resize(size_t(width) * uint32_t(info.height));
     for (int i = 0; i < decoder_.channel_count; ++i) {
         Channel& channel = image.channels[size_t(i)];
         exr_coding_channel_info_t& out = decoder_.channels[i];
-        out.decode_to_ptr = nullptr;
-        if (!limits.wants(channel.name)) continue;
         out.user_bytes_per_element = sizeof(float);
         out.user_data_type = EXR_PIXEL_FLOAT;
         out.user_pixel_stride = sizeof(float);
         out.user_line_stride = int32_t(sizeof(float) * width);
-        out.decode_to_ptr = reinterpret_cast<uint8_t*>(&channel.values[size_t(chunk.y) * width + chunk.x]);
+        float* values = unwanted_.data();
+        if (limits.wants(channel.name)) values = &channel.values[size_t(chunk.y) * width + chunk.x];
+        out.decode_to_ptr = reinterpret_cast<uint8_t*>(values);
     }
     check(exr_decoding_choose_default_routines(context_, PART, &decoder_));
     check(exr_decoding_run(context_, PART, &decoder_));

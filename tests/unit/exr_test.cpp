@@ -325,6 +325,9 @@ TEST(Exr, ReadsEveryCompression) {
             ASSERT_NEAR(image.find("R")->values[i], values[i], tolerance * values[i]) << compression;
             ASSERT_EQ(image.find("id")->values[i], values[i]) << compression;
         }
+        const Image one = read_exr(path, {.channels = {"id"}});
+        EXPECT_EQ(one.find("id")->values, image.find("id")->values) << compression;
+        EXPECT_TRUE(one.find("R")->values.empty()) << compression;
     }
 }
 
