@@ -23,15 +23,54 @@ layout(std430, binding = BINDING_STORAGE + BINDING_PRIMITIVES) readonly buffer P
 };
 layout(std430, binding = BINDING_STORAGE + BINDING_TABLES) readonly buffer TablesBlock { uvec4 table_words[]; };
 
-// Word i of an array.
-#define SCENE_ARRAY(name, number, texels, words)                      \
-    uvec4 name(uint i) {                                              \
-        if ((STORAGE_ARRAYS & (1u << number)) != 0u) return words[i]; \
-        return texelFetch(texels, int(i));                            \
+// The words of an array from i on: one, or as many as there are names to read into. One branch for all of them, since
+// not every driver removes the code of the other side before it compiles it.
+#define IS_STORAGE(number) ((STORAGE_ARRAYS & (1u << number)) != 0u)
+
+void nodes(uint i, out uvec4 a, out uvec4 b, out uvec4 c, out uvec4 d) {
+    if (IS_STORAGE(BINDING_NODES)) {
+        a = node_words[i], b = node_words[i + 1u], c = node_words[i + 2u], d = node_words[i + 3u];
+    } else {
+        a = texelFetch(node_texels, int(i)), b = texelFetch(node_texels, int(i + 1u));
+        c = texelFetch(node_texels, int(i + 2u)), d = texelFetch(node_texels, int(i + 3u));
     }
-SCENE_ARRAY(nodes, BINDING_NODES, node_texels, node_words)
-SCENE_ARRAY(primitives, BINDING_PRIMITIVES, primitive_texels, primitive_words)
-SCENE_ARRAY(tables, BINDING_TABLES, table_texels, table_words)
+}
+
+void primitives(uint i, out uvec4 a, out uvec4 b, out uvec4 c) {
+    if (IS_STORAGE(BINDING_PRIMITIVES)) {
+        a = primitive_words[i], b = primitive_words[i + 1u], c = primitive_words[i + 2u];
+    } else {
+        a = texelFetch(primitive_texels, int(i)), b = texelFetch(primitive_texels, int(i + 1u));
+        c = texelFetch(primitive_texels, int(i + 2u));
+    }
+}
+
+uvec4 tables(uint i) {
+    uvec4 a;
+    if (IS_STORAGE(BINDING_TABLES)) {
+        a = table_words[i];
+    } else {
+        a = texelFetch(table_texels, int(i));
+    }
+    return a;
+}
+
+void tables(uint i, out uvec4 a, out uvec4 b) {
+    if (IS_STORAGE(BINDING_TABLES)) {
+        a = table_words[i], b = table_words[i + 1u];
+    } else {
+        a = texelFetch(table_texels, int(i)), b = texelFetch(table_texels, int(i + 1u));
+    }
+}
+
+void tables(uint i, out uvec4 a, out uvec4 b, out uvec4 c, out uvec4 d) {
+    if (IS_STORAGE(BINDING_TABLES)) {
+        a = table_words[i], b = table_words[i + 1u], c = table_words[i + 2u], d = table_words[i + 3u];
+    } else {
+        a = texelFetch(table_texels, int(i)), b = texelFetch(table_texels, int(i + 1u));
+        c = texelFetch(table_texels, int(i + 2u)), d = texelFetch(table_texels, int(i + 3u));
+    }
+}
 
 layout(std140, binding = BINDING_PARAMETERS) uniform ParametersBlock { uvec4 parameter_words[PARAMETERS_WORDS]; };
 
@@ -40,14 +79,16 @@ Parameters scene_parameters() {
 }
 
 BvhNode scene_node(uint i) {
-    i *= BVH_NODE_WORDS;
-    return bvh_node_unpack(nodes(i), nodes(i + 1u), nodes(i + 2u), nodes(i + 3u));
+    uvec4 a, b, c, d;
+    nodes(i * BVH_NODE_WORDS, a, b, c, d);
+    return bvh_node_unpack(a, b, c, d);
 }
 
 // Primitive at that position in leaf order.
 Primitive scene_primitive(uint i) {
-    i *= PRIMITIVE_WORDS;
-    return primitive_unpack(primitives(i), primitives(i + 1u), primitives(i + 2u));
+    uvec4 a, b, c;
+    primitives(i * PRIMITIVE_WORDS, a, b, c);
+    return primitive_unpack(a, b, c);
 }
 
 // Surface of the primitive at that position in leaf order.
@@ -61,13 +102,15 @@ uvec4 scene_normals(uint i) {
 }
 
 MaterialRecord scene_material(uint i) {
-    i = scene_parameters().tables.materials + i * MATERIAL_WORDS;
-    return material_unpack(tables(i), tables(i + 1u));
+    uvec4 a, b;
+    tables(scene_parameters().tables.materials + i * MATERIAL_WORDS, a, b);
+    return material_unpack(a, b);
 }
 
 Light scene_light(uint i) {
-    i = scene_parameters().tables.lights + i * LIGHT_WORDS;
-    return light_unpack(tables(i), tables(i + 1u), tables(i + 2u), tables(i + 3u));
+    uvec4 a, b, c, d;
+    tables(scene_parameters().tables.lights + i * LIGHT_WORDS, a, b, c, d);
+    return light_unpack(a, b, c, d);
 }
 
 // Entry of the alias table that chooses lights.
