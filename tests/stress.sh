@@ -1,6 +1,6 @@
 #!/bin/sh
-# Repeats the tests of what waits (windows, signals, intervals, time limits, failing devices) beside other work: at nice
-# 19 and four busy loops, each of which has a session of its own, like the work of other users.
+# Repeats the tests of what waits (windows, signals, intervals, time limits, failing devices) beside other work: four at
+# a time, at nice 19, beside four busy loops, each of which has a session of its own, like the work of other users.
 #   usage: sh tests/stress.sh [REPETITIONS [TESTS]]   (50; TESTS: a regular expression of names, as for ctest -R)
 set -eu
 cd "$(dirname "$0")/.."
@@ -20,5 +20,5 @@ for _ in 1 2 3 4; do
 done
 for repetition in $(seq "$repetitions"); do
     echo "repetition $repetition of $repetitions"
-    nice -n 19 ctest --preset ci -R "$tests" --stop-on-failure
+    nice -n 19 ctest --preset ci -R "$tests" --stop-on-failure --parallel 4
 done

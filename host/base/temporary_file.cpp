@@ -43,8 +43,7 @@ auto retried(Call call) {
 }
 
 // What the names of this computer's files begin with until it is started anew: ".candela-", 16 hexadecimal
-// digits and
-// "-". Empty if the system does not tell when that was.
+// digits and "-". Empty if the system does not tell when that was.
 const std::string& own_prefix() {
     static const std::string prefix = [] {
         std::array<char, 256> host{};
