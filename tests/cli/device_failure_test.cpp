@@ -88,14 +88,18 @@ TEST_F(DeviceFailure, AnAdaptiveRenderingGoesOnInEveryState) {
     EXPECT_EQ(report()["image_hash"], undisturbed());
 }
 
-// The last state is written: here, what a checkpoint held.
+// The last state is written: here, what a checkpoint held. Each device fails at the first submission that
+// renders, so that a slow one makes no progress either.
 TEST_F(DeviceFailure, AfterFiveFailuresWithoutProgressTheErrorStands) {
-    const Words checkpoint = {"--checkpoint", file("state.exr"), "--resume"};
+    const Words checkpoint = {"--checkpoint", file("state.exr"), "--resume", "--aov", "none"};
     ASSERT_EQ(candela(Words{"render", CORNELL_BOX, "-o", file("b.exr"), "--size", "64x64", "--spp", "3"} +
                       checkpoint)
                   .exit_code,
               0);
-    const ProcessResult result = render_on_failing(1000, 20, OUT_OF_DEVICE_MEMORY, checkpoint);
+    const ProcessResult result =
+        candela(Words{"render", CORNELL_BOX, "-o", file("a.exr")} + picture_ + checkpoint,
+                failing_device(1000, 0, OUT_OF_DEVICE_MEMORY) +
+                    std::map<std::string, std::string>{{"FAULT_WORK", "1"}});
     EXPECT_EQ(result.exit_code, 5);
     EXPECT_EQ(recoveries(result.err).size(), 4u);
     EXPECT_CONTAINS(result.err, "VK_ERROR_OUT_OF_DEVICE_MEMORY (-2)");
@@ -104,7 +108,6 @@ TEST_F(DeviceFailure, AfterFiveFailuresWithoutProgressTheErrorStands) {
     EXPECT_CONTAINS(result.err, "candela: error: vkQueueSubmit(");
     const Image image = read_exr(file("a.exr"));
     EXPECT_EQ(image.find("R")->values, read_exr(file("b.exr")).find("R")->values);
-    EXPECT_EQ(image.find("Z")->values, read_exr(file("b.exr")).find("Z")->values);
 }
 
 // A driver that resets its device cannot open it at once.

@@ -137,7 +137,12 @@ TEST_F(View, AfterFiveFailuresWithoutProgressItWritesWhatThereIs) {
     const auto spp = uint32_t(std::get<float>(image.attributes.at("samplesPerPixel")));
     ASSERT_GE(spp, 8u);
     EXPECT_CONTAINS(result.err, "going on from " + std::to_string(spp) + " samples per pixel");
-    expect_same_rgb(image, rendered(size + Words{"--spp", std::to_string(spp)}));
+    // A device that is slow beside other work is held between two submissions, when some pixels have more
+    // samples.
+    const std::vector<float>& counts = image.find("SampleCount.V")->values;
+    EXPECT_EQ(std::ranges::min(counts), float(spp));
+    if (std::ranges::max(counts) == float(spp))
+        expect_same_rgb(image, rendered(size + Words{"--spp", std::to_string(spp)}));
 }
 
 TEST_F(View, OtherErrorsAreNotTriedAgain) {

@@ -1,6 +1,7 @@
 // A Vulkan layer that makes devices fail, for tests of what a program does then. Each of the first
 // FAULT_DEVICES devices that are opened runs FAULT_AFTER submissions; all others it answers with the VkResult
-// FAULT_RESULT, as a lost device would. After the first device, FAULT_OPENINGS times none can be opened. With
+// FAULT_RESULT, as a lost device would. With FAULT_WORK=1 submissions count from the first on that dispatches
+// more than one work group. After the first device, FAULT_OPENINGS times none can be opened. With
 // FAULT_ENUMERATION, a VkResult, no device is found; with FAULT_MEMORY=1 all have memory heaps of 0 bytes.
 #include <cstdlib>
 #include <cstring>
@@ -13,9 +14,11 @@ namespace {
 PFN_vkGetInstanceProcAddr next_instance_function = nullptr;
 PFN_vkGetDeviceProcAddr next_device_function = nullptr;
 PFN_vkQueueSubmit next_submit = nullptr;
+PFN_vkCmdDispatch next_dispatch = nullptr;
 VkInstance the_instance = VK_NULL_HANDLE;
 int devices = 0;
 int submissions = 0;  // To the newest device.
+bool works = false;   // It has had a dispatch of more than one work group.
 
 int number(const char* name) {
     const char* const text = std::getenv(name);
@@ -61,17 +64,26 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const Vk
     }
     ++devices;
     submissions = 0;
+    works = false;
     const VkResult result = create(physical, info, allocator, device);
     if (result == VK_SUCCESS)
         next_submit = reinterpret_cast<PFN_vkQueueSubmit>(next_device_function(*device, "vkQueueSubmit"));
+    if (result == VK_SUCCESS)
+        next_dispatch = reinterpret_cast<PFN_vkCmdDispatch>(next_device_function(*device, "vkCmdDispatch"));
     return result;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL queue_submit(VkQueue queue, uint32_t count, const VkSubmitInfo* infos,
                                             VkFence fence) {
-    if (devices <= number("FAULT_DEVICES") && ++submissions > number("FAULT_AFTER"))
+    if (devices <= number("FAULT_DEVICES") && (works || number("FAULT_WORK") == 0) &&
+        ++submissions > number("FAULT_AFTER"))
         return static_cast<VkResult>(number("FAULT_RESULT"));
     return next_submit(queue, count, infos, fence);
+}
+
+VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x, uint32_t y, uint32_t z) {
+    works = works || x * y * z > 1;
+    next_dispatch(commands, x, y, z);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL enumerate_devices(VkInstance instance, uint32_t* count,
@@ -96,6 +108,7 @@ PFN_vkVoidFunction own_function(const char* name) {
         return reinterpret_cast<PFN_vkVoidFunction>(create_instance);
     if (std::strcmp(name, "vkCreateDevice") == 0) return reinterpret_cast<PFN_vkVoidFunction>(create_device);
     if (std::strcmp(name, "vkQueueSubmit") == 0) return reinterpret_cast<PFN_vkVoidFunction>(queue_submit);
+    if (std::strcmp(name, "vkCmdDispatch") == 0) return reinterpret_cast<PFN_vkVoidFunction>(dispatch);
     if (std::strcmp(name, "vkEnumeratePhysicalDevices") == 0)
         return reinterpret_cast<PFN_vkVoidFunction>(enumerate_devices);
     if (std::strcmp(name, "vkGetPhysicalDeviceMemoryProperties") == 0)
