@@ -78,7 +78,7 @@ tests() {
     driver=$1
     effort=$2
     shift 2
-    on "$driver" CANDELA_TEST_EFFORT="$effort" ctest --preset ci "$@"
+    on "$driver" CANDELA_TEST_EFFORT="$effort" ctest --preset ci --parallel "$(nproc)" "$@"
 }
 
 # compare DRIVER SIZE SCENE...: its images with those of the system's driver. Other seeds, so that the samples of the

@@ -62,10 +62,10 @@ vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv,
     return kernel;
 }
 
-std::vector<uint32_t> run_probe(const vk::Device& device, std::span<const uint32_t> spirv,
+std::vector<uint32_t> run_probe(const vk::Device& device, vk::Kernel& kernel,
                                 std::span<const std::byte> items, size_t item_words, size_t result_words,
-                                const std::vector<uint32_t>& constants, const DeviceScene* scene) {
-    vk::Kernel kernel = make_probe(device, spirv, constants, scene, "probe");
+                                const DeviceScene* scene) {
+    if (scene != nullptr) scene->buffers().bind_to(kernel);
     vk::Commands commands(device);
 
     const size_t item_bytes = item_words * sizeof(uvec4);

@@ -51,26 +51,34 @@ struct ProbeCounts {
 vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv,
                       std::vector<uint32_t> constants, const DeviceScene* scene, const std::string& name);
 
-// Runs the probe `spirv` on all items, `item_words` uvec4 each; returns `result_words` words for each, in
-// order. `constants` and `scene` are those of make_probe().
-std::vector<uint32_t> run_probe(const vk::Device& device, std::span<const uint32_t> spirv,
+// Runs a probe on all items, `item_words` uvec4 each; returns `result_words` words for each, in order. A
+// scene may be another than that of make_probe(), in buffers of the same kinds.
+std::vector<uint32_t> run_probe(const vk::Device& device, vk::Kernel& kernel,
                                 std::span<const std::byte> items, size_t item_words, size_t result_words,
-                                const std::vector<uint32_t>& constants, const DeviceScene* scene);
+                                const DeviceScene* scene);
 
 // The same with types: an `Item` is a whole number of uvec4, a `Result` of 32-bit words, as the probe reads
 // and writes them.
 template <class Result, class Item>
-std::vector<Result> probe(const vk::Device& device, std::span<const uint32_t> spirv,
-                          const std::vector<Item>& items, const std::vector<uint32_t>& constants = {},
-                          const DeviceScene* scene = nullptr) {
+std::vector<Result> probe(const vk::Device& device, vk::Kernel& kernel, const std::vector<Item>& items,
+                          const DeviceScene* scene) {
     constexpr size_t TEXEL = sizeof(uvec4);
     static_assert(sizeof(Item) % TEXEL == 0 && sizeof(Result) % sizeof(uint32_t) == 0);
     const std::vector<uint32_t> words =
-        run_probe(device, spirv, std::as_bytes(std::span(items)), sizeof(Item) / TEXEL,
-                  sizeof(Result) / sizeof(uint32_t), constants, scene);
+        run_probe(device, kernel, std::as_bytes(std::span(items)), sizeof(Item) / TEXEL,
+                  sizeof(Result) / sizeof(uint32_t), scene);
     std::vector<Result> results(items.size());
     std::memcpy(static_cast<void*>(results.data()), words.data(), results.size() * sizeof(Result));
     return results;
+}
+
+// The same with a kernel that is made for it.
+template <class Result, class Item>
+std::vector<Result> probe(const vk::Device& device, std::span<const uint32_t> spirv,
+                          const std::vector<Item>& items, const std::vector<uint32_t>& constants = {},
+                          const DeviceScene* scene = nullptr) {
+    vk::Kernel kernel = make_probe(device, spirv, constants, scene, "probe");
+    return probe<Result>(device, kernel, items, scene);
 }
 
 }  // namespace candela

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "selftest/probe.h"
@@ -47,13 +48,24 @@ const std::vector<Sphere> SPHERES{
     {vec3(0, 0, 5), 1e-2f},
 };
 
-std::vector<InteractionResult> run(const vk::Device& device, const decltype(Shape::geometry)& geometry,
-                                   const std::vector<InteractionItem>& items) {
-    Scene scene = scene_of_mesh({});
-    scene.shapes = {{.geometry = geometry, .material = 0, .emission = {}}};
-    const DeviceScene on_device(device, build_gpu_scene(scene), SceneAccess::texel_buffers);
-    return probe<InteractionResult>(device, kernels::interaction, items, {}, &on_device);
-}
+// Runs shaders/probes/interaction. One kernel for all scenes: it takes longer to compile than to run.
+class Interactions {
+  public:
+    explicit Interactions(const vk::Device& device) : device_(device) {}
+
+    std::vector<InteractionResult> operator()(const decltype(Shape::geometry)& geometry,
+                                              const std::vector<InteractionItem>& items) {
+        Scene scene = scene_of_mesh({});
+        scene.shapes = {{.geometry = geometry, .material = 0, .emission = {}}};
+        const DeviceScene on_device(device_, build_gpu_scene(scene), SceneAccess::texel_buffers);
+        if (!kernel_) kernel_ = make_probe(device_, kernels::interaction, {}, &on_device, "interaction");
+        return probe<InteractionResult>(device_, *kernel_, items, &on_device);
+    }
+
+  private:
+    const vk::Device& device_;
+    std::optional<vk::Kernel> kernel_;
+};
 
 // Rays at points of the sphere, from around it or from within.
 std::vector<InteractionItem> items(Effort effort, const Sphere& sphere, bool from_inside, uint32_t side,
@@ -98,18 +110,18 @@ bool meets_far_side(const Sphere& sphere, const InteractionResult& r) {
     return std::abs(double(r.next_t) - far) <= 1e-2 * radius + 4.0 * double(r.p_error);
 }
 
-void test_rays_within(const vk::Device& device, Effort effort, const Sphere& sphere, bool from_inside,
-                      uint32_t seed, Evidence& evidence) {
+void test_rays_within(Interactions& run, Effort effort, const Sphere& sphere, bool from_inside, uint32_t seed,
+                      Evidence& evidence) {
     const std::string name = name_of(sphere) + (from_inside ? ", from inside" : "");
     const std::vector<InteractionItem> rays = items(effort, sphere, from_inside, from_inside ? 0 : 1, seed);
     std::vector<InteractionItem> both = rays;
-    const std::vector<InteractionResult> first = run(device, sphere, rays);
+    const std::vector<InteractionResult> first = run(sphere, rays);
     for (size_t i = 0; i < rays.size(); ++i) {
         both.push_back(rays[i]);
         both.back().wi = grazing(rays[i].wi, from_inside ? first[i].n : -first[i].n, 1e-3f);
     }
     size_t met = 0;
-    for (const InteractionResult& r : run(device, sphere, both)) {
+    for (const InteractionResult& r : run(sphere, both)) {
         if (r.t == NO_HIT) continue;
         ++met;
         evidence.expect(r.front == (from_inside ? 0u : 1u) && meets_far_side(sphere, r), [&] {
@@ -125,15 +137,16 @@ void test_rays_within(const vk::Device& device, Effort effort, const Sphere& sph
 // The direction of the second ray lies in the hemisphere of the normal where it starts, down to grazing
 // angles: the outside of a sphere cannot be seen from there.
 Evidence test_rays_outside_spheres(const vk::Device& device, Effort effort) {
+    Interactions run(device);
     Evidence evidence;
     uint32_t seed = 110;
     for (const Sphere& sphere : SPHERES) {
         std::vector<InteractionItem> rays = items(effort, sphere, false, 0, seed++);
-        std::vector<InteractionResult> results = run(device, sphere, rays);
+        std::vector<InteractionResult> results = run(sphere, rays);
         // Once more, at a grazing angle to the normals that were found.
         for (size_t i = 0; i < rays.size(); ++i)
             rays[i].wi = grazing(rays[i].wi, results[i].n, 1e-4f);
-        const std::vector<InteractionResult> more = run(device, sphere, rays);
+        const std::vector<InteractionResult> more = run(sphere, rays);
         results.insert(results.end(), more.begin(), more.end());
         size_t met = 0;
         for (const InteractionResult& r : results) {
@@ -150,20 +163,22 @@ Evidence test_rays_outside_spheres(const vk::Device& device, Effort effort) {
 }
 
 Evidence test_rays_within_spheres(const vk::Device& device, Effort effort) {
+    Interactions run(device);
     Evidence evidence;
     uint32_t seed = 130;
     for (const Sphere& sphere : SPHERES) {
         for (const bool from_inside : {false, true})
-            test_rays_within(device, effort, sphere, from_inside, seed, evidence);
+            test_rays_within(run, effort, sphere, from_inside, seed, evidence);
         ++seed;
     }
     return evidence;
 }
 
 Evidence test_points_on_spheres(const vk::Device& device, Effort effort) {
+    Interactions run(device);
     Evidence evidence;
     for (const Sphere& sphere : SPHERES) {
-        for (const InteractionResult& r : run(device, sphere, items(effort, sphere, false, 0, 150))) {
+        for (const InteractionResult& r : run(sphere, items(effort, sphere, false, 0, 150))) {
             if (r.t == NO_HIT) continue;
             const glm::dvec3 p(r.p), n(r.n), from_center = p - glm::dvec3(sphere.center);
             const double error = double(r.p_error);
@@ -184,6 +199,7 @@ Evidence test_points_on_spheres(const vk::Device& device, Effort effort) {
 }
 
 Evidence test_rays_at_disks(const vk::Device& device, Effort effort) {
+    Interactions run(device);
     Evidence evidence;
     for (const float radius : {1e-3f, 1.0f, 1e3f}) {
         for (const vec3 center : {vec3(0), vec3(0, -1, 0), vec3(100, 200, -300)}) {
@@ -202,7 +218,7 @@ Evidence test_rays_at_disks(const vk::Device& device, Effort effort) {
             }
             const std::string name = words("disk of radius ", radius, " at ", center.x);
             size_t met = 0;
-            for (const InteractionResult& r : run(device, disk, rays)) {
+            for (const InteractionResult& r : run(disk, rays)) {
                 if (r.t == NO_HIT) continue;
                 ++met;
                 evidence.expect(r.next_t == NO_HIT,
