@@ -1,19 +1,22 @@
 // Reads OpenEXR files, by the library's C interface: it checks sizes against the file's before it allocates,
 // and lets us look at each chunk before it is decoded. Version 3.1 knows no DWA compression there; such
-// files, checked by the one interface, are decoded by the other.
+// chunks are decoded by the other interface, which gets a file made of what has been checked.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <ImfFrameBuffer.h>
-#include <ImfIO.h>
-#include <ImfInputFile.h>
+#include <ImfChannelList.h>
+#include <ImfHeader.h>
+#include <ImfStdIO.h>
+#include <ImfTileDescription.h>
+#include <ImfVersion.h>
 #include <openexr.h>
 
 #include "base/error.h"
@@ -32,9 +35,9 @@ constexpr int PART = 0;  // The first one of a file.
 constexpr std::array<std::string_view, 4> FILE_ATTRIBUTES = {"name", "type", "pixelAspectRatio",
                                                              "screenWindowWidth"};
 
-// The most bytes that so many compressed ones can stand for, beside which a chunk may have a few more; DWA
-// and PIZ have no bound worth the name.
-constexpr uint64_t MAX_EXPANSION[EXR_COMPRESSION_LAST_TYPE] = {1,    64, 1032, 1032,       UINT32_MAX,
+// The most bytes that so many compressed ones can stand for, beside which a chunk may have a few more. PIZ:
+// runs of 255 words, by nine bits each. DWA, which packs what is packed, has no bound worth the name.
+constexpr uint64_t MAX_EXPANSION[EXR_COMPRESSION_LAST_TYPE] = {1,    64, 1032, 1032,       454,
                                                                1400, 3,  11,   UINT32_MAX, UINT32_MAX};
 constexpr uint64_t EXPANSION_SLACK = 1024;
 
@@ -68,27 +71,6 @@ int64_t byte_count(exr_const_context_t, void* user) {
     return int64_t(static_cast<const std::string_view*>(user)->size());
 }
 
-// The bytes of a file in memory, for the C++ interface; they must outlive it.
-class MemoryFile : public Imf::IStream {
-  public:
-    MemoryFile(std::string_view bytes, const std::string& name) : Imf::IStream(name.c_str()), bytes_(bytes) {}
-
-    bool read(char* out, int count) override {
-        const auto size = size_t(count);
-        if (position_ > bytes_.size() || size > bytes_.size() - position_)
-            throw std::runtime_error("it ends early");
-        std::memcpy(out, bytes_.data() + position_, size);
-        position_ += size;
-        return position_ < bytes_.size();
-    }
-    uint64_t tellg() override { return position_; }
-    void seekg(uint64_t position) override { position_ = position; }
-
-  private:
-    std::string_view bytes_;
-    size_t position_ = 0;
-};
-
 // An Imath matrix for row vectors is stored row by row, a glm matrix for column vectors column by column.
 // Each is the other transposed, and stored transposed: the 16 numbers stay in place.
 mat4 to_glm(const float* numbers) {
@@ -96,14 +78,6 @@ mat4 to_glm(const float* numbers) {
     for (int i = 0; i < 16; ++i)
         result[i / 4][i % 4] = numbers[i];
     return result;
-}
-
-// Lets the channels grow to so many rows: a short file whose header claims a huge picture runs out of file
-// before the machine runs out of memory.
-void grow(Image& image, uint32_t rows, const ImageLimits& limits) {
-    for (Channel& channel : image.channels) {
-        if (limits.wants(channel.name)) channel.values.resize(size_t(rows) * image.data.width());
-    }
 }
 
 class ExrFile {
@@ -155,8 +129,10 @@ class ExrFile {
     void read_windows(Image& image) const;
     void read_attributes(Image& image) const;
     void read_channels(Image& image) const;
-    void read_scanlines(Image& image, const ImageLimits& limits);
-    void read_tiles(Image& image, const ImageLimits& limits);
+    void for_each_chunk(const Image& image, const std::function<void(const Chunk&)>& each);
+    uvec2 tile_size() const;
+    Imf::Header least_header() const;
+    std::string least_file(const Image& image);
     void read_dwa(Image& image, const ImageLimits& limits);
     void decode(const Chunk& chunk, Image& image, const ImageLimits& limits);
 
@@ -165,6 +141,7 @@ class ExrFile {
     exr_context_t context_ = nullptr;
     exr_decode_pipeline_t decoder_{};
     bool decoder_is_ready_ = false;
+    bool tiled_ = false;
     std::vector<float> unwanted_;
 };
 
@@ -213,7 +190,7 @@ void ExrFile::read_channels(Image& image) const {
     }
 }
 
-// Decodes a chunk into the channels, which are long enough for it.
+// Decodes a chunk into the channels, and lets these grow to its end.
 void ExrFile::decode(const Chunk& chunk, Image& image, const ImageLimits& limits) {
     const exr_chunk_info_t& info = chunk.info;
     const uint64_t most = info.packed_size * MAX_EXPANSION[info.compression] + EXPANSION_SLACK;
@@ -226,6 +203,7 @@ void ExrFile::decode(const Chunk& chunk, Image& image, const ImageLimits& limits
         check(exr_decoding_initialize(context_, PART, &info, &decoder_));
         decoder_is_ready_ = true;
     }
+    grow(image, chunk.y + uint32_t(info.height), limits);
     // What nobody asked for has to go somewhere: the library skips no channel of an uncompressed file.
     const uint32_t width = image.data.width();
     unwanted_.resize(size_t(width) * uint32_t(info.height));
@@ -244,62 +222,113 @@ void ExrFile::decode(const Chunk& chunk, Image& image, const ImageLimits& limits
     check(exr_decoding_run(context_, PART, &decoder_));
 }
 
-void ExrFile::read_scanlines(Image& image, const ImageLimits& limits) {
-    exr_attr_box2i_t window{};
-    check(exr_get_data_window(context_, PART, &window));
-    const uint32_t height = image.data.height();
-    for (uint32_t y = 0; y < height;) {
-        Chunk chunk{.info = {}, .x = 0, .y = y};
-        check(exr_read_scanline_chunk_info(context_, PART, int(window.min.y + int64_t(y)), &chunk.info));
-        const auto rows = uint32_t(std::max(chunk.info.height, 1));
-        if (chunk.info.start_y != window.min.y + int64_t(y) || rows > height - y)
-            fail_damaged("a chunk is in the wrong place");
-        grow(image, y + rows, limits);
-        decode(chunk, image, limits);
-        y += rows;
-    }
-}
-
-// Of the largest of its resolutions.
-void ExrFile::read_tiles(Image& image, const ImageLimits& limits) {
-    int32_t tile_width = 0, tile_height = 0;
-    check(exr_get_tile_sizes(context_, PART, 0, 0, &tile_width, &tile_height));
-    if (tile_width < 1 || tile_height < 1) fail_damaged("its tiles are empty");
+// Hands on each chunk, from the top and row by row; of tiles those of the largest resolution.
+void ExrFile::for_each_chunk(const Image& image, const std::function<void(const Chunk&)>& each) {
     const uint32_t width = image.data.width(), height = image.data.height();
-    for (uint32_t y = 0, row = 0; y < height; y += uint32_t(tile_height), ++row) {
-        grow(image, std::min(y + uint32_t(tile_height), height), limits);
-        for (uint32_t x = 0, column = 0; x < width; x += uint32_t(tile_width), ++column) {
+    if (!tiled_) {
+        exr_attr_box2i_t window{};
+        check(exr_get_data_window(context_, PART, &window));
+        for (uint32_t y = 0; y < height;) {
+            Chunk chunk{.info = {}, .x = 0, .y = y};
+            const int64_t line = window.min.y + int64_t(y);
+            check(exr_read_scanline_chunk_info(context_, PART, int(line), &chunk.info));
+            const auto rows = uint32_t(std::max(chunk.info.height, 1));
+            if (chunk.info.start_y != line || rows > height - y)
+                fail_damaged("a chunk is in the wrong place");
+            each(chunk);
+            y += rows;
+        }
+        return;
+    }
+    const auto [tile_width, tile_height] = tile_size();
+    for (uint32_t y = 0, row = 0; y < height; y += tile_height, ++row) {
+        for (uint32_t x = 0, column = 0; x < width; x += tile_width, ++column) {
             Chunk chunk{.info = {}, .x = x, .y = y};
             check(exr_read_tile_chunk_info(context_, PART, int(column), int(row), 0, 0, &chunk.info));
             if (uint32_t(chunk.info.width) > width - x || uint32_t(chunk.info.height) > height - y)
                 fail_damaged("a tile is too large");
-            decode(chunk, image, limits);
+            each(chunk);
         }
     }
 }
 
-// Scan lines or tiles.
+uvec2 ExrFile::tile_size() const {
+    int32_t width = 0, height = 0;
+    check(exr_get_tile_sizes(context_, PART, 0, 0, &width, &height));
+    if (width < 1 || height < 1) fail_damaged("its tiles are empty");
+    return {width, height};
+}
+
+// The header that decoding needs, of what has been checked.
+Imf::Header ExrFile::least_header() const {
+    exr_attr_box2i_t display{}, data{};
+    check(exr_get_display_window(context_, PART, &display));
+    check(exr_get_data_window(context_, PART, &data));
+    exr_compression_t compression{};
+    check(exr_get_compression(context_, PART, &compression));
+    const auto box = [](const exr_attr_box2i_t& b) {
+        return Imath::Box2i({b.min.x, b.min.y}, {b.max.x, b.max.y});
+    };
+    Imf::Header header(box(display), box(data));
+    header.compression() = Imf::Compression(compression);
+    const exr_attr_chlist_t* list = nullptr;
+    check(exr_get_channels(context_, PART, &list));
+    for (int i = 0; i < list->num_channels; ++i) {
+        const exr_attr_chlist_entry_t& entry = list->entries[i];
+        header.channels().insert(entry.name.str,
+                                 Imf::Channel(Imf::PixelType(entry.pixel_type), 1, 1, entry.p_linear != 0));
+    }
+    if (tiled_) {  // Tiles larger than the image hold no more than it: nor need the decoder.
+        const uint32_t width = uint32_t(data.max.x - data.min.x) + 1,
+                       height = uint32_t(data.max.y - data.min.y) + 1;
+        header.setTileDescription(
+            {std::min(tile_size().x, width), std::min(tile_size().y, height), Imf::ONE_LEVEL});
+    }
+    return header;
+}
+
+// An OpenEXR file of the least header and the chunks as they are.
+std::string ExrFile::least_file(const Image& image) {
+    std::vector<Chunk> chunks;
+    for_each_chunk(image, [&](const Chunk& chunk) {
+        if (chunk.info.packed_size > bytes_.size() ||
+            chunk.info.data_offset > bytes_.size() - chunk.info.packed_size)
+            fail_damaged("a chunk lies outside the file");
+        chunks.push_back(chunk);
+    });
+    Imf::StdOSStream file;
+    const auto put = [&](auto number) {  // Little-endian, like every machine that candela runs on.
+        file.write(reinterpret_cast<const char*>(&number), sizeof(number));
+    };
+    put(int32_t{Imf::MAGIC});
+    put(int32_t{Imf::EXR_VERSION | (tiled_ ? Imf::TILED_FLAG : 0)});
+    least_header().writeTo(file, tiled_);
+    uint64_t offset = file.tellp() + chunks.size() * sizeof(uint64_t);
+    for (const Chunk& chunk : chunks) {
+        put(offset);
+        offset += (tiled_ ? 5 : 2) * sizeof(int32_t) + chunk.info.packed_size;
+    }
+    for (const auto& [info, x, y] : chunks) {
+        if (tiled_) {
+            for (const int32_t place : {info.start_x, info.start_y, 0, 0})  // In tiles; of level 0.
+                put(place);
+        } else {
+            put(int32_t{info.start_y});
+        }
+        put(int32_t(info.packed_size));
+        file.write(bytes_.data() + info.data_offset, int(info.packed_size));
+    }
+    return file.str();
+}
+
 void ExrFile::read_dwa(Image& image, const ImageLimits& limits) {
-    constexpr uint32_t ROWS = 256;  // Of the larger kind of chunk.
     uint64_t chunk_bytes = 0;
     check(exr_get_chunk_unpacked_size(context_, PART, &chunk_bytes));
     if (chunk_bytes > MAX_CHUNK_BYTES) fail(TOO_LARGE_CHUNKS);
     try {
-        MemoryFile stream(bytes_, path_.string());
-        Imf::InputFile file(stream);
-        const Imath::Box2i& window = file.header().dataWindow();
-        const uint32_t height = image.data.height();
-        for (uint32_t y = 0; y < height; y += ROWS) {
-            const uint32_t end = std::min(y + ROWS, height);
-            grow(image, end, limits);
-            Imf::FrameBuffer frame;
-            for (Channel& channel : image.channels) {
-                if (limits.wants(channel.name))
-                    frame.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window));
-            }
-            file.setFrameBuffer(frame);
-            file.readPixels(int(window.min.y + int64_t(y)), int(window.min.y + int64_t(end) - 1));
-        }
+        decode_exr_by_rows(least_file(image), image, limits);
+    } catch (const Error&) {
+        throw;
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
@@ -312,6 +341,7 @@ Image ExrFile::read(const ImageLimits& limits) {
     check(exr_get_storage(context_, PART, &storage));
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         fail("it has deep pixels, of several samples each; flatten it");
+    tiled_ = storage == EXR_STORAGE_TILED;
     Image image;
     read_windows(image);
     check_pixel_count(path_, image.data.width(), image.data.height(), limits.max_pixels);
@@ -321,10 +351,8 @@ Image ExrFile::read(const ImageLimits& limits) {
     check(exr_get_compression(context_, PART, &compression));
     if (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB) {
         read_dwa(image, limits);
-    } else if (storage == EXR_STORAGE_SCANLINE) {
-        read_scanlines(image, limits);
     } else {
-        read_tiles(image, limits);
+        for_each_chunk(image, [&](const Chunk& chunk) { decode(chunk, image, limits); });
     }
     return image;
 }

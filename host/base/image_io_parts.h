@@ -3,6 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
+
+#include "base/image.h"
+#include "base/image_io.h"
 
 namespace candela {
 
@@ -12,5 +16,13 @@ inline constexpr uint32_t MAX_IMAGE_SIDE = 1 << 20;
 // Throws Error if width * height exceeds `max_pixels`; both sides are at most MAX_IMAGE_SIDE.
 void check_pixel_count(const std::filesystem::path& path, uint64_t width, uint64_t height,
                        uint64_t max_pixels);
+
+// Lets the channels that are wanted grow to so many rows: a short file whose header claims a huge picture
+// runs out of file before the machine runs out of memory.
+void grow(Image& image, uint32_t rows, const ImageLimits& limits);
+
+// Decodes an OpenEXR file of one part into the image's channels by the library's C++ interface, which
+// believes what a header says. Throws a std::exception if pixels are damaged.
+void decode_exr_by_rows(std::string_view file, Image& image, const ImageLimits& limits);
 
 }  // namespace candela

@@ -289,8 +289,8 @@ TEST(Exr, AHeaderThatClaimsAHugePictureIsRefused) {
 }
 
 // A file of 96 x 70 pixels of these channels, whose values are multiples of 64 in each block of four by four:
-// no compression changes such halves.
-std::vector<half> write_compressed(const fs::path& path, Imf::Compression compression) {
+// no compression changes such halves. In scan lines, or in tiles of that size.
+std::vector<half> write_compressed(const fs::path& path, Imf::Compression compression, uint32_t tile_size) {
     constexpr int WIDTH = 96, HEIGHT = 70;
     Imf::Header header(WIDTH, HEIGHT);
     header.compression() = compression;
@@ -302,32 +302,48 @@ std::vector<half> write_compressed(const fs::path& path, Imf::Compression compre
         header.channels().insert(name, Imf::Channel(Imf::HALF));
         frame.insert(name, Imf::Slice::Make(Imf::HALF, values.data(), header.dataWindow()));
     }
-    Imf::OutputFile file(path.c_str(), header);
-    file.setFrameBuffer(frame);
-    file.writePixels(HEIGHT);
+    if (tile_size == 0) {
+        Imf::OutputFile file(path.c_str(), header);
+        file.setFrameBuffer(frame);
+        file.writePixels(HEIGHT);
+    } else {
+        header.setTileDescription({tile_size, tile_size, Imf::MIPMAP_LEVELS});
+        Imf::TiledOutputFile file(path.c_str(), header);
+        file.setFrameBuffer(frame);
+        file.writeTiles(0, file.numXTiles(0) - 1, 0, file.numYTiles(0) - 1, 0);
+        // The smaller resolutions are there, too, or the file is incomplete.
+        for (int level = 1; level < file.numLevels(); ++level)
+            file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+    }
     return values;
 }
 
-TEST(Exr, ReadsEveryCompression) {
+void expect_compression_is_read(const fs::path& path, Imf::Compression compression, uint32_t tile_size) {
+    const std::vector<half> values = write_compressed(path, compression, tile_size);
+    const Image image = read_exr(path);
+    ASSERT_EQ(image.channels.size(), 3u);
+    // DWA keeps no more than the eye sees.
+    const float tolerance = compression >= Imf::DWAA_COMPRESSION ? 0.1f : 0.0f;
+    for (size_t i = 0; i < values.size(); ++i) {
+        ASSERT_NEAR(image.find("R")->values[i], values[i], tolerance * values[i]);
+        ASSERT_EQ(image.find("id")->values[i], values[i]);
+    }
+    const Image one = read_exr(path, {.channels = {"id"}});
+    EXPECT_EQ(one.find("id")->values, image.find("id")->values);
+    EXPECT_TRUE(one.find("R")->values.empty());
+}
+
+TEST(Exr, ReadsEveryCompressionInScanLinesAndTiles) {
     const TemporaryDirectory directory;
     const fs::path path = directory / "a.exr";
     for (const auto compression :
          {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION,
           Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
           Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION}) {
-        SCOPED_TRACE(compression);
-        const std::vector<half> values = write_compressed(path, compression);
-        const Image image = read_exr(path);
-        ASSERT_EQ(image.channels.size(), 3u);
-        // DWA keeps no more than the eye sees.
-        const float tolerance = compression >= Imf::DWAA_COMPRESSION ? 0.1f : 0.0f;
-        for (size_t i = 0; i < values.size(); ++i) {
-            ASSERT_NEAR(image.find("R")->values[i], values[i], tolerance * values[i]) << compression;
-            ASSERT_EQ(image.find("id")->values[i], values[i]) << compression;
+        for (const uint32_t tile_size : {0u, 32u, 128u}) {
+            SCOPED_TRACE(std::to_string(compression) + " in tiles of " + std::to_string(tile_size));
+            expect_compression_is_read(path, compression, tile_size);
         }
-        const Image one = read_exr(path, {.channels = {"id"}});
-        EXPECT_EQ(one.find("id")->values, image.find("id")->values) << compression;
-        EXPECT_TRUE(one.find("R")->values.empty()) << compression;
     }
 }
 
