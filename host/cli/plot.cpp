@@ -1,50 +1,23 @@
 // `candela plot`: convergence curves from the reports of `candela render --reference`.
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "base/file.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/curve_chart.h"
+#include "cli/report_curve.h"
 
 namespace candela {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct PlotArguments {
     std::vector<std::string> reports;
     std::string output;
 };
-
-// The points of a report that have a place in the chart. Throws Error if it is no report or has none.
-Curve read_curve(const std::string& path) {
-    const auto refuse = [&](const std::string& why) {
-        throw Error("cannot plot \"" + path + "\": " + why +
-                    "; give a report of candela render --reference REF.exr --report FILE");
-    };
-    Curve curve{.name = std::filesystem::path(path).stem().string(), .points = {}};
-    const Json report = Json::parse(read_file(path), nullptr, false);
-    if (!report.is_object()) refuse("it is no report");
-    if (!report.contains("convergence") || !report.contains("reference"))
-        refuse("it has no errors against a reference");
-    try {
-        for (const Json& point : report["convergence"]) {
-            const double seconds = point.at("seconds"), relmse = point.at("relmse");
-            if (seconds > 0.0 && relmse > 0.0) curve.points.push_back({seconds, std::sqrt(relmse)});
-        }
-    } catch (const Json::exception&) {
-        refuse("its points are damaged");
-    }
-    if (curve.points.empty()) refuse("none of its points has both a time and an error above 0");
-    return curve;
-}
 
 ExitCode run(const PlotArguments& arguments) {
     if (std::filesystem::path(arguments.output).extension() != ".svg") {
@@ -57,7 +30,7 @@ ExitCode run(const PlotArguments& arguments) {
     files.write("-o", arguments.output);
     std::vector<Curve> curves;
     for (const std::string& path : arguments.reports)
-        curves.push_back(read_curve(path));
+        curves.push_back(curve_of_report(read_file(path), path));
     write_file_atomically(arguments.output, draw_curves(curves));
     return ExitCode::done;
 }

@@ -34,4 +34,8 @@ void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& 
 // it holds what no renderer leaves, or if a newer version wrote it.
 Checkpoint load_checkpoint(const std::filesystem::path& path);
 
+// The same for an image that was read; `name` is for messages. Without `with_checksum` it is not asked for,
+// so that a changed bit is found only where it makes what no renderer leaves.
+Checkpoint checkpoint_of(const Image& image, const std::string& name, bool with_checksum = true);
+
 }  // namespace candela

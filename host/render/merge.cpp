@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/image_io.h"
 #include "render/identity.h"
 #include "render/part_sum.h"
 #include "render/sample_range.h"
@@ -219,10 +218,11 @@ void set_attributes(Image& image, const std::vector<Part>& parts, uint64_t least
 
 }  // namespace
 
-Merged merge_files(std::vector<std::filesystem::path> files) {
+Merged merge_files(const std::vector<std::filesystem::path>& files,
+                   const std::function<Image(const std::filesystem::path&)>& read) {
     std::vector<Part> parts;
     for (const std::filesystem::path& file : files)
-        parts.push_back(describe(file, read_exr(file)));
+        parts.push_back(describe(file, read(file)));
     std::ranges::sort(parts, {}, [](const Part& part) {
         return std::tuple(part.samples.front().first, part.samples.back().end, part.name);
     });
@@ -242,7 +242,7 @@ Merged merge_files(std::vector<std::filesystem::path> files) {
     PartSum sum(first.header, channels);
     Image first_image;
     for (const Part& part : parts) {
-        Image image = read_exr(part.file);
+        Image image = read(part.file);
         const std::vector<uint32_t> counts = sample_counts(image, part.name, part.samples);
         warn_of_part(part, counts, merged.warnings);
         sum.add(image, counts);

@@ -1,0 +1,15 @@
+// The convergence curve of a report by `candela render --reference`.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "cli/curve_chart.h"
+
+namespace candela {
+
+// The points of the report in the file `path`, whose contents are `text`, that have a place in a chart: both
+// time and error are above 0. Throws Error if it is no report or has none.
+Curve curve_of_report(std::string_view text, const std::string& path);
+
+}  // namespace candela
