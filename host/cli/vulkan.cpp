@@ -6,6 +6,8 @@
 #include <string_view>
 #include <system_error>
 
+#include <sys/mman.h>
+
 #include "base/error.h"
 
 namespace candela {
@@ -43,7 +45,21 @@ static void keep_drivers_off_full_disks() {
         ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
 }
 
+// Where drivers find no room for threads and code, they end the program without a word or wait for ever.
+static void check_address_space() {
+    constexpr size_t NEEDED = size_t{768} << 20;
+    void* const room = ::mmap(nullptr, NEEDED, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED) {
+        throw Error(
+            "cannot use Vulkan: fewer than 768 MiB of address space are left, which its drivers "
+            "take; raise the limit (ulimit -v)",
+            ExitCode::out_of_memory);
+    }
+    ::munmap(room, NEEDED);
+}
+
 vk::Instance::Options instance_options() {
+    check_address_space();
     keep_drivers_off_full_disks();
     return {.validation = is_on("CANDELA_VALIDATION")};
 }

@@ -1,0 +1,49 @@
+// Where the address space is small, the program ends with a message. (Sanitizers want more of it than there
+// is.)
+#include <filesystem>
+#include <fstream>
+
+#include "cli/cli_fixture.h"
+
+#ifndef __SANITIZE_ADDRESS__
+
+namespace candela {
+namespace {
+
+class LittleMemory : public CliTest {
+  protected:
+    ProcessResult run(const Words& arguments) const {
+        return run_process(Words{"/bin/sh", "-c", "ulimit -v 400000; exec \"$0\" \"$@\""} + call(arguments),
+                           options());
+    }
+};
+
+// Drivers would end the program without a word, or wait for ever.
+TEST_F(LittleMemory, IsAnErrorBeforeADriverFindsOut) {
+    const ProcessResult result = run({"render", CORNELL_BOX, "--size", "16x16", "-o", file("a.png")});
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    EXPECT_CONTAINS(
+        result.err,
+        "candela: error: cannot use Vulkan: fewer than 768 MiB of address space are left, which its "
+        "drivers take; raise the limit (ulimit -v)");
+}
+
+// Twenty million vertices, all zero, in a file that takes no room on the disk.
+TEST_F(LittleMemory, IsAnErrorWhereAMeshDoesNotFit) {
+    std::ofstream(file("a.ply"))
+        << "ply\nformat binary_little_endian 1.0\nelement vertex 20000000\nproperty float x\n"
+           "property float y\nproperty float z\nelement face 1\n"
+           "property list uchar int vertex_indices\nend_header\n";
+    std::filesystem::resize_file(file("a.ply"), std::filesystem::file_size(file("a.ply")) + 240000013);
+    std::ofstream(file("a.json")) << R"({"cameras": {"main": {"position": [0, 0, 1], "look_at": [0, 0, 0],
+        "vertical_fov": 40}}, "shapes": [{"type": "ply", "file": "a.ply", "emission": 1}]})";
+    const ProcessResult result = run({"info", file("a.json")});
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    EXPECT_CONTAINS(result.err,
+                    "candela: error: the computer has too little memory; use a smaller picture or scene");
+}
+
+}  // namespace
+}  // namespace candela
+
+#endif
