@@ -1,0 +1,14 @@
+// libFuzzer's way into the target TARGET.
+#include <cstddef>
+#include <cstdint>
+
+#include "base/error.h"
+#include "fuzz/targets.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    try {
+        candela::fuzz::TARGET({reinterpret_cast<const char*>(data), size});
+    } catch (const candela::Error&) {  // What is to become of bad input.
+    }
+    return 0;
+}

@@ -1,0 +1,91 @@
+// See targets.h.
+#include "fuzz/targets.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/compare.h"
+#include "base/image_io.h"
+#include "cli/report_curve.h"
+#include "fuzz/image_text.h"
+#include "fuzz/memory_file.h"
+#include "render/adaptive.h"
+#include "render/checkpoint.h"
+#include "render/gpu_scene.h"
+#include "render/merge.h"
+#include "render/sample_range.h"
+#include "scene/loader.h"
+#include "scene/mtl.h"
+#include "scene/obj.h"
+#include "scene/ply.h"
+
+namespace candela::fuzz {
+namespace {
+
+// Keeps a run short: more pixels are only more of the same.
+const ImageLimits SMALL{.max_pixels = 1 << 14};
+
+}  // namespace
+
+void scene(std::string_view bytes) {
+    build_gpu_scene(parse_scene(bytes, "fuzz.json", "/nonexistent"));
+}
+
+void obj(std::string_view bytes) {
+    const MemoryFile file(bytes);
+    load_obj(file.path(), MeshNormals::file);
+    load_obj_parts(file.path(), MeshNormals::smooth);
+}
+
+void mtl(std::string_view bytes) {
+    load_mtl(MemoryFile(bytes).path());
+}
+
+void ply(std::string_view bytes) {
+    std::vector<std::string> warnings;
+    load_ply(MemoryFile(bytes).path(), MeshNormals::file, warnings);
+}
+
+void hdr(std::string_view bytes) {
+    read_hdr(MemoryFile(bytes).path(), SMALL);
+}
+
+void exr(std::string_view bytes) {
+    decode_exr(bytes, "fuzz.exr", SMALL);
+}
+
+void checkpoint(std::string_view bytes) {
+    for (const Image& image : parse_images(bytes)) {
+        Checkpoint checkpoint = checkpoint_of(image, "fuzz.exr", false);
+        std::vector<Accumulation>& states = checkpoint.states;
+        if (count_samples(states).total == 0) continue;
+        make_image(states, {.albedo = states.front().layer_count == LAYER_COUNT_AOVS}, {});
+        if (states.size() != 4) continue;
+        const uint32_t half = next_pass_end(samples_per_pixel(states), MAX_SPP) / 2;
+        plan_extra_samples(states[2], even_samples(half), half, states[1]);
+    }
+}
+
+void merge(std::string_view bytes) {
+    const std::vector<Image> images = parse_images(bytes);
+    if (images.empty()) return;
+    std::vector<std::filesystem::path> names;
+    for (size_t i = 0; i < images.size(); ++i)
+        names.emplace_back(std::to_string(i));
+    merge_files(names, [&](const auto& name) { return images[std::stoul(name)]; });
+}
+
+void compare(std::string_view bytes) {
+    const std::vector<Image> images = parse_images(bytes);
+    for (const Image& image : images) {
+        candela::compare(image, images.back());
+        heatmap(image, images.back());
+    }
+}
+
+void plot(std::string_view bytes) {
+    draw_curves({curve_of_report(bytes, "fuzz.json")});
+}
+
+}  // namespace candela::fuzz

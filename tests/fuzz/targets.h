@@ -1,0 +1,37 @@
+// The ways in from outside, as functions of bytes. Each may throw Error; nothing else may happen.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace candela::fuzz {
+
+void scene(std::string_view bytes);  // A scene file, its tree and its records.
+void obj(std::string_view bytes);
+void mtl(std::string_view bytes);
+void ply(std::string_view bytes);
+void hdr(std::string_view bytes);
+void exr(std::string_view bytes);
+// Images as text, see parse_image(): what the commands make of images that OpenEXR has read without
+// complaint.
+void checkpoint(std::string_view bytes);  // Whatever its checksum says, and what is done with it.
+void merge(std::string_view bytes);
+void compare(std::string_view bytes);  // The last image with each.
+void plot(std::string_view bytes);     // A report.
+
+struct Target {
+    std::string_view name;  // Its inputs are in corpora/NAME.
+    void (*run)(std::string_view bytes);
+};
+inline constexpr std::array<Target, 10> TARGETS{{{"scene", scene},
+                                                 {"obj", obj},
+                                                 {"mtl", mtl},
+                                                 {"ply", ply},
+                                                 {"hdr", hdr},
+                                                 {"exr", exr},
+                                                 {"checkpoint", checkpoint},
+                                                 {"merge", merge},
+                                                 {"compare", compare},
+                                                 {"plot", plot}}};
+
+}  // namespace candela::fuzz
