@@ -153,13 +153,17 @@ class Descriptor {
         return is_open() && ::fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
     }
 
-    // Appends all bytes from here on. Returns false, with errno, if reading fails.
-    bool read_all(std::string& bytes) const {
+    uint64_t size() const {
         struct stat status {};
-        if (::fstat(file_, &status) == 0 && status.st_size > 0) bytes.reserve(size_t(status.st_size));
+        return ::fstat(file_, &status) == 0 && status.st_size > 0 ? uint64_t(status.st_size) : 0;
+    }
+
+    // Appends the bytes from here on, `most` at most. Returns false, with errno, if reading fails.
+    bool read_all(std::string& bytes, size_t most = SIZE_MAX) const {
+        bytes.reserve(std::min<uint64_t>(size(), most));
         std::array<char, 65536> buffer;
         while (true) {
-            const ssize_t count = ::read(file_, buffer.data(), buffer.size());
+            const ssize_t count = ::read(file_, buffer.data(), std::min(buffer.size(), most - bytes.size()));
             if (count == 0) return true;
             if (count > 0) {
                 bytes.append(buffer.data(), size_t(count));
@@ -205,6 +209,16 @@ std::string read_file(const fs::path& path) {
     if (!file.is_open() || !file.read_all(bytes))
         fail_to_read(path, describe(errno) + "; check the file and its disk");
     return bytes;
+}
+
+FileStart read_file_start(const fs::path& path, size_t most) {
+    check_readable(path);
+    const Descriptor file(path, O_RDONLY);
+    FileStart start;
+    if (!file.is_open() || !file.read_all(start.bytes, most))
+        fail_to_read(path, describe(errno) + "; check the file and its disk");
+    start.size = file.size();
+    return start;
 }
 
 std::optional<std::string> read_regular_file(const fs::path& path) {

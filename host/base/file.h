@@ -2,6 +2,7 @@
 // file beside the target, which then takes the target's name.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -17,6 +18,13 @@ void check_readable(const std::filesystem::path& path);
 
 // Returns the bytes of a file or pipe. Throws Error as check_readable() does, or if reading breaks off.
 std::string read_file(const std::filesystem::path& path);
+
+// The first bytes of a regular file, `most` at most. Throws Error as read_file() does.
+struct FileStart {
+    std::string bytes;
+    uint64_t size = 0;  // Of the whole file.
+};
+FileStart read_file_start(const std::filesystem::path& path, size_t most);
 
 // Returns the bytes of a file that may be missing, as a cache may; nothing also if it cannot be read, or is
 // anything else than a regular file.

@@ -47,7 +47,10 @@ struct ImageLimits {
 // pixels), or exceeds the limits. No more memory is taken than the file's bytes may stand for.
 Image read_exr(const std::filesystem::path& path, const ImageLimits& limits = {});
 
-// The same for the bytes of an OpenEXR file; `name` is what messages call it.
+// The same without any values; what else the file holds is not read.
+Image read_exr_header(const std::filesystem::path& path);
+
+// read_exr() for the bytes of a file; `name` is what messages call it.
 Image decode_exr(std::string_view bytes, const std::filesystem::path& name, const ImageLimits& limits = {});
 
 // Reads a Radiance picture, flat or in either of the format's run-length encodings, as the channels R, G and

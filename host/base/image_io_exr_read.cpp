@@ -58,9 +58,15 @@ void* allocate(size_t size) {
     return size > 2 * MAX_CHUNK_BYTES ? nullptr : std::calloc(1, std::max<size_t>(size, 1));
 }
 
+// A file, of which at least the first bytes are in memory.
+struct ExrBytes {
+    std::string_view bytes;
+    uint64_t size = bytes.size();  // Of the file.
+};
+
 int64_t read_bytes(exr_const_context_t, void* user, void* out, uint64_t size, uint64_t offset,
                    exr_stream_error_func_ptr_t) {
-    const std::string_view bytes = *static_cast<const std::string_view*>(user);
+    const std::string_view bytes = static_cast<const ExrBytes*>(user)->bytes;
     if (offset >= bytes.size()) return 0;
     const uint64_t count = std::min<uint64_t>(size, bytes.size() - offset);
     std::memcpy(out, bytes.data() + offset, count);
@@ -68,7 +74,7 @@ int64_t read_bytes(exr_const_context_t, void* user, void* out, uint64_t size, ui
 }
 
 int64_t byte_count(exr_const_context_t, void* user) {
-    return int64_t(static_cast<const std::string_view*>(user)->size());
+    return int64_t(static_cast<const ExrBytes*>(user)->size);
 }
 
 // An Imath matrix for row vectors is stored row by row, a glm matrix for column vectors column by column.
@@ -82,15 +88,15 @@ mat4 to_glm(const float* numbers) {
 
 class ExrFile {
   public:
-    // Neither copies the bytes nor the path, which is the file's name in messages.
-    ExrFile(const std::string_view& bytes, const fs::path& path) : bytes_(bytes), path_(path) {
+    // Copies neither the bytes nor the path, which is the file's name in messages.
+    ExrFile(const ExrBytes& file, const fs::path& path) : bytes_(file.bytes), path_(path) {
         constexpr std::string_view MAGIC("\x76\x2f\x31\x01", 4);
-        if (!bytes.starts_with(MAGIC)) fail("it is not an OpenEXR file; give an .exr image");
+        if (!bytes_.starts_with(MAGIC)) fail("it is not an OpenEXR file; give an .exr image");
         exr_context_initializer_t wishes = EXR_DEFAULT_CONTEXT_INITIALIZER;
         wishes.error_handler_fn = take_message;
         wishes.alloc_fn = allocate;
         wishes.free_fn = std::free;
-        wishes.user_data = const_cast<std::string_view*>(&bytes_);
+        wishes.user_data = const_cast<ExrBytes*>(&file);
         wishes.read_fn = read_bytes;
         wishes.size_fn = byte_count;
         wishes.max_image_width = wishes.max_image_height = int(MAX_IMAGE_SIDE);
@@ -105,6 +111,8 @@ class ExrFile {
         exr_finish(&context_);
     }
 
+    // The image without values; sees whether they can be read.
+    Image read_header(const ImageLimits& limits);
     Image read(const ImageLimits& limits);
 
   private:
@@ -136,7 +144,7 @@ class ExrFile {
     void read_dwa(Image& image, const ImageLimits& limits);
     void decode(const Chunk& chunk, Image& image, const ImageLimits& limits);
 
-    const std::string_view& bytes_;
+    std::string_view bytes_;
     const fs::path& path_;
     exr_context_t context_ = nullptr;
     exr_decode_pipeline_t decoder_{};
@@ -336,7 +344,7 @@ void ExrFile::read_dwa(Image& image, const ImageLimits& limits) {
     }
 }
 
-Image ExrFile::read(const ImageLimits& limits) {
+Image ExrFile::read_header(const ImageLimits& limits) {
     exr_storage_t storage{};
     check(exr_get_storage(context_, PART, &storage));
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
@@ -347,6 +355,11 @@ Image ExrFile::read(const ImageLimits& limits) {
     check_pixel_count(path_, image.data.width(), image.data.height(), limits.max_pixels);
     read_attributes(image);
     read_channels(image);
+    return image;
+}
+
+Image ExrFile::read(const ImageLimits& limits) {
+    Image image = read_header(limits);
     exr_compression_t compression{};
     check(exr_get_compression(context_, PART, &compression));
     if (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB) {
@@ -361,7 +374,8 @@ Image ExrFile::read(const ImageLimits& limits) {
 
 Image decode_exr(std::string_view bytes, const fs::path& name, const ImageLimits& limits) {
     try {
-        return ExrFile(bytes, name).read(limits);
+        const ExrBytes file{bytes};
+        return ExrFile(file, name).read(limits);
     } catch (const std::bad_alloc&) {
         throw Error(
             "cannot read " + quoted(name) +
@@ -372,6 +386,20 @@ Image decode_exr(std::string_view bytes, const fs::path& name, const ImageLimits
 
 Image read_exr(const fs::path& path, const ImageLimits& limits) {
     return decode_exr(read_file(path), path, limits);
+}
+
+Image read_exr_header(const fs::path& path) {
+    constexpr size_t USUAL = 1 << 16;
+    const FileStart start = read_file_start(path, USUAL);
+    const ExrBytes file{start.bytes, start.size};
+    try {
+        return ExrFile(file, path).read_header({});
+    } catch (const Error&) {
+        if (start.bytes.size() == start.size) throw;
+    }
+    const std::string bytes = read_file(path);  // It is longer than usual, or damaged.
+    const ExrBytes whole{bytes};
+    return ExrFile(whole, path).read_header({});
 }
 
 }  // namespace candela

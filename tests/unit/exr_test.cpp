@@ -347,6 +347,31 @@ TEST(Exr, ReadsEveryCompressionInScanLinesAndTiles) {
     }
 }
 
+// Without its pixels, the file is still as long as it was; of a long header all is read.
+TEST(Exr, AHeaderIsReadWithoutThePixels) {
+    const TemporaryDirectory directory;
+    const fs::path path = directory / "a.exr";
+    Image image = make_image();
+    for (const size_t length : {10u, 200'000u}) {
+        image.attributes["notes"] = std::string(length, 'x');
+        write_exr(path, image);
+        const Image whole = read_exr(path);
+        const uint64_t size = fs::file_size(path);
+        fs::resize_file(path, length + 1500);
+        fs::resize_file(path, size);
+        const Image header = read_exr_header(path);
+        EXPECT_EQ(header.full, image.full);
+        EXPECT_EQ(header.data, image.data);
+        EXPECT_EQ(header.attributes, whole.attributes);
+        ASSERT_EQ(header.channels.size(), 3u);
+        EXPECT_TRUE(header.find("R")->values.empty());
+    }
+    write_quickly(path, "P6 no OpenEXR file");
+    EXPECT_EQ(error_of([&] { read_exr_header(path); }),
+              "cannot read \"" + path.string() + "\": it is not an OpenEXR file; give an .exr image");
+    EXPECT_THROW(read_exr_header(directory / "b.exr"), Error);
+}
+
 TEST(Exr, ReadsNoValuesOfOtherChannelsThanThoseAskedFor) {
     const TemporaryDirectory directory;
     const fs::path path = directory / "a.exr";
