@@ -70,6 +70,12 @@ std::optional<double> parse_duration(const std::string& text) {
     return number && *number > 0.0 ? std::optional(*number * scale) : std::nullopt;
 }
 
+std::optional<SampleRange> parse_samples(const std::string& text) {
+    const auto ranges = parse_ranges(text);
+    return ranges && ranges->size() == 1 && ranges->front().count() > 0 ? std::optional(ranges->front())
+                                                                        : std::nullopt;
+}
+
 std::optional<AovSelection> parse_aovs(const std::string& text) {
     if (text == "none") return AovSelection{};
     AovSelection aovs;

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/image.h"
 #include "render/accumulation.h"
+#include "render/sample_range.h"
 #include "scene/names.h"
 
 namespace candela {
@@ -37,6 +38,10 @@ std::optional<uvec2> parse_size(const std::string& text);
 std::optional<PixelRect> parse_crop(const std::string& text);
 // "90", "90s", "1.5m" or "2h": more than 0, in seconds.
 std::optional<double> parse_duration(const std::string& text);
+// "A..B": the samples A to B-1, at least one of them.
+std::optional<SampleRange> parse_samples(const std::string& text);
+inline constexpr const char* SAMPLES_EXPECTED = "A..B: samples A to B-1, with A < B, each at most 16777216";
+static_assert(MAX_SPP == 16777216);
 // "all", "none" or names of images with commas between, as AOV_NAMES lists them.
 std::optional<AovSelection> parse_aovs(const std::string& text);
 

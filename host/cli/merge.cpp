@@ -3,26 +3,42 @@
 
 #include <cstdio>
 #include <memory>
-#include <set>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/render_options.h"
+#include "render/sample_range.h"
 
 namespace candela {
 namespace {
 
 struct MergeArguments {
     std::vector<std::string> parts;
+    std::optional<SampleRange> missing;
     RenderOptions options;  // The outputs alone.
 };
 
+// Prints the samples that no part holds, a range per line.
+ExitCode print_missing(const MergeArguments& arguments) {
+    const Missing missing =
+        missing_samples({arguments.parts.begin(), arguments.parts.end()}, *arguments.missing);
+    for (const std::string& warning : missing.warnings)
+        print_warning(warning);
+    for (const SampleRange& range : missing.samples)
+        std::printf("%s\n", to_text({&range, 1}).c_str());
+    flush_results();
+    return ExitCode::done;
+}
+
 ExitCode run(const MergeArguments& arguments, const std::string& command_line) {
+    if (arguments.missing) return print_missing(arguments);
     CommandFiles files;  // The parts are all read before anything is written: one of them may be the output.
     for (const std::string& path : arguments.options.outputs)
         files.write("-o", path);
@@ -50,11 +66,16 @@ Command add_merge_command(CLI::App& app, const std::string& command_line) {
         ->type_name("")
         ->take_all();
     arguments->options.add_images_to(*command);
+    add_value(*command, "--missing", arguments->missing, parse_samples, SAMPLES_EXPECTED,
+              "Merge nothing; print which of these samples no part holds, a range per line")
+        ->type_name("A..B")
+        ->excludes(command->get_option("--output"));
     command->footer(
         "Example:\n"
         "  candela render box.json -o a.exr --samples 0..64\n"
         "  candela render box.json -o b.exr --samples 64..128\n"
-        "  candela merge a.exr b.exr -o box.exr -o box.png\n\n"
+        "  candela merge a.exr b.exr -o box.exr -o box.png\n"
+        "  candela merge --missing 0..256 a.exr b.exr\n\n"
         "Scene, size, crop, camera, seed, sampler, estimator and depths must be the same, and no sample may "
         "be in\n"
         "two parts. A sample that no part has is a warning. The result is what one rendering of all samples "

@@ -32,12 +32,6 @@ static std::optional<double> parse_exposure(const std::string& text) {
     return value && std::abs(*value) <= double(MAX_EXPOSURE_EV) ? value : std::nullopt;
 }
 
-static std::optional<SampleRange> parse_samples(const std::string& text) {
-    const auto ranges = parse_ranges(text);
-    return ranges && ranges->size() == 1 && ranges->front().count() > 0 ? std::optional(ranges->front())
-                                                                        : std::nullopt;
-}
-
 static std::optional<double> parse_error(const std::string& text) {
     const auto value = parse_number(text);
     return value && *value > 0.0 ? value : std::nullopt;
@@ -59,8 +53,7 @@ void RenderOptions::add_to(CLI::App& app) {
     add_value(app, "--time-limit", time_limit, parse_duration, DURATIONS,
               "Stop after 90, 90s, 1.5m, 2h even short of --spp (default: none)")
         ->type_name("TIME");
-    add_value(app, "--samples", samples, parse_samples,
-              "A..B: samples A to B-1, with A < B, each at most " + std::to_string(MAX_SPP),
+    add_value(app, "--samples", samples, parse_samples, SAMPLES_EXPECTED,
               "The samples A, A+1, ..., B-1 alone, as a part for candela merge")
         ->type_name("A..B")
         ->excludes(app.get_option("--spp"));

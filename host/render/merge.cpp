@@ -68,7 +68,7 @@ std::vector<uint32_t> sample_counts(const Image& image, const std::string& name,
     return counts;
 }
 
-// Checks what one file alone can tell.
+// Checks what one file's header alone can tell.
 Part describe(const std::filesystem::path& file, Image image) {
     Part part{.file = file, .name = file.string(), .identity = {}, .maker = {}, .samples = {}, .header = {}};
     part.identity = identity_of(image, part.name);
@@ -92,10 +92,7 @@ Part describe(const std::filesystem::path& file, Image image) {
                               "\"; give a file that candela render wrote, unchanged");
     }
     part.samples = *ranges;
-    sample_counts(image, part.name, part.samples);
     part.seconds = number_attribute(image, SECONDS);
-    for (Channel& channel : image.channels)
-        channel.values = {};
     part.header = std::move(image);
     return part;
 }
@@ -120,18 +117,11 @@ void refuse_overlaps(const std::vector<Part>& parts) {
     }
 }
 
-void warn_of_gaps(const std::vector<Part>& parts, std::vector<std::string>& warnings) {
+std::vector<SampleRange> samples_of(const std::vector<Part>& parts) {
     std::vector<SampleRange> all;
     for (const Part& part : parts)
         all.insert(all.end(), part.samples.begin(), part.samples.end());
-    std::vector<SampleRange> gaps;
-    uint32_t end = 0;
-    for (const SampleRange& range : joined(all)) {
-        if (range.first > end) gaps.push_back({end, range.first});
-        end = range.end;
-    }
-    if (!gaps.empty())
-        warnings.push_back("the samples " + to_text(gaps) + " are missing: no part holds them");
+    return joined(all);
 }
 
 void warn_of_makers(const std::vector<Part>& parts, std::vector<std::string>& warnings) {
@@ -165,12 +155,15 @@ std::vector<std::string> common_channels(const std::vector<Part>& parts, std::ve
     return common;
 }
 
-void warn_of_part(const Part& part, const std::vector<uint32_t>& counts, std::vector<std::string>& warnings) {
-    const uint32_t least = std::ranges::min(counts);
+// `least`: the samples of the pixel that has fewest.
+void warn_of_interruption(const Part& part, uint32_t least, std::vector<std::string>& warnings) {
     if (least < total_count(part.samples)) {
         warnings.push_back(part.name + " was interrupted: of the samples " + to_text(part.samples) +
                            " some pixels hold only " + std::to_string(least));
     }
+}
+
+void warn_of_halves(const Part& part, std::vector<std::string>& warnings) {
     if (std::ranges::any_of(part.header.channels, &Channel::half)) {
         warnings.push_back(part.name +
                            " holds 16-bit floats: of its digits only three are right; render parts "
@@ -179,36 +172,46 @@ void warn_of_part(const Part& part, const std::vector<uint32_t>& counts, std::ve
 }
 
 // Positions depend on the scene alone, and differ between devices by rounding.
-void check_positions(const Part& first, const Image& first_image, const Part& part, const Image& image,
-                     const std::vector<std::string>& channels) {
+constexpr const char* POSITIONS[] = {"P.X", "P.Y", "P.Z", "Z"};
+
+void check_positions(const Part& first, const Image& first_image, const Part& part, const Image& image) {
     if (part.maker != first.maker) return;
-    for (const char* name : {"P.X", "P.Y", "P.Z", "Z"}) {
-        if (std::ranges::find(channels, name) == channels.end()) continue;
-        const std::vector<float>& a = first_image.find(name)->values;
-        const std::vector<float>& b = image.find(name)->values;
-        if (std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) != 0) {
+    for (const char* name : POSITIONS) {
+        const Channel *const a = first_image.find(name), *const b = image.find(name);
+        if (a == nullptr || b == nullptr || a->values.empty() || b->values.empty()) continue;
+        if (std::memcmp(a->values.data(), b->values.data(), a->values.size() * sizeof(float)) != 0) {
             refuse(part.name, std::string("its channel ") + name + " differs from that of " + first.name +
                                   "; give files as candela wrote them");
         }
     }
 }
 
+// The values of those channels, and of the counts.
+Image read_values(const Part& part, const std::vector<std::string>& channels, const PartReader& read) {
+    ImageLimits limits{.channels = {COUNT_CHANNEL}};
+    limits.channels.insert(limits.channels.end(), channels.begin(), channels.end());
+    Image image = read.image(part.file, limits);
+    if (!difference(identity_of(image, part.name), part.identity).empty() ||
+        text_attribute(image, SAMPLES, part.name) != text_attribute(part.header, SAMPLES, part.name) ||
+        !std::ranges::equal(image.channels, part.header.channels, {}, &Channel::name, &Channel::name))
+        refuse(part.name, "it was changed while it was merged; merge again");
+    return image;
+}
+
 void set_attributes(Image& image, const std::vector<Part>& parts, uint64_t least) {
     image.attributes = parts.front().header.attributes;
-    std::vector<SampleRange> samples;
+    std::vector<SampleRange> samples = samples_of(parts);
     float seconds = 0.0f;
     const auto join = [](std::string& text, const std::string& word) {
         if (("; " + text + "; ").find("; " + word + "; ") == std::string::npos) text += "; " + word;
     };
     Maker maker = parts.front().maker;
     for (const Part& part : parts) {
-        samples.insert(samples.end(), part.samples.begin(), part.samples.end());
         seconds += part.seconds;
         join(maker.device, part.maker.device);
         join(maker.driver, part.maker.driver);
         join(maker.version, part.maker.version);
     }
-    samples = joined(samples);
     if (samples.empty()) samples.push_back({});
     set_maker(image, maker);
     image.attributes[SAMPLES] = to_text(samples);
@@ -216,13 +219,11 @@ void set_attributes(Image& image, const std::vector<Part>& parts, uint64_t least
     image.attributes[SECONDS] = seconds;
 }
 
-}  // namespace
-
-Merged merge_files(const std::vector<std::filesystem::path>& files,
-                   const std::function<Image(const std::filesystem::path&)>& read) {
+// What all files say of themselves, by their samples. Throws Error if they do not belong together.
+std::vector<Part> describe_all(const std::vector<std::filesystem::path>& files, const PartReader& read) {
     std::vector<Part> parts;
     for (const std::filesystem::path& file : files)
-        parts.push_back(describe(file, read(file)));
+        parts.push_back(describe(file, read.header(file)));
     std::ranges::sort(parts, {}, [](const Part& part) {
         return std::tuple(part.samples.front().first, part.samples.back().end, part.name);
     });
@@ -234,27 +235,59 @@ Merged merge_files(const std::vector<std::filesystem::path>& files,
                                   "; merge parts of one rendering");
     }
     refuse_overlaps(parts);
+    return parts;
+}
 
+}  // namespace
+
+Merged merge_files(const std::vector<std::filesystem::path>& files, const PartReader& read) {
+    const std::vector<Part> parts = describe_all(files, read);
+    const Part& first = parts.front();
     Merged merged;
-    warn_of_gaps(parts, merged.warnings);
+    const std::vector<SampleRange> samples = samples_of(parts);
+    const std::vector<SampleRange> missing = gaps(samples, {0, samples.empty() ? 0 : samples.back().end});
+    if (!missing.empty())
+        merged.warnings.push_back("the samples " + to_text(missing) + " are missing: no part holds them");
     warn_of_makers(parts, merged.warnings);
     const std::vector<std::string> channels = common_channels(parts, merged.warnings);
     PartSum sum(first.header, channels);
-    Image first_image;
+    Image first_image;  // Its positions.
     for (const Part& part : parts) {
-        Image image = read(part.file);
+        Image image = read_values(part, channels, read);
         const std::vector<uint32_t> counts = sample_counts(image, part.name, part.samples);
-        warn_of_part(part, counts, merged.warnings);
+        warn_of_interruption(part, std::ranges::min(counts), merged.warnings);
+        warn_of_halves(part, merged.warnings);
         sum.add(image, counts);
+        check_positions(first, first_image, part, image);
         if (&part == &first) {
+            std::erase_if(image.channels, [](const Channel& channel) {
+                return std::ranges::find(POSITIONS, channel.name) == std::end(POSITIONS);
+            });
             first_image = std::move(image);
-        } else {
-            check_positions(first, first_image, part, image, channels);
         }
     }
     merged.image = sum.image();
     set_attributes(merged.image, parts, std::ranges::min(sum.counts()));
     return merged;
+}
+
+Missing missing_samples(const std::vector<std::filesystem::path>& files, SampleRange wanted,
+                        const PartReader& read) {
+    const std::vector<Part> parts = describe_all(files, read);
+    std::vector<SampleRange> complete;
+    Missing missing;
+    for (const Part& part : parts) {
+        const float number = number_attribute(part.header, SPP);
+        const uint32_t least = number >= 0.0f && number <= float(MAX_SPP) ? uint32_t(number) : 0;
+        warn_of_interruption(part, least, missing.warnings);
+        if (least >= total_count(part.samples)) {
+            complete.insert(complete.end(), part.samples.begin(), part.samples.end());
+        } else if (part.samples.size() == 1) {
+            complete.push_back({part.samples[0].first, part.samples[0].first + least});
+        }  // Which samples pixels lack of several ranges, nothing tells.
+    }
+    missing.samples = gaps(complete, wanted);
+    return missing;
 }
 
 }  // namespace candela

@@ -54,6 +54,18 @@ std::vector<SampleRange> joined(std::vector<SampleRange> ranges) {
     return result;
 }
 
+std::vector<SampleRange> gaps(std::vector<SampleRange> ranges, SampleRange within) {
+    std::vector<SampleRange> result;
+    uint32_t first = within.first;
+    for (const SampleRange& range : joined(std::move(ranges))) {
+        const uint32_t end = std::min(range.first, within.end);
+        if (end > first) result.push_back({first, end});
+        first = std::max(first, range.end);
+    }
+    if (first < within.end) result.push_back({first, within.end});
+    return result;
+}
+
 uint32_t total_count(std::span<const SampleRange> ranges) {
     uint32_t count = 0;
     for (const SampleRange& range : ranges)

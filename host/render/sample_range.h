@@ -31,6 +31,9 @@ std::optional<std::vector<SampleRange>> parse_ranges(const std::string& text);
 // The same samples as ascending ranges, those that touch made one and empty ones left out; none may overlap.
 std::vector<SampleRange> joined(std::vector<SampleRange> ranges);
 
+// Those of `within` that no range holds, ascending.
+std::vector<SampleRange> gaps(std::vector<SampleRange> ranges, SampleRange within);
+
 // All samples of all ranges.
 uint32_t total_count(std::span<const SampleRange> ranges);
 

@@ -129,5 +129,23 @@ TEST_F(MergeTest, RefusalsAndWarningsReachTheUser) {
     EXPECT_CONTAINS(candela({"merge", a, "-o", file("none/m.exr")}).err, "none\" does not exist");
 }
 
+TEST_F(MergeTest, MissingPrintsWhatIsToBeRendered) {
+    const std::string a = part("a.exr", "0..4"), b = part("b.exr", "8..12");
+    ProcessResult result = candela({"merge", "--missing", "0..16", a, b});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "4..8\n12..16\n");
+    result = candela({"merge", "--missing", "0..4", a, b});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.out, "");
+    result = candela({"merge", "--missing", "4..4", a});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_CONTAINS(result.err,
+                    "--missing: cannot use \"4..4\"; expected A..B: samples A to B-1, with A < B, each at "
+                    "most 16777216");
+    result = candela({"merge", "--missing", "0..4", a, "-o", file("c.exr")});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_FALSE(std::filesystem::exists(file("c.exr")));
+}
+
 }  // namespace
 }  // namespace candela

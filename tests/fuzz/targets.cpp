@@ -73,7 +73,8 @@ void merge(std::string_view bytes) {
     std::vector<std::filesystem::path> names;
     for (size_t i = 0; i < images.size(); ++i)
         names.emplace_back(std::to_string(i));
-    merge_files(names, [&](const auto& name) { return images[std::stoul(name)]; });
+    const auto header = [&](const std::filesystem::path& name) { return images[std::stoul(name)]; };
+    merge_files(names, {.header = header, .image = [&](const auto& name, auto) { return header(name); }});
 }
 
 void compare(std::string_view bytes) {

@@ -333,5 +333,50 @@ TEST_F(Merge, OnlyChannelsOfAllPartsAreKept) {
     EXPECT_EQ(merged.image.find("Z"), nullptr);
 }
 
+TEST_F(Merge, MissingSamplesAreThoseOfNoPart) {
+    const auto a = write("a.exr", {4, 8}), b = write("b.exr", {12, 16}), c = write("c.exr", {8, 12}, 1);
+    EXPECT_EQ(to_text(missing_samples({b, a}, {0, 20}).samples), "0..4,8..12,16..20");
+    EXPECT_TRUE(missing_samples({b, a}, {4, 8}).samples.empty());
+    // Of an interrupted part, what all pixels hold counts.
+    EXPECT_EQ(to_text(missing_samples({b, a, c}, {4, 16}).samples), "8..12");
+    const auto d =
+        write_changed("d.exr", {8, 12}, [](Image& image) { image.attributes["samplesPerPixel"] = 3.0f; });
+    EXPECT_EQ(to_text(missing_samples({b, a, d}, {4, 16}).samples), "11..12");
+    ASSERT_EQ(missing_samples({a, c}, {0, 8}).warnings.size(), 1u);
+    EXPECT_EQ(text(missing_samples({a, c}, {0, 8}).warnings[0]),
+              "c.exr was interrupted: of the samples 8..12 some pixels hold only 0");
+    const auto other = write_changed(
+        "d.exr", {0, 4}, [](Image& image) { image.attributes["candela.seed"] = std::string("8"); });
+    EXPECT_EQ(text(error_of([&] { missing_samples({a, other}, {0, 8}); })), refusal({a, other}));
+}
+
+// However many parts there are, values of one are in memory; and only those that are merged are asked for.
+TEST_F(Merge, ReadsTheValuesOfEachPartOnce) {
+    const auto a = write("a.exr", {0, 4});
+    const auto b = write_changed("b.exr", {4, 8}, [](Image& image) { image.add("Custom.X", 7.0f); });
+    std::vector<std::string> read;
+    const auto count = [&](const std::filesystem::path& file, const ImageLimits& limits) {
+        read.push_back(file.filename().string());
+        EXPECT_TRUE(limits.wants("R") && limits.wants("SampleCount.V"));
+        EXPECT_FALSE(limits.wants("Custom.X"));
+        return read_exr(file, limits);
+    };
+    const Merged merged = merge_files({b, a}, {.image = count});
+    EXPECT_EQ(read, (std::vector<std::string>{"a.exr", "b.exr"}));
+    EXPECT_TRUE(same_bits(merged.image, merge_files({a, b}).image));
+}
+
+TEST_F(Merge, APartThatChangesInBetweenIsRefused) {
+    const auto a = write("a.exr", {0, 4}), b = write("b.exr", {4, 8});
+    const auto replace = [&](const std::filesystem::path& file, const ImageLimits& limits) {
+        if (file == a) write("b.exr", {8, 12});
+        return read_exr(file, limits);
+    };
+    EXPECT_EQ(text(error_of([&] {
+                  merge_files({a, b}, {.image = replace});
+              })),
+              "b.exr: it was changed while it was merged; merge again");
+}
+
 }  // namespace
 }  // namespace candela

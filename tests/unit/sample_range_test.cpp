@@ -30,5 +30,16 @@ TEST(SampleRange, RangesThatTouchBecomeOne) {
     EXPECT_TRUE(joined({{7, 7}}).empty());
 }
 
+TEST(SampleRange, GapsAreWhatNoRangeHolds) {
+    const std::vector<SampleRange> ranges{{20, 30}, {4, 8}, {8, 9}, {12, 12}};
+    EXPECT_EQ(to_text(gaps(ranges, {0, 40})), "0..4,9..20,30..40");
+    EXPECT_EQ(to_text(gaps(ranges, {5, 25})), "9..20");
+    EXPECT_EQ(to_text(gaps(ranges, {10, 15})), "10..15");
+    EXPECT_EQ(to_text(gaps({}, {3, 5})), "3..5");
+    EXPECT_TRUE(gaps(ranges, {4, 9}).empty());
+    EXPECT_TRUE(gaps(ranges, {22, 25}).empty());
+    EXPECT_TRUE(gaps(ranges, {6, 6}).empty());
+}
+
 }  // namespace
 }  // namespace candela
