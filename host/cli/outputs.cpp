@@ -118,6 +118,7 @@ Json make_report(const RenderOptions& options, const RenderRecord& record) {
                 {"crop", {settings.crop.x0, settings.crop.y0, settings.crop.x1, settings.crop.y1}},
                 {"spp", record.spp},
                 {"samples", samples_text(record)},
+                {"rendered_samples", record.samples - record.resumed_samples},
                 {"complete", record.complete},
                 {"seed", settings.seed},
                 {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},

@@ -32,7 +32,8 @@ struct RenderRecord {
     bool complete = false;          // All samples are there, or as many as the target error needs.
     uint32_t spp = 0;               // Samples that every pixel holds at least; on average if adaptive.
     uint32_t most_spp = 0;          // And the most that one holds.
-    uint64_t samples = 0;           // Samples of all pixels together.
+    uint64_t samples = 0;           // Samples of all pixels together ...
+    uint64_t resumed_samples = 0;   // ... and those of them that a checkpoint brought.
     std::vector<ConvergencePoint> convergence;  // If a target error or a reference asks for it.
     std::optional<double> estimated_error;      // The last one known.
     RenderCounters counters;

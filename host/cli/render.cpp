@@ -212,6 +212,7 @@ ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, c
     if (resumed) {
         warn_of_maker(resumed->header.maker, record.maker);
         record.render_seconds = resumed->header.render_seconds;
+        record.resumed_samples = count_samples(resumed->states).total;
         source.states = std::move(resumed->states);
     }
     SteadyRenderer renderer(std::move(source), warn_of_device_failure);

@@ -87,6 +87,7 @@ TEST_F(CheckpointTest, AResumedRenderingHasTheSameBits) {
     const auto resumed = nlohmann::json::parse(read_file(file("resumed.json")));
     for (const char* key : {"image_hash", "rays_per_sample", "samples", "spp", "complete"})
         EXPECT_EQ(resumed[key], whole[key]) << key;
+    EXPECT_EQ(resumed["rendered_samples"], 32 * 32 * 5);  // But for this.
     // With nothing left to do it gives the image again.
     EXPECT_EQ(render_with({"--resume", "--spp", "9"}).exit_code, 0);
     expect_same_bits(file("a.exr"), file("whole.exr"));

@@ -70,6 +70,7 @@ TEST_F(RenderFiles, ReportHasEveryField) {
     EXPECT_EQ(report["crop"], (std::vector<int>{0, 0, 32, 32}));
     EXPECT_EQ(report["spp"], 4);
     EXPECT_EQ(report["samples"], "0..4");
+    EXPECT_EQ(report["rendered_samples"], 32 * 32 * 4);
     EXPECT_EQ(report["device_failures"], 0);
     EXPECT_EQ(report["complete"], true);
     EXPECT_EQ(report["seed"], 3);
