@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 
