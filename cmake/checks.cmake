@@ -26,6 +26,8 @@ candela_check(readme ${PYTHON3} cmake/checks/readme.py README.md $<TARGET_FILE:c
 set_tests_properties(readme PROPERTIES LABELS cli RUN_SERIAL TRUE)
 candela_check(rivals ${PYTHON3} tests/bench/rivals_test.py $<TARGET_FILE:candela>)
 set_tests_properties(rivals PROPERTIES LABELS cli RUN_SERIAL TRUE)
+candela_check(slurm ${PYTHON3} tests/slurm/slurm_test.py $<TARGET_FILE:candela>)
+set_tests_properties(slurm PROPERTIES LABELS cli)
 if(CANDELA_EMBREE)
     candela_check(tracer ${PYTHON3} tests/bench/tracer_test.py $<TARGET_FILE:candela> $<TARGET_FILE:tracer>)
     set_tests_properties(tracer PROPERTIES LABELS cli RUN_SERIAL TRUE)

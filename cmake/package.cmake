@@ -1,5 +1,5 @@
 # `cmake --install` puts the program into bin, the shared libraries that it brings along into lib, where its run path
-# finds them wherever both are moved to, and the scenes into share; `cpack` in the build folder makes an archive of that.
+# finds them wherever both are moved to, scenes and integrations into share; `cpack` in the build folder makes an archive of that.
 #
 # Configure with -DCANDELA_VIEW=OFF for that: the libraries of the window system must be the system's own.
 #
@@ -13,7 +13,8 @@ target_link_options(candela PRIVATE LINKER:--disable-new-dtags)
 install(TARGETS candela RUNTIME_DEPENDENCY_SET candela_libraries)
 install(RUNTIME_DEPENDENCY_SET candela_libraries
     PRE_EXCLUDE_REGEXES "^ld-linux" "^linux-vdso" "^lib(c|m|dl|rt|pthread|stdc\\+\\+|gcc_s)\\.so")
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/candela)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenes ${CMAKE_SOURCE_DIR}/integrations DESTINATION ${CMAKE_INSTALL_DATADIR}/candela
+    USE_SOURCE_PERMISSIONS)
 install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/FILES.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${CMAKE_SOURCE_DIR}/LICENSE
     DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

@@ -1,0 +1,125 @@
+#!/bin/bash
+# Renders a scene on a cluster that Slurm runs: an array of tasks, each of other samples, and a job that merges their
+# images. The same command again submits what is missing, from the checkpoints of tasks that did not end, and the merge.
+#
+#   usage: submit.sh [OPTIONS] SCENE --spp N -o IMAGE [-o IMAGE...] [OPTIONS of candela render]
+#
+# Options, and the variables that stand for them:
+#   --part N        CANDELA_PART        samples of a task; else as many as --task-time allows
+#   --task-time M   CANDELA_TASK_TIME   minutes that a task may take (30), its limit for Slurm; rendering gets half of them
+#   --speed S       CANDELA_SPEED       samples per pixel that a node renders in a minute; else measured here, for 5 s
+#   --folder F      CANDELA_FOLDER      where parts, checkpoints, reports and logs go (IMAGE.parts); all nodes must see it
+#                   CANDELA             the program (candela)
+# All else is for Slurm in Slurm's own variables, such as SBATCH_PARTITION, SBATCH_ACCOUNT and SBATCH_GRES.
+set -euo pipefail
+scripts=$(cd "$(dirname "$0")" && pwd)
+candela=${CANDELA:-candela}
+part=${CANDELA_PART:-} task_time=${CANDELA_TASK_TIME:-30} speed=${CANDELA_SPEED:-} folder=${CANDELA_FOLDER:-}
+
+fail() {
+    echo "submit.sh: $*" >&2
+    exit 2
+}
+usage() {
+    sed -n '2,/^set -/{/^set -/d; s/^# \{0,1\}//; p}' "$0"
+}
+# whole NAME VALUE: fails unless the value is a whole number above 0.
+whole() {
+    [[ $2 =~ ^[1-9][0-9]{0,8}$ ]] || fail "$1: cannot use \"$2\"; expected a whole number above 0"
+}
+
+while [ $# -gt 0 ]; do
+    case $1 in
+        --part | --task-time | --speed | --folder) [ $# -gt 1 ] || fail "$1 lacks its value" ;;&
+        --part) part=$2; shift 2 ;;
+        --task-time) task_time=$2; shift 2 ;;
+        --speed) speed=$2; shift 2 ;;
+        --folder) folder=$2; shift 2 ;;
+        -h | --help) usage; exit 0 ;;
+        -*) fail "$1 is no option of submit.sh; options of candela render stand behind the scene" ;;
+        *) break ;;
+    esac
+done
+[ $# -gt 0 ] || { usage >&2; exit 2; }
+scene=$1
+shift
+outputs=() options=() spp=
+while [ $# -gt 0 ]; do
+    case $1 in
+        -o | --output) [ $# -gt 1 ] || fail "$1 lacks its value"; outputs+=("$2"); shift 2 ;;
+        --output=*) outputs+=("${1#*=}"); shift ;;
+        --spp) [ $# -gt 1 ] || fail "$1 lacks its value"; spp=$2; shift 2 ;;
+        --spp=*) spp=${1#*=}; shift ;;
+        --samples* | --adaptive | --target-error* | --time-limit* | --checkpoint | --resume | --report* | --reference*)
+            fail "$1 is not for parts of a rendering; leave it out" ;;
+        *) options+=("$1"); shift ;;
+    esac
+done
+[ -n "$spp" ] || fail "--spp is missing: the samples per pixel of the whole picture"
+[ ${#outputs[@]} -gt 0 ] || fail "there is no output; give -o FILE.exr or -o FILE.png (both, too)"
+whole --spp "$spp"
+whole --task-time "$task_time"
+[ -z "$part" ] || whole --part "$part"
+[[ -z $speed || $speed =~ ^[0-9]+(\.[0-9]*)?$ ]] || fail "--speed: cannot use \"$speed\"; expected samples per pixel and minute"
+[ -f "$scene" ] || fail "$scene does not exist; check the name"
+command -v "$candela" >/dev/null || fail "there is no program \"$candela\"; set CANDELA to where it is"
+command -v sbatch >/dev/null || fail "there is no sbatch: this machine does not submit to Slurm"
+folder=${folder:-${outputs[0]%.*}.parts}
+mkdir -p "$folder"
+folder=$(cd "$folder" && pwd)
+job="candela-$(basename "$folder")"
+
+queued=$(squeue --noheader --me --name="$job,$job-merge" --format=%A | sort -u | tr '\n' ' ')
+[ -z "$queued" ] || fail "jobs of this picture are still in the queue: ${queued% }; wait for them, or scancel them"
+
+# A task has the same samples each time, so that it finds its checkpoint.
+if [ -f "$folder/part-size" ]; then
+    before=$(cat "$folder/part-size")
+    [ -z "$part" ] || [ "$part" = "$before" ] || fail "--part: $folder was begun with $before; keep it, or give another --folder"
+    part=$before
+elif [ -z "$part" ]; then
+    if [ -z "$speed" ]; then
+        echo "Measuring the speed of this machine; --speed gives that of the nodes"
+        report=$("$candela" render "$scene" ${options[@]+"${options[@]}"} --spp 16777216 --time-limit 5s --quiet --report - -o "$folder/speed.exr")
+        rm -f "$folder/speed.exr"
+        number() { sed -n "s/^ *\"$1\": *\([0-9.e+]*\),*$/\1/p" <<<"$report"; }
+        speed=$(awk "BEGIN { print 60 * $(number samples_per_second) / ($(number width) * $(number height)) }")
+    fi
+    part=$(awk "BEGIN { n = int($speed * $task_time / 2); print n < 1 ? 1 : n > $spp ? $spp : n }")
+fi
+echo "$part" >"$folder/part-size"
+tasks=$(((spp + part - 1) / part))
+most=$(scontrol show config | sed -n 's/^MaxArraySize *= *//p')
+[ "$tasks" -lt "$most" ] || fail "$tasks tasks of $part sample(s) are more than Slurm takes, $((most - 1)); give a longer --task-time or a larger --part"
+
+# The tasks whose samples no part holds yet, as Slurm lists them.
+parts=("$folder"/part-*.exr)
+if [ -e "${parts[0]}" ]; then
+    missing=$("$candela" merge --missing "0..$spp" "${parts[@]}")
+else
+    missing=0..$spp
+fi
+array=$(sed 's/\.\./ /' <<<"$missing" | while read -r first end; do
+    [ -z "$first" ] || seq $((first / part)) $(((end - 1) / part))
+done | sort -nu | awk '  # 0 1 2 5 becomes 0-2,5
+    function flush() { printf "%s%s", separator, first == last ? first : first "-" last; separator = "," }
+    NR > 1 && $1 == last + 1 { last = $1; next }
+    NR > 1 { flush() }
+    { first = last = $1 }
+    END { if (NR) flush() }')
+
+log="$folder/%x-%A-%a.log"
+dependency=
+if [ -n "$array" ]; then
+    tasks_job=$(sbatch --parsable --job-name="$job" --array="$array" --time="$task_time" --output="$log" \
+        "$scripts/render.sbatch" "$candela" "$folder" "$part" "$spp" "$scene" ${options[@]+"${options[@]}"})
+    tasks_job=${tasks_job%%;*}
+    dependency=--dependency=afterany:$tasks_job
+    echo "Job $tasks_job: tasks $array of $part sample(s) each"
+fi
+merge_job=$(sbatch --parsable --job-name="$job-merge" $dependency --output="$folder/merge.log" \
+    "$scripts/merge.sbatch" "$candela" "$folder" "$spp" "${outputs[@]}")
+merge_job=${merge_job%%;*}
+echo "Job $merge_job: merges them to ${outputs[*]}"
+echo "Watch them: squeue --job=${tasks_job:+$tasks_job,}$merge_job; tail $folder/*.log"
+echo "If a task fails, the merge says so in $folder/merge.log: the same command again submits what is missing."

@@ -1,0 +1,283 @@
+#!/usr/bin/env python3
+"""Renders a scene on a cluster of Slurm's own daemons, two nodes on this computer, while tasks are killed and a node is
+drained.   usage: slurm_test.py CANDELA"""
+import contextlib
+import getpass
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+CANDELA = os.path.abspath(sys.argv.pop(1))
+ROOT = Path(__file__).resolve().parents[2]
+SUBMIT = ROOT / "integrations/slurm/submit.sh"
+SCENE = ROOT / "scenes/cornell-box.json"
+PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch"]
+PATIENCE = 600  # Seconds; only says that something hangs.
+ACTIVE = ("PENDING", "CONFIGURING", "RUNNING", "COMPLETING", "REQUEUED")  # Of a job that has not ended.
+
+CONFIGURATION = """
+ClusterName=candela-test
+SlurmctldHost={host}(127.0.0.1)
+SlurmctldPort={ports[0]}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.sock,cred_expire=5
+SlurmUser={user}
+SlurmdUser={user}
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool-%n
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd-%n.pid
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdLogFile={folder}/slurmd-%n.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+SchedulerParameters=batch_sched_delay=0,sched_interval=1
+ReturnToService=2
+KillWait=30
+NodeName=n1 NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[1]} CPUs=1
+NodeName=n2 NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[2]} CPUs=1
+PartitionName=all Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
+"""
+
+
+def free_ports(count):
+    with contextlib.ExitStack() as stack:
+        sockets = [stack.enter_context(socket.socket()) for _ in range(count)]
+        for each in sockets:
+            each.bind(("127.0.0.1", 0))
+        return [each.getsockname()[1] for each in sockets]
+
+
+def wait_until(what, condition):
+    """Waits for the value of condition(), which must come."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.1)
+    raise AssertionError(f"waited in vain: {what}")
+
+
+class Cluster:
+    """Daemons that live in a folder, as long as the context."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.daemons = []
+        self.environment = os.environ | {"SLURM_CONF": str(folder / "slurm.conf")}
+
+    def __enter__(self):
+        for name in ("state", "spool-n1", "spool-n2"):
+            (self.folder / name).mkdir()
+        (self.folder / "slurm.conf").write_text(CONFIGURATION.format(
+            folder=self.folder, user=getpass.getuser(), host=socket.gethostname().split(".")[0], ports=free_ports(3)))
+        key = self.folder / "munge.key"
+        key.write_bytes(os.urandom(128))
+        key.chmod(0o400)
+        try:
+            self.start("munged", "--foreground", "--force", f"--key-file={key}",
+                       f"--socket={self.folder}/munge.sock", f"--pid-file={self.folder}/munged.pid",
+                       f"--seed-file={self.folder}/munge.seed", f"--log-file={self.folder}/munged.log")
+            wait_until("munged", (self.folder / "munge.sock").exists)
+            self.start("slurmctld", "-D", "-i")
+            for node in ("n1", "n2"):
+                self.start("slurmd", "-D", "-N", node)
+            wait_until("nodes", lambda: self.run("sinfo", "--noheader", "--Node", "--format=%T", check=False).count("idle") == 2)
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        self.run("scancel", "--me", check=False)
+        for daemon in reversed(self.daemons):
+            daemon.terminate()
+        for daemon in self.daemons:
+            try:
+                daemon.wait(60)
+            except subprocess.TimeoutExpired:
+                daemon.kill()
+                daemon.wait()
+
+    def start(self, *command):
+        with open(self.folder / "daemons.log", "ab") as log:
+            self.daemons.append(subprocess.Popen(command, env=self.environment, stdout=log, stderr=log,
+                                                 stdin=subprocess.DEVNULL, cwd=self.folder))
+
+    def run(self, *command, check=True, **more):
+        """What the command prints."""
+        result = subprocess.run([str(word) for word in command], env=self.environment | more, cwd=self.folder,
+                                capture_output=True, text=True, check=False)
+        if check and result.returncode != 0:
+            raise AssertionError(f"{command} ended with {result.returncode}: {result.stdout}{result.stderr}")
+        return result.stdout
+
+    def set_nodes(self, nodes, state):
+        self.run("scontrol", "update", f"NodeName={nodes}", f"State={state}", "Reason=test")
+
+    def state(self, job):
+        """The state of a job or a task; nothing if Slurm does not know it."""
+        fields = self.run("scontrol", "show", "job", job, check=False).split()
+        return next((field.split("=")[1] for field in fields if field.startswith("JobState=")), None)
+
+
+class Slurm(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="candela-", dir="/tmp")))
+        cls.cluster = cls.enterClassContext(Cluster(folder))
+
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory(prefix="candela-", dir="/tmp")))
+        self.parts = self.folder / "box.parts"
+
+    def candela(self, *arguments):
+        return subprocess.run([CANDELA, *map(str, arguments)], capture_output=True, text=True, check=True).stdout
+
+    def submit(self, part, spp, size, candela=CANDELA, check=True):
+        """What it prints, and the numbers of the jobs that it submitted."""
+        # On one thread of the CPU a task takes seconds, so that it has a middle.
+        printed = self.cluster.run(
+            SUBMIT, "--part", part, SCENE, "--spp", spp, "--size", size, "-o", self.folder / "box.exr",
+            "-o", self.folder / "box.png", "--checkpoint-every", "0.1s", "--device", "llvmpipe",
+            check=check, CANDELA=str(candela), LP_NUM_THREADS="1")
+        return printed, [line.split()[1].rstrip(":") for line in printed.splitlines() if line.startswith("Job ")]
+
+    def end_of(self, job):
+        wait_until(f"the end of job {job}", lambda: self.cluster.state(job) not in ACTIVE)
+        return self.cluster.state(job)
+
+    def merge_log(self):
+        return (self.parts / "merge.log").read_text()
+
+    def running_task(self, part):
+        """(task, first sample, process) of one that has written a checkpoint."""
+        for line in self.cluster.run("squeue", "--noheader", "--states=R", "--array", "--format=%i %K").splitlines():
+            job, index = line.split()
+            if "_" not in job:
+                continue
+            first = int(index) * part
+            if (self.parts / f"part-{first:08}.state").exists():
+                for process in Path("/proc").glob("[0-9]*"):
+                    with contextlib.suppress(OSError):
+                        words = (process / "cmdline").read_bytes().split(b"\0")
+                        if words[0] == os.fsencode(CANDELA) and f"{first}..{first + part}".encode() in words:
+                            return job, first, int(process.name)
+        return None
+
+    def end_in_the_middle(self, part, end):
+        """Ends a task by end(job, process), and has Slurm run it again; returns its first sample."""
+        while True:  # A task may come to its own end before that.
+            job, first, process = wait_until("a task in its middle", lambda: self.running_task(part))
+            end(job, process)
+            if self.end_of(job) == "FAILED":
+                self.cluster.run("scontrol", "requeue", job)
+                return first
+
+    def reports(self, first):
+        return [json.loads(path.read_text()) for path in sorted(self.parts.glob(f"part-{first:08}-*.json"))]
+
+    def test_tasks_that_are_ended_and_a_node_that_is_drained_cost_no_sample(self):
+        part, spp, size = 24, 192, "224x224"
+        _, (_, merge) = self.submit(part, spp, size)
+
+        def kill(_, process):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(process, signal.SIGKILL)
+
+        def terminate(job, _):  # The batch script alone gets the signal, which is the program by then.
+            self.cluster.run("scancel", "--batch", "--signal=TERM", job, check=False)
+
+        killed = self.end_in_the_middle(part, kill)
+        ended = self.end_in_the_middle(part, terminate)
+        self.cluster.set_nodes("n2", "DRAIN")
+        wait_until("a drained node", lambda: "drained" in self.cluster.run(
+            "sinfo", "--noheader", "--nodes=n2", "--format=%T"))
+        self.cluster.set_nodes("n2", "RESUME")
+        self.assertEqual(self.end_of(merge), "COMPLETED", self.merge_log())
+        self.assertIn("merged 8 parts: samples 0..192\n", self.merge_log())
+        self.assertTrue((self.folder / "box.png").exists())
+
+        # The picture of one run, but for the rounding that merge promises: 3 units of 2^-24 in every mean.
+        self.candela("render", SCENE, "--spp", spp, "--size", size, "-o", self.folder / "one.exr", "--quiet")
+        self.candela("compare", self.folder / "box.exr", self.folder / "one.exr", "--relmse", (3 * 2**-24) ** 2)
+        for first in (killed, ended):  # A task that went on has the bits of one that was never ended.
+            alone = self.candela("render", SCENE, "--samples", f"{first}..{first + part}", "--size", size,
+                                 "-o", self.folder / "alone.exr", "--quiet", "--report", "-")
+            self.assertEqual(self.reports(first)[-1]["image_hash"], json.loads(alone)["image_hash"])
+
+        # No sample was rendered twice that a report or a checkpoint knows of.
+        samples = 224 * 224 * part
+        for first in range(0, spp, part):
+            rendered = [report["rendered_samples"] for report in self.reports(first)]
+            self.assertEqual(len(rendered), 2 if first == ended else 1)
+            if first == killed:  # What was before the checkpoint has no report.
+                self.assertLess(rendered[0], samples)
+            else:
+                self.assertEqual(sum(rendered), samples)
+
+    def test_what_failed_is_submitted_by_the_same_command(self):
+        failing = self.folder / "failing"
+        failing.write_text(f'#!/bin/sh\ncase $* in *"render "*" 4..8 "*) exit 4 ;; esac\nexec {CANDELA} "$@"\n')
+        failing.chmod(0o755)
+        _, (_, merge) = self.submit(4, 14, "32x32", candela=failing)
+        self.assertEqual(self.end_of(merge), "FAILED")
+        self.assertIn("Nothing was merged. These samples are missing; the same submit.sh again submits them: 4..8\n",
+                      self.merge_log())
+        printed, (_, merge) = self.submit(4, 14, "32x32")
+        self.assertIn(": tasks 1 of 4 sample(s) each\n", printed)
+        self.assertEqual(self.end_of(merge), "COMPLETED", self.merge_log())
+        self.assertIn("merged 4 parts: samples 0..14\n", self.merge_log())
+
+        # More samples: the last task was not whole. Nothing missing: the merge alone.
+        printed, (_, merge) = self.submit(4, 20, "32x32")
+        self.assertIn(": tasks 3-4 of 4 sample(s) each\n", printed)
+        self.assertEqual(self.end_of(merge), "COMPLETED", self.merge_log())
+        self.assertIn("merged 5 parts: samples 0..20\n", self.merge_log())
+        _, (merge,) = self.submit(4, 20, "32x32")
+        self.assertEqual(self.end_of(merge), "COMPLETED", self.merge_log())
+
+    def test_what_makes_no_sense_is_refused(self):
+        def refusal(*arguments):
+            result = subprocess.run([SUBMIT, *map(str, arguments)], env=self.cluster.environment | {"CANDELA": CANDELA},
+                                    cwd=self.folder, capture_output=True, text=True, check=False)
+            self.assertEqual(result.returncode, 2, result.stdout)
+            return result.stderr
+
+        self.assertIn("--spp is missing", refusal(SCENE, "-o", "a.exr"))
+        self.assertIn("there is no output", refusal(SCENE, "--spp", 4))
+        self.assertIn('--spp: cannot use "0"', refusal(SCENE, "--spp", 0, "-o", "a.exr"))
+        self.assertIn('--part: cannot use "x"', refusal("--part", "x", SCENE, "--spp", 4, "-o", "a.exr"))
+        self.assertIn("--adaptive is not for parts", refusal(SCENE, "--adaptive", "--spp", 4, "-o", "a.exr"))
+        self.assertIn("no.json does not exist", refusal("no.json", "--spp", 4, "-o", "a.exr"))
+        self.assertIn("--spp is no option of submit.sh", refusal("--spp", 4, SCENE))
+        self.assertIn("2000 tasks of 1 sample(s) are more than Slurm takes",
+                      refusal("--part", 1, SCENE, "--spp", 2000, "-o", "a.exr"))
+        # While jobs of a picture wait, it is not submitted once more.
+        self.cluster.set_nodes("n1,n2", "DRAIN")
+        _, jobs = self.submit(4, 8, "32x32")
+        self.assertIn("jobs of this picture are still in the queue: " + " ".join(jobs),
+                      refusal("--folder", self.parts, SCENE, "--spp", 8, "-o", "a.exr"))
+        self.cluster.run("scancel", *jobs)
+        self.cluster.set_nodes("n1,n2", "RESUME")
+
+
+if __name__ == "__main__":
+    absent = [program for program in PROGRAMS if shutil.which(program) is None]
+    if absent:
+        print(f"skipped: {', '.join(absent)} not installed (packages slurm-wlm and munge)")
+        sys.exit()
+    unittest.main()
