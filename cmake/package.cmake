@@ -1,5 +1,6 @@
 # `cmake --install` puts the program into bin, the shared libraries that it brings along into lib, where its run path
-# finds them wherever both are moved to, scenes and integrations into share; `cpack` in the build folder makes an archive of that.
+# finds them wherever both are moved to, scenes and integrations into share; `cpack` in the build folder makes an archive
+# of that.
 #
 # Configure with -DCANDELA_VIEW=OFF for that: the libraries of the window system must be the system's own.
 #
