@@ -213,8 +213,10 @@ std::string read_file(const fs::path& path) {
 
 FileStart read_file_start(const fs::path& path, size_t most) {
     check_readable(path);
-    const Descriptor file(path, O_RDONLY);
+    const Descriptor file(path, O_RDONLY | O_NONBLOCK);
     FileStart start;
+    if (file.is_open() && !file.is_regular())
+        fail_to_read(path, "it is a pipe, and is to be read more than once; give the name of a file");
     if (!file.is_open() || !file.read_all(start.bytes, most))
         fail_to_read(path, describe(errno) + "; check the file and its disk");
     start.size = file.size();

@@ -19,7 +19,7 @@ void check_readable(const std::filesystem::path& path);
 // Returns the bytes of a file or pipe. Throws Error as check_readable() does, or if reading breaks off.
 std::string read_file(const std::filesystem::path& path);
 
-// The first bytes of a regular file, `most` at most. Throws Error as read_file() does.
+// The first bytes of a regular file, `most` at most. Throws Error as read_file() does, and for a pipe.
 struct FileStart {
     std::string bytes;
     uint64_t size = 0;  // Of the whole file.
