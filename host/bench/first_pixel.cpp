@@ -12,9 +12,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "bench/clocks.h"
 #include "selftest/embedded.h"
-#include "selftest/evidence.h"
 
 namespace candela {
 namespace {
@@ -87,8 +87,8 @@ Clocks run_program(std::vector<std::string> arguments, const std::vector<std::st
         std::string call;
         for (const std::string& word : arguments)
             call += (call.empty() ? "" : " ") + word;
-        const std::string end = WIFEXITED(status) ? words("exited with ", WEXITSTATUS(status))
-                                                  : words("was ended by signal ", WTERMSIG(status));
+        const std::string end = WIFEXITED(status) ? concat("exited with ", WEXITSTATUS(status))
+                                                  : concat("was ended by signal ", WTERMSIG(status));
         throw Error("first-pixel: `" + call + "` " + end + "; see above for what it said");
     }
     return {seconds(usage.ru_utime) + seconds(usage.ru_stime), wall};

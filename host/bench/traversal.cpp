@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "bench/meshes.h"
-#include "selftest/evidence.h"
 #include "selftest/scenes.h"
 #include "shared/primitive.h"
 
@@ -115,7 +115,7 @@ Row time_rays(const std::string& subject, const RaySet& set, RayTracer& ours, Ra
 void check_same_hits(const std::string& what, size_t differing, size_t rays) {
     if (differing <= 1 + rays / RAYS_PER_OTHER_HIT) return;
     throw Error(
-        words(what, ": ", differing, " of ", rays,
+        concat(what, ": ", differing, " of ", rays,
               " rays have another hit than Embree's, so that the speeds are not those of one task; `candela "
               "selftest` tells what is wrong on this device"));
 }

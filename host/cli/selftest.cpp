@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/console.h"
@@ -51,7 +52,7 @@ void print_heading(const vk::DeviceInfo& device, Effort effort, double level) {
 
 // "1 ray", "6758400 samples"; `unit` is a plural.
 std::string count_text(uint64_t count, const std::string& unit) {
-    return words(count, ' ', count == 1 ? unit.substr(0, unit.size() - 1) : unit);
+    return concat(count, ' ', count == 1 ? unit.substr(0, unit.size() - 1) : unit);
 }
 
 // "6758400 samples, 264 tests"
@@ -66,7 +67,7 @@ std::string found_text(const CheckResult& result) {
     if (result.error) return "error";
     const std::string p =
         result.evidence.tests() > 0 ? ", p " + probability_text(result.evidence.p_value()) : "";
-    return words(result.evidence.wrong(), " wrong", p);
+    return concat(result.evidence.wrong(), " wrong", p);
 }
 
 // What went wrong, in words; empty if nothing.
@@ -122,8 +123,8 @@ void print_verdict(const std::vector<CheckResult>& results, size_t checks, size_
     double seconds = 0.0;
     for (const CheckResult& result : results)
         seconds += result.seconds;
-    const std::string verdict = failed == 0 ? words("all ", checks, " checks passed")
-                                            : words(failed, " of ", checks, " checks FAILED");
+    const std::string verdict = failed == 0 ? concat("all ", checks, " checks passed")
+                                            : concat(failed, " of ", checks, " checks FAILED");
     std::printf("\n%s, in %s\n", verdict.c_str(), duration_text(seconds).c_str());
 }
 

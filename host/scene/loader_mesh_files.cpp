@@ -45,7 +45,7 @@ std::string name_of(const Node& file, const ObjPart& part) {
 
 // Adds the materials of an OBJ file to the scene, unless another shape of the same file has brought them.
 void add_surfaces(const Node& file, const ObjParts& obj, ShapeList& shapes) {
-    const auto is_there = [&](const ObjPart& part) { return shapes.find_file_surface(name_of(file, part)); };
+    const auto is_there = [&](const ObjPart& part) { return shapes.find_file_appearance(name_of(file, part)); };
     if (std::all_of(obj.parts.begin(), obj.parts.end(), is_there)) return;
     const std::filesystem::path path = shapes.path_of(file.file_name());
     Scene& scene = shapes.scene();
@@ -56,14 +56,14 @@ void add_surfaces(const Node& file, const ObjParts& obj, ShapeList& shapes) {
         if (!part.material) {
             const std::string faces = std::to_string(part.faces) + (part.faces == 1 ? " face" : " faces");
             warn(file, {path.string() + ": " + faces + " before the first usemtl; shown in grey"}, scene);
-            shapes.add_file_surface(name_of(file, part), DiffuseMaterial{}, std::nullopt);
+            shapes.add_file_appearance(name_of(file, part), DiffuseMaterial{}, std::nullopt);
             continue;
         }
         const MtlMaterial& material =
             read_from(file, [&] { return find_mtl_material(library, path, *part.material); });
         warn(file, material.warnings, scene);
         const bool emits = material.emission != vec3(0.0f);
-        shapes.add_file_surface(name_of(file, part), material.material.model,
+        shapes.add_file_appearance(name_of(file, part), material.material.model,
                                 emits ? std::optional(Emission{material.emission}) : std::nullopt);
     }
 }
@@ -90,12 +90,12 @@ void read_obj_with_materials(const Node& node, ShapeList& shapes) {
     std::vector<MeshPart> parts;
     for (ObjPart& part : obj.parts) {
         move_to_world(file, transform, part.mesh);
-        Surface surface = *shapes.find_file_surface(name_of(file, part));
-        if (surface.emission) {
-            surface.emission->two_sided = both_sides;
+        Appearance appearance = *shapes.find_file_appearance(name_of(file, part));
+        if (appearance.emission) {
+            appearance.emission->two_sided = both_sides;
             emits = true;
         }
-        parts.push_back({surface, std::move(part.mesh)});
+        parts.push_back({appearance, std::move(part.mesh)});
     }
     if (two_sided && !emits) {
         two_sided->fail("two_sided says where emission leaves, but no material of the file emits (Ke)");
@@ -106,7 +106,7 @@ void read_obj_with_materials(const Node& node, ShapeList& shapes) {
 // Adds a file as one mesh with the material and emission of `node`; load(file, path, normals) reads it.
 template <class Load>
 void read_whole(const Node& node, ShapeList& shapes, Load load) {
-    const Surface surface = shapes.surface_of(node);
+    const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     const Node file = node.require("file");
     const MeshNormals normals = normals_of(node);
@@ -114,7 +114,7 @@ void read_whole(const Node& node, ShapeList& shapes, Load load) {
     TriangleMesh mesh = read_from(file, [&] { return load(file, path, normals); });
     shapes.scene().files.push_back(path);
     move_to_world(file, transform, mesh);
-    shapes.add_mesh(node, surface, transform, std::move(mesh));
+    shapes.add_mesh(node, appearance, transform, std::move(mesh));
 }
 
 }  // namespace

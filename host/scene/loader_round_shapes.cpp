@@ -48,7 +48,7 @@ void check_breadth(const Node& node, const Disk& disk) {
 
 void read_sphere(const Node& node, ShapeList& shapes) {
     node.allow_only({"center", "radius"}, SHAPE_KEYS);
-    const Surface surface = shapes.surface_of(node);
+    const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     const std::optional<double> scale = transform.uniform_scale();
     if (!scale) {
@@ -61,12 +61,12 @@ void read_sphere(const Node& node, ShapeList& shapes) {
         node.fail("the transform makes the sphere too small for 32-bit floats; use greater factors");
     }
     check_reach(node, center, dvec3(radius));
-    shapes.add(surface, Sphere{vec3(center), float(radius)});
+    shapes.add(appearance, Sphere{vec3(center), float(radius)});
 }
 
 void read_disk(const Node& node, ShapeList& shapes) {
     node.allow_only({"center", "normal", "radius"}, SHAPE_KEYS);
-    const Surface surface = shapes.surface_of(node);
+    const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     const dvec3 center = transform.point(center_of(node));
     const double radius = radius_of(node);
@@ -85,7 +85,7 @@ void read_disk(const Node& node, ShapeList& shapes) {
     Disk disk{vec3(center), vec3(e1), vec3(e2)};
     if (transform.mirrors()) std::swap(disk.e1, disk.e2);
     check_breadth(node, disk);
-    shapes.add(surface, disk);
+    shapes.add(appearance, disk);
 }
 
 }  // namespace candela

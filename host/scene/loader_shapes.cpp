@@ -37,7 +37,7 @@ void check_quad(const Node& node, const Quad& quad) {
 
 void read_quad(const Node& node, ShapeList& shapes) {
     node.allow_only({"vertices"}, SHAPE_KEYS);
-    const Surface surface = shapes.surface_of(node);
+    const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     const Node vertices = node.require("vertices");
     const std::vector<Node> points = vertices.elements();
@@ -48,7 +48,7 @@ void read_quad(const Node& node, ShapeList& shapes) {
         quad.corners[corner] = rounded(points[i], transform.point(points[i].vector()));
     }
     check_quad(vertices, quad);
-    shapes.add(surface, quad);
+    shapes.add(appearance, quad);
 }
 
 void read_box(const Node& node, ShapeList& shapes) {
@@ -56,7 +56,7 @@ void read_box(const Node& node, ShapeList& shapes) {
     constexpr uint8_t SIDES[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                      {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     node.allow_only({"min", "max"}, SHAPE_KEYS);
-    const Surface surface = shapes.surface_of(node);
+    const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     const dvec3 lo = node.require("min").vector();
     const dvec3 hi = node.require("max").vector();
@@ -71,13 +71,13 @@ void read_box(const Node& node, ShapeList& shapes) {
             quad.corners[i] = rounded(node, transform.point(p));
         }
         check_quad(node, quad);
-        shapes.add(surface, quad);
+        shapes.add(appearance, quad);
     }
 }
 
 void read_mesh(const Node& node, ShapeList& shapes) {
     node.allow_only({"positions", "triangles", "normals"}, SHAPE_KEYS);
-    const Surface surface = shapes.surface_of(node);
+    const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     TriangleMesh mesh;
     const Node positions = node.require("positions");
@@ -99,7 +99,7 @@ void read_mesh(const Node& node, ShapeList& shapes) {
             normals->fail_expected("as many normals as positions, " + std::to_string(mesh.positions.size()));
         }
     }
-    shapes.add_mesh(node, surface, transform, std::move(mesh));
+    shapes.add_mesh(node, appearance, transform, std::move(mesh));
 }
 
 }  // namespace

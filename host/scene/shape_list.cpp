@@ -20,7 +20,7 @@ ShapeList::ShapeList(std::filesystem::path folder, Scene& scene) : folder_(std::
         indices_.emplace(material.name, uint32_t(indices_.size()));
 }
 
-Surface ShapeList::surface_of(const Node& node) {
+Appearance ShapeList::appearance_of(const Node& node) {
     const auto material = node.find("material");
     if (!material && !node.find("emission")) {
         node.fail("the shape has neither material nor emission; add one of them");
@@ -65,30 +65,30 @@ void ShapeList::add_mesh(const Node& node, const Transform& transform, std::vect
     }
     for (MeshPart& part : parts) {
         complete_normals(part.mesh);
-        add(part.surface, std::move(part.mesh));
+        add(part.appearance, std::move(part.mesh));
     }
 }
 
-void ShapeList::add_mesh(const Node& node, const Surface& surface, const Transform& transform,
+void ShapeList::add_mesh(const Node& node, const Appearance& appearance, const Transform& transform,
                          TriangleMesh mesh) {
     std::vector<MeshPart> parts;  // Not from an initializer list, which would copy the mesh.
-    parts.push_back({surface, std::move(mesh)});
+    parts.push_back({appearance, std::move(mesh)});
     add_mesh(node, transform, std::move(parts));
 }
 
-const Surface* ShapeList::find_file_surface(const std::string& name) const {
-    const auto found = file_surfaces_.find(name);
-    return found == file_surfaces_.end() ? nullptr : &found->second;
+const Appearance* ShapeList::find_file_appearance(const std::string& name) const {
+    const auto found = file_appearances_.find(name);
+    return found == file_appearances_.end() ? nullptr : &found->second;
 }
 
-void ShapeList::add_file_surface(const std::string& name, const decltype(Material::model)& model,
+void ShapeList::add_file_appearance(const std::string& name, const decltype(Material::model)& model,
                                  const std::optional<Emission>& emission) {
     std::vector<Material>& materials = scene_.materials;
     std::string unique = name;
     const auto is_taken = [&](const Material& material) { return material.name == unique; };
     for (int i = 2; std::any_of(materials.begin(), materials.end(), is_taken); ++i)
         unique = name + " (" + std::to_string(i) + ')';
-    file_surfaces_[name] = {uint32_t(materials.size()), emission};
+    file_appearances_[name] = {uint32_t(materials.size()), emission};
     materials.push_back({unique, model});
 }
 

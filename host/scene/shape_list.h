@@ -21,13 +21,13 @@ inline constexpr std::array<std::string_view, 5> SHAPE_KEYS{"type", "material", 
                                                             "transform"};
 
 // What a shape is apart from its geometry.
-struct Surface {
+struct Appearance {
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
 };
 
 struct MeshPart {
-    Surface surface;
+    Appearance appearance;
     TriangleMesh mesh;
 };
 
@@ -43,7 +43,7 @@ class ShapeList {
 
     // The material and emission that a shape's node names. An emitter without a material gets a black one,
     // and emission of zero is none. Throws Error if the node has neither, or for a name of no material.
-    Surface surface_of(const Node& node);
+    Appearance appearance_of(const Node& node);
     // The emission of a shape's node; none if it is absent or zero. Throws Error for two_sided without it.
     static std::optional<Emission> emission_of(const Node& node);
     // The transform of a shape's node; the identity if it has none.
@@ -51,21 +51,21 @@ class ShapeList {
 
     // Adds a finished geometry, which is in world space.
     template <class Geometry>
-    void add(const Surface& surface, Geometry&& geometry) {
-        scene_.shapes.push_back({std::forward<Geometry>(geometry), surface.material, surface.emission});
+    void add(const Appearance& appearance, Geometry&& geometry) {
+        scene_.shapes.push_back({std::forward<Geometry>(geometry), appearance.material, appearance.emission});
     }
     // Adds a mesh, given in parts, whose positions are in world space, but whose normals and winding are not
     // yet. Leaves out flat triangles with a warning; throws Error if no other is left in any part. Both name
     // the place of `node`.
     void add_mesh(const Node& node, const Transform& transform, std::vector<MeshPart> parts);
     // Adds a mesh of one part.
-    void add_mesh(const Node& node, const Surface& surface, const Transform& transform, TriangleMesh mesh);
+    void add_mesh(const Node& node, const Appearance& appearance, const Transform& transform, TriangleMesh mesh);
 
     // Materials that files bring along: `name` is the file's and the material's, as `pot.obj/clay`. In the
     // scene a material is called so, or similarly if another has that name. `find` returns null for one that
     // was not added.
-    const Surface* find_file_surface(const std::string& name) const;
-    void add_file_surface(const std::string& name, const decltype(Material::model)& model,
+    const Appearance* find_file_appearance(const std::string& name) const;
+    void add_file_appearance(const std::string& name, const decltype(Material::model)& model,
                           const std::optional<Emission>& emission);
 
   private:
@@ -75,7 +75,7 @@ class ShapeList {
     std::filesystem::path folder_;
     Scene& scene_;
     std::map<std::string, uint32_t, std::less<>> indices_;  // Of the materials that the scene file defines.
-    std::map<std::string, Surface, std::less<>> file_surfaces_;
+    std::map<std::string, Appearance, std::less<>> file_appearances_;
     std::optional<uint32_t> black_;
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/statistics.h"
+#include "base/text.h"
 #include "selftest/histogram.h"
 #include "selftest/probe.h"
 #include "selftest/random.h"
@@ -61,7 +62,7 @@ MaterialRecord dielectric(uint32_t model, float eta) {
 std::vector<BsdfCase> bsdf_cases() {
     std::vector<BsdfCase> cases;
     for (const vec3 wo : VIEWS) {
-        const std::string view = words(", cosine ", wo.z);
+        const std::string view = concat(", cosine ", wo.z);
         const auto add = [&](const std::string& name, const MaterialRecord& material, const auto& chart) {
             cases.push_back({name + view, material, wo, chart});
         };
@@ -71,13 +72,13 @@ std::vector<BsdfCase> bsdf_cases() {
         for (const vec3 kd : {vec3(0.0f), vec3(0.5f, 0.2f, 0.4f)}) {
             const vec3 ks(0.4f, 0.8f, 0.1f);
             for (const float n : {0.0f, 1.0f, 7.5f})
-                add(words("phong ", n), phong(kd, ks, n), SphereChart());
+                add(concat("phong ", n), phong(kd, ks, n), SphereChart());
             for (const float n : {100.0f, 1e3f, 1e4f, 1e5f})
-                add(words("phong ", n), phong(kd, ks, n), LobeChart(mirrored, n));
+                add(concat("phong ", n), phong(kd, ks, n), LobeChart(mirrored, n));
         }
         add("phong without a lobe", phong(vec3(0.7f, 0.2f, 0.0f), vec3(0.0f), 50.0f), SphereChart());
         for (const float alpha : {1e-3f, 0.01f, 0.1f, 0.5f, 1.0f})
-            add(words("conductor ", alpha), conductor(vec3(0.9f, 0.6f, 0.3f), alpha),
+            add(concat("conductor ", alpha), conductor(vec3(0.9f, 0.6f, 0.3f), alpha),
                 FacetChart(glm::dvec3(wo), alpha));
     }
     return cases;
@@ -119,10 +120,10 @@ void test_density(const BsdfCase& c, const std::vector<BsdfResult>& results, Evi
     }
     // Where nothing is left, the error of the integral is: a few times 10^-4.
     const double rest = expected[BSDF_REST];
-    evidence.expect(rest >= -1e-3, [&] { return words(c.name, ": the density adds up to ", 1.0 - rest); });
+    evidence.expect(rest >= -1e-3, [&] { return concat(c.name, ": the density adds up to ", 1.0 - rest); });
     if (!(rest >= 1e-3)) {
         evidence.expect(counts[BSDF_REST] <= 2e-3 * double(results.size()), [&] {
-            return words(c.name, ": ", counts[BSDF_REST], " samples are where the density leaves no room");
+            return concat(c.name, ": ", counts[BSDF_REST], " samples are where the density leaves no room");
         });
         expected[BSDF_REST] = counts[BSDF_REST] = 0.0;
     }
@@ -148,7 +149,7 @@ void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evid
             squares += glm::dvec3(s.weight) * glm::dvec3(s.weight);
         }
         evidence.expect(holds, [&] {
-            return words(c.name, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z, ", pdf ", s.pdf, " and ",
+            return concat(c.name, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z, ", pdf ", s.pdf, " and ",
                          s.pdf_of_sample, ", weight ", s.weight.x, ' ', s.weight.y, ' ', s.weight.z, ", f ",
                          s.f_of_sample.x, ' ', s.f_of_sample.y, ' ', s.f_of_sample.z, ", delta ", s.delta,
                          ", eta ", s.eta);
@@ -159,7 +160,7 @@ void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evid
     for (const int i : {0, 1, 2}) {
         const double mean = albedo[i] / count;
         const double variance = (squares[i] / count - mean * mean) / count;
-        evidence.add_p_value(words(c.name, ": albedo ", mean), p_value_of_gain(mean, variance));
+        evidence.add_p_value(concat(c.name, ": albedo ", mean), p_value_of_gain(mean, variance));
     }
 }
 

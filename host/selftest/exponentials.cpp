@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/text.h"
 #include "selftest/probe.h"
 #include "selftest/probes.h"
 
@@ -55,7 +56,7 @@ Evidence test_logarithm(const vk::Device& device) {
     for (size_t i = 0; i < x.size(); ++i) {
         const double expected = std::log1p(double(x[i]));
         evidence.expect(std::abs(double(values[i].log1p) - expected) <= 11 * 0x1p-24 * -expected,
-                        [&] { return words("log1p(", x[i], ") = ", values[i].log1p); });
+                        [&] { return concat("log1p(", x[i], ") = ", values[i].log1p); });
     }
     return evidence;
 }
@@ -78,7 +79,7 @@ Evidence test_exponentials(const vk::Device& device) {
         evidence.expect(
             std::abs(double(values[i].exp) - exp) <= 4 * 0x1p-24 * exp &&
                 std::abs(double(values[i].expm1) - expm1) <= 6 * 0x1p-24 * -expm1,
-            [&] { return words("exp(", x[i], ") = ", values[i].exp, ", less 1: ", values[i].expm1); });
+            [&] { return concat("exp(", x[i], ") = ", values[i].exp, ", less 1: ", values[i].expm1); });
     }
     return evidence;
 }

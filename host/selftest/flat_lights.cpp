@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/statistics.h"
+#include "base/text.h"
 #include "selftest/histogram.h"
 #include "selftest/lights.h"
 #include "selftest/random.h"
@@ -119,7 +120,7 @@ Evidence test_flat_light_points(const vk::Device& device, Effort effort) {
                                   ? uniform_coordinates(LIGHTS[i], point_of(items[k], samples[k], i))
                                   : glm::dvec2(-1.0);
         const bool on_a_light = at.x > -1e-4 && at.x < 1.0001 && at.y > -1e-4 && at.y < 1.0001;
-        evidence.expect(on_a_light, [&] { return words("flat light ", i, ", at ", at.x, ' ', at.y); });
+        evidence.expect(on_a_light, [&] { return concat("flat light ", i, ", at ", at.x, ' ', at.y); });
         if (!on_a_light) continue;
         ++chosen[i];
         points[i].add(at);
@@ -129,7 +130,7 @@ Evidence test_flat_light_points(const vk::Device& device, Effort effort) {
         powers.push_back(l.power());
     evidence.add_p_value("choice among flat lights", pearson_p_value(chosen, powers));
     for (size_t i = 0; i < LIGHTS.size(); ++i)
-        evidence.add_p_value(words("points of flat light ", i), points[i].uniformity());
+        evidence.add_p_value(concat("points of flat light ", i), points[i].uniformity());
     return evidence;
 }
 
@@ -146,7 +147,7 @@ Evidence test_flat_light_values(const vk::Device& device, SceneAccess access) {
         const size_t i = light_of(items[k], s);
         evidence.expect(i < LIGHTS.size() && is_right(items[k], s, i, total_power), [&] {
             const vec3 from = items[k].from;
-            return words("flat light ", i, " from ", from.x, ' ', from.y, ' ', from.z, ": wi ", s.wi.x, ' ',
+            return concat("flat light ", i, " from ", from.x, ' ', from.y, ' ', from.z, ": wi ", s.wi.x, ' ',
                          s.wi.y, ' ', s.wi.z, ", Li ", s.Li.x, ", pdf ", s.pdf, ", t_max ", s.t_max,
                          "; met: ", s.light_met, ", pdf ", s.pdf_met, ", Li ", s.Li_met.x);
         });

@@ -9,6 +9,7 @@
 #include "base/compare.h"
 #include "base/image_io.h"
 #include "base/statistics.h"
+#include "base/text.h"
 #include "render/gpu_scene.h"
 #include "render/renderer.h"
 #include "selftest/embedded.h"
@@ -33,7 +34,7 @@ Image render(const vk::Device& device, const Scene& scene, Estimator estimator, 
     renderer.render(spp, [](double) { return true; });
     const RenderCounters& counters = renderer.counters();
     evidence.expect(counters.nonfinite_samples == 0 && counters.depth_limit_hits == 0, [&] {
-        return words(counters.nonfinite_samples, " samples are not finite, ", counters.depth_limit_hits,
+        return concat(counters.nonfinite_samples, " samples are not finite, ", counters.depth_limit_hits,
                      " paths were cut off");
     });
     return make_image(renderer.download(), {.variance = true}, {});
@@ -58,9 +59,9 @@ void test_same_expectation(const std::string& name, const Image& a, const Image&
     const ZTests& z = comparison.tests.value();
     const PixelRect& place = z.block.place;
     const uint64_t along = SIZE / COMPARE_BLOCK;
-    evidence.add_p_value(words(name, ": block at ", place.x0, ',', place.y0, ", z ", z.block.z),
+    evidence.add_p_value(concat(name, ": block at ", place.x0, ',', place.y0, ", z ", z.block.z),
                          normal_p_value(z.block.z), 3 * along * along);
-    evidence.add_p_value(words(name, ": mean of the image, z ", z.mean.z), normal_p_value(z.mean.z), 3);
+    evidence.add_p_value(concat(name, ": mean of the image, z ", z.mean.z), normal_p_value(z.mean.z), 3);
 }
 
 // Lights and lobes are large enough for each estimator alone to have a small variance.
@@ -99,7 +100,7 @@ Evidence test_furnace(const vk::Device& device, Effort effort) {
             const RgbPlanes planes = image.find_rgb().value();
             for (const std::span<const float> pixels : planes) {
                 evidence.add_p_value(
-                    words("albedo ", albedo, estimator == Estimator::bsdf ? ", bsdf" : ", mis"),
+                    concat("albedo ", albedo, estimator == Estimator::bsdf ? ", bsdf" : ", mis"),
                     p_value_of_mean(pixels, 1.0 / (1.0 - double(albedo))));
             }
         }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/text.h"
 #include "selftest/probe.h"
 #include "selftest/probes.h"
 #include "selftest/random.h"
@@ -215,7 +216,7 @@ Evidence test_records(const vk::Device& device, SceneAccess access) {
     Evidence evidence;
     for (size_t i = 0; i < fields.words.size(); ++i) {
         evidence.expect(read.words[i] == fields.words[i], [&] {
-            return words("word ", i, ", storage buffers ", on_device.buffers().storage_arrays(), ": ",
+            return concat("word ", i, ", storage buffers ", on_device.buffers().storage_arrays(), ": ",
                          read.words[i], " instead of ", fields.words[i]);
         });
     }
@@ -238,7 +239,7 @@ Evidence test_octahedral_normals(const vk::Device& device) {
         const glm::dvec3 a(normalize(glm::dvec3(vectors[i]))), b(decoded[i]);
         const double angle = std::atan2(length(cross(a, b)), dot(a, b));
         evidence.expect(angle <= bound && std::abs(length(b) - 1.0) <= 0x1p-20, [&] {
-            return words("normal ", a.x, ' ', a.y, ' ', a.z, " became ", b.x, ' ', b.y, ' ', b.z);
+            return concat("normal ", a.x, ' ', a.y, ' ', a.z, " became ", b.x, ' ', b.y, ' ', b.z);
         });
     }
     return evidence;

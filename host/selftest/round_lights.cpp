@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "selftest/charts.h"
 #include "selftest/histogram.h"
 #include "selftest/lights.h"
@@ -24,7 +25,7 @@ GpuScene scene_of(const decltype(Shape::geometry)& geometry, bool two_sided) {
 }
 
 std::string describe(const char* what, vec3 from, const LightSample& s) {
-    return words(what, " from ", from.x, ' ', from.y, ' ', from.z, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z,
+    return concat(what, " from ", from.x, ' ', from.y, ' ', from.z, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z,
                  ", pdf ", s.pdf, ", Li ", s.Li.x, ", occluded ", s.occluded, "; met: ", s.light_met,
                  ", pdf ", s.pdf_met, ", Li ", s.Li_met.x);
 }
@@ -79,12 +80,12 @@ void test_sphere_from_outside(const vk::Device& device, const Place& place, uint
         }
         evidence.expect(right, [&] { return describe("sphere", from, s); });
     }
-    const std::string name = words("sphere of radius ", sphere.radius, ' ', length(to_center), " m away");
+    const std::string name = concat("sphere of radius ", sphere.radius, ' ', length(to_center), " m away");
     evidence.add_p_value(name, points.uniformity());
     // Rays past the limb: the centre's distance carries 4 roundings, which count in radii.
     const double limb = std::min(1.0, 2.0 * 8 * 0x1p-24 / sine) * samples;
     evidence.expect(double(met) >= samples - 10.0 - 2.0 * limb && double(outside) <= 10.0 + 2.0 * limb, [&] {
-        return words(name, ": of ", samples, " samples ", met, " meet it, ", outside, " are beside it");
+        return concat(name, ": of ", samples, " samples ", met, " meet it, ", outside, " are beside it");
     });
 }
 
@@ -121,7 +122,7 @@ Evidence test_spheres_from_inside(const vk::Device& device, Effort effort) {
                                std::abs(double(s.pdf_met) - double(s.pdf)) <= double(s.pdf) * off;
             evidence.expect(right, [&] { return describe("sphere around", from, s); });
         }
-        evidence.add_p_value(words("sphere from inside, z ", from.z), points.uniformity());
+        evidence.add_p_value(concat("sphere from inside, z ", from.z), points.uniformity());
         for (const LightSample& s :
              sample_lights(device, scene_of(sphere, false), random_light_items(from, 1000, 82)))
             evidence.expect(s.Li == vec3(0.0f), [&] { return describe("one-sided sphere around", from, s); });
@@ -151,7 +152,7 @@ Evidence test_disks(const vk::Device& device, Effort effort) {
                 right = right && std::abs(double(s.pdf_met) - double(s.pdf)) <= pdf * 0x1p-20 * relative;
             evidence.expect(right, [&] { return describe("disk", from, s); });
         }
-        evidence.add_p_value(words("disk from z ", from.z), points.uniformity());
+        evidence.add_p_value(concat("disk from z ", from.z), points.uniformity());
     }
     return evidence;
 }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <vector>
 
+#include "base/text.h"
 #include "selftest/probe.h"
 #include "selftest/probes.h"
 #include "selftest/random.h"
@@ -65,7 +66,7 @@ Evidence test_integer_functions(const vk::Device& device) {
         const uint32_t top_bits = v.x / 256;
         const auto expect = [&](const char* function, bool equal) {
             evidence.expect(equal, [&] {
-                return words(function, " of ", v.x, ' ', v.y, ' ', v.z, ' ', v.w,
+                return concat(function, " of ", v.x, ' ', v.y, ' ', v.z, ' ', v.w,
                              " differs from the reference");
             });
         };
@@ -87,7 +88,7 @@ Evidence test_sampler(const vk::Device& device, uint32_t sampler) {
         const SampleOfPair& s = samples[i];
         const uvec2 expected = reference_pair(sampler, s);
         evidence.expect(results[i] == expected, [&] {
-            return words("sampler ", sampler, ", pixel ", s.pixel, ", n ", s.n, ", seed ", s.seed, ", pair ",
+            return concat("sampler ", sampler, ", pixel ", s.pixel, ", n ", s.n, ", seed ", s.seed, ", pair ",
                          s.pair, ": ", results[i].x, ' ', results[i].y, " instead of ", expected.x, ' ',
                          expected.y);
         });

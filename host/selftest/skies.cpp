@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/statistics.h"
+#include "base/text.h"
 #include "selftest/histogram.h"
 #include "selftest/lights.h"
 #include "selftest/probe.h"
@@ -100,7 +101,7 @@ struct SkyCounts {
 };
 
 void test_samples_of(const vk::Device& device, const Environment& sky, uint32_t samples, Evidence& evidence) {
-    const std::string name = words("sky of ", sky.size.x, 'x', sky.size.y);
+    const std::string name = concat("sky of ", sky.size.x, 'x', sky.size.y);
     SkyCounts counts(sky);
     size_t at_borders = 0;
     for (const LightSample& s :
@@ -118,18 +119,18 @@ void test_samples_of(const vk::Device& device, const Environment& sky, uint32_t 
                     s.Li_met == s.Li && s.pdf_met == s.pdf && s.occluded == 0;
         }
         evidence.expect(right, [&] {
-            return words(name, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z, ", at ", place.x, ' ', place.y,
+            return concat(name, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z, ", at ", place.x, ' ', place.y,
                          ", pdf ", s.pdf, ", Li ", s.Li.x, ", occluded ", s.occluded, "; met: pdf ",
                          s.pdf_met, ", Li ", s.Li_met.x);
         });
     }
     evidence.expect(at_borders < 200,
-                    [&] { return words(name, ": ", at_borders, " samples are at borders of texels"); });
+                    [&] { return concat(name, ": ", at_borders, " samples are at borders of texels"); });
     // A black texel holds none but those from its borders.
     for (size_t i = 0; i < counts.texels.size(); ++i) {
         if (counts.light[i] > 0.0) continue;
         const double found = std::exchange(counts.texels[i], 0.0);
-        evidence.expect(found < 20.0, [&] { return words(name, ": ", found, " samples in a black texel"); });
+        evidence.expect(found < 20.0, [&] { return concat(name, ": ", found, " samples in a black texel"); });
     }
     evidence.add_p_value(name, pearson_p_value(counts.texels, counts.light));
     evidence.add_p_value(name + ", within texels", counts.within.uniformity());
@@ -170,12 +171,12 @@ Evidence test_sky_lookup(const vk::Device& device) {
                                    ? is_finite(texels[i].radiance)
                                    : texels[i].radiance == sky.radiance[texel_of(sky, place_of(sky, w))];
             evidence.expect(right, [&] {
-                return words("sky of ", size.x, 'x', size.y, ": radiance ", texels[i].radiance.x, " towards ",
+                return concat("sky of ", size.x, 'x', size.y, ": radiance ", texels[i].radiance.x, " towards ",
                              w.x, ' ', w.y, ' ', w.z);
             });
         }
         evidence.expect(at_borders < 500,
-                        [&] { return words(at_borders, " directions are at borders of texels"); });
+                        [&] { return concat(at_borders, " directions are at borders of texels"); });
     }
     return evidence;
 }
@@ -204,7 +205,7 @@ Evidence test_choice_of_sky(const vk::Device& device, Effort effort) {
         ++counts[of_the_sky ? 1 : 0];
         const double pdf = pmf * double(s.Li.x) / (4.0 * M_PI);
         evidence.expect(!of_the_sky || std::abs(double(s.pdf) - pdf) <= 0x1p-22,
-                        [&] { return words("the sky beside a panel: pdf ", s.pdf); });
+                        [&] { return concat("the sky beside a panel: pdf ", s.pdf); });
     }
     evidence.add_p_value("choice between sky and panel",
                          pearson_p_value(counts, std::vector{1.0 - pmf, pmf}));

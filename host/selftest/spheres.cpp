@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/text.h"
 #include "selftest/probe.h"
 #include "selftest/probes.h"
 #include "selftest/random.h"
@@ -90,14 +91,14 @@ vec3 grazing(vec3 wi, vec3 n, float cosine) {
 }
 
 std::string name_of(const Sphere& sphere) {
-    return words("sphere of radius ", sphere.radius, " at ", sphere.center.x, ' ', sphere.center.y, ' ',
+    return concat("sphere of radius ", sphere.radius, " at ", sphere.center.x, ' ', sphere.center.y, ' ',
                  sphere.center.z);
 }
 
 // More than a share of the rays must have met the shape, or the test would say nothing.
 void expect_most_meet(const std::string& name, size_t met, double share, size_t rays, Evidence& evidence) {
     evidence.expect(double(met) > share * double(rays),
-                    [&] { return words(name, ": only ", met, " of ", rays, " rays meet it"); });
+                    [&] { return concat(name, ": only ", met, " of ", rays, " rays meet it"); });
 }
 
 // Whether the second ray of `r` meets the far side of the sphere: at a distance of 2 r cos, but for the
@@ -125,7 +126,7 @@ void test_rays_within(Interactions& run, Effort effort, const Sphere& sphere, bo
         if (r.t == NO_HIT) continue;
         ++met;
         evidence.expect(r.front == (from_inside ? 0u : 1u) && meets_far_side(sphere, r), [&] {
-            return words(name, ": from ", r.next_o.x, ' ', r.next_o.y, ' ', r.next_o.z, " towards ",
+            return concat(name, ": from ", r.next_o.x, ' ', r.next_o.y, ' ', r.next_o.z, " towards ",
                          r.next_d.x, ' ', r.next_d.y, ' ', r.next_d.z, ": t ", r.next_t, ", front ", r.front);
         });
     }
@@ -153,7 +154,7 @@ Evidence test_rays_outside_spheres(const vk::Device& device, Effort effort) {
             if (r.t == NO_HIT) continue;
             ++met;
             evidence.expect(r.front == 1 && r.next_t == NO_HIT, [&] {
-                return words(name_of(sphere), ": met again after ", r.next_t, " from ", r.next_o.x, ' ',
+                return concat(name_of(sphere), ": met again after ", r.next_t, " from ", r.next_o.x, ' ',
                              r.next_o.y, ' ', r.next_o.z, ", front ", r.front);
             });
         }
@@ -190,7 +191,7 @@ Evidence test_points_on_spheres(const vk::Device& device, Effort effort) {
                 length(normalize(from_center) - n) <= 2.0 * double(r.p_error / sphere.radius) + 0x1p-20 &&
                 step <= 2.0 * error + 0x1p-15 + 0x1p-14 * length(p);
             evidence.expect(right, [&] {
-                return words(name_of(sphere), ": point ", r.p.x, ' ', r.p.y, ' ', r.p.z, ", error ",
+                return concat(name_of(sphere), ": point ", r.p.x, ' ', r.p.y, ' ', r.p.z, ", error ",
                              r.p_error, ", normal ", r.n.x, ' ', r.n.y, ' ', r.n.z, ", step ", step);
             });
         }
@@ -216,13 +217,13 @@ Evidence test_rays_at_disks(const vk::Device& device, Effort effort) {
                                 .wi = random.direction(),
                                 .side = random.bits() % 2});
             }
-            const std::string name = words("disk of radius ", radius, " at ", center.x);
+            const std::string name = concat("disk of radius ", radius, " at ", center.x);
             size_t met = 0;
             for (const InteractionResult& r : run(disk, rays)) {
                 if (r.t == NO_HIT) continue;
                 ++met;
                 evidence.expect(r.next_t == NO_HIT,
-                                [&] { return words(name, ": met again after ", r.next_t); });
+                                [&] { return concat(name, ": met again after ", r.next_t); });
             }
             expect_most_meet(name, met, 0.9, rays.size(), evidence);
         }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "selftest/random.h"
 #include "selftest/scenes.h"
 
@@ -71,7 +72,7 @@ Evidence compare_with_brute_force(const std::vector<TraversalResult>& results) {
         evidence.expect(r.t == r.brute_t && r.id == r.brute_id && r.occluded_before == 0 &&
                             r.occluded_at == hit && r.occluded == hit,
                         [&] {
-                            return words("ray ", i, ": t ", r.t, ", primitive ", r.id,
+                            return concat("ray ", i, ": t ", r.t, ", primitive ", r.id,
                                          "; brute force: ", r.brute_t, ", ", r.brute_id,
                                          "; occluded before, at, anywhere: ", r.occluded_before,
                                          r.occluded_at, r.occluded);
@@ -101,7 +102,7 @@ Evidence test_closed_meshes(const vk::Device& device, Effort effort) {
         }
         const size_t escapes = test_rays(device, mesh, rays, evidence);
         evidence.expect(escapes == 0, [&, s = scale] {
-            return words(escapes, " of ", 2 * rays.size(), " rays escape from a mesh of size ", s);
+            return concat(escapes, " of ", 2 * rays.size(), " rays escape from a mesh of size ", s);
         });
     }
     return evidence;

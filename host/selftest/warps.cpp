@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/statistics.h"
+#include "base/text.h"
 #include "selftest/bsdfs.h"
 #include "selftest/charts.h"
 #include "selftest/histogram.h"
@@ -70,12 +71,12 @@ std::vector<double> visible_normals(vec3 w, float alpha) {
 }
 
 void test_visible_normals_of(const vk::Device& device, vec3 w, float alpha, Evidence& evidence) {
-    const std::string name = words("visible normals of roughness ", alpha, ", cosine ", w.z);
+    const std::string name = concat("visible normals of roughness ", alpha, ", cosine ", w.z);
     Histogram points(WARP_CELLS);
     for (const WarpResult& result : run_warps(device, 11, {.w = w, .alpha = alpha})) {
         const glm::dvec3 n(result.normal);
         evidence.expect(std::abs(length(n) - 1.0) <= 0x1p-20 && n.z > 0.0,
-                        [&] { return words(name, ": ", n.x, ' ', n.y, ' ', n.z); });
+                        [&] { return concat(name, ": ", n.x, ' ', n.y, ' ', n.z); });
         const double r = std::hypot(n.x, n.y) / (double(alpha) * n.z);
         points.add({1.0 - 1.0 / std::sqrt(1.0 + r * r), turn_of(n.y, n.x)});
     }
@@ -84,7 +85,7 @@ void test_visible_normals_of(const vk::Device& device, vec3 w, float alpha, Evid
     for (size_t i = 0; i < expected.size(); ++i) {
         if (expected[i] > 0.0) continue;
         const double found = std::exchange(points.counts[i], 0.0);
-        evidence.expect(found < 10.0, [&] { return words(name, ": ", found, " where none is seen"); });
+        evidence.expect(found < 10.0, [&] { return concat(name, ": ", found, " where none is seen"); });
     }
     evidence.add_p_value(name, pearson_p_value(points.counts, expected));
 }
@@ -130,7 +131,7 @@ Evidence test_power_cosines(const vk::Device& device) {
             const double a = std::exp((double(n) + 1.0) * std::log1p(-height(r.power_cosine)));
             return glm::dvec2(a, turn_of(r.power_cosine.y, r.power_cosine.x));
         };
-        test_uniformity(words("cosine to the power of ", n), run_warps(device, 7, {.exponent = n}),
+        test_uniformity(concat("cosine to the power of ", n), run_warps(device, 7, {.exponent = n}),
                         coordinates, evidence);
     }
     return evidence;
@@ -141,12 +142,12 @@ Evidence test_power_cosines(const vk::Device& device) {
 Evidence test_sphere_and_cones(const vk::Device& device) {
     Evidence evidence;
     for (const float h_max : {1e-8f, 1e-3f, 0.5f, 1.0f, 2.0f}) {
-        const std::string name = words("cone of height ", h_max);
+        const std::string name = concat("cone of height ", h_max);
         const std::vector<WarpResult> results = run_warps(device, 8, {.h_max = h_max});
         for (const WarpResult& r : results) {
             evidence.expect(std::abs(length(glm::dvec3(r.cone)) - 1.0) <= 0x1p-20 &&
                                 height(r.cone) <= double(h_max) * (1.0 + 0x1p-19),
-                            [&] { return words(name, ": ", r.cone.x, ' ', r.cone.y, ' ', r.cone.z); });
+                            [&] { return concat(name, ": ", r.cone.x, ' ', r.cone.y, ' ', r.cone.z); });
         }
         const auto coordinates = [h_max](const WarpResult& r) {
             return glm::dvec2(height(r.cone) / double(h_max), turn_of(r.cone.y, r.cone.x));
@@ -166,11 +167,11 @@ Evidence test_sphere_and_cones(const vk::Device& device) {
 Evidence test_polygons(const vk::Device& device) {
     Evidence evidence;
     for (const uint32_t corners : {3u, 4u, 5u, 6u, 64u}) {
-        const std::string name = words("polygon of ", corners);
+        const std::string name = concat("polygon of ", corners);
         const std::vector<WarpResult> results = run_warps(device, 10, {.corners = corners});
         for (const WarpResult& r : results) {
             evidence.expect(in_polygon(r.polygon, corners).x <= 1.0 + 0x1p-17,
-                            [&] { return words(name, ": ", r.polygon.x, ' ', r.polygon.y); });
+                            [&] { return concat(name, ": ", r.polygon.x, ' ', r.polygon.y); });
         }
         test_uniformity(
             name, results, [&](const WarpResult& r) { return in_polygon(r.polygon, corners); }, evidence);

@@ -65,7 +65,7 @@ inline PackedBvhNode pack(const BvhNode& n) {
     const uvec3 primitive_bytes = uvec3(n.children.y, n.children.y >> 8u, n.children.y >> 16u) << 24u;
     const uvec3 q_lo = (n.q_lo[1] & 0xFFFFFFu) | node_bytes;
     const uvec3 q_hi = (n.q_hi[1] & 0xFFFFFFu) | primitive_bytes;
-    return {words(n.origin, exponent.x | exponent.y << 8 | exponent.z << 16 | (n.children.y & 0xFF000000u)),
+    return {word(n.origin, exponent.x | exponent.y << 8 | exponent.z << 16 | (n.children.y & 0xFF000000u)),
             uvec4(n.q_lo[0], n.q_hi[0].x), uvec4(n.q_hi[0].y, n.q_hi[0].z, q_lo.x, q_lo.y),
             uvec4(q_lo.z, q_hi.x, q_hi.y, q_hi.z)};
 }

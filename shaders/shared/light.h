@@ -54,12 +54,12 @@ struct AliasEntry {
 #ifdef __cplusplus
 
 inline std::array<uvec4, LIGHT_WORDS> pack(const Light& l) {
-    return {words(l.p, l.kind), words(l.e1, l.two_sided), words(l.e2, 0u),
-            words(l.radiance, floatBitsToUint(l.pdf_area))};
+    return {word(l.p, l.kind), word(l.e1, l.two_sided), word(l.e2, 0u),
+            word(l.radiance, floatBitsToUint(l.pdf_area))};
 }
 
 inline std::array<uvec4, ENVIRONMENT_TEXEL_WORDS> pack(const EnvironmentTexel& t) {
-    return {words(t.radiance, floatBitsToUint(t.pdf))};
+    return {word(t.radiance, floatBitsToUint(t.pdf))};
 }
 
 inline std::array<uvec4, 1> pack(const AliasEntry& even, const AliasEntry& odd) {
@@ -70,12 +70,22 @@ inline std::array<uvec4, 1> pack(const AliasEntry& even, const AliasEntry& odd) 
 #else
 
 Light light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
-    return Light(a.w, uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz),
-                 uintBitsToFloat(d.xyz), b.w, uintBitsToFloat(d.w));
+    Light l;
+    l.p = uintBitsToFloat(a.xyz);
+    l.kind = a.w;
+    l.e1 = uintBitsToFloat(b.xyz);
+    l.two_sided = b.w;
+    l.e2 = uintBitsToFloat(c.xyz);
+    l.radiance = uintBitsToFloat(d.xyz);
+    l.pdf_area = uintBitsToFloat(d.w);
+    return l;
 }
 
 EnvironmentTexel environment_texel_unpack(uvec4 a) {
-    return EnvironmentTexel(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w));
+    EnvironmentTexel t;
+    t.radiance = uintBitsToFloat(a.xyz);
+    t.pdf = uintBitsToFloat(a.w);
+    return t;
 }
 
 // Entry i, out of word i / 2.

@@ -35,15 +35,20 @@ struct MaterialRecord {
 #ifdef __cplusplus
 
 inline std::array<uvec4, MATERIAL_WORDS> pack(const MaterialRecord& m) {
-    const uvec4 base = words(m.base, m.model);
-    return {uvec4(base.w, base.x, base.y, base.z), words(m.specular, floatBitsToUint(m.parameter))};
+    const uvec4 base = word(m.base, m.model);
+    return {uvec4(base.w, base.x, base.y, base.z), word(m.specular, floatBitsToUint(m.parameter))};
 }
 
 }  // namespace candela
 #else
 
 MaterialRecord material_unpack(uvec4 a, uvec4 b) {
-    return MaterialRecord(a.x, uintBitsToFloat(a.yzw), uintBitsToFloat(b.xyz), uintBitsToFloat(b.w));
+    MaterialRecord m;
+    m.model = a.x;
+    m.base = uintBitsToFloat(a.yzw);
+    m.specular = uintBitsToFloat(b.xyz);
+    m.parameter = uintBitsToFloat(b.w);
+    return m;
 }
 
 #endif

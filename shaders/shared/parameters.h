@@ -65,15 +65,15 @@ struct Tile {
 
 inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
     return {
-        words(p.position, p.seed),
-        words(p.right, p.max_depth),
-        words(p.up, p.rr_depth),
-        words(p.forward, p.light_count),
+        word(p.position, p.seed),
+        word(p.right, p.max_depth),
+        word(p.up, p.rr_depth),
+        word(p.forward, p.light_count),
         uvec4(p.full_size.x, p.full_size.y, p.crop.x, p.crop.y),
         uvec4(p.tables.normals, p.tables.materials, p.tables.lights, p.tables.light_alias),
         uvec4(p.tables.environment, p.tables.environment_alias, p.environment_size.x, p.environment_size.y),
-        words(p.lens_x, floatBitsToUint(p.focal_distance)),
-        words(p.lens_y, p.blades),
+        word(p.lens_x, floatBitsToUint(p.focal_distance)),
+        word(p.lens_y, p.blades),
         uvec4(floatBitsToUint(p.environment_turn.x), floatBitsToUint(p.environment_turn.y), p.tables.surfaces,
               p.first_sample)};
 }
@@ -82,11 +82,32 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
 #else
 
 Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
-    return Parameters(uintBitsToFloat(w[0].xyz), uintBitsToFloat(w[1].xyz), uintBitsToFloat(w[2].xyz),
-                      uintBitsToFloat(w[3].xyz), w[4].xy, w[4].zw, w[0].w, w[1].w, w[2].w, w[3].w,
-                      TableStarts(w[9].z, w[5].x, w[5].y, w[5].z, w[5].w, w[6].x, w[6].y), w[6].zw,
-                      uintBitsToFloat(w[9].xy), uintBitsToFloat(w[7].xyz), uintBitsToFloat(w[8].xyz),
-                      uintBitsToFloat(w[7].w), w[8].w, w[9].w);
+    Parameters p;
+    p.position = uintBitsToFloat(w[0].xyz);
+    p.seed = w[0].w;
+    p.right = uintBitsToFloat(w[1].xyz);
+    p.max_depth = w[1].w;
+    p.up = uintBitsToFloat(w[2].xyz);
+    p.rr_depth = w[2].w;
+    p.forward = uintBitsToFloat(w[3].xyz);
+    p.light_count = w[3].w;
+    p.full_size = w[4].xy;
+    p.crop = w[4].zw;
+    p.tables.normals = w[5].x;
+    p.tables.materials = w[5].y;
+    p.tables.lights = w[5].z;
+    p.tables.light_alias = w[5].w;
+    p.tables.environment = w[6].x;
+    p.tables.environment_alias = w[6].y;
+    p.environment_size = w[6].zw;
+    p.lens_x = uintBitsToFloat(w[7].xyz);
+    p.focal_distance = uintBitsToFloat(w[7].w);
+    p.lens_y = uintBitsToFloat(w[8].xyz);
+    p.blades = w[8].w;
+    p.environment_turn = uintBitsToFloat(w[9].xy);
+    p.tables.surfaces = w[9].z;
+    p.first_sample = w[9].w;
+    return p;
 }
 
 #endif

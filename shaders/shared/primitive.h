@@ -53,7 +53,7 @@ struct Surface {
 
 inline std::array<uvec4, PRIMITIVE_WORDS> pack(const Primitive& p) {
     const uint first = p.kind == PRIMITIVE_TRIANGLES ? floatBitsToUint(p.d.x) : PRIMITIVE_TAG | p.kind;
-    return {words(p.a, first), words(p.b, floatBitsToUint(p.d.y)), words(p.c, floatBitsToUint(p.d.z))};
+    return {word(p.a, first), word(p.b, floatBitsToUint(p.d.y)), word(p.c, floatBitsToUint(p.d.z))};
 }
 
 inline std::array<uvec4, SURFACE_WORDS> pack(const Surface& s) {
@@ -83,13 +83,22 @@ inline std::array<uvec4, NORMALS_WORDS> pack_normals(vec3 a, vec3 b, vec3 c, vec
 #else
 
 Primitive primitive_unpack(uvec4 u, uvec4 v, uvec4 w) {
-    uint kind = (u.w & ~3u) == PRIMITIVE_TAG ? u.w & 3u : PRIMITIVE_TRIANGLES;
-    return Primitive(kind, uintBitsToFloat(u.xyz), uintBitsToFloat(v.xyz), uintBitsToFloat(w.xyz),
-                     uintBitsToFloat(uvec3(u.w, v.w, w.w)));
+    Primitive p;
+    p.kind = (u.w & ~3u) == PRIMITIVE_TAG ? u.w & 3u : PRIMITIVE_TRIANGLES;
+    p.a = uintBitsToFloat(u.xyz);
+    p.b = uintBitsToFloat(v.xyz);
+    p.c = uintBitsToFloat(w.xyz);
+    p.d = uintBitsToFloat(uvec3(u.w, v.w, w.w));
+    return p;
 }
 
 Surface surface_unpack(uvec4 u) {
-    return Surface(u.xy, u.z & ~SURFACE_SMOOTH_BIT, u.z / SURFACE_SMOOTH_BIT, u.w);
+    Surface s;
+    s.id = u.xy;
+    s.material = u.z & ~SURFACE_SMOOTH_BIT;
+    s.has_normals = u.z / SURFACE_SMOOTH_BIT;
+    s.light = u.w;
+    return s;
 }
 
 // Inverse of pack_octahedral; unit length.

@@ -13,7 +13,7 @@ using uint = uint32_t;
 inline uint floatBitsToUint(float x) {
     return std::bit_cast<uint>(x);
 }
-inline uvec4 words(vec3 xyz, uint w) {
+inline uvec4 word(vec3 xyz, uint w) {
     return uvec4(floatBitsToUint(xyz.x), floatBitsToUint(xyz.y), floatBitsToUint(xyz.z), w);
 }
 }  // namespace candela

@@ -1,5 +1,6 @@
 // Directions below the horizon of the shading normal, which smooth normals and slanting lights bring about:
 // nothing is scattered there, and what is looked at from there is consistent.
+#include "base/text.h"
 #include "gpu/bsdf_fixture.h"
 
 namespace candela {
@@ -77,17 +78,17 @@ TEST_F(BelowHorizonTest, DiffuseAndPhongSamplesFollowTheirDensityFromBelow) {
     std::vector<BsdfCase> cases;
     for (const vec3 view : VIEWS) {
         const vec3 wo(view.x, view.y, -view.z);
-        const std::string from = words(", seen from below, cosine ", wo.z);
+        const std::string from = concat(", seen from below, cosine ", wo.z);
         cases.push_back({"diffuse" + from, diffuse(colour), wo, SphereChart()});
         for (const vec3 kd : {vec3(0.0f), vec3(0.5f, 0.2f, 0.4f)}) {
             for (const float n : {0.0f, 1.0f, 7.5f})
-                cases.push_back({words("phong ", n, from), phong(kd, colour, n), wo, SphereChart()});
+                cases.push_back({concat("phong ", n, from), phong(kd, colour, n), wo, SphereChart()});
         }
     }
     const vec3 grazing(VIEWS[2].x, VIEWS[2].y, -VIEWS[2].z);
     const glm::dvec3 mirrored(-grazing.x, -grazing.y, grazing.z);
     for (const float n : {100.0f, 1e3f, 1e4f})
-        cases.push_back({words("phong ", n, " from a little below"), phong(vec3(0.0f), colour, n), grazing,
+        cases.push_back({concat("phong ", n, " from a little below"), phong(vec3(0.0f), colour, n), grazing,
                          LobeChart(mirrored, n)});
     Evidence evidence;
     uint32_t seed = 900;
