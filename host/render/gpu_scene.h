@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "shared/constants.h"
+#include "shared/kernel_constants.h"
 #include "shared/parameters.h"
 
 namespace candela {
@@ -24,14 +24,14 @@ struct GpuScene {
     uvec2 environment_size{0};          // Texels.
     float environment_rotation = 0.0f;  // [rad]
 
-    // What the kernels must know of: see CONSTANT_*.
+    // What the kernels must know of: see shared/kernel_constants.inc.
     bool has_normals = false;
     uint32_t environment = ENVIRONMENT_NONE;
     bool even_sky = false;
     uint32_t materials_present = 0;                 // Bit i: a material of model i.
     uint32_t primitives_present = 0;                // Bit i: a primitive of kind i.
     uint32_t lights_present = 0;                    // Bit i: a light of kind i.
-    std::array<uint32_t, LIST_MAX> list_corners{};  // Of the first primitives; see CONSTANT_LIST_CORNERS.
+    std::array<uint32_t, LIST_MAX> list_corners{};  // Of the first primitives; see LIST_CORNERS_0.
 
     uint32_t bvh_depth = 1;  // Levels of nodes.
 

@@ -79,7 +79,7 @@ Identity make_identity(const GpuScene& scene, const Camera& camera, const Render
     for (const std::vector<uvec4>* array : {&scene.nodes, &scene.primitives, &scene.tables})
         hash = add_to_hash(hash, *array);
     hash = add_to_hash(hash, pack(make_parameters(scene, camera, fixed)));
-    hash = add_to_hash(hash, make_constants(scene, camera, fixed));
+    hash = add_to_hash(hash, make_constants(scene, camera, fixed).values);
     hash = add_to_hash(hash, std::array<uint32_t, 2>{settings.crop.x1, settings.crop.y1});
     return {.settings = {size_text(settings.size), crop_text(settings.crop), std::to_string(settings.seed),
                          name_of(settings.sampler, SAMPLER_NAMES),

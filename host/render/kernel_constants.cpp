@@ -51,9 +51,9 @@ uint32_t sampler_constant(SamplerKind sampler) {
 
 }  // namespace
 
-std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const Camera& camera,
+KernelConstants make_constants(const GpuScene& scene, const Camera& camera,
                                                     const RenderSettings& settings) {
-    std::array<uint32_t, CONSTANT_COUNT> constants{};
+    KernelConstants constants;
     constants[CONSTANT_SAMPLER] = sampler_constant(settings.sampler);
     constants[CONSTANT_ESTIMATOR] = estimator_constant(settings.estimator, scene.light_count);
     constants[CONSTANT_HAS_NORMALS] = scene.has_normals;
@@ -69,13 +69,13 @@ std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const
     return constants;
 }
 
-std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, const GpuScene& scene,
+KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene,
                                                       const Camera& camera, const RenderSettings& settings) {
     auto constants = make_constants(scene, camera, settings);
     constants[CONSTANT_STORAGE_ARRAYS] = choose_storage_arrays(device, scene, settings.scene_access);
     constants[CONSTANT_LIST] = list_constant(device, scene);
     if (constants[CONSTANT_LIST] > 0)
-        std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS]);
+        std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS_0]);
     constants[CONSTANT_GROUP_COUNTERS] = !device.info().is_lavapipe();
     return constants;
 }

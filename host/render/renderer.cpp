@@ -85,13 +85,13 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .first_sample = settings.first_sample};
 }
 
-vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, std::span<const uint32_t> constants) {
+vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants) {
     const bool render = which == RenderKernel::render;
     std::vector<vk::Binding> bindings = SceneBuffers::bindings();
     bindings.push_back({BINDING_IMAGE, vk::BindingType::storage_image});
     if (render) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
     const auto spirv = render ? kernels::render : kernels::position;
-    return {device, spirv, bindings, sizeof(Tile), constants, render ? "render" : "position"};
+    return {device, spirv, bindings, sizeof(Tile), constants.values, render ? "render" : "position"};
 }
 
 Accumulation empty_state(const RenderSettings& settings) {

@@ -11,6 +11,7 @@
 #include "render/scene_buffers.h"
 #include "render/schedule.h"
 #include "scene/scene.h"
+#include "shared/kernel_constants.h"
 #include "shared/parameters.h"
 #include "vk/buffer.h"
 #include "vk/commands.h"
@@ -37,17 +38,16 @@ struct RenderSettings {
 // The uniform record of a camera and settings for a scene.
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
-// The values of the specialization constants CONSTANT_* for them; none that depends on the device.
-std::array<uint32_t, CONSTANT_COUNT> make_constants(const GpuScene& scene, const Camera& camera,
-                                                    const RenderSettings& settings);
+// The kernels' specialization constants for them; those that the device sets have their defaults.
+KernelConstants make_constants(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
-// All of them, those that depend on the device included. Throws Error as choose_storage_arrays() does.
-std::array<uint32_t, CONSTANT_COUNT> kernel_constants(const vk::Device& device, const GpuScene& scene,
-                                                      const Camera& camera, const RenderSettings& settings);
+// The same with those that the device sets. Throws Error as choose_storage_arrays() does.
+KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene, const Camera& camera,
+                                 const RenderSettings& settings);
 
 // The renderer's kernels, compiled for kernel_constants() and not bound to anything.
 enum class RenderKernel { render, position };
-vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, std::span<const uint32_t> constants);
+vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants);
 
 // The state before the first sample: it holds no values yet.
 Accumulation empty_state(const RenderSettings& settings);
@@ -85,7 +85,7 @@ class Renderer {
     // The sums of samples, layers LAYER_*, for kernels that show them; another image after a reset() to
     // another size.
     const vk::StorageImage& accumulation() const { return image_; }
-    // Which arrays of the scene are read as storage buffers: see CONSTANT_STORAGE_ARRAYS.
+    // Which arrays of the scene are read as storage buffers: see the constant STORAGE_ARRAYS.
     uint32_t storage_arrays() const { return scene_.storage_arrays(); }
     // How long a submission should take [s].
     double submission_seconds() const { return settings_.submission_seconds; }
@@ -109,7 +109,7 @@ class Renderer {
 
     const vk::Device* device_;
     RenderSettings settings_;
-    std::array<uint32_t, CONSTANT_COUNT> constants_;
+    KernelConstants constants_;
     RenderCounters counters_;
     double pipeline_seconds_ = 0.0;
     uint32_t samples_ = 0;  // That every pixel holds at least.

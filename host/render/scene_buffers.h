@@ -16,16 +16,16 @@ namespace candela {
 // How kernels read the arrays of a scene. Every way gives the same bits.
 enum class SceneAccess { automatic, texel_buffers, storage_buffers };
 
-// All bits of CONSTANT_STORAGE_ARRAYS.
+// All bits of the constant STORAGE_ARRAYS.
 inline constexpr uint32_t ALL_STORAGE_ARRAYS = (1u << SCENE_ARRAYS) - 1;
 
-// The value of CONSTANT_STORAGE_ARRAYS: all arrays as wanted, or, for `automatic`, each as suits the device
+// The value of the constant STORAGE_ARRAYS: all arrays as wanted, or, for `automatic`, each as suits the device
 // and holds it. Throws Error (out_of_memory) that names the array and the device's limits if nothing does.
 uint32_t choose_storage_arrays(const vk::Device& device, const GpuScene& scene, SceneAccess wanted);
 
 class SceneBuffers {
   public:
-    // Uploads the scene; `storage_arrays` is what CONSTANT_STORAGE_ARRAYS of the kernels will be.
+    // Uploads the scene; `storage_arrays` is what STORAGE_ARRAYS of the kernels will be.
     SceneBuffers(const vk::Device& device, const GpuScene& scene, const Parameters& parameters,
                  uint32_t storage_arrays);
 

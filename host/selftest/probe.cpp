@@ -34,30 +34,29 @@ DeviceScene::DeviceScene(const vk::Device& device, const GpuScene& scene, SceneA
 DeviceScene::DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access)
     : DeviceScene(device, scene, access, parameters_of(scene)) {}
 
-std::vector<uint32_t> traversal_constants(const GpuScene& scene) {
-    std::vector<uint32_t> constants(CONSTANT_COUNT);
+KernelConstants traversal_constants(const GpuScene& scene) {
+    KernelConstants constants;
     constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
     constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
     return constants;
 }
 
-std::vector<uint32_t> sampler_constants(uint32_t sampler) {
-    std::vector<uint32_t> constants(CONSTANT_COUNT);
+KernelConstants sampler_constants(uint32_t sampler) {
+    KernelConstants constants;
     constants[CONSTANT_SAMPLER] = sampler;
     return constants;
 }
 
 vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv,
-                      std::vector<uint32_t> constants, const DeviceScene* scene, const std::string& name) {
+                      KernelConstants constants, const DeviceScene* scene, const std::string& name) {
     std::vector<vk::Binding> bindings{{PROBE_ITEMS, vk::BindingType::texel_buffer},
                                       {PROBE_RESULTS, vk::BindingType::storage_buffer}};
     if (scene != nullptr) {
         const auto of_scene = SceneBuffers::bindings();
         bindings.insert(bindings.end(), of_scene.begin(), of_scene.end());
-        if (constants.empty()) constants.resize(1);
         constants[CONSTANT_STORAGE_ARRAYS] = scene->buffers().storage_arrays();
     }
-    vk::Kernel kernel(device, spirv, bindings, sizeof(ProbeCounts), constants, name);
+    vk::Kernel kernel(device, spirv, bindings, sizeof(ProbeCounts), constants.values, name);
     if (scene != nullptr) scene->buffers().bind_to(kernel);
     return kernel;
 }

@@ -10,6 +10,7 @@
 
 #include "render/gpu_scene.h"
 #include "render/scene_buffers.h"
+#include "shared/kernel_constants.h"
 #include "shared/parameters.h"
 #include "vk/device.h"
 #include "vk/kernel.h"
@@ -34,9 +35,9 @@ class DeviceScene {
 };
 
 // Specialization constants of probes that trace rays: what is in the scene.
-std::vector<uint32_t> traversal_constants(const GpuScene& scene);
+KernelConstants traversal_constants(const GpuScene& scene);
 // And of those that draw samples, by SAMPLER_*.
-std::vector<uint32_t> sampler_constants(uint32_t sampler);
+KernelConstants sampler_constants(uint32_t sampler);
 
 // What shaders/probes/items.glsl declares: bindings, push constants, and invocations in a work group.
 inline constexpr uint32_t PROBE_ITEMS = 6, PROBE_RESULTS = 7;
@@ -46,10 +47,10 @@ struct ProbeCounts {
     uint32_t primitives;
 };
 
-// The probe `spirv`, bound to the scene unless that is null. `constants` are its specialization constants,
-// none or from CONSTANT_STORAGE_ARRAYS on, which the scene sets; `name` is for messages.
-vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv,
-                      std::vector<uint32_t> constants, const DeviceScene* scene, const std::string& name);
+// The probe `spirv`, bound to the scene unless that is null; it sets STORAGE_ARRAYS among the constants. `name`
+// is for messages.
+vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv, KernelConstants constants,
+                      const DeviceScene* scene, const std::string& name);
 
 // Runs a probe on all items, `item_words` uvec4 each; returns `result_words` words for each, in order. A
 // scene may be another than that of make_probe(), in buffers of the same kinds.
@@ -75,7 +76,7 @@ std::vector<Result> probe(const vk::Device& device, vk::Kernel& kernel, const st
 // The same with a kernel that is made for it.
 template <class Result, class Item>
 std::vector<Result> probe(const vk::Device& device, std::span<const uint32_t> spirv,
-                          const std::vector<Item>& items, const std::vector<uint32_t>& constants = {},
+                          const std::vector<Item>& items, const KernelConstants& constants = {},
                           const DeviceScene* scene = nullptr) {
     vk::Kernel kernel = make_probe(device, spirv, constants, scene, "probe");
     return probe<Result>(device, kernel, items, scene);

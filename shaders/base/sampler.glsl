@@ -6,9 +6,7 @@
 #define BASE_SAMPLER_GLSL
 
 #include "base/hash.glsl"
-#include "shared/constants.h"
-
-layout(constant_id = CONSTANT_SAMPLER) const uint SAMPLER = SAMPLER_SOBOL;
+#include "shared/kernel_constants.h"
 
 // Identifies one sample: pixel of the whole picture (x | y << 16, each below 65 536), sample index, seed.
 struct Sampler {

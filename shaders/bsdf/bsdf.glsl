@@ -7,11 +7,8 @@
 #include "bsdf/diffuse.glsl"
 #include "bsdf/mirror.glsl"
 #include "bsdf/phong.glsl"
-#include "shared/constants.h"
+#include "shared/kernel_constants.h"
 #include "shared/material.h"
-
-// Bit i: the scene has a material of model i.
-layout(constant_id = CONSTANT_MATERIALS) const uint MATERIALS = 0xFFFFFFFFu;
 
 const uint MATERIALS_DIELECTRIC = 1u << MATERIAL_DIELECTRIC_SCHLICK | 1u << MATERIAL_DIELECTRIC_EXACT;
 

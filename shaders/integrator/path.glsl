@@ -10,10 +10,6 @@
 #include "light/light_sampler.glsl"
 #include "scene/interaction.glsl"
 
-// How direct light is found. A scene without lights must use ESTIMATOR_BSDF: asking the parameters instead would make
-// lavapipe 22.3 compile the kernel anew at every dispatch, as it does wherever a branch depends on uniforms alone.
-layout(constant_id = CONSTANT_ESTIMATOR) const uint ESTIMATOR = ESTIMATOR_MIS;
-
 // Survival is never more likely than this, so that every path ends.
 const float RR_MAX_SURVIVAL = 0.99;
 

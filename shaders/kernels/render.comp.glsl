@@ -9,9 +9,6 @@
 
 layout(local_size_x = WORKGROUP_SIZE, local_size_y = WORKGROUP_SIZE) in;
 
-layout(constant_id = CONSTANT_HAS_AOVS) const bool HAS_AOVS = true;
-layout(constant_id = CONSTANT_GROUP_COUNTERS) const bool GROUP_COUNTERS = true;
-
 layout(binding = BINDING_IMAGE, rgba32f) uniform image2DArray accumulation;
 layout(std430, binding = BINDING_COUNTERS) buffer CountersBlock { uint counters[COUNTER_COUNT]; };
 layout(push_constant) uniform TileBlock { Tile tile; };

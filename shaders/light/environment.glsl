@@ -7,12 +7,6 @@
 #include "light/sample.glsl"
 #include "scene/scene_data.glsl"
 
-// ENVIRONMENT_*
-layout(constant_id = CONSTANT_ENVIRONMENT) const uint ENVIRONMENT = ENVIRONMENT_VISIBLE;
-
-// Any texel is like any other.
-layout(constant_id = CONSTANT_EVEN_SKY) const bool EVEN_SKY = false;
-
 // The texel in the unit direction w of world space: its radiance, and the density of environment_light_sample_li there.
 EnvironmentTexel environment_texel(vec3 w) {
     if (EVEN_SKY) return scene_environment_texel(0u);

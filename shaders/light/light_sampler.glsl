@@ -7,10 +7,7 @@
 #include "light/environment.glsl"
 #include "light/sphere.glsl"
 
-// A scene with one light alone needs not choose.
-layout(constant_id = CONSTANT_ONE_LIGHT) const bool ONE_LIGHT = false;
-
-// That light, which an invocation reads once.
+// The light of a scene that has no other, which an invocation reads once.
 Light only_light;
 
 // Before an invocation's first light sample.

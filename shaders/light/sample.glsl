@@ -2,11 +2,8 @@
 #ifndef LIGHT_SAMPLE_GLSL
 #define LIGHT_SAMPLE_GLSL
 
-#include "shared/constants.h"
+#include "shared/kernel_constants.h"
 #include "shared/light.h"
-
-// Bit i: the scene has a light of kind i.
-layout(constant_id = CONSTANT_LIGHTS) const uint LIGHTS = 0xFFFFFFFFu;
 
 // True if the light is of that kind. Kinds that the scene does not have leave no code in the kernel, and a scene of one
 // kind needs no branch.

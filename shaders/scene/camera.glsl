@@ -4,10 +4,8 @@
 
 #include "base/ray.glsl"
 #include "base/warp.glsl"
-#include "shared/constants.h"
+#include "shared/kernel_constants.h"
 #include "shared/parameters.h"
-
-layout(constant_id = CONSTANT_APERTURE) const uint APERTURE = APERTURE_DISK;
 
 // Direction of the pinhole ray through a film position in pixels of the whole picture: origin top left, y downwards. Of
 // length 1 along the camera's axis.

@@ -6,8 +6,6 @@
 #include "scene/scene_data.glsl"
 #include "scene/traversal.glsl"
 
-layout(constant_id = CONSTANT_HAS_NORMALS) const bool HAS_NORMALS = true;
-
 // World space [m]. Both normals are unit vectors on the viewer's side of the surface; which side that is, the
 // geometric normal alone decides.
 struct Interaction {

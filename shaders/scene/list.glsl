@@ -10,28 +10,6 @@
 #include "scene/primitive.glsl"
 #include "scene/scene_data.glsl"
 
-// How many there are; 0: the scene has a tree.
-layout(constant_id = CONSTANT_LIST) const uint LIST = 0u;
-
-// Where else their corners are: see CONSTANT_LIST_CORNERS.
-#define LIST_CORNERS(i) layout(constant_id = CONSTANT_LIST_CORNERS + i) const uint LIST_CORNERS_##i = 0u
-LIST_CORNERS(0);
-LIST_CORNERS(1);
-LIST_CORNERS(2);
-LIST_CORNERS(3);
-LIST_CORNERS(4);
-LIST_CORNERS(5);
-LIST_CORNERS(6);
-LIST_CORNERS(7);
-LIST_CORNERS(8);
-LIST_CORNERS(9);
-LIST_CORNERS(10);
-LIST_CORNERS(11);
-LIST_CORNERS(12);
-LIST_CORNERS(13);
-LIST_CORNERS(14);
-LIST_CORNERS(15);
-
 vec3 list_vertices[4u * LIST_MAX];
 
 // Before an invocation's first ray.

@@ -5,10 +5,8 @@
 #include "scene/disk.glsl"
 #include "scene/sphere.glsl"
 #include "scene/triangle.glsl"
+#include "shared/kernel_constants.h"
 #include "shared/primitive.h"
-
-// Bit i: the scene has a primitive of kind i.
-layout(constant_id = CONSTANT_PRIMITIVES) const uint PRIMITIVES = 0xFFFFFFFFu;
 
 // True if a primitive of that kind is of kind `asked`. Kinds that the scene does not have leave no code in the kernel,
 // and a scene of one kind needs no branch.

@@ -7,12 +7,11 @@
 
 #include "shared/bvh_node.h"
 #include "shared/constants.h"
+#include "shared/kernel_constants.h"
 #include "shared/light.h"
 #include "shared/material.h"
 #include "shared/parameters.h"
 #include "shared/primitive.h"
-
-layout(constant_id = CONSTANT_STORAGE_ARRAYS) const uint STORAGE_ARRAYS = 0u;
 
 layout(binding = BINDING_NODES) uniform usamplerBuffer node_texels;
 layout(binding = BINDING_PRIMITIVES) uniform usamplerBuffer primitive_texels;

@@ -119,9 +119,6 @@ uint pending_rest(uint pending) {
     return pending & (pending - (1u << PENDING_SHIFT));
 }
 
-// Levels of the scene's tree.
-layout(constant_id = CONSTANT_BVH_DEPTH) const uint BVH_DEPTH = BVH_MAX_DEPTH;
-
 // The stack of bvh_advance, its top at 0: what is left to visit of each node on the way down, and none below them. The
 // root has no siblings, and those of the node to be visited are not here. All of it moves with every entry, so that no
 // index depends on the ray and the array becomes registers: on software Vulkan a store to an indexed array takes longer

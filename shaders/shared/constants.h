@@ -65,7 +65,7 @@ const uint COUNTER_UNFINISHED = 5u;   // Pixels whose loop the driver ended befo
 const uint COUNTER_COUNT = 6u;
 
 // Descriptor bindings of every kernel that reads the scene. An array of the scene has two: as a texel buffer,
-// and, BINDING_STORAGE further on, as a storage buffer; CONSTANT_STORAGE_ARRAYS says which one is read.
+// and, BINDING_STORAGE further on, as a storage buffer; the constant STORAGE_ARRAYS says which one is read.
 const uint SCENE_ARRAYS = 3u;
 const uint BINDING_NODES = 0u;
 const uint BINDING_PRIMITIVES = 1u;
@@ -84,33 +84,6 @@ const uint APERTURE_POLYGON = 2u;
 const uint ENVIRONMENT_NONE = 0u;
 const uint ENVIRONMENT_HIDDEN = 1u;  // Camera rays do not see it.
 const uint ENVIRONMENT_VISIBLE = 2u;
-
-// Specialization constants: what is fixed when a kernel's pipeline is made. So a scene pays for what it uses
-// alone, and no branch depends on uniforms (which makes lavapipe 22.3 compile the kernel anew at every
-// dispatch).
-const uint CONSTANT_STORAGE_ARRAYS = 0u;  // Bit BINDING_*: that array is read as a storage buffer.
-const uint CONSTANT_SAMPLER = 1u;         // SAMPLER_*
-const uint CONSTANT_ESTIMATOR = 2u;       // ESTIMATOR_*
-const uint CONSTANT_HAS_NORMALS = 3u;     // 1: some triangle has shading normals of its own.
-const uint CONSTANT_HAS_AOVS = 4u;        // 1: the accumulation image has LAYER_COUNT_AOVS layers.
-const uint CONSTANT_APERTURE = 5u;        // APERTURE_*
-const uint CONSTANT_ENVIRONMENT = 6u;     // ENVIRONMENT_*
-const uint CONSTANT_MATERIALS = 7u;       // Bit i: some material has the model i (MATERIAL_*).
-const uint CONSTANT_PRIMITIVES = 8u;      // Bit i: some primitive is of the kind i (PRIMITIVE_*).
-const uint CONSTANT_BVH_DEPTH = 9u;       // Levels of the tree's nodes.
-const uint CONSTANT_LIST = 10u;       // So many primitives are tested one by one, without the tree; 0: none.
-const uint CONSTANT_LIGHTS = 11u;     // Bit i: some light is of the kind i (LIGHT_*).
-const uint CONSTANT_ONE_LIGHT = 12u;  // 1: there is but one light.
-const uint CONSTANT_EVEN_SKY = 13u;   // 1: the environment is the same everywhere.
-const uint CONSTANT_GROUP_COUNTERS = 14u;  // 1: a work group adds its counts to the counters as one.
-// From here on LIST_MAX constants, one for each primitive of the list. Byte c of number i: which of the
-// list's corners, 4 j + k for corner k of primitive j, is the first at the same place as corner c.
-const uint CONSTANT_LIST_CORNERS = 15u;
-
-// The longest list of primitives that a kernel tests one by one.
-const uint LIST_MAX = 16u;
-
-const uint CONSTANT_COUNT = CONSTANT_LIST_CORNERS + LIST_MAX;
 
 #ifdef __cplusplus
 }  // namespace candela

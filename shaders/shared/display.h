@@ -23,6 +23,7 @@ const uint DISPLAY_BINDING_OVERLAY = 1u;  // overlay_size pixels, sRGB codes pre
 const uint DISPLAY_BINDING_PICTURE = 2u;  // The developed picture without the overlay ...
 const uint DISPLAY_BINDING_SCREEN = 3u;   // ... and with it, its bytes in the order that the window wants.
 
+// Specialization constants.
 const uint DISPLAY_CONSTANT_CURVE = 0u;       // TONEMAP_*
 const uint DISPLAY_CONSTANT_BLUE_FIRST = 1u;  // 1: the screen's lowest byte is blue.
 const uint DISPLAY_CONSTANT_COUNT = 2u;

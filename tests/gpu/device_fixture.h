@@ -38,7 +38,7 @@ class DeviceTest : public vk::Vk {
     // probe() on this device.
     template <class Result, class Item>
     std::vector<Result> map(std::span<const uint32_t> spirv, const std::vector<Item>& items,
-                            const std::vector<uint32_t>& constants = {},
+                            const KernelConstants& constants = {},
                             const DeviceScene* scene = nullptr) const {
         return probe<Result>(*device_, spirv, items, constants, scene);
     }
