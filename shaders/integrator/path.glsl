@@ -1,4 +1,18 @@
-// The path integrator: estimates the rendering equation along one path, a vertex per call.
+// The path integrator: estimates the rendering equation along one path. This is what it does:
+//
+//     L = 0, beta = 1, ray = camera ray
+//     for (depth = 0;; ++depth)
+//         find the nearest hit along the ray
+//         if there is none: L += beta * weight * radiance of the sky; stop
+//         beta *= transmittance of the medium up to the hit
+//         L += beta * weight * radiance that the surface emits
+//         if depth = max_depth: stop
+//         sample a point on a light; if nothing is in between: L += beta * weight * f cos Li / pdf
+//         sample a direction of the BSDF: beta *= f cos / pdf, ray = from the hit in that direction
+//         if depth >= rr_depth: stop with the probability 1 - q, else beta /= q
+//
+// path_step is one turn without the search for the hit: the kernel traces the rays of many paths side by side. It does so
+// for the light sample's ray of one turn together with the next turn's ray.
 //
 // Ref: Kajiya 1986, The Rendering Equation; Veach 1997, Robust Monte Carlo Methods for Light Transport Simulation,
 // chapters 8 to 10.
@@ -114,12 +128,12 @@ bool path_scatter(inout Path path, Interaction s, Frame frame, MaterialRecord ma
     return true;
 }
 
-// Scatters the path where its ray has met something, or nothing; returns whether it goes on. `shadow` is the ray that
-// is to be traced for direct light there.
+// Takes the path past what its ray has met, or not; returns whether it goes on. `shadow` is the ray to be traced for
+// direct light there.
 bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, Hit hit, Sampler random,
                Parameters parameters) {
     shadow = shadow_none();
-    if (hit.t == FLOAT_MAX) {
+    if (!is_hit(hit)) {
         if (ENVIRONMENT != ENVIRONMENT_NONE) add_environment(path, estimate);
         return false;
     }

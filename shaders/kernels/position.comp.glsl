@@ -18,7 +18,7 @@ void main() {
     Ray ray = camera_ray_pinhole(parameters, vec2(parameters.crop + at) + 0.5);
     Hit hit = bvh_intersect(ray);
     vec4 value = vec4(vec3(0.0), uintBitsToFloat(0x7F800000u));
-    if (hit.t != FLOAT_MAX) {
+    if (is_hit(hit)) {
         vec3 p = interaction_at(ray, hit).p;
         value = vec4(p, dot(p - parameters.position, parameters.forward));
     }

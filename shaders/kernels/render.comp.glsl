@@ -13,14 +13,6 @@ layout(binding = BINDING_IMAGE, rgba32f) uniform image2DArray accumulation;
 layout(std430, binding = BINDING_COUNTERS) buffer CountersBlock { uint counters[COUNTER_COUNT]; };
 layout(push_constant) uniform TileBlock { Tile tile; };
 
-vec4 layer_load(uvec2 at, uint layer) {
-    return imageLoad(accumulation, ivec3(at, layer));
-}
-
-void layer_store(uvec2 at, uint layer, vec4 value) {
-    imageStore(accumulation, ivec3(at, layer), value);
-}
-
 // What the invocations of a work group have counted, if GROUP_COUNTERS: on a GPU they would queue for the same words of
 // the buffer.
 shared uint group_counters[COUNTER_COUNT];
@@ -55,120 +47,203 @@ void flush_counters() {
     }
 }
 
+// A compensated sum; its value is sum - compensation.
+struct Sum {
+    vec3 sum;
+    vec3 compensation;
+};
+
+// What a pixel holds of its samples.
+struct Pixel {
+    Sum L;
+    Sum square;     // Of L.
+    Sum albedo;     // Of the first hits, and their shading normals: only if HAS_AOVS.
+    Sum normal;
+    float visible;  // Samples whose camera ray met something visible.
+    float rays;     // MAX_RAYS at most.
+    float limit;    // 0: none; else one more than the samples that it gets at most.
+    uint samples;
+};
+
+vec4 layer_load(uvec2 at, uint layer) {
+    return imageLoad(accumulation, ivec3(at, layer));
+}
+
+void layer_store(uvec2 at, uint layer, vec4 value) {
+    imageStore(accumulation, ivec3(at, layer), value);
+}
+
+// Loads the pixel at that place of the accumulation image.
+Pixel pixel_load(uvec2 at) {
+    vec4 L = layer_load(at, LAYER_L);
+    vec4 L_compensation = layer_load(at, LAYER_L_COMPENSATION);
+    vec4 square = layer_load(at, LAYER_SQUARE);
+    vec4 square_compensation = layer_load(at, LAYER_SQUARE_COMPENSATION);
+    Pixel p;
+    p.L = Sum(L.rgb, L_compensation.rgb);
+    p.square = Sum(square.rgb, square_compensation.rgb);
+    p.albedo = Sum(vec3(0.0), vec3(0.0));
+    p.normal = Sum(vec3(0.0), vec3(0.0));
+    if (HAS_AOVS) {
+        p.albedo = Sum(layer_load(at, LAYER_ALBEDO).rgb, layer_load(at, LAYER_ALBEDO_COMPENSATION).rgb);
+        p.normal = Sum(layer_load(at, LAYER_NORMAL).rgb, layer_load(at, LAYER_NORMAL_COMPENSATION).rgb);
+    }
+    p.visible = L.a;
+    p.rays = square_compensation.a;
+    p.limit = square.a;
+    p.samples = uint(L_compensation.a);
+    return p;
+}
+
+void pixel_store(uvec2 at, Pixel p) {
+    layer_store(at, LAYER_L, vec4(p.L.sum, p.visible));
+    layer_store(at, LAYER_L_COMPENSATION, vec4(p.L.compensation, float(p.samples)));
+    layer_store(at, LAYER_SQUARE, vec4(p.square.sum, p.limit));
+    layer_store(at, LAYER_SQUARE_COMPENSATION, vec4(p.square.compensation, p.rays));
+    if (HAS_AOVS) {
+        layer_store(at, LAYER_ALBEDO, vec4(p.albedo.sum, 0.0));
+        layer_store(at, LAYER_ALBEDO_COMPENSATION, vec4(p.albedo.compensation, 0.0));
+        layer_store(at, LAYER_NORMAL, vec4(p.normal.sum, 0.0));
+        layer_store(at, LAYER_NORMAL_COMPENSATION, vec4(p.normal.compensation, 0.0));
+    }
+}
+
+// The samples that the pixel is to hold when others hold `target`.
+uint pixel_target(Pixel p, uint target) {
+    return p.limit > 0.0 ? min(target, uint(p.limit) - 1u) : target;
+}
+
+void add(inout Sum sum, vec3 x) {
+    compensated_add(sum.sum, sum.compensation, x);
+}
+
+// Folds a sample into the pixel. One whose value or square is not finite adds zero and is counted.
+void pixel_fold(inout Pixel p, Estimate estimate) {
+    if (!is_finite(estimate.L * estimate.L)) {
+        count(COUNTER_NONFINITE, 1u);
+        estimate.L = vec3(0.0);
+    }
+    if (estimate.cut) count(COUNTER_DEPTH_LIMIT, 1u);
+    add(p.L, estimate.L);
+    add(p.square, estimate.L * estimate.L);
+    p.visible += estimate.visible ? 1.0 : 0.0;
+    if (HAS_AOVS) {
+        add(p.albedo, estimate.albedo);
+        add(p.normal, estimate.normal);
+    }
+    ++p.samples;
+}
+
+// A sample on its way.
+struct Sample {
+    Sampler random;
+    Path path;
+    Estimate estimate;
+    ShadowRay shadow;  // Of the vertex before.
+    bool alive;        // The path goes on.
+    bool ended;        // The path has ended; its shadow ray may still be on its way.
+    uint rays;         // Traced so far.
+};
+
+// None yet.
+Sample sample_none() {
+    Sample s;
+    s.shadow = shadow_none();
+    s.alive = false;
+    s.ended = false;
+    s.rays = 0u;
+    return s;
+}
+
+// Sends the camera ray of the pixel's sample of that index on its way. What else there is of the sample before remains:
+// its shadow ray and its estimate.
+void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index) {
+    s.random = sampler_make(pixel, index, parameters.seed);
+    vec2 film = vec2(pixel) + unit_float(sampler_pair(s.random, PAIR_PIXEL));
+    s.path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(s.random, PAIR_LENS))));
+    s.alive = true;
+}
+
+// What the rays of a sample met.
+struct Met {
+    bool complete;  // False if the driver has ended the loop before.
+    bool lit;       // There is a shadow ray, and nothing is in its way.
+    Hit hit;        // Of the path's ray, if it goes on.
+};
+
+// Traces the shadow ray of a vertex and the path's next ray, one after the other, without waiting for the neighbours in
+// between.
+Met sample_trace(Sample s) {
+    bool shadowed = s.shadow.t_max > 0.0;
+    Ray first = s.path.ray;
+    if (shadowed) first = s.shadow.ray;
+    Traversal traversal = bvh_begin(first, shadowed ? s.shadow.t_max : FLOAT_MAX, shadowed);
+    if (!shadowed && !s.alive) bvh_end(traversal);
+    bool lit = false;
+    while (!bvh_ended(traversal)) {
+        bvh_advance(traversal);
+        if (traversal.any_hit && bvh_ended(traversal)) {
+            lit = !is_hit(traversal.hit);
+            if (s.alive) traversal = bvh_begin(s.path.ray, FLOAT_MAX, false);
+        }
+    }
+    return Met(bvh_ended(traversal), lit, traversal.hit);
+}
+
+// Scatters the path where its ray has met something, or nothing.
+void sample_step(inout Sample s, Hit hit, Parameters parameters) {
+    if (s.path.depth == 0u) s.estimate = estimate_begin();
+    s.alive = path_step(s.path, s.estimate, s.shadow, hit, s.random, parameters);
+    s.rays += s.shadow.t_max > 0.0 ? 2u : 1u;
+    s.ended = !s.alive;
+}
+
 void render_pixel() {
     uvec2 group = gl_WorkGroupID.xy * tile.stride % gl_NumWorkGroups.xy;
     uvec2 at = group * WORKGROUP_SIZE + gl_LocalInvocationID.xy;
     if (any(greaterThanEqual(at, tile.size))) return;
     at += tile.origin;
     Parameters parameters = scene_parameters();
-    uvec2 pixel = parameters.crop + at;
 
-    vec4 sum = layer_load(at, LAYER_L);
-    vec4 compensation = layer_load(at, LAYER_L_COMPENSATION);
-    vec4 square_sum = layer_load(at, LAYER_SQUARE);
-    vec4 square_compensation = layer_load(at, LAYER_SQUARE_COMPENSATION);
-    vec3 albedo_sum = vec3(0.0);
-    vec3 albedo_compensation = vec3(0.0);
-    vec3 normal_sum = vec3(0.0);
-    vec3 normal_compensation = vec3(0.0);
-    if (HAS_AOVS) {
-        albedo_sum = layer_load(at, LAYER_ALBEDO).rgb;
-        albedo_compensation = layer_load(at, LAYER_ALBEDO_COMPENSATION).rgb;
-        normal_sum = layer_load(at, LAYER_NORMAL).rgb;
-        normal_compensation = layer_load(at, LAYER_NORMAL_COMPENSATION).rgb;
-    }
-    uint first = uint(compensation.a);
-    uint target = square_sum.a > 0.0 ? min(tile.target_samples, uint(square_sum.a) - 1u) : tile.target_samples;
-    if (first >= target) return;
+    Pixel pixel = pixel_load(at);
+    uint before = pixel.samples;
+    uint target = pixel_target(pixel, tile.target_samples);
+    if (before >= target) return;
 
     bvh_prepare();
     light_prepare();
 
-    // One vertex per turn: a lane whose path has ended begins its next sample while its neighbours go on. The shadow
-    // ray of a vertex and the path's next ray are traced one after the other, without waiting for the neighbours in
-    // between; if the path has ended, the next ray is the next sample's.
+    // One vertex per turn: a lane whose path has ended begins its next sample while its neighbours go on; if the path
+    // has ended, the ray that follows a shadow ray is the next sample's.
     //
     // There is one place for everything that a sample goes through: the compiler may round differently in another, and
     // a sample's bits must not depend on where in a dispatch it comes.
     //
     // Lavapipe ends all loops of an invocation after 65 535 turns in sum, whatever their conditions say. What is not
     // folded then is dropped, and traced again by the next dispatch.
-    uint n = first;         // Samples folded, the first of which has the index parameters.first_sample,
-    uint started = first;   // and begun.
-    uint rays = 0u;         // Of the samples folded,
-    uint sample_rays = 0u;  // and of the one on its way.
-    Sampler random;
-    Path path;
-    Estimate estimate;
-    ShadowRay shadow = shadow_none();
-    bool alive = false;  // The path goes on.
-    bool ended = false;  // The sample's path has ended; its shadow ray may still be on its way.
-    while (n < target) {
-        if (!alive && started < target) {
-            random = sampler_make(pixel, parameters.first_sample + started, parameters.seed);
-            vec2 film = vec2(pixel) + unit_float(sampler_pair(random, PAIR_PIXEL));
-            path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(random, PAIR_LENS))));
-            alive = true;
-            ++started;
+    Sample s = sample_none();
+    uint begun = before;  // Samples; pixel.samples are folded.
+    uint rays = 0u;       // Of those folded.
+    while (pixel.samples < target) {
+        if (!s.alive && begun < target) {
+            sample_begin(s, parameters, parameters.crop + at, parameters.first_sample + begun);
+            ++begun;
         }
-
-        bool shadowed = shadow.t_max > 0.0;
-        Ray next = path.ray;
-        if (shadowed) next = shadow.ray;
-        Traversal traversal = bvh_begin(next, shadowed ? shadow.t_max : FLOAT_MAX, shadowed);
-        if (!shadowed && !alive) bvh_end(traversal);
-        bool lit = false;
-        while (!bvh_ended(traversal)) {
-            bvh_advance(traversal);
-            if (traversal.any_hit && bvh_ended(traversal)) {
-                lit = traversal.hit.t == shadow.t_max;
-                if (alive) traversal = bvh_begin(path.ray, FLOAT_MAX, false);
-            }
+        Met met = sample_trace(s);
+        if (!met.complete) break;
+        if (met.lit) s.estimate.L += s.shadow.Ld;
+        if (s.ended) {
+            pixel_fold(pixel, s.estimate);
+            rays += s.rays;
+            s.rays = 0u;
         }
-        if (!bvh_ended(traversal)) break;
-        if (lit) estimate.L += shadow.Ld;
-
-        if (ended) {
-            // A sample whose value or square is not finite adds zero and is counted.
-            if (!is_finite(estimate.L * estimate.L)) {
-                count(COUNTER_NONFINITE, 1u);
-                estimate.L = vec3(0.0);
-            }
-            if (estimate.cut) count(COUNTER_DEPTH_LIMIT, 1u);
-            compensated_add(sum.rgb, compensation.rgb, estimate.L);
-            compensated_add(square_sum.rgb, square_compensation.rgb, estimate.L * estimate.L);
-            sum.a += estimate.visible ? 1.0 : 0.0;
-            if (HAS_AOVS) {
-                compensated_add(albedo_sum, albedo_compensation, estimate.albedo);
-                compensated_add(normal_sum, normal_compensation, estimate.normal);
-            }
-            rays += sample_rays;
-            sample_rays = 0u;
-            ++n;
-        }
-        if (alive) {
-            if (path.depth == 0u) estimate = estimate_begin();
-            alive = path_step(path, estimate, shadow, traversal.hit, random, parameters);
-            sample_rays += shadow.t_max > 0.0 ? 2u : 1u;
-            ended = !alive;
-        }
+        if (s.alive) sample_step(s, met.hit, parameters);
     }
     count_rays(rays);
-    if (n < target) count(COUNTER_UNFINISHED, 1u);
-    count(COUNTER_SAMPLES, n - first);
-    compensation.a = float(n);
-    square_compensation.a = min(square_compensation.a + float(rays), MAX_RAYS);
-
-    layer_store(at, LAYER_L, sum);
-    layer_store(at, LAYER_L_COMPENSATION, compensation);
-    layer_store(at, LAYER_SQUARE, square_sum);
-    layer_store(at, LAYER_SQUARE_COMPENSATION, square_compensation);
-    if (HAS_AOVS) {
-        layer_store(at, LAYER_ALBEDO, vec4(albedo_sum, 0.0));
-        layer_store(at, LAYER_ALBEDO_COMPENSATION, vec4(albedo_compensation, 0.0));
-        layer_store(at, LAYER_NORMAL, vec4(normal_sum, 0.0));
-        layer_store(at, LAYER_NORMAL_COMPENSATION, vec4(normal_compensation, 0.0));
-    }
+    if (pixel.samples < target) count(COUNTER_UNFINISHED, 1u);
+    count(COUNTER_SAMPLES, pixel.samples - before);
+    pixel.rays = min(pixel.rays + float(rays), MAX_RAYS);
+    pixel_store(at, pixel);
 }
 
 void main() {

@@ -11,5 +11,5 @@
 void main() {
     if (past_end()) return;
     Hit hit = bvh_intersect(Ray(item_floats(0u).xyz, item_floats(1u).xyz));
-    put(hit.t < FLOAT_MAX ? hit_id(hit) : 0xFFFFFFFFu);
+    put(is_hit(hit) ? hit_id(hit) : 0xFFFFFFFFu);
 }

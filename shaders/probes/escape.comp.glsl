@@ -42,7 +42,7 @@ void main() {
     uint shot = 0u;
     while (shot < count) {
         Ray ray = random_ray(item_floats(0u).xyz, item_floats(0u).w, first + shot);
-        if (bvh_intersect(ray).t == FLOAT_MAX) {
+        if (!is_hit(bvh_intersect(ray))) {
             ++escapes;
             escaped = ray;
         }

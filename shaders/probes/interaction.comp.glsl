@@ -1,5 +1,6 @@
 // For selftest/spheres.h: item (ray; direction, side). What the ray meets, and what a second ray meets that leaves from
-// there in that direction, turned to the viewer's side (side 0) or to the other (1).
+// there in that direction, turned to the viewer's side (side 0) or to the other (1). All is 0 but for t if it meets
+// nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -12,8 +13,12 @@ void main() {
     if (past_end()) return;
     Ray ray = Ray(item_floats(0u).xyz, item_floats(1u).xyz);
     Hit hit = bvh_intersect(ray);
-    Interaction s = interaction_at(ray, hit);
     put(hit.t);
+    if (!is_hit(hit)) {
+        while (values_put < RESULT_WORDS) put(0u);
+        return;
+    }
+    Interaction s = interaction_at(ray, hit);
     put(s.p);
     put(s.p_error);
     put(s.n);

@@ -27,7 +27,7 @@ void main() {
     uint light = NO_LIGHT;
     float pdf = 0.0;
     vec3 L = vec3(0.0);
-    if (hit.t == FLOAT_MAX) {
+    if (!is_hit(hit)) {
         EnvironmentTexel texel = environment_texel(s.wi);
         pdf = texel.pdf;
         L = texel.radiance;

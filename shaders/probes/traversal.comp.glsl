@@ -10,7 +10,7 @@
 
 Hit brute_force(Ray ray) {
     RayShear shear = ray_shear(ray.d, reciprocals(ray.d));
-    Hit hit = Hit(FLOAT_MAX, 0u);
+    Hit hit = hit_none(FLOAT_MAX);
     for (uint i = 0u; i < primitive_count; ++i) primitive_intersect(ray, shear, scene_primitive(i), i, hit);
     return hit;
 }
@@ -21,11 +21,11 @@ void main() {
     Hit hit = bvh_intersect(ray);
     put(hit.t);
     put(hit_id(hit));
-    put(hit_coordinates(ray, scene_primitive(hit.place / 2u), hit));
+    put(is_hit(hit) ? hit_coordinates(ray, scene_primitive(hit_primitive(hit)), hit) : vec2(0.0));
     Hit reference = brute_force(ray);
     put(reference.t);
     put(hit_id(reference));
     put(uint(bvh_occluded(ray, hit.t)));
-    put(uint(bvh_occluded(ray, hit.t == FLOAT_MAX ? FLOAT_MAX : uintBitsToFloat(floatBitsToUint(hit.t) + 1u))));
+    put(uint(bvh_occluded(ray, is_hit(hit) ? uintBitsToFloat(floatBitsToUint(hit.t) + 1u) : FLOAT_MAX)));
     put(uint(bvh_occluded(ray, FLOAT_MAX)));
 }

@@ -19,10 +19,10 @@ struct Interaction {
     uint light;  // Light that the surface belongs to, or NO_LIGHT.
 };
 
-// The shading normal of the triangle at that place, interpolated, on the side of n.
-vec3 shading_normal(uint place, vec2 b, vec3 n) {
-    uvec4 normals = scene_normals(place / 2u);
-    if ((place & 1u) != 0u) normals.yz = normals.zw;
+// The shading normal of the triangle that was hit, interpolated, on the side of n.
+vec3 shading_normal(Hit hit, vec2 b, vec3 n) {
+    uvec4 normals = scene_normals(hit_primitive(hit));
+    if (hit_second(hit)) normals.yz = normals.zw;
     vec3 ns = (1.0 - b.x - b.y) * octahedral_unpack(normals.x) + b.x * octahedral_unpack(normals.y) +
               b.y * octahedral_unpack(normals.z);
     float length_squared = dot(ns, ns);
@@ -31,9 +31,10 @@ vec3 shading_normal(uint place, vec2 b, vec3 n) {
     return dot(ns, n) < 0.0 ? -ns : ns;
 }
 
+// The point that the ray met; `hit` must be one.
 Interaction interaction_at(Ray ray, Hit hit) {
-    Primitive primitive = scene_primitive(hit.place / 2u);
-    Surface surface = scene_surface(hit.place / 2u);
+    Primitive primitive = scene_primitive(hit_primitive(hit));
+    Surface surface = scene_surface(hit_primitive(hit));
     vec3 a = primitive.a;
     vec2 at = hit_coordinates(ray, primitive, hit);
     Interaction s;
@@ -46,14 +47,14 @@ Interaction interaction_at(Ray ray, Hit hit) {
         s.n = normalize(cross(primitive.b, primitive.c));
         s.p = a + at.x * primitive.b + at.y * primitive.c;
     } else {
-        bool second = (hit.place & 1u) != 0u;
+        bool second = hit_second(hit);
         vec3 b = second ? primitive.c : primitive.b;
         vec3 c = second ? primitive.d : primitive.c;
         s.n = normalize(cross(b - a, c - a));
         s.p = (1.0 - at.x - at.y) * a + at.x * b + at.y * c;
     }
     s.ns = s.n;
-    if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit.place, at, s.n);
+    if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit, at, s.n);
     s.wo = -normalize(ray.d);
     s.front = dot(s.wo, s.n) >= 0.0;
     if (!s.front) {

@@ -18,18 +18,36 @@ bool is_kind(uint kind, const uint asked) {
 // The nearest primitive along a ray. Among equally near ones the first in leaf order wins, whatever the order of
 // visits.
 struct Hit {
-    float t;     // In lengths of ray.d.
-    uint place;  // Twice its position in leaf order, and 1 more for the second of two triangles.
+    float t;    // In lengths of ray.d; where there is no hit, how far the ray was followed.
+    int place;  // Twice its position in leaf order, and 1 more for the second of two triangles; negative: no hit.
 };
+
+Hit hit_none(float t_max) {
+    return Hit(t_max, -1);
+}
+
+bool is_hit(Hit hit) {
+    return hit.place >= 0;
+}
+
+// Position in leaf order of the primitive that was hit.
+uint hit_primitive(Hit hit) {
+    return uint(hit.place) / 2u;
+}
+
+// The second of two triangles was hit.
+bool hit_second(Hit hit) {
+    return (hit.place & 1) != 0;
+}
 
 // A hit of the primitive at that position.
 Hit triangles_hit(TrianglesHit found, uint position) {
-    return Hit(found.t, 2u * position + uint(found.second));
+    return Hit(found.t, int(2u * position + uint(found.second)));
 }
 
 // Keeps the hit of the primitive at that position if it is nearer than `hit`.
 void primitive_intersect(Ray ray, RayShear shear, Primitive p, uint position, inout Hit hit) {
-    Hit found = Hit(0.0, 2u * position);
+    Hit found = Hit(0.0, int(2u * position));
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) {
         found.t = sphere_intersect(ray, p.a, p.b.x);
     } else if (is_kind(p.kind, PRIMITIVE_DISK)) {
@@ -45,7 +63,7 @@ void primitive_intersect(Ray ray, RayShear shear, Primitive p, uint position, in
 vec2 hit_coordinates(Ray ray, Primitive p, Hit hit) {
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) return vec2(0.0);
     if (is_kind(p.kind, PRIMITIVE_DISK)) return disk_intersect(ray, p.a, p.b, p.c).yz;
-    bool second = (hit.place & 1u) != 0u;
+    bool second = hit_second(hit);
     return triangle_coordinates(ray, p.a, second ? p.c : p.b, second ? p.d : p.c);
 }
 
