@@ -47,8 +47,8 @@ class DeviceTracer : public RayTracer {
         const Stopwatch watch;
         double device_seconds = 0.0;
         for (const Batch& batch : batches_) {
-            kernel.bind(PROBE_ITEMS, batch.rays);
-            kernel.bind(PROBE_RESULTS, batch.hits);
+            kernel.bind(BINDING_ITEMS, batch.rays);
+            kernel.bind(BINDING_RESULTS, batch.hits);
             const ProbeCounts counts{batch.count, scene_.primitive_count()};
             for (uint32_t i = 0; i < repeats; ++i) {
                 commands_.dispatch(kernel, std::as_bytes(std::span(&counts, 1)),

@@ -16,7 +16,7 @@ namespace candela {
 // and in displaced_scene()s of options.triangles, and how many in a million rays have another hit by Embree.
 // The two tracers take turns. On a CPU device ours is a speed of CPU time of all cores, with that of wall
 // time beside it, as the rival's is; on a GPU both are of wall time. Throws Error as build_gpu_scene() and
-// choose_storage_arrays() do, and if the two tracers disagree.
+// map_arrays() do, and if the two tracers disagree.
 std::vector<Row> bench_traversal(const vk::Device& device, const BenchOptions& options);
 
 // The row of one set: the two take turns, `runs` times, after each has traced the set twice to warm up. A run

@@ -37,17 +37,18 @@ Json environment_of(const GpuScene& gpu) {
     return {gpu.environment_size.x, gpu.environment_size.y};
 }
 
-// Device memory by part; the picture with all AOVs and without any.
+// Device memory by part: each array of the scene, and the picture with all AOVs and without any.
 Json memory_of(const GpuScene& gpu, RenderSettings settings) {
     settings.aovs = true;
     const uint64_t all = device_bytes(gpu, settings);
     settings.aovs = false;
     const uint64_t colour = device_bytes(gpu, settings);
-    return {{"bvh", gpu.nodes.size() * sizeof(uvec4)},
-            {"primitives", gpu.primitives.size() * sizeof(uvec4)},
-            {"tables", gpu.tables.size() * sizeof(uvec4)},
-            {"picture", all - gpu.bytes()},
-            {"picture_without_aovs", colour - gpu.bytes()}};
+    Json parts;
+    for (const SceneArray& array : SCENE_ARRAYS)
+        parts[to_text(array)] = gpu.arrays[array.number].size() * sizeof(uvec4);
+    parts["picture"] = all - gpu.bytes();
+    parts["picture_without_aovs"] = colour - gpu.bytes();
+    return parts;
 }
 
 Json describe(const InfoOptions& options, const Scene& scene) {
@@ -67,7 +68,7 @@ Json describe(const InfoOptions& options, const Scene& scene) {
             {"materials", scene.materials.size()},
             {"cameras", cameras},
             {"bounds", to_json(bounds(scene))},
-            {"bvh_nodes", gpu.nodes.size() / BVH_NODE_WORDS},
+            {"bvh_nodes", gpu.arrays[ARRAY_NODES].size() / BVH_NODE_WORDS},
             {"bvh_depth", gpu.bvh_depth},
             {"bvh_sah_cost", gpu.bvh_sah_cost},
             {"bvh_seconds", gpu.bvh_seconds},
@@ -101,7 +102,7 @@ void print(const Json& info) {
     const auto row = [](const char* key, const std::string& value) {
         std::printf("%-14s%s\n", key, value.c_str());
     };
-    const auto bytes = [&info](const char* part) {
+    const auto bytes = [&info](const std::string& part) {
         return bytes_text(info["device_bytes_by_part"][part].get<uint64_t>());
     };
     row("scene", info["scene"].get<std::string>());
@@ -118,10 +119,13 @@ void print(const Json& info) {
                    fixed(1e3 * info["bvh_seconds"].get<double>(), 1) + " ms");
     row("picture",
         info["width"].dump() + 'x' + info["height"].dump() + " pixels, crop " + info["crop"].dump());
-    row("device memory", bytes_text(info["device_bytes"].get<uint64_t>()) + ": BVH " + bytes("bvh") +
-                             ", primitives " + bytes("primitives") + ", tables " + bytes("tables") +
-                             ", picture " + bytes("picture") + " (" + bytes("picture_without_aovs") +
-                             " without AOVs)");
+    std::string parts;
+    for (const SceneArray& array : SCENE_ARRAYS) {
+        const std::string name = to_text(array);
+        if (info["device_bytes_by_part"][name] != 0) parts += name + ' ' + bytes(name) + ", ";
+    }
+    row("device memory", bytes_text(info["device_bytes"].get<uint64_t>()) + ": " + parts + "picture " +
+                             bytes("picture") + " (" + bytes("picture_without_aovs") + " without AOVs)");
 }
 
 ExitCode run(const InfoOptions& options) {

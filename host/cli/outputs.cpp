@@ -99,12 +99,6 @@ void add_convergence(Json& report, const RenderOptions& options, const RenderRec
     }
 }
 
-// How the kernels read the arrays of the scene.
-const char* buffers_text(uint32_t storage_arrays) {
-    if (storage_arrays == 0) return "texel";
-    return storage_arrays == ALL_STORAGE_ARRAYS ? "storage" : "mixed";
-}
-
 Json make_report(const RenderOptions& options, const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     const auto ratio = [](double a, double b) { return b > 0.0 ? a / b : 0.0; };
@@ -126,7 +120,7 @@ Json make_report(const RenderOptions& options, const RenderRecord& record) {
                 {"adaptive", record.adaptive},
                 {"max_depth", settings.max_depth},
                 {"rr_depth", settings.rr_depth},
-                {"scene_buffers", buffers_text(record.storage_arrays)},
+                {"scene_buffers", to_text(record.array_map)},
                 {"primitives", record.primitives},
                 {"lights", record.lights},
                 {"load_seconds", record.load_seconds},

@@ -21,7 +21,7 @@ struct RenderRecord {
     Identity identity;
     bool adaptive = false;
     RenderSettings settings;
-    uint32_t storage_arrays = 0;  // Of the scene: see the constant STORAGE_ARRAYS.
+    ArrayMap array_map;  // How the scene was read.
     uint32_t primitives = 0;
     uint32_t lights = 0;
     double load_seconds = 0.0;      // Wall times: reading the scene file ...

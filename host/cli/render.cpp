@@ -216,7 +216,7 @@ ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, c
         source.states = std::move(resumed->states);
     }
     SteadyRenderer renderer(std::move(source), warn_of_device_failure);
-    record.storage_arrays = renderer.storage_arrays();
+    record.array_map = renderer.array_map();
     record.pipeline_seconds = renderer.pipeline_seconds();
     if (options.verbose) print_details(renderer.device(), scene, record);
     const PixelRect& crop = record.settings.crop;

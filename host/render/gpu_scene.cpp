@@ -95,16 +95,21 @@ void add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box
 
 // The environment's records; `pmf` is the probability with which light samples choose it.
 void append_environment(GpuScene& gpu, EnvironmentMap map, double pmf) {
-    gpu.table_starts.environment = uint(gpu.tables.size());
     for (EnvironmentTexel& texel : map.texels) {
         texel.pdf *= float(pmf);
-        append(gpu.tables, pack(texel));
+        append(gpu.arrays[ARRAY_ENVIRONMENT], pack(texel));
     }
-    gpu.table_starts.environment_alias = uint(gpu.tables.size());
-    append(gpu.tables, map.alias);
+    append(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS], map.alias);
 }
 
 }  // namespace
+
+uint64_t GpuScene::bytes() const {
+    uint64_t words = 0;
+    for (const std::vector<uvec4>& array : arrays)
+        words += array.size();
+    return words * sizeof(uvec4);
+}
 
 GpuScene build_gpu_scene(const Scene& scene) {
     FlatScene flat = flatten(scene);
@@ -119,17 +124,17 @@ GpuScene build_gpu_scene(const Scene& scene) {
     gpu.bvh_depth = bvh.depth;
     gpu.bvh_sah_cost = bvh.sah_cost;
 
-    gpu.nodes.reserve(bvh.nodes.size() * BVH_NODE_WORDS);
+    gpu.arrays[ARRAY_NODES].reserve(bvh.nodes.size() * BVH_NODE_WORDS);
     for (const auto& node : bvh.nodes)
-        append(gpu.nodes, node);
-    gpu.primitives.reserve(flat.primitives.size() * PRIMITIVE_WORDS);
+        append(gpu.arrays[ARRAY_NODES], node);
+    gpu.arrays[ARRAY_PRIMITIVES].reserve(flat.primitives.size() * PRIMITIVE_WORDS);
     for (const uint32_t i : bvh.order) {
-        append(gpu.primitives, pack(flat.primitives[i]));
+        append(gpu.arrays[ARRAY_PRIMITIVES], pack(flat.primitives[i]));
         gpu.primitives_present |= 1u << flat.primitives[i].kind;
     }
     gpu.list_corners = list_corners(flat.primitives, bvh.order);
     if (flat.primitives.empty())
-        gpu.primitives.resize(PRIMITIVE_WORDS);  // A ray may ask for it all the same.
+        gpu.arrays[ARRAY_PRIMITIVES].resize(PRIMITIVE_WORDS);  // A ray may ask for it all the same.
 
     EnvironmentMap map;
     if (scene.environment) {
@@ -143,29 +148,25 @@ GpuScene build_gpu_scene(const Scene& scene) {
     assign_probabilities(flat);
     gpu.light_count = uint32_t(flat.lights.size());
 
-    gpu.table_starts.surfaces = 0;
+    gpu.arrays[ARRAY_SURFACES].reserve(flat.surfaces.size() * SURFACE_WORDS);
     for (const uint32_t i : bvh.order)
-        append(gpu.tables, pack(flat.surfaces[i]));
-    gpu.table_starts.normals = uint(gpu.tables.size());
+        append(gpu.arrays[ARRAY_SURFACES], pack(flat.surfaces[i]));
     if (gpu.has_normals) {
-        gpu.tables.reserve(flat.normals.size() * NORMALS_WORDS);
+        gpu.arrays[ARRAY_NORMALS].reserve(flat.normals.size() * NORMALS_WORDS);
         for (const uint32_t i : bvh.order)
-            append(gpu.tables, flat.normals[i]);
+            append(gpu.arrays[ARRAY_NORMALS], flat.normals[i]);
     }
-    gpu.table_starts.materials = uint(gpu.tables.size());
     for (const Material& material : scene.materials) {
         const MaterialRecord packed =
             std::visit([](const auto& model) { return record(model); }, material.model);
-        append(gpu.tables, pack(packed));
+        append(gpu.arrays[ARRAY_MATERIALS], pack(packed));
         gpu.materials_present |= 1u << packed.model;
     }
-    gpu.table_starts.lights = uint(gpu.tables.size());
     for (const Light& light : flat.lights) {
-        append(gpu.tables, pack(light));
+        append(gpu.arrays[ARRAY_LIGHTS], pack(light));
         gpu.lights_present |= 1u << light.kind;
     }
-    gpu.table_starts.light_alias = uint(gpu.tables.size());
-    if (gpu.light_count > 0) append(gpu.tables, build_alias_table(flat.powers));
+    if (gpu.light_count > 0) append(gpu.arrays[ARRAY_LIGHT_ALIAS], build_alias_table(flat.powers));
     if (scene.environment) {
         const bool sampled = !flat.lights.empty() && flat.lights.back().kind == LIGHT_ENVIRONMENT;
         const double total = std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0);

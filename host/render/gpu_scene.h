@@ -7,16 +7,13 @@
 #include "scene/scene.h"
 #include "shared/kernel_constants.h"
 #include "shared/parameters.h"
+#include "shared/scene_arrays.h"
 
 namespace candela {
 
 struct GpuScene {
-    // Records as shared/*.h describe them, in words of uvec4.
-    std::vector<uvec4> nodes;       // BVH nodes, the root first.
-    std::vector<uvec4> primitives;  // In leaf order.
-    std::vector<uvec4>
-        tables;  // One after the other, as TableStarts lists them; surfaces and normals are in leaf order.
-    TableStarts table_starts{};
+    // Records as shared/*.h describe them, in words of uvec4, by ARRAY_*.
+    std::array<std::vector<uvec4>, ARRAY_COUNT> arrays;
 
     uint32_t primitive_count = 0;  // Two triangles may be one: see shared/primitive.h.
     uint32_t id_count = 0;         // Triangles, spheres and disks.
@@ -40,7 +37,7 @@ struct GpuScene {
     double bvh_seconds = 0.0;  // Wall time of the build alone.
 
     // Bytes that the arrays take on a device.
-    uint64_t bytes() const { return (nodes.size() + primitives.size() + tables.size()) * sizeof(uvec4); }
+    uint64_t bytes() const;
 };
 
 // Flattens the shapes into primitives, builds the BVH and packs everything. Throws Error if the scene has

@@ -76,8 +76,8 @@ Identity make_identity(const GpuScene& scene, const Camera& camera, const Render
     fixed.first_sample = 0;
     fixed.aovs = false;
     uint64_t hash = FNV1A64_BASIS;
-    for (const std::vector<uvec4>* array : {&scene.nodes, &scene.primitives, &scene.tables})
-        hash = add_to_hash(hash, *array);
+    for (const std::vector<uvec4>& array : scene.arrays)
+        hash = add_to_hash(hash, array);
     hash = add_to_hash(hash, pack(make_parameters(scene, camera, fixed)));
     hash = add_to_hash(hash, make_constants(scene, camera, fixed).values);
     hash = add_to_hash(hash, std::array<uint32_t, 2>{settings.crop.x1, settings.crop.y1});

@@ -51,8 +51,7 @@ uint32_t sampler_constant(SamplerKind sampler) {
 
 }  // namespace
 
-KernelConstants make_constants(const GpuScene& scene, const Camera& camera,
-                                                    const RenderSettings& settings) {
+KernelConstants make_constants(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
     KernelConstants constants;
     constants[CONSTANT_SAMPLER] = sampler_constant(settings.sampler);
     constants[CONSTANT_ESTIMATOR] = estimator_constant(settings.estimator, scene.light_count);
@@ -69,10 +68,10 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera,
     return constants;
 }
 
-KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene,
-                                                      const Camera& camera, const RenderSettings& settings) {
+KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene, const ArrayMap& map,
+                                 const Camera& camera, const RenderSettings& settings) {
     auto constants = make_constants(scene, camera, settings);
-    constants[CONSTANT_STORAGE_ARRAYS] = choose_storage_arrays(device, scene, settings.scene_access);
+    set_arrays(constants, map);
     constants[CONSTANT_LIST] = list_constant(device, scene);
     if (constants[CONSTANT_LIST] > 0)
         std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS_0]);

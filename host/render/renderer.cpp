@@ -75,7 +75,6 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .max_depth = std::min(settings.max_depth, DEPTH_SAFETY_LIMIT),
             .rr_depth = settings.rr_depth,
             .light_count = scene.light_count,
-            .tables = scene.table_starts,
             .environment_size = scene.environment_size,
             .environment_turn = {std::cos(scene.environment_rotation), std::sin(scene.environment_rotation)},
             .lens_x = lens.radius * (cos_lens * right + sin_lens * up),
@@ -87,7 +86,7 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
 
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants) {
     const bool render = which == RenderKernel::render;
-    std::vector<vk::Binding> bindings = SceneBuffers::bindings();
+    std::vector<vk::Binding> bindings = SceneBuffers::bindings(constants);
     bindings.push_back({BINDING_IMAGE, vk::BindingType::storage_image});
     if (render) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
     const auto spirv = render ? kernels::render : kernels::position;
@@ -112,8 +111,9 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
                    const RenderSettings& settings)
     : device_(&check_memory(device, scene, settings)),
       settings_(settings),
-      constants_(kernel_constants(device, scene, camera, settings)),
-      scene_(device, scene, make_parameters(scene, camera, settings), constants_[CONSTANT_STORAGE_ARRAYS]),
+      scene_(device, scene, make_parameters(scene, camera, settings),
+             map_arrays(device.info(), scene, settings.scene_access)),
+      constants_(kernel_constants(device, scene, scene_.map(), camera, settings)),
       counter_buffer_(device, COUNTER_BYTES, vk::BufferUsage::storage, "counters"),
       counts_(device, COUNTER_BYTES, vk::BufferUsage::readback, "counts"),
       image_(device, image_size().x, image_size().y, layer_count(settings), "accumulation"),
@@ -150,8 +150,7 @@ void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSe
     }
     samples_ = 0;
     counters_ = {};
-    auto constants = kernel_constants(*device_, scene, camera, settings);
-    constants[CONSTANT_STORAGE_ARRAYS] = scene_.storage_arrays();
+    const auto constants = kernel_constants(*device_, scene, scene_.map(), camera, settings);
     if (constants == constants_) return;
     constants_ = constants;
     compile();

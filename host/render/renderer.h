@@ -7,6 +7,7 @@
 #include <span>
 
 #include "render/accumulation.h"
+#include "render/array_map.h"
 #include "render/gpu_scene.h"
 #include "render/scene_buffers.h"
 #include "render/schedule.h"
@@ -41,9 +42,9 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
 // The kernels' specialization constants for them; those that the device sets have their defaults.
 KernelConstants make_constants(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
-// The same with those that the device sets. Throws Error as choose_storage_arrays() does.
-KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene, const Camera& camera,
-                                 const RenderSettings& settings);
+// The same with those that the device sets.
+KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene, const ArrayMap& map,
+                                 const Camera& camera, const RenderSettings& settings);
 
 // The renderer's kernels, compiled for kernel_constants() and not bound to anything.
 enum class RenderKernel { render, position };
@@ -85,8 +86,8 @@ class Renderer {
     // The sums of samples, layers LAYER_*, for kernels that show them; another image after a reset() to
     // another size.
     const vk::StorageImage& accumulation() const { return image_; }
-    // Which arrays of the scene are read as storage buffers: see the constant STORAGE_ARRAYS.
-    uint32_t storage_arrays() const { return scene_.storage_arrays(); }
+    // How the arrays of the scene are read.
+    const ArrayMap& array_map() const { return scene_.map(); }
     // How long a submission should take [s].
     double submission_seconds() const { return settings_.submission_seconds; }
     double pipeline_seconds() const {
@@ -109,12 +110,12 @@ class Renderer {
 
     const vk::Device* device_;
     RenderSettings settings_;
-    KernelConstants constants_;
     RenderCounters counters_;
     double pipeline_seconds_ = 0.0;
     uint32_t samples_ = 0;  // That every pixel holds at least.
 
     SceneBuffers scene_;
+    KernelConstants constants_;
     vk::Buffer counter_buffer_;  // On the device, of one submission,
     vk::Buffer counts_;          // and what the host sees of it.
     vk::StorageImage image_;

@@ -20,7 +20,7 @@ static constexpr Seconds FIRST_PAUSE{0.1};
 SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
     : source_(std::move(source)), on_failure_(std::move(on_failure)) {
     open();
-    storage_arrays_ = renderer_->storage_arrays();
+    array_map_ = renderer_->array_map();
     pipeline_seconds_ = renderer_->pipeline_seconds();
     if (source_.positions) positions_ = renderer_->positions();
     next_hold_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(source_.hold_seconds));

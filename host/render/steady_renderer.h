@@ -55,8 +55,8 @@ class SteadyRenderer {
     const vk::Device& device() const { return *device_; }
     // As Renderer::positions(), if the source asks for them.
     const std::vector<float>& positions() const { return positions_; }
-    // As Renderer::storage_arrays().
-    uint32_t storage_arrays() const { return storage_arrays_; }
+    // How the arrays of the scene are read.
+    const ArrayMap& array_map() const { return array_map_; }
     double pipeline_seconds() const { return pipeline_seconds_; }
     // How often the device failed.
     uint32_t failures() const { return failures_; }
@@ -76,7 +76,7 @@ class SteadyRenderer {
     std::unique_ptr<vk::Device> device_;
     std::unique_ptr<Renderer> renderer_;
     std::vector<float> positions_;
-    uint32_t storage_arrays_ = 0;
+    ArrayMap array_map_;
     double pipeline_seconds_ = 0.0;
     std::chrono::steady_clock::time_point next_hold_;
     std::optional<Error> cause_;  // Of the last failure that was not one of opening.

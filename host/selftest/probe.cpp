@@ -17,7 +17,6 @@ constexpr size_t GUARANTEED_TEXELS = 65536;
 Parameters parameters_of(const GpuScene& scene) {
     Parameters parameters{};
     parameters.light_count = scene.light_count;
-    parameters.tables = scene.table_starts;
     parameters.environment_size = scene.environment_size;
     parameters.environment_turn = {std::cos(scene.environment_rotation),
                                    std::sin(scene.environment_rotation)};
@@ -29,7 +28,7 @@ Parameters parameters_of(const GpuScene& scene) {
 DeviceScene::DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access,
                          const Parameters& parameters)
     : primitive_count_(scene.primitive_count),
-      buffers_(device, scene, parameters, choose_storage_arrays(device, scene, access)) {}
+      buffers_(device, scene, parameters, map_arrays(device.info(), scene, access)) {}
 
 DeviceScene::DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access)
     : DeviceScene(device, scene, access, parameters_of(scene)) {}
@@ -47,14 +46,14 @@ KernelConstants sampler_constants(uint32_t sampler) {
     return constants;
 }
 
-vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv,
-                      KernelConstants constants, const DeviceScene* scene, const std::string& name) {
-    std::vector<vk::Binding> bindings{{PROBE_ITEMS, vk::BindingType::texel_buffer},
-                                      {PROBE_RESULTS, vk::BindingType::storage_buffer}};
+vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv, KernelConstants constants,
+                      const DeviceScene* scene, const std::string& name) {
+    std::vector<vk::Binding> bindings{{BINDING_ITEMS, vk::BindingType::texel_buffer},
+                                      {BINDING_RESULTS, vk::BindingType::storage_buffer}};
     if (scene != nullptr) {
-        const auto of_scene = SceneBuffers::bindings();
+        set_arrays(constants, scene->buffers().map());
+        const auto of_scene = SceneBuffers::bindings(constants);
         bindings.insert(bindings.end(), of_scene.begin(), of_scene.end());
-        constants[CONSTANT_STORAGE_ARRAYS] = scene->buffers().storage_arrays();
     }
     vk::Kernel kernel(device, spirv, bindings, sizeof(ProbeCounts), constants.values, name);
     if (scene != nullptr) scene->buffers().bind_to(kernel);
@@ -78,8 +77,8 @@ std::vector<uint32_t> run_probe(const vk::Device& device, vk::Kernel& kernel,
         vk::Buffer in(device, some.size(), vk::BufferUsage::texel, "items");
         const vk::Buffer out(device, results_of_some.size_bytes(), vk::BufferUsage::readback, "results");
         in.upload(some);
-        kernel.bind(PROBE_ITEMS, in);
-        kernel.bind(PROBE_RESULTS, out);
+        kernel.bind(BINDING_ITEMS, in);
+        kernel.bind(BINDING_RESULTS, out);
         const ProbeCounts counts{uint32_t(size), scene == nullptr ? 0 : scene->primitive_count()};
         commands.dispatch(kernel, std::as_bytes(std::span(&counts, 1)),
                           {(counts.items + PROBE_GROUP - 1) / PROBE_GROUP, 1, 1});

@@ -39,16 +39,15 @@ KernelConstants traversal_constants(const GpuScene& scene);
 // And of those that draw samples, by SAMPLER_*.
 KernelConstants sampler_constants(uint32_t sampler);
 
-// What shaders/probes/items.glsl declares: bindings, push constants, and invocations in a work group.
-inline constexpr uint32_t PROBE_ITEMS = 6, PROBE_RESULTS = 7;
+// What shaders/probes/items.glsl declares: invocations in a work group, and push constants.
 inline constexpr uint32_t PROBE_GROUP = 64;
 struct ProbeCounts {
     uint32_t items;
     uint32_t primitives;
 };
 
-// The probe `spirv`, bound to the scene unless that is null; it sets STORAGE_ARRAYS among the constants. `name`
-// is for messages.
+// The probe `spirv`, bound to the scene unless that is null; the scene's buffers set the constants that say
+// how it is read. `name` is for messages.
 vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv, KernelConstants constants,
                       const DeviceScene* scene, const std::string& name);
 

@@ -81,46 +81,30 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 127> words;
-};
-
-// Where the tables begin if a word that belongs to nothing comes first, and each table has two records.
-constexpr TableStarts TABLES{
-    .surfaces = 1,
-    .normals = 1 + 2 * SURFACE_WORDS,
-    .materials = 1 + 2 * (SURFACE_WORDS + NORMALS_WORDS),
-    .lights = 1 + 2 * (SURFACE_WORDS + NORMALS_WORDS + MATERIAL_WORDS),
-    .light_alias = 1 + 2 * (SURFACE_WORDS + NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
-    .environment = 3 + 2 * (SURFACE_WORDS + NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS),
-    .environment_alias =
-        3 + 2 * (SURFACE_WORDS + NORMALS_WORDS + MATERIAL_WORDS + LIGHT_WORDS + ENVIRONMENT_TEXEL_WORDS),
+    std::array<uint, 120> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scale of a node must be
 // powers of two.
 Records filled(Fields& fields) {
     Records r{};
-    r.parameters = {
-        .position = fields.f3(),
-        .right = fields.f3(),
-        .up = fields.f3(),
-        .forward = fields.f3(),
-        .full_size = fields.u2(),
-        .crop = fields.u2(),
-        .seed = fields.u(),
-        .max_depth = fields.u(),
-        .rr_depth = fields.u(),
-        .light_count = fields.u(),
-        .tables = {fields.keep(TABLES.surfaces), fields.keep(TABLES.normals), fields.keep(TABLES.materials),
-                   fields.keep(TABLES.lights), fields.keep(TABLES.light_alias),
-                   fields.keep(TABLES.environment), fields.keep(TABLES.environment_alias)},
-        .environment_size = fields.u2(),
-        .environment_turn = fields.f2(),
-        .lens_x = fields.f3(),
-        .lens_y = fields.f3(),
-        .focal_distance = fields.f(),
-        .blades = fields.u(),
-        .first_sample = fields.u()};
+    r.parameters = {.position = fields.f3(),
+                    .right = fields.f3(),
+                    .up = fields.f3(),
+                    .forward = fields.f3(),
+                    .full_size = fields.u2(),
+                    .crop = fields.u2(),
+                    .seed = fields.u(),
+                    .max_depth = fields.u(),
+                    .rr_depth = fields.u(),
+                    .light_count = fields.u(),
+                    .environment_size = fields.u2(),
+                    .environment_turn = fields.f2(),
+                    .lens_x = fields.f3(),
+                    .lens_y = fields.f3(),
+                    .focal_distance = fields.f(),
+                    .blades = fields.u(),
+                    .first_sample = fields.u()};
     r.node.origin = fields.f3();
     r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);
     for (const int axis : {0, 1, 2})
@@ -174,18 +158,18 @@ void append_second(std::vector<uvec4>& out, const std::array<uvec4, N>& record) 
 
 GpuScene packed(const Records& r) {
     GpuScene scene;
-    append_second(scene.nodes, pack(r.node));
-    append_second(scene.primitives, pack(r.triangles));
+    const auto array = [&](uint number) -> std::vector<uvec4>& { return scene.arrays[number]; };
+    append_second(array(ARRAY_NODES), pack(r.node));
+    append_second(array(ARRAY_PRIMITIVES), pack(r.triangles));
     const auto disk = pack(r.disk);
-    scene.primitives.insert(scene.primitives.end(), disk.begin(), disk.end());
-    scene.tables.emplace_back(0xFFFFFFFFu);
-    append_second(scene.tables, pack(r.surface));
-    append_second(scene.tables, r.normals);
-    append_second(scene.tables, pack(r.material));
-    append_second(scene.tables, pack(r.light));
-    append_second(scene.tables, pack(r.light_even, r.light_odd));
-    append_second(scene.tables, pack(r.texel));
-    append_second(scene.tables, pack(r.texel_even, r.texel_odd));
+    array(ARRAY_PRIMITIVES).insert(array(ARRAY_PRIMITIVES).end(), disk.begin(), disk.end());
+    append_second(array(ARRAY_SURFACES), pack(r.surface));
+    append_second(array(ARRAY_NORMALS), r.normals);
+    append_second(array(ARRAY_MATERIALS), pack(r.material));
+    append_second(array(ARRAY_LIGHTS), pack(r.light));
+    append_second(array(ARRAY_LIGHT_ALIAS), pack(r.light_even, r.light_odd));
+    append_second(array(ARRAY_ENVIRONMENT), pack(r.texel));
+    append_second(array(ARRAY_ENVIRONMENT_ALIAS), pack(r.texel_even, r.texel_odd));
     return scene;
 }
 
@@ -216,8 +200,8 @@ Evidence test_records(const vk::Device& device, SceneAccess access) {
     Evidence evidence;
     for (size_t i = 0; i < fields.words.size(); ++i) {
         evidence.expect(read.words[i] == fields.words[i], [&] {
-            return concat("word ", i, ", storage buffers ", on_device.buffers().storage_arrays(), ": ",
-                         read.words[i], " instead of ", fields.words[i]);
+            return concat("word ", i, ", buffers: ", to_text(on_device.buffers().map()), ": ", read.words[i],
+                          " instead of ", fields.words[i]);
         });
     }
     return evidence;

@@ -27,8 +27,10 @@ static VkDescriptorType descriptor_type(BindingType type) {
 }
 
 static uint32_t count(std::span<const Binding> bindings, BindingType type) {
-    return uint32_t(
-        std::count_if(bindings.begin(), bindings.end(), [type](const Binding& b) { return b.type == type; }));
+    uint32_t sum = 0;
+    for (const Binding& binding : bindings)
+        sum += binding.type == type ? binding.count : 0;
+    return sum;
 }
 
 static void check_limits(const Device& device, std::span<const Binding> bindings, uint32_t push_constant_size,
@@ -46,8 +48,10 @@ static void check_limits(const Device& device, std::span<const Binding> bindings
                        "maxPerStageDescriptorUniformBuffers");
     device.check_limit(name, "storage images", count(bindings, BindingType::storage_image),
                        limits.max_per_stage_descriptor_storage_images, "maxPerStageDescriptorStorageImages");
-    device.check_limit(name, "resources", bindings.size(), limits.max_per_stage_resources,
-                       "maxPerStageResources");
+    uint32_t all = 0;
+    for (const BindingType type : BINDING_TYPES)
+        all += count(bindings, type);
+    device.check_limit(name, "resources", all, limits.max_per_stage_resources, "maxPerStageResources");
 }
 
 Kernel::Kernel(const Device& device, std::span<const uint32_t> spirv, std::span<const Binding> bindings,
@@ -66,8 +70,8 @@ Kernel::Kernel(const Device& device, std::span<const uint32_t> spirv, std::span<
 void Kernel::create_layouts() {
     std::vector<VkDescriptorSetLayoutBinding> slots;
     for (const Binding& binding : bindings_) {
-        slots.push_back(
-            {binding.number, descriptor_type(binding.type), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+        slots.push_back({binding.number, descriptor_type(binding.type), binding.count,
+                         VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
     }
     VkDescriptorSetLayoutCreateInfo set_info{};
     set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
@@ -144,11 +148,12 @@ void Kernel::create_descriptor_set() {
     device_->set_name(VK_OBJECT_TYPE_DESCRIPTOR_SET, set_, name_);
 }
 
-void Kernel::bind(uint32_t number, const Buffer& buffer) {
+void Kernel::bind(uint32_t number, const Buffer& buffer, uint32_t element) {
     const VkDescriptorBufferInfo info{buffer.handle(), 0, VK_WHOLE_SIZE};
     VkWriteDescriptorSet write = descriptor(number);
     VkBufferView view = buffer.view();
     assert((write.descriptorType == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) == (view != VK_NULL_HANDLE));
+    write.dstArrayElement = element;
     write.pBufferInfo = &info;
     write.pTexelBufferView = &view;
     vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);

@@ -17,10 +17,11 @@ namespace candela::vk {
 
 enum class BindingType { texel_buffer, storage_buffer, uniform_buffer, storage_image };
 
-// One resource that a kernel declares: layout(set = 0, binding = number).
+// What a kernel declares: layout(set = 0, binding = number), an array if there are several.
 struct Binding {
     uint32_t number;
     BindingType type;
+    uint32_t count = 1;
 };
 
 class Kernel {
@@ -32,9 +33,9 @@ class Kernel {
     Kernel(const Device& device, std::span<const uint32_t> spirv, std::span<const Binding> bindings,
            uint32_t push_constant_size, std::span<const uint32_t> constants, const std::string& name);
 
-    // Binds a resource to a binding of the matching type. It stays bound, and must live, until another takes
-    // its place. Not between a dispatch and the submit that runs it.
-    void bind(uint32_t number, const Buffer& buffer);
+    // Binds a resource to (an element of) a binding of the matching type. It stays bound, and must live,
+    // until another takes its place. Not between a dispatch and the submit that runs it.
+    void bind(uint32_t number, const Buffer& buffer, uint32_t element = 0);
     void bind(uint32_t number, const StorageImage& image);
 
     const std::string& name() const { return name_; }

@@ -3,10 +3,12 @@
 #ifndef PROBES_ITEMS_GLSL
 #define PROBES_ITEMS_GLSL
 
+#include "shared/constants.h"
+
 layout(local_size_x = 64) in;
 
-layout(binding = 6) uniform usamplerBuffer items;
-layout(std430, binding = 7) writeonly buffer ResultsBlock { uint results[]; };
+layout(binding = BINDING_ITEMS) uniform usamplerBuffer items;
+layout(std430, binding = BINDING_RESULTS) writeonly buffer ResultsBlock { uint results[]; };
 layout(push_constant) uniform CountsBlock {
     uint item_count;
     uint primitive_count;  // Of the scene, for kernels that read one.

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 127u
+#define RESULT_WORDS 120u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -18,13 +18,6 @@ void put_parameters(Parameters p) {
     put(p.max_depth);
     put(p.rr_depth);
     put(p.light_count);
-    put(p.tables.surfaces);
-    put(p.tables.normals);
-    put(p.tables.materials);
-    put(p.tables.lights);
-    put(p.tables.light_alias);
-    put(p.tables.environment);
-    put(p.tables.environment_alias);
     put(p.environment_size);
     put(p.environment_turn);
     put(p.lens_x);

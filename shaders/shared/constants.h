@@ -64,16 +64,14 @@ const uint COUNTER_SAMPLES = 4u;      // Samples folded.
 const uint COUNTER_UNFINISHED = 5u;   // Pixels whose loop the driver ended before they had all samples.
 const uint COUNTER_COUNT = 6u;
 
-// Descriptor bindings of every kernel that reads the scene. An array of the scene has two: as a texel buffer,
-// and, BINDING_STORAGE further on, as a storage buffer; the constant STORAGE_ARRAYS says which one is read.
-const uint SCENE_ARRAYS = 3u;
-const uint BINDING_NODES = 0u;
-const uint BINDING_PRIMITIVES = 1u;
-const uint BINDING_TABLES = 2u;
-const uint BINDING_STORAGE = 8u;
-const uint BINDING_PARAMETERS = 3u;
-const uint BINDING_IMAGE = 4u;
-const uint BINDING_COUNTERS = 5u;
+// Descriptor bindings of every kernel that reads the scene. Array i of the scene is the texel buffer i; all
+// storage buffers are elements of one binding.
+const uint BINDING_STORAGE = 16u;
+const uint BINDING_PARAMETERS = 17u;
+const uint BINDING_IMAGE = 18u;
+const uint BINDING_COUNTERS = 19u;
+const uint BINDING_ITEMS = 20u;  // Of probes.
+const uint BINDING_RESULTS = 21u;
 
 // The camera's aperture.
 const uint APERTURE_PINHOLE = 0u;

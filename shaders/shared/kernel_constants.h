@@ -1,13 +1,14 @@
-// Specialization constants: what is fixed when a kernel's pipeline is made. So a scene pays only for what it uses, and
-// no branch depends on uniforms (which would make lavapipe 22.3 compile the kernel anew at every dispatch).
+// Specialization constants: what is fixed when a kernel's pipeline is made. So a scene pays only for what it
+// uses, and no branch depends on uniforms (which would make lavapipe 22.3 compile the kernel anew at every
+// dispatch).
 //
-// kernel_constants.inc lists them: GLSL gets a constant NAME for each line, C++ its number, CONSTANT_NAME, its default
-// and its owner.
+// kernel_constants.inc lists them: GLSL gets a constant NAME for each line, C++ its number, CONSTANT_NAME,
+// its default and its owner.
 #ifndef SHARED_KERNEL_CONSTANTS_H
 #define SHARED_KERNEL_CONSTANTS_H
 
-#include "shared/bvh_node.h"
 #include "shared/constants.h"
+#include "shared/scene_arrays.h"
 
 // The longest list of primitives that a kernel tests one by one: as many LIST_CORNERS_i there are.
 const uint LIST_MAX = 16u;
@@ -16,7 +17,8 @@ const uint LIST_MAX = 16u;
 #include <array>
 namespace candela {
 
-// Who sets a constant: what is in the scene and what is asked for decide the image, the device how it is computed.
+// Who sets a constant: what is in the scene and what is asked for decide the image, the device how it is
+// computed.
 enum class ConstantOwner { SCENE, SETTINGS, DEVICE };
 
 #define CONSTANT(number, type, name, initial, owner) CONSTANT_##name,
@@ -38,8 +40,12 @@ struct KernelConstants {
     };
 #undef CONSTANT
 
-    uint& operator[](KernelConstant constant) { return values[constant]; }
-    uint operator[](KernelConstant constant) const { return values[constant]; }
+    uint& operator[](KernelConstant constant) {
+        return values[constant];
+    }
+    uint operator[](KernelConstant constant) const {
+        return values[constant];
+    }
     bool operator==(const KernelConstants&) const = default;
 };
 

@@ -18,6 +18,7 @@ namespace candela {
 
 const uint LIGHT_WORDS = 4u;
 const uint ENVIRONMENT_TEXEL_WORDS = 1u;
+const uint ALIAS_WORDS = 1u;  // Of two entries.
 
 const uint LIGHT_TRIANGLE = 0u;       // p + b1 e1 + b2 e2 with b1, b2 >= 0, b1 + b2 <= 1.
 const uint LIGHT_PARALLELOGRAM = 1u;  // p + b1 e1 + b2 e2 with b1, b2 in [0, 1].
@@ -62,7 +63,7 @@ inline std::array<uvec4, ENVIRONMENT_TEXEL_WORDS> pack(const EnvironmentTexel& t
     return {word(t.radiance, floatBitsToUint(t.pdf))};
 }
 
-inline std::array<uvec4, 1> pack(const AliasEntry& even, const AliasEntry& odd) {
+inline std::array<uvec4, ALIAS_WORDS> pack(const AliasEntry& even, const AliasEntry& odd) {
     return {uvec4(even.threshold, even.alias, odd.threshold, odd.alias)};
 }
 

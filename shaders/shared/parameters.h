@@ -1,11 +1,11 @@
-// Record of everything that stays the same while an image is rendered, 10 words of uvec4 in a uniform buffer;
+// Record of everything that stays the same while an image is rendered, 9 words of uvec4 in a uniform buffer;
 // and the push constants of one dispatch.
 //
-//   0: position.xyz, seed         5: first words in the tables: normals, materials, lights, alias table
-//   1: right.xyz, max_depth       6: first words of the environment: texels, alias table; its size.xy
-//   2: up.xyz, rr_depth           7: lens_x.xyz, focal_distance
-//   3: forward.xyz, light_count   8: lens_y.xyz, blades
-//   4: full_size.xy, crop.xy      9: environment_turn.xy, first word of the surfaces, first_sample
+//   0: position.xyz, seed         5: lens_x.xyz, focal_distance
+//   1: right.xyz, max_depth       6: lens_y.xyz, blades
+//   2: up.xyz, rr_depth           7: environment_size.xy, environment_turn.xy
+//   3: forward.xyz, light_count   8: first_sample, 0, 0, 0
+//   4: full_size.xy, crop.xy
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
 
@@ -16,18 +16,7 @@
 namespace candela {
 #endif
 
-const uint PARAMETERS_WORDS = 10u;
-
-// Where each table begins in the tables buffer, in words.
-struct TableStarts {
-    uint surfaces;
-    uint normals;
-    uint materials;
-    uint lights;
-    uint light_alias;
-    uint environment;
-    uint environment_alias;
-};
+const uint PARAMETERS_WORDS = 9u;
 
 struct Parameters {
     // The pinhole ray through film position s in [-1, 1]^2 (x to the right, y up) has the direction
@@ -42,7 +31,6 @@ struct Parameters {
     uint max_depth;  // Scattering vertices at most, <= DEPTH_SAFETY_LIMIT.
     uint rr_depth;   // Bounces that always survive.
     uint light_count;
-    TableStarts tables;
     uvec2 environment_size;  // Texels.
     vec2 environment_turn;   // Cosine and sine of the environment's rotation about +Y.
     vec3 lens_x;             // The point (x, y) of an aperture of radius 1 is position + x lens_x + y lens_y.
@@ -70,12 +58,12 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         word(p.up, p.rr_depth),
         word(p.forward, p.light_count),
         uvec4(p.full_size.x, p.full_size.y, p.crop.x, p.crop.y),
-        uvec4(p.tables.normals, p.tables.materials, p.tables.lights, p.tables.light_alias),
-        uvec4(p.tables.environment, p.tables.environment_alias, p.environment_size.x, p.environment_size.y),
         word(p.lens_x, floatBitsToUint(p.focal_distance)),
         word(p.lens_y, p.blades),
-        uvec4(floatBitsToUint(p.environment_turn.x), floatBitsToUint(p.environment_turn.y), p.tables.surfaces,
-              p.first_sample)};
+        uvec4(p.environment_size.x, p.environment_size.y, floatBitsToUint(p.environment_turn.x),
+              floatBitsToUint(p.environment_turn.y)),
+        uvec4(p.first_sample, 0u, 0u, 0u),
+    };
 }
 
 }  // namespace candela
@@ -93,20 +81,13 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     p.light_count = w[3].w;
     p.full_size = w[4].xy;
     p.crop = w[4].zw;
-    p.tables.normals = w[5].x;
-    p.tables.materials = w[5].y;
-    p.tables.lights = w[5].z;
-    p.tables.light_alias = w[5].w;
-    p.tables.environment = w[6].x;
-    p.tables.environment_alias = w[6].y;
-    p.environment_size = w[6].zw;
-    p.lens_x = uintBitsToFloat(w[7].xyz);
-    p.focal_distance = uintBitsToFloat(w[7].w);
-    p.lens_y = uintBitsToFloat(w[8].xyz);
-    p.blades = w[8].w;
-    p.environment_turn = uintBitsToFloat(w[9].xy);
-    p.tables.surfaces = w[9].z;
-    p.first_sample = w[9].w;
+    p.lens_x = uintBitsToFloat(w[5].xyz);
+    p.focal_distance = uintBitsToFloat(w[5].w);
+    p.lens_y = uintBitsToFloat(w[6].xyz);
+    p.blades = w[6].w;
+    p.environment_size = w[7].xy;
+    p.environment_turn = uintBitsToFloat(w[7].zw);
+    p.first_sample = w[8].x;
     return p;
 }
 

@@ -83,7 +83,8 @@ std::vector<CompiledKernel> describe_all(const vk::Device& device, const std::st
     std::vector<CompiledKernel> rows;
     for (const SceneAccess access : accesses) {
         settings.scene_access = access;
-        const auto constants = kernel_constants(device, scene, camera, settings);
+        const auto constants =
+            kernel_constants(device, scene, map_arrays(device.info(), scene, access), camera, settings);
         for (const RenderKernel which : {RenderKernel::render, RenderKernel::position}) {
             rows.push_back(described(device, name, buffers_name(access),
                                      [&] { return make_kernel(device, which, constants); }));

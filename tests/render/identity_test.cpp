@@ -215,25 +215,27 @@ TEST_P(IdentityTest, TexelAndStorageBuffers) {
     expect_same_bits(in_one_go(s), texels);
 }
 
-// Each array is read through a texel buffer if that may hold it, whatever the others need.
+// Each array is read through a texel buffer if that may hold it, whatever the others need, and storage
+// buffers are shared where there are only as many as Vulkan promises.
 TEST_P(IdentityTest, BuffersThatSuitEachArray) {
     const Accumulation whole = in_one_go(settings());
-    const std::array sizes{gpu_scene_.nodes.size(), gpu_scene_.primitives.size(), gpu_scene_.tables.size()};
-    std::set<uint32_t> choices;
-    for (const size_t limit : sizes) {
-        vk::DeviceInfo info = info_;
-        info.limits.max_texel_buffer_elements = uint32_t(limit);
-        const vk::Device device(instance_, info);
-        Renderer renderer(device, gpu_scene_, scene_.cameras[0], settings());
-        const uint32_t larger = uint32_t{sizes[0] > limit} << BINDING_NODES |
-                                uint32_t{sizes[1] > limit} << BINDING_PRIMITIVES |
-                                uint32_t{sizes[2] > limit} << BINDING_TABLES;
-        EXPECT_EQ(renderer.storage_arrays(), larger);
-        choices.insert(larger);
-        finish(renderer);
-        expect_same_bits(renderer.download(), whole);
+    std::set<std::string> choices;
+    std::set<bool> shared;
+    for (const uint32_t storage_buffers : {4u, 32u}) {
+        for (const auto& array : gpu_scene_.arrays) {
+            vk::DeviceInfo info = info_;
+            info.limits.max_per_stage_descriptor_storage_buffers = storage_buffers;
+            info.limits.max_texel_buffer_elements = std::max(uint32_t(array.size()), 2u) - 1;
+            const vk::Device device(instance_, info);
+            Renderer renderer(device, gpu_scene_, scene_.cameras[0], settings());
+            choices.insert(to_text(renderer.array_map()));
+            shared.insert(renderer.array_map().shared_slot != NO_SLOT);
+            finish(renderer);
+            expect_same_bits(renderer.download(), whole);
+        }
     }
-    EXPECT_EQ(choices.size(), sizes.size());
+    EXPECT_TRUE(choices.contains("mixed"));
+    EXPECT_EQ(shared.size(), 2u);
 }
 
 // What other drivers get than lavapipe: counters that a work group adds up first, and a tree for few

@@ -146,24 +146,24 @@ TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
     }
 }
 
-TEST(GpuScene, TablesFollowEachOther) {
+TEST(GpuScene, ArraysHoldTheRecordsOfWhatThereIs) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1))});
     add_diffuse(scene, vec3(1));
     const GpuScene gpu = build_gpu_scene(scene);
-    EXPECT_EQ(gpu.table_starts.surfaces, 0u);
-    EXPECT_EQ(gpu.table_starts.normals, 1u);
-    EXPECT_EQ(gpu.table_starts.materials, 1u);
-    EXPECT_EQ(gpu.table_starts.lights, 1 + 2 * MATERIAL_WORDS);
-    EXPECT_EQ(gpu.table_starts.light_alias, 1 + 2 * MATERIAL_WORDS + LIGHT_WORDS);
-    EXPECT_EQ(gpu.tables.size(), 1 + 2 * MATERIAL_WORDS + LIGHT_WORDS + 1);
-    EXPECT_EQ(gpu.tables[1].x, MATERIAL_DIFFUSE);
-    EXPECT_EQ(std::bit_cast<vec3>(uvec3(gpu.tables[1].y, gpu.tables[1].z, gpu.tables[1].w)),
-              vec3(0.25f, 0.5f, 0.75f));
-    EXPECT_EQ(gpu.bytes(), (gpu.nodes.size() + gpu.primitives.size() + gpu.tables.size()) * 16);
+    const std::array<uint32_t, ARRAY_COUNT> records{1, 1, 1, 0, 2, 1, 1, 0, 0};
+    uint64_t words = 0;
+    for (const SceneArray& array : SCENE_ARRAYS) {
+        EXPECT_EQ(gpu.arrays[array.number].size(), records[array.number] * array.words) << array.name;
+        words += gpu.arrays[array.number].size();
+    }
+    EXPECT_EQ(gpu.bytes(), words * 16);
+    const uvec4 material = gpu.arrays[ARRAY_MATERIALS][0];
+    EXPECT_EQ(material.x, MATERIAL_DIFFUSE);
+    EXPECT_EQ(std::bit_cast<vec3>(uvec3(material.y, material.z, material.w)), vec3(0.25f, 0.5f, 0.75f));
 }
 
 EnvironmentTexel texel(const GpuScene& gpu, uint32_t i) {
-    const uvec4 w = gpu.tables[gpu.table_starts.environment + i];
+    const uvec4 w = gpu.arrays[ARRAY_ENVIRONMENT][i];
     return {floats(w), std::bit_cast<float>(w.w)};
 }
 
@@ -187,11 +187,10 @@ TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
         EXPECT_EQ(texel(gpu, i).radiance, radiance[i]);
         EXPECT_NEAR(texel(gpu, i).pdf, pmf / (4.0 * M_PI), 1e-7);
         // All weights are equal: whichever index a column gives, all three come out alike.
-        EXPECT_LT(entry(gpu, gpu.table_starts.environment_alias, i).alias, 3u);
+        EXPECT_LT(entry(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS], i).alias, 3u);
     }
-    EXPECT_EQ(gpu.table_starts.environment, gpu.table_starts.light_alias + 1);
-    EXPECT_EQ(gpu.table_starts.environment_alias, gpu.table_starts.environment + 3);
-    EXPECT_EQ(gpu.tables.size(), gpu.table_starts.environment_alias + 2);
+    EXPECT_EQ(gpu.arrays[ARRAY_ENVIRONMENT].size(), 3u);
+    EXPECT_EQ(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS].size(), 2u);
 
     scene.environment->visible = false;
     EXPECT_EQ(build_gpu_scene(scene).environment, ENVIRONMENT_HIDDEN);
@@ -256,8 +255,8 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
     const GpuScene gpu = build_gpu_scene(scene);
     for (uint32_t i = 0; i < expected.size(); ++i) {
         const auto words = pack(expected[i]);
-        EXPECT_EQ(gpu.tables[gpu.table_starts.materials + 2 * i], words[0]) << i;
-        EXPECT_EQ(gpu.tables[gpu.table_starts.materials + 2 * i + 1], words[1]) << i;
+        EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i], words[0]) << i;
+        EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i + 1], words[1]) << i;
     }
     EXPECT_EQ(gpu.materials_present, 0x3Fu);
     EXPECT_EQ(build_gpu_scene(scene_of({})).materials_present, 1u << MATERIAL_DIFFUSE);
@@ -303,7 +302,7 @@ TEST(GpuScene, OfCornersInOnePlaceTheFirstIsNamed) {
     ASSERT_EQ(gpu.primitive_count, 3u);
     std::vector<vec3> corners;
     for (size_t i = 0; i < gpu.primitive_count; ++i) {
-        const uvec4* w = &gpu.primitives[i * PRIMITIVE_WORDS];
+        const uvec4* w = &gpu.arrays[ARRAY_PRIMITIVES][i * PRIMITIVE_WORDS];
         const vec3 d = std::bit_cast<vec3>(uvec3(w[0].w, w[1].w, w[2].w));
         corners.insert(corners.end(), {floats(w[0]), floats(w[1]), floats(w[2]), d});
     }
@@ -320,7 +319,7 @@ TEST(GpuScene, AnEmptySceneIsARootWithoutChildren) {
     const GpuScene gpu = build_gpu_scene(scene_of({}));
     EXPECT_EQ(gpu.primitive_count, 0u);
     EXPECT_EQ(gpu.light_count, 0u);
-    EXPECT_EQ(gpu.nodes.size(), BVH_NODE_WORDS);
+    EXPECT_EQ(gpu.arrays[ARRAY_NODES].size(), BVH_NODE_WORDS);
 }
 
 }  // namespace

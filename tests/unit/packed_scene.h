@@ -19,14 +19,14 @@ inline vec3 floats(uvec4 word) {
 }
 
 inline Light light(const GpuScene& gpu, uint32_t i) {
-    const uvec4* w = &gpu.tables[gpu.table_starts.lights + i * LIGHT_WORDS];
+    const uvec4* w = &gpu.arrays[ARRAY_LIGHTS][i * LIGHT_WORDS];
     return {
         w[0].w, floats(w[0]), floats(w[1]), floats(w[2]), floats(w[3]), w[1].w, std::bit_cast<float>(w[3].w)};
 }
 
-// Entry i of the alias table that begins at that word.
-inline AliasEntry entry(const GpuScene& gpu, uint32_t start, uint32_t i) {
-    const uvec4 w = gpu.tables[start + i / 2];
+// Entry i of an alias table.
+inline AliasEntry entry(const std::vector<uvec4>& table, uint32_t i) {
+    const uvec4 w = table[i / 2];
     return i % 2 == 0 ? AliasEntry{w.x, w.y} : AliasEntry{w.z, w.w};
 }
 
@@ -35,7 +35,7 @@ inline AliasEntry entry(const GpuScene& gpu, uint32_t start, uint32_t i) {
 inline std::vector<double> light_probabilities(const GpuScene& gpu) {
     std::vector<double> probability(gpu.light_count);
     for (uint32_t i = 0; i < gpu.light_count; ++i) {
-        const AliasEntry e = entry(gpu, gpu.table_starts.light_alias, i);
+        const AliasEntry e = entry(gpu.arrays[ARRAY_LIGHT_ALIAS], i);
         const double kept = double(e.threshold) * 0x1p-32;
         probability[i] += kept / gpu.light_count;
         probability[e.alias] += (1.0 - kept) / gpu.light_count;
@@ -58,11 +58,11 @@ struct Triangle {
 inline std::vector<Triangle> triangles(const GpuScene& gpu) {
     std::map<uint32_t, Triangle> by_id;
     for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
-        const uvec4* w = &gpu.primitives[i * PRIMITIVE_WORDS];
-        const uvec4 s = gpu.tables[gpu.table_starts.surfaces + i];
+        const uvec4* w = &gpu.arrays[ARRAY_PRIMITIVES][i * PRIMITIVE_WORDS];
+        const uvec4 s = gpu.arrays[ARRAY_SURFACES][i];
         const Surface surface{uvec2(s.x, s.y), s.z & 0x7FFFFFFFu, s.z >> 31, s.w};
         const vec3 d = std::bit_cast<vec3>(uvec3(w[0].w, w[1].w, w[2].w));
-        const uvec4 n = gpu.has_normals ? gpu.tables[gpu.table_starts.normals + i] : uvec4(0);
+        const uvec4 n = gpu.has_normals ? gpu.arrays[ARRAY_NORMALS][i] : uvec4(0);
         EXPECT_TRUE(
             by_id.insert({s.x, {floats(w[0]), floats(w[1]), floats(w[2]), surface, uvec3(n)}}).second);
         if (s.y == s.x) {

@@ -1,0 +1,104 @@
+// See array_map.h.
+#include "render/array_map.h"
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace candela {
+namespace {
+
+// Besides the scene's, a kernel has one storage buffer, for counters or for results. MoltenVK takes the
+// length of an array of buffers from its constant's default (its issue 1421).
+uint32_t available_buffers(const vk::DeviceInfo& device) {
+    if (device.driver_id == VK_DRIVER_ID_MOLTENVK) return LEAST_STORAGE_BUFFERS;
+    return device.limits.max_per_stage_descriptor_storage_buffers - 1;
+}
+
+uint64_t bytes_of(const GpuScene& scene, uint32_t array) {
+    return scene.arrays[array].size() * sizeof(uvec4);
+}
+
+[[noreturn]] void fail_too_long(const vk::DeviceInfo& device, const std::string& arrays, uint64_t bytes) {
+    throw Error(arrays + " " + std::to_string(bytes / sizeof(uvec4)) + " texels (" + std::to_string(bytes) +
+                    " bytes), but " + device.name + " allows maxTexelBufferElements = " +
+                    std::to_string(device.limits.max_texel_buffer_elements) +
+                    " and maxStorageBufferRange = " + std::to_string(device.limits.max_storage_buffer_range) +
+                    " bytes; use a smaller scene, or another device (candela devices lists them)",
+                ExitCode::out_of_memory);
+}
+
+// Throws Error if what one storage buffer is to hold is longer than a storage buffer may be.
+void check_range(const vk::DeviceInfo& device, const GpuScene& scene, std::span<const uint32_t> arrays) {
+    uint64_t bytes = 0;
+    std::string names;
+    for (const uint32_t array : arrays) {
+        bytes += bytes_of(scene, array);
+        names += (names.empty() ? "" : ", ") + to_text(SCENE_ARRAYS[array]);
+    }
+    if (bytes <= device.limits.max_storage_buffer_range) return;
+    const bool one = arrays.size() == 1;
+    fail_too_long(device,
+                  (one ? "the scene's array " + names + " needs" : "the scene's arrays " + names + " need"),
+                  bytes);
+}
+
+}  // namespace
+
+ArrayMap map_arrays(const vk::DeviceInfo& device, const GpuScene& scene, SceneAccess wanted) {
+    std::vector<uint32_t> stored;
+    for (uint32_t i = 0; i < ARRAY_COUNT; ++i) {
+        const bool too_long = scene.arrays[i].size() > device.limits.max_texel_buffer_elements;
+        if (wanted == SceneAccess::storage_buffers || (wanted == SceneAccess::automatic && too_long))
+            stored.push_back(i);
+    }
+    std::ranges::stable_sort(stored, std::greater(), [&](uint32_t i) { return scene.arrays[i].size(); });
+
+    ArrayMap map;
+    map.slots.fill(NO_SLOT);
+    const uint32_t available = available_buffers(device);
+    const bool shared = stored.size() > available;
+    const size_t alone = shared ? available - 1 : stored.size();
+    uint64_t start = 0;
+    for (size_t i = 0; i < stored.size(); ++i) {
+        map.slots[stored[i]] = uint32_t(std::min(i, alone));
+        if (i < alone) {
+            check_range(device, scene, {&stored[i], 1});
+        } else {
+            map.starts[stored[i]] = uint32_t(start);
+            start += scene.arrays[stored[i]].size();
+        }
+    }
+    if (shared) {
+        map.shared_slot = uint32_t(alone);
+        check_range(device, scene, std::span(stored).subspan(alone));
+    }
+    map.storage_buffers = uint32_t(alone) + uint32_t{shared};
+    if (device.driver_id == VK_DRIVER_ID_MOLTENVK) map.storage_buffers = LEAST_STORAGE_BUFFERS;
+    map.storage_buffers = std::max(map.storage_buffers, 1u);
+    return map;
+}
+
+void set_arrays(KernelConstants& constants, const ArrayMap& map) {
+    constants[CONSTANT_STORAGE_BUFFERS] = map.storage_buffers;
+    constants[CONSTANT_SHARED_SLOT] = map.shared_slot;
+    std::ranges::copy(map.slots, &constants[CONSTANT_SLOT_NODES]);
+}
+
+std::string to_text(const SceneArray& array) {
+    std::string text = array.name;
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+const char* to_text(const ArrayMap& map) {
+    const auto stored = std::ranges::count_if(map.slots, [](uint32_t slot) { return slot != NO_SLOT; });
+    return stored == 0 ? "texel" : stored == ARRAY_COUNT ? "storage" : "mixed";
+}
+
+}  // namespace candela

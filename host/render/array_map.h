@@ -1,0 +1,42 @@
+// Where a kernel finds each array of a scene: what the constants SLOT_*, SHARED_SLOT and STORAGE_BUFFERS say.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "render/gpu_scene.h"
+#include "shared/kernel_constants.h"
+#include "shared/scene_arrays.h"
+#include "vk/device_info.h"
+
+namespace candela {
+
+// How kernels read the arrays of a scene. Every way gives the same bits.
+enum class SceneAccess { automatic, texel_buffers, storage_buffers };
+
+struct ArrayMap {
+    std::array<uint32_t, ARRAY_COUNT> slots;     // The storage buffer of each, or NO_SLOT for a texel buffer.
+    std::array<uint32_t, ARRAY_COUNT> starts{};  // In words, within its storage buffer.
+    uint32_t shared_slot = NO_SLOT;              // The storage buffer that holds several arrays.
+    uint32_t storage_buffers = 1;                // That a kernel declares, used or not.
+
+    bool operator==(const ArrayMap&) const = default;
+};
+
+// Texel buffers for all arrays or storage buffers for all, as wanted; or, for `automatic`, a storage buffer
+// for each array that is too long for a texel buffer. Each has a storage buffer of its own where the device
+// allows so many; else the longest have, and the others share the last one. Throws Error (out_of_memory) that
+// names the arrays and the device's limits if one is too long.
+ArrayMap map_arrays(const vk::DeviceInfo& device, const GpuScene& scene, SceneAccess wanted);
+
+// Sets the kernel's constants.
+void set_arrays(KernelConstants& constants, const ArrayMap& map);
+
+// "texel", "storage" or, where there are both, "mixed".
+const char* to_text(const ArrayMap& map);
+
+// The name of an array for people and programs, such as "light_alias".
+std::string to_text(const SceneArray& array);
+
+}  // namespace candela
