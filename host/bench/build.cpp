@@ -7,9 +7,9 @@
 
 #include "bench/meshes.h"
 #include "bench/tracer.h"
-#include "render/flatten.h"
-#include "render/gpu_scene.h"
-#include "render/triangle_pairs.h"
+#include "gpu_scene/flatten.h"
+#include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/triangle_pairs.h"
 #include "scene/mesh.h"
 
 namespace candela {

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "bench/tracer.h"
-#include "selftest/probe.h"
-#include "selftest/probes.h"
+#include "probe/probe.h"
+#include "probe/probes.h"
 #include "shared/constants.h"
 #include "vk/commands.h"
 

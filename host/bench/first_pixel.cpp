@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "bench/clocks.h"
-#include "selftest/embedded.h"
+#include "probe/embedded.h"
 
 namespace candela {
 namespace {

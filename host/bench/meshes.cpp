@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "render/flatten.h"
-#include "selftest/random.h"
-#include "selftest/scenes.h"
+#include "gpu_scene/flatten.h"
+#include "probe/random.h"
+#include "probe/scenes.h"
 
 namespace candela {
 namespace {

@@ -5,8 +5,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "probe/random.h"
 #include "render/renderer.h"
-#include "selftest/random.h"
 #include "shared/constants.h"
 
 namespace candela {

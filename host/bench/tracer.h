@@ -10,7 +10,7 @@
 
 #include "bench/clocks.h"
 #include "bench/rays.h"
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
 #include "render/renderer.h"
 #include "vk/device.h"
 

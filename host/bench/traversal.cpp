@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "bench/meshes.h"
-#include "selftest/scenes.h"
+#include "probe/scenes.h"
 #include "shared/primitive.h"
 
 namespace candela {
@@ -116,8 +116,8 @@ void check_same_hits(const std::string& what, size_t differing, size_t rays) {
     if (differing <= 1 + rays / RAYS_PER_OTHER_HIT) return;
     throw Error(
         concat(what, ": ", differing, " of ", rays,
-              " rays have another hit than Embree's, so that the speeds are not those of one task; `candela "
-              "selftest` tells what is wrong on this device"));
+               " rays have another hit than Embree's, so that the speeds are not those of one task; `candela "
+               "selftest` tells what is wrong on this device"));
 }
 
 }  // namespace candela

@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "base/image.h"
-#include "render/accumulation.h"
-#include "render/sample_range.h"
+#include "film/accumulation.h"
+#include "film/sample_range.h"
 #include "scene/names.h"
 
 namespace candela {

@@ -8,7 +8,7 @@
 
 #include "cli/interval.h"
 #include "cli/render_options.h"
-#include "render/checkpoint.h"
+#include "film/checkpoint.h"
 
 namespace candela {
 

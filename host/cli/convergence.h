@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/image.h"
-#include "render/accumulation.h"
+#include "film/accumulation.h"
 #include "render/renderer.h"
 
 namespace candela {

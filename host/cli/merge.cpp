@@ -1,5 +1,5 @@
 // `candela merge`: from parts of one rendering, each of other samples, to the image of all of them.
-#include "render/merge.h"
+#include "film/merge.h"
 
 #include <cstdio>
 #include <memory>
@@ -14,7 +14,7 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/render_options.h"
-#include "render/sample_range.h"
+#include "film/sample_range.h"
 
 namespace candela {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/image.h"
 #include "cli/convergence.h"
 #include "cli/render_options.h"
-#include "render/identity.h"
+#include "film/identity.h"
 #include "render/renderer.h"
 
 namespace candela {

@@ -11,9 +11,9 @@
 
 #include "base/tonemap.h"
 #include "cli/arguments.h"
-#include "render/accumulation.h"
+#include "film/accumulation.h"
+#include "film/sample_range.h"
 #include "render/renderer.h"
-#include "render/sample_range.h"
 #include "scene/names.h"
 #include "scene/scene.h"
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "base/relative_error.h"
-#include "render/sample_range.h"
+#include "film/sample_range.h"
 
 namespace candela {
 namespace {

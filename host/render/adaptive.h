@@ -12,7 +12,7 @@
 #include <functional>
 #include <vector>
 
-#include "render/accumulation.h"
+#include "film/accumulation.h"
 #include "render/steady_renderer.h"
 
 namespace candela {

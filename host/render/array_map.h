@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
 #include "shared/kernel_constants.h"
 #include "shared/scene_arrays.h"
 #include "vk/device_info.h"

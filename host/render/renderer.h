@@ -6,9 +6,9 @@
 #include <memory>
 #include <span>
 
-#include "render/accumulation.h"
+#include "film/accumulation.h"
+#include "gpu_scene/gpu_scene.h"
 #include "render/array_map.h"
-#include "render/gpu_scene.h"
 #include "render/scene_buffers.h"
 #include "render/schedule.h"
 #include "scene/scene.h"

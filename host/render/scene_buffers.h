@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "gpu_scene/gpu_scene.h"
 #include "render/array_map.h"
-#include "render/gpu_scene.h"
 #include "shared/parameters.h"
 #include "vk/buffer.h"
 #include "vk/device.h"

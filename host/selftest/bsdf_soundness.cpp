@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "probe/probe.h"
+#include "probe/random.h"
 #include "selftest/bsdfs.h"
-#include "selftest/probe.h"
-#include "selftest/random.h"
 
 namespace candela {
 namespace {
@@ -111,9 +111,9 @@ Evidence test_soundness(const vk::Device& device, uint32_t model, size_t count, 
         const BsdfResult& s = results[i];
         evidence.expect(is_sound(s), [&] {
             return concat("model ", model, ", parameter ", it.material.parameter, ", wo ", it.wo.x, ' ',
-                         it.wo.y, ' ', it.wo.z, ", u ", it.u.x, ' ', it.u.y, ' ', it.uc, "; wi ", s.wi.x, ' ',
-                         s.wi.y, ' ', s.wi.z, ", weight ", s.weight.x, ", pdf ", s.pdf, ", f ",
-                         s.f_of_sample.x, ", for another wi ", s.f.x, ", ", s.pdf_of_wi);
+                          it.wo.y, ' ', it.wo.z, ", u ", it.u.x, ' ', it.u.y, ' ', it.uc, "; wi ", s.wi.x,
+                          ' ', s.wi.y, ' ', s.wi.z, ", weight ", s.weight.x, ", pdf ", s.pdf, ", f ",
+                          s.f_of_sample.x, ", for another wi ", s.f.x, ", ", s.pdf_of_wi);
         });
     }
     return evidence;

@@ -6,9 +6,9 @@
 
 #include "base/statistics.h"
 #include "base/text.h"
+#include "probe/probe.h"
+#include "probe/random.h"
 #include "selftest/histogram.h"
-#include "selftest/probe.h"
-#include "selftest/random.h"
 
 namespace candela {
 namespace {
@@ -150,9 +150,9 @@ void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evid
         }
         evidence.expect(holds, [&] {
             return concat(c.name, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z, ", pdf ", s.pdf, " and ",
-                         s.pdf_of_sample, ", weight ", s.weight.x, ' ', s.weight.y, ' ', s.weight.z, ", f ",
-                         s.f_of_sample.x, ' ', s.f_of_sample.y, ' ', s.f_of_sample.z, ", delta ", s.delta,
-                         ", eta ", s.eta);
+                          s.pdf_of_sample, ", weight ", s.weight.x, ' ', s.weight.y, ' ', s.weight.z, ", f ",
+                          s.f_of_sample.x, ' ', s.f_of_sample.y, ' ', s.f_of_sample.z, ", delta ", s.delta,
+                          ", eta ", s.eta);
         });
     }
     // No more light leaves than arrives.

@@ -5,9 +5,9 @@
 #include <variant>
 #include <vector>
 
+#include "probe/probes.h"
 #include "selftest/charts.h"
 #include "selftest/evidence.h"
-#include "selftest/probes.h"
 #include "vk/device.h"
 
 namespace candela {

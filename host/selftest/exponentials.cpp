@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "selftest/probe.h"
-#include "selftest/probes.h"
+#include "probe/probe.h"
+#include "probe/probes.h"
 
 namespace candela {
 namespace {

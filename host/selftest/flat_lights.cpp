@@ -4,10 +4,10 @@
 
 #include "base/statistics.h"
 #include "base/text.h"
+#include "probe/random.h"
+#include "probe/scenes.h"
 #include "selftest/histogram.h"
 #include "selftest/lights.h"
-#include "selftest/random.h"
-#include "selftest/scenes.h"
 
 namespace candela {
 namespace {
@@ -148,8 +148,8 @@ Evidence test_flat_light_values(const vk::Device& device, SceneAccess access) {
         evidence.expect(i < LIGHTS.size() && is_right(items[k], s, i, total_power), [&] {
             const vec3 from = items[k].from;
             return concat("flat light ", i, " from ", from.x, ' ', from.y, ' ', from.z, ": wi ", s.wi.x, ' ',
-                         s.wi.y, ' ', s.wi.z, ", Li ", s.Li.x, ", pdf ", s.pdf, ", t_max ", s.t_max,
-                         "; met: ", s.light_met, ", pdf ", s.pdf_met, ", Li ", s.Li_met.x);
+                          s.wi.y, ' ', s.wi.z, ", Li ", s.Li.x, ", pdf ", s.pdf, ", t_max ", s.t_max,
+                          "; met: ", s.light_met, ", pdf ", s.pdf_met, ", Li ", s.Li_met.x);
         });
     }
     return evidence;

@@ -4,10 +4,10 @@
 #include <functional>
 #include <string>
 
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
+#include "probe/scenes.h"
 #include "render/renderer.h"
 #include "selftest/images.h"
-#include "selftest/scenes.h"
 
 namespace candela {
 namespace {

@@ -10,10 +10,10 @@
 #include "base/image_io.h"
 #include "base/statistics.h"
 #include "base/text.h"
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
+#include "probe/embedded.h"
+#include "probe/scenes.h"
 #include "render/renderer.h"
-#include "selftest/embedded.h"
-#include "selftest/scenes.h"
 
 namespace candela {
 namespace {
@@ -35,7 +35,7 @@ Image render(const vk::Device& device, const Scene& scene, Estimator estimator, 
     const RenderCounters& counters = renderer.counters();
     evidence.expect(counters.nonfinite_samples == 0 && counters.depth_limit_hits == 0, [&] {
         return concat(counters.nonfinite_samples, " samples are not finite, ", counters.depth_limit_hits,
-                     " paths were cut off");
+                      " paths were cut off");
     });
     return make_image(renderer.download(), {.variance = true}, {});
 }

@@ -1,7 +1,7 @@
 // See lights.h: what all kinds of light share.
 #include "selftest/lights.h"
 
-#include "selftest/random.h"
+#include "probe/random.h"
 
 namespace candela {
 

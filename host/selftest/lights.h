@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "probe/probe.h"
+#include "probe/probes.h"
 #include "selftest/effort.h"
 #include "selftest/evidence.h"
-#include "selftest/probe.h"
-#include "selftest/probes.h"
 
 namespace candela {
 

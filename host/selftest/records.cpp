@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/text.h"
-#include "selftest/probe.h"
-#include "selftest/probes.h"
-#include "selftest/random.h"
+#include "probe/probe.h"
+#include "probe/probes.h"
+#include "probe/random.h"
 #include "shared/bvh_node.h"
 #include "shared/light.h"
 #include "shared/material.h"

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "probe/scenes.h"
 #include "selftest/charts.h"
 #include "selftest/histogram.h"
 #include "selftest/lights.h"
-#include "selftest/scenes.h"
 #include "shared/light.h"
 
 namespace candela {
@@ -26,8 +26,8 @@ GpuScene scene_of(const decltype(Shape::geometry)& geometry, bool two_sided) {
 
 std::string describe(const char* what, vec3 from, const LightSample& s) {
     return concat(what, " from ", from.x, ' ', from.y, ' ', from.z, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z,
-                 ", pdf ", s.pdf, ", Li ", s.Li.x, ", occluded ", s.occluded, "; met: ", s.light_met,
-                 ", pdf ", s.pdf_met, ", Li ", s.Li_met.x);
+                  ", pdf ", s.pdf, ", Li ", s.Li.x, ", occluded ", s.occluded, "; met: ", s.light_met,
+                  ", pdf ", s.pdf_met, ", Li ", s.Li_met.x);
 }
 
 struct Place {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/text.h"
-#include "selftest/probe.h"
-#include "selftest/probes.h"
-#include "selftest/random.h"
+#include "probe/probe.h"
+#include "probe/probes.h"
+#include "probe/random.h"
 #include "selftest/reference_sampler.h"
 #include "shared/constants.h"
 
@@ -67,7 +67,7 @@ Evidence test_integer_functions(const vk::Device& device) {
         const auto expect = [&](const char* function, bool equal) {
             evidence.expect(equal, [&] {
                 return concat(function, " of ", v.x, ' ', v.y, ' ', v.z, ' ', v.w,
-                             " differs from the reference");
+                              " differs from the reference");
             });
         };
         expect("pcg3d", r.pcg3d == reference::pcg3d(uvec3(v)));
@@ -89,8 +89,8 @@ Evidence test_sampler(const vk::Device& device, uint32_t sampler) {
         const uvec2 expected = reference_pair(sampler, s);
         evidence.expect(results[i] == expected, [&] {
             return concat("sampler ", sampler, ", pixel ", s.pixel, ", n ", s.n, ", seed ", s.seed, ", pair ",
-                         s.pair, ": ", results[i].x, ' ', results[i].y, " instead of ", expected.x, ' ',
-                         expected.y);
+                          s.pair, ": ", results[i].x, ' ', results[i].y, " instead of ", expected.x, ' ',
+                          expected.y);
         });
     }
     return evidence;

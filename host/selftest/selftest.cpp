@@ -4,13 +4,13 @@
 #include <chrono>
 
 #include "base/statistics.h"
+#include "probe/scenes.h"
 #include "selftest/bsdfs.h"
 #include "selftest/exponentials.h"
 #include "selftest/images.h"
 #include "selftest/lights.h"
 #include "selftest/records.h"
 #include "selftest/samplers.h"
-#include "selftest/scenes.h"
 #include "selftest/skies.h"
 #include "selftest/spheres.h"
 #include "selftest/traversal.h"

@@ -8,12 +8,12 @@
 
 #include "base/statistics.h"
 #include "base/text.h"
+#include "probe/probe.h"
+#include "probe/probes.h"
+#include "probe/random.h"
+#include "probe/scenes.h"
 #include "selftest/histogram.h"
 #include "selftest/lights.h"
-#include "selftest/probe.h"
-#include "selftest/probes.h"
-#include "selftest/random.h"
-#include "selftest/scenes.h"
 
 namespace candela {
 namespace {
@@ -120,8 +120,8 @@ void test_samples_of(const vk::Device& device, const Environment& sky, uint32_t 
         }
         evidence.expect(right, [&] {
             return concat(name, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z, ", at ", place.x, ' ', place.y,
-                         ", pdf ", s.pdf, ", Li ", s.Li.x, ", occluded ", s.occluded, "; met: pdf ",
-                         s.pdf_met, ", Li ", s.Li_met.x);
+                          ", pdf ", s.pdf, ", Li ", s.Li.x, ", occluded ", s.occluded, "; met: pdf ",
+                          s.pdf_met, ", Li ", s.Li_met.x);
         });
     }
     evidence.expect(at_borders < 200,
@@ -171,8 +171,8 @@ Evidence test_sky_lookup(const vk::Device& device) {
                                    ? is_finite(texels[i].radiance)
                                    : texels[i].radiance == sky.radiance[texel_of(sky, place_of(sky, w))];
             evidence.expect(right, [&] {
-                return concat("sky of ", size.x, 'x', size.y, ": radiance ", texels[i].radiance.x, " towards ",
-                             w.x, ' ', w.y, ' ', w.z);
+                return concat("sky of ", size.x, 'x', size.y, ": radiance ", texels[i].radiance.x,
+                              " towards ", w.x, ' ', w.y, ' ', w.z);
             });
         }
         evidence.expect(at_borders < 500,

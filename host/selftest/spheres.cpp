@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/text.h"
-#include "selftest/probe.h"
-#include "selftest/probes.h"
-#include "selftest/random.h"
-#include "selftest/scenes.h"
+#include "probe/probe.h"
+#include "probe/probes.h"
+#include "probe/random.h"
+#include "probe/scenes.h"
 #include "selftest/traversal.h"
 
 namespace candela {
@@ -92,7 +92,7 @@ vec3 grazing(vec3 wi, vec3 n, float cosine) {
 
 std::string name_of(const Sphere& sphere) {
     return concat("sphere of radius ", sphere.radius, " at ", sphere.center.x, ' ', sphere.center.y, ' ',
-                 sphere.center.z);
+                  sphere.center.z);
 }
 
 // More than a share of the rays must have met the shape, or the test would say nothing.
@@ -127,7 +127,8 @@ void test_rays_within(Interactions& run, Effort effort, const Sphere& sphere, bo
         ++met;
         evidence.expect(r.front == (from_inside ? 0u : 1u) && meets_far_side(sphere, r), [&] {
             return concat(name, ": from ", r.next_o.x, ' ', r.next_o.y, ' ', r.next_o.z, " towards ",
-                         r.next_d.x, ' ', r.next_d.y, ' ', r.next_d.z, ": t ", r.next_t, ", front ", r.front);
+                          r.next_d.x, ' ', r.next_d.y, ' ', r.next_d.z, ": t ", r.next_t, ", front ",
+                          r.front);
         });
     }
     expect_most_meet(name, met, 0.5, both.size(), evidence);
@@ -155,7 +156,7 @@ Evidence test_rays_outside_spheres(const vk::Device& device, Effort effort) {
             ++met;
             evidence.expect(r.front == 1 && r.next_t == NO_HIT, [&] {
                 return concat(name_of(sphere), ": met again after ", r.next_t, " from ", r.next_o.x, ' ',
-                             r.next_o.y, ' ', r.next_o.z, ", front ", r.front);
+                              r.next_o.y, ' ', r.next_o.z, ", front ", r.front);
             });
         }
         expect_most_meet(name_of(sphere), met, 0.5, results.size(), evidence);
@@ -192,7 +193,7 @@ Evidence test_points_on_spheres(const vk::Device& device, Effort effort) {
                 step <= 2.0 * error + 0x1p-15 + 0x1p-14 * length(p);
             evidence.expect(right, [&] {
                 return concat(name_of(sphere), ": point ", r.p.x, ' ', r.p.y, ' ', r.p.z, ", error ",
-                             r.p_error, ", normal ", r.n.x, ' ', r.n.y, ' ', r.n.z, ", step ", step);
+                              r.p_error, ", normal ", r.n.x, ' ', r.n.y, ' ', r.n.z, ", step ", step);
             });
         }
     }

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/text.h"
-#include "selftest/random.h"
-#include "selftest/scenes.h"
+#include "probe/random.h"
+#include "probe/scenes.h"
 
 namespace candela {
 
@@ -73,9 +73,9 @@ Evidence compare_with_brute_force(const std::vector<TraversalResult>& results) {
                             r.occluded_at == hit && r.occluded == hit,
                         [&] {
                             return concat("ray ", i, ": t ", r.t, ", primitive ", r.id,
-                                         "; brute force: ", r.brute_t, ", ", r.brute_id,
-                                         "; occluded before, at, anywhere: ", r.occluded_before,
-                                         r.occluded_at, r.occluded);
+                                          "; brute force: ", r.brute_t, ", ", r.brute_id,
+                                          "; occluded before, at, anywhere: ", r.occluded_before,
+                                          r.occluded_at, r.occluded);
                         });
     }
     return evidence;

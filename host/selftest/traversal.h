@@ -3,10 +3,10 @@
 
 #include <vector>
 
+#include "probe/probe.h"
+#include "probe/probes.h"
 #include "selftest/effort.h"
 #include "selftest/evidence.h"
-#include "selftest/probe.h"
-#include "selftest/probes.h"
 
 namespace candela {
 

@@ -8,11 +8,11 @@
 
 #include "base/statistics.h"
 #include "base/text.h"
+#include "probe/probe.h"
+#include "probe/random.h"
 #include "selftest/bsdfs.h"
 #include "selftest/charts.h"
 #include "selftest/histogram.h"
-#include "selftest/probe.h"
-#include "selftest/random.h"
 
 namespace candela {
 namespace {

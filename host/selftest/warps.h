@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "probe/probes.h"
 #include "selftest/evidence.h"
-#include "selftest/probes.h"
 #include "vk/device.h"
 
 namespace candela {

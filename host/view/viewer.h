@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "base/image.h"
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include "view/clock.h"

@@ -7,7 +7,7 @@
 #include <volk.h>
 
 #include "bench/clocks.h"
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
 #include "view/display.h"
 #include "vk/check.h"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "cli/cli_fixture.h"
-#include "render/checkpoint.h"
+#include "film/checkpoint.h"
 
 namespace candela {
 namespace {

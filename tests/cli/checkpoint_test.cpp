@@ -1,6 +1,6 @@
 // Checkpoints as a user meets them: kill the program, fill the disk, forbid the place; what was rendered is
 // never lost, and the image has the same bits.
-#include "render/checkpoint.h"
+#include "film/checkpoint.h"
 
 #include <csignal>
 #include <cstring>

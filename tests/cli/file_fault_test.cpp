@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "cli/cli_fixture.h"
-#include "render/checkpoint.h"
-#include "render/identity.h"
+#include "film/checkpoint.h"
+#include "film/identity.h"
 
 #ifdef CANDELA_FILE_FAULT
 

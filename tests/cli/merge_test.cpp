@@ -23,7 +23,7 @@ double value(const Image& image, const std::string& channel, size_t i) {
     return double(image.find(channel)->values[i]);
 }
 
-// The bounds of render/part_sum.h, and one rounding more for the whole image: u = 2^-24. Normals and means
+// The bounds of film/part_sum.h, and one rounding more for the whole image: u = 2^-24. Normals and means
 // have the bound of the mean of the parts' absolute values. The device rounds squares to floats before it
 // sums them, alike for parts and whole; where that makes a sum of squared deviations negative, it counts as
 // 0, which is off by u times the mean of the squares at most, divided by N - 1.

@@ -9,7 +9,7 @@
 
 #include "base/tonemap.h"
 #include "cli/cli_fixture.h"
-#include "render/accumulation.h"
+#include "film/accumulation.h"
 #include "support/wait.h"
 
 namespace candela {

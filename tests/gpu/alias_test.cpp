@@ -3,7 +3,7 @@
 
 #include "base/statistics.h"
 #include "gpu/light_fixture.h"
-#include "selftest/random.h"
+#include "probe/random.h"
 #include "selftest/skies.h"
 
 namespace candela {

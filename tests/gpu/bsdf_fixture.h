@@ -8,8 +8,8 @@
 
 #include "base/statistics.h"
 #include "gpu/device_fixture.h"
+#include "probe/random.h"
 #include "selftest/bsdfs.h"
-#include "selftest/random.h"
 
 namespace candela {
 

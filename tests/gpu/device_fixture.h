@@ -1,14 +1,14 @@
 // What the tests of shader functions share: a device, and probes, which map an array of items to an array of
-// results (selftest/probe.h), with or without a scene.
+// results (probe/probe.h), with or without a scene.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "probe/probe.h"
+#include "probe/probes.h"
 #include "selftest/evidence.h"
-#include "selftest/probe.h"
-#include "selftest/probes.h"
 #include "support/effort.h"
 #include "vk/vk_fixture.h"
 
@@ -38,8 +38,7 @@ class DeviceTest : public vk::Vk {
     // probe() on this device.
     template <class Result, class Item>
     std::vector<Result> map(std::span<const uint32_t> spirv, const std::vector<Item>& items,
-                            const KernelConstants& constants = {},
-                            const DeviceScene* scene = nullptr) const {
+                            const KernelConstants& constants = {}, const DeviceScene* scene = nullptr) const {
         return probe<Result>(*device_, spirv, items, constants, scene);
     }
 

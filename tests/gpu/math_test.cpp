@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "gpu/device_fixture.h"
-#include "selftest/random.h"
+#include "probe/random.h"
 
 namespace candela {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "gpu/sampler_fixture.h"
-#include "selftest/random.h"
+#include "probe/random.h"
 #include "selftest/samplers.h"
 
 namespace candela {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "gpu/device_fixture.h"
-#include "selftest/random.h"
+#include "probe/random.h"
 #include "shared/primitive.h"
 
 namespace candela {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gpu/device_fixture.h"
-#include "selftest/random.h"
+#include "probe/random.h"
 #include "selftest/traversal.h"
 #include "support/scene_builders.h"
 

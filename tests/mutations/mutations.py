@@ -74,7 +74,7 @@ GROUPS = [
         ("cosine missing from an area light's density", AREA, "distance_squared / abs(cos_light)", "distance_squared"),
         ("emission from the back", AREA, "front || l.two_sided != 0u", "true"),
         ("a sphere light's density 2 % low", SPHERE, "return 2.0 * square(radius)", "return 1.96 * square(radius)"),
-        ("solid angle missing from the choice of texels", "host/render/environment_map.cpp",
+        ("solid angle missing from the choice of texels", "host/gpu_scene/environment_map.cpp",
          "size.x + x]) * solid_angle", "size.x + x]) * (solid_angle > 0.0 ? 1.0 : 0.0)"),
         ("sky turned the wrong way", SKY, "turn.x * w.x - turn.y * w.z", "turn.x * w.x + turn.y * w.z"),
     ]),

@@ -7,7 +7,8 @@
 #include <numeric>
 #include <set>
 
-#include "render/checkpoint.h"
+#include "film/checkpoint.h"
+#include "render/make_identity.h"
 #include "render_fixture.h"
 #include "unit/base_fixture.h"
 

@@ -6,7 +6,7 @@
 
 #include "base/compare.h"
 #include "base/statistics.h"
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
 #include "render/renderer.h"
 #include "support/effort.h"
 #include "support/scene_builders.h"

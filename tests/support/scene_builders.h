@@ -1,7 +1,7 @@
 // Scenes for tests: those that the program itself has for its selftest, and more.
 #pragma once
 
-#include "selftest/scenes.h"
+#include "probe/scenes.h"
 
 namespace candela {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "render/accumulation.h"
-#include "selftest/random.h"
+#include "film/accumulation.h"
+#include "probe/random.h"
 
 namespace candela {
 

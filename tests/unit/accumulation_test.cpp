@@ -1,5 +1,5 @@
 // The accumulation state: the means and variances that it stands for.
-#include "render/accumulation.h"
+#include "film/accumulation.h"
 
 #include <cmath>
 #include <cstring>

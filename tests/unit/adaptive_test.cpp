@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/sample_range.h"
+#include "film/sample_range.h"
 
 namespace candela {
 namespace {

@@ -1,5 +1,5 @@
 // Alias tables stand for exactly the distribution that they were made from.
-#include "render/alias_table.h"
+#include "gpu_scene/alias_table.h"
 
 #include <cmath>
 #include <numeric>

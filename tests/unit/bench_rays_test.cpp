@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/rays.h"
-#include "selftest/scenes.h"
+#include "probe/scenes.h"
 
 namespace candela {
 namespace {

@@ -1,5 +1,5 @@
 // The file of a checkpoint: it keeps every bit, and a damaged one is refused.
-#include "render/checkpoint.h"
+#include "film/checkpoint.h"
 
 #include <cmath>
 #include <cstring>

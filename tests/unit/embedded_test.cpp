@@ -1,5 +1,5 @@
 // Files that are part of the program: they are those of the repository, and are read as files on disk are.
-#include "selftest/embedded.h"
+#include "probe/embedded.h"
 
 #include <string>
 #include <string_view>

@@ -1,12 +1,12 @@
 // Environment -> texels, their density and the table that chooses them, against solid angles in closed form.
-#include "render/environment_map.h"
+#include "gpu_scene/environment_map.h"
 
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "selftest/random.h"
+#include "probe/random.h"
 
 namespace candela {
 namespace {

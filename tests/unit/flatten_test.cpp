@@ -1,11 +1,11 @@
 // Shapes -> primitives and lights: round shapes, their areas, powers and boxes.
-#include "render/flatten.h"
+#include "gpu_scene/flatten.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "selftest/random.h"
+#include "probe/random.h"
 #include "support/scene_builders.h"
 
 namespace candela {

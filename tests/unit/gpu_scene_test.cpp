@@ -1,5 +1,5 @@
 // Scene -> records: which lights come out and how likely they are, the order of ids, normals and tables.
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,6 +1,6 @@
 // Merging parts: means and variances are those of all samples, in any order of the files, and what does not
 // belong together is refused.
-#include "render/merge.h"
+#include "film/merge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@
 
 #include "base/image_io.h"
 #include "base_fixture.h"
-#include "render/identity.h"
-#include "render/sample_range.h"
-#include "selftest/random.h"
+#include "film/identity.h"
+#include "film/sample_range.h"
+#include "probe/random.h"
 
 namespace candela {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/relative_error.h"
-#include "render/sample_range.h"
+#include "film/sample_range.h"
 
 namespace candela {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
 #include "shared/light.h"
 #include "shared/primitive.h"
 #include "support/scene_builders.h"

@@ -6,8 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "base_fixture.h"
-#include "render/identity.h"
-#include "selftest/scenes.h"
+#include "film/identity.h"
+#include "probe/scenes.h"
+#include "render/make_identity.h"
 
 namespace candela {
 namespace {

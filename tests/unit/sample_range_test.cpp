@@ -1,5 +1,5 @@
 // Ranges of samples: as text, and joined.
-#include "render/sample_range.h"
+#include "film/sample_range.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Pairing: every triangle once, corners in the order of both triangles, and no pair that is worse than two
 // alone.
-#include "render/triangle_pairs.h"
+#include "gpu_scene/triangle_pairs.h"
 
 #include <algorithm>
 #include <random>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "selftest/scenes.h"
+#include "probe/scenes.h"
 
 namespace candela {
 namespace {

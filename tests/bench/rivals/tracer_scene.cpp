@@ -8,7 +8,7 @@
 
 #include "base/color.h"
 #include "base/error.h"
-#include "render/alias_table.h"
+#include "gpu_scene/alias_table.h"
 #include "scene/geometry.h"
 
 namespace candela::bench {

@@ -6,7 +6,7 @@
 
 #include <embree3/rtcore.h>
 
-#include "render/environment_map.h"
+#include "gpu_scene/environment_map.h"
 #include "scene/scene.h"
 
 namespace candela::bench {

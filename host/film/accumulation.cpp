@@ -1,5 +1,5 @@
 // See accumulation.h.
-#include "render/accumulation.h"
+#include "film/accumulation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // See sample_range.h.
-#include "render/sample_range.h"
+#include "film/sample_range.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,5 +1,5 @@
 // See checkpoint.h.
-#include "render/checkpoint.h"
+#include "film/checkpoint.h"
 
 #include <charconv>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/image_io.h"
-#include "render/sample_range.h"
+#include "film/sample_range.h"
 
 namespace candela {
 namespace {

@@ -1,5 +1,5 @@
 // See triangle_pairs.h.
-#include "render/triangle_pairs.h"
+#include "gpu_scene/triangle_pairs.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,11 +1,11 @@
 // See scenes.h.
-#include "selftest/scenes.h"
+#include "probe/scenes.h"
 
 #include <cmath>
 
+#include "probe/embedded.h"
+#include "probe/random.h"
 #include "scene/loader.h"
-#include "selftest/embedded.h"
-#include "selftest/random.h"
 
 namespace candela {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "render/accumulation.h"
-#include "render/identity.h"
+#include "film/accumulation.h"
+#include "film/identity.h"
 
 namespace candela {
 

@@ -1,5 +1,5 @@
 // See probe.h.
-#include "selftest/probe.h"
+#include "probe/probe.h"
 
 #include <algorithm>
 #include <cmath>

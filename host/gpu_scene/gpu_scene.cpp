@@ -1,5 +1,5 @@
 // See gpu_scene.h.
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,9 +8,9 @@
 #include <span>
 
 #include "bvh/bvh.h"
-#include "render/alias_table.h"
-#include "render/environment_map.h"
-#include "render/flatten.h"
+#include "gpu_scene/alias_table.h"
+#include "gpu_scene/environment_map.h"
+#include "gpu_scene/flatten.h"
 #include "shared/bvh_node.h"
 #include "shared/material.h"
 

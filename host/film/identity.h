@@ -7,8 +7,6 @@
 #include <string>
 
 #include "base/image.h"
-#include "render/gpu_scene.h"
-#include "render/renderer.h"
 
 namespace candela {
 
@@ -32,8 +30,9 @@ struct Maker {
 // An attribute of the images of adaptive renderings.
 inline constexpr const char* ADAPTIVE_ATTRIBUTE = "candela.adaptive";
 
-// Not of the number of samples, the first sample, the AOVs or how the kernels read the scene.
-Identity make_identity(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
+// Size and crop as they stand among the settings.
+std::string size_text(uvec2 size);
+std::string crop_text(const PixelRect& crop);
 
 // Writes the identity as attributes candela.*; size and crop are the image's own.
 void set_identity(Image& image, const Identity& identity);

@@ -1,11 +1,11 @@
 // One overload of add() per geometry.
-#include "render/flatten.h"
+#include "gpu_scene/flatten.h"
 
 #include <numeric>
 #include <utility>
 
 #include "base/color.h"
-#include "render/triangle_pairs.h"
+#include "gpu_scene/triangle_pairs.h"
 
 namespace candela {
 namespace {

@@ -1,5 +1,5 @@
 // See merge.h.
-#include "render/merge.h"
+#include "film/merge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/error.h"
-#include "render/identity.h"
-#include "render/part_sum.h"
-#include "render/sample_range.h"
+#include "film/identity.h"
+#include "film/part_sum.h"
+#include "film/sample_range.h"
 
 namespace candela {
 namespace {

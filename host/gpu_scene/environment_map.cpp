@@ -1,5 +1,5 @@
 // See environment_map.h.
-#include "render/environment_map.h"
+#include "gpu_scene/environment_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "base/color.h"
-#include "render/alias_table.h"
+#include "gpu_scene/alias_table.h"
 
 namespace candela {
 namespace {

@@ -1,5 +1,5 @@
 // See alias_table.h.
-#include "render/alias_table.h"
+#include "gpu_scene/alias_table.h"
 
 #include <algorithm>
 #include <cassert>

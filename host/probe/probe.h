@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "render/gpu_scene.h"
+#include "gpu_scene/gpu_scene.h"
 #include "render/scene_buffers.h"
 #include "shared/kernel_constants.h"
 #include "shared/parameters.h"

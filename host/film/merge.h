@@ -8,7 +8,7 @@
 
 #include "base/image.h"
 #include "base/image_io.h"
-#include "render/sample_range.h"
+#include "film/sample_range.h"
 
 namespace candela {
 

@@ -1,5 +1,5 @@
 // See part_sum.h.
-#include "render/part_sum.h"
+#include "film/part_sum.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,0 +1,60 @@
+// See make_identity.h.
+#include "render/make_identity.h"
+
+#include <charconv>
+#include <span>
+#include <string>
+
+#include "base/hash.h"
+#include "scene/names.h"
+
+namespace candela {
+namespace {
+
+// The shortest text that means just that float.
+std::string exact(float value) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string exact(vec3 v) {
+    return exact(v.x) + ' ' + exact(v.y) + ' ' + exact(v.z);
+}
+
+std::string camera_text(const Camera& camera) {
+    std::string text = "at " + exact(camera.position) + " towards " + exact(camera.look_at) + ", up " +
+                       exact(camera.up) + ", field of view " + exact(camera.vertical_fov) + " rad";
+    const Lens& lens = camera.lens;
+    if (lens.radius > 0.0f) {
+        text += ", lens of radius " + exact(lens.radius) + " focused at " + exact(lens.focal_distance);
+        if (lens.blades > 0)
+            text += ", " + std::to_string(lens.blades) + " blades at " + exact(lens.rotation) + " rad";
+    }
+    return text;
+}
+
+template <class T>
+uint64_t add_to_hash(uint64_t hash, const T& array) {
+    return hash_words(std::as_bytes(std::span(array)), hash);
+}
+
+}  // namespace
+
+Identity make_identity(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
+    RenderSettings fixed = settings;
+    fixed.first_sample = 0;
+    fixed.aovs = false;
+    uint64_t hash = FNV1A64_BASIS;
+    for (const std::vector<uvec4>& array : scene.arrays)
+        hash = add_to_hash(hash, array);
+    hash = add_to_hash(hash, pack(make_parameters(scene, camera, fixed)));
+    hash = add_to_hash(hash, make_constants(scene, camera, fixed).values);
+    hash = add_to_hash(hash, std::array<uint32_t, 2>{settings.crop.x1, settings.crop.y1});
+    return {.settings = {size_text(settings.size), crop_text(settings.crop), std::to_string(settings.seed),
+                         name_of(settings.sampler, SAMPLER_NAMES),
+                         name_of(settings.estimator, ESTIMATOR_NAMES), std::to_string(settings.max_depth),
+                         std::to_string(settings.rr_depth), camera_text(camera)},
+            .hash = hash};
+}
+
+}  // namespace candela
