@@ -14,7 +14,7 @@ endfunction()
 
 candela_check(layers ${PYTHON3} cmake/checks/layers.py ${CMAKE_SOURCE_DIR})
 candela_check(layers_test ${PYTHON3} cmake/checks/layers_test.py)
-candela_check(promises ${PYTHON3} cmake/checks/promises.py FILES.md ${CMAKE_SOURCE_DIR})
+candela_check(promises ${PYTHON3} cmake/checks/promises.py docs/files.md ${CMAKE_SOURCE_DIR})
 candela_check(setup_test ${PYTHON3} cmake/checks/setup_test.py)
 candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
 set_tests_properties(shaders_alone PROPERTIES LABELS check)
