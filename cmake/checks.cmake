@@ -22,7 +22,8 @@ candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes tests/reference
 candela_check(sky ${PYTHON3} tests/unit/sky_test.py scenes)
 
 # Need a device, unlike the others.
-candela_check(readme ${PYTHON3} cmake/checks/readme.py README.md $<TARGET_FILE:candela>)
+file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/docs/*.md)
+candela_check(readme ${PYTHON3} cmake/checks/readme.py $<TARGET_FILE:candela> README.md ${pages})
 set_tests_properties(readme PROPERTIES LABELS cli RUN_SERIAL TRUE)
 candela_check(rivals ${PYTHON3} tests/bench/rivals_test.py $<TARGET_FILE:candela>)
 set_tests_properties(rivals PROPERTIES LABELS cli RUN_SERIAL TRUE)
