@@ -19,7 +19,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-CAPTION = re.compile(r"`(candela render [^`]*)`")
+CAPTION = re.compile(r"`(candela\s+render\s[^`]*)`")
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 SPP = re.compile(r"--spp (\d+)")
 MOST_SPP = 64
