@@ -14,7 +14,7 @@ endfunction()
 
 candela_check(layers ${PYTHON3} cmake/checks/layers.py ${CMAKE_SOURCE_DIR})
 candela_check(layers_test ${PYTHON3} cmake/checks/layers_test.py)
-candela_check(promises ${PYTHON3} cmake/checks/promises.py FILES.md ${CMAKE_SOURCE_DIR})
+candela_check(promises ${PYTHON3} cmake/checks/promises.py docs/files.md ${CMAKE_SOURCE_DIR})
 candela_check(setup_test ${PYTHON3} cmake/checks/setup_test.py)
 candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
 set_tests_properties(shaders_alone PROPERTIES LABELS check)
@@ -22,7 +22,8 @@ candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes tests/reference
 candela_check(sky ${PYTHON3} tests/unit/sky_test.py scenes)
 
 # Need a device, unlike the others.
-candela_check(readme ${PYTHON3} cmake/checks/readme.py README.md $<TARGET_FILE:candela>)
+file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/docs/*.md)
+candela_check(readme ${PYTHON3} cmake/checks/readme.py $<TARGET_FILE:candela> README.md ${pages})
 set_tests_properties(readme PROPERTIES LABELS cli RUN_SERIAL TRUE)
 candela_check(rivals ${PYTHON3} tests/bench/rivals_test.py $<TARGET_FILE:candela>)
 set_tests_properties(rivals PROPERTIES LABELS cli RUN_SERIAL TRUE)

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Runs the commands of README.md, in order, as a reader would, but in an empty folder beside links to the scenes, the
-tests and the program. Every ```sh block counts, so a command of a kind that is unknown here is an error. Shell scripts
-must only exist: this check is a part of what they do. What would take minutes is cut short: the commands in the captions
-of pictures run with a single sample per pixel, a benchmark once and at the smallest sizes, and the selftest, which has a
+"""Runs the commands of README.md and of the pages in docs/ as a reader would. Each page has a folder of its own, empty
+but for links to the scenes, the tests and the program, as if it were the root of the repository; the page's commands
+run there in order. Every ```sh block counts, so a command of an unknown kind is an error; other blocks are not run.
+Scripts (sh, python3) must only exist, and cmake and ctest are left to the stages that run them: this check is a part of
+what they do. What would take minutes is cut short: a rendering takes 64 samples per pixel at most, a benchmark runs
+once at the smallest sizes, the commands in the captions of pictures take a single sample, and the selftest, which has a
 test of its own, shows its help.
 
-usage: readme.py README CANDELA      Prints each command and what went wrong; exits 1 if anything did.
+usage: readme.py CANDELA PAGE...      Prints each command and what went wrong; exits 1 if anything did.
 """
 import os
 import re
@@ -16,17 +18,21 @@ import tempfile
 import time
 from pathlib import Path
 
-CAPTION = re.compile(r"`(candela render [^`]*)`")
+ROOT = Path(__file__).resolve().parents[2]
+CAPTION = re.compile(r"`(candela\s+render\s[^`]*)`")
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
-WRITES = ("-o", "--output", "--heatmap", "--report")  # Options whose value is a file that must be there afterwards.
+SPP = re.compile(r"--spp (\d+)")
+MOST_SPP = 64
+SHORTER = {"bench": " --runs 1 --spp 1 --triangles 72 --rays 64", "selftest": " --help"}  # What is added to a command.
+WRITES = ("-o", "--output", "--heatmap", "--report")  # Options whose value is a file that must be there then.
 
 
 def commands(text):
     """The commands of all ```sh blocks, continued lines joined, comments left out; the longest are cut short."""
     lines = "".join(BLOCK.findall(text)).replace("\\\n", " ").splitlines()
-    found = [line.strip() for line in lines if line.strip() and not line.strip().startswith("#")]
-    shorter = {"candela bench": " --runs 1 --spp 1 --triangles 72 --rays 64", "candela selftest": " --help"}
-    return [line + next((end for start, end in shorter.items() if line.startswith(start)), "") for line in found]
+    found = [" ".join(re.sub(r"(^|\s)#.*", "", line).split()) for line in lines]
+    found = [SPP.sub(lambda spp: f"--spp {min(int(spp[1]), MOST_SPP)}", line) for line in found if line]
+    return [line + SHORTER.get(subcommand(line), "") for line in found]
 
 
 def caption_commands(text):
@@ -35,17 +41,25 @@ def caption_commands(text):
     return [re.sub(r" --spp \d+", "", command) + " --spp 1" for command in found if "scenes/" in command]
 
 
+def subcommand(command):
+    """What a command asks of candela, such as "render"; an empty string if it calls another program."""
+    words = shlex.split(command, comments=True)
+    return words[1] if Path(words[0]).name == "candela" and len(words) > 1 else ""
+
+
 def written_files(command):
     words = shlex.split(command, comments=True)
     return [value for option, value in zip(words, words[1:]) if option in WRITES and value != "-"]
 
 
-def try_command(command, root, folder):
+def try_command(command, folder):
     """Runs the command in the folder. Returns what went wrong, or an empty string."""
     words = shlex.split(command, comments=True)
-    if words[0] == "sh":
-        return "" if Path(root, words[1]).is_file() else f"there is no {words[1]}"
-    if Path(words[0]).name not in ("candela", "python3"):
+    if words[0] in ("cmake", "ctest"):
+        return ""
+    if words[0] in ("sh", "python3"):
+        return "" if Path(ROOT, words[1]).is_file() else f"there is no {words[1]}"
+    if not subcommand(command):
         return "is of a kind that this check cannot try"
     environment = os.environ | {"PATH": f"{folder}/build/release:{os.environ['PATH']}", "XDG_CACHE_HOME": folder}
     result = subprocess.run(["sh", "-c", command], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
@@ -56,29 +70,39 @@ def try_command(command, root, folder):
     return f"did not write {', '.join(absent)}" if absent else ""
 
 
-def main():
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    readme, candela = (Path(argument).resolve() for argument in sys.argv[1:])
-    text = readme.read_text(encoding="utf-8")
+def try_page(page, candela):
+    """Tries the commands of one page. Returns how many there are, and how many went wrong."""
+    text = page.read_text(encoding="utf-8")
     found = commands(text) + caption_commands(text)
     problems = 0
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "build/release").mkdir(parents=True)
         Path(folder, "build/release/candela").symlink_to(candela)
         for name in ("scenes", "tests"):
-            Path(folder, name).symlink_to(readme.parent / name)
+            Path(folder, name).symlink_to(ROOT / name)
         for command in found:
             start = time.monotonic()
-            problem = try_command(command, readme.parent, folder)
+            problem = try_command(command, folder)
             print(f"{time.monotonic() - start:6.1f} s  {command}", flush=True)
             if problem:
                 problems += 1
                 print(f"  {problem}")
-    if not any("candela " in command for command in found):
+    return len(found), problems
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    candela, *pages = (Path(argument).resolve() for argument in sys.argv[1:])
+    count, problems = 0, 0
+    for page in pages:
+        print(page.relative_to(ROOT), flush=True)
+        counts = try_page(page, candela)
+        count, problems = count + counts[0], problems + counts[1]
+    if count == 0:
         problems += 1
-        print(f"{readme}: no command of candela found")
-    print(f"{len(found)} commands, {problems} problems")
+        print("no command found")
+    print(f"{count} commands, {problems} problems")
     sys.exit(1 if problems else 0)
 
 
