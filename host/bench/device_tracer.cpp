@@ -7,6 +7,7 @@
 #include "probe/probes.h"
 #include "shared/constants.h"
 #include "vk/commands.h"
+#include "vk/transfer.h"
 
 namespace candela {
 namespace {
@@ -38,7 +39,7 @@ class DeviceTracer : public RayTracer {
                 {uint32_t(some.size()),
                  {*device_, some.size_bytes(), vk::BufferUsage::texel, "rays"},
                  {*device_, some.size() * sizeof(uint32_t), vk::BufferUsage::storage, "hits"}});
-            batches_.back().rays.upload(std::as_bytes(some));
+            vk::upload(batches_.back().rays, std::as_bytes(some));
         }
     }
 
@@ -63,7 +64,7 @@ class DeviceTracer : public RayTracer {
         std::vector<uint32_t> ids(set_->rays.size());
         auto rest = std::span(ids);
         for (const Batch& batch : batches_) {
-            batch.hits.download(std::as_writable_bytes(rest.first(batch.count)));
+            vk::download(batch.hits, std::as_writable_bytes(rest.first(batch.count)));
             rest = rest.subspan(batch.count);
         }
         return ids;

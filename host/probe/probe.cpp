@@ -7,6 +7,7 @@
 #include "shared/constants.h"
 #include "vk/buffer.h"
 #include "vk/commands.h"
+#include "vk/transfer.h"
 
 namespace candela {
 namespace {
@@ -76,14 +77,14 @@ std::vector<uint32_t> run_probe(const vk::Device& device, vk::Kernel& kernel,
         const auto results_of_some = std::span(results).subspan(first * result_words, size * result_words);
         vk::Buffer in(device, some.size(), vk::BufferUsage::texel, "items");
         const vk::Buffer out(device, results_of_some.size_bytes(), vk::BufferUsage::readback, "results");
-        in.upload(some);
+        vk::upload(in, some);
         kernel.bind(BINDING_ITEMS, in);
         kernel.bind(BINDING_RESULTS, out);
         const ProbeCounts counts{uint32_t(size), scene == nullptr ? 0 : scene->primitive_count()};
         commands.dispatch(kernel, std::as_bytes(std::span(&counts, 1)),
                           {(counts.items + PROBE_GROUP - 1) / PROBE_GROUP, 1, 1});
         commands.submit_and_wait();
-        out.download(std::as_writable_bytes(results_of_some));
+        vk::download(out, std::as_writable_bytes(results_of_some));
     }
     return results;
 }

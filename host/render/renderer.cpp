@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "render/kernels.h"
+#include "vk/transfer.h"
 
 namespace candela {
 namespace {
@@ -116,7 +117,8 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
       constants_(kernel_constants(device, scene, scene_.map(), camera, settings)),
       counter_buffer_(device, COUNTER_BYTES, vk::BufferUsage::storage, "counters"),
       counts_(device, COUNTER_BYTES, vk::BufferUsage::readback, "counts"),
-      image_(device, image_size().x, image_size().y, layer_count(settings), "accumulation"),
+      image_(vk::make_storage_image(device, image_size().x, image_size().y, layer_count(settings),
+                                    "accumulation")),
       commands_(device) {
     if (settings_.submission_seconds == 0.0) {
         const bool cpu = device.info().type == vk::DeviceType::cpu;
@@ -143,9 +145,9 @@ void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSe
     scene_.set(make_parameters(scene, camera, settings));
     const uvec2 size = image_size();
     if (size == uvec2(image_.width(), image_.height()) && layer_count(settings) == image_.layers()) {
-        image_.clear();
+        vk::clear(image_);
     } else {
-        image_ = vk::StorageImage(*device_, size.x, size.y, layer_count(settings), "accumulation");
+        image_ = vk::make_storage_image(*device_, size.x, size.y, layer_count(settings), "accumulation");
         render_kernel_->bind(BINDING_IMAGE, image_);
     }
     samples_ = 0;
@@ -212,7 +214,7 @@ bool Renderer::render(uint32_t target, const std::function<bool(double)>& keep_g
 
 Accumulation Renderer::download() const {
     Accumulation state = empty_state(settings_);
-    state.values = image_.download(0, image_.layers());
+    state.values = vk::download(image_, 0, image_.layers());
     state.counters = counters_;
     return state;
 }
@@ -224,14 +226,14 @@ void Renderer::upload(const Accumulation& state) {
             "the state does not fit: its size, crop, seed, first sample or set of images differs from this "
             "rendering's; render with the settings that it was made with");
     }
-    if (!state.values.empty()) image_.upload(0, state.values);
+    if (!state.values.empty()) vk::upload(image_, 0, state.values);
     samples_ = state.least_samples();
     counters_ = state.counters;
 }
 
 std::vector<float> Renderer::positions() {
     const uvec2 size = image_size();
-    vk::StorageImage image(*device_, size.x, size.y, 1, "position");
+    const vk::StorageImage image = vk::make_storage_image(*device_, size.x, size.y, 1, "position");
     vk::Kernel kernel = scene_kernel(RenderKernel::position);
     kernel.bind(BINDING_IMAGE, image);
     const uint32_t rows = std::max(1u, POSITION_PIXELS / size.x);
@@ -240,7 +242,7 @@ std::vector<float> Renderer::positions() {
         record(kernel, {.origin = {0, y}, .size = tile, .stride = {1, 1}, .target_samples = 0});
         commands_.submit_and_wait();
     }
-    return image.download(0, 1);
+    return vk::download(image, 0, 1);
 }
 
 }  // namespace candela

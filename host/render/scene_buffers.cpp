@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "vk/transfer.h"
+
 namespace candela {
 namespace {
 
@@ -40,19 +42,19 @@ SceneBuffers::SceneBuffers(const vk::Device& device, const GpuScene& scene, cons
         const bool texel = map.slots[i] == NO_SLOT;
         texels_.emplace_back(device, texel ? bytes.size() : 0, vk::BufferUsage::texel, to_text(array));
         if (texel) {
-            texels_.back().upload(bytes);
+            vk::upload(texels_.back(), bytes);
         } else {
-            storage_[map.slots[i]].upload(bytes, map.starts[i] * sizeof(uvec4));
+            vk::upload(storage_[map.slots[i]], bytes, map.starts[i] * sizeof(uvec4));
         }
         starts[i / 4][int(i % 4)] = map.starts[i];
     }
-    parameters_.upload(std::as_bytes(std::span(starts)), PARAMETERS_WORDS * sizeof(uvec4));
+    vk::upload(parameters_, std::as_bytes(std::span(starts)), PARAMETERS_WORDS * sizeof(uvec4));
     set(parameters);
 }
 
 void SceneBuffers::set(const Parameters& parameters) {
     const auto words = pack(parameters);
-    parameters_.upload(std::as_bytes(std::span(words)));
+    vk::upload(parameters_, std::as_bytes(std::span(words)));
 }
 
 std::vector<vk::Binding> SceneBuffers::bindings(const KernelConstants& constants) {

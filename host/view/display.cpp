@@ -9,6 +9,7 @@
 #include "render/kernels.h"
 #include "shared/constants.h"
 #include "shared/display.h"
+#include "vk/transfer.h"
 
 namespace candela {
 namespace {
@@ -51,7 +52,7 @@ void Display::resize(uvec2 size) {
     overlay_ = std::make_unique<vk::Buffer>(*device_, bytes, vk::BufferUsage::readback, "overlay");
     picture_ = std::make_unique<vk::Buffer>(*device_, bytes, vk::BufferUsage::storage, "picture");
     screen_ = std::make_unique<vk::Buffer>(*device_, bytes, vk::BufferUsage::storage, "screen");
-    picture_->upload(std::vector<std::byte>(bytes));
+    vk::upload(*picture_, std::vector<std::byte>(bytes));
     size_ = size;
 }
 

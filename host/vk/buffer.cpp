@@ -1,12 +1,9 @@
-// Buffers: their limits, and the ways that bytes take between host and device.
+// Buffers and their limits.
 #include "vk/buffer.h"
 
 #include <algorithm>
-#include <cassert>
-#include <cstring>
 
 #include "vk/check.h"
-#include "vk/commands.h"
 
 namespace candela::vk {
 
@@ -73,47 +70,6 @@ Buffer::Buffer(const Device& device, uint64_t size, BufferUsage usage, const std
         VkBufferView view = VK_NULL_HANDLE;
         VK_CHECK(vkCreateBufferView(device.handle(), &view_info, nullptr, &view));
         view_ = {view, vkDestroyBufferView, device.handle()};
-    }
-}
-
-static void copy(Commands& commands, VkBuffer from, uint64_t from_offset, VkBuffer to, uint64_t to_offset,
-                 uint64_t size) {
-    const VkBufferCopy region{from_offset, to_offset, size};
-    vkCmdCopyBuffer(commands.handle(), from, to, 1, &region);
-    commands.submit_and_wait();
-}
-
-void Buffer::upload(std::span<const std::byte> bytes, uint64_t offset) {
-    assert(offset <= size_ && bytes.size() <= size_ - offset);
-    if (bytes.empty()) return;
-    if (mapped() != nullptr) {
-        std::memcpy(mapped() + offset, bytes.data(), bytes.size());
-        return;
-    }
-    const uint64_t chunk = std::min<uint64_t>(bytes.size(), STAGING_BYTES);
-    const Buffer staging(*device_, chunk, BufferUsage::readback, "upload staging");
-    Commands commands(*device_);
-    for (uint64_t done = 0; done < bytes.size(); done += chunk) {
-        const uint64_t count = std::min(chunk, bytes.size() - done);
-        std::memcpy(staging.mapped(), bytes.data() + done, count);
-        copy(commands, staging.handle(), 0, handle(), offset + done, count);
-    }
-}
-
-void Buffer::download(std::span<std::byte> bytes, uint64_t offset) const {
-    assert(offset <= size_ && bytes.size() <= size_ - offset);
-    if (bytes.empty()) return;
-    if (mapped() != nullptr) {
-        std::memcpy(bytes.data(), mapped() + offset, bytes.size());
-        return;
-    }
-    const uint64_t chunk = std::min<uint64_t>(bytes.size(), STAGING_BYTES);
-    const Buffer staging(*device_, chunk, BufferUsage::readback, "download staging");
-    Commands commands(*device_);
-    for (uint64_t done = 0; done < bytes.size(); done += chunk) {
-        const uint64_t count = std::min(chunk, bytes.size() - done);
-        copy(commands, handle(), offset + done, staging.handle(), 0, count);
-        std::memcpy(bytes.data() + done, staging.mapped(), count);
     }
 }
 

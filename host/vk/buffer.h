@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 
 #include <volk.h>
@@ -29,15 +28,11 @@ class Buffer {
     // device cannot hold or bind it.
     Buffer(const Device& device, uint64_t size, BufferUsage usage, const std::string& name);
 
-    // Copies `bytes` to the buffer from `offset` [bytes] on, and waits until it is done. They must fit.
-    void upload(std::span<const std::byte> bytes, uint64_t offset = 0);
-    // Copies from the buffer, from `offset` [bytes] on, into all of `bytes`. They must fit.
-    void download(std::span<std::byte> bytes, uint64_t offset = 0) const;
-
+    const Device& device() const { return *device_; }
     // The size in bytes, after rounding.
     uint64_t size() const { return size_; }
     BufferUsage usage() const { return usage_; }
-    // The contents as the host sees them, or null if the host must upload and download. Never null for
+    // The contents as the host sees them, or null if they must be copied (vk/transfer.h). Never null for
     // readback.
     std::byte* mapped() const { return memory_.mapped(); }
 
@@ -53,9 +48,5 @@ class Buffer {
     Unique<VkBuffer, VkDevice> buffer_;
     Unique<VkBufferView, VkDevice> view_;
 };
-
-// The most bytes that one copy between host and device takes at a time, so that large data needs little extra
-// memory.
-inline constexpr uint64_t STAGING_BYTES = uint64_t{64} << 20;
 
 }  // namespace candela::vk

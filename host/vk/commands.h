@@ -39,7 +39,7 @@ class Commands {
     // Throws an Error (device_lost) if the device gave up.
     double submit_and_wait();
 
-    // The command buffer, for the copies of Buffer and StorageImage.
+    // The command buffer, for transfers.
     VkCommandBuffer handle() const { return buffer_; }
 
   private:

@@ -1,13 +1,9 @@
-// Storage images: their limits, and copies to and from the host in blocks of rows.
+// Storage images and their limits.
 #include "vk/image.h"
 
-#include <algorithm>
 #include <cassert>
-#include <cstring>
 
-#include "vk/buffer.h"
 #include "vk/check.h"
-#include "vk/commands.h"
 
 namespace candela::vk {
 
@@ -50,26 +46,6 @@ static VkImageView create_view(const Device& device, VkImage image, const VkImag
     return view;
 }
 
-static VkImageSubresourceRange all_layers(uint32_t layers) {
-    return {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, layers};
-}
-
-// From layout UNDEFINED, which holds nothing, to GENERAL, for good.
-static void set_layout(const Device& device, VkImage image, const VkImageSubresourceRange& range) {
-    VkImageMemoryBarrier barrier{};
-    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
-    barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
-    barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
-    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image;
-    barrier.subresourceRange = range;
-    Commands commands(device);
-    vkCmdPipelineBarrier(commands.handle(), VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
-                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
-    commands.submit_and_wait();
-}
-
 StorageImage::StorageImage(const Device& device, uint32_t width, uint32_t height, uint32_t layers,
                            const std::string& name)
     : device_(&device), width_(width), height_(height), layers_(layers) {
@@ -85,84 +61,7 @@ StorageImage::StorageImage(const Device& device, uint32_t width, uint32_t height
     size_ = requirements.size;
     memory_ = Memory(device, requirements, MemoryUse::device, what);
     VK_CHECK(vkBindImageMemory(device.handle(), image_.get(), memory_.handle(), 0));
-    view_ = {create_view(device, image_.get(), all_layers(layers)), vkDestroyImageView, device.handle()};
-
-    set_layout(device, image_.get(), all_layers(layers));
-    clear();
-}
-
-void StorageImage::clear() {
-    Commands commands(*device_);
-    const VkClearColorValue zero{};
-    const VkImageSubresourceRange range = all_layers(layers_);
-    vkCmdClearColorImage(commands.handle(), image_.get(), VK_IMAGE_LAYOUT_GENERAL, &zero, 1, &range);
-    commands.submit_and_wait();
-}
-
-// Some rows of one layer, small enough for a staging buffer, and where they are in the host's array of
-// floats.
-struct Block {
-    VkBufferImageCopy region{};
-    uint64_t offset = 0;
-    uint64_t count = 0;
-};
-
-// The blocks of `layer_count` layers from `first_layer` on, in the order of the host's array; the first is
-// the largest.
-static std::vector<Block> blocks(const StorageImage& image, uint32_t first_layer, uint32_t layer_count) {
-    const uint64_t row_floats = uint64_t{image.width()} * StorageImage::CHANNELS;
-    const uint64_t rows_that_fit = STAGING_BYTES / (row_floats * sizeof(float));
-    const uint32_t step = uint32_t(std::clamp<uint64_t>(rows_that_fit, 1, image.height()));
-    std::vector<Block> result;
-    uint64_t offset = 0;
-    for (uint32_t layer = first_layer; layer < first_layer + layer_count; ++layer) {
-        for (uint32_t row = 0; row < image.height(); row += step) {
-            Block block;
-            const uint32_t rows = std::min(step, image.height() - row);
-            block.region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};
-            block.region.imageOffset = {0, int32_t(row), 0};
-            block.region.imageExtent = {image.width(), rows, 1};
-            block.offset = offset;
-            block.count = rows * row_floats;
-            offset += block.count;
-            result.push_back(block);
-        }
-    }
-    return result;
-}
-
-void StorageImage::upload(uint32_t first_layer, std::span<const float> values) {
-    assert(values.size() % layer_floats() == 0);
-    const auto layer_count = uint32_t(values.size() / layer_floats());
-    assert(first_layer <= layers_ && layer_count <= layers_ - first_layer);
-    if (layer_count == 0) return;
-    const std::vector<Block> parts = blocks(*this, first_layer, layer_count);
-    const Buffer staging(*device_, parts.front().count * sizeof(float), BufferUsage::readback,
-                         "upload staging");
-    Commands commands(*device_);
-    for (const Block& part : parts) {
-        std::memcpy(staging.mapped(), values.data() + part.offset, part.count * sizeof(float));
-        vkCmdCopyBufferToImage(commands.handle(), staging.handle(), image_.get(), VK_IMAGE_LAYOUT_GENERAL, 1,
-                               &part.region);
-        commands.submit_and_wait();
-    }
-}
-
-std::vector<float> StorageImage::download(uint32_t first_layer, uint32_t layer_count) const {
-    assert(first_layer <= layers_ && layer_count <= layers_ - first_layer);
-    if (layer_count == 0) return {};
-    std::vector<float> values(layer_floats() * layer_count);
-    const std::vector<Block> parts = blocks(*this, first_layer, layer_count);
-    const Buffer staging(*device_, parts.front().count * sizeof(float), BufferUsage::readback,
-                         "download staging");
-    Commands commands(*device_);
-    for (const Block& part : parts) {
-        vkCmdCopyImageToBuffer(commands.handle(), image_.get(), VK_IMAGE_LAYOUT_GENERAL, staging.handle(), 1,
-                               &part.region);
-        commands.submit_and_wait();
-        std::memcpy(values.data() + part.offset, staging.mapped(), part.count * sizeof(float));
-    }
-    return values;
+    view_ = {create_view(device, image_.get(), subresources()), vkDestroyImageView, device.handle()};
 }
 
 }  // namespace candela::vk

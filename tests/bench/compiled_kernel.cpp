@@ -10,6 +10,7 @@
 #include "gpu_scene/gpu_scene.h"
 #include "view/display.h"
 #include "vk/check.h"
+#include "vk/transfer.h"
 
 namespace candela {
 namespace {
@@ -137,7 +138,7 @@ std::vector<CompiledKernel> compile_scene_kernels(const vk::Device& device, cons
 CompiledKernel compile_display_kernel(const vk::Device& device) {
     if (device.info().statistics)
         return described(device, "", "", [&] { return make_display_kernel(device, CURVE, false); });
-    const vk::StorageImage image(device, 1, 1, LAYER_COUNT_COLOUR, "accumulation");
+    const vk::StorageImage image = vk::make_storage_image(device, 1, 1, LAYER_COUNT_COLOUR, "accumulation");
     Display display(device, false);
     return timed("", "display", "", [&] { display.draw(image, {1, 1}, CURVE, 0.0f, {}); });
 }

@@ -8,6 +8,7 @@
 #include "base/image.h"
 #include "gpu/device_fixture.h"
 #include "shared/constants.h"
+#include "vk/transfer.h"
 
 namespace candela {
 namespace {
@@ -24,14 +25,15 @@ class DisplayTest : public DeviceTest {
                 layers[4 * i + size_t(c)] = counts[i] * colours[i][c];
             layers[4 * (pixels + i) + 3] = counts[i];
         }
-        vk::StorageImage image(device(), size.x, size.y, LAYER_COUNT_COLOUR, "accumulation");
-        image.upload(LAYER_L, layers);
+        vk::StorageImage image =
+            vk::make_storage_image(device(), size.x, size.y, LAYER_COUNT_COLOUR, "accumulation");
+        vk::upload(image, LAYER_L, layers);
         return image;
     }
 
     static std::vector<uint32_t> pixels_of(const Display& display, uvec2 size) {
         std::vector<uint32_t> pixels(size_t{size.x} * size.y);
-        display.screen().download(std::as_writable_bytes(std::span(pixels)));
+        vk::download(display.screen(), std::as_writable_bytes(std::span(pixels)));
         return pixels;
     }
 };

@@ -22,6 +22,7 @@
 #include "vk/image.h"
 #include "vk/kernel.h"
 #include "vk/pipeline_cache.h"
+#include "vk/transfer.h"
 #include "vk_fixture.h"
 
 namespace candela::vk {
@@ -81,16 +82,16 @@ TEST_F(Vk, LimitsAreNamed) {
               "buffer \"nodes\" needs 1616 bytes" + allows + "1600 (maxStorageBufferRange)" + remedy);
     EXPECT_EQ(too_big([&] { Buffer(device, 161, BufferUsage::uniform, "camera"); }),
               "buffer \"camera\" needs 176 bytes" + allows + "160 (maxUniformBufferRange)" + remedy);
-    EXPECT_EQ(too_big([&] { StorageImage(device, 65, 1, 1, "film"); }),
+    EXPECT_EQ(too_big([&] { make_storage_image(device, 65, 1, 1, "film"); }),
               "image \"film\" (65x1, 1 layers) needs 65 pixels across" + allows + "64 (maxImageDimension2D)" +
                   remedy);
-    EXPECT_EQ(too_big([&] { StorageImage(device, 1, 66, 1, "film"); }),
+    EXPECT_EQ(too_big([&] { make_storage_image(device, 1, 66, 1, "film"); }),
               "image \"film\" (1x66, 1 layers) needs 66 pixels down" + allows + "64 (maxImageDimension2D)" +
                   remedy);
-    EXPECT_EQ(too_big([&] { StorageImage(device, 1, 1, 5, "film"); }),
+    EXPECT_EQ(too_big([&] { make_storage_image(device, 1, 1, 5, "film"); }),
               "image \"film\" (1x1, 5 layers) needs 5 layers" + allows + "4 (maxImageArrayLayers)" + remedy);
     EXPECT_EQ(
-        too_big([&] { StorageImage(device, 64, 64, 4, "film"); }),
+        too_big([&] { make_storage_image(device, 64, 64, 4, "film"); }),
         "image \"film\" (64x64, 4 layers) needs 262144 bytes" + allows + "262143 (maxResourceSize)" + remedy);
     EXPECT_EQ(
         too_big([&] { Kernel(device, kernels::vk_test, TEST_BINDINGS, 8, {}, "trace"); }),
@@ -118,7 +119,7 @@ TEST_F(Vk, AvailableMemoryBoundsAllocations) {
     info_.device_heap = 1 << 20;
     const Device device(instance_, info_);
     EXPECT_EQ(device.available_memory(), uint64_t{1} << 20);
-    EXPECT_EQ(error_of(ExitCode::out_of_memory, [&] { StorageImage(device, 512, 512, 1, "film"); }),
+    EXPECT_EQ(error_of(ExitCode::out_of_memory, [&] { make_storage_image(device, 512, 512, 1, "film"); }),
               "image \"film\" (512x512, 1 layers) needs 4194304 bytes, but \"" + info_.name +
                   "\" allows 1048576 (available memory); use less or choose another device");
 }

@@ -11,6 +11,7 @@
 #include "vk/device.h"
 #include "vk/image.h"
 #include "vk/kernel.h"
+#include "vk/transfer.h"
 #include "vk_fixture.h"
 
 namespace candela::vk {
@@ -25,19 +26,19 @@ std::vector<uint32_t> some_words(size_t count) {
 void expect_buffer_round_trip(const Device& device, BufferUsage usage, size_t words) {
     const std::vector<uint32_t> sent = some_words(words);
     Buffer buffer(device, words * sizeof(uint32_t), usage, "round trip");
-    buffer.upload(std::as_bytes(std::span(sent)));
+    upload(buffer, std::as_bytes(std::span(sent)));
     // One word in the middle, so that offsets are seen.
     const uint32_t changed = 12345;
     const uint64_t offset = words / 2 * sizeof(uint32_t);
-    buffer.upload(std::as_bytes(std::span(&changed, 1)), offset);
+    upload(buffer, std::as_bytes(std::span(&changed, 1)), offset);
 
     std::vector<uint32_t> received(words);
-    buffer.download(std::as_writable_bytes(std::span(received)));
+    download(buffer, std::as_writable_bytes(std::span(received)));
     EXPECT_EQ(received[words / 2], changed);
     received[words / 2] = sent[words / 2];
     EXPECT_TRUE(received == sent);
     uint32_t one = 0;
-    buffer.download(std::as_writable_bytes(std::span(&one, 1)), offset);
+    download(buffer, std::as_writable_bytes(std::span(&one, 1)), offset);
     EXPECT_EQ(one, changed);
 }
 
@@ -66,29 +67,30 @@ TEST_F(Vk, BufferSizesAreRoundedUpToWholeElements) {
 
 TEST_F(Vk, ImagesStartAsZerosRoundTripAndClear) {
     const Device device(instance_, info_);
-    StorageImage image(device, 37, 11, 3, "round trip");
+    StorageImage image = make_storage_image(device, 37, 11, 3, "round trip");
     const size_t layer_floats = size_t{37} * 11 * 4;
     const std::vector<float> zeros(3 * layer_floats, 0.0f);
-    EXPECT_TRUE(image.download(0, 3) == zeros);
+    EXPECT_TRUE(download(image, 0, 3) == zeros);
 
     std::vector<float> sent(2 * layer_floats);
     std::iota(sent.begin(), sent.end(), 1.0f);
-    image.upload(1, sent);
-    EXPECT_TRUE(image.download(1, 2) == sent);
-    EXPECT_TRUE(image.download(2, 1) == std::vector<float>(sent.begin() + layer_floats, sent.end()));
-    EXPECT_TRUE(image.download(0, 1) == std::vector<float>(layer_floats, 0.0f));
+    upload(image, 1, sent);
+    EXPECT_TRUE(download(image, 1, 2) == sent);
+    EXPECT_TRUE(download(image, 2, 1) == std::vector<float>(sent.begin() + layer_floats, sent.end()));
+    EXPECT_TRUE(download(image, 0, 1) == std::vector<float>(layer_floats, 0.0f));
 
-    image.clear();
-    EXPECT_TRUE(image.download(0, 3) == zeros);
+    clear(image);
+    EXPECT_TRUE(download(image, 0, 3) == zeros);
 }
 
 TEST_F(Vk, ImagesLargerThanAStagingBufferRoundTrip) {
     const Device device(instance_, info_);
-    StorageImage image(device, 4096, 1030, 1, "large");  // 1024 rows fill the staging buffer.
+    StorageImage image =
+        make_storage_image(device, 4096, 1030, 1, "large");  // 1024 rows fill the staging buffer.
     std::vector<float> sent(size_t{4096} * 1030 * 4);
     std::iota(sent.begin(), sent.end(), 0.0f);
-    image.upload(0, sent);
-    EXPECT_TRUE(image.download(0, 1) == sent);
+    upload(image, 0, sent);
+    EXPECT_TRUE(download(image, 0, 1) == sent);
 }
 
 // The kernel of tests/kernels/vk_test.comp.glsl with resources for an image of 20x12 pixels and 2 layers.
@@ -100,17 +102,17 @@ class TestKernel {
 
     explicit TestKernel(const Device& device)
         : kernel(device, kernels::vk_test, TEST_BINDINGS, sizeof(TestPush), CONSTANTS, "vk_test"),
-          image(device, WIDTH, HEIGHT, LAYERS, "pixels"),
+          image(make_storage_image(device, WIDTH, HEIGHT, LAYERS, "pixels")),
           count(device, sizeof(uint32_t), BufferUsage::readback, "count"),
           texels_(device, texel_words.size() * sizeof(uint32_t), BufferUsage::texel, "texels"),
           weights_(device, WIDTH * sizeof(float), BufferUsage::storage, "weights"),
           tint_(device, sizeof tint, BufferUsage::uniform, "tint") {
         std::iota(weights.begin(), weights.end(), 1.0f);
-        texels_.upload(std::as_bytes(std::span(texel_words)));
-        weights_.upload(std::as_bytes(std::span(weights)));
-        tint_.upload(std::as_bytes(std::span(tint)));
+        upload(texels_, std::as_bytes(std::span(texel_words)));
+        upload(weights_, std::as_bytes(std::span(weights)));
+        upload(tint_, std::as_bytes(std::span(tint)));
         const uint32_t zero = 0;
-        count.upload(std::as_bytes(std::span(&zero, 1)));
+        upload(count, std::as_bytes(std::span(&zero, 1)));
         kernel.bind(0, texels_);
         kernel.bind(1, weights_);
         kernel.bind(2, tint_);
@@ -153,8 +155,8 @@ TEST_F(Vk, AKernelSeesItsResourcesConstantsAndPushConstants) {
     Commands commands(device);
     test.dispatch(commands, {.layer = 1, .gain = 2.0f});
     commands.submit_and_wait();
-    EXPECT_EQ(test.image.download(1, 1), test.expected(2.0f));
-    EXPECT_EQ(test.image.download(0, 1), std::vector<float>(test.texel_words.size(), 0.0f));
+    EXPECT_EQ(download(test.image, 1, 1), test.expected(2.0f));
+    EXPECT_EQ(download(test.image, 0, 1), std::vector<float>(test.texel_words.size(), 0.0f));
     EXPECT_EQ(test.pixels_counted(), TestKernel::WIDTH * TestKernel::HEIGHT);
 }
 
@@ -170,19 +172,19 @@ TEST_F(Vk, SubmissionsFollowEachOther) {
     for (float& value : expected) {
         value *= 3;
     }
-    EXPECT_EQ(test.image.download(0, 1), expected);
+    EXPECT_EQ(download(test.image, 0, 1), expected);
 }
 
 TEST_F(Vk, AResourceCanBeBoundInPlaceOfAnother) {
     const Device device(instance_, info_);
     TestKernel test(device);
-    const StorageImage other(device, TestKernel::WIDTH, TestKernel::HEIGHT, 1, "other");
+    const StorageImage other = make_storage_image(device, TestKernel::WIDTH, TestKernel::HEIGHT, 1, "other");
     test.kernel.bind(3, other);
     Commands commands(device);
     test.dispatch(commands, {.layer = 0, .gain = 1.0f});
     commands.submit_and_wait();
-    EXPECT_EQ(other.download(0, 1), test.expected(1.0f));
-    EXPECT_EQ(test.image.download(0, 1), std::vector<float>(test.texel_words.size(), 0.0f));
+    EXPECT_EQ(download(other, 0, 1), test.expected(1.0f));
+    EXPECT_EQ(download(test.image, 0, 1), std::vector<float>(test.texel_words.size(), 0.0f));
 }
 
 TEST_F(Vk, WorkIsTimedByTheDeviceOrTheHost) {
