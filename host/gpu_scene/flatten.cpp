@@ -102,9 +102,9 @@ class Flattener {
         const Emission& emission = *shape.emission;
         const double power = area * luminance(emission.radiance) * (emission.two_sided ? 2.0 : 1.0);
         if (power == 0.0) return NO_LIGHT;
-        flat_.lights.push_back({kind, p, e1, e2, emission.radiance, emission.two_sided ? 1u : 0u, 0.0f});
+        flat_.lights.push_back(
+            {kind, p, e1, e2, emission.radiance, emission.two_sided ? 1u : 0u, float(1.0 / area), 0.0f});
         flat_.powers.push_back(power);
-        flat_.areas.push_back(area);
         return uint(flat_.lights.size() - 1);
     }
 
@@ -120,8 +120,8 @@ FlatScene flatten(const Scene& scene) {
 
 void assign_probabilities(FlatScene& flat) {
     const double total = std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0);
-    for (size_t i = 0; i < flat.areas.size(); ++i)
-        flat.lights[i].pdf_area = float(flat.powers[i] / total / flat.areas[i]);
+    for (size_t i = 0; i < flat.lights.size(); ++i)
+        flat.lights[i].pmf = float(flat.powers[i] / total);
 }
 
 Box bounds(const Primitive& p) {

@@ -15,14 +15,13 @@ struct FlatScene {
     std::vector<Surface> surfaces;                          // One per primitive.
     std::vector<std::array<uvec4, NORMALS_WORDS>> normals;  // One per primitive, or none if all are flat.
     uint32_t id_count = 0;       // Ids that the surfaces have: one for each triangle, sphere and disk.
-    std::vector<Light> lights;   // Those that send out light; pdf_area is 0 until assign_probabilities().
+    std::vector<Light> lights;   // Those that send out light; pmf is 0 until assign_probabilities().
     std::vector<double> powers;  // Of each light, over pi, by its luminance [W].
-    std::vector<double> areas;   // Of each light [m^2].
 };
 
 FlatScene flatten(const Scene& scene);
 
-// Sets the density of each light that has an area, from its share in all powers (which are not all 0).
+// Sets the probability of choosing each light, its share in all powers (which are not all 0).
 void assign_probabilities(FlatScene& flat);
 
 // The least box around a primitive.

@@ -80,26 +80,20 @@ std::array<uint32_t, LIST_MAX> list_corners(const std::vector<Primitive>& primit
 // Rendering, section 12.5.
 //
 // An even sky is none of the lights: BSDF samples find it as well as any, and light samples for it would be
-// taken from the lamps.
-void add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box& box) {
-    if (map.even) return;
+// taken from the lamps. Returns whether the environment is one now.
+bool add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box& box) {
+    if (map.even) return false;
     const double radius = box.is_empty() ? 0.0 : 0.5 * length(glm::dvec3(box.extent()));
     double power = radius * radius * map.irradiance;
-    if (power == 0.0) return;
+    if (power == 0.0) return false;
     if (!flat.powers.empty()) {
         power = std::min(power, std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0));
     }
-    flat.lights.push_back({LIGHT_ENVIRONMENT, vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f), 0u, 0.0f});
+    Light sky{};
+    sky.kind = LIGHT_ENVIRONMENT;
+    flat.lights.push_back(sky);
     flat.powers.push_back(power);
-}
-
-// The environment's records; `pmf` is the probability with which light samples choose it.
-void append_environment(GpuScene& gpu, EnvironmentMap map, double pmf) {
-    for (EnvironmentTexel& texel : map.texels) {
-        texel.pdf *= float(pmf);
-        append(gpu.arrays[ARRAY_ENVIRONMENT], pack(texel));
-    }
-    append(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS], map.alias);
+    return true;
 }
 
 }  // namespace
@@ -136,14 +130,19 @@ GpuScene build_gpu_scene(const Scene& scene) {
     if (flat.primitives.empty())
         gpu.arrays[ARRAY_PRIMITIVES].resize(PRIMITIVE_WORDS);  // A ray may ask for it all the same.
 
-    EnvironmentMap map;
     if (scene.environment) {
-        map = build_environment_map(*scene.environment);
-        add_environment_light(flat, map, bvh.bounds);
+        EnvironmentMap map = build_environment_map(*scene.environment);
+        const bool is_light = add_environment_light(flat, map, bvh.bounds);
+        if (is_light) gpu.environment_light = uint32_t(flat.lights.size() - 1);
         gpu.environment = scene.environment->visible ? ENVIRONMENT_VISIBLE : ENVIRONMENT_HIDDEN;
         gpu.even_sky = map.even;
         gpu.environment_size = scene.environment->size;
         gpu.environment_rotation = scene.environment->rotation;
+        for (EnvironmentTexel& texel : map.texels) {
+            if (!is_light) texel.pdf = 0.0f;
+            append(gpu.arrays[ARRAY_ENVIRONMENT], pack(texel));
+        }
+        append(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS], map.alias);
     }
     assign_probabilities(flat);
     gpu.light_count = uint32_t(flat.lights.size());
@@ -167,11 +166,6 @@ GpuScene build_gpu_scene(const Scene& scene) {
         gpu.lights_present |= 1u << light.kind;
     }
     if (gpu.light_count > 0) append(gpu.arrays[ARRAY_LIGHT_ALIAS], build_alias_table(flat.powers));
-    if (scene.environment) {
-        const bool sampled = !flat.lights.empty() && flat.lights.back().kind == LIGHT_ENVIRONMENT;
-        const double total = std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0);
-        append_environment(gpu, std::move(map), sampled ? flat.powers.back() / total : 0.0);
-    }
     return gpu;
 }
 

@@ -18,6 +18,7 @@ struct GpuScene {
     uint32_t primitive_count = 0;  // Two triangles may be one: see shared/primitive.h.
     uint32_t id_count = 0;         // Triangles, spheres and disks.
     uint32_t light_count = 0;
+    uint32_t environment_light = 0;     // Index of the environment among the lights; 0 if it is none of them.
     uvec2 environment_size{0};          // Texels.
     float environment_rotation = 0.0f;  // [rad]
 

@@ -76,6 +76,7 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .max_depth = std::min(settings.max_depth, DEPTH_SAFETY_LIMIT),
             .rr_depth = settings.rr_depth,
             .light_count = scene.light_count,
+            .environment_light = scene.environment_light,
             .environment_size = scene.environment_size,
             .environment_turn = {std::cos(scene.environment_rotation), std::sin(scene.environment_rotation)},
             .lens_x = lens.radius * (cos_lens * right + sin_lens * up),

@@ -81,7 +81,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 120> words;
+    std::array<uint, 122> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scale of a node must be
@@ -98,6 +98,7 @@ Records filled(Fields& fields) {
                     .max_depth = fields.u(),
                     .rr_depth = fields.u(),
                     .light_count = fields.u(),
+        .environment_light = fields.u(),
                     .environment_size = fields.u2(),
                     .environment_turn = fields.f2(),
                     .lens_x = fields.f3(),
@@ -139,7 +140,8 @@ Records filled(Fields& fields) {
                .e2 = fields.f3(),
                .radiance = fields.f3(),
                .two_sided = fields.u(),
-               .pdf_area = fields.f()};
+               .pdf_area = fields.f(),
+               .pmf = fields.f()};
     const auto entry = [&] { return AliasEntry{.threshold = fields.u(), .alias = fields.u()}; };
     r.light_even = entry();
     r.light_odd = entry();

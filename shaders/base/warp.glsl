@@ -47,9 +47,14 @@ vec3 warp_sphere(vec2 u) {
     return direction_at(2.0 * u.x, u.y);
 }
 
-// Direction around +z, uniform over the cone in which 1 - cos(theta) <= h_max; density 1 / (2 pi h_max) [1/sr].
+// Direction around +z, uniform over the cone in which 1 - cos(theta) <= h_max.
 vec3 warp_cone(vec2 u, float h_max) {
     return direction_at(u.x * h_max, u.y);
+}
+
+// Its density within that cone [1/sr].
+float warp_cone_pdf(float h_max) {
+    return 0.5 * INV_PI / h_max;
 }
 
 // Normal of a GGX microfacet that w sees, with the density G1(w) max(0, w.h) D(h) / w.z [1/sr], from u in [0,1)^2; w.z

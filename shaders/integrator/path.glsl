@@ -34,6 +34,7 @@ struct Path {
     float eta_scale;  // Product of the squared relative indices of refraction, by which beta was divided.
     float pdf_bsdf;   // Density with which `ray` was sampled [1/sr].
     bool delta;       // Light samples could not have found `ray`: the camera sent it, or scattering was ideal.
+    vec3 ns;          // Shading normal where `ray` begins.
     vec3 absorption;  // Of the medium around `ray` [1/m].
     uint depth;       // Scattering vertices so far.
 };
@@ -56,7 +57,7 @@ struct ShadowRay {
 
 // The path that begins with a camera ray, and an estimate of nothing so far.
 Path path_begin(Ray ray) {
-    return Path(ray, vec3(1.0), 1.0, 0.0, true, vec3(0.0), 0u);
+    return Path(ray, vec3(1.0), 1.0, 0.0, true, vec3(0.0), vec3(0.0), 0u);
 }
 
 Estimate estimate_begin() {
@@ -65,6 +66,11 @@ Estimate estimate_begin() {
 
 ShadowRay shadow_none() {
     return ShadowRay(Ray(vec3(0.0), vec3(0.0)), 0.0, vec3(0.0));
+}
+
+// The path's last vertex, as it was lit.
+LitPoint path_lit_point(Path path) {
+    return LitPoint(path.ray.o, path.ns);
 }
 
 // Weight of the light that the path met, and that a light sample finds with the density pdf_light [1/sr].
@@ -78,14 +84,15 @@ float emission_weight(Path path, float pdf_light) {
 void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u && ENVIRONMENT != ENVIRONMENT_VISIBLE) return;
     EnvironmentTexel texel = environment_texel(path.ray.d);
-    estimate.L += emission_weight(path, texel.pdf) * path.beta * texel.radiance;
+    float pdf_light = environment_pdf_li(texel, path_lit_point(path));
+    estimate.L += emission_weight(path, pdf_light) * path.beta * texel.radiance;
     if (path.depth == 0u) estimate.visible = true;
 }
 
-// The path's ray met light l at s, `t` metres away: adds what it emits.
-void add_emission(Path path, inout Estimate estimate, Light l, Interaction s, float t) {
-    float pdf_light = light_pdf_li(l, path.ray.o, square(t), dot(s.wo, s.n));
-    estimate.L += emission_weight(path, pdf_light) * path.beta * area_light_le(l, s.front);
+// The path's ray met light s.light at s, `t` metres away: adds what it emits.
+void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
+    float pdf_light = light_pdf_li(s.light, path_lit_point(path), square(t), dot(s.wo, s.n));
+    estimate.L += emission_weight(path, pdf_light) * path.beta * area_light_le(light_at(s.light), s.front);
 }
 
 // Share of the light that the medium around the path's ray lets through over that distance [m], which may be infinite:
@@ -101,13 +108,14 @@ vec3 path_transmittance(Path path, float distance) {
 // divided by its density, weighted.
 ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, MaterialRecord material, uvec2 u, uint fill) {
     vec3 from = interaction_spawn_origin(s, true);
-    LightSample light = light_sample_li(from, u, fill);
+    LightSample light = light_sample_li(LitPoint(from, s.ns), u, fill);
     vec3 wi = frame_to_local(frame, light.wi);
     vec3 Ld = path.beta * bsdf_f(material, wo, wi) * abs(wi.z) * light.Li;
     // The light is in the medium through which the path came to s.
     Ld *= path_transmittance(path, light.t_max * length(light.shadow));
     bool dark = light.pdf == 0.0 || dot(light.wi, s.n) <= 0.0 || Ld == vec3(0.0);
-    float weight = ESTIMATOR == ESTIMATOR_MIS ? power_heuristic(light.pdf, bsdf_pdf(material, wo, wi)) : 1.0;
+    float weight = 1.0;
+    if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, bsdf_pdf(material, wo, wi));
     return ShadowRay(Ray(from, light.shadow), dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
 }
 
@@ -123,6 +131,7 @@ bool path_scatter(inout Path path, Interaction s, Frame frame, MaterialRecord ma
     path.eta_scale *= square(scattered.eta);
     path.pdf_bsdf = scattered.pdf;
     path.delta = scattered.delta;
+    path.ns = s.ns;
     if (!viewers_side) path.absorption = s.front ? material.base : vec3(0.0);
     path.ray = Ray(interaction_spawn_origin(s, viewers_side), wi);
     return true;
@@ -149,7 +158,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     path.beta *= path_transmittance(path, hit.t);
 
     // Add what the surface emits; light samples of the vertex before may already account for a part.
-    if (s.light != NO_LIGHT) add_emission(path, estimate, light_at(s.light), s, hit.t);
+    if (s.light != NO_LIGHT) add_emission(path, estimate, s, hit.t);
 
     // End at the last scattering vertex.
     if (path.depth == parameters.max_depth) {

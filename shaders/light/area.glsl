@@ -20,26 +20,27 @@ float area_light_pdf_li(Light l, float distance_squared, float cos_light) {
 
 // The point p of a light, sampled uniformly by area, where n is its front's unit normal; p_error [m] is how far p may
 // be off the surface beyond its roundings.
-LightSample area_light_sample_at(Light l, vec3 p_reference, vec3 p, vec3 n, float p_error) {
+LightSample area_light_sample_at(Light l, vec3 p_lit, vec3 p, vec3 n, float p_error) {
     LightSample s;
-    vec3 to_light = p - p_reference;
+    s.delta = false;
+    vec3 to_light = p - p_lit;
     float distance_squared = dot(to_light, to_light);
     s.wi = to_light * inversesqrt(distance_squared);
     float cos_light = -dot(s.wi, n);
     s.Li = area_light_le(l, cos_light > 0.0);
     if (cos_light < 0.0) n = -n;
     s.pdf = distance_squared > 0.0 ? area_light_pdf_li(l, distance_squared, cos_light) : 0.0;
-    s.shadow = offset_origin(p, n) + p_error * n - p_reference;
+    s.shadow = offset_origin(p, n) + p_error * n - p_lit;
     s.t_max = LIGHT_T_MAX;
     return s;
 }
 
-// A point on the light from u in [0,1)^2; pdf includes the probability of having chosen this light.
-LightSample area_light_sample_li(Light l, vec3 p_reference, vec2 u) {
+// A point on the light from u in [0,1)^2.
+LightSample area_light_sample_li(Light l, vec3 p_lit, vec2 u) {
     vec2 b = u;
     if (is_light(l, LIGHT_TRIANGLE)) b = warp_triangle(u);
     if (is_light(l, LIGHT_DISK)) b = warp_disk(u);
-    return area_light_sample_at(l, p_reference, l.p + b.x * l.e1 + b.y * l.e2, normalize(cross(l.e1, l.e2)), 0.0);
+    return area_light_sample_at(l, p_lit, l.p + b.x * l.e1 + b.y * l.e2, normalize(cross(l.e1, l.e2)), 0.0);
 }
 
 #endif

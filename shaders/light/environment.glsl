@@ -7,7 +7,7 @@
 #include "light/sample.glsl"
 #include "scene/scene_data.glsl"
 
-// The texel in the unit direction w of world space: its radiance, and the density of environment_light_sample_li there.
+// The texel in the unit direction w of world space.
 EnvironmentTexel environment_texel(vec3 w) {
     if (EVEN_SKY) return scene_environment_texel(0u);
     Parameters parameters = scene_parameters();
@@ -36,7 +36,7 @@ vec3 environment_direction(uvec2 texel, vec2 within) {
     return vec3(turn.x * m.x + turn.y * m.z, m.y, turn.x * m.z - turn.y * m.x);
 }
 
-// A direction towards the sky, from 2 x 32 random bits; pdf includes the probability of having chosen the environment.
+// A direction towards the sky, from 2 x 32 random bits.
 LightSample environment_light_sample_li(uvec2 u) {
     uvec2 size = scene_parameters().environment_size;
     uvec2 column = warp_alias_column(u.x, size.x * size.y);
@@ -48,6 +48,7 @@ LightSample environment_light_sample_li(uvec2 u) {
     s.wi = environment_direction(uvec2(choice.i % size.x, choice.i / size.x), within);
     s.Li = texel.radiance;
     s.pdf = texel.pdf;
+    s.delta = false;
     s.shadow = s.wi;
     s.t_max = FLOAT_MAX;
     return s;

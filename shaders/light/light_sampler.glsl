@@ -21,12 +21,17 @@ Light light_at(uint i) {
     return scene_light(i);
 }
 
-// A point on one of the lights, seen from p_reference, from 2 x 32 random bits. The first word chooses the light as
-// well, if there are several, and what the choice leaves of it is uniform again: so the points of a light are as well
-// spread as those of a sampler are. The 8 low bits of `fill` are random too, and become those of the word. The scene
-// has at least one light; light_prepare comes first.
+// Probability with which light_sample_li chooses light i for that point.
+float light_pmf(uint i, LitPoint lit) {
+    return ONE_LIGHT ? 1.0 : light_at(i).pmf;
+}
+
+// A point on one of the lights, from 2 x 32 random bits. The first word chooses the light as well, if there are several,
+// and what the choice leaves of it is uniform again: so the points of a light are as well spread as those of a sampler
+// are. The 8 low bits of `fill` are random too, and become those of the word. The scene has at least one light;
+// light_prepare comes first.
 // Ref: Walker 1977, An Efficient Method for Generating Discrete Random Variables with General Distributions.
-LightSample light_sample_li(vec3 p_reference, uvec2 u, uint fill) {
+LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
     uint i = 0u;
     if (!ONE_LIGHT) {
         uvec2 column = warp_alias_column(u.x, scene_parameters().light_count);
@@ -35,16 +40,32 @@ LightSample light_sample_li(vec3 p_reference, uvec2 u, uint fill) {
         u.x = uint(choice.rest * 16777216.0) << 8u | (fill & 255u);
     }
     Light l = light_at(i);
-    if (is_light(l, LIGHT_ENVIRONMENT)) return environment_light_sample_li(u);
-    if (is_light(l, LIGHT_SPHERE)) return sphere_light_sample_li(l, p_reference, unit_float(u));
-    return area_light_sample_li(l, p_reference, unit_float(u));
+    LightSample s;
+    if (is_light(l, LIGHT_ENVIRONMENT)) {
+        s = environment_light_sample_li(u);
+    } else if (is_light(l, LIGHT_SPHERE)) {
+        s = sphere_light_sample_li(l, lit.p, unit_float(u));
+    } else {
+        s = area_light_sample_li(l, lit.p, unit_float(u));
+    }
+    s.pdf *= light_pmf(i, lit);
+    return s;
 }
 
-// Density [1/sr] with which light_sample_li finds the point of light l at that squared distance [m^2] from p_reference,
-// seen under that cosine of its normal; not for the environment.
-float light_pdf_li(Light l, vec3 p_reference, float distance_squared, float cos_light) {
-    if (is_light(l, LIGHT_SPHERE)) return sphere_light_pdf_li(l, p_reference, distance_squared, cos_light);
-    return area_light_pdf_li(l, distance_squared, cos_light);
+// Density [1/sr] with which light_sample_li finds, for a lit point, the point of light i at that squared distance
+// [m^2] from it, seen under that cosine of its normal; not for the environment.
+float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light) {
+    Light l = light_at(i);
+    float pdf = is_light(l, LIGHT_SPHERE) ? sphere_light_pdf_li(l, lit.p, distance_squared, cos_light)
+                                          : area_light_pdf_li(l, distance_squared, cos_light);
+    return light_pmf(i, lit) * pdf;
+}
+
+// Density [1/sr] with which light_sample_li finds a direction to that texel of the environment; 0 if the environment is
+// none of the lights.
+float environment_pdf_li(EnvironmentTexel texel, LitPoint lit) {
+    if ((LIGHTS & 1u << LIGHT_ENVIRONMENT) == 0u) return 0.0;
+    return light_pmf(scene_parameters().environment_light, lit) * texel.pdf;
 }
 
 #endif

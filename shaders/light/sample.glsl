@@ -16,12 +16,19 @@ bool is_light(Light l, const uint kind) {
 // offset_origin moves it.
 const float LIGHT_T_MAX = 1.0 - 1.0 / 524288.0;
 
-// A point on a light, as seen from a reference point.
+// A point that is lit: what the choice of a light may depend on. World space.
+struct LitPoint {
+    vec3 p;   // Where rays to the lights begin [m].
+    vec3 ns;  // Unit shading normal, on the viewer's side.
+};
+
+// A point on a light, as seen from a point that is lit.
 struct LightSample {
-    vec3 wi;      // Unit direction from the reference point.
+    vec3 wi;      // Unit direction from the lit point.
     vec3 Li;      // Radiance that arrives if nothing is between [W/(m^2 sr)].
-    float pdf;    // Density over solid angle at the reference point [1/sr]; 0 says that nothing arrives.
-    vec3 shadow;  // The light is hidden if a ray from the reference point in this direction, of any length,
+    float pdf;    // Density over solid angle at the lit point [1/sr]; 0 says that nothing arrives.
+    bool delta;   // No other sampling could find it: pdf is the probability of choosing the light.
+    vec3 shadow;  // The light is hidden if a ray from the lit point in this direction, of any length,
     float t_max;  // meets something with t in (0, t_max).
 };
 

@@ -13,15 +13,15 @@ float sphere_light_cap(float radius, float distance_squared) {
     return sin2_max / (1.0 + sqrt(1.0 - sin2_max));
 }
 
-// A point on the light from u in [0,1)^2; pdf includes the probability of having chosen this light.
-LightSample sphere_light_sample_li(Light l, vec3 p_reference, vec2 u) {
+// A point on the light from u in [0,1)^2.
+LightSample sphere_light_sample_li(Light l, vec3 p_lit, vec2 u) {
     float radius = l.e1.x;
-    vec3 to_center = l.p - p_reference;
+    vec3 to_center = l.p - p_lit;
     float distance_squared = dot(to_center, to_center);
     float error = sphere_error(l.p, radius);
     if (distance_squared <= square(radius)) {
         vec3 n = warp_sphere(u);
-        return area_light_sample_at(l, p_reference, l.p + radius * n, n, error);
+        return area_light_sample_at(l, p_lit, l.p + radius * n, n, error);
     }
     float cap = sphere_light_cap(radius, distance_squared);
     vec3 w = warp_cone(u, cap);
@@ -29,26 +29,27 @@ LightSample sphere_light_sample_li(Light l, vec3 p_reference, vec2 u) {
     LightSample s;
     s.wi = frame_to_world(frame, w);
     s.Li = l.radiance;
-    s.pdf = 2.0 * square(radius) * l.pdf_area / cap;
+    s.pdf = warp_cone_pdf(cap);
+    s.delta = false;
     // The normal where wi meets the sphere first, without the difference of two points that are far away.
     float distance = sqrt(distance_squared);
     float sin2_theta = dot(w.xy, w.xy);
     float half_chord = sqrt(max(0.0, square(radius) - distance_squared * sin2_theta));
     float t = distance * w.z - half_chord;
     vec3 n = frame_to_world(frame, vec3(t * w.xy, -distance * sin2_theta - half_chord * w.z) / radius);
-    s.shadow = offset_origin(l.p + radius * n, n) + error * n - p_reference;
+    s.shadow = offset_origin(l.p + radius * n, n) + error * n - p_lit;
     s.t_max = LIGHT_T_MAX;
     return s;
 }
 
-// Density [1/sr] with which sphere_light_sample_li finds the point at that squared distance [m^2] from p_reference,
+// Density [1/sr] with which sphere_light_sample_li finds the point at that squared distance [m^2] from p_lit,
 // seen under that cosine of its normal.
-float sphere_light_pdf_li(Light l, vec3 p_reference, float distance_squared, float cos_light) {
-    vec3 to_center = l.p - p_reference;
+float sphere_light_pdf_li(Light l, vec3 p_lit, float distance_squared, float cos_light) {
+    vec3 to_center = l.p - p_lit;
     float radius = l.e1.x;
     float center_squared = dot(to_center, to_center);
     if (center_squared <= square(radius)) return area_light_pdf_li(l, distance_squared, cos_light);
-    return 2.0 * square(radius) * l.pdf_area / sphere_light_cap(radius, center_squared);
+    return warp_cone_pdf(sphere_light_cap(radius, center_squared));
 }
 
 #endif

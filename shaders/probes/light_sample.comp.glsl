@@ -14,7 +14,8 @@ void main() {
     if (past_end()) return;
     vec3 from = item_floats(0u).xyz;
     light_prepare();
-    LightSample s = light_sample_li(from, item(1u).xy, item(0u).w);
+    LitPoint lit = LitPoint(from, vec3(0.0, 0.0, 1.0));
+    LightSample s = light_sample_li(lit, item(1u).xy, item(0u).w);
     put(s.wi);
     put(s.Li);
     put(s.pdf);
@@ -29,13 +30,13 @@ void main() {
     vec3 L = vec3(0.0);
     if (!is_hit(hit)) {
         EnvironmentTexel texel = environment_texel(s.wi);
-        pdf = texel.pdf;
+        pdf = environment_pdf_li(texel, lit);
         L = texel.radiance;
     } else {
         Interaction met = interaction_at(ray, hit);
         light = met.light;
         if (light != NO_LIGHT) {
-            pdf = light_pdf_li(scene_light(light), from, square(hit.t), dot(met.wo, met.n));
+            pdf = light_pdf_li(light, lit, square(hit.t), dot(met.wo, met.n));
             L = area_light_le(scene_light(light), met.front);
         }
     }

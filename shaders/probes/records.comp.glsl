@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 120u
+#define RESULT_WORDS 122u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -18,6 +18,7 @@ void put_parameters(Parameters p) {
     put(p.max_depth);
     put(p.rr_depth);
     put(p.light_count);
+    put(p.environment_light);
     put(p.environment_size);
     put(p.environment_turn);
     put(p.lens_x);
@@ -68,6 +69,7 @@ void put_light(Light l) {
     put(l.radiance);
     put(l.two_sided);
     put(l.pdf_area);
+    put(l.pmf);
 }
 
 void put_alias_entry(AliasEntry e) {

@@ -4,7 +4,7 @@
 //   Light                         EnvironmentTexel                 AliasEntry
 //     0: p.xyz, kind                0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
 //     1: e1.xyz, two_sided                                              entry 2i + 1: threshold, alias
-//     2: e2.xyz, 0
+//     2: e2.xyz, pmf
 //     3: radiance.rgb, pdf_area
 #ifndef SHARED_LIGHT_H
 #define SHARED_LIGHT_H
@@ -35,14 +35,15 @@ struct Light {
     vec3 e2;
     vec3 radiance;   // [W/(m^2 sr)], constant over the surface and its directions.
     uint two_sided;  // 1: emits from the back as well.
-    float pdf_area;  // Probability of choosing the light / its area [1/m^2].
+    float pdf_area;  // Of a point on it, chosen uniformly by area [1/m^2]; 0 for the environment.
+    float pmf;       // Probability of choosing the light among all.
 };
 
 // A piece of the sky in latitude and longitude.
 struct EnvironmentTexel {
     vec3 radiance;  // [W/(m^2 sr)], constant over the texel.
-    float pdf;      // Density of light samples over solid angle [1/sr]: the probability of choosing the
-                    // environment included. In proportion to the luminance.
+    float pdf;  // Of a direction, chosen in proportion to luminance [1/sr]; 0 in an environment that is no
+                // light.
 };
 
 // Entry i of an alias table of n: column i is kept with probability threshold / 2^32, else the sample is
@@ -55,7 +56,7 @@ struct AliasEntry {
 #ifdef __cplusplus
 
 inline std::array<uvec4, LIGHT_WORDS> pack(const Light& l) {
-    return {word(l.p, l.kind), word(l.e1, l.two_sided), word(l.e2, 0u),
+    return {word(l.p, l.kind), word(l.e1, l.two_sided), word(l.e2, floatBitsToUint(l.pmf)),
             word(l.radiance, floatBitsToUint(l.pdf_area))};
 }
 
@@ -77,6 +78,7 @@ Light light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     l.e1 = uintBitsToFloat(b.xyz);
     l.two_sided = b.w;
     l.e2 = uintBitsToFloat(c.xyz);
+    l.pmf = uintBitsToFloat(c.w);
     l.radiance = uintBitsToFloat(d.xyz);
     l.pdf_area = uintBitsToFloat(d.w);
     return l;

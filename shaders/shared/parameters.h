@@ -4,7 +4,7 @@
 //   0: position.xyz, seed         5: lens_x.xyz, focal_distance
 //   1: right.xyz, max_depth       6: lens_y.xyz, blades
 //   2: up.xyz, rr_depth           7: environment_size.xy, environment_turn.xy
-//   3: forward.xyz, light_count   8: first_sample, 0, 0, 0
+//   3: forward.xyz, light_count   8: first_sample, environment_light, 0, 0
 //   4: full_size.xy, crop.xy
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
@@ -31,6 +31,7 @@ struct Parameters {
     uint max_depth;  // Scattering vertices at most, <= DEPTH_SAFETY_LIMIT.
     uint rr_depth;   // Bounces that always survive.
     uint light_count;
+    uint environment_light;  // Index of the environment among the lights; 0 if it is none of them.
     uvec2 environment_size;  // Texels.
     vec2 environment_turn;   // Cosine and sine of the environment's rotation about +Y.
     vec3 lens_x;             // The point (x, y) of an aperture of radius 1 is position + x lens_x + y lens_y.
@@ -62,7 +63,7 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         word(p.lens_y, p.blades),
         uvec4(p.environment_size.x, p.environment_size.y, floatBitsToUint(p.environment_turn.x),
               floatBitsToUint(p.environment_turn.y)),
-        uvec4(p.first_sample, 0u, 0u, 0u),
+        uvec4(p.first_sample, p.environment_light, 0u, 0u),
     };
 }
 
@@ -88,6 +89,7 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     p.environment_size = w[7].xy;
     p.environment_turn = uintBitsToFloat(w[7].zw);
     p.first_sample = w[8].x;
+    p.environment_light = w[8].y;
     return p;
 }
 

@@ -39,7 +39,7 @@ TEST(Flatten, ASphereIsOnePrimitiveAndOneLight) {
     EXPECT_EQ(flat.lights[0].p, BALL.center);
     EXPECT_EQ(flat.lights[0].e1.x, BALL.radius);
     EXPECT_EQ(flat.lights[0].radiance, vec3(0, 2, 0));
-    EXPECT_NEAR(flat.areas[0], M_PI, 1e-6);  // 4 pi / 2^2
+    EXPECT_NEAR(1.0 / flat.lights[0].pdf_area, M_PI, 1e-6);  // 4 pi / 2^2
     EXPECT_NEAR(flat.powers[0], M_PI * 2.0 * 0.7152, 2e-6);
 }
 
@@ -55,7 +55,7 @@ TEST(Flatten, ADiskIsOnePrimitiveAndOneLight) {
     ASSERT_EQ(flat.lights.size(), 1u);
     EXPECT_EQ(flat.lights[0].kind, LIGHT_DISK);
     EXPECT_EQ(flat.lights[0].two_sided, 1u);
-    EXPECT_NEAR(flat.areas[0], 6.0 * M_PI, 1e-5);  // The parallelogram of its axes is 6 m^2.
+    EXPECT_NEAR(1.0 / flat.lights[0].pdf_area, 6.0 * M_PI, 1e-5);  // The parallelogram of its axes is 6 m^2.
     EXPECT_NEAR(flat.powers[0], 12.0 * M_PI, 2e-5);
 }
 
@@ -100,14 +100,13 @@ TEST(Flatten, EveryPrimitiveHasARecordOfNormalsIfOneIsSmooth) {
     }
 }
 
-// A light that has no area, the sky, takes its part of the powers.
-TEST(Flatten, DensitiesAreSharesOfAllPowers) {
+TEST(Flatten, ProbabilitiesAreSharesOfAllPowers) {
     const Emission white{.radiance = vec3(1), .two_sided = false};
     FlatScene flat = flatten_shapes({shape(BALL, 0, white), shape(ELLIPSE, 0, white)});
-    flat.powers.push_back(3.0 * M_PI);  // Of 10 pi in all.
     assign_probabilities(flat);
+    const double sum = flat.powers[0] + flat.powers[1];
     for (const size_t i : {0u, 1u})
-        EXPECT_NEAR(flat.lights[i].pdf_area, 1.0 / (10.0 * M_PI), 1e-7);
+        EXPECT_NEAR(flat.lights[i].pmf, flat.powers[i] / sum, 1e-7);
 }
 
 // Points of the surface, in double precision, lie in the box but for its roundings, and on each side of the

@@ -28,6 +28,7 @@ TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
         EXPECT_EQ(l.radiance, vec3(2));
         EXPECT_EQ(l.two_sided, 0u);
         EXPECT_NEAR(double(l.pdf_area) * area(l), 1.0, 1e-6);
+        EXPECT_EQ(l.pmf, 1.0f);
         for (const Triangle& t : triangles(gpu))
             EXPECT_EQ(t.surface.light, 0u);
     }
@@ -43,9 +44,9 @@ TEST(GpuScene, AnyOtherQuadIsTwoLightsThatCoverIt) {
         EXPECT_EQ(l.kind, LIGHT_TRIANGLE);
         EXPECT_GT(cross(l.e1, l.e2).z, 0.0f) << "the light faces another way than the quad";
         covered += area(l);
-        probability += area(l) * double(l.pdf_area);
+        probability += double(l.pmf);
         // Equal radiance: equal density everywhere.
-        EXPECT_NEAR(l.pdf_area, 1.0 / 6.0, 1e-6);
+        EXPECT_NEAR(l.pmf * l.pdf_area, 1.0 / 6.0, 1e-6);
     }
     EXPECT_NEAR(covered, 6.0, 1e-6);
     EXPECT_NEAR(probability, 1.0, 1e-6);
@@ -80,9 +81,10 @@ TEST(GpuScene, LightsAreChosenByAreaLuminanceAndSides) {
     for (uint32_t i = 0; i < gpu.light_count; ++i) {
         const Light l = light(gpu, i);
         EXPECT_NEAR(chosen[i], powers[i] / total, 1e-6) << i;
-        EXPECT_NEAR(double(l.pdf_area) * area(l), chosen[i], 1e-6) << i;
+        EXPECT_NEAR(double(l.pmf), chosen[i], 1e-6) << i;
+        EXPECT_NEAR(double(l.pdf_area) * area(l), 1.0, 1e-6) << i;
         EXPECT_EQ(l.two_sided, i == 2 ? 1u : 0u);
-        probability += double(l.pdf_area) * area(l);
+        probability += double(l.pmf);
     }
     EXPECT_NEAR(probability, 1.0, 1e-6);
 }
@@ -169,7 +171,7 @@ EnvironmentTexel texel(const GpuScene& gpu, uint32_t i) {
 
 // The power of a sky of luminance 1, over pi, on the sphere around the square's box, whose radius is sqrt(2)
 // / 2, is 1/2 * 4 pi; that of the square is 10.
-TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
+TEST(GpuScene, TheSkyIsALightAndChosenByThePowerThatFallsOntoTheScene) {
     Scene scene = scene_of({emitter(SQUARE, vec3(10))});
     const std::vector<vec3> radiance{vec3(1), vec3(1), vec3(1.5f, 0.6089f / 0.7152f, 1)};
     scene.environment = Environment{.size = {3, 1}, .radiance = radiance, .rotation = 0.5f};
@@ -182,10 +184,12 @@ TEST(GpuScene, TheSkyIsTheLastLightAndChosenByThePowerThatFallsOntoTheScene) {
 
     const double pmf = 2.0 * M_PI / (2.0 * M_PI + 10.0);
     EXPECT_NEAR(light_probabilities(gpu)[1], pmf, 1e-6);
-    EXPECT_NEAR(light(gpu, 0).pdf_area, 1.0 - pmf, 1e-6);
+    EXPECT_NEAR(light(gpu, 0).pmf, 1.0 - pmf, 1e-6);
+    EXPECT_EQ(gpu.environment_light, 1u);
+    EXPECT_NEAR(light(gpu, 1).pmf, pmf, 1e-6);
     for (const uint32_t i : {0u, 1u, 2u}) {
         EXPECT_EQ(texel(gpu, i).radiance, radiance[i]);
-        EXPECT_NEAR(texel(gpu, i).pdf, pmf / (4.0 * M_PI), 1e-7);
+        EXPECT_NEAR(texel(gpu, i).pdf, 1.0 / (4.0 * M_PI), 1e-7);
         // All weights are equal: whichever index a column gives, all three come out alike.
         EXPECT_LT(entry(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS], i).alias, 3u);
     }
@@ -204,8 +208,9 @@ TEST(GpuScene, TheSkyIsChosenForHalfOfTheSamplesAtMost) {
     EXPECT_NEAR(chosen[0], 1.0 / 6.0, 1e-6);
     EXPECT_NEAR(chosen[1], 2.0 / 6.0, 1e-6);
     EXPECT_NEAR(chosen[2], 0.5, 1e-6);
-    EXPECT_NEAR(light(gpu, 0).pdf_area, 1.0 / 6.0, 1e-6);
-    EXPECT_NEAR(texel(gpu, 0).pdf, 0.5 * 0.5 / (4.0 * M_PI), 1e-7);
+    EXPECT_NEAR(light(gpu, 0).pmf, 1.0 / 6.0, 1e-6);
+    EXPECT_NEAR(light(gpu, 2).pmf, 0.5, 1e-6);
+    EXPECT_NEAR(texel(gpu, 0).pdf, 0.5 / (4.0 * M_PI), 1e-7);
 }
 
 TEST(GpuScene, ASkyThatIsEvenOrLightsNothingIsNotSampled) {
@@ -229,7 +234,7 @@ TEST(GpuScene, AnEvenSkyLeavesAllSamplesToTheLamps) {
     scene.environment = Environment{.size = {1, 1}, .radiance = {vec3(100)}};
     const GpuScene gpu = build_gpu_scene(scene);
     ASSERT_EQ(gpu.light_count, 1u);
-    EXPECT_EQ(light(gpu, 0).pdf_area, 1.0f);
+    EXPECT_EQ(light(gpu, 0).pmf, 1.0f);
     EXPECT_EQ(texel(gpu, 0).radiance, vec3(100));
     EXPECT_EQ(texel(gpu, 0).pdf, 0.0f);
 }

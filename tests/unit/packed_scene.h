@@ -20,8 +20,14 @@ inline vec3 floats(uvec4 word) {
 
 inline Light light(const GpuScene& gpu, uint32_t i) {
     const uvec4* w = &gpu.arrays[ARRAY_LIGHTS][i * LIGHT_WORDS];
-    return {
-        w[0].w, floats(w[0]), floats(w[1]), floats(w[2]), floats(w[3]), w[1].w, std::bit_cast<float>(w[3].w)};
+    return {.kind = w[0].w,
+            .p = floats(w[0]),
+            .e1 = floats(w[1]),
+            .e2 = floats(w[2]),
+            .radiance = floats(w[3]),
+            .two_sided = w[1].w,
+            .pdf_area = std::bit_cast<float>(w[3].w),
+            .pmf = std::bit_cast<float>(w[2].w)};
 }
 
 // Entry i of an alias table.
