@@ -35,7 +35,7 @@ if(CANDELA_EMBREE)
 endif()
 
 get_target_property(spirv candela_render CANDELA_SPIRV)
-get_target_property(probe_spirv candela_selftest CANDELA_SPIRV)
+get_target_property(probe_spirv candela_probe CANDELA_SPIRV)
 get_target_property(test_spirv test_support CANDELA_SPIRV)
 foreach(file IN LISTS spirv probe_spirv test_spirv)
     cmake_path(GET file STEM name)

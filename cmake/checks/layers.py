@@ -28,6 +28,7 @@ MAY_INCLUDE = {
     "shaders/base": ["shaders/shared"],
     "shaders/bsdf": ["shaders/shared", "shaders/base"],
     "shaders/scene": ["shaders/shared", "shaders/base"],
+    "shaders/medium": ["shaders/shared", "shaders/base", "shaders/scene"],
     "shaders/light": ["shaders/shared", "shaders/base", "shaders/scene"],
     "shaders/integrator": ["shaders"],
     "shaders/kernels": ["shaders"],

@@ -11,6 +11,7 @@
 #include "gpu_scene/alias_table.h"
 #include "gpu_scene/environment_map.h"
 #include "gpu_scene/flatten.h"
+#include "gpu_scene/material_record.h"
 #include "shared/bvh_node.h"
 #include "shared/material.h"
 
@@ -25,28 +26,6 @@ void append(std::vector<uvec4>& out, const Record& record) {
 void append(std::vector<uvec4>& out, const std::vector<AliasEntry>& entries) {
     for (size_t i = 0; i < entries.size(); i += 2)
         append(out, pack(entries[i], i + 1 < entries.size() ? entries[i + 1] : AliasEntry{}));
-}
-
-MaterialRecord record(const DiffuseMaterial& m) {
-    return {MATERIAL_DIFFUSE, m.reflectance, vec3(0.0f), 0.0f};
-}
-
-MaterialRecord record(const PhongMaterial& m) {
-    return {MATERIAL_PHONG, m.diffuse, m.specular, m.exponent};
-}
-
-MaterialRecord record(const MirrorMaterial& m) {
-    return {MATERIAL_MIRROR, m.reflectance, vec3(0.0f), 0.0f};
-}
-
-MaterialRecord record(const ConductorMaterial& m) {
-    return {MATERIAL_CONDUCTOR, m.reflectance, vec3(0.0f), m.alpha};
-}
-
-MaterialRecord record(const DielectricMaterial& m) {
-    const bool exact = m.fresnel == Fresnel::exact;
-    return {exact ? MATERIAL_DIELECTRIC_EXACT : MATERIAL_DIELECTRIC_SCHLICK, m.absorption, vec3(0.0f),
-            m.ior / m.exterior_ior};
 }
 
 Bvh build_bvh_over(const std::vector<Primitive>& primitives) {
@@ -94,6 +73,23 @@ bool add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box
     flat.lights.push_back(sky);
     flat.powers.push_back(power);
     return true;
+}
+
+// The records of materials, and of the media behind them, each once.
+void append_materials(GpuScene& gpu, const std::vector<Material>& materials) {
+    std::vector<Medium> media(1);
+    static_assert(MEDIUM_NONE == 0);
+    for (const Material& material : materials) {
+        const Medium medium = medium_behind(material.model).value_or(Medium{});
+        auto place = std::ranges::find(media, medium);
+        if (place == media.end()) place = media.insert(place, medium);
+        const MaterialRecord record = material_record(material.model, uint32_t(place - media.begin()));
+        append(gpu.arrays[ARRAY_MATERIALS], pack(record));
+        gpu.materials_present |= 1u << record.model;
+    }
+    for (const Medium& medium : media)
+        append(gpu.arrays[ARRAY_MEDIA], pack(MediumRecord{medium.absorption}));
+    gpu.has_media = media.size() > 1;
 }
 
 }  // namespace
@@ -155,12 +151,7 @@ GpuScene build_gpu_scene(const Scene& scene) {
         for (const uint32_t i : bvh.order)
             append(gpu.arrays[ARRAY_NORMALS], flat.normals[i]);
     }
-    for (const Material& material : scene.materials) {
-        const MaterialRecord packed =
-            std::visit([](const auto& model) { return record(model); }, material.model);
-        append(gpu.arrays[ARRAY_MATERIALS], pack(packed));
-        gpu.materials_present |= 1u << packed.model;
-    }
+    append_materials(gpu, scene.materials);
     for (const Light& light : flat.lights) {
         append(gpu.arrays[ARRAY_LIGHTS], pack(light));
         gpu.lights_present |= 1u << light.kind;

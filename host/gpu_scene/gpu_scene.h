@@ -24,6 +24,7 @@ struct GpuScene {
 
     // What the kernels must know of: see shared/kernel_constants.inc.
     bool has_normals = false;
+    bool has_media = false;
     uint32_t environment = ENVIRONMENT_NONE;
     bool even_sky = false;
     uint32_t materials_present = 0;                 // Bit i: a material of model i.

@@ -1,6 +1,7 @@
 // The probes as SPIR-V, compiled from shaders/probes at build time, and what the larger ones read and write.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -18,7 +19,7 @@ namespace candela {
 
 // bsdf: samples a material with u and uc, and evaluates it both for the sampled direction and for wi.
 struct BsdfItem {
-    MaterialRecord material;
+    std::array<uvec4, MATERIAL_WORDS> material;  // Its record, packed.
     vec3 wo{0, 0, 1};
     float unused0 = 0.0f;
     vec3 wi{0, 0, 1};

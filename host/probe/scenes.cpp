@@ -81,9 +81,11 @@ Scene scene_of_everything() {
     const uint32_t phong = add_material(scene, PhongMaterial{vec3(0.3f), vec3(0.6f, 0.5f, 0.4f), 50.0f});
     const uint32_t mirror = add_material(scene, MirrorMaterial{vec3(0.9f)});
     const uint32_t metal = add_material(scene, ConductorMaterial{vec3(0.9f, 0.7f, 0.4f), 0.2f});
-    const uint32_t glass = add_material(scene, DielectricMaterial{.absorption = vec3(0.5f, 1, 2)});
+    const uint32_t glass = add_material(scene, DielectricMaterial{.inside = {vec3(0.5f, 1, 2)}});
     const uint32_t exact_glass =
         add_material(scene, DielectricMaterial{.ior = 1.8f, .fresnel = Fresnel::exact});
+    const uint32_t leaf =
+        add_material(scene, DiffuseTransmissionMaterial{vec3(0.2f, 0.4f, 0.1f), vec3(0.3f, 0.5f, 0.2f)});
 
     const vec3 bright(3, 2, 1);
     add_shape(scene, parallelogram(vec3(-1, 1.99f, -1), vec3(0.8f, 0, 0), vec3(0, 0, 0.8f)), black,
@@ -101,6 +103,7 @@ Scene scene_of_everything() {
     TriangleMesh ball = sphere_mesh(8, 12);
     ball.normals = ball.positions;
     add_shape(scene, transformed(ball, [](vec3 p) { return vec3(0.9f, 0.3f, 0.5f) + 0.25f * p; }), phong);
+    add_shape(scene, Disk{vec3(-0.3f, 1.1f, 0.2f), vec3(0.3f, 0.1f, 0), vec3(0, 0.1f, 0.3f)}, leaf);
     return scene;
 }
 

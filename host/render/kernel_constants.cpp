@@ -64,6 +64,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
     constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
     constants[CONSTANT_LIGHTS] = scene.lights_present;
+    constants[CONSTANT_HAS_MEDIA] = scene.has_media;
     constants[CONSTANT_ONE_LIGHT] = scene.light_count == 1;
     return constants;
 }

@@ -15,8 +15,9 @@ Model read_diffuse(const Node& node) {
     return DiffuseMaterial{vec3(node.require("reflectance").reflectance())};
 }
 
-// Throws Error if a channel would reflect more light than it receives.
-void check_sum(const Node& specular, dvec3 kd, dvec3 ks) {
+// Throws Error at the place of `b` if a channel would send out more light than it receives; `names` are those
+// of a and b.
+void check_sum(const Node& place, std::string_view names, dvec3 a, dvec3 b) {
     constexpr std::array<const char*, 3> CHANNELS{"red", "green", "blue"};
     // Decimals that add up to 1, such as 0.7 and 0.3, do so as doubles within 2e-16. More than 1e-14 is
     // meant, and shows in 15 digits. Floats, of which the greater is off by at most 2^-25 and the lesser by
@@ -24,10 +25,10 @@ void check_sum(const Node& specular, dvec3 kd, dvec3 ks) {
     constexpr double SLACK = 1e-14;
     constexpr int DIGITS = 15;
     for (glm::length_t i = 0; i < 3; ++i) {
-        const double sum = kd[i] + ks[i];
+        const double sum = a[i] + b[i];
         if (sum <= 1.0 + SLACK) continue;
-        specular.fail(std::string("diffuse + specular is ") + number_text(sum, DIGITS) + " in " +
-                      CHANNELS[size_t(i)] + "; lower one of the two until the sum is at most 1");
+        place.fail(std::string(names) + " is " + number_text(sum, DIGITS) + " in " + CHANNELS[size_t(i)] +
+                   "; lower one of the two until the sum is at most 1");
     }
 }
 
@@ -37,7 +38,7 @@ Model read_phong(const Node& node) {
     const Node specular = node.require("specular");
     const dvec3 kd = diffuse ? diffuse->reflectance() : dvec3(0.0);
     const dvec3 ks = specular.reflectance();
-    check_sum(specular, kd, ks);
+    check_sum(specular, "diffuse + specular", kd, ks);
     return PhongMaterial{vec3(kd), vec3(ks), node.require("exponent").number(0.0f, MAX_PHONG_EXPONENT)};
 }
 
@@ -75,6 +76,18 @@ vec3 read_absorption(const Node& node) {
     return vec3(absorption);
 }
 
+Model read_diffuse_transmission(const Node& node) {
+    node.allow_only({"type", "reflectance", "transmittance", "absorption"});
+    const dvec3 reflectance = node.require("reflectance").reflectance();
+    const Node place = node.require("transmittance");
+    const dvec3 transmittance = place.reflectance();
+    check_sum(place, "reflectance + transmittance", reflectance, transmittance);
+    DiffuseTransmissionMaterial material{vec3(reflectance), vec3(transmittance), {}};
+    if (const auto absorption = node.find("absorption"))
+        material.inside = Medium{read_absorption(*absorption)};
+    return material;
+}
+
 Model read_dielectric(const Node& node) {
     constexpr double MOST_CONTRAST = 1e6;  // Its square, by which radiance is scaled, stays within floats.
     node.allow_only({"type", "ior", "exterior_ior", "fresnel", "absorption"});
@@ -87,19 +100,20 @@ Model read_dielectric(const Node& node) {
         ior.fail("ior and exterior_ior differ by a factor above a million; give both as those of real media");
     }
     if (const auto fresnel = node.find("fresnel")) material.fresnel = fresnel->choice(FRESNEL_NAMES);
-    if (const auto absorption = node.find("absorption")) material.absorption = read_absorption(*absorption);
+    if (const auto absorption = node.find("absorption")) material.inside = {read_absorption(*absorption)};
     return material;
 }
 
 }  // namespace
 
 Material read_material(const Node& node) {
-    constexpr std::array<std::pair<std::string_view, Model (*)(const Node&)>, 5> READERS{
+    constexpr std::array<std::pair<std::string_view, Model (*)(const Node&)>, 6> READERS{
         {{"diffuse", &read_diffuse},
          {"phong", &read_phong},
          {"mirror", &read_mirror},
          {"conductor", &read_conductor},
-         {"dielectric", &read_dielectric}}};
+         {"dielectric", &read_dielectric},
+         {"diffuse_transmission", &read_diffuse_transmission}}};
     return {std::string(node.key()), node.require("type").choice(READERS)(node)};
 }
 

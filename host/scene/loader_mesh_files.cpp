@@ -45,7 +45,9 @@ std::string name_of(const Node& file, const ObjPart& part) {
 
 // Adds the materials of an OBJ file to the scene, unless another shape of the same file has brought them.
 void add_surfaces(const Node& file, const ObjParts& obj, ShapeList& shapes) {
-    const auto is_there = [&](const ObjPart& part) { return shapes.find_file_appearance(name_of(file, part)); };
+    const auto is_there = [&](const ObjPart& part) {
+        return shapes.find_file_appearance(name_of(file, part));
+    };
     if (std::all_of(obj.parts.begin(), obj.parts.end(), is_there)) return;
     const std::filesystem::path path = shapes.path_of(file.file_name());
     Scene& scene = shapes.scene();
@@ -64,7 +66,7 @@ void add_surfaces(const Node& file, const ObjParts& obj, ShapeList& shapes) {
         warn(file, material.warnings, scene);
         const bool emits = material.emission != vec3(0.0f);
         shapes.add_file_appearance(name_of(file, part), material.material.model,
-                                emits ? std::optional(Emission{material.emission}) : std::nullopt);
+                                   emits ? std::optional(Emission{material.emission}) : std::nullopt);
     }
 }
 

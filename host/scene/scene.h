@@ -53,6 +53,13 @@ struct IntegratorSettings {
     uint32_t seed = 0;
 };
 
+// What lies between surfaces.
+struct Medium {
+    vec3 absorption{0};  // [1/m], each >= 0 (Beer and Lambert).
+
+    bool operator==(const Medium&) const = default;
+};
+
 // Lambert: f = reflectance / pi on both sides.
 struct DiffuseMaterial {
     vec3 reflectance{0.5f};  // Each in [0, 1].
@@ -79,6 +86,14 @@ struct ConductorMaterial {
 };
 inline constexpr float MIN_ALPHA = 1e-3f;
 
+// A thin sheet that scatters light diffusely to both sides. In each channel, the two add up to at most 1, so
+// that no light is made.
+struct DiffuseTransmissionMaterial {
+    vec3 reflectance{0.5f};          // On the side from which light comes.
+    vec3 transmittance{0.5f};        // On the other.
+    std::optional<Medium> inside{};  // Behind the surface; none: the same as before it.
+};
+
 enum class Fresnel { schlick, exact };
 
 // A smooth boundary between two transparent media: glass, water. Its front side is outside. Solids of it must
@@ -87,12 +102,14 @@ struct DielectricMaterial {
     float ior = 1.5f;           // Index of refraction behind the surface; above 0 ...
     float exterior_ior = 1.0f;  // ... and before it.
     Fresnel fresnel = Fresnel::schlick;
-    vec3 absorption{0};  // Behind the surface [1/m], each >= 0 (Beer and Lambert).
+    Medium inside{};  // Behind the surface.
 };
 
 struct Material {
     std::string name;
-    std::variant<DiffuseMaterial, PhongMaterial, MirrorMaterial, ConductorMaterial, DielectricMaterial> model;
+    std::variant<DiffuseMaterial, PhongMaterial, MirrorMaterial, ConductorMaterial, DielectricMaterial,
+                 DiffuseTransmissionMaterial>
+        model;
 };
 
 // Radiance that a surface sends out [W/(m^2 sr)], from its front side (counter-clockwise) or from both.

@@ -82,7 +82,7 @@ const Appearance* ShapeList::find_file_appearance(const std::string& name) const
 }
 
 void ShapeList::add_file_appearance(const std::string& name, const decltype(Material::model)& model,
-                                 const std::optional<Emission>& emission) {
+                                    const std::optional<Emission>& emission) {
     std::vector<Material>& materials = scene_.materials;
     std::string unique = name;
     const auto is_taken = [&](const Material& material) { return material.name == unique; };

@@ -59,14 +59,15 @@ class ShapeList {
     // the place of `node`.
     void add_mesh(const Node& node, const Transform& transform, std::vector<MeshPart> parts);
     // Adds a mesh of one part.
-    void add_mesh(const Node& node, const Appearance& appearance, const Transform& transform, TriangleMesh mesh);
+    void add_mesh(const Node& node, const Appearance& appearance, const Transform& transform,
+                  TriangleMesh mesh);
 
     // Materials that files bring along: `name` is the file's and the material's, as `pot.obj/clay`. In the
     // scene a material is called so, or similarly if another has that name. `find` returns null for one that
     // was not added.
     const Appearance* find_file_appearance(const std::string& name) const;
     void add_file_appearance(const std::string& name, const decltype(Material::model)& model,
-                          const std::optional<Emission>& emission);
+                             const std::optional<Emission>& emission);
 
   private:
     uint32_t index_of(const Node& material) const;

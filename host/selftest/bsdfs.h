@@ -18,6 +18,7 @@ MaterialRecord mirror(vec3 reflectance);
 MaterialRecord conductor(vec3 reflectance, float alpha);
 // `model` is one of MATERIAL_DIELECTRIC_*; `eta` the index behind the surface over that before it.
 MaterialRecord dielectric(uint32_t model, float eta);
+MaterialRecord diffuse_transmission(vec3 reflectance, vec3 transmittance);
 
 // Head-on, oblique and grazing.
 inline const std::vector<vec3> VIEWS{vec3(0, 0, 1), normalize(vec3(1, 0.5, 1)), normalize(vec3(-1, 2, 0.01))};

@@ -84,7 +84,7 @@ Scene room_of_lights() {
     ball(-1.2f, PhongMaterial{vec3(0.3f, 0.2f, 0.1f), vec3(0.6f, 0.5f, 0.4f), 10.0f});
     ball(-0.4f, ConductorMaterial{vec3(0.9f, 0.7f, 0.4f), 0.3f});
     ball(0.4f, MirrorMaterial{vec3(0.9f, 0.8f, 0.7f)});
-    ball(1.2f, DielectricMaterial{.fresnel = Fresnel::exact, .absorption = vec3(2, 1, 0.5f)});
+    ball(1.2f, DielectricMaterial{.fresnel = Fresnel::exact, .inside = {vec3(2, 1, 0.5f)}});
     return scene;
 }
 

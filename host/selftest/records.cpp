@@ -69,6 +69,7 @@ struct Records {
     Surface surface;
     std::array<uvec4, NORMALS_WORDS> normals;
     MaterialRecord material;
+    MediumRecord medium;
     Light light;
     AliasEntry light_even, light_odd;
     EnvironmentTexel texel;
@@ -81,7 +82,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 122> words;
+    std::array<uint, 126> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scale of a node must be
@@ -98,7 +99,7 @@ Records filled(Fields& fields) {
                     .max_depth = fields.u(),
                     .rr_depth = fields.u(),
                     .light_count = fields.u(),
-        .environment_light = fields.u(),
+                    .environment_light = fields.u(),
                     .environment_size = fields.u2(),
                     .environment_turn = fields.f2(),
                     .lens_x = fields.f3(),
@@ -133,7 +134,12 @@ Records filled(Fields& fields) {
     r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), vec3(0, -1, 0));
     for (const int i : {0, 1, 2, 3})
         fields.keep(r.normals[0][i]);
-    r.material = {.model = fields.u(), .base = fields.f3(), .specular = fields.f3(), .parameter = fields.f()};
+    r.material = {.model = fields.keep(0xA5u),
+                  .medium = fields.keep(0xABCDEFu),
+                  .base = fields.f3(),
+                  .specular = fields.f3(),
+                  .parameter = fields.f()};
+    r.medium = {.absorption = fields.f3()};
     r.light = {.kind = fields.u(),
                .p = fields.f3(),
                .e1 = fields.f3(),
@@ -168,6 +174,7 @@ GpuScene packed(const Records& r) {
     append_second(array(ARRAY_SURFACES), pack(r.surface));
     append_second(array(ARRAY_NORMALS), r.normals);
     append_second(array(ARRAY_MATERIALS), pack(r.material));
+    append_second(array(ARRAY_MEDIA), pack(r.medium));
     append_second(array(ARRAY_LIGHTS), pack(r.light));
     append_second(array(ARRAY_LIGHT_ALIAS), pack(r.light_even, r.light_odd));
     append_second(array(ARRAY_ENVIRONMENT), pack(r.texel));

@@ -5,6 +5,7 @@
 #include "bsdf/conductor.glsl"
 #include "bsdf/dielectric.glsl"
 #include "bsdf/diffuse.glsl"
+#include "bsdf/diffuse_transmission.glsl"
 #include "bsdf/mirror.glsl"
 #include "bsdf/phong.glsl"
 #include "shared/kernel_constants.h"
@@ -12,52 +13,60 @@
 
 const uint MATERIALS_DIELECTRIC = 1u << MATERIAL_DIELECTRIC_SCHLICK | 1u << MATERIAL_DIELECTRIC_EXACT;
 
-// True if the material is of one of those models (bits). Models that the scene does not have leave no code in the
-// kernel, and a scene of one model needs no branch.
-bool is_model(MaterialRecord m, const uint models) {
+// Light samples on the far side of a surface may be seen through it.
+const bool LIT_FROM_BEHIND = (MATERIALS & 1u << MATERIAL_DIFFUSE_TRANSMISSION) != 0u;
+
+// What a material is at one point of a surface, seen from one side of it.
+struct Bsdf {
+    uint model;  // MATERIAL_*
+    vec3 base;   // As in MaterialRecord, as is
+    vec3 specular;
+    float parameter;  // but for eta, which is the index on the other side over that on the viewer's.
+};
+
+// True if it is of one of those models (bits). Models that the scene does not have leave no code in the kernel, and a
+// scene of one model needs no branch.
+bool is_model(Bsdf b, const uint models) {
     if ((MATERIALS & models) == 0u) return false;
     if ((MATERIALS & ~models) == 0u) return true;
-    return (1u << m.model & models) != 0u;
+    return (1u << b.model & models) != 0u;
 }
 
-// The material as seen from the front side, or from the back, where the media of a dielectric change places.
-MaterialRecord bsdf_from_side(MaterialRecord m, bool front) {
-    if (is_model(m, MATERIALS_DIELECTRIC) && !front) m.parameter = 1.0 / m.parameter;
-    return m;
+// The material as seen from its front side, or from its back, where the media of a dielectric change places.
+Bsdf bsdf_at(MaterialRecord m, bool front) {
+    Bsdf b = Bsdf(m.model, m.base, m.specular, m.parameter);
+    if (is_model(b, MATERIALS_DIELECTRIC) && !front) b.parameter = 1.0 / b.parameter;
+    return b;
 }
 
-// BSDF value without the cosine [1/sr]; 0 where scattering is ideal.
-vec3 bsdf_f(MaterialRecord m, vec3 wo, vec3 wi) {
-    if (is_model(m, 1u << MATERIAL_DIFFUSE)) return diffuse_f(m.base, wi);
-    if (is_model(m, 1u << MATERIAL_PHONG)) return phong_f(m.base, m.specular, m.parameter, wo, wi);
-    if (is_model(m, 1u << MATERIAL_CONDUCTOR)) return conductor_f(m.base, m.parameter, wo, wi);
-    return vec3(0.0);
+// Value and density; zero where scattering is ideal.
+BsdfValue bsdf_evaluate(Bsdf b, vec3 wo, vec3 wi) {
+    if (is_model(b, 1u << MATERIAL_DIFFUSE)) return diffuse_evaluate(b.base, wi);
+    if (is_model(b, 1u << MATERIAL_PHONG)) return phong_evaluate(b.base, b.specular, b.parameter, wo, wi);
+    if (is_model(b, 1u << MATERIAL_CONDUCTOR)) return conductor_evaluate(b.base, b.parameter, wo, wi);
+    if (is_model(b, 1u << MATERIAL_DIFFUSE_TRANSMISSION)) return diffuse_transmission_evaluate(b.base, b.specular, wi);
+    return bsdf_zero();
 }
 
 // A direction wi, its weight and density, from u in [0,1)^2; uc in [0,1) chooses a lobe.
-BsdfSample bsdf_sample_f(MaterialRecord m, vec3 wo, float uc, vec2 u) {
-    if (is_model(m, 1u << MATERIAL_DIFFUSE)) return diffuse_sample_f(m.base, u);
-    if (is_model(m, 1u << MATERIAL_PHONG)) return phong_sample_f(m.base, m.specular, m.parameter, wo, uc, u);
-    if (is_model(m, 1u << MATERIAL_MIRROR)) return mirror_sample_f(m.base, wo);
-    if (is_model(m, 1u << MATERIAL_CONDUCTOR)) return conductor_sample_f(m.base, m.parameter, wo, u);
-    if (is_model(m, MATERIALS_DIELECTRIC)) {
-        return dielectric_sample_f(m.parameter, m.model == MATERIAL_DIELECTRIC_EXACT, wo, uc);
+BsdfSample bsdf_sample_f(Bsdf b, vec3 wo, float uc, vec2 u) {
+    if (is_model(b, 1u << MATERIAL_DIFFUSE)) return diffuse_sample_f(b.base, u);
+    if (is_model(b, 1u << MATERIAL_PHONG)) return phong_sample_f(b.base, b.specular, b.parameter, wo, uc, u);
+    if (is_model(b, 1u << MATERIAL_MIRROR)) return mirror_sample_f(b.base, wo);
+    if (is_model(b, 1u << MATERIAL_CONDUCTOR)) return conductor_sample_f(b.base, b.parameter, wo, u);
+    if (is_model(b, MATERIALS_DIELECTRIC)) {
+        return dielectric_sample_f(b.parameter, b.model == MATERIAL_DIELECTRIC_EXACT, wo, uc);
+    }
+    if (is_model(b, 1u << MATERIAL_DIFFUSE_TRANSMISSION)) {
+        return diffuse_transmission_sample_f(b.base, b.specular, uc, u);
     }
     return bsdf_sample_failed();
 }
 
-// Density of bsdf_sample_f at wi [1/sr]; 0 where scattering is ideal.
-float bsdf_pdf(MaterialRecord m, vec3 wo, vec3 wi) {
-    if (is_model(m, 1u << MATERIAL_DIFFUSE)) return diffuse_pdf(wi);
-    if (is_model(m, 1u << MATERIAL_PHONG)) return phong_pdf(m.base, m.specular, m.parameter, wo, wi);
-    if (is_model(m, 1u << MATERIAL_CONDUCTOR)) return conductor_pdf(m.parameter, wo, wi);
-    return 0.0;
-}
-
 // Share of the light that the surface sends on at normal incidence, per channel, for the albedo image.
-vec3 bsdf_albedo(MaterialRecord m) {
-    if (is_model(m, MATERIALS_DIELECTRIC)) return vec3(1.0);
-    return is_model(m, 1u << MATERIAL_PHONG) ? m.base + m.specular : m.base;
+vec3 bsdf_albedo(Bsdf b) {
+    if (is_model(b, MATERIALS_DIELECTRIC)) return vec3(1.0);
+    return is_model(b, 1u << MATERIAL_PHONG | 1u << MATERIAL_DIFFUSE_TRANSMISSION) ? b.base + b.specular : b.base;
 }
 
 #endif

@@ -28,21 +28,17 @@ bool conductor_sees(vec3 w) {
     return w.z > least_cosine;
 }
 
-// BSDF value, without the cosine [1/sr]; 0 unless both directions see the surface.
-vec3 conductor_f(vec3 reflectance, float alpha, vec3 wo, vec3 wi) {
-    if (!conductor_sees(wo) || !conductor_sees(wi)) return vec3(0.0);
+// Zero unless both directions see the surface. The density is G1 D / (4 cos(theta_o)), that of the facets that wo sees
+// times the Jacobian of reflection. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, equations 3 and 19.
+BsdfValue conductor_evaluate(vec3 reflectance, float alpha, vec3 wo, vec3 wi) {
+    if (!conductor_sees(wo) || !conductor_sees(wi)) return bsdf_zero();
     vec3 sum = wo + wi;
     float cos_facet = 0.5 * length(sum);  // Of either to the facet's normal.
+    float d = ggx_d(alpha, normalize(sum));
+    float reach_o = ggx_reach(alpha, wo);
     // G2 / (4 cos(theta_o) cos(theta_i))
-    float visibility = 0.5 / (wi.z * ggx_reach(alpha, wo) + wo.z * ggx_reach(alpha, wi));
-    return fresnel_conductor_schlick(reflectance, cos_facet) * (ggx_d(alpha, normalize(sum)) * visibility);
-}
-
-// Density of conductor_sample_f at wi [1/sr]: G1 D / (4 cos(theta_o)), that of the facets that wo sees times the
-// Jacobian of reflection. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, equations 3 and 19.
-float conductor_pdf(float alpha, vec3 wo, vec3 wi) {
-    if (!conductor_sees(wo) || !conductor_sees(wi)) return 0.0;
-    return 0.5 * ggx_d(alpha, normalize(wo + wi)) / (wo.z + ggx_reach(alpha, wo));
+    float visibility = 0.5 / (wi.z * reach_o + wo.z * ggx_reach(alpha, wi));
+    return BsdfValue(fresnel_conductor_schlick(reflectance, cos_facet) * (d * visibility), 0.5 * d / (wo.z + reach_o));
 }
 
 // wi by reflection on a facet that wo sees, from u in [0,1)^2; the weight is the Fresnel term times G2 / G1. A sample
@@ -55,7 +51,7 @@ BsdfSample conductor_sample_f(vec3 reflectance, float alpha, vec3 wo, vec2 u) {
     float reach_o = ggx_reach(alpha, wo);
     float g2_over_g1 = wi.z * (wo.z + reach_o) / (wi.z * reach_o + wo.z * ggx_reach(alpha, wi));
     vec3 weight = fresnel_conductor_schlick(reflectance, dot(wi, h)) * g2_over_g1;
-    return bsdf_sample(wi, weight, conductor_pdf(alpha, wo, wi));
+    return bsdf_sample(wi, weight, conductor_evaluate(reflectance, alpha, wo, wi).pdf);
 }
 
 #endif

@@ -5,14 +5,10 @@
 #include "base/warp.glsl"
 #include "bsdf/sample.glsl"
 
-// BSDF value, without the cosine [1/sr]; 0 for wi below the surface.
-vec3 diffuse_f(vec3 reflectance, vec3 wi) {
-    return wi.z > 0.0 ? reflectance * INV_PI : vec3(0.0);
-}
-
-// Density of diffuse_sample_f at wi [1/sr].
-float diffuse_pdf(vec3 wi) {
-    return warp_cosine_hemisphere_pdf(max(0.0, wi.z));
+// Zero for wi below the surface.
+BsdfValue diffuse_evaluate(vec3 reflectance, vec3 wi) {
+    if (wi.z <= 0.0) return bsdf_zero();
+    return BsdfValue(reflectance * INV_PI, warp_cosine_hemisphere_pdf(wi.z));
 }
 
 // Cosine-distributed wi from u in [0,1)^2: weight f cos / pdf is exactly the reflectance.

@@ -24,12 +24,6 @@ float phong_lobe(float n, vec3 wo, vec3 wi) {
     return h < 1.0 ? exp_nonpositive(n * log1p_nonpositive(-h)) : 0.0;
 }
 
-// BSDF value, without the cosine [1/sr]; 0 for wi below the surface. n in [0, 10^5].
-vec3 phong_f(vec3 kd, vec3 ks, float n, vec3 wo, vec3 wi) {
-    if (wi.z <= 0.0) return vec3(0.0);
-    return (kd + ks * (0.5 * (n + 2.0) * phong_lobe(n, wo, wi))) * INV_PI;
-}
-
 // Probability of sampling the lobe rather than the base: its share of the albedo.
 float phong_lobe_pmf(vec3 kd, vec3 ks) {
     float base = luminance(kd);
@@ -37,11 +31,13 @@ float phong_lobe_pmf(vec3 kd, vec3 ks) {
     return lobe > 0.0 ? lobe / (base + lobe) : 0.0;
 }
 
-// Density of phong_sample_f at wi above the surface [1/sr]; 0 below, where samples fail.
-float phong_pdf(vec3 kd, vec3 ks, float n, vec3 wo, vec3 wi) {
-    if (wi.z <= 0.0) return 0.0;
-    float lobe_pdf = 0.5 * INV_PI * (n + 1.0) * phong_lobe(n, wo, wi);
-    return mix(warp_cosine_hemisphere_pdf(wi.z), lobe_pdf, phong_lobe_pmf(kd, ks));
+// Zero for wi below the surface, where samples fail. n in [0, 10^5].
+BsdfValue phong_evaluate(vec3 kd, vec3 ks, float n, vec3 wo, vec3 wi) {
+    if (wi.z <= 0.0) return bsdf_zero();
+    float lobe = phong_lobe(n, wo, wi);
+    float lobe_pdf = 0.5 * INV_PI * (n + 1.0) * lobe;
+    return BsdfValue((kd + ks * (0.5 * (n + 2.0) * lobe)) * INV_PI,
+                     mix(warp_cosine_hemisphere_pdf(wi.z), lobe_pdf, phong_lobe_pmf(kd, ks)));
 }
 
 // wi around the base or within the lobe, as uc in [0,1) chooses, from u in [0,1)^2. A sample of the lobe that lies
@@ -54,9 +50,9 @@ BsdfSample phong_sample_f(vec3 kd, vec3 ks, float n, vec3 wo, float uc, vec2 u) 
     } else {
         wi = warp_cosine_hemisphere(u);
     }
-    float pdf = phong_pdf(kd, ks, n, wo, wi);
-    if (pdf == 0.0) return bsdf_sample_failed();
-    return bsdf_sample(wi, phong_f(kd, ks, n, wo, wi) * (wi.z / pdf), pdf);
+    BsdfValue value = phong_evaluate(kd, ks, n, wo, wi);
+    if (value.pdf == 0.0) return bsdf_sample_failed();
+    return bsdf_sample(wi, value.f * (wi.z / value.pdf), value.pdf);
 }
 
 #endif

@@ -1,4 +1,4 @@
-// What sampling a BSDF returns.
+// What evaluating and sampling a BSDF return.
 //
 // Conventions of all BSDFs: wo (towards the viewer) and wi (towards the light) are unit vectors that point away
 // from the surface, in the local frame whose z is the shading normal on the viewer's side. `f` is the value
@@ -6,6 +6,16 @@
 // are 0 everywhere, and a sample's pdf is the probability of its choice.
 #ifndef BSDF_SAMPLE_GLSL
 #define BSDF_SAMPLE_GLSL
+
+// For a pair of directions.
+struct BsdfValue {
+    vec3 f;     // [1/sr]
+    float pdf;  // Of sampling wi [1/sr].
+};
+
+BsdfValue bsdf_zero() {
+    return BsdfValue(vec3(0.0), 0.0);
+}
 
 struct BsdfSample {
     vec3 wi;

@@ -22,6 +22,7 @@
 #include "base/sampler.glsl"
 #include "bsdf/bsdf.glsl"
 #include "light/light_sampler.glsl"
+#include "medium/medium.glsl"
 #include "scene/interaction.glsl"
 
 // Survival is never more likely than this, so that every path ends.
@@ -34,8 +35,9 @@ struct Path {
     float eta_scale;  // Product of the squared relative indices of refraction, by which beta was divided.
     float pdf_bsdf;   // Density with which `ray` was sampled [1/sr].
     bool delta;       // Light samples could not have found `ray`: the camera sent it, or scattering was ideal.
-    vec3 ns;          // Shading normal where `ray` begins.
-    vec3 absorption;  // Of the medium around `ray` [1/m].
+    vec3 p;           // The last vertex, where `ray` begins but for an offset: see path_lit_point,
+    vec3 ns;          // and its shading normal.
+    uint medium;      // Around `ray`: index of a medium.
     uint depth;       // Scattering vertices so far.
 };
 
@@ -57,7 +59,7 @@ struct ShadowRay {
 
 // The path that begins with a camera ray, and an estimate of nothing so far.
 Path path_begin(Ray ray) {
-    return Path(ray, vec3(1.0), 1.0, 0.0, true, vec3(0.0), vec3(0.0), 0u);
+    return Path(ray, vec3(1.0), 1.0, 0.0, true, ray.o, vec3(0.0), MEDIUM_NONE, 0u);
 }
 
 Estimate estimate_begin() {
@@ -68,9 +70,16 @@ ShadowRay shadow_none() {
     return ShadowRay(Ray(vec3(0.0), vec3(0.0)), 0.0, vec3(0.0));
 }
 
-// The path's last vertex, as it was lit.
+// The point of a surface where light samples begin. Rays begin at an offset from it, which depends on the side. Where
+// there are surfaces that are lit from both sides, it is the point itself: a light sample learns its side last. Else it
+// is where rays begin, which need not be kept beside the ray.
+LitPoint lit_point(Interaction s) {
+    return LitPoint(LIT_FROM_BEHIND ? s.p : interaction_spawn_origin(s, true), s.ns);
+}
+
+// That point of the path's last vertex.
 LitPoint path_lit_point(Path path) {
-    return LitPoint(path.ray.o, path.ns);
+    return LitPoint(LIT_FROM_BEHIND ? path.p : path.ray.o, path.ns);
 }
 
 // Weight of the light that the path met, and that a light sample finds with the density pdf_light [1/sr].
@@ -91,38 +100,42 @@ void add_environment(Path path, inout Estimate estimate) {
 
 // The path's ray met light s.light at s, `t` metres away: adds what it emits.
 void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
-    float pdf_light = light_pdf_li(s.light, path_lit_point(path), square(t), dot(s.wo, s.n));
+    LitPoint lit = path_lit_point(path);
+    float distance_squared = LIT_FROM_BEHIND ? dot(s.p - lit.p, s.p - lit.p) : square(t);
+    float pdf_light = light_pdf_li(s.light, lit, distance_squared, dot(s.wo, s.n));
     estimate.L += emission_weight(path, pdf_light) * path.beta * area_light_le(light_at(s.light), s.front);
 }
 
-// Share of the light that the medium around the path's ray lets through over that distance [m], which may be infinite:
-// then it is cut to a finite one, lest infinity be multiplied by 0. (Compilers that take all numbers for finite may
-// leave a min with FLOAT_MAX out.) Ref: Beer and Lambert's law.
-vec3 path_transmittance(Path path, float distance) {
-    const float far = 1e30;
-    if ((MATERIALS & MATERIALS_DIELECTRIC) == 0u) return vec3(1.0);
-    return exp(-min(distance, far) * path.absorption);
-}
-
 // The ray from s towards a point on a light, and the radiance that this point sends through s to the path's beginning,
-// divided by its density, weighted.
-ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, MaterialRecord material, uvec2 u, uint fill) {
-    vec3 from = interaction_spawn_origin(s, true);
-    LightSample light = light_sample_li(LitPoint(from, s.ns), u, fill);
+// divided by its density, weighted. `behind` is the medium behind the surface.
+ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, Bsdf bsdf, uint behind, uvec2 u, uint fill) {
+    LitPoint lit = lit_point(s);
+    LightSample light = light_sample_li(lit, u, fill);
+    Ray ray = Ray(lit.p, light.shadow);
+    uint medium = path.medium;
+    bool viewers_side = true;
+    if (LIT_FROM_BEHIND) {
+        viewers_side = dot(light.wi, s.n) > 0.0;
+        ray.o = interaction_spawn_origin(s, viewers_side);
+        if (light.t_max < FLOAT_MAX) ray.d += lit.p - ray.o;
+        if (!viewers_side) medium = medium_beyond(path.medium, behind, s.front);
+    }
     vec3 wi = frame_to_local(frame, light.wi);
-    vec3 Ld = path.beta * bsdf_f(material, wo, wi) * abs(wi.z) * light.Li;
-    // The light is in the medium through which the path came to s.
-    Ld *= path_transmittance(path, light.t_max * length(light.shadow));
-    bool dark = light.pdf == 0.0 || dot(light.wi, s.n) <= 0.0 || Ld == vec3(0.0);
+    BsdfValue value = bsdf_evaluate(bsdf, wo, wi);
+    vec3 Ld = path.beta * value.f * abs(wi.z) * light.Li;
+    Ld *= medium_transmittance(medium, light.t_max * length(ray.d));
+    // A light on another side of the geometric surface than of the shading one is not seen.
+    bool sides_differ = LIT_FROM_BEHIND ? (wi.z > 0.0) != viewers_side : dot(light.wi, s.n) <= 0.0;
+    bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
     float weight = 1.0;
-    if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, bsdf_pdf(material, wo, wi));
-    return ShadowRay(Ray(from, light.shadow), dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
+    if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, value.pdf);
+    return ShadowRay(ray, dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
 }
 
-// Sends the path on in a direction that its last surface was sampled for; returns whether it goes on. `material` is
-// that of the front side. A direction on the other side of the geometric surface than of the shading one carries
+// Sends the path on in a direction that its last surface was sampled for; returns whether it goes on. `behind` is the
+// medium behind the surface. A direction on another side of the geometric surface than of the shading one carries
 // nothing.
-bool path_scatter(inout Path path, Interaction s, Frame frame, MaterialRecord material, BsdfSample scattered) {
+bool path_scatter(inout Path path, Interaction s, Frame frame, uint behind, BsdfSample scattered) {
     vec3 wi = frame_to_world(frame, scattered.wi);
     path.beta *= scattered.weight;
     bool viewers_side = scattered.wi.z > 0.0;
@@ -131,8 +144,9 @@ bool path_scatter(inout Path path, Interaction s, Frame frame, MaterialRecord ma
     path.eta_scale *= square(scattered.eta);
     path.pdf_bsdf = scattered.pdf;
     path.delta = scattered.delta;
+    path.p = s.p;
     path.ns = s.ns;
-    if (!viewers_side) path.absorption = s.front ? material.base : vec3(0.0);
+    if (!viewers_side) path.medium = medium_beyond(path.medium, behind, s.front);
     path.ray = Ray(interaction_spawn_origin(s, viewers_side), wi);
     return true;
 }
@@ -148,14 +162,15 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     }
     Interaction s = interaction_at(path.ray, hit);
     MaterialRecord material = scene_material(s.material);
+    Bsdf bsdf = bsdf_at(material, s.front);
     if (path.depth == 0u) {
         estimate.visible = true;
-        estimate.albedo = bsdf_albedo(material);
+        estimate.albedo = bsdf_albedo(bsdf);
         estimate.normal = s.ns;
     }
 
     // Lose what the medium on the way absorbs.
-    path.beta *= path_transmittance(path, hit.t);
+    path.beta *= medium_transmittance(path.medium, hit.t);
 
     // Add what the surface emits; light samples of the vertex before may already account for a part.
     if (s.light != NO_LIGHT) add_emission(path, estimate, s, hit.t);
@@ -167,18 +182,19 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     }
     Frame frame = frame_from_z(s.ns);
     vec3 wo = frame_to_local(frame, s.wo);
-    MaterialRecord seen = bsdf_from_side(material, s.front);
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
     uvec2 choice = sampler_pair(random, pair + PAIR_CHOICE);
 
     // Add direct light.
     if (ESTIMATOR != ESTIMATOR_BSDF) {
-        shadow = direct_light(path, s, frame, wo, seen, sampler_pair(random, pair + PAIR_LIGHT), choice.x);
+        uvec2 bits = sampler_pair(random, pair + PAIR_LIGHT);
+        shadow = direct_light(path, s, frame, wo, bsdf, material.medium, bits, choice.x);
     }
 
     // Scatter.
     vec2 u = unit_float(sampler_pair(random, pair + PAIR_BSDF));
-    if (!path_scatter(path, s, frame, material, bsdf_sample_f(seen, wo, unit_float(choice.y), u))) return false;
+    BsdfSample scattered = bsdf_sample_f(bsdf, wo, unit_float(choice.y), u);
+    if (!path_scatter(path, s, frame, material.medium, scattered)) return false;
 
     // Russian roulette: paths that carry little end early, the others carry their share. The root makes them end a vertex
     // or two later, which costs fewer rays than it saves noise. After ideal scattering nothing but this path can find

@@ -10,17 +10,19 @@
 
 void main() {
     if (past_end()) return;
-    MaterialRecord material = bsdf_from_side(material_unpack(item(0u), item(1u)), item(4u).w == 0u);
+    Bsdf bsdf = bsdf_at(material_unpack(item(0u), item(1u)), item(4u).w == 0u);
     vec3 wo = item_floats(2u).xyz;
     vec3 wi = item_floats(3u).xyz;
-    BsdfSample s = bsdf_sample_f(material, wo, item_floats(4u).z, item_floats(4u).xy);
+    BsdfSample s = bsdf_sample_f(bsdf, wo, item_floats(4u).z, item_floats(4u).xy);
     put(s.wi);
     put(s.weight);
     put(s.pdf);
     put(uint(s.delta));
     put(s.eta);
-    put(bsdf_f(material, wo, s.wi));
-    put(bsdf_pdf(material, wo, s.wi));
-    put(bsdf_f(material, wo, wi));
-    put(bsdf_pdf(material, wo, wi));
+    BsdfValue of_sample = bsdf_evaluate(bsdf, wo, s.wi);
+    put(of_sample.f);
+    put(of_sample.pdf);
+    BsdfValue value = bsdf_evaluate(bsdf, wo, wi);
+    put(value.f);
+    put(value.pdf);
 }

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 122u
+#define RESULT_WORDS 126u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -56,9 +56,14 @@ void put_surface(Surface s) {
 
 void put_material(MaterialRecord m) {
     put(m.model);
+    put(m.medium);
     put(m.base);
     put(m.specular);
     put(m.parameter);
+}
+
+void put_medium(MediumRecord m) {
+    put(m.absorption);
 }
 
 void put_light(Light l) {
@@ -91,6 +96,7 @@ void main() {
     put_surface(scene_surface(1u));
     put(scene_normals(1u));
     put_material(scene_material(1u));
+    put_medium(scene_medium(1u));
     put_light(scene_light(1u));
     put_alias_entry(scene_light_alias(2u));
     put_alias_entry(scene_light_alias(3u));

@@ -96,6 +96,12 @@ MaterialRecord scene_material(uint i) {
     return material_unpack(a, b);
 }
 
+MediumRecord scene_medium(uint i) {
+    uvec4 a;
+    READ_1(MEDIA, i * MEDIUM_WORDS, a);
+    return medium_unpack(a);
+}
+
 Light scene_light(uint i) {
     uvec4 a, b, c, d;
     READ_4(LIGHTS, i * LIGHT_WORDS, a, b, c, d);

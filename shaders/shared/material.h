@@ -1,15 +1,16 @@
 // Record of a material, 2 words of uvec4, and the tags of the BSDF models.
 //
-//                  0: model, base.rgb                      1: specular.rgb,     parameter
-//   diffuse           MATERIAL_DIFFUSE, reflectance           0                 0
-//   Phong             MATERIAL_PHONG, kd                      ks                exponent n
-//   mirror            MATERIAL_MIRROR, reflectance            0                 0
-//   conductor         MATERIAL_CONDUCTOR, reflectance         0                 alpha
-//   dielectric        MATERIAL_DIELECTRIC_*, absorption       0                 eta
+//                          0: model | medium << 8, base.rgb            1: specular.rgb,   parameter
+//   diffuse                  MATERIAL_DIFFUSE, reflectance               0                0
+//   Phong                    MATERIAL_PHONG, kd                          ks               exponent n
+//   mirror                   MATERIAL_MIRROR, reflectance                0                0
+//   conductor                MATERIAL_CONDUCTOR, reflectance             0                alpha
+//   dielectric               MATERIAL_DIELECTRIC_*, 0                    0                eta
+//   diffuse transmission     MATERIAL_DIFFUSE_TRANSMISSION, reflectance  transmittance    0
 #ifndef SHARED_MATERIAL_H
 #define SHARED_MATERIAL_H
 
-#include "shared/types.h"
+#include "shared/medium.h"
 
 #ifdef __cplusplus
 #include <array>
@@ -24,18 +25,21 @@ const uint MATERIAL_MIRROR = 2u;
 const uint MATERIAL_CONDUCTOR = 3u;
 const uint MATERIAL_DIELECTRIC_SCHLICK = 4u;
 const uint MATERIAL_DIELECTRIC_EXACT = 5u;
+const uint MATERIAL_DIFFUSE_TRANSMISSION = 6u;
+const uint MATERIAL_COUNT = 7u;
 
 struct MaterialRecord {
-    uint model;     // MATERIAL_*
-    vec3 base;      // Reflectance, each in [0, 1]; of a dielectric, the absorption behind its surface [1/m].
-    vec3 specular;  // Phong's ks; each in [0, 1].
+    uint model;       // MATERIAL_*
+    uint medium;      // Behind the surface: index of a medium record below MEDIUM_SAME, or that.
+    vec3 base;        // Reflectance, each in [0, 1].
+    vec3 specular;    // Phong's ks, or transmittance; each in [0, 1].
     float parameter;  // Phong's exponent; alpha; or eta, the index behind the surface over that before it.
 };
 
 #ifdef __cplusplus
 
 inline std::array<uvec4, MATERIAL_WORDS> pack(const MaterialRecord& m) {
-    const uvec4 base = word(m.base, m.model);
+    const uvec4 base = word(m.base, m.model | m.medium << 8u);
     return {uvec4(base.w, base.x, base.y, base.z), word(m.specular, floatBitsToUint(m.parameter))};
 }
 
@@ -44,7 +48,8 @@ inline std::array<uvec4, MATERIAL_WORDS> pack(const MaterialRecord& m) {
 
 MaterialRecord material_unpack(uvec4 a, uvec4 b) {
     MaterialRecord m;
-    m.model = a.x;
+    m.model = a.x & 255u;
+    m.medium = a.x >> 8u;
     m.base = uintBitsToFloat(a.yzw);
     m.specular = uintBitsToFloat(b.xyz);
     m.parameter = uintBitsToFloat(b.w);

@@ -10,6 +10,7 @@
 #include "view/window.h"
 #include "vk/device.h"
 #include "vk/instance.h"
+#include "vk/transfer.h"
 
 namespace candela {
 namespace {
@@ -81,7 +82,7 @@ class PresenterTest : public ViewTest {
     // Fills the window with a colour, and returns what show() does.
     bool show(uint32_t colour) {
         const std::vector<uint32_t> words(size_t{SIZE.x} * SIZE.y, colour);
-        pixels_->upload(std::as_bytes(std::span(words)));
+        vk::upload(*pixels_, std::as_bytes(std::span(words)));
         return presenter_->show(*pixels_, SIZE.x, SIZE.y);
     }
     // The colour must be on all of the screen that the window covers.

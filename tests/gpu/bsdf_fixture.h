@@ -21,7 +21,7 @@ class BsdfTest : public DeviceTest {
     std::vector<BsdfResult> samples(const MaterialRecord& material, vec3 wo, uint32_t count,
                                     uint32_t seed) const {
         Random random(seed);
-        std::vector<BsdfItem> items(count, {.material = material, .wo = wo});
+        std::vector<BsdfItem> items(count, {.material = pack(material), .wo = wo});
         for (BsdfItem& item : items) {
             item.u = random.square();
             item.uc = random.unit();

@@ -44,7 +44,7 @@ class DielectricTest : public BsdfTest {
         std::vector<BsdfItem> items;
         for (const float uc : {0.0f, LAST}) {
             for (const vec3 wo : views)
-                items.push_back({.material = dielectric(model, eta), .wo = wo, .uc = uc, .back = back});
+                items.push_back({.material = pack(dielectric(model, eta)), .wo = wo, .uc = uc, .back = back});
         }
         return run(items);
     }
@@ -178,7 +178,8 @@ TEST_F(DielectricTest, TheChoiceIsMadeWithItsProbability) {
 TEST_F(DielectricTest, AMirrorReflectsIdeally) {
     const vec3 tint(0.9f, 0.5f, 0.0f);
     for (const vec3 wo : VIEWS) {
-        const BsdfResult s = run({{.material = mirror(tint), .wo = wo, .wi = vec3(-wo.x, -wo.y, wo.z)}})[0];
+        const BsdfResult s =
+            run({{.material = pack(mirror(tint)), .wo = wo, .wi = vec3(-wo.x, -wo.y, wo.z)}})[0];
         EXPECT_EQ(s.wi, vec3(-wo.x, -wo.y, wo.z));
         EXPECT_EQ(s.weight, tint);
         EXPECT_EQ(s.pdf, 1.0f);
@@ -187,7 +188,7 @@ TEST_F(DielectricTest, AMirrorReflectsIdeally) {
         EXPECT_EQ(s.f, vec3(0.0f));
         EXPECT_EQ(s.pdf_of_wi, 0.0f);
     }
-    EXPECT_EQ(run({{.material = mirror(tint), .wo = vec3(0, 0, -1)}})[0].pdf, 0.0f);
+    EXPECT_EQ(run({{.material = pack(mirror(tint)), .wo = vec3(0, 0, -1)}})[0].pdf, 0.0f);
 }
 
 }  // namespace

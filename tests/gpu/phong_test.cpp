@@ -21,7 +21,7 @@ TEST_F(PhongTest, ValuesAgreeWithDoublePrecision) {
             wo.z = std::abs(wo.z);
             const float size = std::sqrt(40.0f / std::max(n, 20.0f)) * random.unit();
             const vec3 wi = normalize(vec3(-wo.x, -wo.y, wo.z) + size * random.direction());
-            items.push_back({.material = phong(kd, ks, n), .wo = wo, .wi = wi});
+            items.push_back({.material = pack(phong(kd, ks, n)), .wo = wo, .wi = wi});
         }
         const std::vector<BsdfResult> results = run(items);
         for (size_t i = 0; i < items.size(); ++i) {
@@ -131,7 +131,8 @@ TEST_F(PhongTest, SamplesVaryAlikeAtEveryExponent) {
 TEST_F(PhongTest, LobeAndBaseAreChosenByTheirAlbedo) {
     const vec3 kd(0.5f, 0.2f, 0.9f), ks(0.4f, 0.8f, 0.1f), rgb(0.2126f, 0.7152f, 0.0722f);
     const vec3 aside = normalize(vec3(1, 0, 1));
-    const BsdfResult at_aside = run({{.material = phong(kd, ks, 1e5f), .wo = VIEWS[0], .wi = aside}})[0];
+    const BsdfResult at_aside =
+        run({{.material = pack(phong(kd, ks, 1e5f)), .wo = VIEWS[0], .wi = aside}})[0];
     const double share = double(dot(kd, rgb)) / (double(dot(kd, rgb)) + double(dot(ks, rgb)));
     EXPECT_NEAR(at_aside.pdf_of_wi, share * std::sqrt(0.5) / M_PI, 0x1p-21);
 }

@@ -7,6 +7,7 @@ AREA = "shaders/light/area.glsl"
 SPHERE = "shaders/light/sphere.glsl"
 SKY = "shaders/light/environment.glsl"
 PHONG = "shaders/bsdf/phong.glsl"
+MEDIUM = "shaders/medium/medium.glsl"
 CONDUCTOR = "shaders/bsdf/conductor.glsl"
 DIELECTRIC = "shaders/bsdf/dielectric.glsl"
 FRESNEL = "shaders/bsdf/fresnel.glsl"
@@ -24,7 +25,7 @@ SCENE_BUFFERS = "host/render/scene_buffers.cpp"
 # What a group runs: filters for the tests of shaders and for those of whole images, each quick for what it tells.
 INTEGRATOR = ("Interaction*",
               "Furnace*:Roulette*:*RouletteKeeps*:EstimatorTest*Lights:*Dielectric*Within*:*Absorbs:SkyFurnace*:"
-              "DirectLight*Under*:*Reference*/glass:*Reference*/absorbing_glass")
+              "DirectLight*Under*:DiffuseTransmission*:*Reference*/glass:*Reference*/absorbing_glass")
 BSDFS = ("BsdfTest*:Phong*:Dielectric*:Warp*", "Albedo*:SkyFurnace*:*Dielectric*Within*:*Reference*/glass")
 LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
@@ -48,9 +49,17 @@ GROUPS = [
          "unit_float(choice.y) >= survival"),
         ("the same dimensions at every bounce", PATH, "path.depth * PAIRS_PER_BOUNCE", "0u"),
         ("one bounce too many", PATH, "path.depth == parameters.max_depth", "path.depth > parameters.max_depth"),
-        ("absorption also outside of the solid", PATH, "s.front ? material.base : vec3(0.0)", "material.base"),
+        ("absorption also outside of the solid", MEDIUM, "return front ? behind : MEDIUM_NONE;", "return behind;"),
+        ("a thin sheet bounds the medium around it", MEDIUM, "if (behind == MEDIUM_SAME) return here;",
+         "if (behind == MEDIUM_SAME) return MEDIUM_NONE;"),
+        ("light through a sheet absorbed by the medium before it", PATH,
+         "if (!viewers_side) medium = medium_beyond(path.medium, behind, s.front);", ""),
+        ("light through a sheet looked for from the viewer's side", PATH,
+         "ray.o = interaction_spawn_origin(s, viewers_side);", "ray.o = interaction_spawn_origin(s, true);"),
     ]),
     (BSDFS, [
+        ("a sheet's sides chosen otherwise than the density says", "shaders/bsdf/diffuse_transmission.glsl",
+         "bool reflected = uc < pmf.x;", "bool reflected = uc < 0.5;"),
         ("1/pi missing from Lambert's reflector", "shaders/bsdf/diffuse.glsl", "reflectance * INV_PI", "reflectance"),
         ("Phong normalised for its sampling, not its albedo", PHONG, "0.5 * (n + 2.0)", "0.5 * (n + 1.0)"),
         ("Phong's lobes chosen otherwise than the density says", PHONG, "if (uc < phong_lobe_pmf(kd, ks))",
@@ -73,7 +82,10 @@ GROUPS = [
          "u.x = u.x"),
         ("cosine missing from an area light's density", AREA, "distance_squared / abs(cos_light)", "distance_squared"),
         ("emission from the back", AREA, "front || l.two_sided != 0u", "true"),
-        ("a sphere light's density 2 % low", SPHERE, "return 2.0 * square(radius)", "return 1.96 * square(radius)"),
+        ("a sphere light's density 2 % low", SPHERE, "return warp_cone_pdf(sphere_light_cap(radius, center_squared));",
+         "return 0.98 * warp_cone_pdf(sphere_light_cap(radius, center_squared));"),
+        ("a light's density without the probability of its choice", LIGHT_SAMPLER, "return light_pmf(i, lit) * pdf;",
+         "return pdf;"),
         ("solid angle missing from the choice of texels", "host/gpu_scene/environment_map.cpp",
          "size.x + x]) * solid_angle", "size.x + x]) * (solid_angle > 0.0 ? 1.0 : 0.0)"),
         ("sky turned the wrong way", SKY, "turn.x * w.x - turn.y * w.z", "turn.x * w.x + turn.y * w.z"),

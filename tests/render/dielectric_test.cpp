@@ -113,7 +113,7 @@ TEST_F(DielectricTest, ASlabAbsorbs) {
             double(THICKNESS) / std::sqrt(1.0 - std::pow(std::sin(theta) / double(IOR), 2.0));
         const glm::dvec3 a = glm::exp(-glm::dvec3(ABSORPTION) * length);
         Scene scene = scene_seen_at(theta, 2.0);
-        add_slab(scene, {.ior = IOR, .fresnel = Fresnel::exact, .absorption = ABSORPTION}, THICKNESS);
+        add_slab(scene, {.ior = IOR, .fresnel = Fresnel::exact, .inside = {ABSORPTION}}, THICKNESS);
         add_panel(scene, -2, false, RADIANCE);
         expect_share(scene, 4096, (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a));
     }
@@ -122,7 +122,7 @@ TEST_F(DielectricTest, ASlabAbsorbs) {
 // A panel that shines within the glass: on its way out its radiance is divided by eta^2.
 TEST_F(DielectricTest, AnEmitterWithinTheGlass) {
     Scene scene = scene_seen_at(0.0, 2.0);
-    add_slab(scene, {.ior = IOR, .absorption = ABSORPTION}, THICKNESS);
+    add_slab(scene, {.ior = IOR, .inside = {ABSORPTION}}, THICKNESS);
     constexpr float DEPTH = 0.2f;
     add_panel(scene, -DEPTH, false, RADIANCE);
     const double r = fresnel(double(IOR), 0.0);
@@ -140,7 +140,7 @@ TEST_F(DielectricTest, ALampWithinTheGlass) {
     const vec3 center(-0.5f, 0.5f - DEPTH, 0);
     const double distance = std::sqrt(0.5);
     Scene scene = scene_seen_at(0.0, 2.0);
-    add_slab(scene, {.ior = IOR, .absorption = ABSORPTION}, 2.0f * DEPTH);
+    add_slab(scene, {.ior = IOR, .inside = {ABSORPTION}}, 2.0f * DEPTH);
     add_panel(scene, -DEPTH, false, {});
     scene.materials.back().model = DiffuseMaterial{vec3(1)};
     add_shape(scene, Sphere{center, float(LAMP_RADIUS)}, add_diffuse(scene, vec3(0)),

@@ -62,7 +62,7 @@ TEST_F(GlossyEstimatorTest, AgreeOnMirrorsAndGlass) {
     scene.environment = constant_environment(vec3(0.5f, 0.6f, 0.7f));
     add_round_lights(scene);
     add_balls(scene,
-              {MirrorMaterial{vec3(0.9f, 0.8f, 0.7f)}, DielectricMaterial{.absorption = vec3(2, 1, 0.5f)},
+              {MirrorMaterial{vec3(0.9f, 0.8f, 0.7f)}, DielectricMaterial{.inside = {vec3(2, 1, 0.5f)}},
                DielectricMaterial{.ior = 1.8f, .fresnel = Fresnel::exact}, MirrorMaterial{vec3(0.9f)}});
     expect_estimators_agree(scene, 1024, 1024);
 }
@@ -106,7 +106,7 @@ TEST_F(GlossyEstimatorTest, AgreeOnPlatesUnderASmallAndALargeLamp) {
 TEST_F(GlossyEstimatorTest, AgreeOnALampWithinGlass) {
     Scene scene = open_room();
     add_shape(scene, Sphere{vec3(0, 0.8f, 0), 0.7f},
-              add_material(scene, DielectricMaterial{.absorption = vec3(1, 0.5f, 0.2f)}));
+              add_material(scene, DielectricMaterial{.inside = {vec3(1, 0.5f, 0.2f)}}));
     add_shape(scene, Sphere{vec3(-0.3f, 0.9f, 0), 0.25f}, 0, Emission{WARM, false});
     add_shape(scene, Sphere{vec3(0.3f, 0.7f, 0), 0.25f}, add_diffuse(scene, vec3(0.9f)));
     expect_estimators_agree(scene, 1024, 1024);

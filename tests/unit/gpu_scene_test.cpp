@@ -152,7 +152,7 @@ TEST(GpuScene, ArraysHoldTheRecordsOfWhatThereIs) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1))});
     add_diffuse(scene, vec3(1));
     const GpuScene gpu = build_gpu_scene(scene);
-    const std::array<uint32_t, ARRAY_COUNT> records{1, 1, 1, 0, 2, 1, 1, 0, 0};
+    const std::array<uint32_t, ARRAY_COUNT> records{1, 1, 1, 0, 2, 1, 1, 0, 0, 1};
     uint64_t words = 0;
     for (const SceneArray& array : SCENE_ARRAYS) {
         EXPECT_EQ(gpu.arrays[array.number].size(), records[array.number] * array.words) << array.name;
@@ -160,7 +160,7 @@ TEST(GpuScene, ArraysHoldTheRecordsOfWhatThereIs) {
     }
     EXPECT_EQ(gpu.bytes(), words * 16);
     const uvec4 material = gpu.arrays[ARRAY_MATERIALS][0];
-    EXPECT_EQ(material.x, MATERIAL_DIFFUSE);
+    EXPECT_EQ(material.x, MATERIAL_DIFFUSE | MEDIUM_SAME << 8);
     EXPECT_EQ(std::bit_cast<vec3>(uvec3(material.y, material.z, material.w)), vec3(0.25f, 0.5f, 0.75f));
 }
 
@@ -246,16 +246,20 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
         {"", PhongMaterial{.diffuse = vec3(0.1f), .specular = vec3(0.4f, 0.5f, 0.6f), .exponent = 20.0f}},
         {"", MirrorMaterial{vec3(0.7f)}},
         {"", ConductorMaterial{.reflectance = vec3(0.8f), .alpha = 0.25f}},
-        {"", DielectricMaterial{.ior = 1.5f, .exterior_ior = 1.2f, .absorption = vec3(1, 2, 3)}},
+        {"", DielectricMaterial{.ior = 1.5f, .exterior_ior = 1.2f, .inside = {vec3(1, 2, 3)}}},
         {"", DielectricMaterial{.fresnel = Fresnel::exact}},
+        {"", DiffuseTransmissionMaterial{vec3(0.2f), vec3(0.3f)}},
+        {"", DiffuseTransmissionMaterial{vec3(0.2f), vec3(0.3f), Medium{vec3(1, 2, 3)}}},
     };
     const std::vector<MaterialRecord> expected{
-        {MATERIAL_DIFFUSE, vec3(0.1f, 0.2f, 0.3f), vec3(0), 0.0f},
-        {MATERIAL_PHONG, vec3(0.1f), vec3(0.4f, 0.5f, 0.6f), 20.0f},
-        {MATERIAL_MIRROR, vec3(0.7f), vec3(0), 0.0f},
-        {MATERIAL_CONDUCTOR, vec3(0.8f), vec3(0), 0.25f},
-        {MATERIAL_DIELECTRIC_SCHLICK, vec3(1, 2, 3), vec3(0), 1.25f},
-        {MATERIAL_DIELECTRIC_EXACT, vec3(0), vec3(0), 1.5f},
+        {MATERIAL_DIFFUSE, MEDIUM_SAME, vec3(0.1f, 0.2f, 0.3f), vec3(0), 0.0f},
+        {MATERIAL_PHONG, MEDIUM_SAME, vec3(0.1f), vec3(0.4f, 0.5f, 0.6f), 20.0f},
+        {MATERIAL_MIRROR, MEDIUM_SAME, vec3(0.7f), vec3(0), 0.0f},
+        {MATERIAL_CONDUCTOR, MEDIUM_SAME, vec3(0.8f), vec3(0), 0.25f},
+        {MATERIAL_DIELECTRIC_SCHLICK, 1, vec3(0), vec3(0), 1.25f},
+        {MATERIAL_DIELECTRIC_EXACT, MEDIUM_NONE, vec3(0), vec3(0), 1.5f},
+        {MATERIAL_DIFFUSE_TRANSMISSION, MEDIUM_SAME, vec3(0.2f), vec3(0.3f), 0.0f},
+        {MATERIAL_DIFFUSE_TRANSMISSION, 1, vec3(0.2f), vec3(0.3f), 0.0f},
     };
     const GpuScene gpu = build_gpu_scene(scene);
     for (uint32_t i = 0; i < expected.size(); ++i) {
@@ -263,7 +267,10 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
         EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i], words[0]) << i;
         EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i + 1], words[1]) << i;
     }
-    EXPECT_EQ(gpu.materials_present, 0x3Fu);
+    EXPECT_EQ(gpu.materials_present, (1u << MATERIAL_COUNT) - 1);
+    EXPECT_EQ(gpu.arrays[ARRAY_MEDIA], (std::vector<uvec4>{uvec4(0), pack(MediumRecord{vec3(1, 2, 3)})[0]}));
+    EXPECT_TRUE(gpu.has_media);
+    EXPECT_FALSE(build_gpu_scene(scene_of({})).has_media);
     EXPECT_EQ(build_gpu_scene(scene_of({})).materials_present, 1u << MATERIAL_DIFFUSE);
 }
 

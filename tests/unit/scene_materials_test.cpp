@@ -37,7 +37,7 @@ TEST(SceneMaterials, HaveAKnownType) {
     SceneFolder folder;
     folder.expect_error(material(R"({"type": @"difuse", "reflectance": 1})"),
                         "unknown type \"difuse\" (did you mean \"diffuse\"? known: diffuse, phong, mirror, "
-                        "conductor, dielectric)");
+                        "conductor, dielectric, diffuse_transmission)");
     folder.expect_error(material(R"(@{"reflectance": 1})"), "the key \"type\" is missing here; add it");
     folder.expect_error(material(R"({"type": "mirror", @"alpha": 0.1})"),
                         "unknown key \"alpha\" (known: type, reflectance)");
@@ -145,19 +145,41 @@ TEST(SceneMaterials, ReadMirrorsAndConductors) {
                         "\"reflectance\": expected numbers from 0 to 1, found 2");
 }
 
+TEST(SceneMaterials, ReadDiffuseTransmission) {
+    const auto leaf = load<DiffuseTransmissionMaterial>(
+        R"({"type": "diffuse_transmission", "reflectance": [0.1, 0.2, 0.3], "transmittance": 0.7})");
+    EXPECT_EQ(leaf.reflectance, vec3(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(leaf.transmittance, vec3(0.7f));
+    EXPECT_FALSE(leaf.inside);
+    const auto shell = load<DiffuseTransmissionMaterial>(
+        R"({"type": "diffuse_transmission", "reflectance": 0, "transmittance": 1,
+            "absorption": {"transmittance": [0.5, 1, 0.25], "distance": 0.1}})");
+    ASSERT_TRUE(shell.inside);
+    EXPECT_EQ(shell.inside->absorption, vec3(6.9314718056f, 0.0f, 13.8629436112f));
+
+    SceneFolder folder;
+    folder.expect_error(
+        material(R"({"type": "diffuse_transmission", "reflectance": 0.5, "transmittance": @[0.5, 0.6, 0]})"),
+        "reflectance + transmittance is 1.1 in green; lower one of the two until the sum is at most 1");
+    folder.expect_error(material(R"(@{"type": "diffuse_transmission", "reflectance": 0.5})"),
+                        "the key \"transmittance\" is missing here; add it");
+    folder.expect_error(material(R"(@{"type": "diffuse_transmission", "transmittance": 0.5})"),
+                        "the key \"reflectance\" is missing here; add it");
+}
+
 TEST(SceneMaterials, ReadDielectrics) {
     const auto glass = load<DielectricMaterial>(R"({"type": "dielectric", "ior": 1.52})");
     EXPECT_EQ(glass.ior, 1.52f);
     EXPECT_EQ(glass.exterior_ior, 1.0f);
     EXPECT_EQ(glass.fresnel, Fresnel::schlick);
-    EXPECT_EQ(glass.absorption, vec3(0));
+    EXPECT_EQ(glass.inside.absorption, vec3(0));
     const auto bubble = load<DielectricMaterial>(
         R"({"type": "dielectric", "ior": 1, "exterior_ior": 1.33, "fresnel": "exact",
             "absorption": {"transmittance": [0.5, 1, 0.25], "distance": 0.1}})");
     EXPECT_EQ(bubble.exterior_ior, 1.33f);
     EXPECT_EQ(bubble.fresnel, Fresnel::exact);
     // ln 2 / 0.1 m, nothing, and twice as much.
-    EXPECT_EQ(bubble.absorption, vec3(6.9314718056f, 0.0f, 13.8629436112f));
+    EXPECT_EQ(bubble.inside.absorption, vec3(6.9314718056f, 0.0f, 13.8629436112f));
     const auto same = load<DielectricMaterial>(R"({"type": "dielectric", "ior": 1.5, "exterior_ior": 1.5})");
     EXPECT_EQ(same.ior, same.exterior_ior);
     EXPECT_EQ(load<DielectricMaterial>(R"({"type": "dielectric", "ior": 2, "fresnel": "schlick"})").fresnel,

@@ -1,0 +1,16 @@
+// Materials and media -> records.
+#pragma once
+
+#include "scene/scene.h"
+#include "shared/material.h"
+
+namespace candela {
+
+// `medium` is the index of medium_behind() among the records of media; it does not matter for an opaque
+// material.
+MaterialRecord material_record(const decltype(Material::model)& model, uint32_t medium = MEDIUM_NONE);
+
+// The medium behind a surface; none if it is the same as before it, or if the material is opaque.
+std::optional<Medium> medium_behind(const decltype(Material::model)& model);
+
+}  // namespace candela

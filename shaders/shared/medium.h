@@ -1,0 +1,40 @@
+// Record of a medium, 1 word of uvec4: what lies between surfaces.
+//
+//   0: absorption.rgb, 0
+#ifndef SHARED_MEDIUM_H
+#define SHARED_MEDIUM_H
+
+#include "shared/types.h"
+
+#ifdef __cplusplus
+#include <array>
+namespace candela {
+#endif
+
+const uint MEDIUM_WORDS = 1u;
+
+const uint MEDIUM_NONE = 0u;         // Index of the one that absorbs nothing, where rays begin.
+const uint MEDIUM_SAME = 0xFFFFFFu;  // Behind a surface: the same as before it.
+
+struct MediumRecord {
+    vec3 absorption;  // [1/m], each >= 0.
+};
+
+#ifdef __cplusplus
+
+inline std::array<uvec4, MEDIUM_WORDS> pack(const MediumRecord& m) {
+    return {word(m.absorption, 0u)};
+}
+
+}  // namespace candela
+#else
+
+MediumRecord medium_unpack(uvec4 a) {
+    MediumRecord m;
+    m.absorption = uintBitsToFloat(a.xyz);
+    return m;
+}
+
+#endif
+
+#endif
