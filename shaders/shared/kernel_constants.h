@@ -15,45 +15,46 @@ const uint LIST_MAX = 16u;
 
 #ifdef __cplusplus
 #include <array>
+#include <iterator>
 namespace candela {
 
 // Who sets a constant: what is in the scene and what is asked for decide the image, the device how it is
 // computed.
-enum class ConstantOwner { SCENE, SETTINGS, DEVICE };
+enum class ConstantOwner { scene, settings, device };
 
-#define CONSTANT(number, type, name, initial, owner) CONSTANT_##name,
-enum KernelConstant : uint {
+#define CONSTANT(number, type, name, initial, owner) const uint CONSTANT_##name = number;
 #include "shared/kernel_constants.inc"
-    CONSTANT_COUNT
+#undef CONSTANT
+
+struct ConstantEntry {
+    uint number;
+    uint initial;  // A bool is 0 or 1.
+    ConstantOwner owner;
+};
+
+#define CONSTANT(number, type, name, initial, owner) {number, uint(initial), ConstantOwner::owner},
+inline constexpr ConstantEntry CONSTANT_ENTRIES[]{
+#include "shared/kernel_constants.inc"
 };
 #undef CONSTANT
 
-#define CONSTANT(number, type, name, initial, owner) static_assert(CONSTANT_##name == number);
-#include "shared/kernel_constants.inc"
-#undef CONSTANT
+inline constexpr uint CONSTANT_COUNT = std::size(CONSTANT_ENTRIES);
 
-// A value for each constant; a bool is 0 or 1.
+// A value for each constant, by its number.
 struct KernelConstants {
-#define CONSTANT(number, type, name, initial, owner) uint(initial),
-    std::array<uint, CONSTANT_COUNT> values{
-#include "shared/kernel_constants.inc"
-    };
-#undef CONSTANT
+    std::array<uint, CONSTANT_COUNT> values = defaults();
 
-    uint& operator[](KernelConstant constant) {
-        return values[constant];
-    }
-    uint operator[](KernelConstant constant) const {
-        return values[constant];
-    }
+    uint& operator[](uint constant) { return values[constant]; }
+    uint operator[](uint constant) const { return values[constant]; }
     bool operator==(const KernelConstants&) const = default;
-};
 
-#define CONSTANT(number, type, name, initial, owner) ConstantOwner::owner,
-inline constexpr std::array<ConstantOwner, CONSTANT_COUNT> CONSTANT_OWNERS{
-#include "shared/kernel_constants.inc"
+    static constexpr std::array<uint, CONSTANT_COUNT> defaults() {
+        std::array<uint, CONSTANT_COUNT> result{};
+        for (const ConstantEntry& entry : CONSTANT_ENTRIES)
+            result[entry.number] = entry.initial;
+        return result;
+    }
 };
-#undef CONSTANT
 
 }  // namespace candela
 #else

@@ -12,6 +12,7 @@
 #include "shared/primitive.h"
 
 #ifdef __cplusplus
+#include <iterator>
 namespace candela {
 #endif
 
@@ -25,12 +26,6 @@ const uint LEAST_STORAGE_BUFFERS = 3u;
 #include "shared/scene_arrays.inc"
 #undef ARRAY
 
-#define ARRAY(number, name, words) +1u
-const uint ARRAY_COUNT = 0u
-#include "shared/scene_arrays.inc"
-    ;
-#undef ARRAY
-
 #ifdef __cplusplus
 
 // What messages call an array, and the length of its records.
@@ -41,12 +36,22 @@ struct SceneArray {
 };
 
 #define ARRAY(number, name, words) {number, #name, words},
-inline constexpr std::array<SceneArray, ARRAY_COUNT> SCENE_ARRAYS{{
+inline constexpr SceneArray SCENE_ARRAYS[]{
 #include "shared/scene_arrays.inc"
-}};
+};
 #undef ARRAY
 
+inline constexpr uint ARRAY_COUNT = std::size(SCENE_ARRAYS);
+
 }  // namespace candela
+#else
+
+#define ARRAY(number, name, words) +1u
+const uint ARRAY_COUNT = 0u
+#include "shared/scene_arrays.inc"
+    ;
+#undef ARRAY
+
 #endif
 
 #endif

@@ -15,14 +15,20 @@ TEST(KernelConstants, WhatTheDeviceSetsHasItsDefaultUntilThereIsOne) {
     settings.estimator = Estimator::light;
     settings.sampler = SamplerKind::independent;
     const KernelConstants constants = make_constants(build_gpu_scene(scene), Camera{}, settings);
-    const KernelConstants defaults;
-    for (uint32_t i = 0; i < CONSTANT_COUNT; ++i) {
-        if (CONSTANT_OWNERS[i] != ConstantOwner::DEVICE) continue;
-        EXPECT_EQ(constants.values[i], defaults.values[i]) << i;
+    for (const ConstantEntry& entry : CONSTANT_ENTRIES) {
+        if (entry.owner != ConstantOwner::device) continue;
+        EXPECT_EQ(constants[entry.number], entry.initial) << entry.number;
     }
     EXPECT_EQ(constants[CONSTANT_ENVIRONMENT], ENVIRONMENT_HIDDEN);
     EXPECT_EQ(constants[CONSTANT_ESTIMATOR], ESTIMATOR_LIGHT);
     EXPECT_EQ(constants[CONSTANT_SAMPLER], SAMPLER_INDEPENDENT);
+}
+
+TEST(KernelConstants, AreNumberedInTheOrderOfTheList) {
+    for (uint32_t i = 0; i < CONSTANT_COUNT; ++i)
+        EXPECT_EQ(CONSTANT_ENTRIES[i].number, i);
+    for (uint32_t i = 0; i < ARRAY_COUNT; ++i)
+        EXPECT_EQ(SCENE_ARRAYS[i].number, i);
 }
 
 }  // namespace
