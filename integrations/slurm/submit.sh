@@ -85,7 +85,7 @@ elif [ -z "$part" ]; then
         number() { sed -n "s/^ *\"$1\": *\([0-9.e+]*\),*$/\1/p" <<<"$report"; }
         speed=$(awk "BEGIN { print 60 * $(number samples_per_second) / ($(number width) * $(number height)) }")
     fi
-    part=$(awk "BEGIN { n = int($speed * $task_time / 2); print n < 1 ? 1 : n > $spp ? $spp : n }")
+    part=$(awk "BEGIN { n = int($speed * $task_time / 2); if (n < 1) n = 1; if (n > $spp) n = $spp; print n }")
 fi
 echo "$part" >"$folder/part-size"
 tasks=$(((spp + part - 1) / part))

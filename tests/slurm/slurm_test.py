@@ -43,6 +43,12 @@ class Slurm(unittest.TestCase):
             check=check, CANDELA=str(candela), LP_NUM_THREADS="1")
         return printed, [line.split()[1].rstrip(":") for line in printed.splitlines() if line.startswith("Job ")]
 
+    def drain(self):
+        """Lets no job begin until the test ends, and then none of its jobs."""
+        self.addCleanup(self.cluster.set_nodes, "n1,n2", "RESUME")
+        self.addCleanup(self.cluster.run, "scancel", "--me")
+        self.cluster.set_nodes("n1,n2", "DRAIN")
+
     def end_of(self, job):
         wait_until(f"the end of job {job}", lambda: self.cluster.state(job) not in ACTIVE)
         return self.cluster.state(job)
@@ -137,6 +143,17 @@ class Slurm(unittest.TestCase):
         _, (merge,) = self.submit(4, 20, "32x32")
         self.assertEqual(self.end_of(merge), "COMPLETED", self.merge_log())
 
+    def test_a_part_is_what_half_of_the_time_allows(self):
+        def submitted(*options):
+            return self.cluster.run(SUBMIT, "--folder", self.folder / str(len(options)), *options, SCENE, "--spp", 14,
+                                    "--size", "16x16", "-o", self.folder / "a.exr", CANDELA=CANDELA)
+
+        self.drain()
+        self.assertIn(": tasks 0-2 of 6 sample(s) each\n", submitted("--speed", "3", "--task-time", "4"))
+        printed = submitted()  # Within five seconds, this computer renders more of so small a picture.
+        self.assertIn("Measuring the speed of this machine", printed)
+        self.assertIn(": tasks 0 of 14 sample(s) each\n", printed)
+
     def test_what_makes_no_sense_is_refused(self):
         def refusal(*arguments):
             result = subprocess.run([SUBMIT, *map(str, arguments)], env=self.cluster.environment | {"CANDELA": CANDELA},
@@ -154,12 +171,10 @@ class Slurm(unittest.TestCase):
         self.assertIn("2000 tasks of 1 sample(s) are more than Slurm takes",
                       refusal("--part", 1, SCENE, "--spp", 2000, "-o", "a.exr"))
         # While jobs of a picture wait, it is not submitted once more.
-        self.cluster.set_nodes("n1,n2", "DRAIN")
+        self.drain()
         _, jobs = self.submit(4, 8, "32x32")
         self.assertIn("jobs of this picture are still in the queue: " + " ".join(jobs),
                       refusal("--folder", self.parts, SCENE, "--spp", 8, "-o", "a.exr"))
-        self.cluster.run("scancel", *jobs)
-        self.cluster.set_nodes("n1,n2", "RESUME")
 
 
 if __name__ == "__main__":
