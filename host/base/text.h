@@ -1,6 +1,8 @@
 // Texts made of parts.
 #pragma once
 
+#include <array>
+#include <charconv>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -14,6 +16,13 @@ std::string concat(const Parts&... parts) {
     text.precision(std::numeric_limits<float>::max_digits10);
     (text << ... << parts);
     return text.str();
+}
+
+// A number in at most `digits` significant digits, for messages.
+inline std::string number_text(double number, int digits) {
+    std::array<char, 64> text;
+    const auto end = std::to_chars(text.begin(), text.end(), number, std::chars_format::general, digits).ptr;
+    return {text.data(), end};
 }
 
 }  // namespace candela

@@ -21,7 +21,7 @@
 #include "cli/console.h"
 #include "cli/vulkan.h"
 #include "probe/scenes.h"
-#include "scene/loader.h"
+#include "load/load.h"
 #include "version.h"
 #include "vk/device.h"
 #include "vk/instance.h"

@@ -12,7 +12,7 @@
 #include "gpu_scene/gpu_scene.h"
 #include "render/renderer.h"
 #include "scene/geometry.h"
-#include "scene/loader.h"
+#include "load/load.h"
 #include "shared/bvh_node.h"
 
 namespace candela {

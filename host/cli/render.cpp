@@ -27,7 +27,7 @@
 #include "render/adaptive.h"
 #include "render/make_identity.h"
 #include "render/steady_renderer.h"
-#include "scene/loader.h"
+#include "load/load.h"
 #include "version.h"
 #include "vk/instance.h"
 

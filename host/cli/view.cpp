@@ -18,7 +18,7 @@
 #include "cli/vulkan.h"
 #include "film/identity.h"
 #include "render/make_identity.h"
-#include "scene/loader.h"
+#include "load/load.h"
 #include "version.h"
 #include "view/controls.h"
 #include "view/viewer.h"

@@ -5,7 +5,7 @@
 
 #include "probe/embedded.h"
 #include "probe/random.h"
-#include "scene/loader.h"
+#include "load/json/loader.h"
 
 namespace candela {
 

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "base/math.h"
-#include "scene/node.h"
 
 namespace candela {
 
@@ -33,12 +32,5 @@ class Transform {
     glm::dmat3 cofactor_{1.0};  // The inverse transpose of the linear part, up to a factor.
     bool mirrors_ = false;
 };
-
-// Reads a list of steps, which apply in order, each of them one of
-//     {"scale": s or [x, y, z]}, {"rotate": degrees, "axis": [x, y, z]}, {"translate": [x, y, z]},
-//     {"matrix": [16 numbers, row-major]}.
-// Throws Error with a place for any other content, an axis without length, a matrix that is not affine, or a
-// singular result.
-Transform read_transform(const Node& steps);
 
 }  // namespace candela

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "scene/json.h"
+#include "load/quote.h"
 
 namespace candela {
 namespace {
@@ -95,8 +95,7 @@ void fly(Camera& camera, vec3 shift) {
 }
 
 std::string camera_json(const Camera& camera, const std::string& name) {
-    return "{\n  \"cameras\": {\n    " + json::quote(name) +
-           ": {\n      \"position\": " + vector(camera.position) +
+    return "{\n  \"cameras\": {\n    " + quote(name) + ": {\n      \"position\": " + vector(camera.position) +
            ",\n      \"look_at\": " + vector(camera.look_at) + ",\n      \"up\": " + vector(camera.up) +
            ",\n      \"vertical_fov\": " + number(glm::degrees(double(camera.vertical_fov))) +
            ",\n      \"lens\": " + lens_json(camera.lens) + "\n    }\n  }\n}\n";

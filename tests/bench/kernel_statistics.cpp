@@ -16,7 +16,7 @@
 #include "cli/vulkan.h"
 #include "compiled_kernel.h"
 #include "kernel_bounds.h"
-#include "scene/loader.h"
+#include "load/load.h"
 #include "vk/instance.h"
 
 namespace candela {

@@ -15,10 +15,10 @@
 #include "fuzz/memory_file.h"
 #include "gpu_scene/gpu_scene.h"
 #include "render/adaptive.h"
-#include "scene/loader.h"
-#include "scene/mtl.h"
-#include "scene/obj.h"
-#include "scene/ply.h"
+#include "load/json/loader.h"
+#include "load/obj/mtl.h"
+#include "load/obj/obj.h"
+#include "load/ply/ply.h"
 
 namespace candela::fuzz {
 namespace {

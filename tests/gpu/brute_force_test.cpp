@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "gpu/traversal_fixture.h"
-#include "scene/ply.h"
+#include "load/ply/ply.h"
 
 namespace candela {
 namespace {

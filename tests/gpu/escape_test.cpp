@@ -4,7 +4,7 @@
 #include <string>
 
 #include "gpu/device_fixture.h"
-#include "scene/ply.h"
+#include "load/ply/ply.h"
 #include "support/scene_builders.h"
 
 namespace candela {

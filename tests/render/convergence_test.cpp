@@ -5,7 +5,7 @@
 
 #include "base/relative_error.h"
 #include "render/adaptive.h"
-#include "scene/loader.h"
+#include "load/load.h"
 #include "scene/names.h"
 #include "steady_fixture.h"
 

@@ -8,7 +8,7 @@
 #include "base/image_io.h"
 #include "base/tonemap.h"
 #include "render_fixture.h"
-#include "scene/loader.h"
+#include "load/load.h"
 #include "unit/base_fixture.h"
 
 namespace candela {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "render_fixture.h"
-#include "scene/loader.h"
+#include "load/load.h"
 
 namespace candela {
 namespace {

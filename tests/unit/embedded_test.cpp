@@ -9,7 +9,8 @@
 
 #include "base/file.h"
 #include "base/image_io.h"
-#include "scene/loader.h"
+#include "load/json/loader.h"
+#include "load/load.h"
 #include "unit/base_fixture.h"
 
 namespace candela {

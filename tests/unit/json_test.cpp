@@ -1,6 +1,6 @@
 // The JSON document with places: what it accepts, where it says that values stand, and what it says of bad
 // text.
-#include "scene/json.h"
+#include "load/json/json.h"
 
 #include <gtest/gtest.h>
 

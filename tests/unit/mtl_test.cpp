@@ -1,5 +1,5 @@
 // MTL files: the material that each statement makes, and what is refused, in which words.
-#include "scene/mtl.h"
+#include "load/obj/mtl.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // OBJ files: what is read, and what is refused, in which words.
-#include "scene/obj.h"
+#include "load/obj/obj.h"
 
 #include <clocale>
 #include <cmath>

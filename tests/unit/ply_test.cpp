@@ -1,5 +1,5 @@
 // PLY files in their three formats: what is read, and what is refused, in which words.
-#include "scene/ply.h"
+#include "load/ply/ply.h"
 
 #include <algorithm>
 #include <bit>

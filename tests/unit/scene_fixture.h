@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base_fixture.h"
-#include "scene/loader.h"
+#include "load/load.h"
 
 namespace candela {
 

@@ -1,5 +1,5 @@
 // Transforms of shapes: order of steps, exactness, mirrors, and what is refused.
-#include "scene/transform.h"
+#include "load/json/transforms.h"
 
 #include <random>
 

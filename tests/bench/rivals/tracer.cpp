@@ -18,7 +18,7 @@
 
 #include "base/error.h"
 #include "base/image_io.h"
-#include "scene/loader.h"
+#include "load/load.h"
 #include "tracer_materials.h"
 #include "tracer_scene.h"
 

@@ -1,0 +1,46 @@
+// A JSON document in which every value knows where it stands in the file, so that any later complaint about
+// it can say `file:line:column`. Comments (// and /* */) are allowed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace candela::json {
+
+// Counted from 1. A column is one code point of UTF-8, a tab included.
+struct Place {
+    uint32_t line = 1;
+    uint32_t column = 1;
+};
+
+struct Value;
+struct Member;
+using Array = std::vector<Value>;
+using Object = std::vector<Member>;  // In the order of the file; no two keys are equal.
+
+struct Value {
+    Place place;  // Of the first character.
+    std::variant<std::nullptr_t, bool, double, std::string, Array, Object> data;
+};
+
+struct Member {
+    std::string key;
+    Place place;  // Of the key.
+    Value value;
+};
+
+// Parses `text`; `file` is its name in messages. Throws Error `file:line:column: cause` for text that is not
+// one JSON value in UTF-8, a duplicate key, a number that a double cannot hold, or nesting deeper than 256.
+Value parse(std::string_view text, const std::string& file);
+
+// Throws Error with the message `file:line:column: message`.
+[[noreturn]] void fail(const std::string& file, Place place, const std::string& message);
+
+// A value in a few words, for messages: scalars and short arrays of numbers as they are, else `an array of 7`
+// or `an object`.
+std::string describe(const Value& value);
+
+}  // namespace candela::json

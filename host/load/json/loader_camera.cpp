@@ -1,0 +1,84 @@
+// Cameras: placed by what they look at, opened by an angle or by film and focal length, and their lenses.
+#include <cmath>
+
+#include "load/json/loader_parts.h"
+
+namespace candela {
+namespace {
+
+// The full vertical angle [rad] under which a film of the given height is seen from its lens.
+double angle_of_film(const Node& size_node, const Node& focal_length, const Film& film) {
+    constexpr double ASPECT_TOLERANCE = 1e-3;  // Film sizes are given to about three digits.
+    const std::vector<Node> sides = size_node.elements();
+    if (sides.size() != 2) size_node.fail_expected("two numbers [width, height]");
+    const double width = sides[0].positive();
+    const double height = sides[1].positive();
+    const double aspect = double(film.size.x) / film.size.y;
+    if (std::abs(width / height / aspect - 1.0) > ASPECT_TOLERANCE) {
+        size_node.fail("the aspect ratio of film_size must be that of the film's size, " +
+                       std::to_string(film.size.x) + " by " + std::to_string(film.size.y) +
+                       " pixels; pixels are square");
+    }
+    return 2.0 * std::atan(height / (2.0 * focal_length.positive()));
+}
+
+float read_vertical_fov(const Node& node, const Film& film) {
+    const auto degrees = node.find("vertical_fov");
+    const auto size = node.find("film_size");
+    const auto focal_length = node.find("focal_length");
+    if (degrees ? (size || focal_length) : !(size && focal_length)) {
+        node.fail("a camera needs either vertical_fov, or film_size and focal_length");
+    }
+    const float fov =
+        float(degrees ? glm::radians(degrees->number()) : angle_of_film(*size, *focal_length, film));
+    if (!(fov > 0.0f && fov < PI)) {
+        (degrees ? *degrees : *focal_length)
+            .fail("the vertical field of view must lie between 0 and 180 degrees");
+    }
+    return fov;
+}
+
+Lens read_lens(const Node& node) {
+    node.allow_only({"radius", "focal_distance", "blades", "rotation"});
+    Lens lens;
+    lens.radius = float(node.require("radius").non_negative());
+    const auto distance = node.find("focal_distance");
+    if (distance) lens.focal_distance = float(distance->positive());
+    if (lens.radius > 0.0f && !distance) {
+        node.fail("a lens with a radius above 0 needs \"focal_distance\", the distance at which it is sharp");
+    }
+    const auto blades = node.find("blades");
+    if (blades) lens.blades = blades->integer(3, MAX_BLADES);
+    if (const auto rotation = node.find("rotation")) {
+        if (!blades) rotation->fail("rotation turns the polygon of an aperture; it needs \"blades\"");
+        lens.rotation = float(rotation->angle());
+    }
+    return lens;
+}
+
+}  // namespace
+
+Camera read_camera(const Node& node, const Film& film) {
+    constexpr double PARALLEL = 1e-6;  // Sine of the least angle between view and up.
+    node.allow_only({"position", "look_at", "up", "vertical_fov", "film_size", "focal_length", "lens"});
+    Camera camera;
+    camera.name = node.key();
+    const Node look_at = node.require("look_at");
+    camera.position = vec3(node.require("position").vector());
+    camera.look_at = vec3(look_at.vector());
+    if (camera.position == camera.look_at)
+        look_at.fail("the camera looks at its own position; move one of the two");
+    const auto up = node.find("up");
+    if (up) camera.up = vec3(up->vector());
+    const glm::dvec3 view = glm::dvec3(camera.look_at) - glm::dvec3(camera.position);
+    const glm::dvec3 upwards(camera.up);
+    if (length(cross(view, upwards)) <= PARALLEL * length(view) * length(upwards)) {
+        (up ? *up : node)
+            .fail("the camera's up direction is zero or parallel to its view; give another \"up\"");
+    }
+    camera.vertical_fov = read_vertical_fov(node, film);
+    if (const auto lens = node.find("lens")) camera.lens = read_lens(*lens);
+    return camera;
+}
+
+}  // namespace candela

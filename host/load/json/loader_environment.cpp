@@ -1,0 +1,66 @@
+// The environment: a constant sky, or one from an image.
+#include "base/error.h"
+#include "load/json/loader_parts.h"
+#include "scene/environment.h"
+#include "scene/geometry.h"
+
+namespace candela {
+namespace {
+
+// Loads the image that `file` names; its warnings and errors get the place of `file` in front.
+Environment load(const Node& file, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
+    try {
+        std::vector<std::string> odd;
+        Environment environment = load_environment(folder / file.file_name(), odd);
+        for (const std::string& warning : odd)
+            warnings.push_back(file.place() + ": " + warning);
+        return environment;
+    } catch (const Error& error) {
+        file.fail(error.what());
+    }
+}
+
+// Multiplies all radiance by the intensity that stands at `node`.
+void scale(Environment& environment, const Node& node) {
+    const double intensity = node.non_negative();
+    for (vec3& radiance : environment.radiance) {
+        const glm::dvec3 scaled = intensity * glm::dvec3(radiance);
+        if (glm::any(glm::greaterThan(scaled, glm::dvec3(FLOAT_MAX)))) {
+            node.fail("radiance times intensity exceeds the range of 32-bit floats; lower the intensity");
+        }
+        radiance = vec3(scaled);
+    }
+}
+
+}  // namespace
+
+Environment read_environment(const Node& node, const std::filesystem::path& folder, Scene& scene) {
+    node.allow_only({"file", "radiance", "rotation", "intensity", "visible"});
+    const auto file = node.find("file");
+    const auto radiance = node.find("radiance");
+    if (file.has_value() == radiance.has_value()) {
+        node.fail(R"(the environment needs either "file", an image, or "radiance", a constant)");
+    }
+    Environment environment;
+    if (file) {
+        environment = load(*file, folder, scene.warnings);
+        scene.files.push_back(folder / file->string());
+    }
+    if (radiance) environment.radiance = {vec3(radiance->rgb())};
+    const bool reported = file && !gives_light(environment);  // By load_environment().
+    if (const auto rotation = node.find("rotation")) {
+        if (!file) {
+            rotation->fail(
+                "a constant environment looks the same in all directions; rotation needs \"file\"");
+        }
+        environment.rotation = float(rotation->angle());
+    }
+    if (const auto intensity = node.find("intensity")) scale(environment, *intensity);
+    if (const auto visible = node.find("visible")) environment.visible = visible->boolean();
+    if (!gives_light(environment) && !reported) {
+        scene.warnings.push_back(node.place() + ": the environment is black: it gives no light");
+    }
+    return environment;
+}
+
+}  // namespace candela

@@ -1,0 +1,120 @@
+// Materials: one reader for each model, in a table by the name of its type.
+#include <array>
+
+#include "load/json/loader_parts.h"
+#include "scene/names.h"
+
+namespace candela {
+namespace {
+
+using glm::dvec3;
+using Model = decltype(Material::model);
+
+Model read_diffuse(const Node& node) {
+    node.allow_only({"type", "reflectance"});
+    return DiffuseMaterial{vec3(node.require("reflectance").reflectance())};
+}
+
+// Throws Error at the place of `b` if a channel would send out more light than it receives; `names` are those
+// of a and b.
+void check_sum(const Node& place, std::string_view names, dvec3 a, dvec3 b) {
+    constexpr std::array<const char*, 3> CHANNELS{"red", "green", "blue"};
+    // Decimals that add up to 1, such as 0.7 and 0.3, do so as doubles within 2e-16. More than 1e-14 is
+    // meant, and shows in 15 digits. Floats, of which the greater is off by at most 2^-25 and the lesser by
+    // 2^-26, add up to less than 1 + 2^-24, which rounds to 1.
+    constexpr double SLACK = 1e-14;
+    constexpr int DIGITS = 15;
+    for (glm::length_t i = 0; i < 3; ++i) {
+        const double sum = a[i] + b[i];
+        if (sum <= 1.0 + SLACK) continue;
+        place.fail(std::string(names) + " is " + number_text(sum, DIGITS) + " in " + CHANNELS[size_t(i)] +
+                   "; lower one of the two until the sum is at most 1");
+    }
+}
+
+Model read_phong(const Node& node) {
+    node.allow_only({"type", "diffuse", "specular", "exponent"});
+    const auto diffuse = node.find("diffuse");
+    const Node specular = node.require("specular");
+    const dvec3 kd = diffuse ? diffuse->reflectance() : dvec3(0.0);
+    const dvec3 ks = specular.reflectance();
+    check_sum(specular, "diffuse + specular", kd, ks);
+    return PhongMaterial{vec3(kd), vec3(ks), node.require("exponent").number(0.0f, MAX_PHONG_EXPONENT)};
+}
+
+Model read_mirror(const Node& node) {
+    node.allow_only({"type", "reflectance"});
+    MirrorMaterial material;
+    if (const auto reflectance = node.find("reflectance"))
+        material.reflectance = vec3(reflectance->reflectance());
+    return material;
+}
+
+Model read_conductor(const Node& node) {
+    node.allow_only({"type", "reflectance", "alpha"});
+    const vec3 reflectance(node.require("reflectance").reflectance());
+    const Node alpha = node.require("alpha");
+    if (alpha.number() == 0.0) {
+        alpha.fail(R"(a metal without any roughness is no "conductor"; use the type "mirror")");
+    }
+    return ConductorMaterial{reflectance, alpha.number(MIN_ALPHA, 1.0f)};
+}
+
+// Absorption [1/m] given by the share of light that is left after a distance.
+vec3 read_absorption(const Node& node) {
+    node.allow_only({"transmittance", "distance"});
+    const Node transmittance = node.require("transmittance");
+    const dvec3 share = transmittance.reflectance();
+    if (glm::any(glm::equal(share, dvec3(0.0)))) {
+        transmittance.fail_expected("numbers above 0 and up to 1");
+    }
+    const Node distance = node.require("distance");
+    const dvec3 absorption = abs(log(share)) / distance.positive();
+    if (glm::any(glm::greaterThan(absorption, dvec3(FLOAT_MAX)))) {
+        distance.fail("the absorption exceeds the range of 32-bit floats; use a longer distance");
+    }
+    return vec3(absorption);
+}
+
+Model read_diffuse_transmission(const Node& node) {
+    node.allow_only({"type", "reflectance", "transmittance", "absorption"});
+    const dvec3 reflectance = node.require("reflectance").reflectance();
+    const Node place = node.require("transmittance");
+    const dvec3 transmittance = place.reflectance();
+    check_sum(place, "reflectance + transmittance", reflectance, transmittance);
+    DiffuseTransmissionMaterial material{vec3(reflectance), vec3(transmittance), {}};
+    if (const auto absorption = node.find("absorption"))
+        material.inside = Medium{read_absorption(*absorption)};
+    return material;
+}
+
+Model read_dielectric(const Node& node) {
+    constexpr double MOST_CONTRAST = 1e6;  // Its square, by which radiance is scaled, stays within floats.
+    node.allow_only({"type", "ior", "exterior_ior", "fresnel", "absorption"});
+    DielectricMaterial material;
+    const Node ior = node.require("ior");
+    material.ior = float(ior.positive());
+    if (const auto exterior = node.find("exterior_ior")) material.exterior_ior = float(exterior->positive());
+    const double contrast = double(material.ior) / material.exterior_ior;
+    if (contrast > MOST_CONTRAST || contrast < 1.0 / MOST_CONTRAST) {
+        ior.fail("ior and exterior_ior differ by a factor above a million; give both as those of real media");
+    }
+    if (const auto fresnel = node.find("fresnel")) material.fresnel = fresnel->choice(FRESNEL_NAMES);
+    if (const auto absorption = node.find("absorption")) material.inside = {read_absorption(*absorption)};
+    return material;
+}
+
+}  // namespace
+
+Material read_material(const Node& node) {
+    constexpr std::array<std::pair<std::string_view, Model (*)(const Node&)>, 6> READERS{
+        {{"diffuse", &read_diffuse},
+         {"phong", &read_phong},
+         {"mirror", &read_mirror},
+         {"conductor", &read_conductor},
+         {"dielectric", &read_dielectric},
+         {"diffuse_transmission", &read_diffuse_transmission}}};
+    return {std::string(node.key()), node.require("type").choice(READERS)(node)};
+}
+
+}  // namespace candela

@@ -1,0 +1,137 @@
+// Shapes that are read from files of their own.
+#include <algorithm>
+
+#include "base/error.h"
+#include "load/json/loader_parts.h"
+#include "load/obj/obj.h"
+#include "load/obj/obj_materials.h"
+#include "load/ply/ply.h"
+
+namespace candela {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, MeshNormals>, 3> MESH_NORMALS_NAMES{
+    {{"file", MeshNormals::file}, {"smooth", MeshNormals::smooth}, {"flat", MeshNormals::flat}}};
+
+MeshNormals normals_of(const Node& node) {
+    const auto normals = node.find("normals");
+    return normals ? normals->choice(MESH_NORMALS_NAMES) : MeshNormals::file;
+}
+
+// Calls a function that reads what `file` names; its errors get the place of `file`.
+template <class Read>
+auto read_from(const Node& file, Read read) {
+    try {
+        return read();
+    } catch (const Error& error) {
+        file.fail(error.what());
+    }
+}
+
+void warn(const Node& file, const std::vector<std::string>& warnings, Scene& scene) {
+    for (const std::string& warning : warnings)
+        scene.warnings.push_back(file.place() + ": " + warning);
+}
+
+// The name of a part's material in the scene.
+std::string name_of(const Node& file, const ObjPart& part) {
+    return part.material ? file.string() + '/' + part.material->name : file.string() + " (no material)";
+}
+
+// Adds the materials of an OBJ file to the scene, unless another shape of the same file has brought them.
+void add_surfaces(const Node& file, const ObjParts& obj, ShapeList& shapes) {
+    const auto is_there = [&](const ObjPart& part) {
+        return shapes.find_file_appearance(name_of(file, part));
+    };
+    if (std::all_of(obj.parts.begin(), obj.parts.end(), is_there)) return;
+    const std::filesystem::path path = shapes.path_of(file.file_name());
+    Scene& scene = shapes.scene();
+    const MtlLibrary library = read_from(file, [&] { return load_mtl_libraries(path, obj.libraries); });
+    warn(file, library.warnings, scene);
+    scene.files.insert(scene.files.end(), library.files.begin(), library.files.end());
+    for (const ObjPart& part : obj.parts) {
+        if (!part.material) {
+            const std::string faces = std::to_string(part.faces) + (part.faces == 1 ? " face" : " faces");
+            warn(file, {path.string() + ": " + faces + " before the first usemtl; shown in grey"}, scene);
+            shapes.add_file_appearance(name_of(file, part), DiffuseMaterial{}, std::nullopt);
+            continue;
+        }
+        const MtlMaterial& material =
+            read_from(file, [&] { return find_mtl_material(library, path, *part.material); });
+        warn(file, material.warnings, scene);
+        const bool emits = material.emission != vec3(0.0f);
+        shapes.add_file_appearance(name_of(file, part), material.material.model,
+                                   emits ? std::optional(Emission{material.emission}) : std::nullopt);
+    }
+}
+
+// Adds an OBJ file with the materials that it names itself.
+void read_obj_with_materials(const Node& node, ShapeList& shapes) {
+    const Node file = node.require("file");
+    const Transform transform = ShapeList::transform_of(node);
+    const MeshNormals normals = normals_of(node);
+    const std::filesystem::path path = shapes.path_of(file.file_name());
+    ObjParts obj = read_from(file, [&] { return load_obj_parts(path, normals); });
+    shapes.scene().files.push_back(path);
+    const auto has_material = [](const ObjPart& part) { return part.material.has_value(); };
+    if (std::none_of(obj.parts.begin(), obj.parts.end(), has_material)) {
+        node.fail(
+            "the shape has neither material nor emission, and no face of its file has a material "
+            "(usemtl); add one of them");
+    }
+    add_surfaces(file, obj, shapes);
+
+    const auto two_sided = node.find("two_sided");
+    const bool both_sides = two_sided && two_sided->boolean();
+    bool emits = false;
+    std::vector<MeshPart> parts;
+    for (ObjPart& part : obj.parts) {
+        move_to_world(file.place(), transform, part.mesh);
+        Appearance appearance = *shapes.find_file_appearance(name_of(file, part));
+        if (appearance.emission) {
+            appearance.emission->two_sided = both_sides;
+            emits = true;
+        }
+        parts.push_back({appearance, std::move(part.mesh)});
+    }
+    if (two_sided && !emits) {
+        two_sided->fail("two_sided says where emission leaves, but no material of the file emits (Ke)");
+    }
+    shapes.add_mesh(node.place(), transform, std::move(parts));
+}
+
+// Adds a file as one mesh with the material and emission of `node`; load(file, path, normals) reads it.
+template <class Load>
+void read_whole(const Node& node, ShapeList& shapes, Load load) {
+    const Appearance appearance = shapes.appearance_of(node);
+    const Transform transform = ShapeList::transform_of(node);
+    const Node file = node.require("file");
+    const MeshNormals normals = normals_of(node);
+    const std::filesystem::path path = shapes.path_of(file.file_name());
+    TriangleMesh mesh = read_from(file, [&] { return load(file, path, normals); });
+    shapes.scene().files.push_back(path);
+    move_to_world(file.place(), transform, mesh);
+    shapes.add_mesh(node.place(), appearance, transform, std::move(mesh));
+}
+
+}  // namespace
+
+void read_obj(const Node& node, ShapeList& shapes) {
+    node.allow_only({"file", "normals"}, SHAPE_KEYS);
+    if (!node.find("material") && !node.find("emission")) return read_obj_with_materials(node, shapes);
+    read_whole(node, shapes, [](const Node&, const std::filesystem::path& path, MeshNormals normals) {
+        return load_obj(path, normals);
+    });
+}
+
+void read_ply(const Node& node, ShapeList& shapes) {
+    node.allow_only({"file", "normals"}, SHAPE_KEYS);
+    read_whole(node, shapes, [&](const Node& file, const std::filesystem::path& path, MeshNormals normals) {
+        std::vector<std::string> warnings;
+        TriangleMesh mesh = load_ply(path, normals, warnings);
+        warn(file, warnings, shapes.scene());
+        return mesh;
+    });
+}
+
+}  // namespace candela

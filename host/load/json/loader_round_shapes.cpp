@@ -1,0 +1,91 @@
+// Spheres and disks: read, transformed and checked.
+#include <algorithm>
+#include <cmath>
+
+#include "load/json/loader_parts.h"
+
+namespace candela {
+namespace {
+
+using glm::dvec3;
+
+dvec3 center_of(const Node& node) {
+    const auto center = node.find("center");
+    return center ? center->vector() : dvec3(0.0);
+}
+
+double radius_of(const Node& node) {
+    const auto radius = node.find("radius");
+    return radius ? radius->positive() : 1.0;
+}
+
+// The greatest component of a vector; dividing by it keeps squares from over- and underflowing.
+double greatest(dvec3 v) {
+    const dvec3 size = abs(v);
+    return std::max({size.x, size.y, size.z});
+}
+
+// Throws Error if the box center +- reach goes too far. False comparisons catch NaN as well.
+void check_reach(const Node& node, dvec3 center, dvec3 reach) {
+    if (!glm::all(glm::lessThan(abs(center) + reach, dvec3(double(MAX_COORDINATE))))) {
+        node.fail("the shape reaches beyond 1e37 along an axis; check its numbers and its transform");
+    }
+}
+
+// Throws Error if a disk is too small for floats, or so narrow that their rounding would turn its normal.
+void check_breadth(const Node& node, const Disk& disk) {
+    constexpr double NARROW = 1e-6;  // Against the length; a float is off by 6e-8.
+    const dvec3 e1(disk.e1);
+    const dvec3 e2(disk.e2);
+    const double size = std::max(greatest(e1), greatest(e2));
+    if (!(size >= FLOAT_MIN && length(cross(e1 / size, e2 / size)) > NARROW)) {
+        node.fail(
+            "the transform makes the disk too small or too narrow for 32-bit floats; use greater factors");
+    }
+}
+
+}  // namespace
+
+void read_sphere(const Node& node, ShapeList& shapes) {
+    node.allow_only({"center", "radius"}, SHAPE_KEYS);
+    const Appearance appearance = shapes.appearance_of(node);
+    const Transform transform = ShapeList::transform_of(node);
+    const std::optional<double> scale = transform.uniform_scale();
+    if (!scale) {
+        node.require("transform")
+            .fail("a sphere may only be moved, turned, mirrored and scaled evenly; use a mesh instead");
+    }
+    const dvec3 center = transform.point(center_of(node));
+    const double radius = *scale * radius_of(node);
+    if (radius < FLOAT_MIN) {
+        node.fail("the transform makes the sphere too small for 32-bit floats; use greater factors");
+    }
+    check_reach(node, center, dvec3(radius));
+    shapes.add(appearance, Sphere{vec3(center), float(radius)});
+}
+
+void read_disk(const Node& node, ShapeList& shapes) {
+    node.allow_only({"center", "normal", "radius"}, SHAPE_KEYS);
+    const Appearance appearance = shapes.appearance_of(node);
+    const Transform transform = ShapeList::transform_of(node);
+    const dvec3 center = transform.point(center_of(node));
+    const double radius = radius_of(node);
+    const Node normal = node.require("normal");
+    const dvec3 direction = normal.vector();
+    if (direction == dvec3(0.0)) normal.fail_expected("a direction, not zero");
+    const dvec3 n = normalize(direction / greatest(direction));
+
+    // Any two radii at right angles will do; these are exact along the axes.
+    const dvec3 across = std::abs(n.x) < std::abs(n.y) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+    const dvec3 u = normalize(cross(across, n));
+    const dvec3 v = cross(n, u);
+    const dvec3 e1 = transform.vector(radius * u);
+    const dvec3 e2 = transform.vector(radius * v);
+    check_reach(node, center, abs(e1) + abs(e2));
+    Disk disk{vec3(center), vec3(e1), vec3(e2)};
+    if (transform.mirrors()) std::swap(disk.e1, disk.e2);
+    check_breadth(node, disk);
+    shapes.add(appearance, disk);
+}
+
+}  // namespace candela

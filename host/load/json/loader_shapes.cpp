@@ -1,0 +1,121 @@
+// Shapes of flat faces that the scene file itself describes: read, transformed and checked one by one.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "load/json/loader_parts.h"
+
+namespace candela {
+namespace {
+
+using glm::dvec3;
+
+// Throws Error unless the corners span a convex, planar quadrilateral.
+void check_quad(const Node& node, const Quad& quad) {
+    // Relative to the longer diagonal. The first leaves room for coordinates that were given to three digits.
+    constexpr double PLANAR = 1e-3;
+    constexpr double DEGENERATE = 1e-9;
+    const auto corner = [&](size_t i) { return dvec3(quad.corners[i % 4]); };
+    const dvec3 diagonal = corner(2) - corner(0);
+    const dvec3 other_diagonal = corner(3) - corner(1);
+    const double size = std::max(length(diagonal), length(other_diagonal));
+    const dvec3 normal = cross(diagonal, other_diagonal);
+    if (!(length(normal) > DEGENERATE * size * size)) {
+        node.fail("the quad has no area, or its sides cross; list its corners counter-clockwise");
+    }
+    const dvec3 n = normalize(normal);
+    if (std::abs(dot(n, corner(1) - corner(0))) > PLANAR * size) {
+        node.fail("the corners of the quad do not lie in a plane; use a mesh of two triangles");
+    }
+    for (size_t i = 0; i < 4; ++i) {
+        const dvec3 turn = cross(corner(i + 1) - corner(i), corner(i + 2) - corner(i + 1));
+        if (!(dot(turn, n) > DEGENERATE * size * size)) {
+            node.fail("the quad is not convex; use a mesh, or list its corners counter-clockwise");
+        }
+    }
+}
+
+void read_quad(const Node& node, ShapeList& shapes) {
+    node.allow_only({"vertices"}, SHAPE_KEYS);
+    const Appearance appearance = shapes.appearance_of(node);
+    const Transform transform = ShapeList::transform_of(node);
+    const Node vertices = node.require("vertices");
+    const std::vector<Node> points = vertices.elements();
+    if (points.size() != 4) vertices.fail_expected("four points");
+    Quad quad;
+    for (size_t i = 0; i < 4; ++i) {
+        const size_t corner = transform.mirrors() ? (4 - i) % 4 : i;
+        quad.corners[corner] = rounded(points[i], transform.point(points[i].vector()));
+    }
+    check_quad(vertices, quad);
+    shapes.add(appearance, quad);
+}
+
+void read_box(const Node& node, ShapeList& shapes) {
+    // Bits 0, 1 and 2 of a corner choose between min and max along x, y and z.
+    constexpr uint8_t SIDES[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    node.allow_only({"min", "max"}, SHAPE_KEYS);
+    const Appearance appearance = shapes.appearance_of(node);
+    const Transform transform = ShapeList::transform_of(node);
+    const dvec3 lo = node.require("min").vector();
+    const dvec3 hi = node.require("max").vector();
+    if (!glm::all(glm::lessThan(lo, hi))) {
+        node.require("max").fail("each number of max must be above that of min");
+    }
+    for (const auto& side : SIDES) {
+        Quad quad;
+        for (size_t i = 0; i < 4; ++i) {
+            const size_t corner = side[transform.mirrors() ? 3 - i : i];
+            const dvec3 p(corner & 1u ? hi.x : lo.x, corner & 2u ? hi.y : lo.y, corner & 4u ? hi.z : lo.z);
+            quad.corners[i] = rounded(node, transform.point(p));
+        }
+        check_quad(node, quad);
+        shapes.add(appearance, quad);
+    }
+}
+
+void read_mesh(const Node& node, ShapeList& shapes) {
+    node.allow_only({"positions", "triangles", "normals"}, SHAPE_KEYS);
+    const Appearance appearance = shapes.appearance_of(node);
+    const Transform transform = ShapeList::transform_of(node);
+    TriangleMesh mesh;
+    const Node positions = node.require("positions");
+    for (const Node& p : positions.elements()) {
+        mesh.positions.push_back(rounded(p, transform.point(p.vector())));
+    }
+    if (mesh.positions.empty()) positions.fail_expected("at least one point");
+    const auto last = uint32_t(mesh.positions.size() - 1);
+    for (const Node& triangle : node.require("triangles").elements()) {
+        const std::vector<Node> corners = triangle.elements();
+        if (corners.size() != 3) triangle.fail_expected("three indices of positions");
+        mesh.triangles.emplace_back(corners[0].integer(0, last), corners[1].integer(0, last),
+                                    corners[2].integer(0, last));
+    }
+    if (const auto normals = node.find("normals")) {
+        for (const Node& n : normals->elements())
+            mesh.normals.emplace_back(n.vector());
+        if (mesh.normals.size() != mesh.positions.size()) {
+            normals->fail_expected("as many normals as positions, " + std::to_string(mesh.positions.size()));
+        }
+    }
+    shapes.add_mesh(node.place(), appearance, transform, std::move(mesh));
+}
+
+}  // namespace
+
+void read_shapes(const Node& node, const std::filesystem::path& folder, Scene& scene) {
+    constexpr std::array<std::pair<std::string_view, void (*)(const Node&, ShapeList&)>, 7> READERS{
+        {{"quad", &read_quad},
+         {"box", &read_box},
+         {"mesh", &read_mesh},
+         {"sphere", &read_sphere},
+         {"disk", &read_disk},
+         {"obj", &read_obj},
+         {"ply", &read_ply}}};
+    ShapeList shapes(folder, scene);
+    for (const Node& shape : node.elements())
+        shape.require("type").choice(READERS)(shape, shapes);
+}
+
+}  // namespace candela

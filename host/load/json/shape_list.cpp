@@ -1,0 +1,55 @@
+// The values that every shape may have.
+#include "load/json/shape_list.h"
+
+#include <utility>
+
+namespace candela {
+
+vec3 rounded(const Node& node, glm::dvec3 p) {
+    const std::optional<vec3> result = rounded(p);
+    if (!result) node.fail(POINT_TOO_FAR);
+    return *result;
+}
+
+ShapeList::ShapeList(std::filesystem::path folder, Scene& scene)
+    : SceneBuilder(scene), folder_(std::move(folder)) {
+    for (const Material& material : scene.materials)
+        indices_.emplace(material.name, uint32_t(indices_.size()));
+}
+
+Appearance ShapeList::appearance_of(const Node& node) {
+    const auto material = node.find("material");
+    if (!material && !node.find("emission")) {
+        node.fail("the shape has neither material nor emission; add one of them");
+    }
+    const std::optional<Emission> emission = emission_of(node);
+    return {material ? index_of(*material) : black(), emission};
+}
+
+std::optional<Emission> ShapeList::emission_of(const Node& node) {
+    const auto emission = node.find("emission");
+    const auto two_sided = node.find("two_sided");
+    const bool both_sides = two_sided && two_sided->boolean();
+    if (two_sided && !emission) {
+        two_sided->fail("two_sided says where emission leaves; it needs \"emission\"");
+    }
+    const vec3 radiance = emission ? vec3(emission->rgb()) : vec3(0.0f);
+    if (radiance == vec3(0.0f)) return std::nullopt;
+    return Emission{radiance, both_sides};
+}
+
+Transform ShapeList::transform_of(const Node& node) {
+    const auto transform = node.find("transform");
+    return transform ? read_transform(*transform) : Transform();
+}
+
+uint32_t ShapeList::index_of(const Node& material) {
+    const auto found = indices_.find(material.string());
+    if (found != indices_.end()) return found->second;
+    std::vector<std::string> names;
+    for (size_t i = 0; i < indices_.size(); ++i)
+        names.push_back(scene().materials[i].name);
+    material.fail_unknown("material", material.string(), names, "defined");
+}
+
+}  // namespace candela

@@ -1,0 +1,51 @@
+// What the readers of shapes share: where a shape goes, and the values that every shape may have.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "load/json/node.h"
+#include "load/json/transforms.h"
+#include "scene/scene_builder.h"
+
+namespace candela {
+
+// The keys that every shape may have, for Node::allow_only.
+inline constexpr std::array<std::string_view, 5> SHAPE_KEYS{"type", "material", "emission", "two_sided",
+                                                            "transform"};
+
+// The shapes of a scene while they are read.
+class ShapeList : public SceneBuilder {
+  public:
+    // Files are relative to `folder`. scene.materials holds exactly the materials that the scene file
+    // defines; the scene must outlive the list.
+    ShapeList(std::filesystem::path folder, Scene& scene);
+
+    std::filesystem::path path_of(const std::string& file) const { return folder_ / file; }
+
+    // The material and emission that a shape's node names. An emitter without a material gets a black one,
+    // and emission of zero is none. Throws Error if the node has neither, or for a name of no material.
+    Appearance appearance_of(const Node& node);
+    // The emission of a shape's node; none if it is absent or zero. Throws Error for two_sided without it.
+    static std::optional<Emission> emission_of(const Node& node);
+    // The transform of a shape's node; the identity if it has none.
+    static Transform transform_of(const Node& node);
+
+  private:
+    uint32_t index_of(const Node& material);
+
+    std::filesystem::path folder_;
+    std::map<std::string, uint32_t, std::less<>> indices_;  // Of the materials that the scene file defines.
+};
+
+// A point in world space as floats. Throws Error at the place of `node`, where it came from, if it does not
+// fit.
+vec3 rounded(const Node& node, glm::dvec3 p);
+
+}  // namespace candela

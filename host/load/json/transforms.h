@@ -1,0 +1,16 @@
+// The transforms of shapes, as a scene file writes them.
+#pragma once
+
+#include "load/json/node.h"
+#include "scene/transform.h"
+
+namespace candela {
+
+// Reads a list of steps, which apply in order, each of them one of
+//     {"scale": s or [x, y, z]}, {"rotate": degrees, "axis": [x, y, z]}, {"translate": [x, y, z]},
+//     {"matrix": [16 numbers, row-major]}.
+// Throws Error with a place for any other content, an axis without length, a matrix that is not affine, or a
+// singular result.
+Transform read_transform(const Node& steps);
+
+}  // namespace candela

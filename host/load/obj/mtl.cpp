@@ -1,0 +1,160 @@
+// One pass over the lines. tinyobjloader could read these files as well, but it takes malformed numbers for 0
+// and does not tell what is absent.
+#include "load/obj/mtl.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "load/quote.h"
+#include "load/text_lines.h"
+
+namespace candela {
+namespace {
+
+using glm::dvec3;
+
+bool is_texture(std::string_view command) {
+    constexpr std::array<std::string_view, 5> OTHERS{"bump", "disp", "decal", "refl", "norm"};
+    return command.starts_with("map_") || std::find(OTHERS.begin(), OTHERS.end(), command) != OTHERS.end();
+}
+
+class Reader {
+  public:
+    explicit Reader(std::string file) : file_(std::move(file)) {}
+
+    MtlLibrary read(std::string_view text) {
+        refuse_byte_order_mark(text, file_);
+        for_each_line(text, [this](uint64_t line, std::string_view command, std::string_view rest) {
+            line_ = line;
+            if (!command.empty() && !command.starts_with('#')) read_line(command, rest);
+        });
+        finish();
+        if (library_.materials.empty()) {
+            throw Error(file_ + ": the file has no materials (lines \"newmtl name\"); is it an MTL file?");
+        }
+        warn_of(textures_, "textures are not supported yet");
+        warn_of(unknown_, "unknown statements");
+        return std::move(library_);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& cause) const {
+        throw Error(file_ + ':' + std::to_string(line_) + ": " + cause);
+    }
+
+    void warn_of(const std::vector<std::string>& statements, const char* why) {
+        if (statements.empty()) return;
+        library_.warnings.push_back(file_ + ": ignored " + joined(statements) + " (" + why + ')');
+    }
+
+    void read_line(std::string_view command, std::string_view rest) {
+        if (command == "newmtl") {
+            finish();
+            current_.emplace();
+            current_->name = trimmed(rest);
+            current_->line = line_;
+            if (current_->name.empty()) fail("newmtl needs the name of the material");
+        } else if (!current_) {
+            fail(quote(command) + " stands before the first newmtl; is it an MTL file?");
+        } else {
+            read_statement(*current_, command, rest);
+        }
+    }
+
+    void read_statement(MtlStatements& s, std::string_view command, std::string_view rest) {
+        if (command == "Kd") {
+            s.kd = colour(command, rest);
+        } else if (command == "Ks") {
+            s.ks = colour(command, rest);
+        } else if (command == "Ke") {
+            s.ke = vec3(colour(command, rest));
+        } else if (command == "Ns") {
+            s.ns = number(command, rest);
+            if (s.ns < 0.0) fail("Ns, an exponent, must not be negative");
+        } else if (command == "Ni") {
+            s.ni = number(command, rest);
+            s.ni_line = line_;
+        } else if (command == "illum") {
+            s.illum = illumination(next_word(rest));
+        } else if (command == "d") {
+            s.d = number(command, rest);
+        } else if (command == "Tr") {
+            s.tr = number(command, rest);
+        } else if (is_texture(command)) {
+            if (command == "map_Kd") s.has_texture = true;
+            note(textures_, command);
+        } else if (command != "Ka" && command != "Tf" && command != "sharpness") {
+            note(unknown_, command);
+        }
+    }
+
+    static void note(std::vector<std::string>& statements, std::string_view command) {
+        if (std::find(statements.begin(), statements.end(), command) == statements.end())
+            statements.emplace_back(command);
+    }
+
+    double number(std::string_view command, std::string_view rest) const {
+        std::string_view word = next_word(rest);
+        if (command == "d" && word == "-halo") word = next_word(rest);
+        if (const auto value = parse_finite(word)) return *value;
+        fail(std::string(command) + " needs a finite number, found " + quote(word));
+    }
+
+    // One number for grey, or three; what follows those is ignored.
+    dvec3 colour(std::string_view command, std::string_view rest) const {
+        std::vector<double> values;
+        for (std::string_view word = next_word(rest);
+             values.size() < 3 && !word.empty() && !word.starts_with('#'); word = next_word(rest)) {
+            const auto value = parse_finite(word);
+            if (!value || *value < 0.0) {
+                fail(std::string(command) + " needs finite numbers of at least 0, found " + quote(word));
+            }
+            values.push_back(*value);
+        }
+        if (values.size() == 1) return dvec3(values[0]);
+        if (values.size() == 3) return {values[0], values[1], values[2]};
+        fail(std::string(command) + " needs one or three numbers, found " + std::to_string(values.size()));
+    }
+
+    uint32_t illumination(std::string_view word) const {
+        constexpr uint32_t LAST = 10;
+        const char* end = word.data() + word.size();
+        uint32_t value = 0;
+        const auto [stop, error] = std::from_chars(word.data(), end, value);
+        if (error == std::errc() && stop == end && value <= LAST) return value;
+        fail("illum needs a whole number from 0 to 10, found " + quote(word));
+    }
+
+    // Adds the material that ends here, if there is one.
+    void finish() {
+        if (!current_) return;
+        const MtlStatements s = *std::exchange(current_, std::nullopt);
+        if (!library_.materials.contains(s.name)) {
+            library_.materials.emplace(s.name, mtl_material(s, file_));
+        } else {
+            library_.warnings.push_back(file_ + ':' + std::to_string(s.line) + ": material " + quote(s.name) +
+                                        " is defined again; the first definition counts");
+        }
+    }
+
+    std::string file_;
+    uint64_t line_ = 0;
+    std::optional<MtlStatements> current_;
+    std::vector<std::string> textures_;  // The statements that name textures, each once ...
+    std::vector<std::string> unknown_;   // ... and those of unknown meaning.
+    MtlLibrary library_;
+};
+
+}  // namespace
+
+MtlLibrary load_mtl(const std::filesystem::path& file) {
+    return Reader(file.string()).read(read_file(file));
+}
+
+}  // namespace candela

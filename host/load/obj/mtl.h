@@ -1,0 +1,25 @@
+// Material libraries (MTL) of Wavefront OBJ files.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "load/obj/mtl_material.h"
+
+namespace candela {
+
+struct MtlLibrary {
+    std::map<std::string, MtlMaterial, std::less<>> materials;
+    std::vector<std::filesystem::path> files;
+    std::vector<std::string> warnings;  // `file: ...` or `file:line: ...`.
+};
+
+// Reads a library; mtl_material() says how. The first material of a name counts. Textures and unknown
+// statements are ignored with a warning; Ka, Tf and sharpness without. Throws Error `file:line: cause` for a
+// number that is malformed or out of range and for statements before the first newmtl, and Error `file:
+// cause` as read_file() does or if there is no material.
+MtlLibrary load_mtl(const std::filesystem::path& file);
+
+}  // namespace candela

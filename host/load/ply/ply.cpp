@@ -1,0 +1,231 @@
+// From rows through polygons to a mesh.
+#include "load/ply/ply.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "load/ply/ply_rows.h"
+#include "load/quote.h"
+#include "scene/polygon.h"
+
+namespace candela {
+namespace {
+
+constexpr std::array<std::string_view, 6> COORDINATES{"x", "y", "z", "nx", "ny", "nz"};
+
+// What the rows of a file hold, as they stand.
+struct PlyPolygons {
+    std::vector<vec3> positions;
+    std::vector<vec3> normals;
+    std::vector<uint32_t> corners;  // Of all polygons, one after the other.
+    std::vector<uint32_t> sizes;    // Corners of each polygon.
+};
+
+const PlyElement& require_element(const PlyHeader& header, std::string_view name, const std::string& file) {
+    const PlyElement* element = header.find(name);
+    if (element && element->rows > 0) return *element;
+    throw Error(file + ": the file has no rows of the element " + quote(name) +
+                "; a mesh needs vertices and faces");
+}
+
+const PlyProperty* find_indices(const PlyElement& face) {
+    const PlyProperty* indices = face.find("vertex_indices");
+    return indices ? indices : face.find("vertex_index");
+}
+
+// Throws Error unless the file has a mesh.
+void check_header(const PlyHeader& header, const std::string& file) {
+    const auto fail = [&](const PlyElement& element, const std::string& needs) {
+        throw Error(file + ':' + std::to_string(element.line) + ": the element " + quote(element.name) +
+                    " needs " + needs);
+    };
+    const PlyElement& vertex = require_element(header, "vertex", file);
+    for (size_t i = 0; i < 3; ++i) {
+        const PlyProperty* property = vertex.find(COORDINATES[i]);
+        if (!property || property->length)
+            fail(vertex, "the property " + quote(COORDINATES[i]) + ", a number");
+    }
+    const PlyElement& face = require_element(header, "face", file);
+    const PlyProperty* indices = find_indices(face);
+    if (!indices || !indices->length || !is_integer(indices->type))
+        fail(face, "the property \"vertex_indices\", a list of integers");
+}
+
+bool has_normals(const PlyElement& vertex) {
+    for (size_t i = 3; i < COORDINATES.size(); ++i) {
+        const PlyProperty* property = vertex.find(COORDINATES[i]);
+        if (!property || property->length) return false;
+    }
+    return true;
+}
+
+template <class Rows>
+class BodyReader {
+  public:
+    BodyReader(const PlyHeader& header, bool with_normals, Rows rows, PlyPosition& position)
+        : header_(header), with_normals_(with_normals), rows_(rows), position_(position) {}
+
+    PlyPolygons read(std::vector<std::string>& warnings) {
+        for (const PlyElement& element : header_.elements) {
+            const size_t row_size = element.least_size(header_.format);
+            if (row_size > 0) read_element(element, row_size);
+        }
+        if (const size_t bytes = rows_.trailing_bytes()) {
+            warnings.push_back(position_.file + ": ignored " + std::to_string(bytes) +
+                               (bytes == 1 ? " byte" : " bytes") + " after the last row");
+        }
+        return std::move(polygons_);
+    }
+
+  private:
+    void read_element(const PlyElement& element, size_t row_size) {
+        // Before room is made for the rows. The last line of a text may lack its end.
+        if (element.rows > (rows_.bytes_left() + 1) / row_size) {
+            throw Error(position_.file + ':' + std::to_string(element.line) + ": " +
+                        std::to_string(element.rows) + " rows of " + quote(element.name) +
+                        " do not fit into the remaining " + std::to_string(rows_.bytes_left()) +
+                        " bytes; is the file cut off?");
+        }
+        const bool is_vertex = element.name == "vertex";
+        const PlyProperty* indices = element.name == "face" ? find_indices(element) : nullptr;
+        if (is_vertex) begin_vertices(element);
+        if (indices) begin_faces(element, *indices);
+        position_.element = element.name;
+        for (position_.row = 0; position_.row < element.rows; ++position_.row) {
+            rows_.begin_row();
+            if (is_vertex) {
+                read_vertex(element);
+            } else {
+                for (const PlyProperty& property : element.properties) {
+                    if (&property == indices) {
+                        read_face(property);
+                    } else {
+                        skip(property);
+                    }
+                }
+            }
+            rows_.end_row();
+        }
+    }
+
+    void begin_vertices(const PlyElement& vertex) {
+        const size_t used = with_normals_ ? COORDINATES.size() : 3;
+        for (const PlyProperty& property : vertex.properties) {
+            const auto found = std::find(COORDINATES.begin(), COORDINATES.begin() + used, property.name);
+            slots_.push_back(size_t(found - COORDINATES.begin()));
+            if (slots_.back() == used) slots_.back() = SKIPPED;
+        }
+        polygons_.positions.reserve(vertex.rows);
+        if (with_normals_) polygons_.normals.reserve(vertex.rows);
+    }
+
+    // Makes room for as many triangles, or for what the file can hold of them.
+    void begin_faces(const PlyElement& face, const PlyProperty& indices) {
+        const size_t least_size = header_.format == PlyFormat::ascii ? 2 : size_of(indices.type);
+        const size_t most = rows_.bytes_left() / least_size;
+        polygons_.corners.reserve(std::min<size_t>(3 * face.rows, most));
+        polygons_.sizes.reserve(std::min<size_t>(face.rows, most / 3));
+    }
+
+    void read_vertex(const PlyElement& vertex) {
+        std::array<float, COORDINATES.size()> values{};
+        for (size_t i = 0; i < slots_.size(); ++i) {
+            const PlyProperty& property = vertex.properties[i];
+            if (slots_[i] == SKIPPED) {
+                skip(property);
+                continue;
+            }
+            const double value = rows_.next(property.type);
+            if (!(std::abs(value) <= double(std::numeric_limits<float>::max())))
+                position_.fail("needs a finite " + property.name + ", found " + number_text(value, 6));
+            values[slots_[i]] = float(value);
+        }
+        polygons_.positions.emplace_back(values[0], values[1], values[2]);
+        if (with_normals_) polygons_.normals.emplace_back(values[3], values[4], values[5]);
+    }
+
+    void read_face(const PlyProperty& indices) {
+        const uint64_t vertices = header_.find("vertex")->rows;
+        const double corners = rows_.next(*indices.length);
+        if (corners < 3.0)
+            position_.fail("has " + number_text(corners, 10) + " corners; a face needs at least 3");
+        if (corners > double(MOST_CORNERS)) {
+            position_.fail("has " + number_text(corners, 10) + " corners, but at most " +
+                           std::to_string(MOST_CORNERS) + " are read; cut it into triangles");
+        }
+        for (double i = 0.0; i < corners; ++i) {
+            const double index = rows_.next(indices.type);
+            if (!(index >= 0.0 && index < double(vertices))) {
+                position_.fail("uses vertex " + number_text(index, 10) + ", but the vertices are 0 to " +
+                               std::to_string(vertices - 1));
+            }
+            polygons_.corners.push_back(uint32_t(index));
+        }
+        polygons_.sizes.push_back(uint32_t(corners));
+    }
+
+    void skip(const PlyProperty& property) {
+        const double numbers = property.length ? rows_.next(*property.length) : 1.0;
+        if (numbers < 0.0) position_.fail("has a list of " + number_text(numbers, 10) + " numbers");
+        for (double i = 0.0; i < numbers; ++i)
+            rows_.next(property.type);
+    }
+
+    static constexpr size_t SKIPPED = COORDINATES.size();
+
+    const PlyHeader& header_;
+    bool with_normals_;
+    Rows rows_;
+    PlyPosition& position_;
+    std::vector<size_t> slots_;  // Of each property of a vertex: its index in COORDINATES, or SKIPPED.
+    PlyPolygons polygons_;
+};
+
+TriangleMesh build_mesh(PlyPolygons polygons) {
+    TriangleMesh mesh{std::move(polygons.positions), std::move(polygons.normals), {}};
+    mesh.triangles.reserve(polygons.corners.size() - 2 * polygons.sizes.size());
+    std::vector<vec3> positions;
+    const uint32_t* corners = polygons.corners.data();
+    for (const uint32_t size : polygons.sizes) {
+        if (size == 3) {
+            mesh.triangles.emplace_back(corners[0], corners[1], corners[2]);
+        } else {
+            positions.clear();
+            for (uint32_t i = 0; i < size; ++i)
+                positions.push_back(mesh.positions[corners[i]]);
+            for (const uvec3 t : triangulate(positions))
+                mesh.triangles.emplace_back(corners[t.x], corners[t.y], corners[t.z]);
+        }
+        corners += size;
+    }
+    return mesh;
+}
+
+}  // namespace
+
+TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
+                      std::vector<std::string>& warnings) {
+    const std::string bytes = read_file(file);
+    PlyPosition position{file.string(), 0, "", 0};
+    const PlyHeader header = read_ply_header(bytes, position.file);
+    check_header(header, position.file);
+    const bool with_normals = normals == MeshNormals::file && has_normals(*header.find("vertex"));
+    const std::string_view body = std::string_view(bytes).substr(header.size);
+    const auto read = [&](auto rows) {
+        return BodyReader(header, with_normals, rows, position).read(warnings);
+    };
+    if (header.format == PlyFormat::ascii) position.line = header.lines;
+    TriangleMesh mesh =
+        build_mesh(header.format == PlyFormat::ascii ? read(PlyAsciiRows(body, position))
+                                                     : read(PlyBinaryRows(body, header.format, position)));
+    if (normals == MeshNormals::smooth) smooth_normals(mesh);
+    return mesh;
+}
+
+}  // namespace candela

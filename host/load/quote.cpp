@@ -1,0 +1,12 @@
+// See quote.h.
+#include "load/quote.h"
+
+#include <nlohmann/json.hpp>
+
+namespace candela {
+
+std::string quote(std::string_view text) {
+    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace candela

@@ -1,0 +1,76 @@
+// What finishes the shapes that a loader of any format brings, and puts them into a scene.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/transform.h"
+
+namespace candela {
+
+// What a shape is apart from its geometry.
+struct Appearance {
+    uint32_t material = 0;             // Index into Scene::materials.
+    std::optional<Emission> emission;  // None: the shape does not emit.
+};
+
+struct MeshPart {
+    Appearance appearance;
+    TriangleMesh mesh;
+};
+
+// A point in world space as floats; none if it does not fit.
+std::optional<vec3> rounded(glm::dvec3 p);
+
+// What messages say of a point that does not fit.
+inline constexpr const char* POINT_TOO_FAR =
+    "a point of the shape lies beyond 1e37 along an axis; check its numbers and its transform";
+
+// Appends to a scene's shapes, materials and warnings. A place is what messages begin with, such as
+// `file:line:column`.
+class SceneBuilder {
+  public:
+    // The scene must outlive the builder.
+    explicit SceneBuilder(Scene& scene) : scene_(scene) {}
+
+    Scene& scene() { return scene_; }
+    void warn(const std::string& place, const std::string& warning) {
+        scene_.warnings.push_back(place + ": " + warning);
+    }
+
+    // Adds a finished geometry, which is in world space.
+    template <class Geometry>
+    void add(const Appearance& appearance, Geometry&& geometry) {
+        scene_.shapes.push_back({std::forward<Geometry>(geometry), appearance.material, appearance.emission});
+    }
+    // Adds a mesh, given in parts, whose positions are in world space, but whose normals and winding are not
+    // yet. Leaves out flat triangles with a warning; throws Error if no other is left in any part.
+    void add_mesh(const std::string& place, const Transform& transform, std::vector<MeshPart> parts);
+    // Adds a mesh of one part.
+    void add_mesh(const std::string& place, const Appearance& appearance, const Transform& transform,
+                  TriangleMesh mesh);
+
+    // Materials that files bring along: `name` is the file's and the material's, as `pot.obj/clay`. In the
+    // scene a material is called so, or similarly if another has that name. `find` returns null for one that
+    // was not added.
+    const Appearance* find_file_appearance(const std::string& name) const;
+    void add_file_appearance(const std::string& name, const decltype(Material::model)& model,
+                             const std::optional<Emission>& emission);
+
+    // Index of the material of emitters that reflect nothing.
+    uint32_t black();
+
+  private:
+    Scene& scene_;
+    std::map<std::string, Appearance, std::less<>> file_appearances_;
+    std::optional<uint32_t> black_;
+};
+
+// Moves the positions of a mesh to world space. Throws Error at that place if one does not fit.
+void move_to_world(const std::string& place, const Transform& transform, TriangleMesh& mesh);
+
+}  // namespace candela
