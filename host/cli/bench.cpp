@@ -20,8 +20,8 @@
 #include "cli/command_files.h"
 #include "cli/console.h"
 #include "cli/vulkan.h"
-#include "probe/scenes.h"
 #include "load/load.h"
+#include "probe/scenes.h"
 #include "version.h"
 #include "vk/device.h"
 #include "vk/instance.h"
@@ -232,9 +232,10 @@ Command add_bench_command(CLI::App& app) {
     const auto arguments = std::make_shared<BenchArguments>();
     arguments->add_to(*command);
     command->footer(
-        "traversal: rays alone, in the Cornell box and in meshes; beside Embree if built with it.\n"
-        "build: pairing the triangles of those meshes and building their BVH, beside Embree's over the\n"
-        "triangles; building alone, both over the pairs, with the SAH cost; and all bytes on the device.\n"
+        "traversal: only rays, in the Cornell box and in meshes; compared with Embree if built with it.\n"
+        "build: pairing the triangles of those meshes and building their BVH, compared with Embree's over "
+        "the\n"
+        "triangles; both builders over the pairs, with the SAH cost; and all bytes on the device.\n"
         "render: samples per second and rays per sample of SCENE.\n"
         "first-pixel: all of `candela render SCENE --spp 1 --size 64x64`, with and without caches.\n"
         "relMSE: mean over pixels and channels of (x - r)^2 / (r^2 + 0.01 m^2), r the reference and m\n"

@@ -51,25 +51,26 @@ void BenchArguments::add_to(CLI::App& app) {
         app, "--runs", bench.runs, [](const std::string& text) { return parse_uint(text, 1, MOST_RUNS); },
         "a whole number from 1 to 1000", "Runs of everything (default: 5)")
         ->type_name("N");
-    app.add_option("--json", json, "Write every single run as JSON; - is standard output, and no table")
+    app.add_option("--json", json,
+                   "Write each run as JSON; - writes it to standard output, instead of the table")
         ->type_name("FILE|-");
     app.option_defaults()->group("Traversal and build");
     add_value(
         app, "--triangles", bench.triangles,
         [](const std::string& text) { return parse_list(text, parse_triangles); },
         "a list of numbers such as 190k, 1M, 10M, each from 72 to 100M",
-        "Sizes of the meshes, about (default: 190k,1M)")
+        "Approximate sizes of the meshes (default: 190k,1M)")
         ->type_name("N,...");
     add_value(
         app, "--rays", bench.rays,
         [](const std::string& text) { return parse_uint(text, LEAST_RAYS, MOST_RAYS); },
-        "a whole number from 64 to 16777216", "Camera rays, about (default: 1048576)")
+        "a whole number from 64 to 16777216", "Approximate number of camera rays (default: 1048576)")
         ->type_name("N");
     app.option_defaults()->group("Render");
     add_value(app, "--seconds", seconds, parse_duration, "a duration such as 5, 5s or 1.5m",
-              "Time of a run, CPU time over the cores or a GPU's own (default: 3 unless --spp is given)")
+              "Length of a run: CPU time per core, or a GPU's own time (default: 3 unless --spp is given)")
         ->type_name("TIME");
-    app.add_option("--reference", reference, "Converged image of the one scene: tell the relMSE too")
+    app.add_option("--reference", reference, "Converged image of the one scene, to report the relMSE as well")
         ->type_name("FILE.exr");
     render.add_rendering_to(app);
 }

@@ -101,7 +101,7 @@ ExitCode run(const CompareArguments& arguments) {
 }  // namespace
 
 Command add_compare_command(CLI::App& app) {
-    CLI::App* const command = app.add_subcommand("compare", "Compare two EXR images of one picture");
+    CLI::App* const command = app.add_subcommand("compare", "Compare two EXR images of the same picture");
     const auto arguments = std::make_shared<CompareArguments>();
     command->add_option("A", arguments->a, "Image to judge (.exr)")->required()->type_name("");
     command->add_option("B", arguments->b, "Reference (.exr)")->required()->type_name("");

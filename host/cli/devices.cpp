@@ -101,7 +101,8 @@ ExitCode devices(bool json) {
 }  // namespace
 
 Command add_devices_command(CLI::App& app) {
-    CLI::App* const command = app.add_subcommand("devices", "List Vulkan devices and whether they will do");
+    CLI::App* const command =
+        app.add_subcommand("devices", "List Vulkan devices, and why candela cannot use some");
     const auto json = std::make_shared<bool>(false);
     command->add_flag("--json", *json, "Print JSON for programs");
     command->footer("--device of `candela render` takes the index or a part of the name.");

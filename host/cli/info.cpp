@@ -10,9 +10,9 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "gpu_scene/gpu_scene.h"
+#include "load/load.h"
 #include "render/renderer.h"
 #include "scene/geometry.h"
-#include "load/load.h"
 #include "shared/bvh_node.h"
 
 namespace candela {
@@ -145,7 +145,8 @@ ExitCode run(const InfoOptions& options) {
 }  // namespace
 
 Command add_info_command(CLI::App& app) {
-    CLI::App* const command = app.add_subcommand("info", "Tell what a scene holds and needs; uses no device");
+    CLI::App* const command =
+        app.add_subcommand("info", "Describe a scene and the memory that it needs; uses no device");
     const auto options = std::make_shared<InfoOptions>();
     command->add_option("SCENE", options->scene, "Scene file (.json)")->required()->type_name("");
     options->picture.add_to(*command);

@@ -67,7 +67,7 @@ Command add_merge_command(CLI::App& app, const std::string& command_line) {
         ->take_all();
     arguments->options.add_images_to(*command);
     add_value(*command, "--missing", arguments->missing, parse_samples, SAMPLES_EXPECTED,
-              "Merge nothing; print which of these samples no part holds, a range per line")
+              "Only print which of these samples no part holds, one range per line")
         ->type_name("A..B")
         ->excludes(command->get_option("--output"));
     command->footer(
@@ -76,11 +76,12 @@ Command add_merge_command(CLI::App& app, const std::string& command_line) {
         "  candela render box.json -o b.exr --samples 64..128\n"
         "  candela merge a.exr b.exr -o box.exr -o box.png\n"
         "  candela merge --missing 0..256 a.exr b.exr\n\n"
-        "Scene, size, crop, camera, seed, sampler, estimator and depths must be the same, and no sample may "
-        "be in\n"
-        "two parts. A sample that no part has is a warning. The result is what one rendering of all samples "
-        "gives,\n"
-        "up to rounding (a few units of 2^-24), and can be merged again; parts by --half have three digits.");
+        "Scene, size, crop, camera, seed, sampler, estimator and depths must be the same, and no two parts "
+        "may\n"
+        "hold the same sample. Missing samples cause a warning. The result is that of one rendering of all\n"
+        "samples, up to rounding (a few units of 2^-24), and can be merged again; parts by --half have "
+        "three\n"
+        "digits.");
     return {command, [arguments, command_line] { return run(*arguments, command_line); }};
 }
 

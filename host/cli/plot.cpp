@@ -38,11 +38,11 @@ ExitCode run(const PlotArguments& arguments) {
 }  // namespace
 
 Command add_plot_command(CLI::App& app) {
-    CLI::App* const command = app.add_subcommand("plot", "Draw how errors fell, from reports");
+    CLI::App* const command = app.add_subcommand("plot", "Plot error over time, from reports");
     const auto arguments = std::make_shared<PlotArguments>();
     command
         ->add_option("REPORT", arguments->reports,
-                     "Reports of candela render --reference (.json), a curve each")
+                     "Reports of candela render --reference (.json), one per curve")
         ->required()
         ->type_name("");
     command->add_option("-o,--output", arguments->output, "Drawing to write (.svg)")
@@ -56,9 +56,9 @@ Command add_plot_command(CLI::App& app) {
         "  candela render box.json -o a.exr --reference reference.exr --report stratified.json "
         "--sampler stratified\n"
         "  candela plot sobol.json stratified.json -o curves.svg\n\n"
-        "Both axes are logarithmic; the legend names the files. A reference must have far more samples, and "
-        "another\n"
-        "seed: else the error seems to fall too fast.");
+        "Both axes are logarithmic; the legend names the files. The reference must have far more samples "
+        "and\n"
+        "another seed; otherwise the error appears to fall too fast.");
     return {command, [arguments] { return run(*arguments); }};
 }
 

@@ -24,10 +24,10 @@
 #include "cli/vulkan.h"
 #include "film/identity.h"
 #include "gpu_scene/gpu_scene.h"
+#include "load/load.h"
 #include "render/adaptive.h"
 #include "render/make_identity.h"
 #include "render/steady_renderer.h"
-#include "load/load.h"
 #include "version.h"
 #include "vk/instance.h"
 
@@ -299,19 +299,20 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
 constexpr const char* FOOTER = R"(Example:
   candela render scenes/cornell-box.json -o box.exr -o box.png --spp 256 --size 512x512
 
-Ctrl-C stops early and writes the image so far (exit code 130), and so does the end of the terminal, unless
-nohup is there; a second Ctrl-C ends at once.
+Ctrl-C stops early and writes the image so far (exit code 130); so does closing the terminal, except under
+nohup. A second Ctrl-C ends the program at once.
 
-With --checkpoint a rendering survives the end of the program: the same command with --resume goes on, to
-the same bits. A script can always pass --resume, the first time as well.
---target-error compares the image with what it was at half as many samples, at powers of two from 16 on. For
---sampler independent that is the error; where others converge faster, it is somewhat more. Light that no
-sample has found yet is not in it. A resumed rendering looks anew, and may take up to twice the samples.
---adaptive renders two halves with seeds of their own, each with its samples where the other says that they
-remove most noise for their time: so without bias. The image is their mean, and the estimated error comes
-from how they differ. It holds four states in memory instead of one, and its images cannot be merged.
---progress json prints an object twice a second, and a last one, whose state is not "rendering", when all is
-written; after an error there is none.
+With --checkpoint a rendering survives the end of the program: the same command with --resume continues it,
+to the same bits. Scripts can always pass --resume, even the first time.
+--target-error compares the image with that of half as many samples, at powers of two from 16 on. This is the
+error for --sampler independent, and somewhat more than the error where others converge faster. It does not
+include light that no sample has found yet. A resumed rendering estimates the error anew, and may take up to
+twice as many samples.
+--adaptive renders two halves with different seeds. Each takes its samples where the other shows that they
+remove the most noise for their time, so there is no bias. The image is their mean, and their difference gives
+the estimated error. It keeps four states in memory instead of one, and its images cannot be merged.
+--progress json prints an object twice a second, and a last one, whose state is not "rendering", when all
+files are written; after an error there is none.
 --samples 0..64 on one computer, --samples 64..128 on another: candela merge joins the parts.)";
 
 }  // namespace

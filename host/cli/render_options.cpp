@@ -48,16 +48,16 @@ void RenderOptions::add_to(CLI::App& app) {
     add_camera_to(app);
     app.option_defaults()->group(SAMPLING_GROUP);
     add_value(app, "--target-error", target_error, parse_error, "a number above 0, such as 0.02",
-              "Stop at this estimated relative error, such as 0.02; --spp is the most")
+              "Stop at this estimated relative error, such as 0.02; --spp is the maximum")
         ->type_name("E");
     add_value(app, "--time-limit", time_limit, parse_duration, DURATIONS,
-              "Stop after 90, 90s, 1.5m, 2h even short of --spp (default: none)")
+              "Stop after 90, 90s, 1.5m or 2h, even before --spp (default: never)")
         ->type_name("TIME");
     add_value(app, "--samples", samples, parse_samples, SAMPLES_EXPECTED,
-              "The samples A, A+1, ..., B-1 alone, as a part for candela merge")
+              "Render only the samples A to B-1, as a part for candela merge")
         ->type_name("A..B")
         ->excludes(app.get_option("--spp"));
-    app.add_flag("--adaptive", adaptive, "Put the samples where the error is; --spp is the mean, and even")
+    app.add_flag("--adaptive", adaptive, "Put samples where the error is; --spp is their mean, and even")
         ->excludes(app.get_option("--samples"));
     add_checkpoint_options(app);
     add_message_options(app);
@@ -93,12 +93,12 @@ void RenderOptions::add_output_options(CLI::App& app) {
               "EXR: none, all (default) or a list of " + std::string(AOV_NAMES))
         ->type_name("LIST");
     add_value(app, "--write-every", write_every, parse_duration, DURATIONS,
-              "Write the images while rendering, too (default: at the end alone)")
+              "Also write the images while rendering (default: only at the end)")
         ->type_name("TIME");
     CLI::Option* const report_file =
-        app.add_option("--report", report, "Write figures of the run as JSON; - is standard output")
+        app.add_option("--report", report, "Write statistics of the run as JSON; - is standard output")
             ->type_name("FILE|-");
-    app.add_option("--reference", reference, "Report the error against this image (.exr), as it falls")
+    app.add_option("--reference", reference, "Report the error relative to this image (.exr) over time")
         ->type_name("FILE")
         ->needs(report_file);
 }
@@ -113,17 +113,16 @@ void RenderOptions::add_images_to(CLI::App& app) {
 }
 
 void RenderOptions::add_checkpoint_options(CLI::App& app) {
-    app.option_defaults()->group("Never lose work");
+    app.option_defaults()->group("Checkpoints");
     CLI::Option* const file =
         app.add_option("--checkpoint", checkpoint,
-                       "Keep the state in this file, at the end and if interrupted, too")
+                       "Save the state to this file, also at the end and when interrupted")
             ->type_name("FILE");
     add_value(app, "--checkpoint-every", checkpoint_every, parse_duration, DURATIONS,
               "How often, such as 90, 90s, 1.5m, 2h (default: 60s)")
         ->type_name("TIME")
         ->needs(file);
-    app.add_flag("--resume", resume, "Go on from the checkpoint; start anew if it does not exist yet")
-        ->needs(file);
+    app.add_flag("--resume", resume, "Continue from the checkpoint, if there is one yet")->needs(file);
 }
 
 void RenderOptions::add_sampling_options(CLI::App& app) {
@@ -132,15 +131,16 @@ void RenderOptions::add_sampling_options(CLI::App& app) {
               "Samples per pixel")
         ->type_name("N");
     add_value(app, "--seed", seed, parse_seed, "a whole number from 0 to 4294967295",
-              "Another seed, other noise")
+              "Seed of the random numbers; each has other noise")
         ->type_name("S");
     const std::string depths = "a whole number from 0 to " + std::to_string(DEPTH_SAFETY_LIMIT);
     add_value(app, "--max-depth", max_depth, parse_max_depth, depths + ", or unlimited",
-              "Bounces at most, or unlimited; 0 shows lights only")
+              "Maximum number of bounces, or unlimited; 0 shows only lights")
         ->type_name("D");
     add_value(app, "--rr-depth", rr_depth, parse_depth, depths, "Bounces before Russian roulette begins")
         ->type_name("N");
-    add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES, "How light is found; mis has the least noise");
+    add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
+               "How direct light is sampled; mis has the least noise");
     add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
 }
 
@@ -149,9 +149,9 @@ void RenderOptions::add_message_options(CLI::App& app) {
     CLI::Option* const quiet_flag =
         app.add_flag("-q,--quiet", quiet, "No progress, no summary, only warnings and errors");
     add_choice(app, "--progress", progress, PROGRESS_NAMES,
-               "Lines on stderr: for people, as JSON, none (default: auto)")
+               "Progress on stderr: for people, as JSON, or none (default: auto)")
         ->excludes(quiet_flag);
-    app.add_flag("-v,--verbose", verbose, "Also tell about device, scene and memory")->excludes(quiet_flag);
+    app.add_flag("-v,--verbose", verbose, "Also describe device, scene and memory")->excludes(quiet_flag);
 }
 
 AovSelection RenderOptions::written_aovs() const {

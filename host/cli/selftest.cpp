@@ -191,8 +191,9 @@ Command add_selftest_command(CLI::App& app) {
                "takes many minutes; records, random numbers, warps and BSDFs as in full");
     command->add_flag("--json", options->json, "Print JSON for programs");
     command->footer(
-        "Paste what it prints into a bug report. Seeds are fixed: one device always gets the same verdict.\n"
-        "Chance fails a correct device with a probability of 0.001 at most, all checks together.\n"
+        "Paste the output into a bug report. Seeds are fixed, so that a device always gets the same "
+        "verdict.\n"
+        "The probability that chance alone fails a correct device is at most 0.001, over all checks.\n"
         "Exit code: 0 if all checks passed, 1 if not.");
     return {command, [options] { return selftest(*options); }};
 }

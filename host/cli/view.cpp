@@ -17,8 +17,8 @@
 #include "cli/render_options.h"
 #include "cli/vulkan.h"
 #include "film/identity.h"
-#include "render/make_identity.h"
 #include "load/load.h"
+#include "render/make_identity.h"
 #include "version.h"
 #include "view/controls.h"
 #include "view/viewer.h"
@@ -48,7 +48,7 @@ void ViewArguments::add_to(CLI::App& app) {
         "a whole number from 1 to " + std::to_string(MAX_SPP),
         "Close after N frames: N samples per pixel of the picture at rest")
         ->type_name("N");
-    app.add_option("--screenshot", screenshots, "Then write the picture, .png or .exr; repeat it for several")
+    app.add_option("--screenshot", screenshots, "Write the picture then, .png or .exr; repeat it for several")
         ->type_name("FILE")
         ->take_all()
         ->allow_extra_args(false);
@@ -56,7 +56,7 @@ void ViewArguments::add_to(CLI::App& app) {
     render.add_rendering_to(app);
     render.add_camera_to(app);
     app.get_option("--crop")->group("");  // Hidden: refused below, with the reason.
-    app.get_option("--spp")->description("Stop accumulating at so many samples per pixel (default: never)");
+    app.get_option("--spp")->description("Stop accumulating at this many samples per pixel (default: never)");
 }
 
 void ViewArguments::check() const {
@@ -168,16 +168,15 @@ ExitCode view(const ViewArguments& arguments, const std::string&) {
 }  // namespace
 
 Command add_view_command(CLI::App& app, const std::string& command_line) {
-    CLI::App* const command = app.add_subcommand("view", "Show in a window how a picture accumulates");
+    CLI::App* const command = app.add_subcommand("view", "Watch a picture accumulate in a window");
     const auto arguments = std::make_shared<ViewArguments>();
     arguments->add_to(*command);
     command->footer(
         std::string(
-            "The picture is as large as the window. While the camera moves it may be coarser; at rest it\n"
-            "accumulates what `candela render` would, bit for bit, up to --spp samples per pixel if given.\n"
-            "Files are written to the current folder: SCENE-1.png, SCENE-2.png, ... An EXR is what `candela "
-            "render`\n"
-            "would write, for candela merge and compare as well.\n\n"
+            "The picture has the size of the window. While the camera moves it may be coarser; at rest it\n"
+            "accumulates the same bits as `candela render`, up to --spp samples per pixel if given.\n"
+            "Files are written to the current folder: SCENE-1.png, SCENE-2.png, ... EXRs are those of\n"
+            "`candela render`, so that candela merge and compare read them.\n\n"
             "Mouse and keys:\n") +
         CONTROLS_HELP +
         "\n\n"

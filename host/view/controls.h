@@ -10,9 +10,9 @@ namespace candela {
 
 // Every key and what it does, one per line, for the panel and for --help.
 inline constexpr const char* CONTROLS_HELP =
-    "drag        turn about what is seen\n"
-    "Shift drag  move across (right, middle)\n"
-    "wheel       come closer, go away\n"
+    "drag        orbit\n"
+    "Shift drag  pan (also right, middle)\n"
+    "wheel       zoom\n"
     "click       focus there\n"
     "WASD, QE    fly; with Shift faster\n"
     "Space  pause        R    restart\n"
