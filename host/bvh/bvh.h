@@ -18,9 +18,9 @@ struct BvhOptions {
 };
 
 struct Bvh {
-    // Node 0 is the root. A node stands before those among its children, which stand side by side; all below
-    // the first of them, but itself, stands before all below the second. No primitive at all is a root with a
-    // child that does not exist, a leaf at position 0.
+    // Node 0 is the root. A node precedes its child nodes, which are adjacent; the descendants of the first
+    // child precede those of the second. Without primitives, the root has one child, a leaf at position 0,
+    // which does not exist.
     std::vector<PackedBvhNode> nodes;
     std::vector<uint32_t> order;  // Primitive indices; a leaf is a position.
     Box bounds;                   // Exact, of all primitives; empty if there is none.
@@ -28,9 +28,9 @@ struct Bvh {
     float sah_cost = 0.0f;  // Expected cost of a ray through `bounds`, in primitive tests; see measure.h.
 };
 
-// Builds a BVH over `boxes` [m]; flat boxes and points are welcome, as are none at all. Throws Error that
-// names the index of the first box that is not finite, inverted or further than 1e37 from the origin, or if
-// there are more than BVH_MAX_PRIMITIVES boxes.
+// Builds a BVH over `boxes` [m]. Boxes may be flat or points, and there may be none. Throws Error that names
+// the index of the first box that is not finite, is inverted, or lies further than 1e37 from the origin; and
+// if there are more than BVH_MAX_PRIMITIVES boxes.
 Bvh build_bvh(std::span<const Box> boxes, const BvhOptions& options = {});
 
 // The first broken invariant of `bvh` over `boxes`, in words; none if it is valid. Reads nothing out of

@@ -8,28 +8,28 @@
 
 namespace candela {
 
-// Of Schedule, where an image is rendered to its end; and where rendering may stop, or be looked at, at any
-// time.
+// Values of Schedule's `growth`: for an image that is rendered to its end, and for one that somebody may look
+// at, or stop, at any time.
 inline constexpr uint32_t PASS_GROWTH = 4;
 inline constexpr uint32_t EVEN_PASS_GROWTH = 2;
 
-// Brings an image to a number of samples per pixel in passes over the whole image. A pass adds one sample per
-// pixel at first and more as the image fills; it is cut into tiles of whole rows, or parts of rows where even
-// those are too much. Fewer passes cost less, more leave a more even image when rendering stops early.
+// Brings an image to a number of samples per pixel in passes over the whole image. The first pass adds one
+// sample per pixel, later ones add more. A pass is cut into tiles of whole rows, or of parts of rows where a
+// row takes too long. Fewer passes cost less; more passes leave a more even image when rendering stops early.
 class Schedule {
   public:
-    // `size`: pixels of the image; `first_sample`: samples that every pixel holds already; `target`: samples
-    // that every pixel shall hold; `submission_seconds`: how long a submission should take; `growth`: a pass,
-    // but for the first two, ends with at most so many times as many samples as it began with.
+    // `size`: pixels of the image; `first_sample`: samples that every pixel already holds; `target`: samples
+    // that every pixel shall hold; `submission_seconds`: how long a submission should take; `growth`: the
+    // factor by which a pass may increase the number of samples, except for the first two passes.
     Schedule(uvec2 size, uint32_t first_sample, uint32_t target, double submission_seconds, uint32_t growth);
 
     bool done() const { return pass_start_ >= target_; }
     // The next piece of work; not when done().
     Tile next() const;
-    // Says that next() was carried out in so many seconds, and how many samples it added: fewer than all
-    // where pixels have reached their limits.
+    // Reports that next() took that many seconds and added that many samples: fewer than the tile has where
+    // pixels have reached their limits.
     void advance(double seconds, uint64_t samples);
-    // Samples carried out over all samples to carry out, in [0, 1], as if no pixel had a limit.
+    // The share of the samples that are done, in [0, 1], as if no pixel had a limit.
     double progress() const;
 
   private:
@@ -47,9 +47,9 @@ class Schedule {
     uvec2 at_{0, 0};        // Where the next tile begins.
 };
 
-// Tile::stride for so many work groups that lets any number of neighbours in the order of their indices lie
-// all over the tile. Lavapipe gives each of its threads as many of them beforehand, one after the other: half
-// of a tile that shows the sky would else be done long before the other half.
+// A Tile::stride for that many work groups which spreads groups with neighbouring indices over the whole
+// tile. Lavapipe divides the indices evenly among its threads beforehand: without the stride, a thread whose
+// half of the tile shows the sky would finish long before the other.
 uvec2 spreading_stride(uvec2 groups);
 
 }  // namespace candela
