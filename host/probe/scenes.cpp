@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "load/json/loader.h"
 #include "probe/embedded.h"
 #include "probe/random.h"
-#include "load/json/loader.h"
 
 namespace candela {
 

@@ -55,8 +55,7 @@ TEST_F(SelftestCommand, QuickPassesWithFewerSamples) {
 TEST_F(SelftestCommand, HelpSaysHowOftenChanceFailsIt) {
     const ProcessResult help = candela({"selftest", "--help"});
     EXPECT_EQ(help.exit_code, 0);
-    for (const char* part :
-         {"--device", "--effort", "--json", "a probability of 0.001 at most", "Exit code: 0"})
+    for (const char* part : {"--device", "--effort", "--json", "is at most 0.001", "Exit code: 0"})
         EXPECT_CONTAINS(help.out, part);
 }
 

@@ -14,11 +14,11 @@
 #include "fuzz/image_text.h"
 #include "fuzz/memory_file.h"
 #include "gpu_scene/gpu_scene.h"
-#include "render/adaptive.h"
 #include "load/json/loader.h"
 #include "load/obj/mtl.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
+#include "render/adaptive.h"
 
 namespace candela::fuzz {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/relative_error.h"
-#include "render/adaptive.h"
 #include "load/load.h"
+#include "render/adaptive.h"
 #include "scene/names.h"
 #include "steady_fixture.h"
 

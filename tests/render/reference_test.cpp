@@ -7,8 +7,8 @@
 
 #include "base/image_io.h"
 #include "base/tonemap.h"
-#include "render_fixture.h"
 #include "load/load.h"
+#include "render_fixture.h"
 #include "unit/base_fixture.h"
 
 namespace candela {

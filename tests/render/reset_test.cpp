@@ -1,7 +1,7 @@
 // A renderer that begins anew with another camera or other settings: the picture is what a fresh one would
 // make.
-#include "render/render_fixture.h"
 #include "load/load.h"
+#include "render/render_fixture.h"
 
 namespace candela {
 namespace {

@@ -2,8 +2,8 @@
 // independent samples.
 #include <cmath>
 
-#include "render_fixture.h"
 #include "load/load.h"
+#include "render_fixture.h"
 
 namespace candela {
 namespace {

@@ -1,11 +1,10 @@
 // Transforms of shapes: order of steps, exactness, mirrors, and what is refused.
-#include "load/json/transforms.h"
-
 #include <random>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "load/json/transforms.h"
 #include "scene_fixture.h"
 
 namespace candela {
