@@ -26,7 +26,7 @@ const uint BVH_NODE_WORDS = 4u;
 const uint BVH_WIDTH = 7u;
 
 // No tree has more levels of nodes than this; the builder sees to it. Halving 2^26 primitives takes 26
-// levels; the rest lets the surface area heuristic be unbalanced. (A sphere of 10 M triangles has DEPTH10M
+// levels; the rest lets the surface area heuristic be unbalanced. (A sphere of 10 M triangles has 15
 // levels.)
 const uint BVH_MAX_DEPTH = 48u;
 
