@@ -1,4 +1,4 @@
-// Chooses a loader.
+// See load.h.
 #include "load/load.h"
 
 #include "load/json/loader.h"

@@ -1,4 +1,4 @@
-// Scenes from files of any format.
+// Scenes from files.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace candela {
 
-// Reads a scene and the files that it names, by the format that its extension tells; any that is unknown is
-// taken for JSON. Throws Error, with a place in front, for whatever the format or the meaning of a value
-// forbids. What is odd but usable goes to Scene::warnings.
+// Reads a scene and the files that it names. JSON is the only format of whole scenes so far, whatever the
+// extension; others are to be chosen here. Throws Error, with a place in front, for whatever the format or
+// the meaning of a value forbids. What is odd but usable goes to Scene::warnings.
 Scene load_scene(const std::filesystem::path& path);
 
 }  // namespace candela
