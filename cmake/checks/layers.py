@@ -53,7 +53,7 @@ LIBRARIES = {
     "stb": (r"stb_", ["host/base"]),
     "OpenEXR": (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex|openexr)", ["host/base"]),
     "nlohmann-json": (r"nlohmann/", ["host/load", "host/load/json", "host/cli"]),
-    "tinyobjloader": (r"tiny_obj_loader", ["host/load/obj"]),
+    "tinyobjloader": (r"tiny_obj_loader", []),
     "CLI11": (r"CLI/", ["host/cli"]),
     "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/probe", "host/selftest", "host/bench", "host/view",
                                  "host/cli", "host"]),

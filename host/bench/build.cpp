@@ -3,7 +3,6 @@
 
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "bench/meshes.h"
 #include "bench/tracer.h"
@@ -24,9 +23,8 @@ TimedBvh build_ours(std::span<const Box> boxes) {
 // What pairing the triangles of a scene takes.
 Clocks time_pairing(const Scene& scene) {
     const Stopwatch watch;
-    for (const Shape& shape : scene.shapes) {
-        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) pair_triangles(*mesh);
-    }
+    for (const TriangleMesh& mesh : scene.meshes)
+        pair_triangles(mesh);
     return watch.elapsed();
 }
 
@@ -71,9 +69,8 @@ void add_builds(const std::string& subject, const Scene& scene, uint32_t runs, s
 }
 
 double bytes_per_triangle(Scene scene) {
-    for (Shape& shape : scene.shapes) {
-        if (auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) smooth_normals(*mesh);
-    }
+    for (TriangleMesh& mesh : scene.meshes)
+        smooth_normals(mesh);
     const GpuScene gpu = build_gpu_scene(scene);
     return double(gpu.bytes()) / gpu.id_count;
 }

@@ -1,5 +1,7 @@
 // `candela info`: what a scene holds and what rendering it will need. No device is touched.
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -53,6 +55,8 @@ Json memory_of(const GpuScene& gpu, RenderSettings settings) {
 
 Json describe(const InfoOptions& options, const Scene& scene) {
     const GpuScene gpu = build_gpu_scene(scene);
+    std::vector<std::string> warnings = scene.warnings;
+    std::ranges::copy(gpu.warnings, std::back_inserter(warnings));
     RenderSettings settings;
     settings.size = options.picture.size.value_or(scene.film.size);
     settings.crop = options.picture.crop_within(settings.size);
@@ -77,7 +81,7 @@ Json describe(const InfoOptions& options, const Scene& scene) {
             {"crop", {crop.x0, crop.y0, crop.x1, crop.y1}},
             {"device_bytes", device_bytes(gpu, settings)},
             {"device_bytes_by_part", memory_of(gpu, settings)},
-            {"warnings", scene.warnings}};
+            {"warnings", warnings}};
 }
 
 std::string join(const Json& words) {
@@ -130,9 +134,9 @@ void print(const Json& info) {
 
 ExitCode run(const InfoOptions& options) {
     const Scene scene = load_scene(options.scene);
-    for (const std::string& warning : scene.warnings)
-        print_warning(warning);
     const Json info = describe(options, scene);
+    for (const std::string warning : info["warnings"])
+        print_warning(warning);
     if (options.json) {
         std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     } else {
@@ -148,7 +152,7 @@ Command add_info_command(CLI::App& app) {
     CLI::App* const command =
         app.add_subcommand("info", "Describe a scene and the memory that it needs; uses no device");
     const auto options = std::make_shared<InfoOptions>();
-    command->add_option("SCENE", options->scene, "Scene file (.json)")->required()->type_name("");
+    command->add_option("SCENE", options->scene, "Scene file (.json, .obj, .ply)")->required()->type_name("");
     options->picture.add_to(*command);
     command->add_flag("--json", options->json, "Print JSON for programs");
     return {command, [options] { return run(*options); }};

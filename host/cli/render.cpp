@@ -284,6 +284,8 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
     if (options.reference) reference = load_reference(*options.reference, record.settings);
 
     const GpuScene gpu_scene = build_gpu_scene(scene);
+    for (const std::string& warning : gpu_scene.warnings)
+        print_warning(warning);
     record.primitives = gpu_scene.id_count;
     record.lights = gpu_scene.light_count;
     record.bvh_seconds = gpu_scene.bvh_seconds;

@@ -42,7 +42,7 @@ static constexpr const char* SAMPLING_GROUP = "Sampling (defaults: the scene's)"
 
 void RenderOptions::add_to(CLI::App& app) {
     app.option_defaults()->take_last();  // A script's options can be followed by others that overrule them.
-    app.add_option("SCENE", scene_file, "Scene file (.json)")->required()->type_name("");
+    app.add_option("SCENE", scene_file, "Scene file (.json, .obj, .ply)")->required()->type_name("");
     add_output_options(app);
     add_rendering_to(app);
     add_camera_to(app);

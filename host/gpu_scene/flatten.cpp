@@ -6,16 +6,18 @@
 
 #include "base/color.h"
 #include "gpu_scene/triangle_pairs.h"
+#include "scene/mesh.h"
 
 namespace candela {
 namespace {
 
 class Flattener {
   public:
-    explicit Flattener(const Scene& scene) {
+    explicit Flattener(const Scene& scene) : scene_(scene) {
         size_t count = 0;
         for (const Shape& shape : scene.shapes) {
-            const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+            const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+            const TriangleMesh* mesh = instance != nullptr ? &scene.meshes[instance->mesh] : nullptr;
             has_normals_ = has_normals_ || (mesh != nullptr && !mesh->normals.empty());
             count += mesh != nullptr ? mesh->triangles.size() : 2;  // Of a quad; others are one primitive.
         }
@@ -30,7 +32,9 @@ class Flattener {
 
   private:
     // The triangles of an emitter are lights of their own, so that they stay alone.
-    void add(const Shape& shape, const TriangleMesh& mesh) {
+    void add(const Shape& shape, const MeshInstance& instance) {
+        TriangleMesh mesh = placed(scene_.meshes[instance.mesh], instance.transform);
+        flat_.flattened += drop_flat_triangles(mesh);
         const uint first_id = flat_.id_count;
         flat_.id_count += uint(mesh.triangles.size());
         const bool smooth = !mesh.normals.empty();
@@ -108,6 +112,7 @@ class Flattener {
         return uint(flat_.lights.size() - 1);
     }
 
+    const Scene& scene_;
     bool has_normals_ = false;
     FlatScene flat_;
 };

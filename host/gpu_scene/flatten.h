@@ -14,6 +14,7 @@ struct FlatScene {
     std::vector<Primitive> primitives;
     std::vector<Surface> surfaces;                          // One per primitive.
     std::vector<std::array<uvec4, NORMALS_WORDS>> normals;  // One per primitive, or none if all are flat.
+    uint64_t flattened = 0;      // Triangles that are left out: rounded to floats, they have no area.
     uint32_t id_count = 0;       // Ids that the surfaces have: one for each triangle, sphere and disk.
     std::vector<Light> lights;   // Those that send out light; pmf is 0 until assign_probabilities().
     std::vector<double> powers;  // Of each light, over pi, by its luminance [W].

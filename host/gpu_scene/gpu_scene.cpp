@@ -107,6 +107,11 @@ GpuScene build_gpu_scene(const Scene& scene) {
     gpu.primitive_count = uint32_t(flat.primitives.size());
     gpu.id_count = flat.id_count;
     gpu.has_normals = !flat.normals.empty();
+    if (flat.flattened > 0) {
+        gpu.warnings.push_back("left out " + std::to_string(flat.flattened) +
+                               (flat.flattened == 1 ? " triangle" : " triangles") +
+                               " too small for 32-bit coordinates at their distance from the origin");
+    }
 
     const auto start = std::chrono::steady_clock::now();
     const Bvh bvh = build_bvh_over(flat.primitives);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "scene/scene.h"
@@ -33,6 +34,8 @@ struct GpuScene {
     std::array<uint32_t, LIST_MAX> list_corners{};  // Of the first primitives; see LIST_CORNERS_0.
 
     uint32_t bvh_depth = 1;  // Levels of nodes.
+
+    std::vector<std::string> warnings;  // What is lost on the way from the scene.
 
     // About the BVH, for reports.
     float bvh_sah_cost = 0.0f;

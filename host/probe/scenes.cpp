@@ -34,6 +34,11 @@ void add_shape(Scene& scene, const decltype(Shape::geometry)& geometry, uint32_t
     scene.shapes.push_back({.geometry = geometry, .material = material, .emission = emission});
 }
 
+void add_shape(Scene& scene, TriangleMesh mesh, uint32_t material, std::optional<Emission> emission) {
+    add_shape(scene, MeshInstance{uint32_t(scene.meshes.size())}, material, emission);
+    scene.meshes.push_back(std::move(mesh));
+}
+
 Environment constant_environment(vec3 radiance) {
     return {.size = {1, 1}, .radiance = {radiance}};
 }

@@ -17,9 +17,10 @@ Scene furnace(float albedo);
 uint32_t add_material(Scene& scene, const decltype(Material::model)& model);
 uint32_t add_diffuse(Scene& scene, vec3 reflectance);
 
-// Adds a shape of that geometry.
+// Adds a shape of that geometry; a mesh is placed as it is.
 void add_shape(Scene& scene, const decltype(Shape::geometry)& geometry, uint32_t material,
                std::optional<Emission> emission = {});
+void add_shape(Scene& scene, TriangleMesh mesh, uint32_t material, std::optional<Emission> emission = {});
 
 // The same radiance from everywhere.
 Environment constant_environment(vec3 radiance);

@@ -7,26 +7,26 @@
 namespace candela {
 namespace {
 
-void extend(Box& box, const TriangleMesh& mesh) {
+void extend(Box& box, const Scene& scene, const MeshInstance& instance) {
+    const TriangleMesh& mesh = scene.meshes[instance.mesh];
     for (const uvec3 t : mesh.triangles) {
-        box.extend(mesh.positions[t.x]);
-        box.extend(mesh.positions[t.y]);
-        box.extend(mesh.positions[t.z]);
+        for (glm::length_t i = 0; i < 3; ++i)
+            box.extend(vec3(instance.transform.point(mesh.origin + glm::dvec3(mesh.positions[t[i]]))));
     }
 }
 
-void extend(Box& box, const Quad& quad) {
+void extend(Box& box, const Scene&, const Quad& quad) {
     for (const vec3 corner : quad.corners)
         box.extend(corner);
 }
 
-void extend(Box& box, const Sphere& sphere) {
+void extend(Box& box, const Scene&, const Sphere& sphere) {
     box.extend(sphere.center - sphere.radius);
     box.extend(sphere.center + sphere.radius);
 }
 
 // Along an axis, x e1 + y e2 is greatest where (x, y) is parallel to the axis' components of e1 and e2.
-void extend(Box& box, const Disk& disk) {
+void extend(Box& box, const Scene&, const Disk& disk) {
     vec3 reach;
     for (glm::length_t axis = 0; axis < 3; ++axis)
         reach[axis] = std::hypot(disk.e1[axis], disk.e2[axis]);
@@ -34,19 +34,19 @@ void extend(Box& box, const Disk& disk) {
     box.extend(disk.center + reach);
 }
 
-uint64_t triangles_of(const TriangleMesh& mesh) {
-    return mesh.triangles.size();
+uint64_t triangles_of(const Scene& scene, const MeshInstance& instance) {
+    return scene.meshes[instance.mesh].triangles.size();
 }
 
-uint64_t triangles_of(const Quad&) {
+uint64_t triangles_of(const Scene&, const Quad&) {
     return 2;
 }
 
-uint64_t triangles_of(const Sphere&) {
+uint64_t triangles_of(const Scene&, const Sphere&) {
     return 0;
 }
 
-uint64_t triangles_of(const Disk&) {
+uint64_t triangles_of(const Scene&, const Disk&) {
     return 0;
 }
 
@@ -55,7 +55,7 @@ uint64_t triangles_of(const Disk&) {
 Box bounds(const Scene& scene) {
     Box box;
     for (const Shape& shape : scene.shapes) {
-        std::visit([&](const auto& geometry) { extend(box, geometry); }, shape.geometry);
+        std::visit([&](const auto& geometry) { extend(box, scene, geometry); }, shape.geometry);
     }
     return box;
 }
@@ -63,7 +63,8 @@ Box bounds(const Scene& scene) {
 uint64_t triangle_count(const Scene& scene) {
     uint64_t count = 0;
     for (const Shape& shape : scene.shapes) {
-        count += std::visit([](const auto& geometry) { return triangles_of(geometry); }, shape.geometry);
+        count +=
+            std::visit([&](const auto& geometry) { return triangles_of(scene, geometry); }, shape.geometry);
     }
     return count;
 }

@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
+
+#include "scene/polygon.h"
 
 namespace candela {
 namespace {
@@ -40,6 +44,58 @@ double angle_between(glm::dvec3 a, glm::dvec3 b) {
 }
 
 }  // namespace
+
+uint32_t append_vertex(TriangleMesh& mesh, const TriangleMesh& source, uint32_t index) {
+    const auto append = [&](auto array) {
+        if ((source.*array).empty()) return;
+        const auto element = (source.*array)[index];  // A copy, for the case of a single mesh.
+        (mesh.*array).push_back(element);
+    };
+    std::apply([&](auto... arrays) { (append(arrays), ...); }, VERTEX_ARRAYS);
+    return uint32_t(mesh.positions.size() - 1);
+}
+
+void set_positions(TriangleMesh& mesh, std::vector<glm::dvec3> positions) {
+    glm::dvec3 lo(std::numeric_limits<double>::infinity());
+    glm::dvec3 hi = -lo;
+    for (const glm::dvec3 p : positions) {
+        lo = min(lo, p);
+        hi = max(hi, p);
+    }
+    const glm::dvec3 extent = hi - lo;
+    const double size = std::max({extent.x, extent.y, extent.z});
+    mesh.origin = glm::dvec3(0.0);
+    if (size > 0.0) {
+        int exponent = 0;
+        std::frexp(size, &exponent);
+        const double unit = std::ldexp(1.0, exponent);  // size < unit <= 2 size.
+        mesh.origin = trunc((0.5 * lo + 0.5 * hi) / unit) * unit;
+    }
+    mesh.positions.clear();
+    mesh.positions.reserve(positions.size());
+    for (const glm::dvec3 p : positions)
+        mesh.positions.emplace_back(p - mesh.origin);
+}
+
+void add_polygon(TriangleMesh& mesh, std::span<const uint32_t> corners) {
+    if (corners.size() == 3) {
+        mesh.triangles.emplace_back(corners[0], corners[1], corners[2]);
+        return;
+    }
+    std::vector<vec3> positions;
+    positions.reserve(corners.size());
+    for (const uint32_t corner : corners)
+        positions.push_back(mesh.positions[corner]);
+    for (const uvec3 t : triangulate(positions))
+        mesh.triangles.emplace_back(corners[t.x], corners[t.y], corners[t.z]);
+}
+
+Box local_bounds(const TriangleMesh& mesh) {
+    Box box;
+    for (const vec3 p : mesh.positions)
+        box.extend(p);
+    return box;
+}
 
 size_t drop_flat_triangles(TriangleMesh& mesh) {
     return std::erase_if(mesh.triangles, [&](uvec3 t) { return scaled_normal(mesh, t) == glm::dvec3(0.0); });
@@ -77,16 +133,15 @@ void complete_normals(TriangleMesh& mesh) {
         const vec3 n(normalize(scaled_normal(mesh, t)));
         for (glm::length_t i = 0; i < 3; ++i) {
             if (!is_missing(mesh.normals[t[i]])) continue;
-            mesh.positions.push_back(mesh.positions[t[i]]);
-            mesh.normals.push_back(n);
-            t[i] = uint32_t(mesh.positions.size() - 1);
+            t[i] = append_vertex(mesh, mesh, t[i]);
+            mesh.normals.back() = n;
         }
     }
 }
 
 std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh, std::span<const uint32_t> part_of,
                                      size_t count) {
-    std::vector<TriangleMesh> parts(count);
+    std::vector<TriangleMesh> parts(count, TriangleMesh{.origin = mesh.origin});
     for (size_t i = 0; i < mesh.triangles.size(); ++i)
         parts[part_of[i]].triangles.push_back(mesh.triangles[i]);
     struct Copy {
@@ -99,16 +154,30 @@ std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh, std::span<const u
         for (uvec3& t : target.triangles) {
             for (glm::length_t i = 0; i < 3; ++i) {
                 Copy& copy = copies[t[i]];
-                if (copy.part != part) {
-                    copy = {part, uint32_t(target.positions.size())};
-                    target.positions.push_back(mesh.positions[t[i]]);
-                    if (!mesh.normals.empty()) target.normals.push_back(mesh.normals[t[i]]);
-                }
+                if (copy.part != part) copy = {part, append_vertex(target, mesh, t[i])};
                 t[i] = copy.index;
             }
         }
     }
     return parts;
+}
+
+TriangleMesh placed(const TriangleMesh& mesh, const Transform& transform) {
+    TriangleMesh result = mesh;
+    result.origin = glm::dvec3(0.0);
+    for (vec3& p : result.positions)
+        p = vec3(transform.point(mesh.origin + glm::dvec3(p)));
+    for (vec3& n : result.normals)
+        n = transform.normal(n);
+    for (vec4& t : result.tangents) {
+        const glm::dvec3 direction = transform.vector(glm::dvec3(t));
+        t = vec4(vec3(normalize(direction)), transform.mirrors() ? -t.w : t.w);
+    }
+    if (transform.mirrors()) {
+        for (uvec3& t : result.triangles)
+            std::swap(t.y, t.z);
+    }
+    return result;
 }
 
 }  // namespace candela

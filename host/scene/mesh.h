@@ -1,8 +1,10 @@
-// What every mesh goes through between a file and the scene.
+// What every mesh goes through between a file and the scene, and between the scene and the world.
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <tuple>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -14,6 +16,27 @@ enum class MeshNormals {
     smooth,  // Averages, as smooth_normals() says.
     flat,
 };
+
+// The arrays of a mesh that have an element per vertex, or none.
+inline constexpr auto VERTEX_ARRAYS =
+    std::tuple(&TriangleMesh::positions, &TriangleMesh::normals, &TriangleMesh::tangents, &TriangleMesh::uv0,
+               &TriangleMesh::uv1, &TriangleMesh::colors);
+
+// Appends vertex `index` of `source`, with all its attributes, to `mesh`, which may be the same. Returns its
+// index there.
+uint32_t append_vertex(TriangleMesh& mesh, const TriangleMesh& source, uint32_t index);
+
+// Gives a mesh its positions [m], which floats can hold, and its origin: the middle of their bounds,
+// truncated to a multiple of a power of two that is greater than the mesh. So a coordinate that is a float
+// loses nothing, any other is rounded to a part of the mesh's size, however far from 0 it lies, and a mesh
+// around 0 has its origin there.
+void set_positions(TriangleMesh& mesh, std::vector<glm::dvec3> positions);
+
+// Adds the triangles of a polygon with at least 3 corners, given as indices of vertices; see polygon.h.
+void add_polygon(TriangleMesh& mesh, std::span<const uint32_t> corners);
+
+// The least box around the positions, relative to the origin.
+Box local_bounds(const TriangleMesh& mesh);
 
 // Removes the triangles whose corners lie on a line or point. Returns how many there were.
 size_t drop_flat_triangles(TriangleMesh& mesh);
@@ -31,5 +54,9 @@ void complete_normals(TriangleMesh& mesh);
 // uses.
 std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh, std::span<const uint32_t> part_of,
                                      size_t count);
+
+// The mesh in world space: its origin is 0, its positions are rounded to floats, its normals and tangents
+// have unit length. Triangles that the rounding made flat are still there.
+TriangleMesh placed(const TriangleMesh& mesh, const Transform& transform);
 
 }  // namespace candela

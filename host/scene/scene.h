@@ -1,6 +1,5 @@
 // A scene as plain structs, in the units that the renderer uses: metres, radians, linear Rec.709 radiance.
-// World space is right-handed with +Y up. Transforms are already baked into the vertices. Nothing here knows
-// of GPUs.
+// World space is right-handed with +Y up. Nothing here knows of GPUs.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "scene/transform.h"
 
 namespace candela {
 
@@ -118,11 +118,23 @@ struct Emission {
     bool two_sided = false;
 };
 
-// Triangles over shared vertices; `normals` is empty (flat) or has one unit shading normal per position.
+// Triangles over shared vertices, counter-clockwise seen from the front, in a space of their own. An
+// attribute of the vertices is empty or has one element per position.
 struct TriangleMesh {
-    std::vector<vec3> positions;
-    std::vector<vec3> normals;
-    std::vector<uvec3> triangles;
+    glm::dvec3 origin{0};            // Of the positions; see set_positions() in mesh.h.
+    std::vector<vec3> positions{};   // Relative to the origin.
+    std::vector<vec3> normals{};     // For shading; of any length, zero where there is none. Empty: flat.
+    std::vector<vec4> tangents{};    // x, y, z: where u grows; w: -1 if the bitangent is mirrored, else 1.
+    std::vector<vec2> uv0{};         // Texture coordinates, ...
+    std::vector<vec2> uv1{};         // ... two sets of them.
+    std::vector<vec4> colors{};      // Linear RGB, and opacity.
+    std::vector<uvec3> triangles{};  // Indices of vertices.
+};
+
+// A mesh of the scene that is placed in the world.
+struct MeshInstance {
+    uint32_t mesh = 0;      // Index into Scene::meshes.
+    Transform transform{};  // From the mesh's space to the world's.
 };
 
 // A planar quadrilateral with counter-clockwise corners; convex.
@@ -145,7 +157,7 @@ struct Disk {
 };
 
 struct Shape {
-    std::variant<TriangleMesh, Quad, Sphere, Disk> geometry;
+    std::variant<MeshInstance, Quad, Sphere, Disk> geometry;
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
 };
@@ -165,6 +177,7 @@ struct Scene {
     Film film;
     IntegratorSettings integrator;
     std::vector<Material> materials;
+    std::vector<TriangleMesh> meshes;
     std::vector<Shape> shapes;
     std::optional<Environment> environment;    // None: black.
     std::vector<std::filesystem::path> files;  // That the scene file names: meshes, materials, images.

@@ -14,24 +14,24 @@ std::optional<vec3> rounded(glm::dvec3 p) {
     return vec3(p);
 }
 
-void move_to_world(const std::string& place, const Transform& transform, TriangleMesh& mesh) {
-    for (vec3& p : mesh.positions) {
-        const std::optional<vec3> moved = rounded(transform.point(glm::dvec3(p)));
-        if (!moved) throw Error(place + ": " + POINT_TOO_FAR);
-        p = *moved;
+namespace {
+
+bool fits(const TriangleMesh& mesh, const Transform& transform) {
+    const Box box = local_bounds(mesh);
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p(corner & 1u ? box.hi.x : box.lo.x, corner & 2u ? box.hi.y : box.lo.y,
+                           corner & 4u ? box.hi.z : box.lo.z);
+        if (!rounded(transform.point(mesh.origin + p))) return false;
     }
+    return true;
 }
+
+}  // namespace
 
 void SceneBuilder::add_mesh(const std::string& place, const Transform& transform,
                             std::vector<MeshPart> parts) {
     size_t dropped = 0;
     for (MeshPart& part : parts) {
-        for (vec3& n : part.mesh.normals)
-            n = transform.normal(n);
-        if (transform.mirrors()) {
-            for (uvec3& t : part.mesh.triangles)
-                std::swap(t.y, t.z);
-        }
         dropped += drop_flat_triangles(part.mesh);
     }
     std::erase_if(parts, [](const MeshPart& part) { return part.mesh.triangles.empty(); });
@@ -41,8 +41,10 @@ void SceneBuilder::add_mesh(const std::string& place, const Transform& transform
                         " without area");
     }
     for (MeshPart& part : parts) {
+        if (!fits(part.mesh, transform)) throw Error(place + ": " + TOO_FAR);
         complete_normals(part.mesh);
-        add(part.appearance, std::move(part.mesh));
+        add(part.appearance, MeshInstance{uint32_t(scene_.meshes.size()), transform});
+        scene_.meshes.push_back(std::move(part.mesh));
     }
 }
 

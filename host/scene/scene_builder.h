@@ -23,12 +23,12 @@ struct MeshPart {
     TriangleMesh mesh;
 };
 
-// A point in world space as floats; none if it does not fit.
+// A point in world space as floats; none if it lies beyond MAX_COORDINATE.
 std::optional<vec3> rounded(glm::dvec3 p);
 
-// What messages say of a point that does not fit.
-inline constexpr const char* POINT_TOO_FAR =
-    "a point of the shape lies beyond 1e37 along an axis; check its numbers and its transform";
+// What messages say of a shape with such a point.
+inline constexpr const char* TOO_FAR =
+    "the shape reaches beyond 1e37 along an axis; check its numbers and its transform";
 
 // Appends to a scene's shapes, materials and warnings. A place is what messages begin with, such as
 // `file:line:column`.
@@ -47,8 +47,8 @@ class SceneBuilder {
     void add(const Appearance& appearance, Geometry&& geometry) {
         scene_.shapes.push_back({std::forward<Geometry>(geometry), appearance.material, appearance.emission});
     }
-    // Adds a mesh, given in parts, whose positions are in world space, but whose normals and winding are not
-    // yet. Leaves out flat triangles with a warning; throws Error if no other is left in any part.
+    // Adds a mesh, given in parts, and an instance of it. Leaves out flat triangles with a warning; throws
+    // Error if no other is left in any part, or if the mesh reaches too far.
     void add_mesh(const std::string& place, const Transform& transform, std::vector<MeshPart> parts);
     // Adds a mesh of one part.
     void add_mesh(const std::string& place, const Appearance& appearance, const Transform& transform,
@@ -69,8 +69,5 @@ class SceneBuilder {
     std::map<std::string, Appearance, std::less<>> file_appearances_;
     std::optional<uint32_t> black_;
 };
-
-// Moves the positions of a mesh to world space. Throws Error at that place if one does not fit.
-void move_to_world(const std::string& place, const Transform& transform, TriangleMesh& mesh);
 
 }  // namespace candela

@@ -16,7 +16,7 @@ class Transform {
 
     // A point in world space; it need not fit into a float.
     glm::dvec3 point(glm::dvec3 p) const { return glm::dvec3(matrix_ * glm::dvec4(p, 1.0)); }
-    // A difference of two points in world space.
+    // The same for a difference of two points.
     glm::dvec3 vector(glm::dvec3 v) const { return glm::dmat3(matrix_) * v; }
     // The unit normal in world space for a normal of any length; zero stays zero.
     vec3 normal(vec3 n) const;

@@ -95,13 +95,14 @@ Scene scene_of_flat_lights() {
     Scene scene = scene_of_mesh({});
     scene.shapes.clear();
     for (const ExpectedLight& l : LIGHTS) {
-        Shape shape{.geometry = parallelogram(l.p, l.e1, l.e2),
-                    .emission = Emission{.radiance = l.radiance, .two_sided = l.two_sided}};
+        const Emission emission{.radiance = l.radiance, .two_sided = l.two_sided};
         if (l.triangle) {
-            shape.geometry = TriangleMesh{
-                .positions = {l.p, l.p + l.e1, l.p + l.e2}, .normals = {}, .triangles = {uvec3(0, 1, 2)}};
+            TriangleMesh triangle;
+            add_triangle(triangle, l.p, l.p + l.e1, l.p + l.e2);
+            add_shape(scene, std::move(triangle), 0, emission);
+        } else {
+            add_shape(scene, parallelogram(l.p, l.e1, l.e2), 0, emission);
         }
-        scene.shapes.push_back(shape);
     }
     return scene;
 }

@@ -54,6 +54,8 @@ Viewer::Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewSt
         radiance_ = scene_.environment->radiance;
         state_.environment_rotation = scene_.environment->rotation;
     }
+    for (const std::string& warning : gpu_scene_.warnings)
+        options_.say("warning: " + warning);
     figures_.device = options_.device.name;
     begin();
 }

@@ -27,17 +27,18 @@ class LightRobustnessTest : public LightTest {
     // A size from 10^-6 to 10^6.
     float size() { return std::pow(10.0f, 12.0f * random_.unit() - 6.0f); }
     // With a corner or centre p, and edges or half axes.
-    static decltype(Shape::geometry) geometry(uint32_t kind, vec3 p, vec3 e1, vec3 e2) {
+    static void add_lamp(Scene& scene, uint32_t kind, vec3 p, vec3 e1, vec3 e2, const Emission& emission) {
+        TriangleMesh triangle;
         switch (kind) {
             case 0:
-                return parallelogram(p, e1, e2);
+                return add_shape(scene, parallelogram(p, e1, e2), 0, emission);
             case 1:
-                return TriangleMesh{
-                    .positions = {p, p + e1, p + e2}, .normals = {}, .triangles = {uvec3(0, 1, 2)}};
+                add_triangle(triangle, p, p + e1, p + e2);
+                return add_shape(scene, std::move(triangle), 0, emission);
             case 2:
-                return Disk{p, e1, e2};
+                return add_shape(scene, Disk{p, e1, e2}, 0, emission);
             default:
-                return Sphere{p, length(e1)};
+                return add_shape(scene, Sphere{p, length(e1)}, 0, emission);
         }
     }
     // At the light's own points, a rounding beside them, in its plane, at its centre, or anywhere.
@@ -85,8 +86,7 @@ TEST_F(LightRobustnessTest, NoPlaceMakesAnUnsoundSample) {
         Scene scene = scene_of_mesh({});
         scene.shapes.clear();
         const float power = size() * size();
-        add_shape(scene, geometry(uint32_t(light) % 4, p, e1, e2), 0,
-                  Emission{power * vec3(1, 0.5f, 0), light % 3 == 0});
+        add_lamp(scene, uint32_t(light) % 4, p, e1, e2, Emission{power * vec3(1, 0.5f, 0), light % 3 == 0});
         const GpuScene gpu = build_gpu_scene(scene);
         if (gpu.light_count == 0) continue;  // Flat, when its corners are rounded.
         const std::vector<LightItem> from = items(p, e1, e2);

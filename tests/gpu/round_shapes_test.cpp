@@ -30,8 +30,7 @@ RoundScene round_scene(uint32_t count, uint32_t seed) {
         round.disks.push_back({.center = random.cube(), .e1 = e1, .e2 = e2});
         round.scene.shapes.push_back({.geometry = round.disks.back(), .material = 0, .emission = {}});
     }
-    round.scene.shapes.push_back(
-        {.geometry = triangle_soup(count, 0.1f, seed), .material = 0, .emission = {}});
+    add_shape(round.scene, triangle_soup(count, 0.1f, seed), 0);
     return round;
 }
 

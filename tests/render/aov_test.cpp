@@ -58,7 +58,7 @@ TEST_F(AovTest, NormalsAreInterpolated) {
     add_diffuse(scene, vec3(0.5f));
     TriangleMesh ball = sphere_mesh(16, 16);
     ball.normals = ball.positions;
-    scene.shapes.push_back({.geometry = ball, .material = 0, .emission = {}});
+    add_shape(scene, ball, 0);
     const GpuScene gpu = build_gpu_scene(scene);
     Renderer renderer(device(), gpu, scene.cameras[0], settings());
     ASSERT_TRUE(renderer.render(64, [](double) { return true; }));

@@ -208,11 +208,11 @@ TEST(BenchMeshes, TheCameraSeesTheRoomFromWithinAndTheLightShinesDown) {
     const vec3 eye = scene.cameras.front().position;
     EXPECT_LT(std::max(std::abs(eye.x), std::abs(eye.z)), 3.0f);
     EXPECT_LT(eye.y, 4.0f);
+    for (const TriangleMesh& mesh : scene.meshes) {
+        for (const vec3 p : mesh.positions)
+            EXPECT_GT(distance(p, eye), 1.0f);
+    }
     for (const Shape& shape : scene.shapes) {
-        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-            for (const vec3 p : mesh->positions)
-                EXPECT_GT(distance(p, eye), 1.0f);
-        }
         if (!shape.emission) continue;
         const Quad& light = std::get<Quad>(shape.geometry);
         EXPECT_LT(cross(light.corners[1] - light.corners[0], light.corners[3] - light.corners[0]).y, 0.0f);

@@ -89,7 +89,11 @@ TEST(Flatten, IdsFollowTheOrderOfTheSceneAcrossKinds) {
 TEST(Flatten, EveryPrimitiveHasARecordOfNormalsIfOneIsSmooth) {
     TriangleMesh smooth = sphere_mesh(4, 6);
     smooth.normals = smooth.positions;
-    const FlatScene flat = flatten_shapes({shape(BALL, 0), shape(smooth, 0), shape(ELLIPSE, 0)});
+    Scene scene;
+    add_shape(scene, BALL, 0);
+    add_shape(scene, smooth, 0);
+    add_shape(scene, ELLIPSE, 0);
+    const FlatScene flat = flatten(scene);
     ASSERT_EQ(flat.normals.size(), flat.primitives.size());
     for (size_t i = 0; i < flat.normals.size(); ++i) {
         const bool of_the_mesh = flat.primitives[i].kind == PRIMITIVE_TRIANGLES;

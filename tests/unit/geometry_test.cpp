@@ -89,7 +89,7 @@ TEST(Geometry, NormalsOfAMeshAreMadeUnit) {
     SceneFolder folder;
     const Scene scene = folder.load(mesh(R"("positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
         "triangles": [[0, 1, 2]], "normals": [[0, 0, 1e30], [0, 3, 4], [0, 0, 0]])"));
-    const auto& result = std::get<TriangleMesh>(scene.shapes[0].geometry);
+    const TriangleMesh result = world_mesh(scene);
     const uvec3 t = result.triangles[0];
     EXPECT_EQ(result.normals[t.x], vec3(0, 0, 1));
     EXPECT_EQ(result.normals[t.y], vec3(0, 0.6f, 0.8f));

@@ -66,12 +66,10 @@ TEST(GpuScene, LightsAreChosenByAreaLuminanceAndSides) {
     TriangleMesh mesh{.positions = {vec3(0), vec3(2, 0, 0), vec3(0, 2, 0), vec3(0, 0, 4)},
                       .normals = {},
                       .triangles = {uvec3(0, 1, 2), uvec3(0, 2, 3)}};
-    const GpuScene gpu = build_gpu_scene(scene_of({
-        emitter(SQUARE, vec3(1)),
-        emitter(large, vec3(0, 1, 0)),
-        emitter(SQUARE, vec3(0.5f), true),
-        {.geometry = mesh, .material = 0, .emission = Emission{.radiance = vec3(3), .two_sided = false}},
-    }));
+    Scene scene = scene_of(
+        {emitter(SQUARE, vec3(1)), emitter(large, vec3(0, 1, 0)), emitter(SQUARE, vec3(0.5f), true)});
+    add_shape(scene, mesh, 0, Emission{.radiance = vec3(3), .two_sided = false});
+    const GpuScene gpu = build_gpu_scene(scene);
     const std::vector<double> powers{1.0, 6.0 * 0.7152, 1.0, 3.0 * 2.0, 3.0 * 4.0};
     ASSERT_EQ(gpu.light_count, powers.size());
     const std::vector<double> chosen = light_probabilities(gpu);
@@ -102,7 +100,7 @@ TEST(GpuScene, IdsFollowTheOrderOfTheSceneAndEveryTriangleIsThere) {
     const TriangleMesh mesh = triangle_soup(100, 0.3f, 1);
     Scene scene = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
     add_diffuse(scene, vec3(1));
-    scene.shapes.push_back({.geometry = mesh, .material = 1, .emission = {}});
+    add_shape(scene, mesh, 1);
     const GpuScene gpu = build_gpu_scene(scene);
     ASSERT_EQ(gpu.id_count, 102u);
     EXPECT_EQ(gpu.primitive_count, 101u);  // No two of the soup touch.
@@ -127,9 +125,10 @@ TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
 
     TriangleMesh smooth = sphere_mesh(4, 6);
     smooth.normals = smooth.positions;
-    const GpuScene gpu = build_gpu_scene(scene_of({{.geometry = SQUARE, .material = 0, .emission = {}},
-                                                   {.geometry = smooth, .material = 0, .emission = {}},
-                                                   {.geometry = SQUARE, .material = 0, .emission = {}}}));
+    Scene scene = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
+    add_shape(scene, smooth, 0);
+    add_shape(scene, SQUARE, 0);
+    const GpuScene gpu = build_gpu_scene(scene);
     EXPECT_TRUE(gpu.has_normals);
     EXPECT_LT(gpu.primitive_count, 2 + smooth.triangles.size());
     const std::vector<Triangle> all = triangles(gpu);
@@ -307,10 +306,10 @@ TEST(GpuScene, OfCornersInOnePlaceTheFirstIsNamed) {
     const Quad next = parallelogram(vec3(1, 0, 0), vec3(1, 0, 1), vec3(0, 1, 0));
     const TriangleMesh triangle{
         .positions = {vec3(5), vec3(6, 5, 5), vec3(5, 6, 5)}, .normals = {}, .triangles = {uvec3(0, 1, 2)}};
-    const GpuScene gpu =
-        build_gpu_scene(scene_of({Shape{.geometry = SQUARE, .material = 0, .emission = {}},
-                                  Shape{.geometry = next, .material = 0, .emission = {}},
-                                  Shape{.geometry = triangle, .material = 0, .emission = {}}}));
+    Scene scene = scene_of({Shape{.geometry = SQUARE, .material = 0, .emission = {}},
+                            Shape{.geometry = next, .material = 0, .emission = {}}});
+    add_shape(scene, triangle, 0);
+    const GpuScene gpu = build_gpu_scene(scene);
     ASSERT_EQ(gpu.primitive_count, 3u);
     std::vector<vec3> corners;
     for (size_t i = 0; i < gpu.primitive_count; ++i) {

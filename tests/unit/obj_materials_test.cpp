@@ -39,9 +39,6 @@ class ObjMaterials : public testing::Test {
         return std::get<DiffuseMaterial>(scene.materials.at(scene.shapes.at(shape).material).model)
             .reflectance;
     }
-    static const TriangleMesh& mesh(const Scene& scene, size_t shape) {
-        return std::get<TriangleMesh>(scene.shapes.at(shape).geometry);
-    }
 
     SceneFolder folder_;
 };
@@ -51,11 +48,11 @@ TEST_F(ObjMaterials, CutTheMeshIntoAShapePerMaterial) {
         load("mtllib m.mtl\nusemtl red\nf 1 2 3\nusemtl lamp\nf 1 3 4\nusemtl red\nf 4 3 2 1\n");
     expect_warnings(scene, {});
     ASSERT_EQ(scene.shapes.size(), 2u);
-    EXPECT_EQ(mesh(scene, 0).triangles.size(), 3u);
-    EXPECT_EQ(mesh(scene, 0).positions.size(), 4u);
+    EXPECT_EQ(world_mesh(scene, 0).triangles.size(), 3u);
+    EXPECT_EQ(world_mesh(scene, 0).positions.size(), 4u);
     EXPECT_EQ(reflectance(scene, 0), vec3(1, 0, 0));
     EXPECT_FALSE(scene.shapes[0].emission);
-    EXPECT_EQ(mesh(scene, 1).positions, (std::vector<vec3>{vec3(0), vec3(1, 1, 0), vec3(0, 1, 0)}));
+    EXPECT_EQ(world_mesh(scene, 1).positions, (std::vector<vec3>{vec3(0), vec3(1, 1, 0), vec3(0, 1, 0)}));
     EXPECT_EQ(reflectance(scene, 1), vec3(0));
     ASSERT_TRUE(scene.shapes[1].emission);
     EXPECT_EQ(scene.shapes[1].emission->radiance, vec3(5, 6, 7));
@@ -70,7 +67,7 @@ TEST_F(ObjMaterials, GiveWayToTheScene) {
     const Scene white = load(text, R"({"type": "obj", "file": "m.obj", "material": "white"})");
     ASSERT_EQ(white.shapes.size(), 1u);
     EXPECT_EQ(white.materials[white.shapes[0].material].name, "white");
-    EXPECT_EQ(mesh(white, 0).triangles.size(), 2u);
+    EXPECT_EQ(world_mesh(white, 0).triangles.size(), 2u);
     const Scene lamp = load(text, R"({"type": "obj", "file": "m.obj", "emission": 3})");
     ASSERT_EQ(lamp.shapes.size(), 1u);
     EXPECT_EQ(reflectance(lamp, 0), vec3(0));
@@ -83,7 +80,7 @@ TEST_F(ObjMaterials, KeepSmoothNormalsAcrossTheBorder) {
         "v 1 0 -1\nv 1 1 -1\nmtllib m.mtl\nusemtl red\nf 1 2 3 4\nusemtl lamp\nf 2 5 6 3\n";
     const Scene scene = load(text, R"({"type": "obj", "file": "m.obj", "normals": "smooth"})");
     for (size_t shape : {0, 1}) {
-        const TriangleMesh& part = mesh(scene, shape);
+        const TriangleMesh part = world_mesh(scene, shape);
         ASSERT_EQ(part.normals.size(), 4u);
         for (size_t i = 0; i < 4; ++i) {
             const vec3 flat = shape == 0 ? vec3(0, 0, 1) : vec3(1, 0, 0);
@@ -98,8 +95,8 @@ TEST_F(ObjMaterials, KeepTheNormalsOfTheFile) {
     const Scene scene = load(
         "vn 0 0 1\nvn 0 1 1\nmtllib m.mtl\nusemtl red\nf 1//1 2//1 3//1\nusemtl lamp\n"
         "f 1//2 3//2 4//2\n");
-    EXPECT_EQ(mesh(scene, 0).normals, std::vector<vec3>(3, vec3(0, 0, 1)));
-    for (const vec3 n : mesh(scene, 1).normals)
+    EXPECT_EQ(world_mesh(scene, 0).normals, std::vector<vec3>(3, vec3(0, 0, 1)));
+    for (const vec3 n : world_mesh(scene, 1).normals)
         EXPECT_NEAR(length(n - normalize(vec3(0, 1, 1))), 0.0f, 1e-6f);  // Rounding of unit vectors.
 }
 
@@ -147,7 +144,7 @@ TEST_F(ObjMaterials, FacesBeforeTheFirstAreGrey) {
     const Scene scene = load("f 1 2 3\nf 2 3 4\nmtllib m.mtl\nusemtl lamp\nf 1 3 4\n");
     ASSERT_EQ(scene.shapes.size(), 2u);
     EXPECT_EQ(reflectance(scene, 0), vec3(0.5f));
-    EXPECT_EQ(mesh(scene, 0).triangles.size(), 2u);
+    EXPECT_EQ(world_mesh(scene, 0).triangles.size(), 2u);
     EXPECT_EQ(scene.materials[scene.shapes[0].material].name, "m.obj (no material)");
     expect_warnings(scene, {"scene.json:3:36: m.obj: 2 faces before the first usemtl; shown in grey"});
     expect_warnings(load("f 1 2 3\nmtllib m.mtl\nusemtl lamp\nf 1 3 4\n"),

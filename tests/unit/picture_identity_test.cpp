@@ -73,17 +73,9 @@ TEST_F(PictureIdentity, EveryPartOfTheCameraIsPartOfIt) {
 
 TEST_F(PictureIdentity, AnotherSceneIsAnother) {
     const std::string another = "it shows another scene, or another version of it";
-    EXPECT_EQ(after([](RenderSettings&, Scene& scene) {
-                  std::get<TriangleMesh>(std::ranges::find_if(scene.shapes,
-                                                              [](const Shape& shape) {
-                                                                  return std::holds_alternative<TriangleMesh>(
-                                                                      shape.geometry);
-                                                              })
-                                             ->geometry)
-                      .positions[0]
-                      .x += 0x1p-10f;
-              }),
+    EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.meshes.at(0).positions[0].x += 0x1p-10f; }),
               another);
+    EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.meshes.at(0).origin.x += 0x1p-10; }), another);
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) {
                   add_shape(scene, Sphere{.center = vec3(0), .radius = 0.01f}, 0);
               }),

@@ -57,7 +57,7 @@ class Ply : public testing::Test {
     TriangleMesh load(const std::string& text, MeshNormals normals = MeshNormals::file) {
         folder_.write("m.ply", text);
         warnings_.clear();
-        return load_ply(folder_.path() / "m.ply", normals, warnings_);
+        return placed(load_ply(folder_.path() / "m.ply", normals, warnings_), Transform());
     }
 
     void expect_error(const std::string& text, const std::string& message) {
@@ -184,7 +184,7 @@ TEST_F(Ply, TakesNormalsFromTheFileOrNot) {
         VERTEX + "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n" + FACE;
     const std::string text = header("ascii", elements) +
                              "0 0 0 0 0 1 9\n1 0 0 0 1 0 9\n1 1 0 0 0 0 9\n0 1 0 3 0 0 9\n3 0 1 2\n3 0 2 3\n";
-    EXPECT_EQ(load(text).normals, (std::vector<vec3>{vec3(0, 0, 1), vec3(0, 1, 0), vec3(0), vec3(3, 0, 0)}));
+    EXPECT_EQ(load(text).normals, (std::vector<vec3>{vec3(0, 0, 1), vec3(0, 1, 0), vec3(0), vec3(1, 0, 0)}));
     EXPECT_TRUE(load(text, MeshNormals::flat).normals.empty());
     EXPECT_EQ(load(text, MeshNormals::smooth).normals, std::vector<vec3>(4, vec3(0, 0, 1)));
     // Two of three are none.
@@ -199,7 +199,7 @@ TEST_F(Ply, IsAShapeOfAScene) {
     folder_.write("m.ply", ascii_square() + "\n1 2 3\n");
     const Scene scene = folder_.load(scene_of(
         R"({"type": "ply", "file": "m.ply", "material": "white", "emission": 2, "normals": "smooth", "transform": [{"scale": [1, 1, -2]}, {"translate": [0, 0, 3]}]})"));
-    const auto& mesh = std::get<TriangleMesh>(scene.shapes.at(0).geometry);
+    const TriangleMesh mesh = world_mesh(scene);
     EXPECT_EQ(mesh.positions[2], vec3(1, 1, 3));
     EXPECT_EQ(mesh.triangles[0], uvec3(0, 2, 1));  // The front stays the front.
     EXPECT_EQ(scene.shapes[0].emission->radiance, vec3(2));

@@ -9,6 +9,7 @@
 
 #include "base_fixture.h"
 #include "load/load.h"
+#include "scene/mesh.h"
 
 namespace candela {
 
@@ -65,6 +66,12 @@ class SceneFolder {
   private:
     TemporaryDirectory folder_;
 };
+
+// The mesh of a shape, in world space. Throws if the shape is something else.
+inline TriangleMesh world_mesh(const Scene& scene, size_t shape = 0) {
+    const auto& instance = std::get<MeshInstance>(scene.shapes.at(shape).geometry);
+    return placed(scene.meshes.at(instance.mesh), instance.transform);
+}
 
 // A camera for scenes in which another part is under test.
 inline const std::string GOOD_CAMERA =

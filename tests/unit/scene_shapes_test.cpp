@@ -184,10 +184,9 @@ TEST(SceneShapes, CheckDisks) {
 
 TEST(SceneShapes, ReachNoFurtherThanBoxesCan) {
     SceneFolder folder;
-    folder.expect_error(
-        scene_of(R"({"type": "quad", "material": "white",
+    folder.expect_error(scene_of(R"({"type": "quad", "material": "white",
                                      "vertices": [[0, 0, 0], [1, 0, 0], @[1, 2e37, 0], [0, 2e37, 0]]})"),
-        "a point of the shape lies beyond 1e37 along an axis; check its numbers and its transform");
+                        "the shape reaches beyond 1e37 along an axis; check its numbers and its transform");
 }
 
 TEST(SceneShapes, FilesHaveNamesThatASystemTakes) {

@@ -68,16 +68,17 @@ TEST(Scene, MeshSceneHasFrontsAndNormalsOnTheSameSide) {
     EXPECT_GT(triangle_count(scene), 4000u);
     EXPECT_EQ(emitter_count(scene), 2u);
     for (const Shape& shape : scene.shapes) {
-        const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
-        if (mesh == nullptr) continue;
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        if (instance == nullptr) continue;
+        const TriangleMesh mesh = placed(scene.meshes[instance->mesh], instance->transform);
         double volume = 0.0;
-        for (const uvec3 t : mesh->triangles) {
-            const vec3 a = mesh->positions[t.x];
-            const vec3 n = cross(mesh->positions[t.y] - a, mesh->positions[t.z] - a);
+        for (const uvec3 t : mesh.triangles) {
+            const vec3 a = mesh.positions[t.x];
+            const vec3 n = cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
             volume += dot(a, n);
-            for (glm::length_t i = 0; i < 3 && !mesh->normals.empty(); ++i) {
-                ASSERT_GT(dot(n, mesh->normals[t[i]]), 0.0f);
-                ASSERT_NEAR(length(mesh->normals[t[i]]), 1.0f, 1e-6f);
+            for (glm::length_t i = 0; i < 3 && !mesh.normals.empty(); ++i) {
+                ASSERT_GT(dot(n, mesh.normals[t[i]]), 0.0f);
+                ASSERT_NEAR(length(mesh.normals[t[i]]), 1.0f, 1e-6f);
             }
         }
         // The octahedron is the closed emitter.

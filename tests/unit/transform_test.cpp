@@ -143,10 +143,12 @@ TEST(Transform, IsBakedInDoublePrecision) {
     const Scene scene = folder.load(scene_of(R"({"type": "mesh", "material": "white",
         "positions": [[552.8, 0, 0], [549.6, 0, 559.2], [556, 548.8, 559.2]], "triangles": [[0, 1, 2]],
         "transform": [{"scale": 0.001}]})"));
-    const auto& mesh = std::get<TriangleMesh>(scene.shapes[0].geometry);
-    EXPECT_EQ(mesh.positions[0], vec3(0.5528f, 0, 0));
-    EXPECT_EQ(mesh.positions[1], vec3(0.5496f, 0, 0.5592f));
-    EXPECT_EQ(mesh.positions[2], vec3(0.556f, 0.5488f, 0.5592f));
+    const TriangleMesh mesh = world_mesh(scene);
+    // Rounded twice: half a unit in the last place of 552.8, scaled, and of 0.5528.
+    constexpr float ROUNDING = 0.001f * 0x1p-15f + 0x1p-25f;
+    EXPECT_NEAR(length(mesh.positions[0] - vec3(0.5528f, 0, 0)), 0.0f, 2 * ROUNDING);
+    EXPECT_NEAR(length(mesh.positions[1] - vec3(0.5496f, 0, 0.5592f)), 0.0f, 2 * ROUNDING);
+    EXPECT_NEAR(length(mesh.positions[2] - vec3(0.556f, 0.5488f, 0.5592f)), 0.0f, 2 * ROUNDING);
 }
 
 // The fronts of all shapes face away from the middle, mirrored or not.
@@ -164,13 +166,13 @@ TEST(Transform, KeepsFrontsInFront) {
                      ", {\"type\": \"mesh\", " + octant + rest + ", {\"type\": \"quad\", " + quad + rest +
                      R"(, {"type": "obj", "file": "t.obj", "normals": "smooth")" + rest));
         ASSERT_EQ(scene.shapes.size(), 9u);
-        for (const Shape& shape : scene.shapes) {
-            if (const auto* q = std::get_if<Quad>(&shape.geometry)) {
+        for (size_t shape = 0; shape < scene.shapes.size(); ++shape) {
+            if (const auto* q = std::get_if<Quad>(&scene.shapes[shape].geometry)) {
                 const vec3 n = cross(q->corners[1] - q->corners[0], q->corners[2] - q->corners[0]);
                 EXPECT_GT(dot(n, q->corners[0]), 0.0f);
                 continue;
             }
-            const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+            const TriangleMesh mesh = world_mesh(scene, shape);
             const uvec3 t = mesh.triangles[0];
             const vec3 p = mesh.positions[t.x];
             const vec3 n = cross(mesh.positions[t.y] - p, mesh.positions[t.z] - p);

@@ -1,10 +1,7 @@
 // Shapes that are read from files of their own.
-#include <algorithm>
-
 #include "base/error.h"
 #include "load/json/loader_parts.h"
 #include "load/obj/obj.h"
-#include "load/obj/obj_materials.h"
 #include "load/ply/ply.h"
 
 namespace candela {
@@ -33,71 +30,32 @@ void warn(const Node& file, const std::vector<std::string>& warnings, Scene& sce
         scene.warnings.push_back(file.place() + ": " + warning);
 }
 
-// The name of a part's material in the scene.
-std::string name_of(const Node& file, const ObjPart& part) {
-    return part.material ? file.string() + '/' + part.material->name : file.string() + " (no material)";
-}
-
-// Adds the materials of an OBJ file to the scene, unless another shape of the same file has brought them.
-void add_surfaces(const Node& file, const ObjParts& obj, ShapeList& shapes) {
-    const auto is_there = [&](const ObjPart& part) {
-        return shapes.find_file_appearance(name_of(file, part));
-    };
-    if (std::all_of(obj.parts.begin(), obj.parts.end(), is_there)) return;
-    const std::filesystem::path path = shapes.path_of(file.file_name());
-    Scene& scene = shapes.scene();
-    const MtlLibrary library = read_from(file, [&] { return load_mtl_libraries(path, obj.libraries); });
-    warn(file, library.warnings, scene);
-    scene.files.insert(scene.files.end(), library.files.begin(), library.files.end());
-    for (const ObjPart& part : obj.parts) {
-        if (!part.material) {
-            const std::string faces = std::to_string(part.faces) + (part.faces == 1 ? " face" : " faces");
-            warn(file, {path.string() + ": " + faces + " before the first usemtl; shown in grey"}, scene);
-            shapes.add_file_appearance(name_of(file, part), DiffuseMaterial{}, std::nullopt);
-            continue;
-        }
-        const MtlMaterial& material =
-            read_from(file, [&] { return find_mtl_material(library, path, *part.material); });
-        warn(file, material.warnings, scene);
-        const bool emits = material.emission != vec3(0.0f);
-        shapes.add_file_appearance(name_of(file, part), material.material.model,
-                                   emits ? std::optional(Emission{material.emission}) : std::nullopt);
-    }
-}
-
 // Adds an OBJ file with the materials that it names itself.
 void read_obj_with_materials(const Node& node, ShapeList& shapes) {
     const Node file = node.require("file");
     const Transform transform = ShapeList::transform_of(node);
     const MeshNormals normals = normals_of(node);
     const std::filesystem::path path = shapes.path_of(file.file_name());
-    ObjParts obj = read_from(file, [&] { return load_obj_parts(path, normals); });
-    shapes.scene().files.push_back(path);
-    const auto has_material = [](const ObjPart& part) { return part.material.has_value(); };
-    if (std::none_of(obj.parts.begin(), obj.parts.end(), has_material)) {
+    ObjShape obj = read_from(file, [&] { return load_obj_shape(path, normals, file.string(), shapes); });
+    if (!obj.has_materials) {
         node.fail(
             "the shape has neither material nor emission, and no face of its file has a material "
             "(usemtl); add one of them");
     }
-    add_surfaces(file, obj, shapes);
+    warn(file, obj.warnings, shapes.scene());
 
     const auto two_sided = node.find("two_sided");
     const bool both_sides = two_sided && two_sided->boolean();
     bool emits = false;
-    std::vector<MeshPart> parts;
-    for (ObjPart& part : obj.parts) {
-        move_to_world(file.place(), transform, part.mesh);
-        Appearance appearance = *shapes.find_file_appearance(name_of(file, part));
-        if (appearance.emission) {
-            appearance.emission->two_sided = both_sides;
-            emits = true;
-        }
-        parts.push_back({appearance, std::move(part.mesh)});
+    for (MeshPart& part : obj.parts) {
+        std::optional<Emission>& emission = part.appearance.emission;
+        if (emission) emission->two_sided = both_sides;
+        emits = emits || emission;
     }
     if (two_sided && !emits) {
         two_sided->fail("two_sided says where emission leaves, but no material of the file emits (Ke)");
     }
-    shapes.add_mesh(node.place(), transform, std::move(parts));
+    shapes.add_mesh(node.place(), transform, std::move(obj.parts));
 }
 
 // Adds a file as one mesh with the material and emission of `node`; load(file, path, normals) reads it.
@@ -110,7 +68,6 @@ void read_whole(const Node& node, ShapeList& shapes, Load load) {
     const std::filesystem::path path = shapes.path_of(file.file_name());
     TriangleMesh mesh = read_from(file, [&] { return load(file, path, normals); });
     shapes.scene().files.push_back(path);
-    move_to_world(file.place(), transform, mesh);
     shapes.add_mesh(node.place(), appearance, transform, std::move(mesh));
 }
 

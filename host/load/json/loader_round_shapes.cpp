@@ -28,7 +28,7 @@ double greatest(dvec3 v) {
 // Throws Error if the box center +- reach goes too far. False comparisons catch NaN as well.
 void check_reach(const Node& node, dvec3 center, dvec3 reach) {
     if (!glm::all(glm::lessThan(abs(center) + reach, dvec3(double(MAX_COORDINATE))))) {
-        node.fail("the shape reaches beyond 1e37 along an axis; check its numbers and its transform");
+        node.fail(TOO_FAR);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "load/json/loader_parts.h"
+#include "scene/mesh.h"
 
 namespace candela {
 namespace {
@@ -81,11 +82,12 @@ void read_mesh(const Node& node, ShapeList& shapes) {
     const Transform transform = ShapeList::transform_of(node);
     TriangleMesh mesh;
     const Node positions = node.require("positions");
-    for (const Node& p : positions.elements()) {
-        mesh.positions.push_back(rounded(p, transform.point(p.vector())));
-    }
-    if (mesh.positions.empty()) positions.fail_expected("at least one point");
-    const auto last = uint32_t(mesh.positions.size() - 1);
+    std::vector<dvec3> points;
+    for (const Node& p : positions.elements())
+        points.push_back(p.vector());
+    if (points.empty()) positions.fail_expected("at least one point");
+    const auto last = uint32_t(points.size() - 1);
+    set_positions(mesh, std::move(points));
     for (const Node& triangle : node.require("triangles").elements()) {
         const std::vector<Node> corners = triangle.elements();
         if (corners.size() != 3) triangle.fail_expected("three indices of positions");

@@ -7,7 +7,7 @@ namespace candela {
 
 vec3 rounded(const Node& node, glm::dvec3 p) {
     const std::optional<vec3> result = rounded(p);
-    if (!result) node.fail(POINT_TOO_FAR);
+    if (!result) node.fail(TOO_FAR);
     return *result;
 }
 

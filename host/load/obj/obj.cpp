@@ -1,180 +1,121 @@
-// From text through polygons to a mesh with shared vertices.
+// From faces to a mesh with shared vertices.
 #include "load/obj/obj.h"
 
+#include <algorithm>
 #include <map>
-#include <sstream>
+#include <span>
 #include <utility>
-
-#include <tiny_obj_loader.h>
 
 #include "base/error.h"
 #include "base/file.h"
-#include "load/obj/obj_check.h"
-#include "load/text_lines.h"
-#include "scene/polygon.h"
 
 namespace candela {
 namespace {
 
-constexpr uint32_t NONE = ~0u;
+constexpr uint32_t NONE = ObjCorner::NONE;
 
-struct Corner {
-    uint32_t position;
-    uint32_t normal;  // Or NONE.
-};
-
-// The file as it stands, its indices counted from 0.
-struct Polygons {
-    std::vector<vec3> positions;
-    std::vector<vec3> normals;
-    std::vector<Corner> corners;
-    std::vector<size_t> ends;  // Of each polygon, in `corners`.
-};
-
-// tinyobjloader would cut polygons into triangles itself, but wrongly where they are concave or far from the
-// origin; so it hands over the faces as they are.
-Polygons parse(std::string text) {
-    Polygons polygons;
-    tinyobj::callback_t callbacks;
-    callbacks.vertex_cb = [](void* out, float x, float y, float z, float) {
-        static_cast<Polygons*>(out)->positions.emplace_back(x, y, z);
-    };
-    callbacks.normal_cb = [](void* out, float x, float y, float z) {
-        static_cast<Polygons*>(out)->normals.emplace_back(x, y, z);
-    };
-    callbacks.index_cb = [](void* out, tinyobj::index_t* indices, int count) {
-        auto& [positions, normals, corners, ends] = *static_cast<Polygons*>(out);
-        // Negative indices count backwards from the last element so far; 0 stands for an absent one.
-        const auto absolute = [](int index, size_t size) {
-            return index == 0 ? NONE : index > 0 ? uint32_t(index - 1) : uint32_t(int64_t(size) + index);
-        };
-        for (int i = 0; i < count; ++i) {
-            corners.push_back({absolute(indices[i].vertex_index, positions.size()),
-                               absolute(indices[i].normal_index, normals.size())});
-        }
-        ends.push_back(corners.size());
-    };
-    std::istringstream stream(std::move(text));
-    tinyobj::LoadObjWithCallback(stream, callbacks, &polygons);
-    return polygons;
-}
-
-// Collects vertices, one for each pair of position and normal.
-class MeshBuilder {
+// The vertices of a mesh, one for each pair of position and normal that a corner has.
+class Vertices {
   public:
-    explicit MeshBuilder(const Polygons& source, bool with_normals)
-        : source_(source), with_normals_(with_normals), newest_(source.positions.size(), NONE) {}
+    Vertices(const ObjFile& obj, bool with_normals)
+        : obj_(obj), with_normals_(with_normals), newest_(obj.positions.size(), NONE) {}
 
-    void add(Corner a, Corner b, Corner c) {
-        const uvec3 triangle{vertex(a), vertex(b), vertex(c)};  // Braces: evaluated in this order.
-        mesh_.triangles.push_back(triangle);
-    }
-    TriangleMesh take() { return std::move(mesh_); }
-
-  private:
-    uint32_t vertex(Corner corner) {
+    // The index of a corner's vertex.
+    uint32_t add(ObjCorner corner) {
         if (!with_normals_) corner.normal = NONE;
         uint32_t& newest = newest_[corner.position];
         for (uint32_t v = newest; v != NONE; v = vertices_[v].next) {
-            if (vertices_[v].normal == corner.normal) return v;
+            if (vertices_[v].corner.normal == corner.normal) return v;
         }
-        vertices_.push_back({corner.normal, newest});
-        newest = uint32_t(mesh_.positions.size());
-        mesh_.positions.push_back(source_.positions[corner.position]);
-        if (with_normals_) {
-            mesh_.normals.push_back(corner.normal == NONE ? vec3(0.0f) : source_.normals[corner.normal]);
-        }
+        vertices_.push_back({corner, newest});
+        newest = uint32_t(vertices_.size() - 1);
         return newest;
     }
 
+    // A mesh of them, without triangles.
+    TriangleMesh mesh() const {
+        TriangleMesh mesh;
+        std::vector<glm::dvec3> positions;
+        positions.reserve(vertices_.size());
+        for (const Vertex& vertex : vertices_)
+            positions.push_back(obj_.positions[vertex.corner.position]);
+        set_positions(mesh, std::move(positions));
+        if (!with_normals_) return mesh;
+        mesh.normals.reserve(vertices_.size());
+        for (const auto& [corner, next] : vertices_)
+            mesh.normals.push_back(corner.normal == NONE ? vec3(0.0f) : obj_.normals[corner.normal]);
+        return mesh;
+    }
+
+  private:
     struct Vertex {
-        uint32_t normal;
+        ObjCorner corner;
         uint32_t next;  // Another vertex at the same position, or NONE.
     };
 
-    const Polygons& source_;
+    const ObjFile& obj_;
     bool with_normals_;
     std::vector<uint32_t> newest_;  // Of each position: its newest vertex, or NONE.
     std::vector<Vertex> vertices_;
-    TriangleMesh mesh_;
 };
 
-TriangleMesh build_mesh(const Polygons& source, MeshNormals normals) {
-    MeshBuilder builder(source, normals == MeshNormals::file && !source.normals.empty());
-    std::vector<vec3> positions;
-    size_t begin = 0;
-    for (const size_t end : source.ends) {
-        const Corner* corners = &source.corners[begin];
-        positions.clear();
-        for (size_t i = begin; i < end; ++i)
-            positions.push_back(source.positions[source.corners[i].position]);
-        for (const uvec3 t : triangulate(positions))
-            builder.add(corners[t.x], corners[t.y], corners[t.z]);
-        begin = end;
+// Takes `obj` apart.
+TriangleMesh build_mesh(ObjFile& obj, MeshNormals normals) {
+    std::vector<uint32_t> corners;
+    corners.reserve(obj.corners.size());
+    TriangleMesh mesh;
+    {
+        Vertices vertices(obj, normals == MeshNormals::file && !obj.normals.empty());
+        for (const ObjCorner corner : obj.corners)
+            corners.push_back(vertices.add(corner));
+        obj.corners = {};
+        mesh = vertices.mesh();
     }
-    TriangleMesh mesh = builder.take();
+    obj.positions = {};
+    obj.normals = {};
+    mesh.triangles.reserve(corners.size() - 2 * obj.sizes.size());
+    std::span<const uint32_t> rest = corners;
+    for (const uint32_t size : obj.sizes) {
+        add_polygon(mesh, rest.first(size));
+        rest = rest.subspan(size);
+    }
     if (normals == MeshNormals::smooth) smooth_normals(mesh);
     return mesh;
 }
 
-// What a file says about materials.
-struct Statements {
-    std::vector<ObjName> libraries;
-    std::vector<ObjPart> parts;     // Without their meshes.
-    std::vector<uint32_t> part_of;  // For each face, an index into `parts`.
-};
-
-Statements find_materials(std::string_view text, const std::string& file) {
-    Statements statements;
-    std::map<std::string, uint32_t, std::less<>> indices;  // Of the parts; "" is that of no material.
-    ObjName current;
-    for_each_line(text, [&](uint64_t line, std::string_view command, std::string_view rest) {
-        const auto named = [&](const char* what) -> ObjName {
-            const std::string_view name = trimmed(rest);
-            if (name.empty()) {
-                throw Error(file + ':' + std::to_string(line) + ": " + std::string(command) +
-                            " needs the name of " + what);
-            }
-            return {std::string(name), line};
-        };
-        if (command == "mtllib") statements.libraries.push_back(named("a file"));
-        if (command == "usemtl") current = named("a material");
-        if (command != "f") return;
-        const auto [found, is_new] = indices.emplace(current.name, uint32_t(statements.parts.size()));
-        if (is_new) {
-            statements.parts.emplace_back();
-            if (!current.name.empty()) statements.parts.back().material = current;
-        }
-        ++statements.parts[found->second].faces;
-        statements.part_of.push_back(found->second);
-    });
-    return statements;
+void require_name(const ObjName& statement, const char* what, const std::filesystem::path& file) {
+    if (statement.name.empty())
+        throw Error(file.string() + ':' + std::to_string(statement.line) + ": " + what);
 }
 
 }  // namespace
 
 TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals) {
-    std::string text = read_file(file);
-    check_obj(text, file.string());
-    return build_mesh(parse(std::move(text)), normals);
+    ObjFile obj = parse_obj(read_file(file), file.string());
+    return build_mesh(obj, normals);
 }
 
 ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals) {
-    std::string text = read_file(file);
-    check_obj(text, file.string());
-    Statements statements = find_materials(text, file.string());
-    const Polygons polygons = parse(std::move(text));
+    ObjFile obj = parse_obj(read_file(file), file.string());
+    for (const ObjName& library : obj.libraries)
+        require_name(library, "mtllib needs the name of a file", file);
+    for (const ObjName& use : std::span(obj.uses).subspan(1))
+        require_name(use, "usemtl needs the name of a material", file);
 
-    std::vector<uint32_t> part_of;  // For each triangle.
-    size_t begin = 0;
-    for (size_t face = 0; face < polygons.ends.size(); ++face) {
-        const size_t triangles = polygons.ends[face] - begin - 2;
-        part_of.insert(part_of.end(), triangles, statements.part_of[face]);
-        begin = polygons.ends[face];
+    ObjParts result{std::move(obj.libraries), {}};
+    std::map<std::string_view, uint32_t> indices;  // Of the parts, by name; that of no material is empty.
+    std::vector<uint32_t> part_of;                 // For each triangle.
+    for (size_t face = 0; face < obj.sizes.size(); ++face) {
+        const ObjName& use = obj.uses[obj.use_of[face]];
+        const auto [found, is_new] = indices.emplace(use.name, uint32_t(result.parts.size()));
+        if (is_new) {
+            result.parts.emplace_back();
+            if (!use.name.empty()) result.parts.back().material = use;
+        }
+        ++result.parts[found->second].faces;
+        part_of.insert(part_of.end(), obj.sizes[face] - 2, found->second);
     }
-    ObjParts result{std::move(statements.libraries), std::move(statements.parts)};
-    std::vector<TriangleMesh> meshes =
-        split_mesh(build_mesh(polygons, normals), part_of, result.parts.size());
+    std::vector<TriangleMesh> meshes = split_mesh(build_mesh(obj, normals), part_of, result.parts.size());
     for (size_t i = 0; i < meshes.size(); ++i)
         result.parts[i].mesh = std::move(meshes[i]);
     return result;

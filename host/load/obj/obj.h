@@ -1,28 +1,22 @@
 // Wavefront OBJ files.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "load/obj/obj_file.h"
 #include "scene/mesh.h"
+#include "scene/scene_builder.h"
 
 namespace candela {
 
 // Reads all faces of a file as one mesh, in the units of the file; groups, materials and texture coordinates
 // are ignored. Polygons are cut into triangles; corners with equal position and normal share a vertex; unused
-// vertices are dropped. Normals may have any length, and one of length zero stands for none; there are no
-// normals if no corner has one. Throws Error `file:line: cause` or `file: cause` as read_file() and
-// check_obj() do.
+// vertices are dropped. There are no normals if no corner has one. Throws Error as read_file() and
+// parse_obj() do.
 TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals);
-
-// A name that an OBJ file mentions, and the line where it does, counted from 1.
-struct ObjName {
-    std::string name;
-    uint64_t line = 0;
-};
 
 // The faces of one material.
 struct ObjPart {
@@ -39,5 +33,22 @@ struct ObjParts {
 // Reads a file as load_obj() does, but one mesh for each material; smooth normals are averaged over all of
 // them together. The libraries are not read. Throws Error for `usemtl` and `mtllib` without a name, too.
 ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals);
+
+// A file with the materials that it names.
+struct ObjShape {
+    std::vector<MeshPart> parts{};
+    bool has_materials = false;           // Whether any face has one; all are grey if not.
+    std::vector<std::string> warnings{};  // `file:line: ...` or `file: ...`.
+};
+
+// Reads a file as load_obj_parts() does, and its libraries. Adds the materials to the scene, as
+// `name`/material, unless a shape of that name has brought them before; and all files to Scene::files. Where
+// only some faces have a material, the others are grey, with a warning. Throws Error `file:line: cause` for a
+// library that is missing, a material that is not in it, and as load_mtl() does.
+ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, const std::string& name,
+                        SceneBuilder& builder);
+
+// Reads a file as a scene of its own, as load_obj_shape() does; see add_default_view().
+Scene load_obj_scene(const std::filesystem::path& file);
 
 }  // namespace candela

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -12,7 +13,9 @@
 #include "base/text.h"
 #include "load/ply/ply_rows.h"
 #include "load/quote.h"
+#include "scene/default_view.h"
 #include "scene/polygon.h"
+#include "scene/scene_builder.h"
 
 namespace candela {
 namespace {
@@ -21,7 +24,7 @@ constexpr std::array<std::string_view, 6> COORDINATES{"x", "y", "z", "nx", "ny",
 
 // What the rows of a file hold, as they stand.
 struct PlyPolygons {
-    std::vector<vec3> positions;
+    std::vector<glm::dvec3> positions;
     std::vector<vec3> normals;
     std::vector<uint32_t> corners;  // Of all polygons, one after the other.
     std::vector<uint32_t> sizes;    // Corners of each polygon.
@@ -134,7 +137,7 @@ class BodyReader {
     }
 
     void read_vertex(const PlyElement& vertex) {
-        std::array<float, COORDINATES.size()> values{};
+        std::array<double, COORDINATES.size()> values{};
         for (size_t i = 0; i < slots_.size(); ++i) {
             const PlyProperty& property = vertex.properties[i];
             if (slots_[i] == SKIPPED) {
@@ -144,7 +147,7 @@ class BodyReader {
             const double value = rows_.next(property.type);
             if (!(std::abs(value) <= double(std::numeric_limits<float>::max())))
                 position_.fail("needs a finite " + property.name + ", found " + number_text(value, 6));
-            values[slots_[i]] = float(value);
+            values[slots_[i]] = value;
         }
         polygons_.positions.emplace_back(values[0], values[1], values[2]);
         if (with_normals_) polygons_.normals.emplace_back(values[3], values[4], values[5]);
@@ -187,30 +190,9 @@ class BodyReader {
     PlyPolygons polygons_;
 };
 
-TriangleMesh build_mesh(PlyPolygons polygons) {
-    TriangleMesh mesh{std::move(polygons.positions), std::move(polygons.normals), {}};
-    mesh.triangles.reserve(polygons.corners.size() - 2 * polygons.sizes.size());
-    std::vector<vec3> positions;
-    const uint32_t* corners = polygons.corners.data();
-    for (const uint32_t size : polygons.sizes) {
-        if (size == 3) {
-            mesh.triangles.emplace_back(corners[0], corners[1], corners[2]);
-        } else {
-            positions.clear();
-            for (uint32_t i = 0; i < size; ++i)
-                positions.push_back(mesh.positions[corners[i]]);
-            for (const uvec3 t : triangulate(positions))
-                mesh.triangles.emplace_back(corners[t.x], corners[t.y], corners[t.z]);
-        }
-        corners += size;
-    }
-    return mesh;
-}
-
-}  // namespace
-
-TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
-                      std::vector<std::string>& warnings) {
+// The rows of a file, checked.
+PlyPolygons read_polygons(const std::filesystem::path& file, MeshNormals normals,
+                          std::vector<std::string>& warnings) {
     const std::string bytes = read_file(file);
     PlyPosition position{file.string(), 0, "", 0};
     const PlyHeader header = read_ply_header(bytes, position.file);
@@ -221,11 +203,36 @@ TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
         return BodyReader(header, with_normals, rows, position).read(warnings);
     };
     if (header.format == PlyFormat::ascii) position.line = header.lines;
-    TriangleMesh mesh =
-        build_mesh(header.format == PlyFormat::ascii ? read(PlyAsciiRows(body, position))
-                                                     : read(PlyBinaryRows(body, header.format, position)));
+    return header.format == PlyFormat::ascii ? read(PlyAsciiRows(body, position))
+                                             : read(PlyBinaryRows(body, header.format, position));
+}
+
+}  // namespace
+
+TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
+                      std::vector<std::string>& warnings) {
+    PlyPolygons polygons = read_polygons(file, normals, warnings);
+    TriangleMesh mesh{.normals = std::move(polygons.normals)};
+    set_positions(mesh, std::move(polygons.positions));
+    mesh.triangles.reserve(polygons.corners.size() - 2 * polygons.sizes.size());
+    std::span<const uint32_t> rest = polygons.corners;
+    for (const uint32_t size : polygons.sizes) {
+        add_polygon(mesh, rest.first(size));
+        rest = rest.subspan(size);
+    }
     if (normals == MeshNormals::smooth) smooth_normals(mesh);
     return mesh;
+}
+
+Scene load_ply_scene(const std::filesystem::path& file) {
+    Scene scene;
+    SceneBuilder builder(scene);
+    builder.add_file_appearance(file.filename().string(), DiffuseMaterial{}, std::nullopt);
+    const Appearance& grey = *builder.find_file_appearance(file.filename().string());
+    builder.add_mesh(file.string(), grey, Transform(), load_ply(file, MeshNormals::file, scene.warnings));
+    scene.files.push_back(file);
+    add_default_view(scene);
+    return scene;
 }
 
 }  // namespace candela

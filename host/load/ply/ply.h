@@ -19,4 +19,7 @@ namespace candela {
 TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
                       std::vector<std::string>& warnings);
 
+// Reads a file as a scene of its own, in grey; see add_default_view(). Throws Error as load_ply() does.
+Scene load_ply_scene(const std::filesystem::path& file);
+
 }  // namespace candela

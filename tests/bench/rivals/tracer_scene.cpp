@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "gpu_scene/alias_table.h"
 #include "scene/geometry.h"
+#include "scene/mesh.h"
 
 namespace candela::bench {
 namespace {
@@ -27,7 +28,7 @@ Surface surface(const Material& material) {
         return {Model::metal, m->reflectance, m->alpha};
     }
     const auto* m = std::get_if<DielectricMaterial>(&material.model);
-    if (m == nullptr || m->fresnel != Fresnel::exact || m->absorption != vec3(0)) {
+    if (m == nullptr || m->fresnel != Fresnel::exact || m->inside.absorption != vec3(0)) {
         refuse("material like \"" + material.name + "\"");
     }
     return {Model::glass, vec3(1), m->ior / m->exterior_ior};
@@ -46,7 +47,7 @@ uint32_t choose(const std::vector<AliasEntry>& alias, Random& random) {
 TracerScene::TracerScene(const Scene& scene) {
     std::transform(scene.materials.begin(), scene.materials.end(), std::back_inserter(surfaces), surface);
     for (const Shape& shape : scene.shapes)
-        add(shape);
+        add(shape, scene.meshes);
     const Box box = bounds(scene);
     diagonal = length(box.extent());
     if (scene.environment) {
@@ -62,7 +63,7 @@ TracerScene::~TracerScene() {
     rtcReleaseDevice(device_);
 }
 
-void TracerScene::add(const Shape& shape) {
+void TracerScene::add(const Shape& shape, const std::vector<TriangleMesh>& meshes) {
     if (shape.emission && shape.emission->two_sided) refuse("two-sided emission");
     const auto add_triangle = [&](vec3 a, vec3 b, vec3 c, uint32_t lamp) {
         const vec3 n = normalize(cross(b - a, c - a));
@@ -74,13 +75,14 @@ void TracerScene::add(const Shape& shape) {
         const uint32_t first = add_lamp(shape, a, b - a, is_parallelogram ? d - a : c - a, !is_parallelogram);
         add_triangle(a, b, c, first);
         add_triangle(a, c, d, is_parallelogram ? first : add_lamp(shape, a, c - a, d - a, true));
-    } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-        for (const uvec3 t : mesh->triangles) {
-            const vec3 a = mesh->positions[t.x], b = mesh->positions[t.y], c = mesh->positions[t.z];
+    } else if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) {
+        const TriangleMesh mesh = placed(meshes[instance->mesh], instance->transform);
+        for (const uvec3 t : mesh.triangles) {
+            const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
             add_triangle(a, b, c, add_lamp(shape, a, b - a, c - a, true));
-            if (mesh->normals.empty()) continue;
+            if (mesh.normals.empty()) continue;
             for (int i = 0; i < 3; ++i)
-                triangles.back().n[i] = mesh->normals[t[i]];
+                triangles.back().n[i] = mesh.normals[t[i]];
         }
     } else {
         refuse("round shapes");

@@ -94,7 +94,7 @@ class TracerScene {
     float diagonal = 0.0f;  // Of the box around the scene [m].
 
   private:
-    void add(const Shape& shape);
+    void add(const Shape& shape, const std::vector<TriangleMesh>& meshes);
     uint32_t add_lamp(const Shape& shape, vec3 p, vec3 e1, vec3 e2, bool is_triangle);
     void build_lights();
     void build_embree();

@@ -1,11 +1,10 @@
-// Two passes over the lines of an OBJ file: one counts what faces may refer to, one checks. All else is left
-// to tinyobjloader.
-#include "load/obj/obj_check.h"
+// Two passes over the lines of an OBJ file: one counts what faces may refer to, one reads.
+#include "load/obj/obj_file.h"
 
 #include <array>
 #include <charconv>
-#include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "load/quote.h"
@@ -14,8 +13,6 @@
 
 namespace candela {
 namespace {
-
-constexpr size_t MOST_CHARACTERS = 64;  // In a number. tinyobjloader overflows inside longer ones.
 
 // What a face refers to, in the order of `1/2/3`.
 struct Kind {
@@ -26,22 +23,32 @@ struct Kind {
 constexpr std::array<Kind, 3> KINDS{{{"v", "vertex", "vertices"},
                                      {"vt", "texture coordinate", "texture coordinates"},
                                      {"vn", "normal", "normals"}}};
+constexpr size_t POSITION = 0;
+constexpr size_t NORMAL = 2;
 
-class Checker {
+class ObjReader {
   public:
-    Checker(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+    ObjReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
-    void run() {
+    ObjFile read() {
         refuse_byte_order_mark(text_, file_);
-        for_each_line(text_, [this](uint64_t, std::string_view command, std::string_view) {
+        uint64_t faces = 0;
+        for_each_line(text_, [&](uint64_t, std::string_view command, std::string_view) {
             if (const auto kind = kind_of(command)) ++totals_[*kind];
+            if (command == "f") ++faces;
         });
+        obj_.positions.reserve(size_t(totals_[POSITION]));
+        obj_.normals.reserve(size_t(totals_[NORMAL]));
+        obj_.corners.reserve(3 * faces);
+        obj_.sizes.reserve(faces);
+        obj_.use_of.reserve(faces);
         for_each_line(text_, [this](uint64_t line, std::string_view command, std::string_view rest) {
             line_ = line;
-            check_line(command, rest);
+            read_line(command, rest);
         });
-        if (faces_ == 0)
+        if (faces == 0)
             throw Error(file_ + ": the file has no faces (lines \"f 1 2 3\"); is it a Wavefront OBJ file?");
+        return std::move(obj_);
     }
 
   private:
@@ -56,29 +63,39 @@ class Checker {
         throw Error(file_ + ':' + std::to_string(line_) + ": " + cause);
     }
 
-    void check_line(std::string_view command, std::string_view rest) {
-        if (command == "f") return check_face(rest);
-        const auto kind = kind_of(command);
-        if (!kind) return;
-        ++counts_[*kind];
-        if (command == "vt") return;  // Not used.
-        for (int i = 0; i < 3; ++i)
-            check_number(next_word(rest), KINDS[*kind]);
+    void read_line(std::string_view command, std::string_view rest) {
+        if (command == "f") {
+            read_face(rest);
+        } else if (command == "mtllib") {
+            obj_.libraries.push_back({std::string(trimmed(rest)), line_});
+        } else if (command == "usemtl") {
+            obj_.uses.push_back({std::string(trimmed(rest)), line_});
+        } else if (const auto kind = kind_of(command)) {
+            ++counts_[*kind];
+            if (*kind == POSITION) obj_.positions.push_back(read_numbers(rest, KINDS[*kind]));
+            if (*kind == NORMAL) obj_.normals.emplace_back(read_numbers(rest, KINDS[*kind]));
+        }
     }
 
-    void check_number(std::string_view word, const Kind& kind) const {
-        if (word.empty())
-            fail("a " + std::string(kind.singular) + " needs three numbers; is the file cut off?");
-        if (word.size() <= MOST_CHARACTERS && parse_finite(word)) return;
-        fail("a " + std::string(kind.singular) + " needs three finite numbers, found " + quote(word));
+    glm::dvec3 read_numbers(std::string_view rest, const Kind& kind) const {
+        glm::dvec3 numbers;
+        for (glm::length_t i = 0; i < 3; ++i) {
+            const std::string_view word = next_word(rest);
+            if (word.empty())
+                fail("a " + std::string(kind.singular) + " needs three numbers; is the file cut off?");
+            const std::optional<double> number = parse_finite(word);
+            if (!number)
+                fail("a " + std::string(kind.singular) + " needs three finite numbers, found " + quote(word));
+            numbers[i] = *number;
+        }
+        return numbers;
     }
 
-    void check_face(std::string_view rest) {
-        ++faces_;
-        size_t corners = 0;
+    void read_face(std::string_view rest) {
+        uint32_t corners = 0;
         for (std::string_view corner = next_word(rest); !corner.empty(); corner = next_word(rest)) {
-            check_corner(corner);
-            ++corners;
+            const ObjCorner read = read_corner(corner);
+            if (corners++ < MOST_CORNERS) obj_.corners.push_back(read);
         }
         if (corners < 3)
             fail(face() + " has " + std::to_string(corners) + " corners; a face needs at least 3");
@@ -86,26 +103,31 @@ class Checker {
             fail(face() + " has " + std::to_string(corners) + " corners, but at most " +
                  std::to_string(MOST_CORNERS) + " are read; cut it into triangles");
         }
+        obj_.sizes.push_back(corners);
+        obj_.use_of.push_back(uint32_t(obj_.uses.size() - 1));
     }
 
     // `corner` is v, v/vt, v//vn or v/vt/vn.
-    void check_corner(std::string_view corner) const {
+    ObjCorner read_corner(std::string_view corner) const {
+        std::array<uint32_t, KINDS.size()> indices{ObjCorner::NONE, ObjCorner::NONE, ObjCorner::NONE};
         std::string_view rest = corner;
         for (size_t kind = 0; kind < KINDS.size(); ++kind) {
             const size_t slash = rest.find('/');
             const bool may_be_empty = KINDS[kind].command == "vt" && slash != std::string_view::npos;
-            if (slash != 0 || !may_be_empty) check_index(rest.substr(0, slash), kind, corner);
-            if (slash == std::string_view::npos) return;
+            if (slash != 0 || !may_be_empty) indices[kind] = read_index(rest.substr(0, slash), kind, corner);
+            if (slash == std::string_view::npos) return {indices[POSITION], indices[NORMAL]};
             rest.remove_prefix(slash + 1);
         }
         fail_malformed(corner);
     }
 
-    void check_index(std::string_view word, size_t kind, std::string_view corner) const {
+    // Counted from 0. Negative indices count backwards from the last element so far.
+    uint32_t read_index(std::string_view word, size_t kind, std::string_view corner) const {
         int64_t index = 0;
         const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), index);
         if (error != std::errc() || stop != word.data() + word.size()) fail_malformed(corner);
-        if (index != 0 && index >= -counts_[kind] && index <= totals_[kind]) return;
+        if (index != 0 && index >= -counts_[kind] && index <= totals_[kind])
+            return uint32_t(index > 0 ? index - 1 : counts_[kind] + index);
         const std::string use = face() + " uses " + KINDS[kind].singular + ' ' + std::to_string(index);
         const std::string plural = KINDS[kind].plural;
         if (index == 0) fail(use + "; indices count from 1, or backwards from -1");
@@ -117,20 +139,21 @@ class Checker {
         fail(face() + " has the malformed corner " + quote(corner) + "; write 1, 1/2, 1//3 or 1/2/3");
     }
 
-    std::string face() const { return "face " + std::to_string(faces_); }
+    // The current face, counted from 1.
+    std::string face() const { return "face " + std::to_string(obj_.sizes.size() + 1); }
 
     std::string_view text_;
     const std::string& file_;
     std::array<int64_t, 3> totals_{};  // Of each kind, in the whole file.
     std::array<int64_t, 3> counts_{};  // Of each kind, so far.
-    uint64_t faces_ = 0;               // So far, the current one included.
     uint64_t line_ = 0;
+    ObjFile obj_;
 };
 
 }  // namespace
 
-void check_obj(std::string_view text, const std::string& file) {
-    Checker(text, file).run();
+ObjFile parse_obj(std::string_view text, const std::string& file) {
+    return ObjReader(text, file).read();
 }
 
 }  // namespace candela

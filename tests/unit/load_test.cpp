@@ -1,0 +1,97 @@
+// Scenes by the extension of their files; meshes that are a scene of their own.
+#include "load/load.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/geometry.h"
+#include "scene_fixture.h"
+
+namespace candela {
+namespace {
+
+const std::string TRIANGLE = "v 10 0 0\nv 11 0 0\nv 10 2 0\n";
+
+class Load : public testing::Test {
+  protected:
+    Scene load(const std::string& name, const std::string& text) {
+        folder_.write(name, text);
+        return load_scene(folder_.path() / name);
+    }
+
+    // The camera sees the whole box, and little else.
+    static void expect_view_of_everything(const Scene& scene) {
+        ASSERT_EQ(scene.cameras.size(), 1u);
+        const Camera& camera = scene.cameras[0];
+        EXPECT_EQ(camera.name, "default");
+        const Box box = bounds(scene);
+        const vec3 forward = normalize(camera.look_at - camera.position);
+        double widest = 0.0;
+        for (int corner = 0; corner < 8; ++corner) {
+            const vec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                         corner & 4 ? box.hi.z : box.lo.z);
+            const double angle = std::acos(double(dot(normalize(p - camera.position), forward)));
+            EXPECT_LT(angle, 0.5 * double(camera.vertical_fov));
+            widest = std::max(widest, angle);
+        }
+        EXPECT_GT(widest, 0.1 * double(camera.vertical_fov));
+    }
+
+    SceneFolder folder_;
+};
+
+TEST_F(Load, AnObjFileIsAScene) {
+    const Scene scene = load("m.OBJ", TRIANGLE + "f 1 2 3\n");
+    expect_view_of_everything(scene);
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(scene.files, std::vector{folder_.path() / "m.OBJ"});
+    ASSERT_EQ(scene.shapes.size(), 1u);
+    EXPECT_EQ(std::get<DiffuseMaterial>(scene.materials.at(scene.shapes[0].material).model).reflectance,
+              vec3(0.5f));
+    ASSERT_TRUE(scene.environment);
+    EXPECT_EQ(scene.environment->radiance, std::vector<vec3>{vec3(1)});
+}
+
+TEST_F(Load, AnObjFileKeepsItsMaterialsAndLamps) {
+    folder_.write("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl lamp\nKd 0\nKe 5 6 7\n");
+    const Scene scene =
+        load("m.obj", TRIANGLE + "mtllib m.mtl\nf 1 2 3\nusemtl red\nf 1 2 3\nusemtl lamp\nf 3 2 1\n");
+    expect_view_of_everything(scene);
+    ASSERT_EQ(scene.shapes.size(), 3u);
+    EXPECT_EQ(scene.materials[scene.shapes[1].material].name, "m.obj/red");
+    EXPECT_EQ(scene.shapes[2].emission->radiance, vec3(5, 6, 7));
+    EXPECT_FALSE(scene.environment) << "a lamp is light enough";
+    EXPECT_EQ(scene.files.size(), 2u);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(folder_.without_folder(scene.warnings[0]),
+              "m.obj: 1 face before the first usemtl; shown in grey");
+}
+
+TEST_F(Load, APlyFileIsAScene) {
+    const Scene scene = load("m.ply",
+                             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                             "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                             "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    expect_view_of_everything(scene);
+    EXPECT_EQ(triangle_count(scene), 1u);
+    EXPECT_TRUE(scene.environment);
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(scene.files, std::vector{folder_.path() / "m.ply"});
+}
+
+TEST_F(Load, MessagesNameTheFile) {
+    EXPECT_EQ(folder_.without_folder(error_of([&] { load("m.obj", "v 0 0 0\n"); })),
+              "m.obj: the file has no faces (lines \"f 1 2 3\"); is it a Wavefront OBJ file?");
+    EXPECT_EQ(
+        folder_.without_folder(error_of([&] { load("m.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n"); })),
+        "m.obj: the mesh has no triangle with an area; check its positions");
+    EXPECT_EQ(folder_.without_folder(error_of([&] { load("m.ply", "v 0 0 0\n"); })),
+              "m.ply: the file does not begin with the line \"ply\"; is it a PLY file?");
+}
+
+TEST_F(Load, AnyOtherExtensionIsJson) {
+    for (const char* name : {"a.json", "a.scene", "a", "obj"})
+        EXPECT_EQ(load(name, scene_of(R"({"type": "sphere", "emission": 1})")).shapes.size(), 1u);
+}
+
+}  // namespace
+}  // namespace candela
