@@ -10,9 +10,9 @@
 
 namespace candela {
 
-void check_checkpoint(const RenderOptions& options) {
-    if (!options.checkpoint) return;
-    const std::string& path = *options.checkpoint;
+void check_checkpoint(const CheckpointOptions& options) {
+    if (!options.file) return;
+    const std::string& path = *options.file;
     check_writable(path);
     std::error_code unreadable;  // What is wrong with it is found when it is read.
     if (!options.resume && std::filesystem::exists(path, unreadable)) {
@@ -22,13 +22,13 @@ void check_checkpoint(const RenderOptions& options) {
     }
 }
 
-std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Identity& identity,
-                                         const RenderSettings& settings, uint32_t target) {
-    if (!options.resume) return std::nullopt;
-    const std::string& path = *options.checkpoint;
+std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& identity) {
+    if (!job.checkpoint.resume) return std::nullopt;
+    const std::string& path = *job.checkpoint.file;
     std::error_code unreadable;
     if (!std::filesystem::exists(path, unreadable)) {
-        if (!options.quiet) std::fprintf(stderr, "\"%s\" does not exist yet: starting anew\n", path.c_str());
+        if (!job.messages.quiet)
+            std::fprintf(stderr, "\"%s\" does not exist yet: starting anew\n", path.c_str());
         return std::nullopt;
     }
     Checkpoint checkpoint = load_checkpoint(path);
@@ -39,25 +39,25 @@ std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Ide
     const std::string different = difference(checkpoint.header.identity, identity);
     if (!different.empty()) refuse(different, same);
     const bool adaptive = checkpoint.states.size() > 1;
-    if (adaptive != options.adaptive) {
+    if (adaptive != job.adaptive) {
         refuse(std::string("it was made with") + (adaptive ? " --adaptive" : "out --adaptive"), same);
     }
     const Accumulation& state = checkpoint.states.front();
-    if (state.first_sample != settings.first_sample) {
+    if (state.first_sample != job.settings.first_sample) {
         refuse("its first sample is " + std::to_string(state.first_sample) + ", not " +
-                   std::to_string(settings.first_sample),
+                   std::to_string(job.settings.first_sample),
                same);
     }
-    if ((state.layer_count == LAYER_COUNT_AOVS) != settings.aovs) {
-        refuse(std::string("it holds ") + (settings.aovs ? "no " : "") +
-                   "albedo and normals, which the outputs " + (settings.aovs ? "need" : "do not need"),
+    if ((state.layer_count == LAYER_COUNT_AOVS) != job.settings.aovs) {
+        refuse(std::string("it holds ") + (job.settings.aovs ? "no " : "") +
+                   "albedo and normals, which the outputs " + (job.settings.aovs ? "need" : "do not need"),
                "give the outputs and --aov that it was made with");
     }
     const uint32_t most = adaptive ? std::max(checkpoint.header.planned, samples_per_pixel(checkpoint.states))
                                    : state.most_samples();
-    if (most > target) {
+    if (most > job.target) {
         refuse("it holds up to " + std::to_string(most) + " samples per pixel, but " +
-                   std::to_string(target) + " are asked for",
+                   std::to_string(job.target) + " are asked for",
                "ask for as many at least");
     }
     return checkpoint;

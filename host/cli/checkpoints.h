@@ -14,13 +14,12 @@ namespace candela {
 
 // Throws Error if --checkpoint could not be written, or names a file that exists already although there is no
 // --resume (usage). To be called before any long work.
-void check_checkpoint(const RenderOptions& options);
+void check_checkpoint(const CheckpointOptions& options);
 
 // What --resume says to continue from; nothing, which a line on stderr tells, if the file does not exist yet.
-// Throws Error if it is damaged, belongs to another rendering than `identity` or `settings`, is adaptive
-// where the options are not or the other way round, or holds more than `target` samples per pixel.
-std::optional<Checkpoint> load_to_resume(const RenderOptions& options, const Identity& identity,
-                                         const RenderSettings& settings, uint32_t target);
+// Throws Error if it is damaged, belongs to another rendering than `identity` or the job, is adaptive where
+// the job is not or the other way round, or holds more samples per pixel than the job's target.
+std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& identity);
 
 // Writes checkpoints, the first after one interval. A write that fails is a warning: the rendering goes on,
 // the file keeps its old contents, and the next interval tries again.

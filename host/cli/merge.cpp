@@ -40,16 +40,16 @@ ExitCode print_missing(const MergeArguments& arguments) {
 ExitCode run(const MergeArguments& arguments, const std::string& command_line) {
     if (arguments.missing) return print_missing(arguments);
     CommandFiles files;  // The parts are all read before anything is written: one of them may be the output.
-    for (const std::string& path : arguments.options.outputs)
+    for (const std::string& path : arguments.options.images.files)
         files.write("-o", path);
-    check_outputs(arguments.options);
+    check_outputs(arguments.options.images);
     Merged merged = merge_files({arguments.parts.begin(), arguments.parts.end()});
     for (const std::string& warning : merged.warnings)
         print_warning(warning);
     merged.image.attributes["candela.commandLine"] = command_line;
     const std::string samples = std::get<std::string>(merged.image.attributes.at("candela.samples"));
     const size_t count = arguments.parts.size();
-    write_images(arguments.options, std::move(merged.image));
+    write_images(arguments.options.images, std::move(merged.image));
     std::printf("merged %zu part%s: samples %s\n", count, count == 1 ? "" : "s", samples.c_str());
     flush_results();
     return ExitCode::done;

@@ -69,12 +69,12 @@ void use_half(Image& image) {
     }
 }
 
-void write_image(const RenderOptions& options, const std::string& path, const Image& image) {
+void write_image(const ImageOutputs& outputs, const std::string& path, const Image& image) {
     if (image_format(path) == ImageFormat::exr) {
         write_exr(path, image);
     } else {
         write_png(path, image.data.width(), image.data.height(),
-                  develop(image, options.tonemap, float(options.exposure)));
+                  develop(image, outputs.tonemap, float(outputs.exposure)));
     }
 }
 
@@ -83,13 +83,13 @@ Json or_null(const std::optional<double>& value) {
 }
 
 // What --target-error and --reference add to the report.
-void add_convergence(Json& report, const RenderOptions& options, const RenderRecord& record) {
-    if (options.target_error) {
-        report["target_error"] = *options.target_error;
+void add_convergence(Json& report, const RenderRecord& record) {
+    if (record.target_error) {
+        report["target_error"] = *record.target_error;
         report["estimated_error"] = or_null(record.estimated_error);
     }
-    if (options.reference) report["reference"] = *options.reference;
-    if (!options.target_error && !options.reference) return;
+    if (record.reference) report["reference"] = *record.reference;
+    if (!record.target_error && !record.reference) return;
     report["convergence"] = Json::array();
     for (const ConvergencePoint& point : record.convergence) {
         report["convergence"].push_back({{"spp", point.spp},
@@ -99,12 +99,12 @@ void add_convergence(Json& report, const RenderOptions& options, const RenderRec
     }
 }
 
-Json make_report(const RenderOptions& options, const RenderRecord& record) {
+Json make_report(const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     const auto ratio = [](double a, double b) { return b > 0.0 ? a / b : 0.0; };
     const double samples = double(record.samples);
     Json report{{"version", record.maker.version},
-                {"scene", options.scene_file},
+                {"scene", record.scene_file},
                 {"device", record.maker.device},
                 {"driver", record.maker.driver},
                 {"width", settings.size.x},
@@ -136,7 +136,7 @@ Json make_report(const RenderOptions& options, const RenderRecord& record) {
                 {"device_failures", record.device_failures},
                 {"image_hash", hexadecimal(record.image_hash)},
                 {"validation_messages", record.validation_messages}};
-    add_convergence(report, options, record);
+    add_convergence(report, record);
     return report;
 }
 
@@ -172,9 +172,9 @@ class Attempts {
 
 }  // namespace
 
-void add_attributes(Image& image, const RenderRecord& record, const Camera& camera) {
-    image.attributes["worldToCamera"] = world_to_camera(camera);
-    image.attributes["worldToNDC"] = world_to_ndc(camera, record.settings.size);
+void add_attributes(Image& image, const RenderRecord& record) {
+    image.attributes["worldToCamera"] = world_to_camera(record.camera);
+    image.attributes["worldToNDC"] = world_to_ndc(record.camera, record.settings.size);
     image.attributes["samplesPerPixel"] = float(record.spp);
     image.attributes["renderTimeSeconds"] = float(record.render_seconds);
     image.attributes["candela.samples"] = samples_text(record);
@@ -184,45 +184,46 @@ void add_attributes(Image& image, const RenderRecord& record, const Camera& came
     image.attributes["candela.commandLine"] = record.command_line;
 }
 
-void check_outputs(const RenderOptions& options) {
-    if (options.outputs.empty()) {
+void check_outputs(const ImageOutputs& outputs) {
+    if (outputs.files.empty()) {
         throw Error("there is no output; give -o FILE.exr or -o FILE.png (both, too)", ExitCode::usage);
     }
-    for (const std::string& path : options.outputs)
+    for (const std::string& path : outputs.files)
         image_format(path);
-    for (const std::string& path : options.outputs)
+    for (const std::string& path : outputs.files)
         check_writable(path);
-    if (options.report && *options.report != STDOUT) check_writable(*options.report);
 }
 
-void write_images(const RenderOptions& options, Image image) {
-    if (options.half) use_half(image);
+void check_report(const std::optional<std::string>& file) {
+    if (file && *file != STDOUT) check_writable(*file);
+}
+
+void write_images(const ImageOutputs& outputs, Image image) {
+    if (outputs.half) use_half(image);
     Attempts attempts;
-    for (const std::string& path : options.outputs)
-        attempts.attempt([&] { write_image(options, path, image); });
+    for (const std::string& path : outputs.files)
+        attempts.attempt([&] { write_image(outputs, path, image); });
     attempts.finish();
 }
 
-void write_current_images(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
-                          Image image) {
-    add_attributes(image, record, camera);
-    if (options.half) use_half(image);
-    for (const std::string& path : options.outputs) {
+void write_current_images(const ImageOutputs& outputs, const RenderRecord& record, Image image) {
+    add_attributes(image, record);
+    if (outputs.half) use_half(image);
+    for (const std::string& path : outputs.files) {
         try {
-            write_image(options, path, image);
+            write_image(outputs, path, image);
         } catch (const Error& error) {
             print_warning(std::string(error.what()) + "; the rendering goes on without this image");
         }
     }
 }
 
-void write_outputs(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
-                   Image image) {
-    add_attributes(image, record, camera);
+void write_outputs(const ImageOutputs& outputs, const std::optional<std::string>& report,
+                   const RenderRecord& record, Image image) {
+    add_attributes(image, record);
     Attempts attempts;
-    attempts.attempt([&] { write_images(options, std::move(image)); });
-    if (options.report)
-        attempts.attempt([&] { write_report(*options.report, make_report(options, record)); });
+    attempts.attempt([&] { write_images(outputs, std::move(image)); });
+    if (report) attempts.attempt([&] { write_report(*report, make_report(record)); });
     attempts.finish();
 }
 

@@ -17,11 +17,13 @@ namespace candela {
 // What a rendering was and how it went.
 struct RenderRecord {
     std::string command_line;
-    Maker maker;
-    Identity identity;
+    std::string scene_file;
+    Maker maker{};
+    Identity identity{};
     bool adaptive = false;
-    RenderSettings settings;
-    ArrayMap array_map;  // How the scene was read.
+    Camera camera{};
+    RenderSettings settings{};
+    ArrayMap array_map{};  // How the scene was read.
     uint32_t primitives = 0;
     uint32_t lights = 0;
     double load_seconds = 0.0;      // Wall times: reading the scene file ...
@@ -34,35 +36,37 @@ struct RenderRecord {
     uint32_t most_spp = 0;          // And the most that one holds.
     uint64_t samples = 0;           // Samples of all pixels together ...
     uint64_t resumed_samples = 0;   // ... and those of them that a checkpoint brought.
-    std::vector<ConvergencePoint> convergence;  // If a target error or a reference asks for it.
-    std::optional<double> estimated_error;      // The last one known.
-    RenderCounters counters;
+    std::optional<double> target_error{};
+    std::optional<std::string> reference{};       // The name of its file.
+    std::vector<ConvergencePoint> convergence{};  // If a target error or a reference asks for it.
+    std::optional<double> estimated_error{};      // The last one known.
+    RenderCounters counters{};
     uint32_t device_failures = 0;  // That were survived.
     uint64_t device_bytes = 0;
     uint64_t image_hash = 0;
     size_t validation_messages = 0;
 };
 
-// Throws Error if an output is missing, has an unknown extension (both: usage) or could not be written, or if
-// the report could not. To be called before any long work.
-void check_outputs(const RenderOptions& options);
+// Throws Error if an output is missing, has an unknown extension (both: usage) or could not be written. To be
+// called before any long work.
+void check_outputs(const ImageOutputs& outputs);
+// Throws Error if the report could not be written.
+void check_report(const std::optional<std::string>& file);
 
-// Gives an image its attributes: the camera, and of the record the samples and their time, maker, identity
-// and command line.
-void add_attributes(Image& image, const RenderRecord& record, const Camera& camera);
+// Gives an image its attributes: of the record the camera, the samples and their time, maker, identity and
+// command line.
+void add_attributes(Image& image, const RenderRecord& record);
 
-// Writes all images as the options say. Where one fails, the others are written all the same; then the Error
-// is thrown.
-void write_images(const RenderOptions& options, Image image);
+// Writes all images. Where one fails, the others are written all the same; then the Error is thrown.
+void write_images(const ImageOutputs& outputs, Image image);
 
 // Writes all images, with attributes, in the middle of a rendering. What fails is a warning: the file keeps
 // its old contents.
-void write_current_images(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
-                          Image image);
+void write_current_images(const ImageOutputs& outputs, const RenderRecord& record, Image image);
 
-// Writes all images, with attributes, and the report. Where one fails, the others are written all the same;
-// then the Error is thrown.
-void write_outputs(const RenderOptions& options, const RenderRecord& record, const Camera& camera,
-                   Image image);
+// Writes all images, with attributes, and the report, if there shall be one. Where one fails, the others are
+// written all the same; then the Error is thrown.
+void write_outputs(const ImageOutputs& outputs, const std::optional<std::string>& report,
+                   const RenderRecord& record, Image image);
 
 }  // namespace candela

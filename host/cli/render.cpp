@@ -83,8 +83,7 @@ void write_checkpoint(SteadyRenderer& renderer, const RenderRecord& record, doub
 }
 
 // Writes a checkpoint and the images if their times have come.
-void keep(SteadyRenderer& renderer, const RenderOptions& options, const Camera& camera,
-          const RenderRecord& record, Upkeep& upkeep) {
+void keep(SteadyRenderer& renderer, const ImageOutputs& outputs, const RenderRecord& record, Upkeep& upkeep) {
     if (upkeep.checkpoints && upkeep.checkpoints->due()) {
         renderer.hold();
         write_checkpoint(renderer, record, upkeep.seconds(), upkeep);
@@ -93,8 +92,8 @@ void keep(SteadyRenderer& renderer, const RenderOptions& options, const Camera& 
         renderer.hold();
         RenderRecord current = record;
         current.render_seconds = upkeep.seconds();
-        Image image = collect_image(renderer, options.written_aovs(), current);
-        write_current_images(options, current, camera, std::move(image));
+        Image image = collect_image(renderer, outputs.written_aovs(), current);
+        write_current_images(outputs, current, std::move(image));
         upkeep.images->restart();
     }
 }
@@ -124,16 +123,14 @@ bool render_and_look(SteadyRenderer& renderer, bool adaptive, uint32_t target, U
 
 // Renders, with all that is to be looked after; the record learns what it took. Returns the Error if the
 // device failed for good.
-std::optional<Error> trace(SteadyRenderer& renderer, const RenderOptions& options, const Camera& camera,
-                           uint32_t target, const InterruptGuard& guard, Upkeep& upkeep,
-                           RenderRecord& record) {
+std::optional<Error> trace(SteadyRenderer& renderer, const RenderJob& job, const InterruptGuard& guard,
+                           Upkeep& upkeep, RenderRecord& record) {
     const std::clock_t cpu_start = std::clock();
     std::optional<Error> failure;
     try {
-        record.complete = render_and_look(renderer, options.adaptive, target, upkeep, [&] {
-            keep(renderer, options, camera, record, upkeep);
-            return !guard.interrupted() &&
-                   !(options.time_limit && upkeep.progress.seconds() >= *options.time_limit);
+        record.complete = render_and_look(renderer, job.adaptive, job.target, upkeep, [&] {
+            keep(renderer, job.images, record, upkeep);
+            return !guard.interrupted() && !(job.time_limit && upkeep.progress.seconds() >= *job.time_limit);
         });
     } catch (const Error& error) {
         if (count_samples(renderer.states()).total == 0) throw;
@@ -151,13 +148,13 @@ std::optional<Error> trace(SteadyRenderer& renderer, const RenderOptions& option
 }
 
 // `, estimated error 0.0183 (target 0.02)`, or nothing.
-std::string error_text(const RenderOptions& options, const RenderRecord& record) {
-    if (!options.target_error) return "";
+std::string error_text(const RenderRecord& record) {
+    if (!record.target_error) return "";
     return ", estimated error " + (record.estimated_error ? fixed(*record.estimated_error, 4) : "unknown") +
-           " (target " + fixed(*options.target_error, 4) + ')';
+           " (target " + fixed(*record.target_error, 4) + ')';
 }
 
-void print_outcome(const RenderOptions& options, const RenderRecord& record, uint32_t target) {
+void print_outcome(const MessageOptions& messages, const RenderRecord& record, uint32_t target) {
     if (record.counters.nonfinite_samples > 0) {
         print_warning(std::to_string(record.counters.nonfinite_samples) +
                       " sample(s) were not finite and count as black");
@@ -167,17 +164,17 @@ void print_outcome(const RenderOptions& options, const RenderRecord& record, uin
                       std::to_string(DEPTH_SAFETY_LIMIT) + " bounces, and their light is missing");
     }
     if (record.spp == 0) print_warning("stopped before every pixel had a sample; those without are black");
-    if (options.target_error && record.complete &&
-        !(record.estimated_error && *record.estimated_error <= *options.target_error)) {
+    if (record.target_error && record.complete &&
+        !(record.estimated_error && *record.estimated_error <= *record.target_error)) {
         print_warning("the target error was not reached with " + std::to_string(target) +
                       " samples per pixel; allow more (--spp)");
     }
-    if (options.quiet || options.progress == ProgressStyle::json) return;
+    if (messages.quiet || messages.progress == ProgressStyle::json) return;
     const std::string of_target = record.complete ? "" : " of " + std::to_string(target);
     const double rate = double(record.samples) / std::max(record.render_seconds, 1e-9);
     std::fprintf(stderr, "rendered %u%s spp in %s (%s Msamples/s)%s\n", record.spp, of_target.c_str(),
                  duration_text(record.render_seconds).c_str(), fixed(rate / 1e6, 2).c_str(),
-                 error_text(options, record).c_str());
+                 error_text(record).c_str());
 }
 
 void warn_of_device_failure(const Error& error, uint32_t kept, double submission_seconds) {
@@ -193,23 +190,22 @@ void warn_of_maker(const Maker& before, const Maker& now) {
 }
 
 // What is left to do once there is an instance.
-ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, const GpuScene& scene,
-                   const Camera& camera, uint32_t target, std::optional<Image> reference,
-                   RenderRecord& record) {
-    std::optional<Checkpoint> resumed = load_to_resume(options, record.identity, record.settings, target);
-    const vk::DeviceInfo device = vk::select_device(instance.devices(), options.device);
+ExitCode render_on(const vk::Instance& instance, const vk::DeviceInfo& device, const GpuScene& scene,
+                   const RenderJob& job, const std::optional<std::string>& report,
+                   std::optional<Image> reference, RenderRecord& record) {
+    std::optional<Checkpoint> resumed = load_to_resume(job, record.identity);
     record.maker = {.device = device.name, .driver = device.driver, .version = CANDELA_VERSION};
-    record.device_bytes = device_bytes(scene, record.settings);
-    const AovSelection aovs = options.written_aovs();
+    record.device_bytes = device_bytes(scene, job.settings);
+    const AovSelection aovs = job.images.written_aovs();
     SteadyRenderer::Source source{.instance = &instance,
                                   .device = device,
                                   .pipeline_cache_folder = pipeline_cache_folder(),
                                   .scene = &scene,
-                                  .camera = &camera,
-                                  .settings = record.settings,
-                                  .states = {empty_state(record.settings)},
+                                  .camera = &job.camera,
+                                  .settings = job.settings,
+                                  .states = {empty_state(job.settings)},
                                   .positions = aovs.needs_positions()};
-    if (options.adaptive) source.states = adaptive_states(record.settings);
+    if (job.adaptive) source.states = adaptive_states(job.settings);
     if (resumed) {
         warn_of_maker(resumed->header.maker, record.maker);
         record.render_seconds = resumed->header.render_seconds;
@@ -219,28 +215,28 @@ ExitCode render_on(const vk::Instance& instance, const RenderOptions& options, c
     SteadyRenderer renderer(std::move(source), warn_of_device_failure);
     record.array_map = renderer.array_map();
     record.pipeline_seconds = renderer.pipeline_seconds();
-    if (options.verbose) print_details(renderer.device(), scene, record);
-    const PixelRect& crop = record.settings.crop;
+    if (job.messages.verbose) print_details(renderer.device(), scene, record);
+    const PixelRect& crop = job.settings.crop;
     const uint32_t held = samples_per_pixel(renderer.states());
-    Upkeep upkeep{
-        .checkpoints = {},
-        .images = {},
-        .convergence = Convergence(options.target_error, std::move(reference)),
-        .progress = Progress(uint64_t{crop.width()} * crop.height(), target, double(held) / target,
-                             options.time_limit, options.quiet ? ProgressStyle::none : options.progress),
-        .seconds_before = record.render_seconds,
-        .planned = resumed ? resumed->header.planned : 0};
-    if (options.checkpoint) upkeep.checkpoints.emplace(*options.checkpoint, options.checkpoint_every);
-    if (options.write_every) upkeep.images.emplace(*options.write_every);
+    Upkeep upkeep{.checkpoints = {},
+                  .images = {},
+                  .convergence = Convergence(job.target_error, std::move(reference)),
+                  .progress = Progress(uint64_t{crop.width()} * crop.height(), job.target,
+                                       double(held) / job.target, job.time_limit,
+                                       job.messages.quiet ? ProgressStyle::none : job.messages.progress),
+                  .seconds_before = record.render_seconds,
+                  .planned = resumed ? resumed->header.planned : 0};
+    if (job.checkpoint.file) upkeep.checkpoints.emplace(*job.checkpoint.file, job.checkpoint.every);
+    if (job.write_every) upkeep.images.emplace(*job.write_every);
 
     // Before this line there is nothing to keep, and a signal ends the program at once.
     const InterruptGuard guard;
-    const std::optional<Error> failure = trace(renderer, options, camera, target, guard, upkeep, record);
+    const std::optional<Error> failure = trace(renderer, job, guard, upkeep, record);
     const bool interrupted = guard.interrupted() && !record.complete;
     Image image = collect_image(renderer, aovs, record);
-    print_outcome(options, record, target);
+    print_outcome(job.messages, record, job.target);
     record.validation_messages = instance.validation_messages().size();
-    write_outputs(options, record, camera, std::move(image));
+    write_outputs(job.images, report, record, std::move(image));
     if (failure) throw Error(*failure);
     upkeep.progress.end(record.complete ? "done" : interrupted ? "interrupted" : "time limit");
     return interrupted ? ExitCode::interrupted : ExitCode::done;
@@ -251,49 +247,49 @@ CommandFiles files_of(const RenderOptions& options) {
     CommandFiles files;
     files.read("SCENE", options.scene_file);
     if (options.reference) files.read("--reference", *options.reference);
-    for (const std::string& path : options.outputs)
+    for (const std::string& path : options.images.files)
         files.write("-o", path);
     if (options.report) files.write("--report", *options.report);
-    if (options.checkpoint) files.write("--checkpoint", *options.checkpoint);
+    if (options.checkpoint.file) files.write("--checkpoint", *options.checkpoint.file);
     return files;
 }
 
 ExitCode render(const RenderOptions& options, const std::string& command_line) {
     CommandFiles files = files_of(options);
-    check_outputs(options);
-    check_checkpoint(options);
-    RenderRecord record;
-    record.command_line = command_line;
+    check_outputs(options.images);
+    check_report(options.report);
+    check_checkpoint(options.checkpoint);
 
     const auto start = std::chrono::steady_clock::now();
     const Scene scene = load_scene(options.scene_file);
     files.read_all("the scene's file", scene.files);
-    record.load_seconds = seconds_since(start);
+    const double load_seconds = seconds_since(start);
     for (const std::string& warning : scene.warnings)
         print_warning(warning);
-    const Camera& camera = options.choose_camera(scene);
-    record.settings = options.settings(scene);
-    record.adaptive = options.adaptive;
-    const uint32_t target = options.target_spp(scene);
-    if (options.adaptive && target % 2 != 0) {
-        throw Error("--adaptive renders two halves: give an even number of samples per pixel (--spp), not " +
-                        std::to_string(target),
-                    ExitCode::usage);
-    }
+    const RenderJob job = options.job(scene);
     std::optional<Image> reference;
-    if (options.reference) reference = load_reference(*options.reference, record.settings);
+    if (options.reference) reference = load_reference(*options.reference, job.settings);
 
     const GpuScene gpu_scene = build_gpu_scene(scene);
     for (const std::string& warning : gpu_scene.warnings)
         print_warning(warning);
-    record.primitives = gpu_scene.id_count;
-    record.lights = gpu_scene.light_count;
-    record.bvh_seconds = gpu_scene.bvh_seconds;
-    record.identity = make_identity(gpu_scene, camera, record.settings);
+    RenderRecord record{.command_line = command_line,
+                        .scene_file = options.scene_file,
+                        .identity = make_identity(gpu_scene, job.camera, job.settings),
+                        .adaptive = job.adaptive,
+                        .camera = job.camera,
+                        .settings = job.settings,
+                        .primitives = gpu_scene.id_count,
+                        .lights = gpu_scene.light_count,
+                        .load_seconds = load_seconds,
+                        .bvh_seconds = gpu_scene.bvh_seconds,
+                        .target_error = job.target_error,
+                        .reference = options.reference};
 
     const vk::Instance instance(instance_options());
+    const vk::DeviceInfo device = vk::select_device(instance.devices(), options.device);
     const ExitCode code =
-        render_on(instance, options, gpu_scene, camera, target, std::move(reference), record);
+        render_on(instance, device, gpu_scene, job, options.report, std::move(reference), record);
     check_validation(instance);
     return code;
 }

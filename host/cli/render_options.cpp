@@ -75,10 +75,11 @@ void RenderOptions::add_rendering_to(CLI::App& app) {
 }
 
 void RenderOptions::add_development_to(CLI::App& app) {
-    add_value(app, "--exposure", exposure, parse_exposure, "a number from -100 to 100",
+    add_value(app, "--exposure", images.exposure, parse_exposure, "a number from -100 to 100",
               "PNG: multiply by 2^EV before the tone map (default: 0)")
         ->type_name("EV");
-    add_choice(app, "--tonemap", tonemap, TONEMAP_NAMES, "PNG: tone map (default: linear, which clamps)");
+    add_choice(app, "--tonemap", images.tonemap, TONEMAP_NAMES,
+               "PNG: tone map (default: linear, which clamps)");
 }
 
 void RenderOptions::add_camera_to(CLI::App& app) {
@@ -89,7 +90,7 @@ void RenderOptions::add_camera_to(CLI::App& app) {
 void RenderOptions::add_output_options(CLI::App& app) {
     app.option_defaults()->group("Output");
     add_images_to(app);
-    add_value(app, "--aov", aovs, parse_aovs, std::string("all, none or a list of ") + AOV_NAMES,
+    add_value(app, "--aov", images.aovs, parse_aovs, std::string("all, none or a list of ") + AOV_NAMES,
               "EXR: none, all (default) or a list of " + std::string(AOV_NAMES))
         ->type_name("LIST");
     add_value(app, "--write-every", write_every, parse_duration, DURATIONS,
@@ -104,25 +105,26 @@ void RenderOptions::add_output_options(CLI::App& app) {
 }
 
 void RenderOptions::add_images_to(CLI::App& app) {
-    app.add_option("-o,--output", outputs, "Image to write, .exr or .png; repeat it for several")
+    app.add_option("-o,--output", images.files, "Image to write, .exr or .png; repeat it for several")
         ->type_name("FILE")
         ->take_all()
         ->allow_extra_args(false);
-    app.add_flag("--half", half, "EXR: R G B A and Albedo as 16-bit floats (default: 32-bit)");
+    app.add_flag("--half", images.half, "EXR: R G B A and Albedo as 16-bit floats (default: 32-bit)");
     add_development_to(app);
 }
 
 void RenderOptions::add_checkpoint_options(CLI::App& app) {
     app.option_defaults()->group("Checkpoints");
     CLI::Option* const file =
-        app.add_option("--checkpoint", checkpoint,
+        app.add_option("--checkpoint", checkpoint.file,
                        "Save the state to this file, also at the end and when interrupted")
             ->type_name("FILE");
-    add_value(app, "--checkpoint-every", checkpoint_every, parse_duration, DURATIONS,
+    add_value(app, "--checkpoint-every", checkpoint.every, parse_duration, DURATIONS,
               "How often, such as 90, 90s, 1.5m, 2h (default: 60s)")
         ->type_name("TIME")
         ->needs(file);
-    app.add_flag("--resume", resume, "Continue from the checkpoint, if there is one yet")->needs(file);
+    app.add_flag("--resume", checkpoint.resume, "Continue from the checkpoint, if there is one yet")
+        ->needs(file);
 }
 
 void RenderOptions::add_sampling_options(CLI::App& app) {
@@ -147,16 +149,17 @@ void RenderOptions::add_sampling_options(CLI::App& app) {
 void RenderOptions::add_message_options(CLI::App& app) {
     app.option_defaults()->group("Messages");
     CLI::Option* const quiet_flag =
-        app.add_flag("-q,--quiet", quiet, "No progress, no summary, only warnings and errors");
-    add_choice(app, "--progress", progress, PROGRESS_NAMES,
+        app.add_flag("-q,--quiet", messages.quiet, "No progress, no summary, only warnings and errors");
+    add_choice(app, "--progress", messages.progress, PROGRESS_NAMES,
                "Progress on stderr: for people, as JSON, or none (default: auto)")
         ->excludes(quiet_flag);
-    app.add_flag("-v,--verbose", verbose, "Also describe device, scene and memory")->excludes(quiet_flag);
+    app.add_flag("-v,--verbose", messages.verbose, "Also describe device, scene and memory")
+        ->excludes(quiet_flag);
 }
 
-AovSelection RenderOptions::written_aovs() const {
+AovSelection ImageOutputs::written_aovs() const {
     const bool exr = std::ranges::any_of(
-        outputs, [](const std::string& path) { return image_format(path) == ImageFormat::exr; });
+        files, [](const std::string& path) { return image_format(path) == ImageFormat::exr; });
     return exr ? aovs : AovSelection{};
 }
 
@@ -168,6 +171,25 @@ const Camera& RenderOptions::choose_camera(const Scene& scene) const {
         names += (names.empty() ? "" : ", ") + defined.name;
     }
     throw Error("--camera: unknown camera \"" + *camera + "\" (defined: " + names + ")", ExitCode::usage);
+}
+
+RenderJob RenderOptions::job(const Scene& scene) const {
+    RenderJob job{.camera = choose_camera(scene),
+                  .settings = settings(scene),
+                  .target = samples ? samples->count() : spp.value_or(scene.integrator.spp),
+                  .adaptive = adaptive,
+                  .target_error = target_error,
+                  .time_limit = time_limit,
+                  .write_every = write_every,
+                  .images = images,
+                  .checkpoint = checkpoint,
+                  .messages = messages};
+    if (adaptive && job.target % 2 != 0) {
+        throw Error("--adaptive renders two halves: give an even number of samples per pixel (--spp), not " +
+                        std::to_string(job.target),
+                    ExitCode::usage);
+    }
+    return job;
 }
 
 RenderSettings RenderOptions::settings(const Scene& scene) const {
@@ -182,7 +204,7 @@ RenderSettings RenderOptions::settings(const Scene& scene) const {
             .first_sample = samples ? samples->first : 0,
             .max_depth = std::min(depth, DEPTH_SAFETY_LIMIT),
             .rr_depth = rr_depth.value_or(proposed.rr_depth),
-            .aovs = written_aovs().needs_layers(),
+            .aovs = images.written_aovs().needs_layers(),
             .scene_access = scene_access,
             .pass_growth = time_limit || write_every ? EVEN_PASS_GROWTH : PASS_GROWTH};
 }

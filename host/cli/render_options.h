@@ -32,17 +32,52 @@ enum class ProgressStyle { automatic, json, none };
 inline constexpr Choices<ProgressStyle, 3> PROGRESS_NAMES{
     {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}}};
 
+// Which images are written, and how.
+struct ImageOutputs {
+    std::vector<std::string> files;
+    AovSelection aovs{true, true, true, true, true, true};  // In an EXR.
+    bool half = false;                                      // EXR: R G B A and Albedo with 16 bits.
+    double exposure = 0.0;                                  // PNG [EV].
+    Tonemap tonemap = Tonemap::linear;                      // PNG.
+
+    // The images beside R G B A that will be written: those selected if there is an EXR among the files,
+    // else none.
+    AovSelection written_aovs() const;
+};
+
+struct CheckpointOptions {
+    std::optional<std::string> file;
+    double every = 60.0;  // Seconds.
+    bool resume = false;  // From the file, if it exists.
+};
+
+struct MessageOptions {
+    ProgressStyle progress = ProgressStyle::automatic;
+    bool quiet = false;
+    bool verbose = false;
+};
+
+// What a rendering needs, once command line and scene are joined.
+struct RenderJob {
+    Camera camera;
+    RenderSettings settings;
+    uint32_t target = 0;                 // Samples per pixel, if nothing else ends it before.
+    bool adaptive = false;               // Samples go where the error is.
+    std::optional<double> target_error;  // Relative error of the image.
+    std::optional<double> time_limit;    // Seconds.
+    std::optional<double> write_every;   // Seconds.
+    ImageOutputs images;
+    CheckpointOptions checkpoint;
+    MessageOptions messages;
+};
+
 // What stands on the command line; an empty optional leaves the choice to the scene file.
 struct RenderOptions {
     std::string scene_file;
-    std::vector<std::string> outputs;
-    std::optional<std::string> report;  // "-": stdout.
-    AovSelection aovs{true, true, true, true, true, true};
-    bool half = false;
+    ImageOutputs images;
+    std::optional<std::string> report;     // "-": stdout.
     std::optional<double> write_every;     // Seconds.
     std::optional<std::string> reference;  // An image to measure the error against.
-    double exposure = 0.0;                 // EV.
-    Tonemap tonemap = Tonemap::linear;
 
     PictureOptions picture;
     std::optional<std::string> camera;
@@ -58,15 +93,10 @@ struct RenderOptions {
     std::optional<Estimator> estimator;
     std::optional<SamplerKind> sampler;
 
-    std::optional<std::string> checkpoint;
-    double checkpoint_every = 60.0;  // Seconds.
-    bool resume = false;
-
+    CheckpointOptions checkpoint;
     std::optional<std::string> device;  // Index or part of the name.
     SceneAccess scene_access = SceneAccess::automatic;
-    ProgressStyle progress = ProgressStyle::automatic;
-    bool quiet = false;
-    bool verbose = false;
+    MessageOptions messages;
 
     // Declares them all on `app`, which fills them in when it parses; this object must stay where it is.
     void add_to(CLI::App& app);
@@ -79,16 +109,12 @@ struct RenderOptions {
     // Declares --camera.
     void add_camera_to(CLI::App& app);
 
-    // The images beside R G B A that will be written: those selected if there is an EXR among the outputs,
-    // else none.
-    AovSelection written_aovs() const;
+    // Joins them with what the scene proposes. Throws Error (usage) for a camera that the scene lacks, a crop
+    // that reaches beyond the picture, or --adaptive with an odd number of samples.
+    RenderJob job(const Scene& scene) const;
     // The camera of that name, by default the scene's first. Throws Error (usage) that lists the names if
     // there is none.
     const Camera& choose_camera(const Scene& scene) const;
-    // Samples per pixel to reach, if no target error and no time limit ends it before.
-    uint32_t target_spp(const Scene& scene) const {
-        return samples ? samples->count() : spp.value_or(scene.integrator.spp);
-    }
     // The renderer's settings for a scene. Throws Error (usage) if the crop reaches beyond the picture.
     RenderSettings settings(const Scene& scene) const;
 

@@ -42,7 +42,7 @@ struct ViewArguments {
 
 void ViewArguments::add_to(CLI::App& app) {
     app.option_defaults()->take_last();
-    app.add_option("SCENE", render.scene_file, "Scene file (.json)")->required()->type_name("");
+    app.add_option("SCENE", render.scene_file, "Scene file (.json, .obj, .ply)")->required()->type_name("");
     add_value(
         app, "--frames", frames, [](const std::string& text) { return parse_uint(text, 1, MAX_SPP); },
         "a whole number from 1 to " + std::to_string(MAX_SPP),
@@ -100,7 +100,8 @@ void add_attributes(Image& image, const ViewedPicture& picture, const vk::Device
     record.render_seconds = picture.seconds;
     record.spp = picture.state.least_samples();
     record.most_spp = picture.state.most_samples();
-    add_attributes(image, record, picture.camera);
+    record.camera = picture.camera;
+    add_attributes(image, record);
 }
 
 ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
@@ -116,8 +117,8 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
         print_warning(warning);
     const ViewState state{.camera = options.choose_camera(scene),
                           .settings = options.settings(scene),
-                          .exposure_ev = float(options.exposure),
-                          .tonemap = options.tonemap};
+                          .exposure_ev = float(options.images.exposure),
+                          .tonemap = options.images.tonemap};
 
     const std::string name = std::filesystem::path(options.scene_file).stem().string();
     Window window(state.settings.size, !arguments.frames, name);

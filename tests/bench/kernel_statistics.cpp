@@ -39,7 +39,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
     app.add_option("--bounds", arguments.bounds, "Fail if a kernel is beyond its bound in this file")
         ->type_name("FILE");
     arguments.render.add_rendering_to(app);
-    arguments.render.outputs = {
+    arguments.render.images.files = {
         "picture.exr"};  // With all its images, as candela render writes it by default.
 }
 

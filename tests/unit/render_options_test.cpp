@@ -20,5 +20,35 @@ TEST(RenderOptions, PicturesThatMayBeTakenAtAnyTimeGrowEvenly) {
     EXPECT_EQ(pass_growth(options), EVEN_PASS_GROWTH);
 }
 
+TEST(RenderOptions, AJobIsTheSceneUnlessTheCommandLineSaysOtherwise) {
+    Scene scene;
+    scene.cameras = {Camera{.name = "first", .lens = {}}, Camera{.name = "second", .lens = {}}};
+    scene.integrator = {.spp = 7, .max_depth = 5, .seed = 3};
+    scene.film.size = {40, 30};
+    RenderJob job = RenderOptions{}.job(scene);
+    EXPECT_EQ(job.camera.name, "first");
+    EXPECT_EQ(job.target, 7u);
+    EXPECT_EQ(job.settings.size, uvec2(40, 30));
+    EXPECT_EQ(job.settings.max_depth, 5u);
+    EXPECT_EQ(job.settings.seed, 3u);
+
+    RenderOptions options;
+    options.camera = "second";
+    options.spp = 12;
+    options.seed = 4;
+    options.max_depth = 6;
+    options.picture.size = uvec2(8, 8);
+    job = options.job(scene);
+    EXPECT_EQ(job.camera.name, "second");
+    EXPECT_EQ(job.target, 12u);
+    EXPECT_EQ(job.settings.size, uvec2(8, 8));
+    EXPECT_EQ(job.settings.max_depth, 6u);
+    EXPECT_EQ(job.settings.seed, 4u);
+    options.spp.reset();
+    options.samples = SampleRange{10, 25};
+    EXPECT_EQ(options.job(scene).target, 15u);
+    EXPECT_EQ(options.job(scene).settings.first_sample, 10u);
+}
+
 }  // namespace
 }  // namespace candela
