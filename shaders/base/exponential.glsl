@@ -1,14 +1,14 @@
-// Exponential and logarithm to the last digits of a float: the built-in functions are too coarse for narrow lobes (at
-// an exponent of 10^5 an error of 2^-22 in the logarithm is one of 2 % in the power), and differ between drivers.
-// Errors are stated for sums and products that are rounded to the nearest number; Vulkan lets a device take either
-// neighbour, which may double them.
+// Exponential and logarithm to nearly the full precision of a float: the built-in functions are too coarse for narrow
+// lobes (with an exponent of 10^5, an error of 2^-22 in the logarithm becomes one of 2 % in the power), and differ
+// between drivers. The errors stated here assume that sums and products are rounded to the nearest number; Vulkan
+// allows either neighbour, which may double them.
 #ifndef BASE_EXPONENTIAL_GLSL
 #define BASE_EXPONENTIAL_GLSL
 
-// log(1 + x) for x in [-1, 0], within 8 * 2^-24 of itself also where x is tiny (5 of them are what Vulkan grants a
-// division); about -88 in the place of minus infinity, at x = -1.
+// log(1 + x) for x in [-1, 0], with a relative error of at most 8 * 2^-24, even for tiny x (5 * 2^-24 of it is what
+// Vulkan allows a division); about -88 instead of minus infinity at x = -1.
 //
-// Where 1 + x needs no reduction its rounding is avoided: with s = f / (2 + f) and 1 + f the mantissa,
+// Where 1 + x needs no range reduction, it is never rounded: f = x. With the mantissa 1 + f and s = f / (2 + f),
 // log(1 + f) = 2 (s + s^3/3 + s^5/5 + ...), |s| < 0.172.
 float log1p_nonpositive(float x) {
     const float ln2_high = 0.693145751953125;  // 17 bits: its multiples up to 127 are exact.
@@ -17,7 +17,7 @@ float log1p_nonpositive(float x) {
     float exponent = 0.0;
     if (x < -0.2929) {  // 1 + x below sqrt(1/2).
         uint bits = floatBitsToUint(1.0 + x);
-        uint shifted = bits - 0x3F3504F3u;  // Steps of the exponent at sqrt(1/2), so that the mantissa is around 1.
+        uint shifted = bits - 0x3F3504F3u;  // The exponent steps at sqrt(1/2), so the mantissa is around 1.
         int steps = int(shifted) >> 23;
         f = uintBitsToFloat(bits - (uint(steps) << 23u)) - 1.0;
         exponent = float(steps);
@@ -44,15 +44,15 @@ ExpParts exp_parts(float x) {
     return ExpParts(p, uintBitsToFloat(uint(int(k) + 127) << 23u));
 }
 
-// exp(x) for x <= 0, within 2 * 2^-24 of itself; 0 below x = -87, where floats become denormal. The product is exact.
-// (scale + scale * p would be denormal on the way, and a device may flush that to zero.)
+// exp(x) for x <= 0, with a relative error of at most 2 * 2^-24; 0 below x = -87, where floats become denormal. The
+// product is exact. (In scale + scale * p, the product could be denormal, and a device may flush it to zero.)
 float exp_nonpositive(float x) {
     if (x < -87.0) return 0.0;
     ExpParts e = exp_parts(x);
     return e.scale * (1.0 + e.p);
 }
 
-// exp(x) - 1 for x <= 0, within 3 * 2^-24 of itself also where x is tiny.
+// exp(x) - 1 for x <= 0, with a relative error of at most 3 * 2^-24, even for tiny x.
 float expm1_nonpositive(float x) {
     if (x < -87.0) return -1.0;
     ExpParts e = exp_parts(x);

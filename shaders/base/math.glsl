@@ -14,8 +14,8 @@ float max_component(vec3 v) {
     return max(v.x, max(v.y, v.z));
 }
 
-// The lesser and the greater of two numbers that are not NaN. `precise`, each is one instruction on software Vulkan,
-// where min and max take three for the sake of NaN.
+// The lesser and the greater of two numbers that are not NaN. With `precise`, each is one instruction on software
+// Vulkan; min and max take three, to handle NaN.
 float lesser(float a, float b) {
     precise float x = a < b ? a : b;
     return x;
@@ -34,13 +34,13 @@ vec2 greater(vec2 a, vec2 b) {
     return vec2(greater(a.x, b.x), greater(a.y, b.y));
 }
 
-// True if no component is NaN or infinite. Looks at the exponent bits, since compilers may assume isnan() away.
+// True if no component is NaN or infinite. Tests the exponent bits, since compilers may optimise isnan() away.
 bool is_finite(vec3 v) {
     return all(notEqual(floatBitsToUint(v) & 0x7F800000u, uvec3(0x7F800000u)));
 }
 
-// The signs of numbers that are not NaN; 0 has none. Comparing the bits of a float takes one instruction where floats,
-// for the sake of NaN, take three on software Vulkan.
+// Signs of numbers that are not NaN; 0 has none. On software Vulkan, comparing bits takes one instruction, comparing
+// floats three, to handle NaN.
 bool all_positive(vec4 v) {
     ivec4 bits = floatBitsToInt(v);
     return min(min(bits.x, bits.y), min(bits.z, bits.w)) > 0;
@@ -82,8 +82,8 @@ vec2 cos_sin_turn(float t) {
 }
 
 // The angle of the point (x, y) in turns: atan(y, x) / 2 pi, in [0, 1]; within 2^-23; 0 for the origin. The built-in
-// function may be as coarse as 2^-12. The polynomial is the Chebyshev interpolant of atan(q) / q in q^2 on [0, 1], of a
-// relative error of 2e-8.
+// function may be as coarse as 2^-12. The polynomial is the Chebyshev interpolant of atan(q) / q in q^2 on [0, 1], with
+// a relative error of 2e-8.
 float angle_turn(float y, float x) {
     vec2 a = abs(vec2(x, y));
     float q = min(a.x, a.y) / max(max(a.x, a.y), 1e-37);

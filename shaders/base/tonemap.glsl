@@ -31,7 +31,7 @@ vec3 tonemap_agx(vec3 colour) {
                              -0.0990297440797205, -0.0989611768448433, 1.15107367264116);
     const float MIN_EV = -12.47393;
     const float MAX_EV = 4.026069;
-    // Of 0, the logarithm need not be -infinity here.
+    // In GLSL, log2(0) need not be -infinity.
     vec3 ev = clamp(log2(max(inset * colour, 1e-10)), MIN_EV, MAX_EV);
     vec3 x = (ev - MIN_EV) / (MAX_EV - MIN_EV);
     vec3 sigmoid = (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
@@ -52,7 +52,7 @@ vec3 tonemap_neutral(vec3 colour) {
     return mix(vec3(new_peak), base * (new_peak / peak), saturation);
 }
 
-// From finite linear Rec.709 to the light that the display shall emit, in [0, 1]; `curve` is one of TONEMAP_*.
+// Maps finite linear Rec.709 to the light that the display should emit, in [0, 1]; `curve` is one of TONEMAP_*.
 vec3 tonemap(uint curve, vec3 colour) {
     const float LARGEST = 1e18;
     vec3 c = clamp(colour, 0.0, LARGEST);

@@ -30,8 +30,8 @@ float warp_cosine_hemisphere_pdf(float cos_theta) {
     return cos_theta * INV_PI;
 }
 
-// Direction around +z of that h = 1 - cos(theta), in [0, 2], at an angle of so many turns; unit length. Near the pole h
-// has the digits that the cosine has lost.
+// The unit direction with 1 - cos(theta) = h, in [0, 2], around +z, at an azimuth of that many turns. Near the pole, h
+// keeps the digits that the cosine has lost.
 vec3 direction_at(float h, float turn) {
     return vec3(sqrt(max(0.0, h * (2.0 - h))) * cos_sin_turn(turn), 1.0 - h);
 }
@@ -60,7 +60,8 @@ float warp_cone_pdf(float h_max) {
 // Normal of a GGX microfacet that w sees, with the density G1(w) max(0, w.h) D(h) / w.z [1/sr], from u in [0,1)^2; w.z
 // > 0, alpha in (0, 1]. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, section 3.
 vec3 warp_ggx_visible_normal(vec2 u, float alpha, vec3 w) {
-    // Stretched, the facets are a hemisphere; its visible half is a disk, of which a part is behind the horizon.
+    // In stretched space the facets form a hemisphere. Its visible part projects to a disk, less a piece behind the
+    // horizon.
     vec3 v = normalize(vec3(alpha * w.xy, w.z));
     float across = dot(v.xy, v.xy);
     vec3 t1 = across > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(across) : vec3(1.0, 0.0, 0.0);
@@ -97,7 +98,7 @@ uvec2 warp_alias_column(uint bits, uint n) {
 // What an alias table chose.
 struct AliasChoice {
     uint i;
-    float rest;  // Uniform in [0, 1): what the choice has left of the random bits, a multiple of 2^-24.
+    float rest;  // Uniform in [0, 1): what the choice leaves of the random bits.
 };
 
 // The choice of a column (index and the 32 bits that decide within it), whose entry is given.
@@ -108,8 +109,8 @@ AliasChoice warp_alias_choice(uvec2 column, AliasEntry entry) {
     return AliasChoice(keep ? column.x : entry.alias, min(rest, 1.0 - 1.0 / 16777216.0));
 }
 
-// Weight of a sample drawn with density pdf where another strategy has density pdf_other (same measure), one
-// sample each; power heuristic with exponent 2. 0 where pdf is 0; 1 where it is beyond all comparison.
+// Weight of a sample drawn with density pdf where another strategy has density pdf_other (same measure), one sample
+// each; power heuristic with exponent 2. 0 if pdf is 0, 1 if it is beyond comparison with pdf_other.
 // Ref: Veach 1997, Robust Monte Carlo Methods for Light Transport Simulation, section 9.2.4.
 float power_heuristic(float pdf, float pdf_other) {
     if (pdf == 0.0) return 0.0;

@@ -13,18 +13,18 @@
 
 const uint MATERIALS_DIELECTRIC = 1u << MATERIAL_DIELECTRIC_SCHLICK | 1u << MATERIAL_DIELECTRIC_EXACT;
 
-// Light samples on the far side of a surface may be seen through it.
+// True if some surface scatters light that comes from behind it, so that light samples there count.
 const bool LIT_FROM_BEHIND = (MATERIALS & 1u << MATERIAL_DIFFUSE_TRANSMISSION) != 0u;
 
-// What a material is at one point of a surface, seen from one side of it.
+// A material at one point of a surface, seen from one side.
 struct Bsdf {
     uint model;  // MATERIAL_*
-    vec3 base;   // As in MaterialRecord, as is
+    vec3 base;   // As in MaterialRecord, as is `specular`.
     vec3 specular;
-    float parameter;  // but for eta, which is the index on the other side over that on the viewer's.
+    float parameter;  // As in MaterialRecord, except eta: the index on the other side over that on the viewer's.
 };
 
-// True if it is of one of those models (bits). Models that the scene does not have leave no code in the kernel, and a
+// True if the model is one of `models` (bits). Models that the scene does not have leave no code in the kernel, and a
 // scene of one model needs no branch.
 bool is_model(Bsdf b, const uint models) {
     if ((MATERIALS & models) == 0u) return false;
@@ -32,7 +32,7 @@ bool is_model(Bsdf b, const uint models) {
     return (1u << b.model & models) != 0u;
 }
 
-// The material as seen from its front side, or from its back, where the media of a dielectric change places.
+// The material seen from its front, or from its back, where the two media of a dielectric are swapped.
 Bsdf bsdf_at(MaterialRecord m, bool front) {
     Bsdf b = Bsdf(m.model, m.base, m.specular, m.parameter);
     if (is_model(b, MATERIALS_DIELECTRIC) && !front) b.parameter = 1.0 / b.parameter;
@@ -63,7 +63,7 @@ BsdfSample bsdf_sample_f(Bsdf b, vec3 wo, float uc, vec2 u) {
     return bsdf_sample_failed();
 }
 
-// Share of the light that the surface sends on at normal incidence, per channel, for the albedo image.
+// Share of the light that the surface scatters at normal incidence, per channel, for the albedo image.
 vec3 bsdf_albedo(Bsdf b) {
     if (is_model(b, MATERIALS_DIELECTRIC)) return vec3(1.0);
     return is_model(b, 1u << MATERIAL_PHONG | 1u << MATERIAL_DIFFUSE_TRANSMISSION) ? b.base + b.specular : b.base;

@@ -1,5 +1,5 @@
 // Metal with microfacets: the GGX distribution of normals, Smith's height-correlated shadowing, Schlick's Fresnel term.
-// Light that would be scattered among the facets is lost. Local frame, z on the viewer's side of the surface.
+// Light that is scattered more than once among the facets is lost. Local frame, z on the viewer's side of the surface.
 // Ref: Walter et al. 2007, Microfacet Models for Refraction through Rough Surfaces; Heitz 2014, Understanding the
 // Masking-Shadowing Function in Microfacet-Based BRDFs, equations 72 and 99.
 #ifndef BSDF_CONDUCTOR_GLSL
@@ -16,24 +16,25 @@ float ggx_d(float alpha, vec3 h) {
     return 1.0 / (PI * square(alpha * stretched));
 }
 
-// sqrt(cos^2 + alpha^2 sin^2) of w's angle to the normal: what Smith's Lambda is made of, (reach / w.z - 1) / 2,
-// without its pole at grazing angles.
+// sqrt(cos^2 + alpha^2 sin^2) of w's angle to the normal. Smith's Lambda is (reach / w.z - 1) / 2; unlike Lambda, reach
+// has no pole at grazing angles.
 float ggx_reach(float alpha, vec3 w) {
     return sqrt(square(w.z) + square(alpha) * dot(w.xy, w.xy));
 }
 
-// True for directions that see the surface. Below that cosine, floats cannot tell on which side a direction is.
+// True for directions that see the surface. Below the least cosine, floats cannot tell on which side a direction is.
 bool conductor_sees(vec3 w) {
     const float least_cosine = 1e-6;
     return w.z > least_cosine;
 }
 
-// Zero unless both directions see the surface. The density is G1 D / (4 cos(theta_o)), that of the facets that wo sees
-// times the Jacobian of reflection. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, equations 3 and 19.
+// Zero unless both directions see the surface. The density is G1 D / (4 cos(theta_o)): that of the facets that wo sees,
+// times the Jacobian of reflection. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, equations 3 and
+// 19.
 BsdfValue conductor_evaluate(vec3 reflectance, float alpha, vec3 wo, vec3 wi) {
     if (!conductor_sees(wo) || !conductor_sees(wi)) return bsdf_zero();
     vec3 sum = wo + wi;
-    float cos_facet = 0.5 * length(sum);  // Of either to the facet's normal.
+    float cos_facet = 0.5 * length(sum);  // Of either direction to the facet's normal.
     float d = ggx_d(alpha, normalize(sum));
     float reach_o = ggx_reach(alpha, wo);
     // G2 / (4 cos(theta_o) cos(theta_i))
@@ -42,7 +43,7 @@ BsdfValue conductor_evaluate(vec3 reflectance, float alpha, vec3 wo, vec3 wi) {
 }
 
 // wi by reflection on a facet that wo sees, from u in [0,1)^2; the weight is the Fresnel term times G2 / G1. A sample
-// below the surface fails: it would meet another facet.
+// below the surface fails: it would hit another facet.
 BsdfSample conductor_sample_f(vec3 reflectance, float alpha, vec3 wo, vec2 u) {
     if (!conductor_sees(wo)) return bsdf_sample_failed();
     vec3 h = warp_ggx_visible_normal(u, alpha, wo);

@@ -7,9 +7,9 @@
 #include "bsdf/fresnel.glsl"
 #include "bsdf/mirror.glsl"
 
-// The reflected ray with the probability that Fresnel's term gives it, else the refracted one; uc in [0,1) chooses.
-// Refraction narrows the beam to 1 / eta^2 of its solid angle going in, so that radiance towards the viewer is divided
-// by eta^2.
+// The reflected ray with the probability that Fresnel's term gives it, otherwise the refracted one; uc in [0,1)
+// chooses. The projected solid angle of a beam grows by eta^2 on its way through to the viewer, so that its radiance is
+// divided by eta^2.
 BsdfSample dielectric_sample_f(float eta, bool exact, vec3 wo, float uc) {
     if (wo.z <= 0.0) return bsdf_sample_failed();
     float cos_t = refracted_cosine(dot(wo.xy, wo.xy), eta);

@@ -1,5 +1,5 @@
-// A thin sheet that scatters light to both sides as Lambert's reflector does to one: f = reflectance / pi on the viewer's
-// side, transmittance / pi on the other. Local frame, z on the viewer's side of the surface.
+// A thin sheet that scatters light to both sides as Lambert's reflector does to one: f = reflectance / pi on the
+// viewer's side, transmittance / pi on the other. Local frame, z on the viewer's side of the surface.
 // Ref: Pharr, Jakob and Humphreys 2023, Physically Based Rendering, section 9.2 and class DiffuseTransmissionBxDF.
 #ifndef BSDF_DIFFUSE_TRANSMISSION_GLSL
 #define BSDF_DIFFUSE_TRANSMISSION_GLSL
@@ -14,7 +14,7 @@ vec2 diffuse_transmission_pmf(vec3 reflectance, vec3 transmittance) {
     return albedo.x + albedo.y > 0.0 ? albedo / (albedo.x + albedo.y) : vec2(0.0);
 }
 
-// On both sides; zero within the surface.
+// Value and density on both sides; zero for wi within the surface.
 BsdfValue diffuse_transmission_evaluate(vec3 reflectance, vec3 transmittance, vec3 wi) {
     vec2 pmf = diffuse_transmission_pmf(reflectance, transmittance);
     float cosine_pdf = warp_cosine_hemisphere_pdf(abs(wi.z));

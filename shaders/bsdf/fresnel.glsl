@@ -4,13 +4,13 @@
 
 #include "base/math.glsl"
 
-// (1 - cos(theta))^5, from normal incidence, 0, to grazing, 1.
+// (1 - cos(theta))^5: 0 at normal incidence, 1 at grazing.
 float schlick_weight(float cos_theta) {
     float x = clamp(1.0 - cos_theta, 0.0, 1.0);
     return square(square(x)) * x;
 }
 
-// Reflectance of a metal that reflects that much at normal incidence; cos_theta in [0, 1].
+// Reflectance of a metal whose reflectance at normal incidence is given; cos_theta in [0, 1].
 // Ref: Schlick 1994, An Inexpensive BRDF Model for Physically-based Rendering, equation 15.
 vec3 fresnel_conductor_schlick(vec3 reflectance, float cos_theta) {
     return reflectance + (vec3(1.0) - reflectance) * schlick_weight(cos_theta);
@@ -23,7 +23,7 @@ float refracted_cosine(float sin2_theta, float eta) {
 }
 
 // Reflectance of a dielectric boundary for unpolarised light: Schlick's approximation, with the angle on the side of
-// the lower index, where it grows to 90 degrees as the other nears the critical angle; so that both sides reflect
+// the lower index. That angle reaches 90 degrees when the other one reaches the critical angle, so both sides reflect
 // alike. 1 beyond the critical angle, where cos_t is 0.
 float fresnel_dielectric_schlick(float cos_o, float cos_t, float eta) {
     float normal = square((eta - 1.0) / (eta + 1.0));

@@ -2,11 +2,11 @@
 //
 //     f = kd / pi + ks (n + 2) / (2 pi) max(0, cos(alpha))^n,   alpha: angle between wi and the mirrored wo,
 //
-// above the surface, and 0 below. It is reciprocal, and makes no light if kd + ks <= 1. Local frame, z on the viewer's
-// side of the surface.
+// above the surface, and 0 below. It is reciprocal, and creates no energy if kd + ks <= 1. Local frame, z on the
+// viewer's side of the surface.
 // Ref: Lafortune and Willems 1994, Using the Modified Phong Reflectance Model for Physically Based Rendering.
 //
-// At an exponent of 10^5 the lobe is half a degree wide, where cos(alpha) has no digits left: all is said in
+// At an exponent of 10^5 the lobe is half a degree wide. There cos(alpha) has no digits left, so all is computed from
 // h = 1 - cos(alpha) = |wi - mirrored|^2 / 2 instead.
 #ifndef BSDF_PHONG_GLSL
 #define BSDF_PHONG_GLSL
@@ -40,8 +40,8 @@ BsdfValue phong_evaluate(vec3 kd, vec3 ks, float n, vec3 wo, vec3 wi) {
                      mix(warp_cosine_hemisphere_pdf(wi.z), lobe_pdf, phong_lobe_pmf(kd, ks)));
 }
 
-// wi around the base or within the lobe, as uc in [0,1) chooses, from u in [0,1)^2. A sample of the lobe that lies
-// below the surface fails: it is what the surface absorbs there.
+// wi from the base or from the lobe, as uc in [0,1) chooses, and from u in [0,1)^2. A sample of the lobe that lies
+// below the surface fails: the surface absorbs that light.
 BsdfSample phong_sample_f(vec3 kd, vec3 ks, float n, vec3 wo, float uc, vec2 u) {
     vec3 wi;
     if (uc < phong_lobe_pmf(kd, ks)) {

@@ -7,7 +7,7 @@
 #ifndef BSDF_SAMPLE_GLSL
 #define BSDF_SAMPLE_GLSL
 
-// For a pair of directions.
+// The value for a pair of directions.
 struct BsdfValue {
     vec3 f;     // [1/sr]
     float pdf;  // Of sampling wi [1/sr].
@@ -21,16 +21,16 @@ struct BsdfSample {
     vec3 wi;
     vec3 weight;  // f |cos(theta_i)| / pdf, for radiance: refraction divides by eta^2. 0: nothing is scattered.
     float pdf;    // [1/sr]; 0 says that the sample failed.
-    bool delta;   // No other direction could have been sampled: light samples cannot find it.
+    bool delta;   // Ideal scattering: light samples cannot find wi.
     float eta;    // Index of refraction on wi's side over that on wo's; 1 unless wi is refracted.
 };
 
-// A sample of a BSDF that is a function.
+// A sample of scattering that is not ideal.
 BsdfSample bsdf_sample(vec3 wi, vec3 weight, float pdf) {
     return BsdfSample(wi, weight, pdf, false, 1.0);
 }
 
-// A sample of ideal scattering, chosen with that probability.
+// A sample of ideal scattering, chosen with the probability pmf.
 BsdfSample bsdf_sample_delta(vec3 wi, vec3 weight, float pmf, float eta) {
     return BsdfSample(wi, weight, pmf, true, eta);
 }

@@ -11,8 +11,8 @@
 //         sample a direction of the BSDF: beta *= f cos / pdf, ray = from the hit in that direction
 //         if depth >= rr_depth: stop with the probability 1 - q, else beta /= q
 //
-// path_step is one turn without the search for the hit: the kernel traces the rays of many paths side by side. It does so
-// for the light sample's ray of one turn together with the next turn's ray.
+// path_step is one iteration without the search for the hit: the kernel traces the rays of many paths side by side, and
+// traces the shadow ray of one iteration together with the ray of the next.
 //
 // Ref: Kajiya 1986, The Rendering Equation; Veach 1997, Robust Monte Carlo Methods for Light Transport Simulation,
 // chapters 8 to 10.
@@ -28,10 +28,10 @@
 // Survival is never more likely than this, so that every path ends.
 const float RR_MAX_SURVIVAL = 0.99;
 
-// A path on its way.
+// The state of a path.
 struct Path {
     Ray ray;          // The next segment.
-    vec3 beta;        // Throughput: what the radiance along `ray` counts in L.
+    vec3 beta;        // Throughput: the factor of the radiance along `ray` in L.
     float eta_scale;  // Product of the squared relative indices of refraction, by which beta was divided.
     float pdf_bsdf;   // Density with which `ray` was sampled [1/sr].
     bool delta;       // Light samples could not have found `ray`: the camera sent it, or scattering was ideal.
@@ -44,20 +44,20 @@ struct Path {
 // What a path has gathered.
 struct Estimate {
     vec3 L;        // Radiance along the camera ray [W/(m^2 sr)].
-    bool visible;  // The camera ray met a surface, or the sky that it may see.
-    vec3 albedo;   // Of the surface that it met,
-    vec3 normal;   // and its shading normal, world space; both 0 if it met none.
-    bool cut;      // The path ended by DEPTH_SAFETY_LIMIT.
+    bool visible;  // The camera ray hit a surface or, if it may see it, the sky.
+    vec3 albedo;   // Of the surface that it hit,
+    vec3 normal;   // and its shading normal, world space; both 0 if it hit none.
+    bool cut;      // The path was cut at DEPTH_SAFETY_LIMIT.
 };
 
-// A ray towards a light sample, which may meet something on the way.
+// A ray towards a light sample, which may be blocked.
 struct ShadowRay {
     Ray ray;
     float t_max;  // In lengths of ray.d; 0 if there is none to trace.
-    vec3 Ld;      // What L gains if nothing is in the way.
+    vec3 Ld;      // What L gains if the ray is not blocked.
 };
 
-// The path that begins with a camera ray, and an estimate of nothing so far.
+// A path that begins with a camera ray, and an estimate that holds nothing yet.
 Path path_begin(Ray ray) {
     return Path(ray, vec3(1.0), 1.0, 0.0, true, ray.o, vec3(0.0), MEDIUM_NONE, 0u);
 }
@@ -70,26 +70,28 @@ ShadowRay shadow_none() {
     return ShadowRay(Ray(vec3(0.0), vec3(0.0)), 0.0, vec3(0.0));
 }
 
-// The point of a surface where light samples begin. Rays begin at an offset from it, which depends on the side. Where
-// there are surfaces that are lit from both sides, it is the point itself: a light sample learns its side last. Else it
-// is where rays begin, which need not be kept beside the ray.
+// The point of a surface for which lights are sampled. Rays begin at an offset from the surface, on the side to which
+// they leave. If some surface is lit from both sides, this is the point of the surface itself, since the side is only
+// known after the light is sampled. Otherwise it is the origin of the path's next ray, so that no other point has to be
+// kept.
 LitPoint lit_point(Interaction s) {
     return LitPoint(LIT_FROM_BEHIND ? s.p : interaction_spawn_origin(s, true), s.ns);
 }
 
-// That point of the path's last vertex.
+// The lit point of the path's last vertex.
 LitPoint path_lit_point(Path path) {
     return LitPoint(LIT_FROM_BEHIND ? path.p : path.ray.o, path.ns);
 }
 
-// Weight of the light that the path met, and that a light sample finds with the density pdf_light [1/sr].
+// Weight of the emission that the path's ray has hit, and that a light sample would find with the density pdf_light
+// [1/sr].
 float emission_weight(Path path, float pdf_light) {
     if (path.delta || ESTIMATOR == ESTIMATOR_BSDF) return 1.0;
     if (ESTIMATOR == ESTIMATOR_LIGHT) return pdf_light > 0.0 ? 0.0 : 1.0;
     return power_heuristic(path.pdf_bsdf, pdf_light);
 }
 
-// The path's ray left the scene: adds the sky.
+// Adds the radiance of the sky, for a path whose ray left the scene.
 void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u && ENVIRONMENT != ENVIRONMENT_VISIBLE) return;
     EnvironmentTexel texel = environment_texel(path.ray.d);
@@ -98,7 +100,7 @@ void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u) estimate.visible = true;
 }
 
-// The path's ray met light s.light at s, `t` metres away: adds what it emits.
+// Adds the emission of light s.light, which the path's ray hit at s, `t` metres away.
 void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     LitPoint lit = path_lit_point(path);
     float distance_squared = LIT_FROM_BEHIND ? dot(s.p - lit.p, s.p - lit.p) : square(t);
@@ -106,8 +108,8 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     estimate.L += emission_weight(path, pdf_light) * path.beta * area_light_le(light_at(s.light), s.front);
 }
 
-// The ray from s towards a point on a light, and the radiance that this point sends through s to the path's beginning,
-// divided by its density, weighted. `behind` is the medium behind the surface.
+// The shadow ray from s towards a point on a light, and what it adds to L if it is not blocked: beta f cos Li / pdf,
+// weighted and attenuated. `behind` is the medium behind the surface.
 ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, Bsdf bsdf, uint behind, uvec2 u, uint fill) {
     LitPoint lit = lit_point(s);
     LightSample light = light_sample_li(lit, u, fill);
@@ -124,7 +126,7 @@ ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, Bsdf bsdf
     BsdfValue value = bsdf_evaluate(bsdf, wo, wi);
     vec3 Ld = path.beta * value.f * abs(wi.z) * light.Li;
     Ld *= medium_transmittance(medium, light.t_max * length(ray.d));
-    // A light on another side of the geometric surface than of the shading one is not seen.
+    // A light is not seen if the geometric and the shading normal disagree about its side.
     bool sides_differ = LIT_FROM_BEHIND ? (wi.z > 0.0) != viewers_side : dot(light.wi, s.n) <= 0.0;
     bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
     float weight = 1.0;
@@ -132,9 +134,9 @@ ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, Bsdf bsdf
     return ShadowRay(ray, dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
 }
 
-// Sends the path on in a direction that its last surface was sampled for; returns whether it goes on. `behind` is the
-// medium behind the surface. A direction on another side of the geometric surface than of the shading one carries
-// nothing.
+// Continues the path from s in the direction that its BSDF sampled; returns whether the path goes on. `behind` is the
+// medium behind the surface. A direction carries nothing if the geometric and the shading normal disagree about its
+// side.
 bool path_scatter(inout Path path, Interaction s, Frame frame, uint behind, BsdfSample scattered) {
     vec3 wi = frame_to_world(frame, scattered.wi);
     path.beta *= scattered.weight;
@@ -151,8 +153,8 @@ bool path_scatter(inout Path path, Interaction s, Frame frame, uint behind, Bsdf
     return true;
 }
 
-// Takes the path past what its ray has met, or not; returns whether it goes on. `shadow` is the ray to be traced for
-// direct light there.
+// Takes the path past the hit of its ray, or past its miss; returns whether the path goes on. `shadow` is the ray to be
+// traced for direct light at the hit.
 bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, Hit hit, Sampler random,
                Parameters parameters) {
     shadow = shadow_none();
@@ -169,10 +171,10 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         estimate.normal = s.ns;
     }
 
-    // Lose what the medium on the way absorbs.
+    // Attenuate by the medium on the way.
     path.beta *= medium_transmittance(path.medium, hit.t);
 
-    // Add what the surface emits; light samples of the vertex before may already account for a part.
+    // Add what the surface emits; light samples of the previous vertex may already account for a part.
     if (s.light != NO_LIGHT) add_emission(path, estimate, s, hit.t);
 
     // End at the last scattering vertex.
@@ -196,9 +198,9 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     BsdfSample scattered = bsdf_sample_f(bsdf, wo, unit_float(choice.y), u);
     if (!path_scatter(path, s, frame, material.medium, scattered)) return false;
 
-    // Russian roulette: paths that carry little end early, the others carry their share. The root makes them end a vertex
-    // or two later, which costs fewer rays than it saves noise. After ideal scattering nothing but this path can find
-    // what it leads to, often a light, and it goes on.
+    // Russian roulette: paths with a low throughput end early, and the survivors are weighted up. The square root lets
+    // them end a vertex or two later, which reduces the noise by more than its rays cost. After ideal scattering the
+    // throughput does not count: nothing but this path can find what lies ahead, often a light.
     // Ref: Arvo and Kirk 1990, Particle Transport and Image Synthesis.
     if (path.depth >= parameters.rr_depth) {
         float survival = RR_MAX_SURVIVAL;

@@ -32,7 +32,7 @@ void main() {
     }
 
     vec4 colour = unpackUnorm4x8(picture[index]);
-    uvec2 under = at - push.overlay_origin;  // Huge where the pixel lies left of the overlay, or above.
+    uvec2 under = at - push.overlay_origin;  // Wraps to a huge number left of the overlay and above it.
     if (all(lessThan(under, push.overlay_size))) {
         vec4 above = unpackUnorm4x8(overlay[under.y * push.overlay_size.x + under.x]);
         colour.rgb = above.rgb + (1.0 - above.a) * colour.rgb;

@@ -1,6 +1,6 @@
 // Brings every pixel of a tile to a number of samples, or to the pixel's limit if that is less: each invocation traces
-// one path after the other for its pixel and folds it into the accumulation image. Which samples a pixel still needs,
-// its own count says, so that any cut of the work into tiles and dispatches gives the same bits.
+// one path after the other for its pixel and folds it into the accumulation image. A pixel's own count says which
+// samples it still needs, so that any division of the work into tiles and dispatches gives the same bits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -13,8 +13,8 @@ layout(binding = BINDING_IMAGE, rgba32f) uniform image2DArray accumulation;
 layout(std430, binding = BINDING_COUNTERS) buffer CountersBlock { uint counters[COUNTER_COUNT]; };
 layout(push_constant) uniform TileBlock { Tile tile; };
 
-// What the invocations of a work group have counted, if GROUP_COUNTERS: on a GPU they would queue for the same words of
-// the buffer.
+// The counts of a work group, if GROUP_COUNTERS: on a GPU, all invocations would otherwise contend for the same words
+// of the buffer.
 shared uint group_counters[COUNTER_COUNT];
 shared uint group_finished;  // Invocations that have nothing more to count.
 
@@ -32,8 +32,8 @@ void count_rays(uint rays) {
     if (before + rays < before) count(COUNTER_RAYS_HIGH, 1u);
 }
 
-// The last invocation of the group to come here adds the group's counts to the counters. (One invocation for each
-// counter would have to keep its number while it traces, in a register.)
+// The last invocation of the group to arrive adds the group's counts to the counters. (With one invocation for each
+// counter, each would need a register for its number while it traces.)
 void flush_counters() {
     memoryBarrierShared();
     if (atomicAdd(group_finished, 1u) + 1u < WORKGROUP_SIZE * WORKGROUP_SIZE) return;
@@ -53,15 +53,15 @@ struct Sum {
     vec3 compensation;
 };
 
-// What a pixel holds of its samples.
+// The state of a pixel.
 struct Pixel {
     Sum L;
     Sum square;     // Of L.
-    Sum albedo;     // Of the first hits, and their shading normals: only if HAS_AOVS.
-    Sum normal;
-    float visible;  // Samples whose camera ray met something visible.
+    Sum albedo;     // Of the first hits; only if HAS_AOVS.
+    Sum normal;     // Of the first hits; only if HAS_AOVS.
+    float visible;  // Samples whose camera ray hit something visible.
     float rays;     // MAX_RAYS at most.
-    float limit;    // 0: none; else one more than the samples that it gets at most.
+    float limit;    // 0: none; otherwise the most samples that it gets, plus one.
     uint samples;
 };
 
@@ -108,7 +108,7 @@ void pixel_store(uvec2 at, Pixel p) {
     }
 }
 
-// The samples that the pixel is to hold when others hold `target`.
+// The number of samples that the pixel is to hold when others hold `target`.
 uint pixel_target(Pixel p, uint target) {
     return p.limit > 0.0 ? min(target, uint(p.limit) - 1u) : target;
 }
@@ -134,18 +134,18 @@ void pixel_fold(inout Pixel p, Estimate estimate) {
     ++p.samples;
 }
 
-// A sample on its way.
+// The state of the sample that a lane traces.
 struct Sample {
     Sampler random;
     Path path;
     Estimate estimate;
-    ShadowRay shadow;  // Of the vertex before.
+    ShadowRay shadow;  // Of the previous vertex.
     bool alive;        // The path goes on.
-    bool ended;        // The path has ended; its shadow ray may still be on its way.
+    bool ended;        // The path has ended; its last shadow ray may still have to be traced.
     uint rays;         // Traced so far.
 };
 
-// None yet.
+// No sample yet.
 Sample sample_none() {
     Sample s;
     s.shadow = shadow_none();
@@ -155,8 +155,7 @@ Sample sample_none() {
     return s;
 }
 
-// Sends the camera ray of the pixel's sample of that index on its way. What else there is of the sample before remains:
-// its shadow ray and its estimate.
+// Begins the sample of that index with its camera ray. The shadow ray and the estimate of the previous sample remain.
 void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index) {
     s.random = sampler_make(pixel, index, parameters.seed);
     vec2 film = vec2(pixel) + unit_float(sampler_pair(s.random, PAIR_PIXEL));
@@ -164,15 +163,15 @@ void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index
     s.alive = true;
 }
 
-// What the rays of a sample met.
+// What the rays of a sample hit.
 struct Met {
-    bool complete;  // False if the driver has ended the loop before.
-    bool lit;       // There is a shadow ray, and nothing is in its way.
+    bool complete;  // False if the driver ended the loop early.
+    bool lit;       // There is a shadow ray, and it is not blocked.
     Hit hit;        // Of the path's ray, if it goes on.
 };
 
-// Traces the shadow ray of a vertex and the path's next ray, one after the other, without waiting for the neighbours in
-// between.
+// Traces the shadow ray of a vertex and the path's next ray, one after the other, without waiting for neighbouring
+// lanes in between.
 Met sample_trace(Sample s) {
     bool shadowed = s.shadow.t_max > 0.0;
     Ray first = s.path.ray;
@@ -190,7 +189,7 @@ Met sample_trace(Sample s) {
     return Met(bvh_ended(traversal), lit, traversal.hit);
 }
 
-// Scatters the path where its ray has met something, or nothing.
+// Takes the path past the hit of its ray, or past its miss.
 void sample_step(inout Sample s, Hit hit, Parameters parameters) {
     if (s.path.depth == 0u) s.estimate = estimate_begin();
     s.alive = path_step(s.path, s.estimate, s.shadow, hit, s.random, parameters);
@@ -213,17 +212,17 @@ void render_pixel() {
     bvh_prepare();
     light_prepare();
 
-    // One vertex per turn: a lane whose path has ended begins its next sample while its neighbours go on; if the path
-    // has ended, the ray that follows a shadow ray is the next sample's.
+    // One vertex per iteration: a lane whose path has ended begins its next sample while its neighbours go on; the ray
+    // traced after the last shadow ray of the ended path is that of the next sample.
     //
-    // There is one place for everything that a sample goes through: the compiler may round differently in another, and
-    // a sample's bits must not depend on where in a dispatch it comes.
+    // Each step of a sample has one place in the code: the compiler might round differently in a copy of it, and a
+    // sample's bits must not depend on its place in a dispatch.
     //
-    // Lavapipe ends all loops of an invocation after 65 535 turns in sum, whatever their conditions say. What is not
-    // folded then is dropped, and traced again by the next dispatch.
+    // Lavapipe ends all loops of an invocation after 65 535 iterations in sum, whatever their conditions say. A sample
+    // that is not folded by then is dropped, and the next dispatch traces it again.
     Sample s = sample_none();
-    uint begun = before;  // Samples; pixel.samples are folded.
-    uint rays = 0u;       // Of those folded.
+    uint begun = before;  // Samples; of these, pixel.samples are folded.
+    uint rays = 0u;       // Of the folded samples.
     while (pixel.samples < target) {
         if (!s.alive && begun < target) {
             sample_begin(s, parameters, parameters.crop + at, parameters.first_sample + begun);

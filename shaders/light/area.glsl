@@ -12,14 +12,14 @@ vec3 area_light_le(Light l, bool front) {
     return front || l.two_sided != 0u ? l.radiance : vec3(0.0);
 }
 
-// Density [1/sr] with which area_light_sample_li finds the point at that squared distance [m^2], seen under that
-// cosine of its normal.
+// Density [1/sr] with which area_light_sample_li finds the point at that squared distance [m^2] whose normal has the
+// cosine cos_light to the ray.
 float area_light_pdf_li(Light l, float distance_squared, float cos_light) {
     return cos_light != 0.0 ? l.pdf_area * distance_squared / abs(cos_light) : 0.0;
 }
 
-// The point p of a light, sampled uniformly by area, where n is its front's unit normal; p_error [m] is how far p may
-// be off the surface beyond its roundings.
+// The sample that is the point p of a light, chosen uniformly by area; n is the unit normal of the front there, and
+// p_error [m] is how far p may be off the surface beyond the rounding of its coordinates.
 LightSample area_light_sample_at(Light l, vec3 p_lit, vec3 p, vec3 n, float p_error) {
     LightSample s;
     s.delta = false;

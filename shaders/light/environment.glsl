@@ -23,7 +23,7 @@ EnvironmentTexel environment_texel(vec3 w) {
 vec3 environment_direction(uvec2 texel, vec2 within) {
     Parameters parameters = scene_parameters();
     uvec2 size = parameters.environment_size;
-    // Rows are counted from the nearer pole, since 1 - cos(theta) = 2 sin(theta/2)^2 has its digits there.
+    // Rows are counted from the nearer pole, where 1 - cos(theta) = 2 sin(theta/2)^2 keeps its digits.
     uint row = min(texel.y, size.y - 1u - texel.y);
     float row_turn = 0.25 / float(size.y);  // Of theta / 2.
     float s0 = square(cos_sin_turn(float(row) * row_turn).y);

@@ -7,10 +7,10 @@
 #include "light/environment.glsl"
 #include "light/sphere.glsl"
 
-// The light of a scene that has no other, which an invocation reads once.
+// The light of a scene that has only one; an invocation reads it once.
 Light only_light;
 
-// Before an invocation's first light sample.
+// Must run before an invocation's first light sample.
 void light_prepare() {
     if (ONE_LIGHT) only_light = scene_light(0u);
 }
@@ -26,10 +26,10 @@ float light_pmf(uint i, LitPoint lit) {
     return ONE_LIGHT ? 1.0 : light_at(i).pmf;
 }
 
-// A point on one of the lights, from 2 x 32 random bits. The first word chooses the light as well, if there are several,
-// and what the choice leaves of it is uniform again: so the points of a light are as well spread as those of a sampler
-// are. The 8 low bits of `fill` are random too, and become those of the word. The scene has at least one light;
-// light_prepare comes first.
+// A sample of a point on one of the lights, from 2 x 32 random bits. If there are several lights, the first word also
+// chooses the light. What that leaves of the word is uniform again, so that the points on a light are as well spread as
+// the sampler's; the 8 low bits of `fill`, which are random too, make up for the bits that it has lost. The scene has
+// at least one light; light_prepare comes first.
 // Ref: Walker 1977, An Efficient Method for Generating Discrete Random Variables with General Distributions.
 LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
     uint i = 0u;
@@ -52,8 +52,8 @@ LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
     return s;
 }
 
-// Density [1/sr] with which light_sample_li finds, for a lit point, the point of light i at that squared distance
-// [m^2] from it, seen under that cosine of its normal; not for the environment.
+// Density [1/sr] with which light_sample_li finds, for a lit point, the point of light i at that squared distance [m^2]
+// whose normal has the cosine cos_light to the ray; not for the environment.
 float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light) {
     Light l = light_at(i);
     float pdf = is_light(l, LIGHT_SPHERE) ? sphere_light_pdf_li(l, lit.p, distance_squared, cos_light)
@@ -62,7 +62,7 @@ float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light
 }
 
 // Density [1/sr] with which light_sample_li finds a direction to that texel of the environment; 0 if the environment is
-// none of the lights.
+// not one of the lights.
 float environment_pdf_li(EnvironmentTexel texel, LitPoint lit) {
     if ((LIGHTS & 1u << LIGHT_ENVIRONMENT) == 0u) return 0.0;
     return light_pmf(scene_parameters().environment_light, lit) * texel.pdf;

@@ -12,8 +12,8 @@ bool is_light(Light l, const uint kind) {
     return (LIGHTS & ~(1u << kind)) == 0u || l.kind == kind;
 }
 
-// Shadow rays end a little before a light, lest they meet it: from far away, its point is rounded by more than
-// offset_origin moves it.
+// Shadow rays end a little before a light, so that they do not hit it: from far away, rounding moves its point by more
+// than offset_origin does.
 const float LIGHT_T_MAX = 1.0 - 1.0 / 524288.0;
 
 // A point that is lit: what the choice of a light may depend on. World space.
@@ -25,11 +25,11 @@ struct LitPoint {
 // A point on a light, as seen from a point that is lit.
 struct LightSample {
     vec3 wi;      // Unit direction from the lit point.
-    vec3 Li;      // Radiance that arrives if nothing is between [W/(m^2 sr)].
+    vec3 Li;      // Radiance that arrives if nothing is in between [W/(m^2 sr)].
     float pdf;    // Density over solid angle at the lit point [1/sr]; 0 says that nothing arrives.
     bool delta;   // No other sampling could find it: pdf is the probability of choosing the light.
     vec3 shadow;  // The light is hidden if a ray from the lit point in this direction, of any length,
-    float t_max;  // meets something with t in (0, t_max).
+    float t_max;  // hits something with t in (0, t_max).
 };
 
 #endif

@@ -1,4 +1,4 @@
-// Spherical lights: from outside sampled uniformly over the solid angle that they fill, from inside over their area.
+// Spherical lights, sampled uniformly over solid angle from outside, and over area from inside.
 // Ref: Pharr, Jakob and Humphreys 2023, Physically Based Rendering, section 6.2.4.
 #ifndef LIGHT_SPHERE_GLSL
 #define LIGHT_SPHERE_GLSL
@@ -6,8 +6,8 @@
 #include "base/frame.glsl"
 #include "light/area.glsl"
 
-// 1 - cos of the angle under which the radius of a sphere is seen whose centre is that far away, distance > radius. (A
-// division may round up to more than 1.)
+// 1 - cos of half the angle that a sphere subtends from that squared distance to its centre, which is greater than the
+// squared radius. (The quotient may round up to more than 1.)
 float sphere_light_cap(float radius, float distance_squared) {
     float sin2_max = min(1.0, square(radius) / distance_squared);
     return sin2_max / (1.0 + sqrt(1.0 - sin2_max));
@@ -31,7 +31,7 @@ LightSample sphere_light_sample_li(Light l, vec3 p_lit, vec2 u) {
     s.Li = l.radiance;
     s.pdf = warp_cone_pdf(cap);
     s.delta = false;
-    // The normal where wi meets the sphere first, without the difference of two points that are far away.
+    // The normal where wi first hits the sphere, without a difference of two points that are far away.
     float distance = sqrt(distance_squared);
     float sin2_theta = dot(w.xy, w.xy);
     float half_chord = sqrt(max(0.0, square(radius) - distance_squared * sin2_theta));
@@ -42,8 +42,8 @@ LightSample sphere_light_sample_li(Light l, vec3 p_lit, vec2 u) {
     return s;
 }
 
-// Density [1/sr] with which sphere_light_sample_li finds the point at that squared distance [m^2] from p_lit,
-// seen under that cosine of its normal.
+// Density [1/sr] with which sphere_light_sample_li finds, from p_lit, the point at that squared distance [m^2] whose
+// normal has the cosine cos_light to the ray.
 float sphere_light_pdf_li(Light l, vec3 p_lit, float distance_squared, float cos_light) {
     vec3 to_center = l.p - p_lit;
     float radius = l.e1.x;

@@ -1,4 +1,4 @@
-// For bench/tracer.h: item (ray with t_max). ANY_HIT if anything is met before t_max, else NO_TRIANGLE: one word,
+// For bench/tracer.h: item (ray with t_max). ANY_HIT if the ray hits anything before t_max, else NO_TRIANGLE: one word,
 // so that little but traversal takes time.
 #version 460
 #extension GL_GOOGLE_include_directive : require

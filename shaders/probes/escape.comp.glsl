@@ -1,6 +1,6 @@
 // For escape_test.cpp: item (point, spread; first counter, count). Shoots that many rays from around the point, within
-// the mesh, and counts those that meet nothing; writes how many were shot and the last one that escaped. Rays are made
-// here, from a hash: there are more of them than a test could send.
+// the mesh, and counts those that miss; writes how many were shot and the last one that escaped. Rays are made here,
+// from a hash: there are more of them than a test could send.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -22,8 +22,8 @@ vec3 feature_point(uvec3 random) {
     return (random.y & 4096u) == 0u ? from : mix(from, to, unit_float(random.z));
 }
 
-// From the cube of half edge `spread` around the point: every other ray anywhere, the rest towards vertices and edges,
-// half of these of unit length.
+// A ray from the cube of half edge `spread` around the point: every other one goes anywhere, the rest towards vertices
+// and edges, half of these with unit length.
 Ray random_ray(vec3 point, float spread, uint counter) {
     uvec4 of_origin = hash_pcg4d(uvec4(counter, 1u, 2u, 3u));
     uvec4 of_direction = hash_pcg4d(uvec4(counter, 4u, 5u, 6u));

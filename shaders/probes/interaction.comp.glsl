@@ -1,6 +1,6 @@
-// For selftest/spheres.h: item (ray; direction, side). What the ray meets, and what a second ray meets that leaves from
-// there in that direction, turned to the viewer's side (side 0) or to the other (1). All is 0 but for t if it meets
-// nothing.
+// For selftest/spheres.h: item (ray; direction, side). What the ray hits, and what a second ray hits that leaves from
+// there in that direction, turned to the viewer's side (side 0) or to the other (1). If the first ray misses,
+// everything but its t is 0.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

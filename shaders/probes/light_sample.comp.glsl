@@ -1,6 +1,6 @@
-// For selftest/lights.h: item (reference point, 8 random bits; 2 x 32 more). A light sample
-// from there; whether its shadow ray is blocked; and what a ray in its direction meets: which light, its radiance and
-// the density that it has for light samples.
+// For selftest/lights.h: item (reference point, 8 random bits; 2 x 32 more). A light sample from there; whether its
+// shadow ray is blocked; and what a ray in its direction hits: which light, its radiance, and the density with which
+// light samples find it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

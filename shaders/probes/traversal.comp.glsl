@@ -1,5 +1,5 @@
-// For selftest/traversal.h: item (ray). The nearest hit by the BVH and by looking at every primitive, and whether the
-// ray is occluded before the hit, just behind it, and anywhere.
+// For selftest/traversal.h: item (ray). The nearest hit by the BVH and by testing every primitive, and whether the ray
+// is occluded before the hit, just behind it, and anywhere.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -7,8 +7,8 @@
 #include "shared/kernel_constants.h"
 #include "shared/parameters.h"
 
-// Direction of the pinhole ray through a film position in pixels of the whole picture: origin top left, y downwards. Of
-// length 1 along the camera's axis.
+// Direction of the pinhole ray through a film position in pixels of the whole picture: origin top left, y downwards.
+// Its length along the camera's axis is 1.
 vec3 camera_film_direction(Parameters camera, vec2 film) {
     vec2 s = 2.0 * film / vec2(camera.full_size) - 1.0;
     return camera.forward + s.x * camera.right - s.y * camera.up;

@@ -4,9 +4,9 @@
 
 #include "base/ray.glsl"
 
-// Distance t in lengths of ray.d, and (x, y) of the point center + x e1 + y e2 that the ray meets; t is not above 0
-// where x^2 + y^2 > 1, and the ray misses. (Asked again for a hit at the rim, a compiler may round it beyond: x and y
-// hold all the same.)
+// Distance t in lengths of ray.d, and (x, y) of the point center + x e1 + y e2 that the ray hits. It misses if t is not
+// above 0, as where x^2 + y^2 > 1. (A copy of this code may be compiled to round a hit at the rim outwards: x and y are
+// valid all the same.)
 vec3 disk_intersect(Ray ray, vec3 center, vec3 e1, vec3 e2) {
     vec3 n = cross(e1, e2);
     float approach = dot(ray.d, n);

@@ -1,4 +1,4 @@
-// What the integrator needs to know of the point that a ray met.
+// What the integrator needs to know about the point that a ray hit.
 #ifndef SCENE_INTERACTION_GLSL
 #define SCENE_INTERACTION_GLSL
 
@@ -6,11 +6,11 @@
 #include "scene/scene_data.glsl"
 #include "scene/traversal.glsl"
 
-// World space [m]. Both normals are unit vectors on the viewer's side of the surface; which side that is, the
-// geometric normal alone decides.
+// World space [m]. Both normals are unit vectors on the viewer's side of the surface; the geometric normal alone
+// decides which side that is.
 struct Interaction {
     vec3 p;
-    float p_error;  // How far p may be off the surface beyond the roundings of its coordinates [m].
+    float p_error;  // How far p may be off the surface beyond the rounding of its coordinates [m].
     vec3 wo;        // Towards the viewer, unit.
     vec3 n;         // Geometric normal.
     vec3 ns;        // Shading normal.
@@ -19,7 +19,7 @@ struct Interaction {
     uint light;  // Light that the surface belongs to, or NO_LIGHT.
 };
 
-// The shading normal of the triangle that was hit, interpolated, on the side of n.
+// The interpolated shading normal of the triangle that was hit, on the side of n.
 vec3 shading_normal(Hit hit, vec2 b, vec3 n) {
     uvec4 normals = scene_normals(hit_primitive(hit));
     if (hit_second(hit)) normals.yz = normals.zw;
@@ -31,7 +31,7 @@ vec3 shading_normal(Hit hit, vec2 b, vec3 n) {
     return dot(ns, n) < 0.0 ? -ns : ns;
 }
 
-// The point that the ray met; `hit` must be one.
+// The point that the ray hit; is_hit(hit) must hold.
 Interaction interaction_at(Ray ray, Hit hit) {
     Primitive primitive = scene_primitive(hit_primitive(hit));
     Surface surface = scene_surface(hit_primitive(hit));
@@ -66,7 +66,7 @@ Interaction interaction_at(Ray ray, Hit hit) {
     return s;
 }
 
-// Where a ray begins that leaves the surface on the viewer's side, or on the other.
+// The origin of a ray that leaves the surface on the viewer's side, or on the other.
 vec3 interaction_spawn_origin(Interaction s, bool viewers_side) {
     vec3 n = viewers_side ? s.n : -s.n;
     return offset_origin(s.p, n) + s.p_error * n;

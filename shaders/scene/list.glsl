@@ -1,8 +1,8 @@
-// The triangles of a tiny scene, one by one.
+// Tests the triangles of a tiny scene one by one.
 //
-// Where all lanes go together, as on software Vulkan, they test all of few primitives in less time than they take to find
-// out by a tree which, since none waits for another. The vertices are read once and stay in registers, or in what the
-// driver makes of so many; and what a ray asks of a vertex, it asks once for all primitives that share it.
+// Where all lanes run in step, as on software Vulkan, testing all of a few primitives takes less time than finding the
+// right ones in a tree, since no lane waits for another. The vertices are read once and stay in registers, or wherever
+// the driver puts so many. What a ray needs of a vertex is computed once for all primitives that share it.
 #ifndef SCENE_LIST_GLSL
 #define SCENE_LIST_GLSL
 #extension GL_EXT_control_flow_attributes : require
@@ -12,7 +12,7 @@
 
 vec3 list_vertices[4u * LIST_MAX];
 
-// Before an invocation's first ray.
+// Must run before an invocation's first ray.
 void list_prepare() {
     [[unroll]] for (int i = 0; i < int(LIST); ++i) {
         Primitive p = scene_primitive(uint(i));
@@ -23,7 +23,7 @@ void list_prepare() {
     }
 }
 
-// Keeps the nearest hit of all if it is nearer than `hit`.
+// Replaces `hit` with the nearest hit of all primitives if that is nearer.
 void list_intersect(Ray ray, RayShear shear, inout Hit hit) {
     uint corners[LIST_MAX] =
         uint[](LIST_CORNERS_0, LIST_CORNERS_1, LIST_CORNERS_2, LIST_CORNERS_3, LIST_CORNERS_4, LIST_CORNERS_5,

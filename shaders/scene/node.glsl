@@ -10,25 +10,25 @@ vec4 bytes(uint word) {
     return vec4(uvec4(word, word >> 8u, word >> 16u, word >> 24u) & 255u);
 }
 
-// The bits of a float, as an integer that orders numbers >= 0 as the floats do, is negative for all others, and orders
-// those the other way round. Comparing integers is one instruction where floats, for the sake of NaN, take three on
-// software Vulkan.
+// The bits of a float as an integer. Such integers order numbers >= 0 as floats do; all others become negative, in
+// reverse order. On software Vulkan, comparing integers takes one instruction, comparing floats three, to handle NaN.
 ivec4 ordered_bits(vec4 x) {
     return floatBitsToInt(x);
 }
 
-// Four boxes and a ray.
+// What a ray hits of four boxes.
 struct BoxHits {
     bvec4 met;
-    ivec4 t;  // Where the ray enters each box, as the bits of a float, or a negative number if it begins inside.
+    ivec4 t;  // Where the ray enters each box, as the bits of a float; negative if it begins inside.
 };
 
-// Intersects a ray, clipped to [0, t_max], with the boxes whose nearer planes lie at `near + q_near * scale` along
-// the ray, axis by axis, and the others at `far + q_far * scale`; byte i of q: box i.
+// Intersects a ray, clipped to [0, t_max], with the boxes whose nearer planes lie at `near + q_near * scale` along the
+// ray, axis by axis, and the others at `far + q_far * scale`; byte i of q: box i.
 //
-// There is no need to clip to 0. A box that lies behind the ray has a far plane behind it, and all its near planes
-// further behind. The order of negative integers makes t_far the far plane that is least behind, t_near the near plane
-// that is most behind, and t_near the greater of the two: the box is not met.
+// There is no need to clip to 0. A box behind the ray's origin has a far plane behind it, and that axis's near plane
+// even further behind. So t_far is the far plane that is least behind, by the order of negative integers; t_near is a
+// plane in front of the origin, or the near plane that is most behind. Either way t_near is greater, and the ray misses
+// the box.
 BoxHits boxes_intersect(uvec3 q_near, uvec3 q_far, vec3 scale, vec3 near, vec3 far, float t_max) {
     ivec4 t_near = max(max(ordered_bits(bytes(q_near.x) * scale.x + near.x),
                            ordered_bits(bytes(q_near.y) * scale.y + near.y)),
@@ -39,10 +39,10 @@ BoxHits boxes_intersect(uvec3 q_near, uvec3 q_far, vec3 scale, vec3 near, vec3 f
     return BoxHits(lessThanEqual(t_near, t_far), t_near);
 }
 
-// The children of a node whose boxes a ray meets.
+// The children of a node whose boxes a ray hits.
 struct NodeHits {
     uint nodes;    // Bit i: child i, a node.
-    uint leaves;   // Bit i: the primitive i places behind the node's first.
+    uint leaves;   // Bit i: the primitive i places after the node's first.
     uint nearest;  // The one of `nodes` that the ray enters first, if there is any.
 };
 
@@ -51,19 +51,19 @@ bvec4 both(bvec4 a, bvec4 b) {
     return bvec4(a.x && b.x, a.y && b.y, a.z && b.z, a.w && b.w);
 }
 
-// The ones of four boxes that are nodes, where each is that child of a node of which so many are: where the ray enters
-// them, with the child in the low 3 bits; or more than any of those.
+// Where the ray enters those of the four boxes that are nodes, with the child's number in the low 3 bits; a greater
+// value for the others, and for a miss. `children`: the boxes' numbers; the first `node_count` children are nodes.
 ivec4 node_order(BoxHits hits, uvec4 children, uint node_count) {
     const int miss = 0x7FFFFFFF;
     bvec4 nodes = both(hits.met, lessThan(children, uvec4(node_count)));
     return mix(ivec4(miss), (hits.t & ~7) | ivec4(children), nodes);
 }
 
-// The children of a node whose boxes the ray meets, clipped to [0, t_max]; inv_d: reciprocals(ray.d).
+// The children of a node whose boxes the ray, clipped to [0, t_max], hits; inv_d: reciprocals(ray.d).
 //
-// Conservative: both ends of every slab are moved outwards by 2^-20 of the largest number that took part in the
-// sum, which covers the roundings of the difference, the reciprocal (2.5 ulp in Vulkan) and the products, as well
-// as those of the bounds in triangles_intersect. So a triangle is never culled by a box that contains it.
+// Conservative: both ends of every slab are moved outwards by 2^-20 of the largest number in the sum, which covers the
+// rounding of the difference, the reciprocal (2.5 ulp in Vulkan) and the products, as well as of the bounds in
+// triangles_intersect. So a triangle is never culled by a box that contains it.
 // Ref: Ize 2013, Robust BVH Ray Traversal, for the problem; the bound is our own, for quantised boxes.
 NodeHits node_intersect(BvhNode node, Ray ray, vec3 inv_d, float t_max) {
     vec3 scale = node.scale * inv_d;
@@ -81,7 +81,7 @@ NodeHits node_intersect(BvhNode node, Ray ray, vec3 inv_d, float t_max) {
     first.xyz = min(first.xyz, node_order(b, uvec4(4u, 5u, 6u, 7u), node_count).xyz);
     uvec4 bits = mix(uvec4(0u), uvec4(1u, 2u, 4u, 8u), a.met);
     bits.xyz |= mix(uvec3(0u), uvec3(16u, 32u, 64u), b.met.xyz);
-    // From very far away, all boxes of a node are met, even those of children that do not exist.
+    // From very far away, a ray hits all boxes of a node, even those of children that do not exist.
     uint met = (bits.x | bits.y | bits.z | bits.w) & (2u << bvh_last_child(node.children)) - 1u;
     return NodeHits(met & (1u << node_count) - 1u, met >> node_count,
                     uint(min(min(first.x, first.y), min(first.z, first.w))) & 7u);

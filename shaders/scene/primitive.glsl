@@ -15,11 +15,10 @@ bool is_kind(uint kind, const uint asked) {
     return (PRIMITIVES & ~(1u << asked)) == 0u || kind == asked;
 }
 
-// The nearest primitive along a ray. Among equally near ones the first in leaf order wins, whatever the order of
-// visits.
+// The nearest hit along a ray. Among equally near ones the first in leaf order wins, whatever the order of visits.
 struct Hit {
-    float t;    // In lengths of ray.d; where there is no hit, how far the ray was followed.
-    int place;  // Twice its position in leaf order, and 1 more for the second of two triangles; negative: no hit.
+    float t;    // In lengths of ray.d; without a hit, how far the ray was followed.
+    int place;  // Twice its position in leaf order, plus 1 for the second of two triangles; negative: no hit.
 };
 
 Hit hit_none(float t_max) {
@@ -45,7 +44,7 @@ Hit triangles_hit(TrianglesHit found, uint position) {
     return Hit(found.t, int(2u * position + uint(found.second)));
 }
 
-// Keeps the hit of the primitive at that position if it is nearer than `hit`.
+// Replaces `hit` with a hit of the primitive at that position in leaf order if that is nearer.
 void primitive_intersect(Ray ray, RayShear shear, Primitive p, uint position, inout Hit hit) {
     Hit found = Hit(0.0, int(2u * position));
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) {
@@ -58,8 +57,8 @@ void primitive_intersect(Ray ray, RayShear shear, Primitive p, uint position, in
     if (found.t > 0.0 && (found.t < hit.t || (found.t == hit.t && found.place < hit.place))) hit = found;
 }
 
-// Surface coordinates of a hit of that primitive: of a triangle the barycentric ones of its second and third vertex, of a
-// disk those in its axes. (Few hits are asked for them, and traversal keeps the less.)
+// Surface coordinates of a hit of that primitive: for a triangle, the barycentric ones of its second and third vertex;
+// for a disk, those along its axes. (Few hits need them, so traversal does not keep them.)
 vec2 hit_coordinates(Ray ray, Primitive p, Hit hit) {
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) return vec2(0.0);
     if (is_kind(p.kind, PRIMITIVE_DISK)) return disk_intersect(ray, p.a, p.b, p.c).yz;

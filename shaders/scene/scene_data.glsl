@@ -1,8 +1,8 @@
 // The only file that declares the buffers of a scene. Every record is read through one function here.
 //
-// Two ways to the same words of an array: a texel buffer, which old software drivers read four times faster, and a
-// storage buffer, where it has more words than a device's texel buffers may hold. shared/scene_arrays.h has the arrays
-// and says which way a kernel takes.
+// An array is a texel buffer, which old software drivers read four times faster, or lies in a storage buffer if it has
+// more words than a device's texel buffers may hold. shared/scene_arrays.h has the arrays and says which of the two a
+// kernel reads.
 #ifndef SCENE_SCENE_DATA_GLSL
 #define SCENE_SCENE_DATA_GLSL
 
@@ -19,9 +19,8 @@ layout(std140, binding = BINDING_PARAMETERS) uniform ParametersBlock {
     uvec4 array_starts[(ARRAY_COUNT + 3u) / 4u];  // First word of each array in the storage buffer that several share.
 };
 
-// Reads words of an array from i on, as many as there are names to read into. One branch for all of them, since not
-// every driver removes the code of the other side before it compiles it. (An index must be valid even where it is never
-// used.)
+// READ_n reads n words of an array, from word i on. There is one branch for all of them, since not every driver removes
+// the dead side before it compiles. (An index must be valid even where it is never used.)
 #define TEXEL(name, i) texelFetch(texels_##name, int(i))
 #define STORED(name, i) storage[SLOT_##name < STORAGE_BUFFERS ? SLOT_##name : 0u].words[i]
 #define START(name) (SLOT_##name == SHARED_SLOT ? array_starts[ARRAY_##name / 4u][ARRAY_##name % 4u] : 0u)

@@ -4,8 +4,8 @@
 
 #include "base/ray.glsl"
 
-// The least distance t > 0 in lengths of ray.d; what is not above 0 says that the ray misses. `precise`, so that every
-// copy of the code finds the same one.
+// The least distance t > 0 in lengths of ray.d; the ray misses if it is not above 0. `precise` makes every copy of the
+// code find the same distance.
 //
 // Ref: Haines, Guenther and Akenine-Moeller 2019, Precision Improvements for Ray/Sphere Intersection (Ray Tracing Gems,
 // chapter 7): the discriminant from the point of the line next to the centre, and the root that cancels by Vieta's

@@ -8,35 +8,35 @@
 #include "scene/scene_data.glsl"
 #include "scene/stack.glsl"
 
-// Before an invocation's first ray.
+// Must run before an invocation's first ray.
 void bvh_prepare() {
     list_prepare();
 }
 
-// In place of a node: there is none.
+// Stands for no node.
 const uint NODE_NONE = 0xFFFFFFFFu;
 
-// A ray on its way through the tree.
+// The state of a ray that traverses the tree.
 struct Traversal {
     Ray ray;
     vec3 inv_d;  // reciprocals(ray.d)
     RayShear shear;
-    bool any_hit;     // The first hit is the end.
+    bool any_hit;     // The first hit ends the traversal.
     Hit hit;          // The nearest so far.
-    uint node;        // To be visited next,
-    uint pending;     // and then its siblings; those further up are on the stack.
-    uint leaves;      // To be tested before: bit i: the primitive i places behind
+    uint node;        // To be visited next;
+    uint pending;     // then its siblings; those further up are on the stack.
+    uint leaves;      // To be tested before `node`; bit i: the primitive i places after
     uint first_leaf;  // this position in leaf order.
 };
 
-// Before the root, looking for hits with t in (0, t_max). bvh_prepare comes first.
+// A traversal at the root that looks for hits with t in (0, t_max). bvh_prepare comes first.
 Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack[0] = PENDING_NONE;
     vec3 inv_d = reciprocals(ray.d);
     return Traversal(ray, inv_d, ray_shear(ray.d, inv_d), any_hit, hit_none(t_max), 0u, PENDING_NONE, 0u, 0u);
 }
 
-// With no node left to visit, and no leaf to be tested.
+// Ends a traversal: no node is left to visit, no leaf to test.
 void bvh_end(inout Traversal t) {
     t.node = NODE_NONE;
     t.leaves = 0u;
@@ -46,10 +46,10 @@ bool bvh_ended(Traversal t) {
     return t.node == NODE_NONE && t.leaves == 0u;
 }
 
-// Takes a ray on to the next leaves, and past them; not one that has ended.
+// Traverses to the next leaves and tests them; not for a traversal that has ended.
 //
-// Leaves are tested as soon as they are met, and never wait on the stack, of which one word a level is enough then. On
-// software Vulkan the rays of neighbouring lanes wait for each other at the end of either loop.
+// Leaves are tested as soon as their boxes are hit, and never wait on the stack, so that one word per level is enough.
+// On software Vulkan, neighbouring lanes wait for each other at the end of either loop.
 void bvh_advance(inout Traversal t) {
     if (LIST > 0u) {
         list_intersect(t.ray, t.shear, t.hit);
@@ -57,7 +57,7 @@ void bvh_advance(inout Traversal t) {
         return;
     }
 
-    // Go on: to the nearest child, or to the siblings as they come, or up.
+    // Go to the nearest child, else to the next sibling, else up.
     while (t.leaves == 0u && t.node != NODE_NONE) {
         // What is next if this node has no child to visit.
         bool siblings = pending_any(t.pending);
@@ -92,7 +92,7 @@ Hit bvh_intersect(Ray ray) {
     return t.hit;
 }
 
-// True if any primitive meets the ray with t in (0, t_max).
+// True if the ray hits any primitive with t in (0, t_max).
 bool bvh_occluded(Ray ray, float t_max) {
     bvh_prepare();
     Traversal t = bvh_begin(ray, t_max, true);

@@ -1,15 +1,15 @@
 // Ray against two triangles, watertight: two that share an edge leave no gap between them.
 //
 // Ref: Woop, Benthin and Wald 2013, Watertight Ray/Primitive Intersection. Their double-precision fallback for edge
-// functions of 0 is not needed for tightness: rounding is monotone, so that a computed edge function never has the
-// wrong sign, it can only become 0; and 0 counts as inside on both sides of the edge.
+// functions of 0 is not needed for watertightness: rounding is monotone, so that a computed edge function can become 0
+// but never has the wrong sign; and 0 counts as inside on both sides of the edge.
 #ifndef SCENE_TRIANGLE_GLSL
 #define SCENE_TRIANGLE_GLSL
 
 #include "base/math.glsl"
 #include "base/ray.glsl"
 
-// What a ray needs once for all triangles: the axis z along which it is longest, and the shear that turns it onto
+// What a ray computes once for all triangles: the axis z along which it is longest, and the shear that turns it onto
 // that axis.
 struct RayShear {
     uint kz;
@@ -17,7 +17,7 @@ struct RayShear {
     vec2 inv;  // Reciprocals of the two shorter components.
 };
 
-// v with its components turned so that component kz comes last, the order kept cyclic.
+// v with its components rotated cyclically so that component kz comes last.
 vec3 turn(vec3 v, uint kz) {
     return kz == 0u ? v.yzx : kz == 1u ? v.zxy : v;
 }
@@ -35,7 +35,7 @@ RayShear ray_shear(vec3 d, vec3 inv_d) {
 struct ShearedVertex {
     vec2 p;
     float z;
-    vec2 t;  // Where the ray reaches each of its two other coordinates.
+    vec2 t;  // The ray's t at each of the vertex's two other coordinates.
 };
 
 ShearedVertex shear_vertex(Ray ray, RayShear shear, vec3 v) {
@@ -50,22 +50,22 @@ float edge_function(ShearedVertex a, ShearedVertex b) {
     return e;
 }
 
-// Whether a triangle meets the ray of which these are the edge functions: none lies on the other side than another. A
-// triangle without area meets none.
+// Whether the ray hits the triangle with these edge functions, i.e. no two of them have opposite signs. It always
+// misses a triangle without area.
 bool edges_meet(vec3 e, float det) {
     return !(any_negative(e) && any_positive(e)) && det != 0.0;
 }
 
-// Where a ray meets two triangles.
+// Where a ray hits two triangles.
 struct TrianglesHit {
-    float t;      // In lengths of ray.d; not above 0 where the ray misses.
-    bool second;  // Which one it meets.
+    float t;      // In lengths of ray.d; the ray misses if it is not above 0.
+    bool second;  // The ray hits the second one.
 };
 
-// Where a ray meets the triangles a b c and a c d, the nearer one if both, the first if they are equally near.
+// Where a ray hits the triangles a b c and a c d: the nearer one if both, the first if they are equally near.
 TrianglesHit triangles_intersect(RayShear shear, ShearedVertex a, ShearedVertex b, ShearedVertex c, ShearedVertex d) {
-    // Far from triangles that are small against their distance, the edge functions below are nothing but rounding
-    // errors; so ask first whether the rectangle around them holds the origin. Comparisons do not round.
+    // For triangles that are small compared with their distance, the edge functions below are nothing but rounding
+    // errors; so test first whether the rectangle around their vertices holds the origin. Comparisons do not round.
     vec4 x = vec4(a.p.x, b.p.x, c.p.x, d.p.x);
     vec4 y = vec4(a.p.y, b.p.y, c.p.y, d.p.y);
     bool beside = all_positive(x) || all_negative(x) || all_positive(y) || all_negative(y);
@@ -77,9 +77,9 @@ TrianglesHit triangles_intersect(RayShear shear, ShearedVertex a, ShearedVertex 
     precise float det1 = e1.x + e1.y + e1.z;
     precise float t0 = shear.s.z * (e0.x * a.z + e0.y * b.z + e0.z * c.z) / det0;
     precise float t1 = shear.s.z * (e1.x * a.z + e1.y * c.z + e1.z * d.z) / det1;
-    // A point between three vertices has their range along z, but across, if the triangle is a sliver, the roundings of
-    // the edge functions may have moved it away from the ray; where the box around the triangles begins and ends, is
-    // certain. Without this, a box that is further away than t could hide it.
+    // The interpolated t lies between those of the vertices along z. But if the triangle is a sliver, rounding errors
+    // of the edge functions may have moved the point off the ray; where the ray enters and leaves the box around both
+    // triangles is certain, so t is clamped to that. Otherwise the box could be culled as further away than t.
     vec2 near = lesser(lesser(a.t, b.t), lesser(c.t, d.t));
     vec2 far = greater(greater(a.t, b.t), greater(c.t, d.t));
     float begin = greater(near.x, near.y);
@@ -93,13 +93,13 @@ TrianglesHit triangles_intersect(RayShear shear, ShearedVertex a, ShearedVertex 
     return TrianglesHit(t, second);
 }
 
-// The same, the vertices in world space.
+// The same for vertices in world space.
 TrianglesHit triangles_intersect(Ray ray, RayShear shear, vec3 a, vec3 b, vec3 c, vec3 d) {
     return triangles_intersect(shear, shear_vertex(ray, shear, a), shear_vertex(ray, shear, b),
                                shear_vertex(ray, shear, c), shear_vertex(ray, shear, d));
 }
 
-// Barycentric coordinates of the second and the third vertex of a triangle where the ray meets it.
+// Barycentric coordinates of the second and the third vertex of a triangle where the ray hits it.
 vec2 triangle_coordinates(Ray ray, vec3 a, vec3 b, vec3 c) {
     RayShear shear = ray_shear(ray.d, reciprocals(ray.d));
     ShearedVertex va = shear_vertex(ray, shear, a);

@@ -3,15 +3,15 @@
 //   0: origin.xyz, exponents (byte a: biased exponent of scale on axis a) and byte 3 of children.y
 //   1: q_lo[0].xyz, q_hi[0].x (byte i of each: child i)
 //   2: q_hi[0].yz, q_lo[1].xy
-//   3: q_lo[1].z, q_hi[1].xyz (byte i of [1]: child 4 + i; byte 3: one of children.x and children.y, as
-//   below)
+//   3: q_lo[1].z, q_hi[1].xyz (byte i of [1]: child 4 + i; byte 3 of q_lo[1]: a byte of children.x,
+//      of q_hi[1]: one of children.y)
 //
 // The box of child i is [origin + q_lo * scale, origin + q_hi * scale] in float arithmetic. The product is
-// exact, so a fused multiply-add gives the same box. It is rounded outwards: it contains all that is below
-// it.
+// exact, so a fused multiply-add gives the same box. The box is rounded outwards: it contains everything
+// below the child.
 //
-// Children that are nodes come first and stand side by side in the array of nodes, as do those that are
-// primitives in leaf order; so it takes two numbers to say where all are.
+// Children that are nodes come first, and are adjacent in the array of nodes; those that are primitives are
+// adjacent in leaf order. So two numbers say where all of them are.
 #ifndef SHARED_BVH_NODE_H
 #define SHARED_BVH_NODE_H
 
@@ -25,19 +25,19 @@ namespace candela {
 const uint BVH_NODE_WORDS = 4u;
 const uint BVH_WIDTH = 7u;
 
-// No tree has more levels of nodes than this; the builder sees to it. Halving 2^26 primitives takes 26
-// levels; the rest lets the surface area heuristic be unbalanced. (A sphere of 10 M triangles has 15
-// levels.)
+// No tree has more levels of nodes than this; the builder ensures it. Halving 2^26 primitives takes 26
+// levels; the rest is for the imbalance that the surface area heuristic causes. (A sphere of 10 M triangles
+// has 15 levels.)
 const uint BVH_MAX_DEPTH = 48u;
 
-// A tree has fewer nodes than this: 24 bits for the index of a node leave one for each child in a word of
-// traversal's stack.
+// A tree has fewer nodes than this: beside 24 bits for the index of a node, a word of traversal's stack has
+// room for one bit per child.
 const uint BVH_MAX_NODES = 1u << 24u;
 
-// A tree has at most so many primitives.
+// A tree has at most this many primitives.
 const uint BVH_MAX_PRIMITIVES = (1u << 26u) - 1u;
 
-// A reference has this bit set and is a position in leaf order; or it is the index of a node.
+// A reference with this bit is a position in leaf order; one without it is the index of a node.
 const uint BVH_LEAF_BIT = 0x80000000u;
 
 // A decoded node.
@@ -46,8 +46,8 @@ struct BvhNode {
     vec3 scale;     // Metres per step, on each axis a positive normal power of two.
     uvec3 q_lo[2];  // Byte i of each component of [0]: child i; of [1]: child 4 + i.
     uvec3 q_hi[2];
-    uvec2 children;  // Where they are: the first node; and the first primitive, with numbers of children
-                     // above it.
+    uvec2 children;  // x: index of the first child that is a node; y: position of the first that is a
+                     // primitive, and above it two counts; see bvh_children.
 };
 
 #ifdef __cplusplus
@@ -70,8 +70,8 @@ inline PackedBvhNode pack(const BvhNode& n) {
             uvec4(q_lo.z, q_hi.x, q_hi.y, q_hi.z)};
 }
 
-// The children of a node: `nodes` of them from index `first_node`, the rest of `count` (1 .. BVH_WIDTH) from
-// position `first_primitive` in leaf order.
+// BvhNode::children for `count` (1 .. BVH_WIDTH) children: `nodes` of them from index `first_node`, the rest
+// from position `first_primitive` in leaf order.
 inline uvec2 bvh_children(uint nodes, uint first_node, uint count, uint first_primitive) {
     return {first_node, first_primitive | nodes << 26u | (count - 1u) << 29u};
 }
@@ -99,12 +99,12 @@ BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     return n;
 }
 
-// How many of a node's children are nodes: children.x and those behind it, the first of its children.
+// How many of a node's children are nodes: the first ones, from index children.x on.
 uint bvh_node_count(uvec2 children) {
     return children.y >> 26u & 7u;
 }
 
-// Position in leaf order of the first of its children that are primitives.
+// Position in leaf order of the first child that is a primitive.
 uint bvh_first_primitive(uvec2 children) {
     return children.y & BVH_MAX_PRIMITIVES;
 }

@@ -18,7 +18,7 @@ const uint DEPTH_SAFETY_LIMIT = 4096u;
 const uint NO_LIGHT = 0xFFFFFFFFu;
 
 // Estimators of direct light.
-const uint ESTIMATOR_BSDF = 0u;  // Emission counts only where a BSDF sample meets it.
+const uint ESTIMATOR_BSDF = 0u;  // Emission counts only where a BSDF sample hits it.
 const uint ESTIMATOR_LIGHT =
     1u;                         // Emission counts only through light samples (and where those cannot reach).
 const uint ESTIMATOR_MIS = 2u;  // Both, weighted by the power heuristic.
@@ -39,7 +39,7 @@ const uint PAIR_CHOICE = 2u;  // x: survival, and its 8 low bits fill PAIR_LIGHT
 const uint PAIRS_PER_BOUNCE = 3u;
 
 // Layers of the accumulation image (rgba32f). The value of a sum is sum - compensation (Kahan).
-const uint LAYER_L = 0u;                    // rgb: sum of L; a: how many camera rays hit something visible.
+const uint LAYER_L = 0u;                    // rgb: sum of L; a: camera rays that hit something visible.
 const uint LAYER_L_COMPENSATION = 1u;       // rgb; a: how many samples the pixel holds.
 const uint LAYER_SQUARE = 2u;               // rgb: sum of L^2; a: the pixel's limit, see below.
 const uint LAYER_SQUARE_COMPENSATION = 3u;  // rgb; a: rays of the pixel's samples, MAX_RAYS at most.
@@ -50,10 +50,10 @@ const uint LAYER_NORMAL_COMPENSATION = 7u;  // rgb.
 const uint LAYER_COUNT_COLOUR = 4u;         // Layers of an image without AOVs ...
 const uint LAYER_COUNT_AOVS = 8u;           // ... and of one with them.
 
-// Whole numbers up to here are floats, whose sums do not depend on how they are cut.
+// Floats hold every whole number up to here, so that sums of them do not depend on how they are split.
 const float MAX_RAYS = 16777216.0;
 
-// A pixel's limit is 0 if there is none, or one more than the samples that it gets at most.
+// A pixel's limit is 0 if there is none, otherwise the most samples that it gets, plus one.
 
 // Words of the counter buffer: what one submission did.
 const uint COUNTER_RAYS_LOW = 0u;  // Rays of the samples folded, 64 bits in two words.
@@ -64,7 +64,7 @@ const uint COUNTER_SAMPLES = 4u;      // Samples folded.
 const uint COUNTER_UNFINISHED = 5u;   // Pixels whose loop the driver ended before they had all samples.
 const uint COUNTER_COUNT = 6u;
 
-// Descriptor bindings of every kernel that reads the scene. Array i of the scene is the texel buffer i; all
+// Descriptor bindings of every kernel that reads the scene. Array i of the scene is texel buffer i; all
 // storage buffers are elements of one binding.
 const uint BINDING_STORAGE = 16u;
 const uint BINDING_PARAMETERS = 17u;
@@ -78,7 +78,7 @@ const uint APERTURE_PINHOLE = 0u;
 const uint APERTURE_DISK = 1u;
 const uint APERTURE_POLYGON = 2u;
 
-// The environment, to a kernel.
+// Kinds of environment that a kernel distinguishes.
 const uint ENVIRONMENT_NONE = 0u;
 const uint ENVIRONMENT_HIDDEN = 1u;  // Camera rays do not see it.
 const uint ENVIRONMENT_VISIBLE = 2u;

@@ -13,9 +13,9 @@ namespace candela {
 struct DisplayPush {
     uvec2 size;            // Pixels of the window.
     uvec2 image_size;      // Pixels of the accumulation image, which is stretched over the window.
-    uvec2 overlay_origin;  // The rectangle of the window that lies under the overlay.
+    uvec2 overlay_origin;  // The rectangle of the window that the overlay covers.
     uvec2 overlay_size;
-    float exposure_scale;  // What radiance is multiplied by before the tone curve.
+    float exposure_scale;  // Factor of the radiance before the tone curve.
 };
 
 const uint DISPLAY_BINDING_IMAGE = 0u;    // The accumulation image.

@@ -1,5 +1,5 @@
-// Specialization constants: what is fixed when a kernel's pipeline is made. So a scene pays only for what it
-// uses, and no branch depends on uniforms (which would make lavapipe 22.3 compile the kernel anew at every
+// Specialization constants: values fixed when a kernel's pipeline is made. So a scene pays only for what it
+// uses, and no branch depends on uniforms (which would make lavapipe 22.3 recompile the kernel at every
 // dispatch).
 //
 // kernel_constants.inc lists them: GLSL gets a constant NAME for each line, C++ its number, CONSTANT_NAME,
@@ -10,7 +10,7 @@
 #include "shared/constants.h"
 #include "shared/scene_arrays.h"
 
-// The longest list of primitives that a kernel tests one by one: as many LIST_CORNERS_i there are.
+// The longest list of primitives that a kernel tests one by one; there is a LIST_CORNERS_i for each.
 const uint LIST_MAX = 16u;
 
 #ifdef __cplusplus
@@ -18,8 +18,7 @@ const uint LIST_MAX = 16u;
 #include <iterator>
 namespace candela {
 
-// Who sets a constant: what is in the scene and what is asked for decide the image, the device how it is
-// computed.
+// Who sets a constant. Scene and settings determine the image, the device how it is computed.
 enum class ConstantOwner { scene, settings, device };
 
 #define CONSTANT(number, type, name, initial, owner) const uint CONSTANT_##name = number;

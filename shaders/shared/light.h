@@ -1,5 +1,5 @@
-// Records of a light, 4 words of uvec4, of a texel of the environment, 1 word, and of entries of alias
-// tables, two to a word.
+// Records of a light (4 words of uvec4), of a texel of the environment (1 word), and of the entries of alias
+// tables (two to a word).
 //
 //   Light                         EnvironmentTexel                 AliasEntry
 //     0: p.xyz, kind                0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
@@ -42,8 +42,8 @@ struct Light {
 // A piece of the sky in latitude and longitude.
 struct EnvironmentTexel {
     vec3 radiance;  // [W/(m^2 sr)], constant over the texel.
-    float pdf;  // Of a direction, chosen in proportion to luminance [1/sr]; 0 in an environment that is no
-                // light.
+    float pdf;  // Of sampling a direction in it, in proportion to luminance [1/sr]; 0 if the environment is
+                // not a light.
 };
 
 // Entry i of an alias table of n: column i is kept with probability threshold / 2^32, else the sample is

@@ -30,10 +30,10 @@ const uint MATERIAL_COUNT = 7u;
 
 struct MaterialRecord {
     uint model;       // MATERIAL_*
-    uint medium;      // Behind the surface: index of a medium record below MEDIUM_SAME, or that.
+    uint medium;      // Behind the surface: index of a medium record, or MEDIUM_SAME; 24 bits.
     vec3 base;        // Reflectance, each in [0, 1].
     vec3 specular;    // Phong's ks, or transmittance; each in [0, 1].
-    float parameter;  // Phong's exponent; alpha; or eta, the index behind the surface over that before it.
+    float parameter;  // Phong's exponent; alpha; or eta, the index behind the surface over that in front.
 };
 
 #ifdef __cplusplus

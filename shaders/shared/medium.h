@@ -13,8 +13,8 @@ namespace candela {
 
 const uint MEDIUM_WORDS = 1u;
 
-const uint MEDIUM_NONE = 0u;         // Index of the one that absorbs nothing, where rays begin.
-const uint MEDIUM_SAME = 0xFFFFFFu;  // Behind a surface: the same as before it.
+const uint MEDIUM_NONE = 0u;         // Index of the medium that absorbs nothing, where camera rays begin.
+const uint MEDIUM_SAME = 0xFFFFFFu;  // Behind a surface: the same medium as in front of it.
 
 struct MediumRecord {
     vec3 absorption;  // [1/m], each >= 0.

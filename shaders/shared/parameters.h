@@ -31,7 +31,7 @@ struct Parameters {
     uint max_depth;  // Scattering vertices at most, <= DEPTH_SAFETY_LIMIT.
     uint rr_depth;   // Bounces that always survive.
     uint light_count;
-    uint environment_light;  // Index of the environment among the lights; 0 if it is none of them.
+    uint environment_light;  // Index of the environment among the lights; 0 if it is not one.
     uvec2 environment_size;  // Texels.
     vec2 environment_turn;   // Cosine and sine of the environment's rotation about +Y.
     vec3 lens_x;             // The point (x, y) of an aperture of radius 1 is position + x lens_x + y lens_y.
@@ -46,7 +46,7 @@ struct Parameters {
 struct Tile {
     uvec2 origin;
     uvec2 size;
-    uvec2 stride;  // Group i of the dispatch is at place i * stride modulo their number, axis by axis.
+    uvec2 stride;  // Group i of the dispatch has place i * stride modulo the number of groups, on each axis.
     uint target_samples;
 };
 

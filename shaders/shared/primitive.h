@@ -1,6 +1,6 @@
-// Records of a primitive, what the BVH's leaves hold: its geometry, which traversal reads; its surface, which
-// is read where a path meets it; and its shading normals. The only functions are `pack` (C++) and `unpack`
-// (GLSL), side by side.
+// Records of a primitive, which is what the BVH's leaves hold: its geometry, which traversal reads; its
+// surface, which is read where a path hits it; and its shading normals. The only functions are `pack` (C++)
+// and `unpack` (GLSL), side by side.
 //
 //   Primitive, 3 words of uvec4   Surface, 1 word                   Normals, 1 word
 //     0: a.xyz, d.x or tag          0: id, id of the second           0: at a, b, c, d
@@ -23,8 +23,8 @@ const uint NORMALS_WORDS = 1u;
 
 // Kinds of primitives. World space [m].
 //
-// Two triangles that share an edge, as in most meshes they can, are one primitive: half the memory, half the
-// leaves, and less to compute than for two. The second one, a c d, has no area where there is but one.
+// Two triangles that share an edge, as most in a mesh do, are one primitive: this halves memory and leaves,
+// and costs less than testing each. A single triangle has a second one, a c d, without area.
 const uint PRIMITIVE_TRIANGLES = 0u;  // a b c and a c d; counter-clockwise from the front.
 const uint PRIMITIVE_SPHERE = 1u;     // Centre a, radius b.x; the front is outside.
 const uint PRIMITIVE_DISK = 2u;       // a + x b + y c with x^2 + y^2 <= 1; cross(b, c) points to the front.
@@ -39,7 +39,7 @@ struct Primitive {
     vec3 a;
     vec3 b;
     vec3 c;
-    vec3 d;  // Of triangles alone; equal to c where there is but one.
+    vec3 d;  // Of triangles only; equal to c if there is only one.
 };
 
 struct Surface {

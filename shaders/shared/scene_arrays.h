@@ -1,5 +1,5 @@
 // The arrays of a scene, whose records are words of uvec4, and where a kernel finds them: each is a texel
-// buffer of its own or, where that is too small, lies in a storage buffer, of which a device may have few.
+// buffer or, if it is too long for one, lies in a storage buffer, of which a device may have few.
 //
 // scene_arrays.inc lists them: both languages get a number ARRAY_NAME for each line, and each kernel a
 // specialization constant SLOT_NAME, the storage buffer that holds the array, or NO_SLOT.
@@ -16,10 +16,10 @@
 namespace candela {
 #endif
 
-// In place of a storage buffer: there is none.
+// Stands for no storage buffer.
 const uint NO_SLOT = 0xFFFFFFFFu;
 
-// Storage buffers that every device has for them: Vulkan promises four, and one is for counters.
+// Storage buffers that every device has for the arrays: Vulkan promises four, and one is for counters.
 const uint LEAST_STORAGE_BUFFERS = 3u;
 
 #define ARRAY(number, name, words) const uint ARRAY_##name = number;

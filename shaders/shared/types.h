@@ -1,5 +1,5 @@
-// What lets one file be read by C++ and by GLSL: the vector types by their GLSL names and the
-// reinterpretation of floats as the words of a record.
+// Lets C++ and GLSL read the same file: the vector types by their GLSL names, and the reinterpretation of
+// floats as the words of a record.
 #ifndef SHARED_TYPES_H
 #define SHARED_TYPES_H
 
