@@ -43,7 +43,7 @@ fs::path folder_of(const fs::path& file) {
         fail_to_write(path, "the directory " + quoted(directory) + " does not exist; create it first");
     }
     switch (error) {
-        case ENOENT:  // What a kernel file system says where nothing can be created.
+        case ENOENT:  // Kernel file systems say so where nothing can be created.
         case EACCES:
         case EPERM:
         case EROFS:
@@ -94,7 +94,7 @@ fs::path writable_target(const fs::path& path) {
     return target;
 }
 
-// Throws Error if `target` is a file that may be written to, but in whose place no other may be put.
+// Throws Error if `target` is a file that may be written to but not replaced by another.
 void check_replaceable(const fs::path& path, const fs::path& target) {
     struct statx file {};
     if (::statx(AT_FDCWD, target.c_str(), 0, STATX_BASIC_STATS, &file) != 0) return;  // It is new.
@@ -116,8 +116,8 @@ void check_replaceable(const fs::path& path, const fs::path& target) {
     }
 }
 
-// Gives a finished file the name of its target, or, if that has become impossible, one beside it: then it
-// throws an Error that says so.
+// Gives a finished file the name of its target. If that has become impossible, gives it a name beside the
+// target and throws an Error that says so.
 void put_in_place(const fs::path& path, TemporaryFile& file) {
     try {
         file.commit();
@@ -158,7 +158,7 @@ class Descriptor {
         return ::fstat(file_, &status) == 0 && status.st_size > 0 ? uint64_t(status.st_size) : 0;
     }
 
-    // Appends the bytes from here on, `most` at most. Returns false, with errno, if reading fails.
+    // Appends the remaining bytes, at most `most`. Returns false, with errno, if reading fails.
     bool read_all(std::string& bytes, size_t most = SIZE_MAX) const {
         bytes.reserve(std::min<uint64_t>(size(), most));
         std::array<char, 65536> buffer;
@@ -224,7 +224,7 @@ FileStart read_file_start(const fs::path& path, size_t most) {
 }
 
 std::optional<std::string> read_regular_file(const fs::path& path) {
-    // Without O_NONBLOCK a pipe would wait for somebody who writes.
+    // Without O_NONBLOCK, opening a pipe would wait for a writer.
     const Descriptor file(path, O_RDONLY | O_NONBLOCK);
     std::string bytes;
     if (!file.is_regular() || !file.read_all(bytes)) return std::nullopt;

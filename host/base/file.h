@@ -26,29 +26,29 @@ struct FileStart {
 };
 FileStart read_file_start(const std::filesystem::path& path, size_t most);
 
-// Returns the bytes of a file that may be missing, as a cache may; nothing also if it cannot be read, or is
-// anything else than a regular file.
+// Returns the bytes of a file that may be missing, such as a cache; nothing also if it cannot be read or is
+// not a regular file.
 std::optional<std::string> read_regular_file(const std::filesystem::path& path);
 
 // Throws Error if write_file_atomically(path, ...) could not succeed now: the directory is missing or may not
 // be written to, or the target is a directory, a device, write-protected, or a file that cannot be replaced:
 // mounted by itself, or another user's where only owners may replace files. Really creates and removes a
 // temporary file, so that a long computation can learn beforehand whether its result can be kept; and removes
-// those that killed processes left.
+// those that killed processes left behind.
 void check_writable(const std::filesystem::path& path);
 
 // Writes `bytes` to `path`, which keeps its old contents until the new ones are safely on the disk, and its
 // permissions. A symbolic link stays and its target is replaced. Throws Error (also on a full disk), with no
-// temporary file left behind; where the bytes are on the disk but cannot take the place of the old ones, they
-// get a free name beside it, such as box-1.exr, which the Error says.
+// temporary file left behind. If the bytes are on the disk but cannot take the place of the old ones, they
+// get a free name beside it, such as box-1.exr, which the Error names.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 // Whether two paths name one file: by device and inode if both exist, else by where the names lead, links
 // followed.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
-// Creates a folder and those above it where they are missing, for this user alone; an absolute path. What
-// cannot be created is found when a file is written there.
+// Creates a folder and the missing ones above it, for this user alone; an absolute path. A failure shows when
+// a file is written there.
 void create_private_folders(const std::filesystem::path& folder);
 
 }  // namespace candela

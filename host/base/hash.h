@@ -1,5 +1,5 @@
-// Hashes: FNV-1a, which names an image in a report, and a faster one for large arrays. Both are portable, and
-// not meant against an adversary.
+// Hashes: FNV-1a, which names an image in a report, and a faster one for large arrays. Both are portable;
+// neither resists an adversary.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace candela {
 
 inline constexpr uint64_t FNV1A64_BASIS = 0xcbf29ce484222325u;
 
-// The 64-bit FNV-1a hash of `bytes`. To hash in parts, hand in the hash of the part before as `hash`.
+// The 64-bit FNV-1a hash of `bytes`. To hash in parts, pass the hash of the previous part as `hash`.
 // Ref: Fowler, Noll, Vo, "FNV Hash", http://www.isthe.com/chongo/tech/comp/fnv/
 inline uint64_t fnv1a64(std::span<const std::byte> bytes, uint64_t hash = FNV1A64_BASIS) {
     constexpr uint64_t PRIME = 0x100000001b3u;
@@ -23,9 +23,9 @@ inline uint64_t fnv1a64(std::span<const std::byte> bytes, uint64_t hash = FNV1A6
     return hash;
 }
 
-// A 64-bit hash of `bytes` and of their number. To hash in parts, hand in the hash of the part before as
-// `hash`. A step is one multiplication per eight bytes: half a gigabyte takes about 0.2 s. The rotation lets
-// the upper bits of a word, which a multiplication moves nowhere, spread in the next step.
+// A 64-bit hash of `bytes` and of their number. To hash in parts, pass the hash of the previous part as
+// `hash`. A step is one multiplication per eight bytes: half a gigabyte takes about 0.2 s. A multiplication
+// spreads bits upwards only; the rotation brings the upper bits of a word down for the next step.
 inline uint64_t hash_words(std::span<const std::byte> bytes, uint64_t hash = FNV1A64_BASIS) {
     constexpr uint64_t ODD = 0x9e3779b97f4a7c15u;  // 2^64 over the golden ratio: bits without a pattern.
     const auto step = [&hash](uint64_t word) { hash = std::rotl((hash ^ word) * ODD, 29); };

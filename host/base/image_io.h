@@ -13,7 +13,7 @@
 
 namespace candela {
 
-// Of the images that are written.
+// Formats of images that are written.
 enum class ImageFormat { exr, png };
 
 // The format that the extension of `path` names, whatever its case. Throws Error (exit code usage) for any
@@ -28,11 +28,11 @@ ImageFormat image_format(const std::filesystem::path& path);
 // whole or not at all.
 void write_exr(const std::filesystem::path& path, const Image& image);
 
-// What of an image is read.
+// What to read of an image.
 struct ImageLimits {
-    // With more it is refused, which is found before any are read.
+    // An image with more is refused before any of them is read.
     uint64_t max_pixels = uint64_t{1} << 30;
-    // The only channels whose values are read; all if none is named. The others are there, without values.
+    // The channels whose values are read; all if none is named. The others have no values.
     std::vector<std::string_view> channels{};
 
     bool wants(std::string_view channel) const {
@@ -44,7 +44,7 @@ struct ImageLimits {
 // remembers 16-bit ones), and the attributes that an Image can hold; matrices are turned back into glm's
 // convention. The result is placed relative to the display window. Throws Error if the file is missing, no
 // OpenEXR file, damaged or incomplete, uses what an Image cannot hold (overscan, subsampled channels, deep
-// pixels), or exceeds the limits. No more memory is taken than the file's bytes may stand for.
+// pixels), or exceeds the limits. Takes no more memory than the file's bytes may stand for.
 Image read_exr(const std::filesystem::path& path, const ImageLimits& limits = {});
 
 // The same without any values; what else the file holds is not read.

@@ -47,7 +47,7 @@ class MemoryStream : public Imf::OStream {
 };
 
 // A glm matrix for column vectors is stored column by column, an Imath matrix for row vectors row by row.
-// Each is the other transposed, and stored transposed: the 16 numbers stay in place.
+// Each is the transpose of the other, and stored transposed: the 16 numbers stay in place.
 Imath::M44f to_imath(const mat4& m) {
     Imath::M44f result;
     for (int i = 0; i < 4; ++i) {

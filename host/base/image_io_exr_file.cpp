@@ -17,18 +17,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Attributes of every OpenEXR file that speak of the file, not of the picture; an Image does not keep them.
+// Attributes of every OpenEXR file that describe the file, not the picture; an Image does not keep them.
 constexpr std::array<std::string_view, 4> FILE_ATTRIBUTES = {"name", "type", "pixelAspectRatio",
                                                              "screenWindowWidth"};
 
-// What the library said last; its functions return no more than a code.
+// The library's last message; its functions return only a code.
 thread_local std::string library_message;
 
 void take_message(exr_const_context_t, exr_result_t, const char* message) {
     library_message = message;
 }
 
-// Zeroed, so that nothing that a damaged chunk leaves out is somebody else's memory; and bounded.
+// Zeroed, so that no old memory shows where a damaged chunk leaves something out; and bounded.
 void* allocate(size_t size) {
     return size > 2 * MAX_CHUNK_BYTES ? nullptr : std::calloc(1, std::max<size_t>(size, 1));
 }
@@ -47,7 +47,7 @@ int64_t byte_count(exr_const_context_t, void* user) {
 }
 
 // An Imath matrix for row vectors is stored row by row, a glm matrix for column vectors column by column.
-// Each is the other transposed, and stored transposed: the 16 numbers stay in place.
+// Each is the transpose of the other, and stored transposed: the 16 numbers stay in place.
 mat4 to_glm(const float* numbers) {
     mat4 result;
     for (int i = 0; i < 16; ++i)
@@ -155,7 +155,7 @@ Image read_exr_header(const fs::path& path) {
     } catch (const Error&) {
         if (start.bytes.size() == start.size) throw;
     }
-    const std::string bytes = read_file(path);  // It is longer than usual, or damaged.
+    const std::string bytes = read_file(path);  // The header is longer than usual, or damaged.
     const ExrBytes whole{bytes};
     return ExrFile(whole, path).read_header({});
 }

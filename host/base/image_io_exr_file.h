@@ -1,4 +1,4 @@
-// An OpenEXR file that is open for reading, by the library's C interface: it checks sizes against the file's
+// An OpenEXR file that is read through the library's C interface, which checks sizes against the file's
 // before it allocates.
 #pragma once
 
@@ -40,12 +40,12 @@ class ExrFile {
 
     [[noreturn]] void fail(const std::string& why) const;
     [[noreturn]] void fail_damaged(const std::string& how) const;
-    // Throws Error, or std::bad_alloc, unless that says success.
+    // Throws Error or std::bad_alloc unless `result` is success.
     void check(exr_result_t result) const;
 
     exr_context_t context() const { return context_; }
     std::string_view bytes() const { return bytes_; }
-    // Once the header is read.
+    // Valid once the header is read.
     bool is_tiled() const { return tiled_; }
 
   private:

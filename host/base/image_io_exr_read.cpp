@@ -1,6 +1,6 @@
-// Reads the pixels of OpenEXR files by the library's C interface, which lets us look at each chunk before it
-// is decoded. Version 3.1 knows no DWA compression there; such chunks are decoded by the other interface,
-// which gets a file made of what has been checked.
+// Reads the pixels of OpenEXR files through the library's C interface, which describes each chunk before it
+// is decoded. Version 3.1 lacks DWA compression there; such chunks are decoded through the C++ interface,
+// from a file made of what has been checked.
 #include <algorithm>
 #include <functional>
 #include <new>
@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The most bytes that so many compressed ones can stand for, beside which a chunk may have a few more. PIZ:
-// runs of 255 words, by nine bits each. DWA, which packs what is packed, has no bound worth the name.
+// The most bytes that a compressed one can stand for, by compression; a chunk may have EXPANSION_SLACK more.
+// PIZ: runs of 255 words, nine bits each. DWA, which compresses twice, has no useful bound.
 constexpr uint64_t MAX_EXPANSION[EXR_COMPRESSION_LAST_TYPE] = {1,    64, 1032, 1032,       454,
                                                                1400, 3,  11,   UINT32_MAX, UINT32_MAX};
 constexpr uint64_t EXPANSION_SLACK = 1024;
@@ -63,7 +63,7 @@ class ExrPixels : public ExrFile {
     std::vector<float> unwanted_;
 };
 
-// Decodes a chunk into the channels, and lets these grow to its end.
+// Decodes a chunk into the channels, which it grows to the chunk's end.
 void ExrPixels::decode(const Chunk& chunk, Image& image, const ImageLimits& limits) {
     const exr_chunk_info_t& info = chunk.info;
     const uint64_t most = info.packed_size * MAX_EXPANSION[info.compression] + EXPANSION_SLACK;
@@ -77,7 +77,7 @@ void ExrPixels::decode(const Chunk& chunk, Image& image, const ImageLimits& limi
         decoder_is_ready_ = true;
     }
     grow(image, chunk.y + uint32_t(info.height), limits);
-    // What nobody asked for has to go somewhere: the library skips no channel of an uncompressed file.
+    // Unwanted channels need a place too: the library skips no channel of an uncompressed file.
     const uint32_t width = image.data.width();
     unwanted_.resize(size_t(width) * uint32_t(info.height));
     for (int i = 0; i < decoder_.channel_count; ++i) {
@@ -95,7 +95,8 @@ void ExrPixels::decode(const Chunk& chunk, Image& image, const ImageLimits& limi
     check(exr_decoding_run(context(), PART, &decoder_));
 }
 
-// Hands on each chunk, from the top and row by row; of tiles those of the largest resolution.
+// Calls `each` with every chunk, from the top and row by row; with tiles, only those of the largest
+// resolution.
 void ExrPixels::for_each_chunk(const Image& image, const std::function<void(const Chunk&)>& each) {
     const uint32_t width = image.data.width(), height = image.data.height();
     if (!is_tiled()) {
@@ -132,7 +133,7 @@ uvec2 ExrPixels::tile_size() const {
     return {width, height};
 }
 
-// The header that decoding needs, of what has been checked.
+// The least header that decoding needs, of values that have been checked.
 Imf::Header ExrPixels::least_header() const {
     exr_attr_box2i_t display{}, data{};
     check(exr_get_display_window(context(), PART, &display));
@@ -151,7 +152,7 @@ Imf::Header ExrPixels::least_header() const {
         header.channels().insert(entry.name.str,
                                  Imf::Channel(Imf::PixelType(entry.pixel_type), 1, 1, entry.p_linear != 0));
     }
-    if (is_tiled()) {  // Tiles larger than the image hold no more than it: nor need the decoder.
+    if (is_tiled()) {  // The decoder needs no tiles larger than the image.
         const uint32_t width = uint32_t(data.max.x - data.min.x) + 1,
                        height = uint32_t(data.max.y - data.min.y) + 1;
         header.setTileDescription(
@@ -160,7 +161,7 @@ Imf::Header ExrPixels::least_header() const {
     return header;
 }
 
-// An OpenEXR file of the least header and the chunks as they are.
+// An OpenEXR file with the least header and the chunks as they are.
 std::string ExrPixels::least_file(const Image& image) {
     std::vector<Chunk> chunks;
     for_each_chunk(image, [&](const Chunk& chunk) {

@@ -1,5 +1,5 @@
-// Radiance pictures (.hdr, .pic), from their description: stb_image knows neither the older run-length
-// encoding nor the exposure, and takes what a truncated file lacks for zeros.
+// Reads Radiance pictures (.hdr, .pic), by their specification: stb_image knows neither the older run-length
+// encoding nor the exposure, and reads zeros where a truncated file ends.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -128,8 +128,8 @@ class HdrReader {
         return {uint32_t(width), uint32_t(height)};
     }
 
-    // Runs make a row of any length of sixteen bytes. No picture that somebody sees by is like that: throws
-    // Error if the file claims far more pixels than the newer encoding, which has 16 a byte at most, could
+    // In the older encoding, sixteen bytes can stand for a row of any length. No real picture is like that:
+    // throws Error if the file claims far more pixels than the newer encoding, at 16 per byte at most, could
     // hold.
     void check_bytes(uvec2 size) const {
         constexpr uint64_t PIXELS_PER_BYTE = 64, SLACK = uint64_t{1} << 20;
@@ -201,7 +201,7 @@ class HdrReader {
         }
     }
 
-    // What a mantissa counts, by the exponent; 0 is black, whatever the mantissas.
+    // The unit of a mantissa, by the exponent; 0 is black, whatever the mantissas.
     static inline const std::array<float, 256> SCALES = [] {
         constexpr int BIAS = 128 + 8;  // Of the exponent; mantissas count 1/256.
         std::array<float, 256> scales{};
@@ -213,7 +213,7 @@ class HdrReader {
     const fs::path& path_;
     std::string bytes_;
     size_t at_ = 0;   // In bytes_.
-    size_t row_ = 0;  // That is being read, from 1; 0: the header.
+    size_t row_ = 0;  // Being read, from 1; 0: the header.
     vec3 divisor_{1};
 };
 

@@ -17,12 +17,12 @@ inline constexpr uint32_t MAX_IMAGE_SIDE = 1 << 20;
 void check_pixel_count(const std::filesystem::path& path, uint64_t width, uint64_t height,
                        uint64_t max_pixels);
 
-// Lets the channels that are wanted grow to so many rows: a short file whose header claims a huge picture
-// runs out of file before the machine runs out of memory.
+// Grows the wanted channels to that many rows: a short file whose header claims a huge picture runs out of
+// file before the machine runs out of memory.
 void grow(Image& image, uint32_t rows, const ImageLimits& limits);
 
-// Decodes an OpenEXR file of one part into the image's channels by the library's C++ interface, which
-// believes what a header says. Throws a std::exception if pixels are damaged.
+// Decodes an OpenEXR file of one part into the image's channels through the library's C++ interface, which
+// trusts the header. Throws a std::exception if pixels are damaged.
 void decode_exr_by_rows(std::string_view file, Image& image, const ImageLimits& limits);
 
 }  // namespace candela

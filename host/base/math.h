@@ -22,7 +22,7 @@ inline constexpr float PI = 3.14159265358979f;
 inline constexpr float INFINITE = std::numeric_limits<float>::infinity();
 inline constexpr float FLOAT_MAX = std::numeric_limits<float>::max();  // The greatest float that is finite
 inline constexpr float FLOAT_MIN = std::numeric_limits<float>::min();  // and the least that is normal.
-// Shapes reach no further along an axis: so boxes can be added, subtracted and scaled as floats.
+// No shape reaches further along an axis, so that boxes can be added, subtracted and scaled as floats.
 inline constexpr float MAX_COORDINATE = 1e37f;
 
 // True if no component is NaN or infinite.

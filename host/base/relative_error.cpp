@@ -7,7 +7,7 @@
 namespace candela {
 namespace {
 
-constexpr double DARKNESS = 0.01;  // Times the square of the mean: what is added to a pixel's own square.
+constexpr double DARKNESS = 0.01;  // Times the square of the mean, it is added to a pixel's square.
 
 double mean_of(const RgbPlanes& planes) {
     double sum = 0.0;
@@ -60,8 +60,8 @@ double relative_mse(const RgbPlanes& image, const RgbPlanes& reference) {
     return sum / double(3 * image[0].size());
 }
 
-// What a pixel's movement is relative to is its own value or the mean of its neighbours, whichever is darker:
-// a single bright sample would raise its own pixel and so hide its own error, and neighbours alone would
+// A pixel's movement is relative to its own value or the mean of its neighbours, whichever is darker: a
+// single bright sample would raise its own pixel and so hide its own error, and neighbours alone would
 // mislead at edges.
 std::optional<double> estimate_relative_error_by_half(const Image& half, const Image& mean) {
     const RgbPlanes first = *half.find_rgb(), both = *mean.find_rgb();

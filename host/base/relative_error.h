@@ -14,10 +14,10 @@ namespace candela {
 // radiance, and black pixels do not outweigh all others. Both have the same number of pixels.
 double relative_mse(const RgbPlanes& image, const RgbPlanes& reference);
 
-// What is added to the square of each pixel there, for a reference or an image in its place: 0.01 m^2.
+// The term 0.01 m^2 of relative_mse(), for a reference or an image in its place.
 double darkness_of(const RgbPlanes& reference);
 
-// Nothing shall be estimated from fewer samples per pixel: they may not have found the light yet.
+// No error should be estimated from fewer samples per pixel: they may not have found the light yet.
 inline constexpr uint32_t LEAST_ESTIMATED_SPP = 16;
 
 // Estimates the relative error of `now`, the square root of what relative_mse() would say if there were a
@@ -32,8 +32,8 @@ inline constexpr uint32_t LEAST_ESTIMATED_SPP = 16;
 // yet is in no estimate.
 std::optional<double> estimate_relative_error(const Image& before, const Image& now);
 
-// The same of `mean`, the plain mean of `half` and another image that is independent of it: between them lies
-// the error of the mean, in the mean square, whatever their samplers and variances. Both have R, G and B.
+// The same for `mean`, the plain mean of `half` and another, independent image: in the mean square, the mean
+// is as far from `half` as from its expectation, whatever their samplers and variances. Both have R, G and B.
 // Nothing if the mean is black.
 std::optional<double> estimate_relative_error_by_half(const Image& half, const Image& mean);
 

@@ -26,7 +26,7 @@ class ContinuedFraction {
   public:
     explicit ContinuedFraction(double b0) : value_(not_zero(b0)), c_(value_) {}
 
-    // Adds the next partial numerator and denominator; false once the value stands still.
+    // Adds the next partial numerator and denominator; false once the value no longer changes.
     bool step(double a, double b) {
         d_ = 1.0 / not_zero(b + a * d_);
         c_ = not_zero(b + a / c_);

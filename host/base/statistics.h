@@ -25,14 +25,14 @@ double sidak_level(double alpha, uint64_t tests);
 // its even part is used).
 double gamma_q(double a, double x);
 
-// Probability that a chi-squared statistic of that many degrees of freedom (> 0) is at least `statistic` (>=
-// 0).
+// Probability that a chi-squared statistic with that many degrees of freedom (> 0) is at least `statistic`,
+// which is >= 0.
 double chi_squared_p_value(double statistic, double degrees_of_freedom);
 
 // Pearson's test: the probability of counts at least as unlikely as these, if each sample falls into bin i
 // with a probability proportional to `expected[i]` (>= 0, not all 0; as many as counts). Bins are pooled,
-// smallest first, until each pool expects 5 samples or more; what is left over joins the last pool. A sample
-// in a bin that expects none gives 0; fewer than two pools, which can say nothing, give 1.
+// smallest first, until each pool expects 5 samples or more; the rest joins the last pool. A sample in a bin
+// that expects none gives 0; fewer than two pools, which tell nothing, give 1.
 double pearson_p_value(std::span<const double> counts, std::span<const double> expected);
 
 // Regularised incomplete beta function I_x(a, b), for a, b > 0 and x in [0, 1]; in [0, 1].

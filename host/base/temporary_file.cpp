@@ -32,7 +32,7 @@ constexpr std::string_view SUFFIX = ".tmp";
     throw std::system_error(errno, std::generic_category(), call);
 }
 
-// Calls again what a signal interrupted.
+// Repeats a call that a signal interrupted.
 template <class Call>
 auto retried(Call call) {
     decltype(call()) result;
@@ -42,8 +42,8 @@ auto retried(Call call) {
     return result;
 }
 
-// What the names of this computer's files begin with until it is started anew: ".candela-", 16 hexadecimal
-// digits and "-". Empty if the system does not tell when that was.
+// How the names of this computer's files begin until it is restarted: ".candela-", 16 hexadecimal digits and
+// "-". Empty if the system does not identify itself and its last start.
 const std::string& own_prefix() {
     static const std::string prefix = [] {
         std::array<char, 256> host{};
@@ -76,7 +76,7 @@ std::optional<pid_t> owner_of(std::string_view name) {
     return error == std::errc() && *end == '-' && owner > 0 ? std::optional(owner) : std::nullopt;
 }
 
-// Whether the process has ended, and, since it may be invisible from here, has lost its lock.
+// Whether the process has ended and, since it may only be invisible from here, has lost its lock.
 bool is_abandoned(const fs::path& file, pid_t owner) {
     if (::kill(owner, 0) == 0 || errno != ESRCH) return false;
     const int descriptor =
@@ -130,7 +130,7 @@ fs::path TemporaryFile::commit_beside() {
         std::string name = stem;
         name += '-' + std::to_string(i) + extension;
         target_.replace_filename(name);
-        // Once there is a file of that name, and it is ours, it can be replaced.
+        // Once a file of that name exists and is ours, it can be replaced.
         const int placeholder =
             retried([&] { return ::open(target_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600); });
         if (placeholder >= 0) {

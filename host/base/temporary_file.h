@@ -1,4 +1,4 @@
-// TemporaryFile: what is written to a file until all of it is on the disk.
+// TemporaryFile: holds what is written to a file until all of it is on the disk.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +6,9 @@
 
 namespace candela {
 
-// A new, empty file beside `target`, whose permissions it has if there is such a file. Removed with this
-// object unless commit() gave it the target's name. Its own name says which process of which computer it
-// belongs to, and it is locked as long as that lives. All functions throw std::system_error.
+// A new, empty file beside `target`, with the target's permissions if that exists. Removed with this object
+// unless commit() gave it the target's name. Its own name says which process of which computer it belongs to,
+// and it is locked as long as that process lives. All functions throw std::system_error.
 class TemporaryFile {
   public:
     explicit TemporaryFile(std::filesystem::path target);
@@ -31,8 +31,8 @@ class TemporaryFile {
     bool committed_ = false;
 };
 
-// Removes what processes left in the folder that were killed while they wrote, on this computer and since it
-// was started: only then is it known that they live no longer.
+// Removes the files that killed processes left in the folder, if they ran on this computer since it was
+// started: of others nobody knows whether they still run.
 void remove_abandoned_files(const std::filesystem::path& folder);
 
 }  // namespace candela

@@ -9,7 +9,7 @@
 
 namespace candela {
 
-// All parts one after another as text; numbers with as many digits as tell floats apart.
+// All parts as text, one after the other; numbers with enough digits to tell floats apart.
 template <class... Parts>
 std::string concat(const Parts&... parts) {
     std::ostringstream text;
