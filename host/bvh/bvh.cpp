@@ -25,12 +25,13 @@ namespace candela {
 
 namespace {
 
-// A range larger than this is a task of its own: small enough for many tasks a thread, large enough that
-// taking a task costs nothing against it.
+// Up to this size, a task builds the whole subtree of a range; of a larger one it builds a node, whose child
+// nodes become tasks. Small enough for many tasks per thread, large enough that the cost of taking one is
+// negligible.
 constexpr uint32_t TASK_SIZE = 8192;
 
-// A piece of the tree, with references from its first node and its first position. Either a whole subtree, or
-// one node of whose children those that are nodes begin pieces of their own.
+// A piece of the tree, whose references count from its own first node and position. Either a whole subtree,
+// or one node whose child nodes begin pieces of their own.
 struct Piece {
     std::vector<PackedBvhNode> nodes;
     std::vector<uint32_t> order;
@@ -48,7 +49,7 @@ struct Task {
     Piece* piece = nullptr;  // Receives the result.
 };
 
-// The parts of a range that become the children of one node; the first `nodes` of them nodes, the others
+// The parts of a range that become the children of one node; the first `nodes` of them are nodes, the others
 // leaves.
 struct Children {
     std::array<PrimitiveRange, BVH_WIDTH> ranges;
@@ -65,16 +66,16 @@ uint32_t balanced_depth(uint32_t count) {
     return uint32_t(std::bit_width(count - 1));
 }
 
-// Whether a range at that depth must be split into equal parts. The heuristic may take a single primitive off
-// at every split (boxes that grow exponentially). So wherever a child of all primitives but one might be too
-// deep for what is left of BVH_MAX_DEPTH levels, the parts are equal, and those fit: nodes on the way down
-// kept to this rule. A binary tree may follow it level by level: a wide node stands for one of its levels at
-// least.
+// Whether a range at that depth must be split into equal parts. The heuristic may split off a single
+// primitive every time (from boxes that grow exponentially). So where a child with all primitives but one
+// might need more than what is left of BVH_MAX_DEPTH levels, the parts must be equal. These fit, since the
+// nodes above kept to this rule. A binary tree may follow it level by level, since a wide node replaces at
+// least one of its levels.
 bool must_balance(uint32_t depth, uint32_t count) {
     return depth + 1 + balanced_depth(count - 1) >= BVH_MAX_DEPTH;
 }
 
-// Splits the range of a node, then the part that most rays would meet (the largest surface), until there are
+// Splits the range of a node, then the part that most rays would hit (the largest surface), until there are
 // BVH_WIDTH parts, or all are leaves.
 Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
     const bool balanced = must_balance(job.depth, job.range.count);
@@ -99,8 +100,8 @@ Children open_children(std::span<PrimitiveRef> refs, const Job& job) {
     return children;
 }
 
-// Puts a node into `piece` at `index`, and its leaves into the piece's order; the nodes among its children
-// are to stand at the end.
+// Puts a node into `piece` at `index`, and its leaves into the piece's order; its child nodes are to be
+// appended to the piece.
 void put_node(std::span<const PrimitiveRef> refs, const Children& children, Piece& piece, uint32_t index) {
     std::array<Box, BVH_WIDTH> boxes;
     for (uint32_t c = 0; c < children.count; ++c)
@@ -194,8 +195,8 @@ size_t count_nodes(const Piece& piece) {
     return count;
 }
 
-// Joins all pieces into nodes and order, with references from their beginnings. The first node of a piece
-// stands beside its siblings, the others behind all that came before.
+// Joins all pieces into nodes and order, and makes their references count from there. The first node of a
+// piece goes beside its siblings, the others behind everything joined before.
 void join_pieces(std::unique_ptr<Piece> root, Bvh& bvh) {
     struct Pending {
         std::unique_ptr<Piece> piece;

@@ -10,7 +10,7 @@ BvhMeasures measure(std::span<const PackedBvhNode> nodes, const Box& bounds) {
     std::vector<uint32_t> depths(nodes.size());  // Of the subtree below each node, itself included.
     const double root_area = bounds.is_empty() ? 0.0 : half_area(bounds);
     double cost = root_area * BVH_NODE_COST;
-    for (size_t i = nodes.size(); i-- > 0;) {  // Children stand behind their parent.
+    for (size_t i = nodes.size(); i-- > 0;) {  // Children follow their parent.
         const BvhNode node = unpack(nodes[i]);
         uint32_t deepest = 0;
         for (uint32_t c = 0; c < bvh_child_count(node); ++c) {

@@ -29,7 +29,7 @@ struct BvhMeasures {
 // depth: nodes on the longest way down, the root included.
 //
 // sah_cost = (sum over nodes of A(node) * BVH_NODE_COST + sum over leaves of A(leaf)) / A(root),
-// where A is the surface area of the decoded box, which is the one that rays meet (of the root: of `bounds`);
+// where A is the surface area of the decoded box, which is the one that rays hit (of the root: of `bounds`);
 // 0 if A(root) is. Ref: MacDonald and Booth 1990, Heuristics for Ray Tracing Using Space Subdivision.
 BvhMeasures measure(std::span<const PackedBvhNode> nodes, const Box& bounds);
 

@@ -30,7 +30,7 @@ struct GridAxis {
         if (mantissa == 0.5) --exponent;
         scale = std::ldexp(1.0f, std::max(exponent, LEAST_EXPONENT));
         while (decode(LAST_STEP) < hi)
-            scale *= 2.0f;  // `extent` was rounded: [-255, 1e-30].
+            scale *= 2.0f;  // `extent` was rounded, as for [-255, 1e-30].
     }
 
     // The last step at or below x, which is in the range of the grid.

@@ -9,7 +9,7 @@
 namespace candela {
 
 // The node whose decoded child boxes contain `boxes`, as tightly as its grid allows. Boxes: 0 .. BVH_WIDTH,
-// valid, coordinates up to 1e37. Where the children are is left to the caller.
+// valid, coordinates up to 1e37. The caller sets `children`.
 BvhNode quantise(std::span<const Box> boxes);
 
 }  // namespace candela

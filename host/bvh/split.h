@@ -10,7 +10,7 @@
 
 namespace candela {
 
-// What the builder keeps of a primitive: 32 bytes, moved about until they stand in leaf order.
+// What the builder keeps of a primitive: 32 bytes, which it moves until they are in leaf order.
 struct alignas(16) PrimitiveRef {
     vec3 lo;
     uint32_t index;  // In the caller's order.
@@ -50,8 +50,8 @@ using SplitRanges = std::array<PrimitiveRange, 2>;
 // several are equal; where no axis can be binned (equal centroids), split_median().
 SplitRanges split_sah(std::span<PrimitiveRef> refs, const PrimitiveRange& range);
 
-// The same, but in two halves by centroid along the longest axis of the centroids' bounds, equal ones by
-// index.
+// The same, but in two halves by centroid along the longest axis of the centroids' bounds; equal centroids
+// are ordered by index.
 SplitRanges split_median(std::span<PrimitiveRef> refs, const PrimitiveRange& range);
 
 }  // namespace candela

@@ -10,7 +10,7 @@
 
 namespace candela {
 
-// Tasks are taken newest first, which keeps the number that wait small.
+// Tasks are taken newest first, which keeps the number of waiting ones small.
 template <class Task>
 class TaskQueue {
   public:

@@ -17,7 +17,7 @@ bool contains(const Box& outer, const Box& inner) {
            glm::all(glm::lessThanEqual(inner.hi, outer.hi));
 }
 
-// Every index of `count` primitives stands in `order` once.
+// Every index of `count` primitives is in `order` once.
 Problem check_order(std::span<const uint32_t> order, size_t count) {
     if (order.size() != count) {
         return "order has " + name("entries", order.size()) + " for " + name("primitives", count);

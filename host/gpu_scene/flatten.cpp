@@ -19,7 +19,7 @@ class Flattener {
             const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
             const TriangleMesh* mesh = instance != nullptr ? &scene.meshes[instance->mesh] : nullptr;
             has_normals_ = has_normals_ || (mesh != nullptr && !mesh->normals.empty());
-            count += mesh != nullptr ? mesh->triangles.size() : 2;  // Of a quad; others are one primitive.
+            count += mesh != nullptr ? mesh->triangles.size() : 2;  // A quad may be two.
         }
         flat_.primitives.reserve(count);
         if (has_normals_) flat_.normals.reserve(count);
@@ -31,7 +31,7 @@ class Flattener {
     FlatScene take() { return std::move(flat_); }
 
   private:
-    // The triangles of an emitter are lights of their own, so that they stay alone.
+    // The triangles of an emitter are lights of their own, so they are not paired.
     void add(const Shape& shape, const MeshInstance& instance) {
         TriangleMesh mesh = placed(scene_.meshes[instance.mesh], instance.transform);
         flat_.flattened += drop_flat_triangles(mesh);
@@ -50,7 +50,7 @@ class Flattener {
         }
     }
 
-    // Two triangles; where the corners span a parallelogram, one light for both, so that its samples are
+    // Two triangles; if the corners span a parallelogram, one light for both, so that its samples are
     // stratified over the whole.
     void add(const Shape& shape, const Quad& quad) {
         const auto& c = quad.corners;
@@ -100,7 +100,7 @@ class Flattener {
         return add_light(shape, kind, p, e1, e2, share * length(cross(glm::dvec3(e1), glm::dvec3(e2))));
     }
 
-    // The index of a new light, or NO_LIGHT if the piece sends out nothing.
+    // The index of a new light, or NO_LIGHT if the piece emits nothing.
     uint add_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2, double area) {
         if (!shape.emission) return NO_LIGHT;
         const Emission& emission = *shape.emission;

@@ -1,4 +1,4 @@
-// Shapes -> primitives and lights: the scene in its own order, before the BVH decides on another.
+// Shapes -> primitives and lights: the scene in its own order, before the BVH reorders it.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@ struct FlatScene {
     std::vector<std::array<uvec4, NORMALS_WORDS>> normals;  // One per primitive, or none if all are flat.
     uint64_t flattened = 0;      // Triangles that are left out: rounded to floats, they have no area.
     uint32_t id_count = 0;       // Ids that the surfaces have: one for each triangle, sphere and disk.
-    std::vector<Light> lights;   // Those that send out light; pmf is 0 until assign_probabilities().
-    std::vector<double> powers;  // Of each light, over pi, by its luminance [W].
+    std::vector<Light> lights;   // Those that emit; pmf is 0 until assign_probabilities().
+    std::vector<double> powers;  // Power of each light over pi, by its luminance [W].
 };
 
 FlatScene flatten(const Scene& scene);
 
-// Sets the probability of choosing each light, its share in all powers (which are not all 0).
+// Sets the probability of choosing each light: its share of the total power, which is not 0.
 void assign_probabilities(FlatScene& flat);
 
 // The least box around a primitive.

@@ -36,7 +36,7 @@ Bvh build_bvh_over(const std::vector<Primitive>& primitives) {
     return build_bvh(boxes);
 }
 
-// For each corner of the first primitives in leaf order the first one in the same place, to the bit.
+// For each corner of the first primitives in leaf order, the first corner with the same bits.
 std::array<uint32_t, LIST_MAX> list_corners(const std::vector<Primitive>& primitives,
                                             std::span<const uint32_t> order) {
     std::array<uint32_t, LIST_MAX> result{};
@@ -52,14 +52,14 @@ std::array<uint32_t, LIST_MAX> list_corners(const std::vector<Primitive>& primit
     return result;
 }
 
-// Adds the environment to the lights, with the power that falls onto the scene: that on a disk as wide as the
-// sphere around its box; but with no more than all other lights together, so that they have half of the
-// samples at least: a large floor takes much light from the sky and yet is no brighter for it, and half too
-// few samples cost less than ten times too few. Ref: Pharr, Jakob and Humphreys 2023, Physically Based
-// Rendering, section 12.5.
+// Adds the environment to the lights, with the power that falls onto the scene, as if onto a disk as wide as
+// the sphere around its box; but no more than that of all other lights together, so that these get at least
+// half of the samples: a large floor receives much light from the sky and yet is no brighter for it, and half
+// as many samples as needed cost less than a tenth as many. Ref: Pharr, Jakob and Humphreys 2023, Physically
+// Based Rendering, section 12.5.
 //
-// An even sky is none of the lights: BSDF samples find it as well as any, and light samples for it would be
-// taken from the lamps. Returns whether the environment is one now.
+// An even sky does not become a light: BSDF samples find it as well as light samples would, and those are
+// better spent on the lamps. Returns whether the environment is a light now.
 bool add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box& box) {
     if (map.even) return false;
     const double radius = box.is_empty() ? 0.0 : 0.5 * length(glm::dvec3(box.extent()));
@@ -75,7 +75,7 @@ bool add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box
     return true;
 }
 
-// The records of materials, and of the media behind them, each once.
+// Appends the records of materials and of the media behind them, each medium once.
 void append_materials(GpuScene& gpu, const std::vector<Material>& materials) {
     std::vector<Medium> media(1);
     static_assert(MEDIUM_NONE == 0);
@@ -129,7 +129,7 @@ GpuScene build_gpu_scene(const Scene& scene) {
     }
     gpu.list_corners = list_corners(flat.primitives, bvh.order);
     if (flat.primitives.empty())
-        gpu.arrays[ARRAY_PRIMITIVES].resize(PRIMITIVE_WORDS);  // A ray may ask for it all the same.
+        gpu.arrays[ARRAY_PRIMITIVES].resize(PRIMITIVE_WORDS);  // Traversal may read it all the same.
 
     if (scene.environment) {
         EnvironmentMap map = build_environment_map(*scene.environment);

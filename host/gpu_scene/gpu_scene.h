@@ -19,11 +19,11 @@ struct GpuScene {
     uint32_t primitive_count = 0;  // Two triangles may be one: see shared/primitive.h.
     uint32_t id_count = 0;         // Triangles, spheres and disks.
     uint32_t light_count = 0;
-    uint32_t environment_light = 0;     // Index of the environment among the lights; 0 if it is none of them.
+    uint32_t environment_light = 0;     // Index of the environment among the lights; 0 if it is not one.
     uvec2 environment_size{0};          // Texels.
     float environment_rotation = 0.0f;  // [rad]
 
-    // What the kernels must know of: see shared/kernel_constants.inc.
+    // What the kernels must know: see shared/kernel_constants.inc.
     bool has_normals = false;
     bool has_media = false;
     uint32_t environment = ENVIRONMENT_NONE;

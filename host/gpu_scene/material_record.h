@@ -10,7 +10,7 @@ namespace candela {
 // material.
 MaterialRecord material_record(const decltype(Material::model)& model, uint32_t medium = MEDIUM_NONE);
 
-// The medium behind a surface; none if it is the same as before it, or if the material is opaque.
+// The medium behind a surface; none if it is the same as in front, or if the material is opaque.
 std::optional<Medium> medium_behind(const decltype(Material::model)& model);
 
 }  // namespace candela

@@ -11,7 +11,7 @@
 namespace candela {
 namespace {
 
-// Which triangles have a vertex, for all vertices: those of v are triangles[start[v] .. start[v + 1]).
+// The triangles around each vertex: those of v are triangles[start[v] .. start[v + 1]).
 class Fans {
   public:
     explicit Fans(const TriangleMesh& mesh) : start_(mesh.positions.size() + 1) {

@@ -7,17 +7,17 @@
 
 namespace candela {
 
-// Triangles of a mesh, one or two of them: a b c, and a c d with the same winding. Where there is but one, d
-// is c and `second` is `first`.
+// One or two triangles of a mesh: a b c, and a c d with the same winding. If there is only one, d is c and
+// `second` is `first`.
 struct TrianglePair {
     uvec4 corners;    // Indices of the positions a, b, c, d.
     uint32_t first;   // Index of the triangle a b c,
     uint32_t second;  // and of a c d.
 };
 
-// Every triangle once, in the order of the lesser index in each pair. In that order each triangle takes, of
-// those that are left, the neighbour with which it fits into the smallest box; none if that box is met by
-// more rays than the two around each, which would cost more than it saves.
+// Every triangle once, in the order of the lesser index in each pair. In that order, each triangle takes the
+// remaining neighbour with which it saves the most area: that of the boxes around each, less that of the box
+// around both. It takes none if that is negative, as the pair would then cost more than it saves.
 std::vector<TrianglePair> pair_triangles(const TriangleMesh& mesh);
 
 // Each triangle by itself.
