@@ -17,8 +17,7 @@ enum class BufferUsage {
     storage,   // Device-local storage buffer.
     texel,     // Device-local uniform texel buffer of R32G32B32A32_UINT texels (usamplerBuffer).
     uniform,   // Device-local uniform buffer.
-    readback,  // Storage buffer in host memory: kernels write it, the host reads it. Also what copies go
-               // through.
+    readback,  // Storage buffer in host memory: kernels write it, the host reads it. Copies are staged in it.
 };
 
 class Buffer {

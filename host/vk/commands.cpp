@@ -134,7 +134,7 @@ double Commands::elapsed_by_timestamps() const {
     std::array<uint64_t, 2> ticks{};
     VK_CHECK(vkGetQueryPoolResults(device_->handle(), timestamps_.get(), 0, 2, sizeof ticks, ticks.data(),
                                    sizeof ticks[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
-    // The counter wraps around after so many bits.
+    // The counter wraps around after that many bits.
     const uint32_t bits = device_->info().timestamp_bits;
     const uint64_t mask = bits < 64 ? (uint64_t{1} << bits) - 1 : ~uint64_t{0};
     return double((ticks[1] - ticks[0]) & mask) * device_->info().timestamp_period * 1e-9;

@@ -1,4 +1,4 @@
-// Opens a device and answers for its memory.
+// Opens a device and answers questions about its memory.
 #include "vk/device.h"
 
 #include <fstream>
@@ -56,7 +56,7 @@ Device::Device(const Instance& instance, const DeviceInfo& info,
     pipeline_cache_.emplace(device_.get(), properties, pipeline_cache_folder);
 }
 
-// Bytes of RAM that programs can still have; where the system does not tell, all of its RAM.
+// Bytes of RAM that programs can still allocate; all of the RAM if the system does not tell.
 static uint64_t free_ram() {
     std::ifstream meminfo("/proc/meminfo");
     std::string word;

@@ -1,4 +1,4 @@
-// The logical device: one compute queue, the pipeline cache, and what memory there is.
+// The logical device: one compute queue, the pipeline cache, and the device's memory.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace candela::vk {
 
-// Everything made from a device refers to it: it must stay where it is and outlive them all. One thread at a
-// time.
+// Everything made from a device refers to it: it must not move, and must outlive them all. For one thread at
+// a time.
 class Device {
   public:
     // Opens the device that `info` (from instance.devices()) describes. Compiled kernels are kept in a
@@ -30,8 +30,8 @@ class Device {
     const DeviceInfo& info() const { return info_; }
     const DeviceLimits& limits() const { return info_.limits; }
 
-    // Bytes that are there to allocate: on a CPU the free RAM right now, else the size of the largest
-    // device-local heap, whatever may be in use of it.
+    // Bytes that can be allocated: on a CPU the RAM that is free now, otherwise the size of the largest
+    // device-local heap, however much of it may be in use.
     uint64_t available_memory() const;
 
     // The index of a memory type among `allowed` (one bit per type) that has all `required` properties, and
@@ -42,12 +42,13 @@ class Device {
     VkMemoryPropertyFlags memory_properties(uint32_t memory_type) const;
 
     // Throws an Error (out_of_memory) if `needed` is more than `allowed`: `what` (e.g. `buffer "nodes"`)
-    // needs so many `unit`, but the device allows only so many by the limit of that name in the Vulkan
+    // needs that many `unit`, but the device allows fewer, by the limit of that name in the Vulkan
     // specification.
     void check_limit(const std::string& what, const char* unit, uint64_t needed, uint64_t allowed,
                      const char* limit) const;
 
-    // Gives a Vulkan object the name that validation messages and debuggers show; nothing without validation.
+    // Gives a Vulkan object the name that validation messages and debuggers show; does nothing without
+    // validation.
     template <class Handle>
     void set_name(VkObjectType type, Handle handle, const std::string& name) const {
         set_object_name(type, (uint64_t)handle, name);

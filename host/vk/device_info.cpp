@@ -1,4 +1,4 @@
-// Asks a physical device what it is and offers.
+// Asks a physical device what it is and what it offers.
 #include "vk/device_info.h"
 
 #include <algorithm>
@@ -119,7 +119,7 @@ static void query_queues(DeviceInfo& info) {
     info.timestamp_bits = family->timestampValidBits;
 }
 
-// The formats that kernels use, which Vulkan promises; sets `reason` if one cannot be had.
+// The formats that kernels use, which Vulkan promises; sets `reason` if one is missing.
 static void query_formats(DeviceInfo& info) {
     VkFormatProperties texel{};
     vkGetPhysicalDeviceFormatProperties(info.handle, VK_FORMAT_R32G32B32A32_UINT, &texel);

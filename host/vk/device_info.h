@@ -18,7 +18,7 @@ enum class DeviceType { discrete, integrated, virtual_gpu, cpu, other };
 // "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other".
 const char* to_string(DeviceType type);
 
-// The limits that a renderer can meet; each has the name that the Vulkan specification gives it.
+// The limits that a renderer can exceed; each has the name that the Vulkan specification gives it.
 struct DeviceLimits {
     uint32_t max_compute_work_group_invocations = 0;
     uint32_t max_compute_work_group_count[3] = {};
@@ -37,8 +37,8 @@ struct DeviceLimits {
     uint64_t max_memory_allocation_size = 0;  // [bytes]
 };
 
-// One physical device as Instance::devices() found it. If `reason` is not empty, the device will not do and
-// what stands below `reason` may be missing.
+// One physical device as Instance::devices() found it. If `reason` is not empty, the device will not do, and
+// the members below `reason` may be missing.
 struct DeviceInfo {
     uint32_t index = 0;  // Its place in the instance's list; what `--device` takes.
     std::string name;
@@ -47,12 +47,12 @@ struct DeviceInfo {
     std::string reason;        // Why the device will not do; empty if it will.
 
     std::string driver;           // Name and version, e.g. "llvmpipe, Mesa 22.3.6 (LLVM 15.0.6)".
-    VkDriverId driver_id{};       // Which driver it is, of all that Vulkan's registry knows.
+    VkDriverId driver_id{};       // Which driver it is, by Vulkan's registry.
     uint32_t queue_family = 0;    // The first family that computes.
     uint32_t timestamp_bits = 0;  // Valid bits of a timestamp; 0: the queue writes none.
     double timestamp_period = 0;  // [ns] per tick.
     uint32_t subgroup_size = 0;   // Invocations.
-    uint64_t device_heap = 0;     // The largest device-local heap [bytes]; a fiction on a CPU.
+    uint64_t device_heap = 0;     // The largest device-local heap [bytes]; means nothing on a CPU.
     bool ray_query = false;       // Offers VK_KHR_ray_query; for information only.
     DeviceLimits limits;
     bool presents = false;    // Is to be opened for a window: see presenter.h.
@@ -60,8 +60,8 @@ struct DeviceInfo {
 
     VkPhysicalDevice handle = VK_NULL_HANDLE;
 
-    // True on Mesa's software driver, which compiles kernels for vectors of the CPU: it wants other loops
-    // than GPUs, and than other software drivers.
+    // True on Mesa's software driver, which compiles kernels to vector instructions of the CPU: it needs
+    // other loops than GPUs and other software drivers do.
     bool is_lavapipe() const { return driver_id == VK_DRIVER_ID_MESA_LLVMPIPE; }
     // True if device and host use the same memory, so that the host can write device memory directly.
     bool shares_host_memory() const { return type == DeviceType::cpu || type == DeviceType::integrated; }

@@ -28,12 +28,12 @@ class StorageImage {
     VkImage handle() const { return image_.get(); }
     // The view of all layers, in layout GENERAL, that a kernel binds.
     VkImageView view() const { return view_.get(); }
-    // All of it.
+    // All layers.
     VkImageSubresourceRange subresources() const { return {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, layers_}; }
     uint64_t layer_floats() const { return uint64_t{width_} * height_ * CHANNELS; }
 
   private:
-    // In no layout yet.
+    // The image has no layout yet.
     StorageImage(const Device& device, uint32_t width, uint32_t height, uint32_t layers,
                  const std::string& name);
     friend StorageImage make_storage_image(const Device& device, uint32_t width, uint32_t height,

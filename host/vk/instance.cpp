@@ -40,8 +40,8 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
     return VK_FALSE;  // The call that caused the message goes on.
 }
 
-// Warnings and errors about our use of Vulkan. What the loader says of other drivers is not our concern, nor
-// is advice on performance, which finds fault with copies from images in layout GENERAL.
+// Warnings and errors about our use of Vulkan. The loader's messages about other drivers do not concern us,
+// nor does advice on performance, which objects to copies from images in layout GENERAL.
 static VkDebugUtilsMessengerCreateInfoEXT messenger_info(MessageLog* log) {
     VkDebugUtilsMessengerCreateInfoEXT info{};
     info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
@@ -105,7 +105,7 @@ static VkInstance create_instance(const std::vector<std::string>& required, Mess
     if (log != nullptr) {
         require_validation_layer();
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-        info.pNext = &messenger;  // For messages about the making of the instance itself.
+        info.pNext = &messenger;  // For messages about the creation of the instance itself.
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = &VALIDATION_LAYER;
         if (has_extension(instance_extensions(VALIDATION_LAYER), VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME)) {
@@ -152,7 +152,7 @@ Instance::~Instance() = default;
 
 std::vector<DeviceInfo> Instance::devices() const {
     uint32_t count = 0;
-    // How the loader says that no driver here has a device.
+    // By VK_ERROR_INITIALIZATION_FAILED the loader says that no driver here has a device.
     const VkResult result = vkEnumeratePhysicalDevices(instance_.get(), &count, nullptr);
     if (result == VK_ERROR_INITIALIZATION_FAILED) return {};
     VK_CHECK(result);

@@ -15,7 +15,7 @@ Memory::Memory(const Device& device, const VkMemoryRequirements& requirements, M
                        "maxMemoryAllocationSize");
     device.check_limit(name, "bytes", requirements.size, device.available_memory(), "available memory");
 
-    // On a discrete GPU, device-local memory that the host can write is small or slow: not asked for there.
+    // On a discrete GPU, device-local memory that the host can write is small or slow, and is not requested.
     const bool to_map =
         use == MemoryUse::readback || (use == MemoryUse::upload && device.info().shares_host_memory());
     const uint32_t type =

@@ -20,8 +20,8 @@ enum class MemoryUse {
 class Memory {
   public:
     Memory() = default;
-    // Allocates what `requirements` ask for. `name` is the resource as messages call it, e.g. `buffer
-    // "nodes"`. Throws an Error (out_of_memory) that gives need and limit if the device cannot hold it.
+    // Allocates what `requirements` demand. `name` is what messages call the resource, e.g. `buffer "nodes"`.
+    // Throws an Error (out_of_memory) that gives need and limit if the device cannot hold it.
     Memory(const Device& device, const VkMemoryRequirements& requirements, MemoryUse use,
            const std::string& name);
 

@@ -14,8 +14,8 @@ namespace candela::vk {
 class PipelineCache {
   public:
     // Creates the cache and fills it from its file in `folder`, if that is given. The file is named by the
-    // device's cache UUID, so that each device and driver has one of its own; one that is missing, damaged or
-    // foreign is ignored, and so is what is no file.
+    // device's cache UUID, so that each device and driver has one of its own. A file that is missing, damaged
+    // or foreign is ignored, and so is anything else in its place.
     PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& properties,
                   const std::optional<std::filesystem::path>& folder);
     // Saves the cache to the file if it changed, in a folder for this user alone. Failure is silent: the next

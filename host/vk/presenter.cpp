@@ -1,5 +1,5 @@
-// Surfaces, the swapchain and the copy into its images. The host waits for every step, so that presenting
-// takes neither semaphores nor frames in flight: what is waited for is a copy.
+// Surfaces, the swapchain and the copy into its images. The host waits for every step, which is no more than
+// a copy, so that presenting needs neither semaphores nor frames in flight.
 #include "vk/presenter.h"
 
 #include <algorithm>
@@ -60,7 +60,7 @@ static VkSurfaceFormatKHR choose_format(const Device& device, VkSurfaceKHR surfa
                 ExitCode::no_device);
 }
 
-// One that never makes the program wait for the display, if there is one.
+// A mode that never makes the program wait for the display, if there is one.
 static VkPresentModeKHR choose_mode(const Device& device, VkSurfaceKHR surface) {
     uint32_t count = 0;
     VK_CHECK(vkGetPhysicalDeviceSurfacePresentModesKHR(device.info().handle, surface, &count, nullptr));
@@ -108,7 +108,7 @@ void Presenter::drop_swapchain() {
     swapchain_ = {};
 }
 
-// Returns false if the window has no area, another one than the picture, or lost its surface.
+// Returns false if the window has no area, has another size than the picture, or has lost its surface.
 bool Presenter::make_swapchain(uint32_t width, uint32_t height) {
     if (surface_.get() == VK_NULL_HANDLE) surface_ = make_surface_();
     VkSurfaceCapabilitiesKHR surface{};
@@ -159,7 +159,7 @@ bool Presenter::make_swapchain(uint32_t width, uint32_t height) {
     return true;
 }
 
-// The next image to fill. Returns false if there is none now.
+// Acquires the next image to fill. Returns false if there is none now.
 bool Presenter::acquire(uint32_t& index) {
     VkFence fence = acquired_.get();
     if (!survives(vkAcquireNextImageKHR(device_->handle(), swapchain_.get(), ACQUIRE_NANOSECONDS,

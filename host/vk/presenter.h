@@ -1,5 +1,5 @@
 // Presenter: shows pictures in a window, by copying them from a buffer into the images of a swapchain. Needs
-// no queue but the one that computes, and no graphics.
+// only the queue that computes, and no graphics.
 #pragma once
 
 #include <cstdint>
@@ -30,9 +30,9 @@ class Presenter {
     Presenter(const Device& device, Surface surface, std::function<Surface()> make_surface);
 
     // Shows width * height pixels, row-major from the top, that `pixels` (usage storage or readback) holds as
-    // 32-bit words: four bytes of alpha, which is ignored, and of sRGB codes in the order that
-    // blue_first() says. Returns false if nothing was shown since the window is minimised, has another size
-    // by now, or has lost its surface: the next call tries again with what is there then.
+    // 32-bit words: four bytes of alpha, which is ignored, and of sRGB codes in the order that blue_first()
+    // says. Returns false if nothing was shown because the window is minimised, has another size by now, or
+    // has lost its surface: the next call tries again with the window as it is then.
     bool show(const Buffer& pixels, uint32_t width, uint32_t height);
 
     // Whether the lowest byte of a pixel is blue and the third red; else the reverse.
@@ -43,8 +43,8 @@ class Presenter {
     bool acquire(uint32_t& index);
     void copy(const Buffer& pixels, VkImage image);
     void drop_swapchain();
-    // Whether the call of that name went well enough to go on; if not, the next show() makes anew what was
-    // lost. Throws an Error for what cannot be made anew.
+    // Whether the call of that name went well enough to go on; if not, the next show() recreates what was
+    // lost. Throws an Error for what cannot be recreated.
     bool survives(VkResult result, const char* call);
 
     const Device* device_;

@@ -19,8 +19,8 @@ void upload(const Buffer& buffer, std::span<const std::byte> bytes, uint64_t off
 void download(const Buffer& buffer, std::span<std::byte> bytes, uint64_t offset = 0);
 
 // Makes an image of width * height pixels and `layers` layers, each at least 1, filled with zeros. `name` is
-// for messages. Throws an Error that names the image, what it needs and what the device allows if it cannot
-// be had.
+// for messages. Throws an Error that names the image, what it needs and what the device allows if that is too
+// little.
 StorageImage make_storage_image(const Device& device, uint32_t width, uint32_t height, uint32_t layers,
                                 const std::string& name);
 
