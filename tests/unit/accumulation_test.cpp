@@ -70,8 +70,8 @@ TEST(Accumulation, VarianceIsThatOfTheMean) {
     }
 }
 
-// Two states are put together as if one had all samples. Of four, two and two, the image is the plain mean,
-// although here one half has n samples in pixel i, and the other 2n, which are twice as bright.
+// Two states are pooled, as if one had all samples. Four are two halves of two, and the image is the plain
+// mean of both, although here one half has n samples in pixel i, and the other 2n, which are twice as bright.
 TEST(Accumulation, HalvesAreAveragedWhateverTheyHold) {
     const auto scaled = [](double factor) {
         Accumulation state = sampled(LAYER_COUNT_AOVS).state;
@@ -103,8 +103,8 @@ TEST(Accumulation, HalvesAreAveragedWhateverTheyHold) {
         EXPECT_EQ(halves.find("SampleCount.V")->values[i], float(3 * i));
         EXPECT_EQ(first_half.find("Variance.G")->values[i], INFINITE);
     }
-    // Of independent halves: a quarter of the sum of their variances. The second half is `twice` two times:
-    // its samples have four times the variance of one, and there are 2n of them.
+    // The variance of the mean of independent halves is a quarter of the sum of theirs. The second half is
+    // `twice` two times: its samples have four times the variance of one, and there are 2n of them.
     for (size_t i = 2; i < 6; ++i) {
         const double n = double(i), variance = double(single.find("Variance.R")->values[i]);
         const double second = 4.0 * variance * (n - 1.0) / (2.0 * n - 1.0);

@@ -1,4 +1,4 @@
-// Adaptive sampling, the arithmetic of it: where the passes end, and where extra samples go.
+// The arithmetic of adaptive sampling: where the passes end, and where extra samples go.
 #include "render/adaptive.h"
 
 #include <cmath>
@@ -140,7 +140,7 @@ TEST(Adaptive, ALimitNeverFalls) {
                            one, [](uint32_t x) { return x < WIDTH / 2 ? 1.0 : 9.0; }, one),
                        EVEN, 64, extra);
     const uint32_t before = limit_at(extra, WIDTH - 5);
-    // The other half of the picture is noisy now; the samples are spent there as far as there are more.
+    // The other half of the picture is noisy now, and gets the samples that are added.
     plan_extra_samples(even_state(
                            one, [](uint32_t x) { return x < WIDTH / 2 ? 9.0 : 1.0; }, one),
                        EVEN, 70, extra);

@@ -9,7 +9,7 @@
 namespace candela {
 namespace {
 
-// The probability of each index as a shader draws it: column i is kept for fractions below its threshold, of
+// The probability of each index as a shader draws it: column i is kept for fractions below its threshold /
 // 2^32.
 std::vector<double> drawn(const std::vector<AliasEntry>& table) {
     std::vector<double> probability(table.size());
@@ -21,8 +21,8 @@ std::vector<double> drawn(const std::vector<AliasEntry>& table) {
     return probability;
 }
 
-// Each threshold is rounded to 2^-32 of a column, 1 being rounded to 1 - 2^-32. An index may be the alias of
-// all columns: that is the bound for the largest one; for the others one column counts.
+// Each threshold is rounded to 2^-32 of a column, 1 being rounded to 1 - 2^-32. The index of the largest
+// weight may be the alias of all columns, which gives its bound; for the others one column counts.
 void expect_distribution(const std::vector<double>& weights) {
     const std::vector<AliasEntry> table = build_alias_table(weights);
     ASSERT_EQ(table.size(), weights.size());

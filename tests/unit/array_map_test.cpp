@@ -86,7 +86,7 @@ TEST(ArrayMap, NoneIsSharedWhereThereAreEnough) {
     expect_sound(map, SIZES, 900);
 }
 
-// It takes lengths of arrays of buffers from the constants' defaults.
+// MoltenVK takes the lengths of arrays of buffers from the constants' defaults.
 TEST(ArrayMap, OnMoltenVkThereAreAlwaysAsManyAsAKernelSaysByDefault) {
     vk::DeviceInfo device = device_of(900, 3000, 32);
     device.driver_id = VK_DRIVER_ID_MOLTENVK;
@@ -97,8 +97,7 @@ TEST(ArrayMap, OnMoltenVkThereAreAlwaysAsManyAsAKernelSaysByDefault) {
     }
 }
 
-// Nodes and primitives apart, all others together: if that fits into three buffers, so does what the map
-// makes.
+// If nodes, primitives and all others together fit into a buffer each, so do the buffers of the map.
 TEST(ArrayMap, WhatFitsIntoThreeBuffersByKindFits) {
     std::mt19937 random(1);
     int fitting = 0;

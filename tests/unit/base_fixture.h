@@ -1,4 +1,4 @@
-// What the tests of files and errors share: a directory that goes away, and the message of an error.
+// What the tests of files and errors share: a temporary directory, and the message of an error.
 #pragma once
 
 #include <cstdlib>
@@ -39,7 +39,7 @@ class TemporaryDirectory {
     std::filesystem::path path_;
 };
 
-// The message of the Error that `action` throws; a failure of the test if it throws none.
+// The message of the Error that `action` throws; the test fails if it throws none.
 template <class Action>
 std::string error_of(Action action) {
     try {

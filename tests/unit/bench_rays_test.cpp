@@ -1,5 +1,4 @@
-// The rays of the benchmark: where they start and where they go. They are followed by looking at every
-// triangle.
+// The rays of the benchmark: where they start and where they go. They are traced by testing every triangle.
 #include <cmath>
 #include <utility>
 
@@ -13,7 +12,7 @@ namespace {
 
 using glm::dvec3;
 
-// Distance along the ray at which it meets the triangle, in double precision; infinite if it does not.
+// Distance along the ray at which it hits the triangle, in double precision; infinite if it misses.
 // Ref: Moeller and Trumbore 1997, Fast, Minimum Storage Ray/Triangle Intersection.
 double distance_to(const BenchRay& ray, const BenchTriangle& triangle) {
     const dvec3 e1 = dvec3(triangle.b) - dvec3(triangle.a), e2 = dvec3(triangle.c) - dvec3(triangle.a);
@@ -26,7 +25,7 @@ double distance_to(const BenchRay& ray, const BenchTriangle& triangle) {
 }
 
 // The Cornell box, 32x32 camera rays and what follows from them. Every other triangle is turned round, so
-// that rays meet backs too.
+// that rays hit backs too.
 class BenchRays : public testing::Test {
   protected:
     BenchRays() {
@@ -101,7 +100,7 @@ TEST_F(BenchRays, PrimaryRaysGoThroughTheirPixelsInTiles) {
     }
 }
 
-// The origin lies on the ray before, 1e-5 of the scene's extent (0.56 m) above the surface; coordinates are
+// The origin lies on the previous ray, 1e-5 of the scene's extent (0.56 m) above the surface; coordinates are
 // rounded to 2^-25 m.
 TEST_F(BenchRays, BouncesStartJustAboveTheSurfaceThatWasHit) {
     for (const size_t set : {0u, 1u}) {

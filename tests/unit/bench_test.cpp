@@ -41,7 +41,7 @@ TEST(BenchReport, TheTableHasALinePerFigureUnderItsSubject) {
                              .ours_wall = {10.0, 11.0, 12.0},
                              .rival_wall = {35.0, 36.0, 37.0}},
                             {.subject = "box", .what = "others", .ours = {0.0}}}};
-    // The leading line feed lets the columns stand below each other here.
+    // The leading line feed aligns the columns here.
     EXPECT_EQ('\n' + table_text(table), R"(
 traversal                            candela                   wall     Embree                    wall     ratio
 box
@@ -76,7 +76,7 @@ TEST(BenchReport, JsonHasEveryRun) {
          "embree": null, "ratio": null}]})"));
 }
 
-// Of a reference r that is the same everywhere, m is r: an image that is off by the share e everywhere has
+// For a reference r that is the same everywhere, m is r: an image that is off by the share e everywhere has
 // the error e^2 r^2 / (r^2 + 0.01 r^2), whatever r.
 TEST(BenchRender, RelativeErrorOfAConstantImageHasAClosedForm) {
     for (const float r : {0.01f, 1.0f, 500.0f}) {
@@ -93,7 +93,7 @@ TEST(BenchRender, RelativeErrorWeighsEveryPixelByItsOwnReference) {
     EXPECT_NEAR(relative_mse({x, same, same}, {r, same, same}), (1 / 0.01 + 1 / 9.01) / 6, 1e-12);
 }
 
-// Takes `cpu` and `wall` seconds for each repeat, and writes down what it was asked to do.
+// Takes `cpu` and `wall` seconds for each repeat, and logs what it was asked to do.
 class ToyTracer : public RayTracer {
   public:
     ToyTracer(char name, Clocks clocks, std::string& log) : name_(name), clocks_(clocks), log_(&log) {}
@@ -110,8 +110,8 @@ class ToyTracer : public RayTracer {
     std::string* log_;
 };
 
-// 1000 rays in 4 ms of CPU time, and in 3 ms of wall time, of which 0.1 s is 34 repeats; the rival's 50 ms
-// are two.
+// 1000 rays take 4 ms of CPU time and 3 ms of wall time, of which 0.1 s is 34 repeats; the rival takes 50 ms,
+// so that two suffice.
 TEST(BenchTraversal, SpeedsAreRaysOverTimeAndTheTwoTakeTurns) {
     std::string log;
     ToyTracer ours('o', {.cpu = 0.004, .wall = 0.003}, log), rival('r', {.cpu = 0.1, .wall = 0.05}, log);
@@ -154,7 +154,7 @@ TEST(BenchMeshes, NumbersOfTrianglesHaveThreeDigits) {
     EXPECT_EQ(triangles_text(9987852), "9.99 M triangles");
 }
 
-// Every edge, by the positions of its ends, is met once in either direction. 41 is among the numbers whose
+// Every edge, by the positions of its ends, occurs once in either direction. 41 is among the numbers whose
 // reciprocal, rounded, times itself is not 1.
 TEST(BenchMeshes, ADisplacedSphereIsClosed) {
     for (const uint32_t n : {1u, 2u, 7u, 41u}) {

@@ -1,4 +1,4 @@
-// The wide tree that a binary one becomes is the cheapest: against every way there is, on small trees.
+// The wide tree that a binary one becomes is the cheapest: compared with every other, on small trees.
 #include <algorithm>
 #include <limits>
 #include <random>
@@ -97,7 +97,7 @@ TEST(BvhCollapse, ALeafIsItsOwnOnlyChild) {
     EXPECT_EQ(children.indices[0], 0u);
 }
 
-// Without areas all ways cost the same. Of 4096 leaves, halved again and again, a node has an eighth in each
+// Without areas all trees cost the same. Of 4096 leaves, halved again and again, a node has an eighth in each
 // of six children and a quarter in one.
 TEST(BvhCollapse, IsFlatAmongEquals) {
     Tree tree{{}};

@@ -1,4 +1,5 @@
-// A split of a range of primitives: the cut that the heuristic asks for, and parts that are what they say.
+// A split of a range of primitives: the cut is the one that the heuristic demands, and the parts are what
+// they say.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -73,8 +74,8 @@ double cost_of_cut(const std::vector<Box>& boxes, int axis, float at) {
 }
 
 // Centroids at whole numbers from 0 to 11: 64 primitives have at least 12 bins, so that there is a cut
-// between any two numbers. The search computes in floats: from areas to costs there are no ten roundings
-// on either side of a comparison, and the cut that it finds may cost more by twice that.
+// between any two numbers. The search computes in floats: from areas to costs there are fewer than ten
+// roundings on either side of a comparison, and the cut that it finds may cost more by twice that.
 TEST(BvhSplit, FindsTheBestCutOfAllAxes) {
     std::mt19937 generator(11);
     std::uniform_int_distribution<int> place(0, 11);

@@ -75,8 +75,8 @@ TEST(Bvh, IsValidForRandomBoxesOfAnyCount) {
     }
 }
 
-// Siblings side by side, then all below the first of them, then all below the second, and so on; positions in
-// the order of the nodes' visits.
+// Siblings are adjacent; then come all nodes below the first of them, then all below the second, and so on.
+// Positions are in the order in which the nodes are visited.
 TEST(Bvh, NumbersSiblingsSideBySideAndTheRestDepthFirst) {
     const Bvh bvh = build_bvh(random_boxes(20000, 0.01f));
     std::vector<uint32_t> stack{0};
@@ -120,7 +120,7 @@ TEST(Bvh, IsTheSameForAnyNumberOfThreads) {
 
 TEST(Bvh, SplitsEqualCentroidsInHalvesByIndex) {
     const Bvh bvh = build_valid(std::vector<Box>(64, Box{vec3(-1), vec3(1)}));
-    // The root's children are eighths but for one quarter; the quarter's a pair or two and single ones.
+    // The root's children are eighths but for one quarter; the quarter's are a pair or two and single ones.
     EXPECT_EQ(bvh.depth, 3u);
     for (auto quarter = bvh.order.begin(); quarter != bvh.order.end(); quarter += 16) {
         const auto [least, greatest] = std::minmax_element(quarter, quarter + 16);

@@ -16,9 +16,9 @@ struct Ray {
     glm::dvec3 direction;
 };
 
-// Whether the closed box meets the ray at any t >= 0.
+// Whether the ray hits the closed box at any t >= 0.
 bool meets(const Box& box, const Ray& ray) {
-    if (box.is_empty()) return false;  // Inverted: of a child that does not exist.
+    if (box.is_empty()) return false;  // Inverted, as for a child that does not exist.
     double begin = 0.0, end = std::numeric_limits<double>::infinity();
     for (int a = 0; a < 3; ++a) {
         const double lo = double(box.lo[a]) - ray.origin[a], hi = double(box.hi[a]) - ray.origin[a];

@@ -20,14 +20,14 @@ class BvhValidate : public testing::Test {
         ASSERT_TRUE(problem.has_value());
         EXPECT_EQ(*problem, words);
     }
-    // What says where the children of a node are.
+    // A node, whose `children` say where its children are.
     BvhNode node(size_t i) const { return unpack(bvh_.nodes[i]); }
     void set_children(size_t i, uvec2 children) {
         BvhNode changed = node(i);
         changed.children = children;
         bvh_.nodes[i] = pack(changed);
     }
-    // Where the primitives among the children of a node are.
+    // The position of the first child that is a primitive.
     uint32_t first_position(size_t i) const { return node(i).children.y & BVH_MAX_PRIMITIVES; }
     static std::string at(size_t node) { return "node " + std::to_string(node) + ": "; }
 };
@@ -52,7 +52,7 @@ TEST_F(BvhValidate, SeesAPrimitiveTwice) {
     expect_problem("order names primitive " + std::to_string(bvh_.order[3]) + " twice");
 }
 
-// The root of a thousand boxes has seven nodes; the last node of all has leaves alone.
+// The root of a thousand boxes has seven nodes; the last node of all has only leaves.
 TEST_F(BvhValidate, SeesANodeOutOfRange) {
     const auto size = uint32_t(bvh_.nodes.size());
     set_children(0, bvh_children(7, size - 6, 7, 0));

@@ -59,7 +59,7 @@ TEST(CameraControl, AnOrbitKeepsItsDistanceAndCanBeUndone) {
     EXPECT_LT(length(moved.position - before.position), 100 * ROUNDING);
 }
 
-// Beyond the pole the picture would stand on its head, and at it, have no right.
+// Beyond a pole the picture would stand on its head, and at a pole it would have no right.
 TEST(CameraControl, AnOrbitStopsBeforeThePoles) {
     for (const float direction : {1.0f, -1.0f}) {
         Camera moved = camera();
@@ -102,7 +102,7 @@ TEST(CameraControl, AFlightGoesAlongTheCamerasAxes) {
     expect_near(moved.look_at, vec3(-3, 2, -1));
 }
 
-// Numbers that no decimal fraction of few digits gives, and a lens with all that it can have.
+// Numbers that no short decimal fraction equals, and a lens with everything that it can have.
 TEST(CameraControl, TheLoaderReadsItsJsonBackBitForBit) {
     Camera saved = camera();
     saved.position = vec3(1.0f / 3, -2e-7f, 12345.678f);

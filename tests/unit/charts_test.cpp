@@ -42,7 +42,7 @@ bool is_sampled(const Chart& chart, glm::dvec3 w) {
     return !std::holds_alternative<FacetChart>(chart) || w.z > 0.0;
 }
 
-// Directions have 2^-53 of error; what is 10^-3 wide, at alpha = 10^-3 or an exponent of 10^5, and seen at
+// Directions have an error of 2^-53; what is 10^-3 wide, at alpha = 10^-3 or an exponent of 10^5, and seen at
 // the cosine 0.0045 of the grazing view, is known to 2^-53 / 10^-6 / 0.01.
 constexpr double ROUNDING = 1e-7;
 
@@ -101,11 +101,11 @@ TEST(Charts, PolesAreInTheChart) {
     }
 }
 
-// The margin for poles and borders: directions from a device are rounded by some 2^-24, and samples next to a
-// border, most of them around the poles, where cells are narrow, are counted on its other side: one in a
+// The margin for poles and borders: directions from a device are rounded by some 2^-24, so that samples next
+// to a border are counted on its other side, most of them around the poles, where cells are narrow: one in a
 // thousand at most. (As many come as go.) In the narrowest facets seen at grazing angles it is one in ten:
-// their normals, which a sum of directions of the length 0.009 tells, are known to 2^-24 / 0.009, that is 0.7
-// % of alpha = 10^-3, and a cell is 6 % wide.
+// their normals come from a sum of directions of the length 0.009 and are known to 2^-24 / 0.009, which is
+// 0.7 % of alpha = 10^-3, and a cell is 6 % wide.
 TEST(Charts, RoundingMovesFewSamplesToAnotherCell) {
     constexpr double CELLS = 16.0;
     constexpr size_t SAMPLES = 40000;

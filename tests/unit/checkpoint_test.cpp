@@ -49,7 +49,7 @@ class CheckpointFile : public testing::Test {
         }
     }
 
-    // Those of an adaptive rendering.
+    // The states of an adaptive rendering.
     static States four_states() {
         States states(4, sampled(LAYER_COUNT_COLOUR).state);
         for (uint32_t i = 0; i < states.size(); ++i)
@@ -138,7 +138,7 @@ TEST_F(CheckpointFile, ChangesThatLeaveAValidFileAreNoticed) {
                   "remove the file to start anew");
 }
 
-// With a checksum that is right.
+// The checksum of these files is right.
 TEST_F(CheckpointFile, WhatNoRendererLeavesIsRefused) {
     const auto expect_refused = [this](const States& states, const std::string& what) {
         save(states);

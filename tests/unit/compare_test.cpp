@@ -113,9 +113,9 @@ TEST(Compare, RejectsAnImageThatIsOnePercentBrighter) {
     EXPECT_EQ(result.tests->mean.place, brighter.data);
 }
 
-// A quarter of one channel 2 % off, at 5 % of noise in each pixel: the mean of its 16 blocks, 1024 pixels, is
-// 2 % / (5 % sqrt(2 / 1024)) = 9 deviations off, that of the image half as many, 4.5; 3.1 are rejected.
-// Whether the 16 blocks, 2.3 deviations each, are seen is chance.
+// A quarter of one channel is 2 % off, with 5 % of noise in each pixel: the mean of its 16 blocks, 1024
+// pixels, is 2 % / (5 % sqrt(2 / 1024)) = 9 deviations off, that of the image half as many, 4.5; 3.1 suffice
+// to reject. Whether the 16 blocks, 2.3 deviations each, are noticed is chance.
 TEST(Compare, RejectsAQuarterOfAChannelThatIsTwoPercentOff) {
     int rejected = 0;
     for (unsigned seed = 0; seed < 50; ++seed) {

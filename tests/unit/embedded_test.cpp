@@ -43,7 +43,7 @@ TEST(Embedded, SaysWhyBytesAreNoImage) {
               "cannot read \"a.exr\": it is not an OpenEXR file; give an .exr image");
     EXPECT_EQ(error_of([] { decode_exr("not an image at all", "a.exr"); }),
               "cannot read \"a.exr\": it is not an OpenEXR file; give an .exr image");
-    // A step that meets the header, the table of offsets and the pixels.
+    // The step hits the header, the table of offsets and the pixels.
     const std::string_view bytes = embedded::cornell_box_exr;
     for (size_t size = 8; size < bytes.size(); size += bytes.size() / 97) {
         const std::string message = error_of([&] { decode_exr(bytes.substr(0, size), "a.exr"); });

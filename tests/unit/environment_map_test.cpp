@@ -11,7 +11,7 @@
 namespace candela {
 namespace {
 
-// Of a texel in that row [sr]: 2 pi / width (cos(theta_0) - cos(theta_1)).
+// Solid angle of a texel in that row [sr]: 2 pi / width (cos(theta_0) - cos(theta_1)).
 double solid_angle(uvec2 size, uint32_t row) {
     const long double step = std::numbers::pi_v<long double> / size.y;
     return double(2.0L * std::numbers::pi_v<long double> / size.x *
@@ -45,7 +45,7 @@ TEST(EnvironmentMap, TexelsFillTheSphere) {
     }
 }
 
-// In float luminances, so good to some 2^-23 each.
+// Luminances are floats, good to some 2^-23 each.
 TEST(EnvironmentMap, TheDensityIsProportionalToLuminanceAndIntegratesToOne) {
     const uvec2 size(31, 17);
     const Environment environment = random_environment(size, 1);

@@ -1,4 +1,4 @@
-// Environments: which image files give one, what is told about odd ones, and the sky that comes with the
+// Environments: which image files give one, what is said about odd ones, and the sky that comes with the
 // scenes.
 #include "scene/environment.h"
 
@@ -143,7 +143,7 @@ TEST_F(EnvironmentFile, HasALimitToItsSize) {
     EXPECT_EQ(error_of([&] { load(); }),
               "cannot read \"" + path_.string() +
                   "\": its 8193x8192 pixels are more than the 67108864 allowed here; make the image smaller");
-    write_quickly(path_, hdr_header(8192, 8192));  // Just allowed, but not there.
+    write_quickly(path_, hdr_header(8192, 8192));  // Just allowed, but without pixels.
     EXPECT_NE(error_of([&] { load(); }).find("8192x8192 pixels are more than "), std::string::npos);
 }
 

@@ -107,7 +107,7 @@ std::vector<half> write_compressed(const fs::path& path, Imf::Compression compre
         Imf::TiledOutputFile file(path.c_str(), header);
         file.setFrameBuffer(frame);
         file.writeTiles(0, file.numXTiles(0) - 1, 0, file.numYTiles(0) - 1, 0);
-        // The smaller resolutions are there, too, or the file is incomplete.
+        // Without the smaller resolutions, the file would be incomplete.
         for (int level = 1; level < file.numLevels(); ++level)
             file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
     }
@@ -143,7 +143,7 @@ TEST(Exr, ReadsEveryCompressionInScanLinesAndTiles) {
     }
 }
 
-// The bytes of its only chunk, behind the number of its first line and their own number, are replaced.
+// The bytes of the only chunk are replaced, which follow the number of its first line and their own number.
 TEST(Exr, RefusesAChunkThatIsShorterThanItsPixels) {
     const TemporaryDirectory directory;
     const fs::path path = directory / "a.exr";

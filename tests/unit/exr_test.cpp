@@ -222,7 +222,7 @@ TEST(Exr, AHeaderThatClaimsAHugePictureIsRefused) {
     }
 }
 
-// Without its pixels, the file is still as long as it was; of a long header all is read.
+// The file keeps its length without its pixels; a long header is read to its end.
 TEST(Exr, AHeaderIsReadWithoutThePixels) {
     const TemporaryDirectory directory;
     const fs::path path = directory / "a.exr";

@@ -272,7 +272,7 @@ TEST(File, RemovesWhatKilledProcessesLeftBehind) {
 TEST(File, LeavesTheTemporaryFilesOfOthersAlone) {
     const TemporaryDirectory directory;
     const Writer living(directory / "out.exr", false);
-    // Of another computer, whose processes nobody can ask for from here; and what only looks like one.
+    // A file of another computer, whose processes nobody can ask for from here; and what only looks like one.
     for (const char* name : {".candela-0123456789abcdef-1-0.tmp", ".candela-.tmp", "candela.tmp"})
         std::ofstream(directory / name) << "half";
     check_writable(directory / "out.exr");
@@ -292,7 +292,7 @@ TEST(File, GivesAReplacedFileItsPermissions) {
     }
 }
 
-// A file of root's in a folder of root's where everybody may create files and only their owners replace them.
+// A file of root's in a folder of root's where everybody may create files and only owners may replace theirs.
 class AnothersFile : public testing::Test {
   protected:
     void SetUp() override {

@@ -93,7 +93,7 @@ TEST(Geometry, NormalsOfAMeshAreMadeUnit) {
     const uvec3 t = result.triangles[0];
     EXPECT_EQ(result.normals[t.x], vec3(0, 0, 1));
     EXPECT_EQ(result.normals[t.y], vec3(0, 0.6f, 0.8f));
-    EXPECT_EQ(result.normals[t.z], vec3(0, 0, 1));  // Zero: that of the triangle.
+    EXPECT_EQ(result.normals[t.z], vec3(0, 0, 1));  // In the place of zero, the triangle's.
 }
 
 TEST(Geometry, AnswersForTheWholeScene) {

@@ -301,7 +301,7 @@ TEST(GpuScene, KindsOfLightsArePresentOnlyIfTheyAre) {
               1u << LIGHT_PARALLELOGRAM | 1u << LIGHT_SPHERE | 1u << LIGHT_ENVIRONMENT);
 }
 
-// Two squares with a common edge and a triangle of its own: 4 + 2 + 3 places.
+// Two squares with a common edge and a separate triangle: 4 + 2 + 3 places.
 TEST(GpuScene, OfCornersInOnePlaceTheFirstIsNamed) {
     const Quad next = parallelogram(vec3(1, 0, 0), vec3(1, 0, 1), vec3(0, 1, 0));
     const TriangleMesh triangle{

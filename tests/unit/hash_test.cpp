@@ -1,4 +1,4 @@
-// The hash of large arrays: it must notice every small change, those that arrays of floats have above all.
+// The hash of large arrays: it must notice every small change, above all those that are typical of floats.
 #include "base/hash.h"
 
 #include <array>

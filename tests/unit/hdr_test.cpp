@@ -114,7 +114,7 @@ class Hdr : public testing::Test {
         write_quickly(path_, bytes);
         return read_hdr(path_);
     }
-    // The message behind `cannot read "PATH": `.
+    // The message after `cannot read "PATH": `.
     std::string error(const std::string& bytes) {
         const std::string message = error_of([&] { read(bytes); });
         const std::string start = "cannot read \"" + path_.string() + "\": ";

@@ -1,4 +1,4 @@
-// The JSON document with places: what it accepts, where it says that values stand, and what it says of bad
+// The JSON document with places: what it accepts, where it says that values are, and what it says of bad
 // text.
 #include "load/json/json.h"
 

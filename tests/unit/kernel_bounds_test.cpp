@@ -1,4 +1,4 @@
-// Bounds of compiled kernels: what is within them passes, and whatever is not is named with what to do.
+// Bounds of compiled kernels: kernels within them pass, all others are named, with what to do.
 #include "bench/kernel_bounds.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ KernelBound make_bound(const std::string& device, const std::string& kernel) {
     return {.device = device, .scene = "box", .kernel = kernel, .buffers = "texel", .vgpr_demand = 50};
 }
 
-// What is wrong with kernels, of which `render` has a bound of 50.
+// What is wrong with `kernels`, of which the one called render has a bound of 50.
 std::vector<std::string> violations(const std::vector<CompiledKernel>& kernels) {
     const KernelBounds bounds{.file = "bounds.json",
                               .driver = "radv",

@@ -1,4 +1,4 @@
-// What kernels are compiled for, and who says so.
+// The constants that kernels are compiled with, and who sets them.
 #include <gtest/gtest.h>
 
 #include "render/renderer.h"
@@ -7,7 +7,7 @@
 namespace candela {
 namespace {
 
-// So that identities, which ask for these constants alone, are the same on every device.
+// So identities, which use these constants alone, are the same on every device.
 TEST(KernelConstants, WhatTheDeviceSetsHasItsDefaultUntilThereIsOne) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1))});
     scene.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(2)}, .visible = false};

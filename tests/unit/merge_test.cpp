@@ -111,7 +111,7 @@ class Merge : public testing::Test {
         change(image);
         return write(name, image);
     }
-    // Without the names of files' folder.
+    // The message without the folder of the files.
     std::string text(std::string message) const {
         const std::string prefix = folder_.path().string() + "/";
         for (size_t at; (at = message.find(prefix)) != std::string::npos;)
@@ -193,7 +193,7 @@ TEST_F(Merge, FewSamplesHaveInfiniteVarianceAndNoneAreBlack) {
     EXPECT_EQ(merge_files({a}).image.find("Variance.R")->values[0], INFINITE);
 }
 
-// 1e30 swallows what is added to it, so that sums in another order would be others.
+// 1e30 swallows what is added to it, so that sums in another order would differ.
 TEST_F(Merge, AnyOrderGivesTheSameBits) {
     const auto with_red = [this](const std::string& name, SampleRange range, float red) {
         return write_changed(name, range,
@@ -300,7 +300,7 @@ TEST_F(Merge, OddPartsAreWarnings) {
         warnings({a, write_changed("b.exr", {4, 8}, [](Image& image) { image.channels[0].half = true; })}),
         std::vector<std::string>{
             "b.exr holds 16-bit floats: of its digits only three are right; render parts without --half"});
-    // Another device rounds positions in another way.
+    // Another device rounds positions differently.
     const auto other = write_changed("b.exr", {4, 8}, [](Image& image) {
         image.attributes["candela.driver"] = std::string("2");
         image.channels[9].values[2] += 0x1p-20f;
@@ -337,7 +337,7 @@ TEST_F(Merge, MissingSamplesAreThoseOfNoPart) {
     const auto a = write("a.exr", {4, 8}), b = write("b.exr", {12, 16}), c = write("c.exr", {8, 12}, 1);
     EXPECT_EQ(to_text(missing_samples({b, a}, {0, 20}).samples), "0..4,8..12,16..20");
     EXPECT_TRUE(missing_samples({b, a}, {4, 8}).samples.empty());
-    // Of an interrupted part, what all pixels hold counts.
+    // Of an interrupted part, the samples that all pixels hold count.
     EXPECT_EQ(to_text(missing_samples({b, a, c}, {4, 16}).samples), "8..12");
     const auto d =
         write_changed("d.exr", {8, 12}, [](Image& image) { image.attributes["samplesPerPixel"] = 3.0f; });
@@ -350,7 +350,7 @@ TEST_F(Merge, MissingSamplesAreThoseOfNoPart) {
     EXPECT_EQ(text(error_of([&] { missing_samples({a, other}, {0, 8}); })), refusal({a, other}));
 }
 
-// However many parts there are, values of one are in memory; and only those that are merged are asked for.
+// However many parts there are, only the values of one are in memory, and only merged ones are read.
 TEST_F(Merge, ReadsTheValuesOfEachPartOnce) {
     const auto a = write("a.exr", {0, 4});
     const auto b = write_changed("b.exr", {4, 8}, [](Image& image) { image.add("Custom.X", 7.0f); });

@@ -1,4 +1,4 @@
-// MTL files: the material that each statement makes, and what is refused, in which words.
+// MTL files: the material that each statement makes, and what is refused, with which message.
 #include "load/obj/mtl.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class Mtl : public testing::Test {
         EXPECT_EQ(folder_.without_folder(error_of([&] { load(text); })), message);
     }
 
-    // Checks the one warning of a material, behind its place and name.
+    // Checks the one warning of a material, after its place and name.
     void expect_warning(const std::string& text, const std::string& warning) {
         SCOPED_TRACE(text);
         const std::vector<std::string> warnings = material(text).warnings;
@@ -70,7 +70,7 @@ TEST_F(Mtl, ClampsExponentsThatAreTooGreat) {
     expect_warning("Ks 0.5\nNs 200000", "Ns 200000 is read as 100000, the greatest exponent");
 }
 
-// The sums are 0.4, 1.6 and 0.75, so that all is divided by 1.6, in a program that has nothing to round.
+// The sums are 0.4, 1.6 and 0.75, so that all is divided by 1.6; the quotients are exact.
 TEST_F(Mtl, ScalesWhatWouldMakeLight) {
     const char* text = "Kd 0.2 0.8 0.5\nKs 0.2 0.8 0.25\nNs 10";
     const auto phong = model<PhongMaterial>(text);
@@ -81,7 +81,7 @@ TEST_F(Mtl, ScalesWhatWouldMakeLight) {
     EXPECT_EQ(model<DiffuseMaterial>("Kd 0.5 1.25 0").reflectance, vec3(0.4f, 1, 0));
     expect_warning("Ks 2\nillum 3", "Ks is 2 in a channel; it is scaled to 1");
     EXPECT_EQ(model<MirrorMaterial>("Ks 2 1 0\nillum 3").reflectance, vec3(1, 0.5f, 0));
-    EXPECT_TRUE(material("Kd 0.333334\nKs 0.666667").warnings.empty());  // Rounding is no news.
+    EXPECT_TRUE(material("Kd 0.333334\nKs 0.666667").warnings.empty());  // Rounding is not reported.
 }
 
 TEST_F(Mtl, IlluminationMakesMirrorsAndGlass) {

@@ -22,7 +22,7 @@ class ObjMaterials : public testing::Test {
         return folder_.load(scene_of(shapes));
     }
 
-    // The message for m.obj, behind the place of the file's name in the scene.
+    // The message for m.obj, after the place of the file's name in the scene.
     void expect_error(const std::string& text, const std::string& message) {
         SCOPED_TRACE(text);
         write(text);
@@ -171,7 +171,7 @@ TEST_F(ObjMaterials, AreMissing) {
 TEST_F(ObjMaterials, LieInSeveralLibraries) {
     folder_.write("n.mtl", "newmtl red\nKd 0.25 0 0\nnewmtl blue\nKd 0 0 1\n");
     folder_.write("my own.mtl", "newmtl green\nKd 0 1 0\n");
-    folder_.write("own.mtl", "newmtl green\nKd 0 0 0\n");  // A word of the name before.
+    folder_.write("own.mtl", "newmtl green\nKd 0 0 0\n");  // Its name is a word of the one before.
     for (const char* names : {"mtllib m.mtl\nmtllib n.mtl\nmtllib my own.mtl\nmtllib m.mtl\n",
                               "mtllib my own.mtl\r\nmtllib  m.mtl n.mtl \r\n"}) {
         SCOPED_TRACE(names);

@@ -1,4 +1,4 @@
-// OBJ files: what is read, and what is refused, in which words.
+// OBJ files: what is read, and what is refused, with which message.
 #include "load/obj/obj.h"
 
 #include <clocale>
@@ -22,7 +22,7 @@ class Obj : public testing::Test {
         return world_mesh(load_scene(text, normals));
     }
 
-    // Loads a scene that uses the file, and checks the message behind the place in the scene.
+    // Loads a scene that uses the file, and checks the message after the place in the scene.
     void expect_error(const std::string& text, const std::string& message) {
         SCOPED_TRACE(text);
         folder_.write("m.obj", text);
@@ -48,7 +48,7 @@ TEST_F(Obj, ReadsAllWaysToWriteACorner) {
              "f 1/1/1 2/1/1 3/-1/1\nv 5 5 5\nf 1 2 4\rf 5 2 3\nv 0 0 -1");
     EXPECT_EQ(mesh.triangles.size(), 7u);
     EXPECT_EQ(mesh.positions[mesh.triangles[5].z], vec3(5));
-    EXPECT_EQ(mesh.positions[mesh.triangles[6].x], vec3(0, 0, -1));  // May be defined later.
+    EXPECT_EQ(mesh.positions[mesh.triangles[6].x], vec3(0, 0, -1));  // Vertices may be defined later.
 }
 
 TEST_F(Obj, SharesVerticesOfEqualPositionAndNormal) {
@@ -76,7 +76,7 @@ TEST_F(Obj, GivesCornersWithoutNormalThatOfTheirTriangle) {
 // A cube's corner touches three or six triangles; weights by angle make all normals diagonals nevertheless.
 TEST_F(Obj, SmoothsNormalsByAngleOverEqualPositions) {
     std::string cube;
-    for (int copy = 0; copy < 2; ++copy) {  // Each corner stands in the file twice, as at a texture seam.
+    for (int copy = 0; copy < 2; ++copy) {  // Each corner is in the file twice, as at a texture seam.
         for (int i = 0; i < 8; ++i) {
             cube += std::string("v ") + (i & 1 ? "1 " : "-1 ") + (i & 2 ? "1 " : "-1 ") +
                     (i & 4 ? "1\n" : "-1\n");
@@ -235,7 +235,7 @@ TEST_F(Obj, LoadsOrIsRefusedAfterAnyChangeOfAByte) {
     EXPECT_LT(refused, 1000u);
 }
 
-// A frame: a square whose hole is reached through a slit, so that two corners stand twice.
+// A frame: a square whose hole is reached through a slit, so that two corners occur twice.
 TEST(Polygon, MayHaveASlit) {
     const std::vector<vec3> frame{vec3(0, 0, 0), vec3(4, 0, 0), vec3(4, 4, 0), vec3(0, 4, 0), vec3(0, 0, 0),
                                   vec3(1, 1, 0), vec3(1, 3, 0), vec3(3, 3, 0), vec3(3, 1, 0), vec3(1, 1, 0)};

@@ -14,14 +14,14 @@ TEST(Pace, AMovingPictureIsAsFineAsTheDeviceAllows) {
     EXPECT_EQ(next_scale(2, 0.99 * MOVING_SECONDS), 2u);
     EXPECT_EQ(next_scale(2, 0.21 * MOVING_SECONDS), 2u);
     EXPECT_EQ(next_scale(2, 0.19 * MOVING_SECONDS), 1u);
-    // However slow the device, one can see what one does; and there are no more pixels than there are.
+    // However slow the device, the picture does not become coarser than this; nor ever finer than it is.
     EXPECT_EQ(next_scale(COARSEST_SCALE, 100.0), COARSEST_SCALE);
     EXPECT_EQ(next_scale(1, 0.0), 1u);
     EXPECT_EQ(scaled_size({640, 361}, 4), uvec2(160, 90));
     EXPECT_EQ(scaled_size({3, 1}, 8), uvec2(1, 1));
 }
 
-// Devices of any rate that take a fixed time per picture and another per pixel: the scale settles, on a
+// On devices of any speed, which take a fixed time per picture and another per pixel, the scale settles: on a
 // picture in time if there is one.
 TEST(Pace, TheScaleSettles) {
     for (double pixel_seconds = 1e-9; pixel_seconds < 1e-4; pixel_seconds *= 1.1) {

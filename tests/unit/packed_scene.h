@@ -36,7 +36,7 @@ inline AliasEntry entry(const std::vector<uvec4>& table, uint32_t i) {
     return i % 2 == 0 ? AliasEntry{w.x, w.y} : AliasEntry{w.z, w.w};
 }
 
-// The probability of each light as a shader draws it: column i is kept for fractions below its threshold, of
+// The probability of each light as a shader draws it: column i is kept for fractions below its threshold /
 // 2^32.
 inline std::vector<double> light_probabilities(const GpuScene& gpu) {
     std::vector<double> probability(gpu.light_count);
@@ -87,7 +87,7 @@ inline std::vector<Triangle> triangles(const GpuScene& gpu) {
     return all;
 }
 
-// Whether the corners are these, in this order, from whichever one on.
+// Whether the corners are these, in this order, starting with any of them.
 inline bool same_corners(const Triangle& t, vec3 a, vec3 b, vec3 c) {
     const auto is = [&](vec3 x, vec3 y, vec3 z) { return t.a == x && t.b == y && t.c == z; };
     return is(a, b, c) || is(b, c, a) || is(c, a, b);

@@ -13,11 +13,11 @@
 namespace candela {
 namespace {
 
-// Probability with which one of the checks of a rate fails though all is right; seeds are fixed.
+// Probability that one of the checks of a rate fails although all is right; seeds are fixed.
 constexpr double ALPHA = 1e-3;
 
-// Counts of `samples` that fall into bins with probabilities proportional to `weights`: of what is left, the
-// share of the next bin.
+// Counts of `samples` that fall into bins with probabilities proportional to `weights`: each bin in turn gets
+// its share of the rest.
 std::vector<double> draw(const std::vector<double>& weights, uint64_t samples, std::mt19937& random) {
     double rest = std::accumulate(weights.begin(), weights.end(), 0.0);
     std::vector<double> counts;
@@ -42,15 +42,15 @@ double distance_to_uniform(std::vector<double> p) {
     return distance;
 }
 
-// What that distance exceeds with a probability of `alpha` at most.
+// The bound that this distance exceeds with a probability of at most `alpha`.
 // Ref: Massart, "The Tight Constant in the Dvoretzky-Kiefer-Wolfowitz Inequality", Annals of Probability 18
 // (1990).
 double distance_bound(size_t n, double alpha) {
     return std::sqrt(std::log(2.0 / alpha) / (2.0 * double(n)));
 }
 
-// Even and odd numbers of bins: all alike; some large, most so rare that they are pooled; and one that
-// expects none.
+// Even and odd numbers of bins: all alike; with a few large ones and most so rare that they are pooled; and
+// with one that expects nothing.
 std::vector<std::vector<double>> distributions() {
     std::vector<std::vector<double>> all;
     for (const size_t bins : {2u, 3u, 7u, 64u, 257u})
@@ -70,8 +70,8 @@ std::vector<std::vector<double>> distributions() {
 
 TEST(Pearson, PValuesOfTheRightDistributionAreUniform) {
     constexpr size_t RUNS = 2000, SAMPLES = 20000;
-    // The p-values of whole numbers come in steps. With 2 bins these are the largest: twice the probability
-    // of the most likely count, sqrt(2 / (pi N)).
+    // The p-values of counts, which are whole numbers, come in steps. These are largest with 2 bins: twice
+    // the probability of the most likely count, sqrt(2 / (pi N)).
     const double step = 2.0 * std::sqrt(2.0 / (M_PI * double(SAMPLES)));
     const std::vector<std::vector<double>> all = distributions();
     const double alpha = sidak_level(ALPHA, all.size());
@@ -84,11 +84,11 @@ TEST(Pearson, PValuesOfTheRightDistributionAreUniform) {
     }
 }
 
-// How many samples it takes. If a share e is too much in half of the cells and too little in the others, N
-// samples add N e^2 to the statistic, which otherwise is the number of cells c, less 1, with the deviation
-// sqrt(2 c). At the level 10^-5, that of 100 cases, 362 are rejected for c = 256, and 121 for c = 64; 3.5
-// deviations beyond that, N e^2 is 240 or 150. So 2 % are found by 600 000 samples in 256 cells or by 400 000
-// in 64; and 200 000 in 256 find 3.5 %.
+// How many samples it takes. If half of the cells get a share e too much and the others too little, N samples
+// add N e^2 to the statistic, which otherwise is the number of cells c, less 1, with the deviation sqrt(2 c).
+// At the level 10^-5, that of 100 cases, 362 are rejected for c = 256, and 121 for c = 64; 3.5 deviations
+// beyond that, N e^2 is 240 or 150. So 600 000 samples in 256 cells or 400 000 in 64 find 2 %; and 200 000 in
+// 256 find 3.5 %.
 TEST(Pearson, RejectsADensityThatIsTwoPercentOff) {
     constexpr size_t RUNS = 1000;
     struct Layout {
@@ -113,7 +113,7 @@ TEST(Pearson, RejectsADensityThatIsTwoPercentOff) {
     }
 }
 
-// By hand: of 35 samples five bins that expect 1 are one pool, with 10 and 20 there are three.
+// By hand: with 35 samples, the five bins that expect 1 form one pool, which makes three with 10 and 20.
 TEST(Pearson, BinsThatExpectLessThanFiveArePooled) {
     const std::vector<double> expected{1, 10, 1, 1, 20, 1, 1};
     const std::vector<double> counts{0, 13, 4, 0, 14, 0, 4};
@@ -122,7 +122,7 @@ TEST(Pearson, BinsThatExpectLessThanFiveArePooled) {
     // The scale of what is expected does not matter.
     EXPECT_DOUBLE_EQ(pearson_p_value(counts, {{0.5, 5, 0.5, 0.5, 10, 0.5, 0.5}}),
                      pearson_p_value(counts, expected));
-    // A bin that expects 5 stands alone; one that expects a little less does not.
+    // A bin that expects 5 is a pool of its own; one that expects a little less is not.
     EXPECT_DOUBLE_EQ(pearson_p_value({{6, 4}}, {{5, 5}}), chi_squared_p_value(0.4, 1));
     EXPECT_EQ(pearson_p_value({{6, 3}}, {{4.5, 4.5}}), 1.0);
 }

@@ -1,4 +1,4 @@
-// PLY files in their three formats: what is read, and what is refused, in which words.
+// PLY files in their three formats: what is read, and what is refused, with which message.
 #include "load/ply/ply.h"
 
 #include <algorithm>
@@ -187,7 +187,7 @@ TEST_F(Ply, TakesNormalsFromTheFileOrNot) {
     EXPECT_EQ(load(text).normals, (std::vector<vec3>{vec3(0, 0, 1), vec3(0, 1, 0), vec3(0), vec3(1, 0, 0)}));
     EXPECT_TRUE(load(text, MeshNormals::flat).normals.empty());
     EXPECT_EQ(load(text, MeshNormals::smooth).normals, std::vector<vec3>(4, vec3(0, 0, 1)));
-    // Two of three are none.
+    // Two components of three are no normal.
     EXPECT_TRUE(load(replaced(text, "float nz", "float nw")).normals.empty());
     // What is not used may be anything.
     const std::string nan = replaced(text, "0 0 1 9", "0 nan 1 9");

@@ -55,8 +55,8 @@ TEST_F(Rasterise, ARectangleFillsItsPixelsAndNoOther) {
     }
 }
 
-// A rectangle is two triangles: a pixel on their common edge that both took would be darker, one that neither
-// took would be missing. The sizes bring pixel centres onto the edge.
+// A rectangle is two triangles: a pixel on their common edge would be darker if both covered it, and missing
+// if neither did. The sizes bring pixel centres onto the edge.
 TEST_F(Rasterise, ATranslucentRectangleHasNoSeam) {
     for (const float size : {7.0f, 8.0f, 12.0f, 21.0f}) {
         list().AddRectFilled(ImVec2(1, 1), ImVec2(1 + size, 1 + size), IM_COL32(255, 0, 0, 51));

@@ -35,7 +35,7 @@ class RelativeErrorEstimate : public testing::Test {
   protected:
     static constexpr uint32_t SIZE = 64;
 
-    // What the estimate is of pixels whose two halves are 1 plus deviates, over the error of their means.
+    // The estimate for pixels whose two halves are 1 plus deviates, over the error of their means.
     template <class Deviate>
     double ratio(Deviate deviate) {
         std::vector<double> a(SIZE * SIZE), b(SIZE * SIZE);
@@ -53,7 +53,7 @@ class RelativeErrorEstimate : public testing::Test {
     std::mt19937 random_{1};
 };
 
-// Of the squares of N deviates the mean has a relative standard deviation of sqrt(2 / N), its root half of
+// The mean of the squares of N deviates has a relative standard deviation of sqrt(2 / N), its root half of
 // that; here N is 4096, since channels are alike, and both errors have it: sqrt(2) * 0.011 together. Dividing
 // by the darker of pixel and neighbours, instead of 1, adds less than the noise of a pixel, 0.01.
 TEST_F(RelativeErrorEstimate, IsTheErrorOfIndependentSamples) {
@@ -68,7 +68,7 @@ TEST_F(RelativeErrorEstimate, ByAHalfIsTheErrorOfTheirMean) {
     const Image b = image_of(SIZE, SIZE, 99, [&](size_t) { return 1.0 + 0.02 * noise(random_); });
     const RgbPlanes x = *a.find_rgb(), y = *b.find_rgb();
     const Image mean = image_of(SIZE, SIZE, 107, [&](size_t i) { return 0.5 * (x[0][i] + y[0][i]); });
-    // The three channels of each half have noise of their own; of the mean, that of the first ones.
+    // The three channels of each half have noise of their own; those of the mean have that of the first one.
     const auto one_channel = [&](const RgbPlanes& planes) {
         return image_of(SIZE, SIZE, 1, [&](size_t i) { return double(planes[0][i]); });
     };
@@ -92,7 +92,7 @@ TEST_F(RelativeErrorEstimate, IsNotBlindedByFireflies) {
     EXPECT_NEAR(found, 0.93, 4 * 0.02);
 }
 
-// Halves that make up for each other, as those of Sobol points do in part, are no reason to stop too early.
+// Halves whose errors compensate, as those of Sobol points do in part, are no reason to stop too early.
 TEST_F(RelativeErrorEstimate, IsNeverTooSmallWhereHalvesCompensate) {
     std::normal_distribution<double> noise(0.0, 0.01);
     double last = 0.0;

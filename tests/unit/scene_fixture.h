@@ -36,14 +36,14 @@ class SceneFolder {
         return load_scene(folder_ / "scene.json");
     }
 
-    // Loads a scene that has an error at its '@', and checks the message behind `scene.json:line:column: `.
+    // Loads a scene that has an error at its '@', and checks the message after `scene.json:line:column: `.
     void expect_error(std::string text, const std::string& message) {
         SCOPED_TRACE(text);
         const std::string place = take_mark(text);
         EXPECT_EQ(without_folder(error_of([&] { load(text); })), "scene.json:" + place + ": " + message);
     }
 
-    // Loads a scene that is odd at its '@', and checks that it has one warning, behind
+    // Loads a scene that is odd at its '@', and checks that it has one warning, after
     // `scene.json:line:column: `.
     void expect_warning(std::string text, const std::string& message) {
         SCOPED_TRACE(text);

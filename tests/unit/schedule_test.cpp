@@ -18,7 +18,7 @@ struct Device {
     double overhead;  // Seconds per submission.
 };
 
-// Carries a schedule out on a made-up device and checks every tile against the samples that its pixels hold.
+// Runs a schedule on a made-up device and checks every tile against the samples that its pixels hold.
 struct Rendering {
     std::vector<uint32_t> samples;  // Per pixel.
     size_t submissions = 0;
@@ -86,8 +86,8 @@ TEST(Schedule, ThereIsNothingToDoAtTheTarget) {
     EXPECT_TRUE(Schedule(uvec2(64, 64), 0, 0, 0.05, PASS_GROWTH).done());
 }
 
-// The least piece of work is a group of 8 x 8 pixels; where that is affordable, submissions end up near their
-// length.
+// The smallest piece of work is a group of 8 x 8 pixels; where that is affordable, submissions end up near
+// their length.
 TEST(Schedule, SubmissionsAreAsLongAsWanted) {
     for (const double seconds_per_sample : {1e-8, 1e-7, 1e-6, 1e-5}) {
         const Rendering r = carry_out(uvec2(640, 480), 0, 64, 0.05, {seconds_per_sample, 0.0});
@@ -108,8 +108,8 @@ TEST(Schedule, GrowthIsBoundedWhenSubmissionsTakeNoTime) {
     }
 }
 
-// An early stop leaves an even image: a first look at all pixels, and then none is ahead of another by more
-// than eight samples or `growth` times as many.
+// An early stop leaves an even image: all pixels get a first sample, and then none is ahead of another by
+// more than eight samples or `growth` times as many.
 TEST(Schedule, PassesAreShortWhileTheImageIsYoung) {
     for (const uint32_t growth : {EVEN_PASS_GROWTH, PASS_GROWTH}) {
         Schedule schedule(uvec2(512, 512), 0, 1000, 0.05, growth);
@@ -129,8 +129,8 @@ TEST(Schedule, PassesAreShortWhileTheImageIsYoung) {
 }
 
 // Of 512 x 512 pixels only every sixteenth row of groups goes on; all others have reached their limits. A
-// submission that finds a row takes no longer than one may, however little the ones before it had to do, and
-// those are not made smaller.
+// submission that includes such a row takes no longer than it may, however little the previous ones had to
+// do, and those are not made smaller.
 TEST(Schedule, PixelsAtTheirLimitsNeitherHideWorkNorMakeSubmissionsSmall) {
     constexpr double SECONDS_PER_SAMPLE = 1e-6, OVERHEAD = 1e-4;
     constexpr uint32_t BEFORE = 64, TARGET = 128;
@@ -154,9 +154,9 @@ TEST(Schedule, PixelsAtTheirLimitsNeitherHideWorkNorMakeSubmissionsSmall) {
     EXPECT_LE(submissions, 336u + 70u);
 }
 
-// However many threads share the groups of a row or a column out among them, one run each, all see all of it:
-// as many groups of the first half as of the second, within a tenth of all and three. (In the order of their
-// places it would be half of all for two threads.)
+// However many threads divide the groups of a row or a column among them, one run each, every thread gets
+// groups from all of it: as many from the first half as from the second, within a tenth of all and three. (In
+// the order of their places they would differ by half of all with two threads.)
 TEST(SpreadingStride, EveryThreadSeesAllOfATile) {
     for (uint32_t n = 1; n <= 600; ++n) {
         SCOPED_TRACE(n);

@@ -12,7 +12,7 @@ CHECKED_ROWS = 16
 
 
 def differences(path, maker):
-    """What of the file is not as the script makes it."""
+    """How the file differs from what the script makes."""
     data = path.read_bytes()
     at = len(maker.header())
     if not data.startswith(maker.header()):

@@ -1,5 +1,5 @@
-// Tone curves: properties that their publications promise, values computed apart in double precision, and
-// what becomes of inputs that are no colours.
+// Tone curves: properties that their publications promise, values computed separately in double precision,
+// and what becomes of inputs that are no colours.
 #include "base/tonemap.h"
 
 #include <cmath>

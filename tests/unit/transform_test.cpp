@@ -75,7 +75,7 @@ TEST(Transform, KnowsWhatKeepsSpheres) {
     EXPECT_NEAR(scale(R"([{"rotate": 77, "axis": [3, 1, 2]}, {"scale": -0.5}])").value(), 0.5, 1e-15);
     EXPECT_NEAR(scale(R"([{"scale": 1e-30}])").value(), 1e-30, 1e-45);
     EXPECT_NEAR(scale(R"([{"scale": 1e30}])").value(), 1e30, 1e15);
-    // Undone again: what counts is the whole.
+    // Undone again: only the whole counts.
     EXPECT_EQ(scale(R"([{"scale": [1, 2, 4]}, {"scale": [4, 2, 1]}])"), 4.0);
 
     EXPECT_FALSE(scale(R"([{"scale": [1, 1, 2]}])"));
@@ -88,7 +88,8 @@ TEST(Transform, KnowsWhatKeepsSpheres) {
     EXPECT_FALSE(scale(R"([{"scale": [1, 1, 1.000008]}])"));
 }
 
-// As other programs write matrices: every rotation is taken for one after rounding to six decimals.
+// Every rotation is recognised as one after its matrix is rounded to six decimals, as other programs write
+// it.
 TEST(Transform, KeepsSpheresUnderRoundedRotations) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -13,7 +13,7 @@
 namespace candela {
 namespace {
 
-// Whether a b c are the corners of that triangle, in its order, from whichever one on.
+// Whether a b c are the corners of that triangle, in its order, starting with any of them.
 bool same_triangle(uvec3 t, uint a, uint b, uint c) {
     const uvec3 corners(a, b, c);
     return corners == t || corners == uvec3(t.y, t.z, t.x) || corners == uvec3(t.z, t.x, t.y);
@@ -69,7 +69,7 @@ TEST(TrianglePairs, SquaresArePairedWhereverTheirTrianglesStand) {
     std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), std::mt19937(1));
     const std::vector<TrianglePair> pairs = pair_triangles(mesh);
     expect_each_triangle_once(mesh, pairs);
-    // Some triangle finds the partners of its best ones gone; the box of a square is the least there is.
+    // Some triangles find their best partners taken; the box of a square saves the most.
     EXPECT_LT(pairs.size(), 440u);
 }
 
@@ -86,7 +86,8 @@ TEST(TrianglePairs, TheSmallestBoxWins) {
     EXPECT_EQ(pairs[1].second, pairs[1].first);
 }
 
-// Two blades of a book, open by a right angle: 10 m^2 of box each, 120 m^2 around both.
+// Two pages of a book, open at a right angle: half the surface of the box is 10 m^2 for each, 120 m^2 for
+// both.
 TEST(TrianglePairs, ABoxThatIsLargerThanBothKeepsThemApart) {
     const TriangleMesh mesh{.positions = {vec3(0, 0, 0), vec3(0, 0, 1), vec3(10, 0, 0), vec3(0, 10, 0)},
                             .normals = {},
