@@ -22,7 +22,7 @@ class AliasTest : public LightTest {
   protected:
     static constexpr size_t SAMPLES = 100000;
 
-    // How often each light or texel was chosen; its red, whole and above 0, tells which one it is.
+    // How often each light or texel was chosen; its red, a whole number above 0, tells which one it is.
     static std::vector<double> count_by_red(const std::vector<LightSample>& samples, size_t count) {
         std::vector<double> counts(count);
         for (const LightSample& s : samples) {
@@ -34,7 +34,7 @@ class AliasTest : public LightTest {
     }
 };
 
-// The power of a light is its area times its luminance; of a thousand, most are chosen seldom, and
+// The power of a light is its area times its luminance. Most of a thousand lights are chosen seldom, and
 // judged together.
 TEST_F(AliasTest, LightsOfVeryUnequalPowerAreChosenByIt) {
     const std::vector<size_t> tables{1, 2, 37, 1000};
@@ -47,7 +47,7 @@ TEST_F(AliasTest, LightsOfVeryUnequalPowerAreChosenByIt) {
         for (size_t i = 0; i < count; ++i) {
             const vec3 radiance = powers[i] > 0.0 ? vec3(float(i + 1), 1.0f, 1.0f) : vec3(0.0f);
             const double luminance = 0.2126 * radiance.x + 0.7152 + 0.0722;
-            // One behind the other, each as wide as its power asks for.
+            // One behind the other, each as wide as its power requires.
             const auto width = powers[i] > 0.0 ? float(powers[i] / luminance) : 1.0f;
             powers[i] = powers[i] > 0.0 ? double(width) * luminance : 0.0;
             add_shape(scene, parallelogram(vec3(0, 0, -float(i)), vec3(width, 0, 0), vec3(0, 1, 0)), 0,

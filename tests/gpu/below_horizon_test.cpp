@@ -1,5 +1,5 @@
-// Directions below the horizon of the shading normal, which smooth normals and slanting lights bring about:
-// nothing is scattered there, and what is looked at from there is consistent.
+// Directions below the horizon of the shading normal, which arise from smooth normals and grazing lights:
+// nothing is scattered there, and what is seen from there is consistent.
 #include "base/text.h"
 #include "gpu/bsdf_fixture.h"
 
@@ -34,7 +34,7 @@ class BelowHorizonTest : public BsdfTest {
     }
 };
 
-// Light from below the horizon: neither value nor density, wherever the viewer is.
+// Light from below the horizon has neither value nor density, wherever the viewer is.
 TEST_F(BelowHorizonTest, NothingIsScatteredTowardsLightFromBelow) {
     const std::vector<vec3> below = directions_below();
     std::vector<BsdfItem> items;
@@ -53,7 +53,7 @@ TEST_F(BelowHorizonTest, NothingIsScatteredTowardsLightFromBelow) {
     }
 }
 
-// A viewer below the horizon: what needs to know where it is mirrored or refracted to scatters nothing.
+// For a viewer below the horizon, surfaces that mirror or refract scatter nothing.
 TEST_F(BelowHorizonTest, IdealAndMicrofacetSurfacesAreBlackFromBelow) {
     std::vector<BsdfItem> items;
     Random random(221);
@@ -73,8 +73,9 @@ TEST_F(BelowHorizonTest, IdealAndMicrofacetSurfacesAreBlackFromBelow) {
     }
 }
 
-// The diffuse base does not ask where the viewer is, and the Phong lobe lies around the mirrored direction,
-// then below the horizon but for its rim: samples follow the density and agree with it as they do from above.
+// The diffuse base does not depend on the viewer. The Phong lobe lies around the mirrored direction, which is
+// now below the horizon, so that only its rim is above. Samples follow the density and agree with it as they
+// do from above.
 TEST_F(BelowHorizonTest, DiffuseAndPhongSamplesFollowTheirDensityFromBelow) {
     const vec3 colour(0.4f, 0.8f, 0.1f);
     std::vector<BsdfCase> cases;

@@ -1,4 +1,4 @@
-// The benchmark's tracers: what they are timed at is the work that it is said to be.
+// The benchmark's tracers do the work that they are timed for.
 #include <algorithm>
 
 #include "bench/meshes.h"
@@ -13,8 +13,8 @@ class BenchTest : public DeviceTest {
   protected:
     BenchTest() : scene_(displaced_scene(300)), gpu_(build_gpu_scene(scene_)) {}
 
-    // The benchmark's own sets, of 256 camera rays and what follows from them, and rays from without and
-    // within the room, many of which miss it.
+    // The benchmark's own sets, of 256 camera rays and what follows from them, and rays from outside and
+    // inside the room, many of which miss it.
     std::vector<RaySet> ray_sets() const {
         const auto tracer = make_device_tracer(device(), gpu_, SceneAccess::texel_buffers);
         std::vector<RaySet> sets = make_ray_sets(scene_, triangles_of(scene_), 256,
@@ -35,7 +35,7 @@ class BenchTest : public DeviceTest {
         return tracer.results();
     }
 
-    // By looking at every triangle.
+    // The hits found by testing every triangle.
     std::vector<uint32_t> brute_force(const RaySet& set) const {
         Rays rays;
         for (const BenchRay& ray : set.rays)
@@ -74,7 +74,7 @@ TEST_F(BenchTest, RaysInSeveralDispatchesFindTheSame) {
         EXPECT_EQ(run(*pieces, set), run(*whole, set)) << set.name;
 }
 
-// Of a program without Embree there is nothing else to say.
+// Without Embree there is nothing else to test.
 TEST_F(BenchTest, TheRivalIsThereWhenItsVersionIsAndFindsTheSameHits) {
     const auto rival = make_embree_tracer(triangles_of(scene_));
     ASSERT_EQ(rival != nullptr, embree_version().has_value());

@@ -41,8 +41,8 @@ std::vector<NamedMesh> meshes() {
 
 class BruteForceTest : public TraversalTest {
   protected:
-    // So many tests of a ray against a triangle in all, the same number over each mesh; half of the rays at
-    // random.
+    // Compares that many tests of a ray against a triangle in total, the same number over each mesh; half of
+    // the rays are random.
     void expect_brute_force_over_meshes(double tests, uint32_t seed) const {
         const std::vector<NamedMesh> all = meshes();
         for (const auto& [name, mesh, reaches] : all) {
@@ -67,7 +67,7 @@ class BruteForceTest : public TraversalTest {
     }
 };
 
-// On software Vulkan, about 10 ns of processor time each.
+// Each takes about 10 ns of processor time on software Vulkan.
 TEST_F(BruteForceTest, ABillionPairsOfRaysAndTriangles) {
     expect_brute_force_over_meshes(sized(test_effort(), 1'000'000'000), 210);
 }

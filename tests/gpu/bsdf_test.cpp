@@ -1,5 +1,5 @@
-// Every BSDF that is a function: samples follow the density, weights are f cos / pdf, f is reciprocal and
-// creates no energy.
+// Every BSDF without ideal scattering: samples follow the density, weights are f cos / pdf, f is reciprocal
+// and creates no energy.
 #include "gpu/bsdf_fixture.h"
 
 namespace candela {
@@ -56,7 +56,7 @@ TEST_F(BsdfTest, DiffuseTransmissionHasAValueOfItsOwnOnEachSide) {
     EXPECT_FLOAT_EQ(values[1].pdf_of_wi, float(1.0 / 3.0 * cosine_pdf));
 }
 
-// Light takes the same way back: wo and wi change places, and the viewer his side.
+// Light takes the same way back: wo and wi are swapped, and so is the viewer's side.
 TEST_F(BsdfTest, DiffuseTransmissionIsReciprocal) {
     const MaterialRecord sheet = diffuse_transmission(vec3(0.5f, 0.2f, 0.4f), vec3(0.4f, 0.8f, 0.1f));
     Random random(11);
@@ -75,9 +75,8 @@ TEST_F(BsdfTest, DiffuseTransmissionIsReciprocal) {
     }
 }
 
-// Pairs all over the hemisphere, and pairs near the mirrored direction. Nothing in those of diffuse and Phong
-// surfaces depends on the order but signs; the conductor takes the Fresnel term's cosine at wi: 5 roundings
-// of it, next to a reflectance of 0.3 or more.
+// Pairs all over the hemisphere, and pairs near the mirrored direction. Nothing in the models depends on the
+// order of the two but signs, so that values agree to the bit.
 TEST_F(BsdfTest, ReflectionIsReciprocal) {
     const std::vector<MaterialRecord> materials{
         diffuse(vec3(0.8f, 0.3f, 0.0f)),

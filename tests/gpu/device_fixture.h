@@ -14,9 +14,8 @@
 
 namespace candela {
 
-// Tests of distributions have fixed seeds, so that one device gives one verdict. On a device that rounds
-// otherwise the verdict may change; all of a test's hypotheses together are rejected wrongly with this
-// probability.
+// Tests of distributions have fixed seeds, so that one device gives one verdict. The verdict may differ on a
+// device that rounds differently; this is the probability of wrongly rejecting any of a test's hypotheses.
 inline constexpr double CHI_SQUARED_ALPHA = 1e-3;
 
 // All that a check compared must hold, and its p-values must not be too small.
@@ -25,7 +24,7 @@ inline void expect_holds(const Evidence& evidence, double alpha = CHI_SQUARED_AL
     EXPECT_GT(evidence.p_value(), alpha) << evidence.least_likely();
 }
 
-// A test with a device that is open. At its end the validation layer must have had nothing to say.
+// A test with an open device. At its end the validation layer must not have reported anything.
 class DeviceTest : public vk::Vk {
   protected:
     DeviceTest() { device_.emplace(instance_, info_); }

@@ -6,12 +6,12 @@ namespace {
 
 constexpr float LAST = 1.0f - 0x1p-24f;  // The last random number below 1.
 
-// Indices of refraction behind the surface over those before it.
+// Indices of refraction behind the surface over those in front of it.
 const std::vector<float> ETAS{1.5f, 1.33f, 2.4f, 1.0f / 1.5f, 0.25f, 1.0f};
 
-// Reflectance of unpolarised light at a boundary to the relative index eta, by the angles alone; 1 beyond the
-// critical one. Ref: Born and Wolf, Principles of Optics, section 1.5.2, equation 21a, of the amplitudes in
-// this form.
+// Reflectance of unpolarised light at a boundary with the relative index eta, from the angles alone; 1 beyond
+// the critical angle. Ref: Born and Wolf, Principles of Optics, section 1.5.2, equation 21a, which gives the
+// amplitudes in this form.
 double reflectance(double sine, double eta, bool exact) {
     if (sine >= eta) return 1.0;
     const double i = std::asin(sine), t = std::asin(sine / eta);
@@ -48,9 +48,9 @@ class DielectricTest : public BsdfTest {
         }
         return run(items);
     }
-    // The error of a reflectance R = ((a - b) / (a + b))^2 whose cosine b of refraction is off: by 2^-22 / b,
+    // The error of a reflectance R = ((a - b) / (a + b))^2 whose cosine of refraction b is off by 2^-22 / b,
     // since its square has 8 roundings of a number up to 1 (a division counts 5); dR / db <= 4 / a, and a >=
-    // 0.25 where eta < 1 and b small. All else is relative to terms up to 1: 2^-20.
+    // 0.25 where eta < 1 and b is small. All else is relative to terms up to 1: 2^-20.
     static double tolerance(double cos_t) { return 16.0 * 0x1p-22 / cos_t + 0x1p-20; }
 };
 
@@ -116,8 +116,8 @@ TEST_F(DielectricTest, RefractsBySnellsLaw) {
     }
 }
 
-// Light that went in comes out on the way it came, and meets the same reflectance: the refracted ray, seen
-// from the back, where z is turned over.
+// Light that went in comes out on the way it came, with the same reflectance: the refracted ray, seen from
+// the back, where z is flipped.
 TEST_F(DielectricTest, BothSidesReflectAlike) {
     for (const uint32_t model : {MATERIAL_DIELECTRIC_SCHLICK, MATERIAL_DIELECTRIC_EXACT}) {
         for (const float eta : {1.5f, 1.33f, 2.4f}) {
@@ -161,7 +161,7 @@ TEST_F(DielectricTest, NothingIsRefractedBeyondTheCriticalAngle) {
     }
 }
 
-// Of random choices the share that the density says is reflected: within 4 standard deviations.
+// The share of random choices that reflect is what the density says, within 4 standard deviations.
 TEST_F(DielectricTest, TheChoiceIsMadeWithItsProbability) {
     for (const vec3 wo : VIEWS) {
         const uint32_t count = 100000;

@@ -42,10 +42,10 @@ uint32_t word(std::array<uint8_t, 3> rgb) {
     return rgb[0] | uint32_t{rgb[1]} << 8 | uint32_t{rgb[2]} << 16 | 0xFF000000u;
 }
 
-// Vulkan lets exp2 and log2 be wrong by (3 + 2 |x|) and 3 units in the last place, and pow by what both
-// together make: with exponents 1/2.4 and 2.2 and what the matrices of ACES cancel, encoded values differ by
-// well below 1e-4. Rounding to 255 steps then differs, by one step, only where the value lies within 1e-4 *
-// 255 of a step's middle: for 5 % of all values at most.
+// Vulkan allows exp2 and log2 errors of (3 + 2 |x|) and 3 units in the last place, and pow that of both
+// together. With the exponents 1/2.4 and 2.2, and the cancellation in the matrices of ACES, encoded values
+// differ by well below 1e-4. Rounding to 255 steps then differs, by one step, only where the value lies
+// within 1e-4 * 255 of a step's middle: for 5 % of all values at most.
 TEST_F(DisplayTest, DevelopsAsFilesAreDeveloped) {
     const uvec2 size(64, 64);
     std::mt19937 random(7);

@@ -1,4 +1,4 @@
-// The sky: where its texels are, and that light samples find them in proportion to what they send.
+// The sky: its texels are where they should be, and light samples find them in proportion to their light.
 #include "gpu/device_fixture.h"
 #include "selftest/skies.h"
 

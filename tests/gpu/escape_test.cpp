@@ -33,7 +33,7 @@ struct ClosedMesh {
     float room;
 };
 
-// Every edge is crossed once in either direction, by position: nothing is open.
+// Every edge, by position, occurs once in either direction: nothing is open.
 void expect_closed(const TriangleMesh& mesh) {
     const auto key = [](vec3 p) { return std::array{p.x, p.y, p.z}; };
     std::map<std::array<std::array<float, 3>, 2>, int> crossings;
@@ -123,9 +123,9 @@ std::vector<ClosedMesh> closed_meshes() {
 
 class EscapeTest : public DeviceTest {
   protected:
-    // Shoots so many rays in all.
+    // Shoots that many rays in total.
     void expect_no_escapes(uint64_t rays) const {
-        // Few enough for lavapipe, which ends all loops of an invocation after 65 535 turns.
+        // Few enough for lavapipe, which ends all loops of an invocation after 65 535 iterations.
         constexpr uint32_t RAYS_PER_ITEM = 32;
         const std::vector<ClosedMesh> meshes = closed_meshes();
         const uint64_t items_per_mesh = rays / meshes.size() / RAYS_PER_ITEM + 1;

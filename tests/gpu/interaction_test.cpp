@@ -1,4 +1,4 @@
-// Rays that leave round shapes do not meet them again where they began, and rays that went into a sphere do
+// Rays that leave round shapes do not hit them again where they began, and rays that went into a sphere do
 // not slip out.
 #include "gpu/device_fixture.h"
 #include "selftest/spheres.h"

@@ -13,7 +13,7 @@ bool is_sound(vec3 v) {
     return is_finite(v) && v.x >= 0.0f && v.y >= 0.0f && v.z >= 0.0f;
 }
 
-// A sample that says that something may arrive.
+// Whether a sample is valid from which light may arrive.
 bool is_sound(const LightSample& s) {
     const bool unit = std::abs(length(glm::dvec3(s.wi)) - 1.0) <= 0x1p-20;
     return unit && is_sound(s.Li) && is_finite(vec3(s.pdf)) && s.pdf > 0.0f && is_finite(s.shadow) &&

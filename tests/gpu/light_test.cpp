@@ -1,4 +1,5 @@
-// Samples of flat lights: they are chosen by their power, points uniformly by area, and densities say so.
+// Samples of flat lights: lights are chosen by their power, points uniformly by area, and the densities
+// agree.
 #include "gpu/light_fixture.h"
 
 namespace candela {

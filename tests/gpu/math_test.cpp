@@ -117,8 +117,8 @@ TEST_F(MathTest, AnglesOfTheAxesAreExact) {
 }
 
 // Kahan's sum is off by 2 * 2^-24 of the exact one, and sum - compensation by less. A plain sum would not
-// move at all in the first case and lose a quarter of the addends in the second. (Lavapipe ends all loops of
-// an invocation after 65 535 turns.)
+// change at all in the first case and lose a quarter of the addends in the second. (Lavapipe ends all loops
+// of an invocation after 65 535 iterations.)
 TEST_F(MathTest, CompensatedSumsKeepSmallAddends) {
     const std::vector<Item> items{{vec3(1.0f, 0x1p-26f, 0.0f), 50000}, {vec3(100.0f, 1e-5f, 0.0f), 50000}};
     const std::vector<Result> results = run(items);

@@ -44,8 +44,8 @@ TEST_F(PhongTest, ValuesAgreeWithDoublePrecision) {
 }
 
 // The lobe around the normal lies above the horizon, so that all that it reflects counts: (n + 2) / (2 pi)
-// cos^(n + 1) integrates to 1. The mean of the weights is the albedo within 4 of its standard deviations (a
-// false alarm in 16 000, of 63 tests).
+// cos^(n + 1) integrates to 1. The mean of the weights is the albedo within 4 of its standard deviations (one
+// false alarm in 16 000, for each of 63 tests).
 TEST_F(PhongTest, TheAlbedoAtNormalIncidenceIsTheSumOfBaseAndLobe) {
     const vec3 ks(0.4f, 0.8f, 0.1f);
     for (const float n : EXPONENTS) {
@@ -66,7 +66,7 @@ TEST_F(PhongTest, TheAlbedoAtNormalIncidenceIsTheSumOfBaseAndLobe) {
 
 // What the lobe reflects of light from all around. With a = 1 - cos(alpha)^(n + 1), uniform over the lobe,
 // and the angle b around it, (n + 2) / (2 pi) cos(alpha)^n d(wi) is (n + 2) / (n + 1) da db; what is below
-// the horizon counts nothing. The midpoint rule is good to 10^-5.
+// the horizon does not count. The midpoint rule is good to 10^-5.
 double lobe_albedo(vec3 wo, double n) {
     constexpr int ALONG = 512;
     const double cosine = double(wo.z), sine = std::sqrt(1.0 - cosine * cosine);
@@ -110,8 +110,8 @@ TEST_F(PhongTest, TheAlbedoElsewhereIsThatOfQuadrature) {
     }
 }
 
-// Under a constant environment a sample counts its weight. What that varies, against its mean, does not
-// depend on how narrow the lobe is.
+// Under a constant environment a sample contributes its weight, whose relative variance does not depend on
+// how narrow the lobe is.
 TEST_F(PhongTest, SamplesVaryAlikeAtEveryExponent) {
     for (const vec3 wo : {VIEWS[0], normalize(vec3(1, 0, 1))}) {
         double least = 1e9, greatest = 0.0;
@@ -127,7 +127,8 @@ TEST_F(PhongTest, SamplesVaryAlikeAtEveryExponent) {
     }
 }
 
-// Where a narrow lobe has nothing left, the density is the base's: its share of the luminance of both.
+// Where nothing is left of a narrow lobe, the density is the base's, times the base's share of the luminance
+// of both.
 TEST_F(PhongTest, LobeAndBaseAreChosenByTheirAlbedo) {
     const vec3 kd(0.5f, 0.2f, 0.9f), ks(0.4f, 0.8f, 0.1f), rgb(0.2126f, 0.7152f, 0.0722f);
     const vec3 aside = normalize(vec3(1, 0, 1));
@@ -137,7 +138,7 @@ TEST_F(PhongTest, LobeAndBaseAreChosenByTheirAlbedo) {
     EXPECT_NEAR(at_aside.pdf_of_wi, share * std::sqrt(0.5) / M_PI, 0x1p-21);
 }
 
-// Materials whose lobe or base is missing sample the other one alone.
+// A material without lobe or base samples the other one alone.
 TEST_F(PhongTest, ALobeWithoutAlbedoIsNotSampled) {
     for (const BsdfResult& s : samples(phong(vec3(0.5f), vec3(0.0f), 1e5f), VIEWS[1], 10000, 23)) {
         ASSERT_NEAR(s.weight.x, 0.5, 0x1p-22);

@@ -1,4 +1,4 @@
-// Samples of spheres and disks that emit: over the solid angle of a sphere from outside, over the area else.
+// Samples of spheres and disks that emit: over the solid angle of a sphere from outside, over area otherwise.
 #include "gpu/light_fixture.h"
 
 namespace candela {

@@ -69,14 +69,14 @@ TEST_F(RoundShapesTest, OfEqualOnesTheFirstInLeafOrderWins) {
     EXPECT_GT(hits(expect_brute_force(round.scene, rays_at_shapes(round, 4000, 2.0f, 104))), 1000u);
 }
 
-// The nearest t > 0 in double precision, and a bound of the error of floats; none for a miss, nor where a
+// The nearest t > 0 in double precision, and a bound on the error of floats; none for a miss, or where
 // rounding decides whether there is a hit.
 struct Expected {
     double t;
     double bound;
 };
 
-// Lengths relative to d. The point of the line next to the centre is off by e = 8 * 2^-24 of the centre's
+// Lengths are relative to d. The point of the line next to the centre is off by e = 8 * 2^-24 of the centre's
 // distance D; the half chord, sqrt(r^2 - near^2), by (2 r e) / (2 half), and t by that and the roundings of
 // D.
 std::optional<Expected> expected(const Sphere& sphere, const RayItem& ray) {

@@ -9,7 +9,7 @@ namespace candela {
 
 class SamplerTest : public DeviceTest {
   protected:
-    // One pair of words for each of them, by SAMPLER_*.
+    // One pair of words for each sample; `sampler` is one of SAMPLER_*.
     std::vector<uvec2> pairs(uint32_t sampler, const std::vector<SampleOfPair>& samples) const {
         return map<uvec2>(kernels::sampler, samples, sampler_constants(sampler));
     }

@@ -24,8 +24,8 @@ struct Relation {
     uint32_t seeds, pairs;
 };
 
-// To the neighbours, and to the dimensions that one path uses together: pixel and lens, light and BSDF of one
-// bounce, one dimension of two bounces.
+// Relations to the neighbours, and between the dimensions that one path uses together: pixel and lens, light
+// and BSDF of one bounce, one dimension of two bounces.
 constexpr std::array RELATIONS{
     Relation{"the pixel to the right", 1, 0, 0, 0},
     Relation{"the pixel below", 0, 1, 0, 0},
@@ -37,12 +37,12 @@ constexpr std::array RELATIONS{
 
 class SamplerStatisticsTest : public SamplerTest {
   protected:
-    // Pixels of a picture, whose every second row and column is used, so that no pixel is its own
-    // neighbour's.
+    // Pixels of a picture of which every second row and column is used, so that no pixel is the neighbour of
+    // another.
     static constexpr uint32_t SIZE = 256, PIXELS = SIZE * SIZE / 4;
     static constexpr uint32_t PAIR = 1;
 
-    // Samples first, ..., first + count - 1 of these pixels, one after the other, or of what is related to
+    // Samples first, ..., first + count - 1 of these pixels, one after the other, or of what `to` relates to
     // them.
     std::vector<glm::dvec2> points(uint32_t sampler, uint32_t first, uint32_t count,
                                    const Relation& to) const {
@@ -99,9 +99,9 @@ TEST_F(SamplerStatisticsTest, SamplesOfPixelsSeedsAndPairsAreIndependent) {
     }
 }
 
-// What a picture shows is the error of a pixel's first samples, and that its neighbour's is another. Of
-// independent errors, whatever their distribution, the correlation coefficient times the root of their number
-// is nearly normal.
+// A picture shows the error of a pixel's first samples, which must not follow its neighbour's. Of independent
+// errors, whatever their distribution, the correlation coefficient times the root of their number is nearly
+// normal.
 TEST_F(SamplerStatisticsTest, ErrorsOfPixelsSeedsAndPairsAreIndependent) {
     const double level = sidak_level(CHI_SQUARED_ALPHA, ALL_SAMPLERS.size() * RELATIONS.size());
     const auto errors = [&](uint32_t sampler, const Relation& relation) {
@@ -127,11 +127,11 @@ TEST_F(SamplerStatisticsTest, ErrorsOfPixelsSeedsAndPairsAreIndependent) {
     }
 }
 
-// Pairs are shuffled against each other, lest the first half of one be met with the first half of another. Of
-// the first 16 samples, 2 m and 2 m + 1 are in different halves of the square, along either axis; which is
-// where depends on m by bits that are random and of each pair its own. So of the 8 couples those that are
-// alike in two pairs have a binomial distribution: they would all be alike, or none, if the pairs were
-// visited in one order.
+// Pairs are shuffled against each other, so that the first half of one does not go with the first half of
+// another. Of the first 16 samples, 2 m and 2 m + 1 are in different halves of the square, along either axis;
+// which of them is where depends on m by bits that are random and each pair's own. So the number of the 8
+// couples that are alike in two pairs has a binomial distribution: all would be alike, or none, if the pairs
+// were visited in one order.
 TEST_F(SamplerStatisticsTest, SobolPairsAreShuffledAgainstEachOther) {
     constexpr uint32_t COUPLES = 8;
     const std::array<Relation, 3> relations{RELATIONS[4], RELATIONS[5],
@@ -191,7 +191,7 @@ TEST_F(SamplerStatisticsTest, ErrorsOfIndependentSamplesFallLikeTheRootOfTheirNu
     EXPECT_NEAR(slope, -0.5, 0.05);
 }
 
-// Scrambled nets do N^(-3/2), but for a logarithm, where the integrand is smooth.
+// The errors of scrambled nets fall like N^(-3/2), but for a logarithm, where the integrand is smooth.
 // Ref: Owen 1997, Scrambled Net Variance for Integrals of Smooth Functions, Annals of Statistics 25.
 TEST_F(SamplerStatisticsTest, ErrorsOfSobolSamplesFallFaster) {
     const double slope = error_slope([&](const auto& samples) { return pairs(SAMPLER_SOBOL, samples); }, 128);

@@ -1,4 +1,4 @@
-// A ray that leaves a surface does not meet it again: offset_origin against the renderer's own triangle test.
+// A ray that leaves a surface does not hit it again: offset_origin against the renderer's own triangle test.
 #include <cmath>
 
 #include "gpu/device_fixture.h"
@@ -75,8 +75,8 @@ TEST_F(SpawnTest, TheOriginStaysOnTheSurface) {
             const glm::dvec3 v0(s.v0), v1(s.v1), v2(s.v2);
             const glm::dvec3 p(v0 + double(s.b1) * (v1 - v0) + double(s.b2) * (v2 - v0));
             for (const int axis : {0, 1, 2}) {
-                // A representable number is at most 2^-23 of |p|; one more octave where p crosses one. p
-                // itself was rounded: 5 times 2^-24 of the largest vertex.
+                // Representable numbers are at most 2^-23 of |p| apart, or one octave more where p crosses
+                // one. p itself was rounded: 5 times 2^-24 of the largest vertex.
                 const double rounding = 5 * 0x1p-24 * 2.0 * double(scale);
                 const double step = std::max(257.0 * 0x1p-22 * (std::abs(p[axis]) + rounding), 0x1p-16);
                 ASSERT_NEAR(results[i].o[axis], p[axis], step + rounding);

@@ -1,4 +1,4 @@
-// What the tests of traversal share: the hits of rays must be those of looking at every primitive.
+// What the tests of traversal share: rays must have the hits that testing every primitive finds.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ class TraversalTest : public DeviceTest {
         return candela::trace(device(), scene, rays, access);
     }
 
-    // Traces the rays both ways of access and demands the hits of brute force. Returns the results.
+    // Traces the rays with either scene access and expects the hits of brute force. Returns the results.
     std::vector<TraversalResult> expect_brute_force(const Scene& scene, const Rays& rays) const {
         const GpuScene gpu = build_gpu_scene(scene);
         std::vector<TraversalResult> results;

@@ -48,7 +48,7 @@ TEST_F(TraversalTest, OfEqualTrianglesTheFirstInLeafOrderWins) {
               5000u);
 }
 
-// A narrow V whose sides are one primitive: a ray from above meets one first, a ray from below the other.
+// A narrow V whose sides are one primitive: a ray from above hits one first, a ray from below the other.
 TEST_F(TraversalTest, OfTwoTrianglesWithACommonEdgeTheNearerOneIsHit) {
     const TriangleMesh mesh{
         .positions = {vec3(0, 0, 0), vec3(1, 0.1f, 0.5f), vec3(0, 0, 1), vec3(1, -0.1f, 0.5f)},
@@ -140,14 +140,14 @@ TEST_F(TraversalTest, OneTriangle) {
     EXPECT_EQ(results[1002].t, 2.0f);
 }
 
-// What double precision says of the ray and a triangle that it meets, and how far floats may be off.
+// What double precision says of the ray and a triangle that it hits, and how far floats may be off.
 struct Expected {
     double t;
     double bound;
     bool well_conditioned;
 };
 
-// The error bound of triangle_intersect. In units of 2^-24, with P the largest component of a vertex seen
+// The error bound of triangles_intersect. In units of 2^-24, with P the largest component of a vertex seen
 // from the origin and D the triangle's extent across the ray: a division is off by 5 (2.5 ulp), so a sheared
 // coordinate by 10 P, an edge function by 48 P D, the determinant `det` (twice the area across the ray) by
 // three times that, a barycentric coordinate by 192 P D / det. Their errors act on the range `depth` of the

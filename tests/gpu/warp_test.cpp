@@ -23,9 +23,9 @@ TEST_F(WarpTest, PowersOfTheCosineFollowTheirDensity) {
     expect_holds(test_power_cosines(device()));
 }
 
-// As many directions as random numbers: a cosine that was taken to a power and back would have 1 180 values.
-// The numbers are 64 * 2^-24 apart, and a direction is told apart from its neighbours unless their sines
-// round to one float.
+// There are as many directions as random numbers: a cosine that was raised to a power and back would have 1
+// 180 values. The numbers are 64 * 2^-24 apart, and a direction differs from its neighbours unless their
+// sines round to one float.
 TEST_F(WarpTest, NarrowLobesKeepAllTheirDirections) {
     std::vector<WarpItem> items;
     for (uint32_t i = 0; i < 1u << 18; ++i)
@@ -44,7 +44,7 @@ TEST_F(WarpTest, PolygonsAreUniform) {
     expect_holds(test_polygons(device()));
 }
 
-// But for some roundings.
+// Up to some rounding errors.
 TEST_F(WarpTest, TheFirstCornerOfAPolygonIsOnTheXAxis) {
     for (const uint32_t corners : {3u, 4u, 5u, 6u, 64u}) {
         const float almost = (1.0f - 0x1p-20f) / float(corners);

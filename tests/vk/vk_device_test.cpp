@@ -207,14 +207,14 @@ class VkPipelineCache : public Vk {
         std::ofstream(file, std::ios::binary) << data;
     }
 
-    // What stands in front of the data.
+    // The bytes that precede the data.
     static std::string hash_of(std::string_view data) {
         uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a.
         for (const char c : data)
             hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
         return {reinterpret_cast<const char*>(&hash), sizeof hash};
     }
-    // The file is whole, and this device's. A driver may well give other data each time.
+    // The file is complete, and this device's. A driver may well give other data each time.
     void expect_good() const {
         const std::string data = contents(file());
         ASSERT_GE(data.size(), HASH_BYTES + sizeof(VkPipelineCacheHeaderVersionOne));

@@ -33,7 +33,7 @@ inline std::string error_of(ExitCode code, const std::function<void()>& action) 
 }
 
 // A fresh instance and the information on its default device; a test opens the devices that it needs. When
-// they are closed again, and all objects with them, the validation layer must have had nothing to say.
+// they are closed again, and all objects with them, the validation layer must not have reported anything.
 class Vk : public testing::Test {
   protected:
     Vk()

@@ -1,5 +1,5 @@
-// host/vk on the device that is here, with the validation layer on: data round-trips, kernels see what they
-// are bound to, limits are named, and Vulkan is used as its specification says.
+// host/vk on the device at hand, with the validation layer on: data round-trips, kernels see what is bound to
+// them, limits are named, and Vulkan is used as its specification says.
 #include <array>
 #include <chrono>
 #include <cstring>
