@@ -75,7 +75,7 @@ TEST_F(AdaptiveTest, ALimitIsWhereThePixelStops) {
     }
 }
 
-// Stopped after so many submissions, in any state and pass, and made anew from what the host held.
+// Stopped after that many submissions, in any state and pass, and recreated from what the host held.
 TEST_F(AdaptiveTest, ItGoesOnToTheSameBitsFromAnyMoment) {
     constexpr uint32_t SPP = 96;
     const Scene scene = cornell_box();
@@ -108,9 +108,9 @@ TEST_F(AdaptiveTest, ItGoesOnToTheSameBitsFromAnyMoment) {
         EXPECT_EQ(whole.channels[c].values, resumed.channels[c].values) << whole.channels[c].name;
 }
 
-// All pixels are one point under a lamp so small that a work group's first samples find it once or twice,
-// or not at all. Groups without a find get few samples, those with one get many; were those the
-// samples of the same half, each find would be outvoted, and the picture too dark by a third.
+// All pixels are one point under a lamp so small that a work group's first samples find it once or twice, or
+// not at all. Groups without a find get few samples, those with one get many. If those were samples of the
+// same half, each find would be outvoted, and the picture too dark by a third.
 TEST_F(AdaptiveTest, TheExpectationStaysThoughTheSamplesGoWhereLightWasFound) {
     constexpr uint32_t SPP = 128, SEEDS = 100;
     constexpr float RADIUS = 0.025f;

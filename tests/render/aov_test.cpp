@@ -1,4 +1,4 @@
-// The images beside the colours: albedo and normal of the first hit, position and depth of the pixel's
+// The images besides the colours: albedo and normal of the first hit, position and depth of the pixel's
 // centre.
 #include <cmath>
 
@@ -68,9 +68,9 @@ TEST_F(AovTest, NormalsAreInterpolated) {
         const vec3 p(positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]);
         const vec3 n(image.find("N.X")->values[i], image.find("N.Y")->values[i],
                      image.find("N.Z")->values[i]);
-        // Within a triangle of the sphere, the interpolated normal leaves the direction of the position by
-        // less than the square of half its edge (0.4 / 2). The mean over a pixel of 5 cm adds as much as the
-        // normal turns by: half a pixel.
+        // Within a triangle of the sphere, the interpolated normal differs from the direction of the position
+        // by less than the square of half its edge (0.4 / 2). The mean over a pixel of 5 cm adds the turn of
+        // the normal over half a pixel.
         ASSERT_LT(length(n - normalize(p)), 0.04f + 0.025f) << i;
         ASSERT_GT(length(n), 0.99f);
     }

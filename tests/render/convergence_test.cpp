@@ -1,4 +1,4 @@
-// The error that is estimated from one rendering is the one that a converged image shows.
+// The error that is estimated from one rendering is the one that comparison with a converged image shows.
 #include "cli/convergence.h"
 
 #include <cmath>
@@ -16,7 +16,7 @@ class ConvergenceTest : public SteadyTest {
   protected:
     static constexpr uint32_t SIZE = 48, SPP = 128, REFERENCE_SPP = 1024;
 
-    // An adaptive rendering of SPP samples on average, at its end.
+    // The end of an adaptive rendering of SPP samples on average.
     ConvergencePoint adaptive_point(const Scene& scene, const GpuScene& gpu_scene,
                                     const Image& reference) const {
         const RenderSettings chosen = settings(SamplerKind::sobol, 1);
@@ -42,11 +42,11 @@ class ConvergenceTest : public SteadyTest {
 
 // Bounds of estimate / error. Below: both are roots of means of 6912 squares, of which few pixels have most:
 // with an effective number of 300, each has a standard deviation of 0.5 sqrt(2 / 300) = 0.041, their ratio of
-// 0.058, and four of these are 0.23; the reference's own error adds 1/8 at most to the true square. Above:
-// as much for samples that are independent in the end, of which stratified ones are, in pairs of sets of 64,
-// too; for Sobol points times sqrt(2^p - 1), where their variance falls as n^-p: with p = 1.5, sqrt(1.83)
-// = 1.35. The darker of a pixel and its neighbours is at most a few standard deviations darker than the
-// pixel, each as large as the error itself, which is below 0.1 here: 1.15.
+// 0.058, and four of these are 0.23; the reference's own error adds 1/8 at most to the true square. Above: as
+// much for samples that are independent in the end, as stratified ones are, too, in pairs of sets of 64; for
+// Sobol points times sqrt(2^p - 1), where their variance falls as n^-p: with p = 1.5, sqrt(1.83) = 1.35. The
+// darker of a pixel and its neighbours is at most a few standard deviations darker than the pixel, each as
+// large as the error itself, which is below 0.1 here: 1.15.
 TEST_F(ConvergenceTest, TheEstimatedErrorIsTheTrueOneForEverySampler) {
     for (const std::string name : {"cornell-box", "environment"}) {
         const Scene scene = load_scene(CANDELA_SCENES "/" + name + ".json");
@@ -66,7 +66,7 @@ TEST_F(ConvergenceTest, TheEstimatedErrorIsTheTrueOneForEverySampler) {
             EXPECT_GT(estimate, error * 0.77 / std::sqrt(1.0 + 1.0 / 8.0)) << name << ", " << word;
             EXPECT_LT(estimate, error * 1.23 * 1.15 * faster) << name << ", " << word;
         }
-        // Of two halves nothing has to be assumed.
+        // With two halves nothing has to be assumed.
         const ConvergencePoint halves = adaptive_point(scene, gpu_scene, reference);
         const double error = std::sqrt(*halves.relmse);
         EXPECT_GT(*halves.estimate, error * 0.77 / std::sqrt(1.0 + 1.0 / 8.0)) << name;

@@ -12,8 +12,8 @@ constexpr float THICKNESS = 0.5f;  // Of the slabs [m].
 constexpr vec3 ABSORPTION(0.3f, 1, 2);
 constexpr double DEGREE = M_PI / 180.0;
 
-// Reflectance of a boundary for unpolarised light that falls in at theta > 0 from the thinner side: the mean
-// of sin^2(theta - theta_t) / sin^2(theta + theta_t) and of the same of tangents. Ref: Fresnel's equations.
+// Reflectance of a boundary for unpolarised light that arrives at theta > 0 from the thinner side: the mean
+// of sin^2(theta - theta_t) / sin^2(theta + theta_t) and of the same with tangents. Ref: Fresnel's equations.
 double fresnel(double ior, double theta) {
     if (theta == 0.0) return std::pow((ior - 1.0) / (ior + 1.0), 2.0);
     const double theta_t = std::asin(std::sin(theta) / ior);
@@ -28,7 +28,7 @@ double schlick(double ior, double theta) {
     return normal + (1.0 - normal) * std::pow(1.0 - std::cos(theta), 5.0);
 }
 
-// A box whose sides are so far away that no ray of a test meets them, with the front at y = 0 and the back at
+// A box whose sides are so far away that no ray of a test hits them, with the front at y = 0 and the back at
 // y = -thickness: its front sides are outside.
 void add_slab(Scene& scene, const DielectricMaterial& glass, float thickness) {
     constexpr float REACH = 100.0f;
@@ -72,8 +72,8 @@ class DielectricTest : public RenderTest {
     }
 };
 
-// The light goes to and fro within: T = (1 - R)^2 (1 + R^2 + R^4 + ...) = (1 - R) / (1 + R), and reflected is
-// the rest.
+// Light goes to and fro within: T = (1 - R)^2 (1 + R^2 + R^4 + ...) = (1 - R) / (1 + R). The rest is
+// reflected.
 TEST_F(DielectricTest, ASlabTransmitsAndReflects) {
     for (const Fresnel kind : {Fresnel::schlick, Fresnel::exact}) {
         for (const double degrees : {0.0, 45.0, 75.0}) {
@@ -103,7 +103,7 @@ TEST_F(DielectricTest, OnlyTheRatioOfTheIndicesCounts) {
     expect_share(scene, 1024, glm::dvec3((1.0 - r) / (1.0 + r)));
 }
 
-// Each pass loses a = exp(-sigma d): T = (1 - R)^2 a (1 + R^2 a^2 + ...).
+// Each pass leaves the share a = exp(-sigma d): T = (1 - R)^2 a (1 + R^2 a^2 + ...).
 TEST_F(DielectricTest, ASlabAbsorbs) {
     for (const double degrees : {0.0, 60.0}) {
         SCOPED_TRACE(degrees);
@@ -132,8 +132,7 @@ TEST_F(DielectricTest, AnEmitterWithinTheGlass) {
 
 // A white floor and a lamp in the glass: what reaches the floor is absorbed on its way from the lamp, and
 // again on its way to the camera. The lamp fills a cone around 45 degrees; within, at an angle t from its
-// axis, the way is D cos(t)
-// - sqrt(r^2 - D^2 sin^2(t)), and cos(t) cos(45) is the mean cosine at the floor.
+// axis, the way is D cos(t) - sqrt(r^2 - D^2 sin^2(t)), and cos(t) cos(45) is the mean cosine at the floor.
 TEST_F(DielectricTest, ALampWithinTheGlass) {
     constexpr float DEPTH = 1.0f;
     constexpr double LAMP_RADIUS = 0.25;
@@ -159,7 +158,7 @@ TEST_F(DielectricTest, ALampWithinTheGlass) {
     for (const Estimator estimator : {Estimator::bsdf, Estimator::light, Estimator::mis}) {
         SCOPED_TRACE(int(estimator));
         RenderSettings settings = independent_settings(32, estimator, 2);
-        settings.max_depth = 2;  // Into the glass, and once off the floor: no light that came off the glass.
+        settings.max_depth = 2;  // Into the glass, and once off the floor: no light that the glass reflected.
         const Image image =
             image_of(render(scene, settings, samples(estimator == Estimator::bsdf ? 4096 : 1024)));
         expect_mean(image, glm::dvec3(RADIANCE) * out * irradiance_over_pi, 2e-5);
@@ -167,7 +166,7 @@ TEST_F(DielectricTest, ALampWithinTheGlass) {
 }
 
 // A camera within the glass sees the sky eta^2 times as bright, but for what the boundary reflects, and
-// beyond the critical angle (41.8 degrees) what is within alone: a panel at its back.
+// beyond the critical angle (41.8 degrees) only what is inside: a panel at its back.
 TEST_F(DielectricTest, ACameraWithinTheGlass) {
     for (const double degrees : {0.0, 30.0, 38.0, 43.0, 70.0}) {
         SCOPED_TRACE(degrees);

@@ -1,5 +1,5 @@
-// Sheets that scatter light diffusely to both sides: light samples reach either side, through the medium on
-// it.
+// Sheets that scatter light diffusely to both sides: light samples reach either side, through the medium
+// there.
 #include <cmath>
 
 #include "estimator_fixture.h"
@@ -64,7 +64,7 @@ TEST_F(DiffuseTransmissionTest, ALampBehindTheSheetShinesThroughIt) {
     }
 }
 
-// The same from the other side, and beside it the lamp before the sheet.
+// The same from the other side, and also with the lamp in front of the sheet.
 TEST_F(DiffuseTransmissionTest, EitherSideIsLitByEither) {
     constexpr float LAMP_RADIUS = 0.7f;
     const vec3 reflectance(0.3f, 0.1f, 0.2f), transmittance(0.2f, 0.5f, 0.6f);
@@ -88,8 +88,8 @@ TEST_F(DiffuseTransmissionTest, EitherSideIsLitByEither) {
     }
 }
 
-// The integral of 2 exp(-sigma d / mu) mu over mu in [0, 1]: what a medium lets through between two planes of
-// diffuse light.
+// The integral of 2 exp(-sigma d / mu) mu over mu in [0, 1]: the transmittance of a medium between two planes
+// of diffuse light.
 glm::dvec3 diffuse_transmittance(double d) {
     constexpr int POINTS = 100000;
     glm::dvec3 sum(0.0);
@@ -113,7 +113,7 @@ TEST_F(DiffuseTransmissionTest, ALeafWithinAMediumLeavesItAsItIs) {
     expect_share(scene, Estimator::bsdf, 1024, 0.5 * layer * layer);
 }
 
-// Nothing is lost: a ball of it cannot be seen under a constant sky.
+// Nothing is lost: a ball of such a sheet cannot be seen under a constant sky.
 TEST_F(DiffuseTransmissionTest, ALosslessBallIsInvisible) {
     Scene scene = scene_with_camera(vec3(1, 2, 4.5f), vec3(0), 0.4f);
     scene.environment = constant_environment(vec3(1));

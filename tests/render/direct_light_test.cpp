@@ -1,4 +1,4 @@
-// Direct light has closed forms: what a Lambert surface sends back under a parallel rectangle, and who lights
+// Direct light has closed forms: what a Lambert surface reflects under a parallel rectangle, and who lights
 // whom.
 #include <cmath>
 
@@ -64,8 +64,8 @@ TEST_F(DirectLightTest, UnderACornerOfALargeRectangle) {
     expect_radiance(scene, Estimator::bsdf, 4096, form_factor);
 }
 
-// Two lamps of different size: errors of the choice between them do not cancel. Seen past each other from the
-// origin.
+// Two lamps of different size: errors of the choice between them do not cancel. Neither hides the other from
+// the origin.
 TEST_F(DirectLightTest, TwoLampsAddUp) {
     Scene scene = floor_seen_closely(REFLECTANCE);
     scene.shapes.push_back(lamp(0, 0.3f, 0, 0.3f, 2));
@@ -83,7 +83,7 @@ TEST_F(DirectLightTest, TheBackOfALampIsDark) {
     expect_radiance(scene, Estimator::mis, 512, 4.0 * corner_form_factor(1, 1, 2));
 }
 
-// Which way the floor is wound says nothing: opaque surfaces reflect on both sides.
+// The floor's winding does not matter: opaque surfaces reflect on both sides.
 TEST_F(DirectLightTest, BothSidesOfASurfaceReflect) {
     Scene scene = floor_seen_closely(REFLECTANCE);
     scene.shapes[0].geometry = parallelogram(vec3(-50, 0, 50), vec3(0, 0, -100), vec3(100, 0, 0));

@@ -22,9 +22,9 @@ class EnvironmentLightTest : public RenderTest {
         scene.environment = std::move(environment);
         return scene;
     }
-    // A surface must send out what `form_factor` of the texels' radiance gives; samples per pixel for light
-    // samples (and MIS) and for BSDF samples. Directions are rounded at 2^-22: an edge of a texel may be so
-    // much off, of the tenth of a radian and more that the texels below are wide.
+    // A surface must reflect what `form_factor` of the texels' radiance gives; samples per pixel for light
+    // samples (and MIS) and for BSDF samples. Directions are rounded at 2^-22: an edge of a texel may be off
+    // by that, while the texels below are a tenth of a radian wide or more.
     void expect_form_factor(const Scene& scene, double form_factor, uint32_t light_spp,
                             uint32_t bsdf_spp) const {
         const glm::dvec3 expected = glm::dvec3(REFLECTANCE) * glm::dvec3(RADIANCE) * form_factor;
@@ -108,7 +108,7 @@ TEST_F(EnvironmentLightTest, TheMapSurroundsTheScene) {
     expect_pixels(seen(vec3(-1, 0, aside), 0.5f * PI), map.radiance[5]);
 }
 
-// A floor of which the camera sees the left half of the picture full.
+// A floor that fills the left half of the picture.
 TEST_F(EnvironmentLightTest, AHiddenSkyIsTransparentAndLightsAllTheSame) {
     Scene scene = scene_with_camera(vec3(0, 0, 3), vec3(0), 0.5f);
     add_diffuse(scene, REFLECTANCE);
@@ -137,7 +137,7 @@ TEST_F(EnvironmentLightTest, AHiddenSkyShowsInAMirror) {
     expect_pixels(image_of(render(scene, settings(Estimator::mis), 4)), RADIANCE);
 }
 
-// Neither a sky that is all black nor a scene without anything but sky divides by zero.
+// Neither a black sky nor a scene with nothing but sky divides by zero.
 TEST_F(EnvironmentLightTest, ABlackSkyAndAnEmptySceneAreRendered) {
     expect_form_factor(floor_under(constant_environment(vec3(0))), 0.0, 4, 4);
     Scene empty = floor_under(constant_environment(RADIANCE));

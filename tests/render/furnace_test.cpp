@@ -46,7 +46,7 @@ TEST_F(FurnaceTest, EveryRaySeesTheGeometricSeries) {
     }
 }
 
-// Emission met by the ray that leaves vertex D still counts: D + 1 terms.
+// Emission hit by the ray that leaves vertex D still counts: D + 1 terms.
 TEST_F(FurnaceTest, MaxDepthTruncatesTheSeries) {
     uint32_t seed = 20;
     for (const uint32_t depth : {0u, 1u, 2u, 5u}) {
@@ -74,7 +74,7 @@ TEST_F(FurnaceTest, BsdfSamplesHaveNoVariance) {
     }
 }
 
-// Paths that may not end are cut at the safety limit and counted; up to there, nothing is lost.
+// Paths that never end are cut at the safety limit and counted; up to there, nothing is lost.
 TEST_F(FurnaceTest, TheSafetyLimitIsCounted) {
     RenderSettings s = settings(Estimator::bsdf, 2);
     s.size = uvec2(8, 4);

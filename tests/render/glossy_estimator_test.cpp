@@ -55,7 +55,7 @@ TEST_F(GlossyEstimatorTest, AgreeOnPhongAndMetal) {
     expect_estimators_agree(scene, 512, 2048);
 }
 
-// Light samples do not find what lies behind a mirror or glass: there, emission that a path meets counts in
+// Light samples do not find what lies behind a mirror or glass: there, emission that a path hits counts in
 // full.
 TEST_F(GlossyEstimatorTest, AgreeOnMirrorsAndGlass) {
     Scene scene = open_room();
@@ -112,7 +112,7 @@ TEST_F(GlossyEstimatorTest, AgreeOnALampWithinGlass) {
     expect_estimators_agree(scene, 1024, 1024);
 }
 
-// A lens and a lobe may want the same random numbers: samplers keep the mean with all features at once. The
+// A lens and a lobe might use the same random numbers: samplers keep the mean with all features at once. The
 // samples of a stratified pixel depend on each other, the means of renderings with other seeds do not.
 TEST_F(GlossyEstimatorTest, SamplersAgreeOnEverything) {
     const Scene scene = scene_of_everything();

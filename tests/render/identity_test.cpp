@@ -239,8 +239,7 @@ TEST_P(IdentityTest, BuffersThatSuitEachArray) {
     EXPECT_EQ(shared.size(), 2u);
 }
 
-// What other drivers get than lavapipe: counters that a work group adds up first, and a tree for few
-// primitives.
+// Drivers other than lavapipe get counters that a work group adds up first, and a tree for few primitives.
 TEST_P(IdentityTest, TunedForLavapipeOrNot) {
     const Accumulation tuned = in_one_go(settings());
     vk::DeviceInfo info = info_;
@@ -279,8 +278,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, IdentityTest, testing::Values(cornell_box, scen
 
 using ListTest = RenderTest;
 
-// Lavapipe goes through the primitives of a tiny scene one by one. A speck that no ray meets makes them one
-// too many for that: then the tree must find the same hits, with the same bits.
+// Lavapipe tests the primitives of a tiny scene one by one. A speck that no ray hits makes them one too many
+// for that: then the tree must find the same hits, with the same bits.
 TEST_F(ListTest, AListOfPrimitivesGivesTheBitsOfATree) {
     RenderSettings settings = settings_for(37, 23);
     settings.aovs = true;

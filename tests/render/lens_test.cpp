@@ -38,7 +38,7 @@ TEST_F(LensTest, ALensWithoutRadiusIsThePinhole) {
     EXPECT_NE(hash({.radius = 0.01f, .focal_distance = 3.7f, .blades = 0, .rotation = 0}), pinhole);
 }
 
-// The edges of what lies in the plane of focus are where they were, to one sample that rounding may move
+// The edges of what lies in the plane of focus are where they were, up to one sample that rounding may move
 // across.
 TEST_F(LensTest, ThePlaneOfFocusIsSharp) {
     constexpr uint32_t SPP = 16;
@@ -93,8 +93,9 @@ class BlurTest : public LensTest, public testing::WithParamInterface<Aperture> {
   protected:
     static constexpr double LENS_RADIUS = 0.1;
 
-    // Radius of the circle of confusion on the film at distance 1. A ray from a of the aperture through the
-    // point at distance d meets the plane of focus in a (1 - f / d), which is seen under 1 / f of that.
+    // Radius of the circle of confusion on the film at distance 1. A ray from the point a of the aperture
+    // through the point at distance d hits the plane of focus at a (1 - f / d), which is seen under 1 / f of
+    // that.
     static double signed_radius() {
         return LENS_RADIUS * (1.0 / double(GetParam().focus) - 1.0 / double(GetParam().lamp));
     }

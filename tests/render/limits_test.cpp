@@ -49,8 +49,8 @@ TEST_F(LimitsTest, ASceneForNeitherSaysWhatItNeeds) {
                   " bytes; use a smaller scene, or another device (candela devices lists them)");
 }
 
-// Lavapipe of Mesa 22 ends an invocation's loops after 65 535 turns in sum; then it is said what there may be
-// too much of. Other drivers go on until all are seen.
+// Lavapipe of Mesa 22 ends an invocation's loops after 65 535 iterations in sum; then the error says what
+// there may be too much of. Other drivers go on until all shapes are tested.
 TEST_F(LimitsTest, MoreShapesInOnePlaceThanADriverLoopsOverAreNamed) {
     Scene scene = floor_seen_closely(vec3(0.5f));
     scene.shapes.assign(200'000, scene.shapes.front());
@@ -72,8 +72,8 @@ TEST_F(LimitsTest, MoreShapesInOnePlaceThanADriverLoopsOverAreNamed) {
 
 using FiniteTest = RenderTest;
 
-// The square of 1e30 is no float, that of 1e15 is. Four work groups count together, as lavapipe's do and as
-// those of other devices.
+// The square of 1e30 is no float, that of 1e15 is. Four work groups count, as those of lavapipe and as those
+// of other devices.
 TEST_F(FiniteTest, SamplesThatAreNotFiniteAddNothingAndAreCounted) {
     vk::DeviceInfo info = info_;
     info.driver_id = info_.is_lavapipe() ? VkDriverId{} : VK_DRIVER_ID_MESA_LLVMPIPE;

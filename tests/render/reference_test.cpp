@@ -1,5 +1,5 @@
-// Scenes against references that Mitsuba 3 made of them (references/make_references.py), an independent
-// renderer: one scene for each thing that could be wrong.
+// Scenes compared with references by Mitsuba 3 (references/make_references.py), an independent renderer: one
+// scene for each thing that could be wrong.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -44,8 +44,8 @@ double largest_pixel_error() {
 // With fewer samples, the mean of a pixel is not nearly normal, as the test of pixels takes it.
 constexpr uint32_t LEAST_SPP = 128;
 
-// Each scene is tested three times (pixels, blocks, mean); a correct renderer fails any of them all with the
-// probability TEST_ALPHA.
+// Each scene is tested three times (pixels, blocks, mean); the probability that a correct renderer fails any
+// of all these tests is TEST_ALPHA.
 const CompareOptions OPTIONS{.alpha = sidak_level(TEST_ALPHA, 3 * REFERENCES.size())};
 
 // The scene of a reference: beside it, or one of those that users see.
@@ -169,7 +169,7 @@ TEST(ReferencePictures, AreLeftWhenTheImagesDiffer) {
         EXPECT_NO_THROW(read_exr(folder / "other" / (std::string(name) + ".exr"))) << name;
     }
     // A difference of 0.02, of which float rounds 2^-25, over the standard errors of both: less than 3, and
-    // yet the blocks of 64 pixels tell it.
+    // yet the blocks of 64 pixels reveal it.
     const double z = 0.02 / std::hypot(0.0052, 0.005);
     const double rounding = 0x1p-25 / 0.02;
     EXPECT_NEAR(plane(read_exr(folder / "other" / "error.exr"), "", 1)[7], 0.02, 0.02 * rounding);

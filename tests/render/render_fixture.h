@@ -36,8 +36,8 @@ inline Image image_of(const Accumulation& state) {
     return make_image(state, {.variance = true}, {});
 }
 
-// Probability with which a correct renderer fails one statistical test; of the less than 1000 such tests of
-// this folder, it fails any with a probability below 1 %. Seeds are fixed, so on one device a verdict stays:
+// Probability with which a correct renderer fails one statistical test; it fails any of the fewer than 1000
+// such tests of this folder with a probability below 1 %. Seeds are fixed, so on one device a verdict stays:
 // the level bounds how often a new device is accused wrongly.
 inline constexpr double TEST_ALPHA = 1e-5;
 
@@ -92,7 +92,7 @@ inline void expect_pixels(const Image& image, vec3 expected) {
     }
 }
 
-// Share of the camera rays that met something visible, over the image.
+// Share of the camera rays that hit something visible, over the image.
 inline double coverage(const Image& image) {
     RunningMoments moments;
     for (const float alpha : image.find("A")->values)
@@ -132,8 +132,8 @@ class RenderTest : public vk::Vk {
     }
     const vk::Device& device() const { return *device_; }
 
-    // Renders `spp` samples per pixel through the scene's first camera. No sample may be other than finite,
-    // and no path may reach the safety limit.
+    // Renders `spp` samples per pixel through the scene's first camera. Every sample must be finite, and no
+    // path may reach the safety limit.
     Accumulation render(const Scene& scene, const RenderSettings& settings, uint32_t spp) const {
         Renderer renderer(device(), build_gpu_scene(scene), scene.cameras.at(0), settings);
         EXPECT_TRUE(renderer.render(spp, [](double) { return true; }));

@@ -39,7 +39,7 @@ TEST_F(ResetTest, GivesThePictureOfAFreshRendererAndCompilesOnlyForOtherConstant
     RenderSettings settings = settings_for(24, 16);
     Renderer renderer(device(), gpu_scene_, camera, settings);
     ASSERT_TRUE(renderer.render(2, go_on));
-    // Wall time is measured to the nanosecond: compiled anew, it would not be the same number.
+    // Wall time is measured to the nanosecond: if the kernel were compiled anew, this number would change.
     const double compiled = renderer.pipeline_seconds();
 
     camera.position += vec3(0.3f, 0.2f, 0.1f);

@@ -1,5 +1,5 @@
-// Russian roulette leaves the mean of every image alone, whatever the probabilities with which it ends paths:
-// these show in the number of rays, which has closed forms.
+// Russian roulette does not change the mean of any image, whatever the probabilities with which it ends
+// paths: these show in the number of rays, which has closed forms.
 #include <cmath>
 
 #include "render_fixture.h"
@@ -34,9 +34,9 @@ class RouletteTest : public RenderTest {
     }
 };
 
-// In a closed box all paths carry the same: a^d after d vertices without roulette. Then each vertex leaves a
-// times that share, of which the root is the probability to go on and, by division, the new share. So the
-// number of rays has the probabilities of a product, until that is nothing.
+// In a closed box all paths have the same throughput: a^d after d vertices without roulette. With it, each
+// vertex multiplies the throughput by a; the root of that is the probability to go on and, by division, the
+// new throughput. So the probability of n rays is a product, which the test follows until it vanishes.
 TEST_F(RouletteTest, APathGoesOnWithWhatItCarries) {
     for (const float albedo : {0.3f, 0.8f}) {
         for (const uint32_t rr_depth : {0u, 3u}) {
@@ -63,8 +63,8 @@ CountMoments up_to_three(double second, double third) {
     return {1.0 + second + third, 1.0 + 3.0 * second + 5.0 * third};
 }
 
-// Within glass a path from outside weighs 1 / eta^2 only, though nothing is lost: that must not end it where
-// it meets something white.
+// Within glass a path from outside has a throughput of 1 / eta^2, though nothing is lost: that must not end
+// it where it hits something white.
 TEST_F(RouletteTest, WithinClearGlassNoMorePathsEndThanMust) {
     constexpr float IOR = 1.8f;
     Scene scene = scene_with_camera(vec3(0, 2, 0), vec3(0), 1e-3f);
@@ -79,8 +79,8 @@ TEST_F(RouletteTest, WithinClearGlassNoMorePathsEndThanMust) {
     expect_rays(scene, two, up_to_three(S, S * (1.0 - r) * S));
 }
 
-// Only the path itself can find what a mirror shows: it goes on, however dark the mirror is. Behind it, at a
-// wall, it counts what the path carries.
+// Only the path itself can find what a mirror shows: it goes on, however dark the mirror is. After the next
+// hit, on a wall, its throughput counts.
 TEST_F(RouletteTest, AMirrorEndsNoMorePathsThanItMust) {
     constexpr float REFLECTANCE = 0.25f;
     Scene scene = scene_with_camera(vec3(0, 2, 0), vec3(0), 1e-3f);
@@ -95,8 +95,8 @@ TEST_F(RouletteTest, AMirrorEndsNoMorePathsThanItMust) {
 }
 
 // A floor that reflects half of its light as a mirror would and half diffusely, under a sky that is bright
-// only where the mirror shows it: if the number that chose the lobe decided who survives as well, one of them
-// would.
+// only where the mirror shows it: if the number that chose the lobe decided survival as well, only one lobe
+// would survive.
 TEST_F(RouletteTest, WhichLobeWasChosenDoesNotDecideWhoSurvives) {
     Scene scene = scene_with_camera(vec3(0, 2, 0), vec3(0), 1e-3f);
     scene.environment = Environment{.size = {1, 8}, .radiance = std::vector<vec3>(8, vec3(0.1f))};

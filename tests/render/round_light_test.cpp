@@ -16,7 +16,7 @@ class RoundLightTest : public RenderTest {
         s.max_depth = 1;
         return s;
     }
-    // The floor at the origin must send out what `form_factor` of the light's radiance gives; samples per
+    // The floor at the origin must reflect what `form_factor` of the light's radiance gives; samples per
     // pixel for light samples (and MIS) and for BSDF samples, or 0 where one would need too many. The camera
     // sees 13 mm of the floor to either side, over which the irradiance changes linearly, which cancels, and
     // in second order by (13 mm / 1 m)^2 of itself, for lights at 1 m or more; a third of that on average.
@@ -109,8 +109,8 @@ TEST_F(RoundLightTest, ADiskOnItsAxis) {
     }
 }
 
-// A small ellipse that turns its face to the origin: area / (pi d^2) times the floor's cosine. Its own extent
-// changes that by no more than (0.01 / 2)^2 of itself.
+// A small ellipse that faces the origin: area / (pi d^2) times the floor's cosine. Its own extent changes
+// that by no more than (0.01 / 2)^2 of itself.
 TEST_F(RoundLightTest, AnEllipseAcrossTheView) {
     const vec3 n = -direction(50.0);
     const vec3 e1(0, 0, 0.01f);
@@ -121,7 +121,7 @@ TEST_F(RoundLightTest, AnEllipseAcrossTheView) {
                        area_over_pi / 4.0 * std::cos(50.0 * M_PI / 180.0), 64, 0);
 }
 
-// What a camera sees is the light's radiance, on the front alone.
+// What a camera sees is the light's radiance, on the front only.
 TEST_F(RoundLightTest, ALightThatIsLookedAtShowsItsRadiance) {
     Scene scene = scene_with_camera(vec3(0, 0, 3), vec3(0), 0.1f);
     add_diffuse(scene, vec3(0));

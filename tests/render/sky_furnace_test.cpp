@@ -1,5 +1,5 @@
-// Under a constant sky a body that loses nothing cannot be seen, and any other shows its albedo, which a
-// quadrature on the host tells.
+// Under a constant sky a body that loses nothing cannot be seen, and any other shows its albedo, which is
+// known from quadrature on the host.
 #include <cmath>
 #include <functional>
 
@@ -23,7 +23,7 @@ class SkyFurnaceTest : public RenderTest {
         return scene;
     }
     // Every sample must be 1 but for rounding. Where a device is as coarse as Vulkan allows, a vertex in
-    // glass costs some 28 units of 2^-24: the exponential of 0 that the medium lets through is off by 3 ulp
+    // glass costs some 28 units of 2^-24: the medium's transmittance, the exponential of 0, is off by 3 ulp
     // (6 units), each of the divisions by eta, by its square and of its inverse by 2.5 (5 units, twice where
     // it is squared). Paths of up to 9 vertices: 2^-16.
     void expect_invisible(const Scene& scene, const RenderSettings& settings) const {
@@ -61,14 +61,14 @@ TEST_F(SkyFurnaceTest, ClearGlassIsInvisible) {
             SCOPED_TRACE(testing::Message() << int(fresnel) << ' ' << ior);
             const Scene scene = sphere_of(DielectricMaterial{.ior = ior, .fresnel = fresnel});
             expect_invisible(scene, without_roulette(Estimator::mis, 2));
-            // Paths that are caught in the glass are few and carry much: fewer samples would not know the
+            // Paths that are caught in the glass are few and carry much: fewer samples would not show the
             // noise.
             expect_invisible_on_average(scene, settings(Estimator::mis, 3), 256);
         }
     }
 }
 
-// Radiance is eta^2 times as much within the glass, and a path that meets the ball is caught there for long.
+// Radiance is eta^2 times as high within the glass, and a path that hits the ball is caught there for long.
 TEST_F(SkyFurnaceTest, AWhiteBallInClearGlassIsInvisible) {
     for (const Fresnel fresnel : {Fresnel::schlick, Fresnel::exact}) {
         Scene scene = sphere_of(DielectricMaterial{.ior = 1.7f, .exterior_ior = 1.1f, .fresnel = fresnel});
@@ -109,9 +109,9 @@ double integral(const std::function<double(double, double)>& f) {
 }
 constexpr double QUADRATURE_ERROR = 2e-5;
 
-// Share of the light from the direction at theta that the Phong lobe of albedo 1 sends back, (n + 2) / (2 pi)
-// times the integral of cos(alpha)^n cos(theta_i): in polar coordinates around the mirrored direction, with x
-// = cos(alpha)^(n + 1), so that all points weigh alike.
+// Share of the light from the direction at theta that the Phong lobe of albedo 1 reflects, (n + 2) / (2 pi)
+// times the integral of cos(alpha)^n cos(theta_i): in polar coordinates around the mirrored direction, with
+// x = cos(alpha)^(n + 1), so that all points weigh alike.
 double phong_lobe_albedo(double n, double theta) {
     return (n + 2.0) / (n + 1.0) * integral([&](double x, double y) {
                const double cos_alpha = std::pow(x, 1.0 / (n + 1.0));
@@ -121,10 +121,10 @@ double phong_lobe_albedo(double n, double theta) {
            });
 }
 
-// Share that metal of the roughness alpha sends back of the light from the direction at theta: the integral
+// Share that metal of the roughness alpha reflects of the light from the direction at theta: the integral
 // over facets of D cos(theta_h) F G2 (wo.h) / (cos(theta_o) cos(theta_h)), with tan^2(theta_h) = alpha^2 (1 /
-// x^3 - 1), so that steep facets, where the shadow's edge is, have many points, of the weight 3 x^2. Ref:
-// Walter et al. 2007, equations 13, 20 and 35; Heitz 2014, equation 99.
+// x^3 - 1), so that steep facets, where the shadow's edge is, have many points, of the weight 3 x^2.
+// Ref: Walter et al. 2007, equations 13, 20 and 35; Heitz 2014, equation 99.
 double metal_albedo(double reflectance, double alpha, double theta) {
     const auto lambda = [&](double cosine) {
         const double tan2 = (1.0 - cosine * cosine) / (cosine * cosine);

@@ -1,4 +1,4 @@
-// What the tests share that render several states, or on a renderer that outlives its device.
+// What the tests share that render several states, or use a renderer that outlives its device.
 #pragma once
 
 #include <utility>

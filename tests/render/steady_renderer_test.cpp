@@ -10,7 +10,7 @@ namespace {
 class SteadyRendererTest : public SteadyTest {
   protected:
     // Renders that many samples in many submissions, or until a new state has been held twice on the way;
-    // says how often that was.
+    // returns how often that was.
     int copies_on_the_way(double hold_seconds, uint32_t target) const {
         const Scene scene = cornell_box();
         const GpuScene gpu_scene = build_gpu_scene(scene);

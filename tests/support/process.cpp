@@ -22,7 +22,7 @@ extern char** environ;
 namespace candela {
 namespace {
 
-// Two connected descriptors that the child does not inherit unless it is told to.
+// Two connected descriptors that the child does not inherit unless told to.
 struct Channel {
     int ours = -1;
     int theirs = -1;
@@ -137,7 +137,7 @@ void Process::send(int signal) const {
     ::kill(pid_, signal);
 }
 
-// /proc tells as a mask in hexadecimal digits, with the first signal in its lowest bit.
+// /proc gives the signals as a mask in hexadecimal digits, with the first signal in its lowest bit.
 bool Process::catches(int signal) const {
     std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
     const std::string key = "SigCgt:";

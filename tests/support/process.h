@@ -31,15 +31,15 @@ class Process {
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
 
-    // Waits until stderr contains `text` so many times. Returns false if the program ended or hung (see
+    // Waits until stderr contains `text` that many times. Returns false if the program ended or hung (see
     // PATIENCE) before.
     bool wait_for_err(const std::string& text, int times = 1);
-    // What it has written to stderr as far as that was waited for.
+    // What it has written to stderr, as far as that has been read.
     const std::string& err() const { return result_.err; }
     void send(int signal) const;
-    // Whether the program deals with this signal itself.
+    // Whether the program handles this signal itself.
     bool catches(int signal) const;
-    // Fills its stderr, a pipe: from now on it waits for ever where it writes there.
+    // Fills its stderr, a pipe: from now on the program waits for ever when it writes there.
     void block_err() const;
     // Closes our end of its stderr, as a reader does who has seen enough.
     void close_err();
