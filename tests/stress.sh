@@ -1,5 +1,5 @@
 #!/bin/sh
-# Repeats the tests of what waits (windows, signals, intervals, time limits, failing devices) beside other work: four at
+# Repeats the tests that wait (for windows, signals, intervals, time limits, failing devices) beside other work: four at
 # a time, at nice 19, beside four busy loops, each of which has a session of its own, like the work of other users.
 #   usage: sh tests/stress.sh [REPETITIONS [TESTS]]   (50; TESTS: a regular expression of names, as for ctest -R)
 set -eu

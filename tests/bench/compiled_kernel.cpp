@@ -15,7 +15,7 @@
 namespace candela {
 namespace {
 
-// The curve of the most code.
+// The tone curve with the most code.
 constexpr Tonemap CURVE = Tonemap::agx;
 
 double value_of(const VkPipelineExecutableStatisticKHR& statistic) {
@@ -54,7 +54,7 @@ void query_statistics(const vk::Device& device, const vk::Kernel& kernel, Compil
         row.statistics.emplace_back(statistic.name, value_of(statistic));
 }
 
-// Compiles a kernel by `make()` and asks about it.
+// Compiles a kernel by `make()` and queries it.
 template <class Make>
 CompiledKernel described(const vk::Device& device, const std::string& scene, const char* buffers,
                          const Make& make) {

@@ -15,10 +15,10 @@
 namespace candela {
 
 struct CompiledKernel {
-    std::string scene;           // As the caller names it; empty if the kernel reads none.
+    std::string scene;           // As the caller names it; empty if the kernel reads no scene.
     std::string kernel;          // "render", "position" or "display".
     std::string buffers;         // How it reads the scene: "texel" or "storage", or empty.
-    double cpu_seconds = 0.0;    // That compiling took.
+    double cpu_seconds = 0.0;    // CPU time that compiling took.
     uint32_t subgroup_size = 0;  // 0 if the driver does not tell.
     std::vector<std::pair<std::string, double>> statistics{};  // As the driver names them.
 
@@ -26,14 +26,14 @@ struct CompiledKernel {
     std::optional<double> find(std::string_view name) const;
 };
 
-// The device as it must be opened for statistics if it gives them. It will do then, whatever it lacks to run
-// kernels, such as memory.
+// The device as it must be opened for statistics, if it gives them. It will then do even if it lacks what
+// running kernels takes, such as memory.
 vk::DeviceInfo statistics_device(vk::DeviceInfo info);
 
 // Compile the kernels that read a scene, with the constants that rendering it takes, for each of `accesses`,
-// and the one that shows the picture. Where the device gives statistics nothing is submitted to it, so that
-// a driver will do whose chip is not there; where it gives none, a first dispatch is part of compiling, since
-// some drivers leave everything to that.
+// and the one that shows the picture. If the device gives statistics, nothing is submitted to it, so that a
+// driver will do whose chip is missing. If it gives none, compiling includes a first dispatch, since some
+// drivers do all the work only then.
 std::vector<CompiledKernel> compile_scene_kernels(const vk::Device& device, const std::string& name,
                                                   const Scene& scene, const Camera& camera,
                                                   const RenderSettings& settings,

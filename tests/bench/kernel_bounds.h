@@ -26,15 +26,15 @@ struct KernelBound {
     double vgpr_demand = 0;  // At most.
 };
 
-// For one driver in one version alone: another allocates registers in its own way.
+// For one version of one driver only: another allocates registers in its own way.
 struct KernelBounds {
     std::string file;    // For messages.
     std::string driver;  // As DeviceInfo has it.
     std::vector<KernelBound> bounds;
 };
 
-// Throws Error that names the file if it cannot be read, a key is missing, or a bound does not say why it is
-// what it is.
+// Throws Error that names the file if it cannot be read, a key is missing, or a bound does not say why it has
+// its value.
 KernelBounds load_kernel_bounds(const std::filesystem::path& file);
 
 // What is wrong, a sentence each: scratch, spilled vector registers, demand above its bound, a statistic that

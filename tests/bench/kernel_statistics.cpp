@@ -43,7 +43,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
         "picture.exr"};  // With all its images, as candela render writes it by default.
 }
 
-// The device that is asked for, or the best, ready to be opened.
+// The device that `request` names, or the best one, ready to be opened.
 vk::DeviceInfo find_device(const vk::Instance& instance, const std::optional<std::string>& request) {
     std::vector<vk::DeviceInfo> devices;
     for (const vk::DeviceInfo& info : instance.devices())
@@ -78,8 +78,7 @@ void print_row(const std::vector<std::string>& cells) {
     std::printf("|\n");
 }
 
-// As Markdown. The names of the columns that the driver's statistics fill are the driver's, but for shorter
-// ones.
+// Prints Markdown. Columns that the driver's statistics fill have the driver's names, but for shorter ones.
 void print_table(const vk::DeviceInfo& info, const std::vector<CompiledKernel>& kernels) {
     std::printf("%s; %s\n\n", info.name.c_str(), info.driver.c_str());
     print_row({"scene", "kernel", "buffers", "subgroup", "VGPRs", "demand", "SGPRs", "waves", "scratch",
@@ -113,7 +112,7 @@ void print_json(const vk::DeviceInfo& info, const std::vector<CompiledKernel>& k
     std::printf("%s\n", report.dump(2).c_str());
 }
 
-// Says what is wrong; throws Error if anything is.
+// Prints what is wrong; throws Error if anything is.
 void check_bounds(const KernelBounds& bounds, const std::string& device,
                   const std::vector<CompiledKernel>& kernels) {
     const std::vector<std::string> violations = find_violations(bounds, device, kernels);
@@ -144,7 +143,7 @@ void run(const Arguments& arguments) {
 }  // namespace candela
 
 int main(int argc, char** argv) {
-    // What the driver kept from another run took no time to compile.
+    // What the driver kept from another run would take no time to compile.
     ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     CLI::App app;
     candela::Arguments arguments;

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FIRST = 1_000_000  # Of sample numbers that all have seven digits, so that all headers have one length.
+FIRST = 1_000_000  # The first sample number; all have seven digits, so that all headers have one length.
 
 
 def make_parts(options, folder):

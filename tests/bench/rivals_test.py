@@ -30,7 +30,7 @@ def candela(*words):
 
 
 def compare(*words):
-    """What compare.py says when it fails."""
+    """The last line that compare.py prints when it fails."""
     result = subprocess.run([sys.executable, RIVALS / "compare.py", *words], capture_output=True, text=True)
     assert result.returncode != 0, result.stdout
     return result.stderr.strip().splitlines()[-1]

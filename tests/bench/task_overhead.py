@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Measures what a task on a cluster costs beside its samples: the start of the program, alone, and as a task of Slurm on
-two nodes of this computer; and how many bytes a part and a checkpoint of 1920x1080 have.
+"""Measures what a task on a cluster costs besides its samples: the start of the program, by itself and as a task of
+Slurm on two nodes of this computer; and how many bytes a part and a checkpoint of 1920x1080 have.
 usage: task_overhead.py CANDELA [--tasks N]
 """
 import argparse
@@ -19,7 +19,7 @@ SCENE = ROOT / "scenes/cornell-box.json"
 
 def measure_start(candela, folder):
     command = [candela, "render", SCENE, "--size", "16x16", "--spp", "1", "-o", folder / "a.exr", "--quiet"]
-    subprocess.run(command, check=True)  # Kernels are compiled now.
+    subprocess.run(command, check=True)  # Kernels are compiled after this.
     begin = time.monotonic()
     for _ in range(10):
         subprocess.run(command, check=True)

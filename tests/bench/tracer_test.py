@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests the tracer that candela is measured beside: its pictures, its messages. usage: tracer_test.py CANDELA TRACER"""
+"""Tests the tracer that candela is compared with: its pictures, its messages. usage: tracer_test.py CANDELA TRACER"""
 
 import json
 import statistics
@@ -17,8 +17,8 @@ import pictures  # noqa: E402
 
 ROOT = RIVALS.parents[2]
 SIZE, SPP, DEPTH, SEEDS = 32, 64, 5, 16
-# Of Student's t with 15 degrees of freedom, the fewest that Welch's test of 16 seeds each can have: chance exceeds it
-# in one of the six comparisons below with a probability of 1/1000.
+# Critical value of Student's t with 15 degrees of freedom, the fewest that Welch's test of 16 seeds each can have:
+# chance exceeds it in one of the six comparisons below with a probability of 1/1000.
 CRITICAL_T = 5.0
 CANDELA = TRACER = None  # The programs, from the command line.
 
@@ -36,7 +36,7 @@ ALL_KINDS = {
         {"type": "box", "min": [-1.9, 0.1, -1], "max": [-0.1, 1.6, 1], "material": "clay"},
         {"type": "box", "min": [0.4, 0.1, -0.8], "max": [1.6, 1.1, 0.3], "material": "glass"},
         {"type": "quad", "vertices": [[-1, 3, 0], [-1, 3, -1], [0, 3, -1], [0, 3, 0]], "emission": [20, 10, 5]},
-        # Neither a parallelogram nor alone: a lamp of two triangles that differ.
+        # Not a parallelogram: a lamp of two triangles that differ.
         {"type": "quad", "vertices": [[1, 2, 1], [1, 2, 0], [2, 2, 0], [1.5, 2, 1]], "emission": [3, 5, 9]},
     ],
 }

@@ -2,7 +2,7 @@
 """Shows where a kernel's time goes on software Vulkan: samples a rendering with perf, takes the machine code that the
 driver made out of the process, and prints its basic blocks by their share of the samples, with the instructions of the
 largest to read: a block full of vcvtdq2ps decodes boxes, one with vdivps tests triangles, a short one that ends in ret
-fetches texels. Wants Debian's packages linux-perf and binutils, and the right to read another process, as root has it.
+fetches texels. Needs Debian's packages linux-perf and binutils, and the right to read another process, as root has.
 
 usage: where_time_goes.py [--seconds S] [--listing FILE] CANDELA SCENE [OPTION...]
 e.g. where_time_goes.py build/release/candela scenes/cornell-box.json --spp 1000 --max-depth 5
@@ -15,13 +15,13 @@ import tempfile
 import time
 from pathlib import Path
 
-COMPILED = 3.0  # Seconds after which kernels are compiled and paths are on their way.
+COMPILED = 3.0  # Seconds after which kernels are compiled and paths are traced.
 INSTRUCTION = re.compile(r"\s*([0-9a-f]+):\s+(.*)")
 JUMP = re.compile(r"j\w+\s+(0x[0-9a-f]+)")
 
 
 def generated_code(pid):
-    """Start and bytes of each executable region of memory that no file is behind."""
+    """Start and bytes of each executable region of memory that no file backs."""
     regions = []
     with open(f"/proc/{pid}/maps", encoding="ascii") as maps, open(f"/proc/{pid}/mem", "rb") as memory:
         for fields in (line.split() for line in maps):

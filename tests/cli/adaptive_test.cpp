@@ -1,4 +1,4 @@
-// `candela render --adaptive`: the same bits whatever happens on the way, and what it does not go with.
+// `candela render --adaptive`: the same bits whatever happens on the way, and the options that exclude it.
 #include <algorithm>
 #include <bit>
 #include <csignal>
@@ -38,7 +38,7 @@ TEST_F(AdaptiveCli, SamplesPerPixelAreTheMean) {
     EXPECT_EQ(report_of({"--size", "48x48", "--spp", "8"})["adaptive"], false);
 }
 
-// Interrupted in some pass, it goes on to the end of a pass as if it had never been.
+// Interrupted in some pass, a rendering goes on to the end of a pass as if nothing had happened.
 TEST_F(AdaptiveCli, AResumedRenderingHasTheSameBits) {
     const Words endless = {"render", CORNELL_BOX, "-o", file("a.exr"), "--size", "32x32", "--adaptive"};
     const Words checkpoint = {"--checkpoint", file("state.exr"), "--resume"};
@@ -59,7 +59,7 @@ TEST_F(AdaptiveCli, AResumedRenderingHasTheSameBits) {
                   read_exr(file("whole.exr")).find(channel)->values)
             << channel;
     }
-    // There are more samples than that now.
+    // There are more samples than 16 now.
     const ProcessResult fewer = candela(endless + checkpoint + Words{"--spp", "16"});
     EXPECT_EQ(fewer.exit_code, 1);
     EXPECT_CONTAINS(fewer.err, " samples per pixel, but 16 are asked for; ask for as many at least");

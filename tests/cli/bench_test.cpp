@@ -9,7 +9,7 @@ namespace {
 
 class BenchCommand : public CliTest {
   protected:
-    // Whether the program was built with Embree, its own words tell.
+    // The program's own words tell whether it was built with Embree.
     static bool has_rival(const ProcessResult& result) {
         return result.out.find("rival    none") == std::string::npos;
     }
@@ -90,7 +90,7 @@ TEST_F(BenchCommand, MeasuresEverythingByDefault) {
     }
 }
 
-// Each run has the next seed, and renders what `render` does with that.
+// Each run has the next seed, and renders what `render` renders with that.
 TEST_F(BenchCommand, RaysAndRelativeErrorsAreThoseOfTheImagesOfRender) {
     const Words settings{"--size", "24x16",      "--spp", "4",         "--max-depth",
                          "3",      "--rr-depth", "1",     "--sampler", "independent"};

@@ -1,4 +1,4 @@
-// Checkpoints as a user meets them: kill the program, fill the disk, forbid the place; what was rendered is
+// Checkpoints as a user sees them: kill the program, fill the disk, forbid the place; what was rendered is
 // never lost, and the image has the same bits.
 #include "film/checkpoint.h"
 
@@ -34,10 +34,10 @@ class CheckpointTest : public CliTest {
         }
     }
 
-    // So many times the program is killed at a random moment and goes on: every second time somewhere, else
-    // in turn as soon as the file was changed (were it not replaced as a whole, it would be half a file then)
-    // and a while after it had more samples, which the first submissions after a start may not add. Whatever
-    // the moment, the file is there, and never goes back.
+    // Kills the program that many times at a random moment and resumes it: every second time at any moment,
+    // else in turn as soon as the file was changed (if it were not replaced as a whole, it would be half a
+    // file then) and a while after it had more samples, which the first submissions after a start may not
+    // add. Whatever the moment, the file is there, and never goes back.
     void expect_kills_lose_nothing(int kills) const {
         const Words arguments = {"render", CORNELL_BOX, "-o",      file("a.exr"),
                                  "--size", "64x64",     "--quiet", "--spp"};
@@ -82,13 +82,13 @@ TEST_F(CheckpointTest, AResumedRenderingHasTheSameBits) {
     EXPECT_EQ(second.exit_code, 0) << second.err;
     EXPECT_CONTAINS(second.err, "rendered 9 spp in ");
     expect_same_bits(file("a.exr"), file("whole.exr"));
-    // The report speaks of the whole rendering.
+    // The report is about the whole rendering,
     const auto whole = nlohmann::json::parse(read_file(file("whole.json")));
     const auto resumed = nlohmann::json::parse(read_file(file("resumed.json")));
     for (const char* key : {"image_hash", "rays_per_sample", "samples", "spp", "complete"})
         EXPECT_EQ(resumed[key], whole[key]) << key;
-    EXPECT_EQ(resumed["rendered_samples"], 32 * 32 * 5);  // But for this.
-    // With nothing left to do it gives the image again.
+    EXPECT_EQ(resumed["rendered_samples"], 32 * 32 * 5);  // except for this.
+    // With nothing left to do, the program writes the image again.
     EXPECT_EQ(render_with({"--resume", "--spp", "9"}).exit_code, 0);
     expect_same_bits(file("a.exr"), file("whole.exr"));
 }
@@ -120,7 +120,7 @@ TEST_F(SlowCheckpointTest, TwentyKillsLoseNothing) {
     expect_kills_lose_nothing(20);
 }
 
-// A limit on the size of files stands for a full disk: the state takes more than the limit, the image less.
+// A limit on the size of files acts as a full disk: the state exceeds the limit, the image does not.
 TEST_F(CheckpointTest, AFullDiskKeepsTheOldCheckpointAndTheRendering) {
     const Words limited = {"/bin/sh", "-c", "ulimit -f 16; exec \"$0\" \"$@\""};  // 8 KiB, in some shells 16.
     const Words arguments = {"render",   CORNELL_BOX,          "-o",    file("b.png"),  "--size", "32x32",

@@ -25,7 +25,7 @@ inline const std::string MESH = std::string(CANDELA_SCENES) + "/mesh.json";
 inline const std::map<std::string, std::string> NO_DRIVER = {{"VK_DRIVER_FILES", "/nonexistent.json"},
                                                              {"VK_ICD_FILENAMES", "/nonexistent.json"}};
 
-// The variables that put tests/faults/device_fault.cpp before the driver.
+// The variables that insert tests/faults/device_fault.cpp before the driver.
 inline const std::map<std::string, std::string> FAULT_LAYER = {
     {"VK_INSTANCE_LAYERS", "VK_LAYER_candela_device_fault"}, {"VK_ADD_LAYER_PATH", CANDELA_FAULTS}};
 
@@ -35,8 +35,8 @@ inline std::map<std::string, std::string> operator+(std::map<std::string, std::s
     return a;
 }
 
-// Each of the first `devices` devices
-// runs so many submissions, and then answers with `result`, a VkResult; then so many openings fail.
+// Each of the first `devices` devices runs that many submissions, and then answers with `result`, a VkResult;
+// then that many openings fail.
 inline std::map<std::string, std::string> failing_device(int devices, int submissions, int result,
                                                          int openings = 0) {
     return FAULT_LAYER + std::map<std::string, std::string>{{"FAULT_DEVICES", std::to_string(devices)},
@@ -79,7 +79,7 @@ class CliTest : public testing::Test {
         return file(name);
     }
 
-    // Renders `arguments` of `scene` and returns the report; the test fails if candela does.
+    // Renders `scene` with `arguments` and returns the report; the test fails if candela does.
     nlohmann::json report_of(const Words& arguments, const std::string& scene = CORNELL_BOX) const {
         const ProcessResult result =
             candela(Words{"render", scene, "-o", file("report.png"), "--report", "-", "--quiet"} + arguments);

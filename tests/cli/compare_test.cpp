@@ -6,7 +6,7 @@ namespace {
 
 class Compare : public CliTest {
   protected:
-    // A grey image of 16x16 pixels; `variance` 0: without the channels Variance.
+    // A grey image of 16x16 pixels; if `variance` is 0, without the channels Variance.
     std::string image(const std::string& name, float value, float variance) const {
         Image result{.full = {16, 16}, .data = {0, 0, 16, 16}, .channels = {}, .attributes = {}};
         for (const char* channel : {"R", "G", "B"})

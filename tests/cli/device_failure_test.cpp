@@ -25,7 +25,7 @@ class DeviceFailure : public CliTest {
         return start_on_failing(devices, submissions, result, arguments, openings).finish();
     }
     nlohmann::json report() const { return nlohmann::json::parse(read_file(file("a.json"))); }
-    // The hash of the image that a device makes that does not fail.
+    // The hash of the image from a device that does not fail.
     std::string undisturbed() const { return report_of(picture_)["image_hash"]; }
     // What the warnings say: samples kept, and milliseconds of a submission from then on.
     static std::vector<std::pair<int, double>> recoveries(const std::string& err) {
@@ -49,11 +49,11 @@ TEST_F(DeviceFailure, ALostDeviceIsOpenedAgainAndTheImageHasTheSameBits) {
     EXPECT_EQ(report()["image_hash"], undisturbed());
 }
 
-// Copies of the state as often as may be: each device gets a little further than the one before, so that
-// more than five may fail. A picture of one work group does, however few samples a submission takes: of a
-// larger one, a slow device would begin with the same group each time. How far they get depends on their
-// speed: the seventh renders until it is told to stop, and then to the next whole number of samples. (Copies
-// are submissions, too: four for the layers of a state.)
+// The state is copied as often as possible: each device gets a little further than the previous one, so that
+// more than five may fail. This needs a picture of one work group, however few samples a submission takes:
+// with a larger one, a slow device would begin with the same group each time. How far they get depends on
+// their speed: the seventh renders until it is told to stop, and then to the next whole number of samples.
+// (Copies are submissions, too: four for the layers of a state.)
 TEST_F(DeviceFailure, WhatTheHostHoldsIsNotRenderedAgain) {
     const Words checkpoint = {"--aov", "none", "--checkpoint", file("state.exr")};
     picture_ = {"--size", "8x8"};
@@ -74,12 +74,12 @@ TEST_F(DeviceFailure, WhatTheHostHoldsIsNotRenderedAgain) {
     const nlohmann::json resumed = report_of(whole + checkpoint + Words{"--resume"});
     const nlohmann::json undisturbed = report_of(whole);
     EXPECT_EQ(resumed["image_hash"], undisturbed["image_hash"]);
-    // Samples of a pixel are traced again where a driver ends a long submission early: a few of thousands.
+    // Samples of a pixel are traced again where a driver ends a long submission early: a few in thousands.
     EXPECT_NEAR(resumed["rays_per_sample"], undisturbed["rays_per_sample"], 0.01);
 }
 
-// Of the four states of an adaptive rendering, three are held while a device fails that renders the fourth.
-// To change from one to another takes 16 submissions and more.
+// While a device fails that renders one of the four states of an adaptive rendering, the other three are
+// held. Changing from one to another takes 16 submissions and more.
 TEST_F(DeviceFailure, AnAdaptiveRenderingGoesOnInEveryState) {
     picture_ = {"--size", "48x48", "--spp", "64", "--adaptive"};
     const ProcessResult result = render_on_failing(2, 40, DEVICE_LOST);
@@ -88,7 +88,7 @@ TEST_F(DeviceFailure, AnAdaptiveRenderingGoesOnInEveryState) {
     EXPECT_EQ(report()["image_hash"], undisturbed());
 }
 
-// The last state is written: here, what a checkpoint held. Each device fails at the first submission that
+// The last state is written, which is what a checkpoint held. Each device fails at the first submission that
 // renders, so that a slow one makes no progress either.
 TEST_F(DeviceFailure, AfterFiveFailuresWithoutProgressTheErrorStands) {
     const Words checkpoint = {"--checkpoint", file("state.exr"), "--resume", "--aov", "none"};

@@ -1,5 +1,5 @@
-// One call on files after the other fails (tests/faults/file_fault.cpp), in a rendering that reads a scene of
-// several files and a checkpoint and writes a checkpoint, two images and a report, with a warm cache.
+// File operations fail, one after the other (tests/faults/file_fault.cpp), in a rendering that reads a scene
+// of several files and a checkpoint and writes a checkpoint, two images and a report, with a warm cache.
 // Whatever fails, each file is the old or the new one, and messages and exit codes say which.
 #include <array>
 #include <cerrno>
@@ -36,14 +36,14 @@ class FileFaults : public CliTest {
         EXPECT_EQ(render(NEW_SPP, {}, {"--report", "-"}).exit_code, 0);
     }
 
-    // Makes every call fail, each in so many of the ways FAULTS, from another one on for each.
+    // Makes every call fail, each in `ways` of the ways FAULTS, of which each call begins with another.
     void expect_faults_lose_nothing(size_t ways) const {
         size_t calls = 1;
         for (size_t call = 1; call <= calls; ++call) {
             for (size_t i = 0; i < ways; ++i) {
                 const size_t count =
                     expect_fault_loses_nothing(call, FAULTS[(ways * call + i) % FAULTS.size()]);
-                if (count == 0) return;  // It came to its end before that call.
+                if (count == 0) return;  // The program ended before that call.
                 calls = std::max(calls, count + 1);
             }
             ASSERT_LT(calls, 1000u);
@@ -98,7 +98,7 @@ class FileFaults : public CliTest {
             fs::copy_file(directory_ / state / name, folder_ / name, fs::copy_options::overwrite_existing);
     }
 
-    // What is in a file, but for times.
+    // The contents of a file, except for times.
     static std::string contents(const fs::path& path) {
         const std::string name = path.filename().string();
         if (name == "a.exr") return std::to_string(image_hash(read_exr(path)));

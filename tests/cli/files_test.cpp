@@ -1,4 +1,4 @@
-// What happens to the files of a command: none overwrites another, and what cannot be written is found
+// What happens to the files of a command: none overwrites another, and what cannot be written is reported
 // beforehand.
 #include <csignal>
 
@@ -34,7 +34,7 @@ class FilesOfACommand : public CliTest {
     const std::string scene_ = file("scene.json"), picture_ = file("a.exr");
 
   private:
-    // Of all files.
+    // The bytes of all files.
     std::map<std::string, std::string> bytes() const {
         std::map<std::string, std::string> all;
         for (const fs::directory_entry& entry : fs::directory_iterator(directory_.path()))
@@ -59,7 +59,7 @@ TEST_F(FilesOfACommand, NoOutputOfARenderingIsAnotherOfItsFiles) {
                           same("-o", picture_, "--reference", picture_));
     expect_render_refused({"-o", hard, "--report", file("r.json"), "--reference", picture_},
                           same("-o", hard, "--reference", picture_));
-    // What does not exist yet.
+    // Files that do not exist yet.
     fs::create_symlink("b.exr", file("dangling.exr"));
     expect_render_refused({"-o", png, "--report", png}, same("--report", png, "-o", png));
     expect_render_refused({"-o", png, "-o", file("./a.png")}, same("-o", file("./a.png"), "-o", png));
@@ -149,7 +149,7 @@ TEST_F(MountedFiles, AFileThatIsMountedByItselfIsRefusedBeforehand) {
                              "holds it\n");
 }
 
-// Drivers that write to their caches through memory would be ended by SIGBUS.
+// SIGBUS would end drivers that write to their caches through memory.
 TEST_F(MountedFiles, ACacheOnAFullDiskIsNotUsed) {
     const std::string cache = file("cache");
     fs::create_directory(cache);

@@ -54,7 +54,7 @@ TEST_F(Info, TextNamesTheSameFacts) {
 TEST_F(Info, TellsTheSizeOfTheSky) {
     Image sky{.full = {8, 4}, .data = {0, 0, 8, 4}, .channels = {}, .attributes = {}};
     for (const char* const channel : {"R", "G", "B"})
-        sky.add(channel, 1.0f).values[0] = 2.0f;  // An even one would be none of the lights.
+        sky.add(channel, 1.0f).values[0] = 2.0f;  // An even one would not be a light.
     write_exr(file("sky.exr"), sky);
     const std::string scene = write("sky.json", R"({
         "cameras": { "main": { "position": [0, 0, 3], "look_at": [0, 0, 0], "vertical_fov": 40 } },

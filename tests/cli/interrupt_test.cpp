@@ -70,7 +70,7 @@ TEST_F(Interrupt, MessagesThatNobodyReadsDoNotEndIt) {
     EXPECT_EQ(std::ranges::min(read_exr(file("a.exr")).find("SampleCount.V")->values), 4.0f);
 }
 
-// It cannot end by itself after the first signal, since nobody reads what it has to say then.
+// The program cannot end by itself after the first signal, since nobody reads what it writes then.
 TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
     Process process(endless(), options());
     wait_until("it renders", [&] { return process.catches(SIGINT) && process.catches(SIGTERM); });

@@ -1,5 +1,4 @@
-// Where the address space is small, the program ends with a message. (Sanitizers want more of it than there
-// is.)
+// Where the address space is small, the program ends with a message. (Sanitizers need more of it.)
 #include <filesystem>
 #include <fstream>
 
@@ -18,7 +17,7 @@ class LittleMemory : public CliTest {
     }
 };
 
-// Drivers would end the program without a word, or wait for ever.
+// Drivers would end the program without a message, or wait for ever.
 TEST_F(LittleMemory, IsAnErrorBeforeADriverFindsOut) {
     const ProcessResult result = run({"render", CORNELL_BOX, "--size", "16x16", "-o", file("a.png")});
     EXPECT_EQ(result.exit_code, 5) << result.err;

@@ -1,4 +1,4 @@
-// `candela merge` as a user meets it: parts of a real rendering become what one uninterrupted run gives.
+// `candela merge` as a user sees it: parts of a real rendering become what one uninterrupted run gives.
 #include <algorithm>
 #include <cmath>
 
@@ -23,10 +23,10 @@ double value(const Image& image, const std::string& channel, size_t i) {
     return double(image.find(channel)->values[i]);
 }
 
-// The bounds of film/part_sum.h, and one rounding more for the whole image: u = 2^-24. Normals and means
-// have the bound of the mean of the parts' absolute values. The device rounds squares to floats before it
-// sums them, alike for parts and whole; where that makes a sum of squared deviations negative, it counts as
-// 0, which is off by u times the mean of the squares at most, divided by N - 1.
+// The bounds of film/part_sum.h, and one rounding more for the whole image: u = 2^-24. Normals and means have
+// the bound of the mean of the parts' absolute values. The device rounds squares to floats before it sums
+// them, alike for parts and whole. If that makes a sum of squared deviations negative, it counts as 0, which
+// is off by at most u times the mean of the squares, divided by N - 1.
 TEST_F(MergeTest, PartsAgreeWithOneRunWithinRounding) {
     constexpr double U = 0x1p-24, N = 20;
     const std::vector<std::pair<std::string, double>> names = {{"0..5", 5}, {"5..6", 1}, {"6..20", 14}};
@@ -80,9 +80,9 @@ TEST_F(MergeTest, PartsAgreeWithOneRunWithinRounding) {
     EXPECT_EQ(merged.attributes.at("candela.identity"), whole.attributes.at("candela.identity"));
 }
 
-// The first submission is a sample of each of 4096 pixels, a quarter of the picture, and the time is over
-// after it. What the rest of the pixels lack of that sample, nobody has; but its other pixels count, and the
-// next samples may join it.
+// The first submission adds a sample to each of 4096 pixels, a quarter of the picture, and uses up the time.
+// No part holds that sample of the other pixels; but that of the 4096 counts, and the next samples may join
+// it.
 TEST_F(MergeTest, AnInterruptedPartCountsWhereItHasSamples) {
     const Words size = {"--size", "128x128", "--aov", "samples"};
     const std::string stopped = part("stopped.exr", "3..9", size + Words{"--time-limit", "1e-9s"});

@@ -1,4 +1,4 @@
-// `candela plot`: a drawing that is XML, has what a reader needs, and puts points where they belong.
+// `candela plot`: the drawing is XML, has what a reader needs, and puts points where they belong.
 #include <cmath>
 #include <regex>
 #include <utility>
@@ -26,7 +26,7 @@ class PlotTest : public CliTest {
         EXPECT_EQ(result.err + result.out, "");
         return read_file(file("curves.svg"));
     }
-    // x and y of everything that matches, in which they are the first two groups.
+    // x and y of everything that matches `pattern`, whose first two groups they are.
     static Points places(const std::string& svg, const std::string& pattern) {
         const std::regex regex(pattern);
         Points places;

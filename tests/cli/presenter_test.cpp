@@ -1,5 +1,5 @@
-// Presenting in a window when the window system gives up the surface or the swapchain. Such results are put
-// in place of those of the driver, by the pointers through which Vulkan is called.
+// Presenting in a window when the window system gives up the surface or the swapchain. Such results replace
+// those of the driver, through the pointers by which Vulkan is called.
 #ifdef CANDELA_VIEW
 
 #include "vk/presenter.h"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr uvec2 SIZE{120, 80};
 
-// While it lives, the next call of `function` returns `result` and does nothing else; later ones are the
+// While this lives, the next call of `function` returns `result` and does nothing else; later ones are the
 // driver's. One at a time for each type of function.
 template <class... Arguments>
 class NextCall {
@@ -136,7 +136,7 @@ TEST_F(PresenterTest, ALostSurfaceIsMadeAnew) {
         const NextCall lost(vkQueuePresentKHR, VK_ERROR_SURFACE_LOST_KHR);
         recovers(0x104010u);
     }
-    // Lost once more while it is being made anew.
+    // The surface is lost once more while it is being recreated.
     const NextCall out_of_date(vkAcquireNextImageKHR, VK_ERROR_OUT_OF_DATE_KHR);
     const NextCall lost(vkGetPhysicalDeviceSurfaceCapabilitiesKHR, VK_ERROR_SURFACE_LOST_KHR);
     EXPECT_FALSE(show(0u));

@@ -1,4 +1,4 @@
-// Rendering as it goes on: images that are current, progress for programs, and an error to stop at.
+// A rendering in progress: images that are current, progress for programs, and an error to stop at.
 #include <cmath>
 #include <csignal>
 #include <sstream>
@@ -24,7 +24,7 @@ class Progressive : public CliTest {
     static void wait_for(const std::string& path) {
         wait_until(path + " is there", [&] { return std::filesystem::exists(path); });
     }
-    // Of a rendering without an end: whatever comes before the last line comes twice a second at most.
+    // For a rendering without an end: lines before the last come twice a second at most.
     static void expect_progress(const std::vector<Json>& lines) {
         double previous = 0.0;
         for (const Json& line : lines) {
@@ -36,14 +36,14 @@ class Progressive : public CliTest {
             EXPECT_GE(seconds - previous, last ? 0.0 : 0.5);
             previous = seconds;
             EXPECT_NEAR(double(line["samples_per_second"]) * seconds, double(line["spp"]) * 64 * 64,
-                        64.0 * 64);  // Told in whole samples per pixel.
+                        64.0 * 64);  // Reported in whole samples per pixel.
             EXPECT_TRUE(line["estimated_error"].is_null());
         }
     }
     static float least_samples(const std::string& path) {
         return std::ranges::min(read_exr(path).find("SampleCount.V")->values);
     }
-    // Its first submission gives every pixel a sample.
+    // The first submission gives every pixel a sample.
     const Words endless_ = {"render", CORNELL_BOX, "--size", "64x64", "--spp", "16777216"};
 };
 
@@ -71,8 +71,8 @@ TEST_F(Progressive, OutputsAreValidImagesAllTheTime) {
     EXPECT_TRUE(std::filesystem::exists(file("a.png")));
 }
 
-// A pause lies between two writings, and the program itself says when they begin: by its own clock, with the
-// 24 bits of a float.
+// There is a pause between two writings, and the program itself says when they begin: by its own clock, with
+// the 24 bits of a float.
 TEST_F(Progressive, OutputsAreWrittenNoMoreOftenThanAskedFor) {
     Process process(call(endless_ + Words{"-o", file("a.exr"), "--write-every", "0.3s"}), options());
     wait_for(file("a.exr"));
@@ -93,7 +93,7 @@ TEST_F(Progressive, WritingOnTheWayChangesNoBitOfTheImage) {
     EXPECT_EQ(hash_of({"--spp", "40", "--write-every", "0.001s"}), hash_of({"--spp", "40"}));
 }
 
-// The folder of one output vanishes: a warning, while the other output goes on, and all is there at the end.
+// The folder of one output vanishes: a warning, the other output goes on, and both are there at the end.
 TEST_F(Progressive, AnImageThatCannotBeWrittenIsAWarning) {
     std::filesystem::create_directory(file("gone"));
     Process process(
@@ -209,7 +209,7 @@ TEST_F(Progressive, ATargetErrorThatIsNotReachedIsAWarning) {
     EXPECT_CONTAINS(few.err, ", estimated error unknown (target 1.0000)\n");
 }
 
-// A resumed rendering goes on to the same kind of end, with the same bits as one of as many samples.
+// A resumed rendering ends in the same way, with the same bits as a rendering of as many samples.
 TEST_F(Progressive, ATargetErrorCanBeResumedAndLowered) {
     const Words checkpoint = {"--size",       "32x32",       "--spp",   "100000",
                               "--checkpoint", file("s.exr"), "--resume"};

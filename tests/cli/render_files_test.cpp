@@ -34,7 +34,7 @@ TEST_F(RenderFiles, AttributesTellHowTheImageWasMade) {
                                                " --size 32x32 --spp 4 -o '" + output + "' --seed 7");
 }
 
-// The positions of the image, sent through the matrices, come out at their own pixels and depths.
+// The matrices project the positions of the image to their own pixels and depths.
 TEST_F(RenderFiles, CameraMatricesAgreeWithThePositions) {
     ASSERT_EQ(candela({"render", MESH, "-o", file("a.exr"), "--size", "40x24", "--spp", "1"}).exit_code, 0);
     const Image image = read_exr(file("a.exr"));
@@ -146,7 +146,7 @@ TEST_F(RenderFiles, FailedRunsLeaveOldFilesAlone) {
 }
 
 TEST_F(RenderFiles, TooLargeAPictureSaysWhatItNeeds) {
-    // 2^32 pixels of 8 layers and a position, 16 bytes each.
+    // 2^32 pixels of 8 layers and a position, at 16 bytes each.
     const ProcessResult result =
         candela({"render", CORNELL_BOX, "-o", file("a.exr"), "--size", "65536x65536"});
     EXPECT_EQ(result.exit_code, 5);

@@ -66,7 +66,7 @@ TEST_F(RenderOptionsTest, DepthZeroShowsLightsOnly) {
     for (size_t i = 0; i < image.pixel_count(); ++i) {
         brightest = std::max(brightest, rgb[0][i]);
         EXPECT_FLOAT_EQ(rgb[0][i] * 4.0f,
-                        rgb[2][i] * 17.0f);  // The light sends out 17 12 4, and all else is black.
+                        rgb[2][i] * 17.0f);  // The light emits 17 12 4, and all else is black.
     }
     EXPECT_EQ(brightest, 17.0f);
 }

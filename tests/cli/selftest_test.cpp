@@ -1,4 +1,4 @@
-// `candela selftest` on the device at hand: all passes, and table and JSON say so.
+// `candela selftest` on the device at hand: every check passes, and table and JSON say so.
 #include <regex>
 #include <sstream>
 
@@ -9,7 +9,7 @@ namespace {
 
 class SelftestCommand : public CliTest {
   protected:
-    // Every check is in the report and passed, and `err` told of it on the way.
+    // Every check is in the report and has passed, and `err` reported it on the way.
     static void expect_passed(const nlohmann::json& report, const std::string& err) {
         EXPECT_EQ(report["passed"], true);
         EXPECT_EQ(report["failed"], 0);
@@ -39,7 +39,7 @@ TEST_F(SlowSelftestCommand, PassesOnThisDevice) {
     expect_passed(report, result.err);
 }
 
-// As many checks, of which those of rays ask less.
+// The same number of checks; those of rays take fewer samples.
 TEST_F(SelftestCommand, QuickPassesWithFewerSamples) {
     const ProcessResult result = candela({"selftest", "--json", "--effort", "quick"});
     ASSERT_EQ(result.exit_code, 0) << result.out << result.err;

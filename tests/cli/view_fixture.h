@@ -1,4 +1,4 @@
-// What the tests of windows share: an X server without a screen (Xvfb), its pixels, and a hand at its mouse
+// What the tests of windows share: an X server without a screen (Xvfb), its pixels, and control of its mouse
 // and keys (xdotool). Where these are missing the tests are skipped, which CTest shows with the reason.
 #pragma once
 
@@ -30,7 +30,7 @@ class ViewTest : public CliTest {
         }
         server_.emplace(Words{"/usr/bin/env", "Xvfb", "-displayfd", "2", "-nolisten", "tcp", "-noreset",
                               "-screen", "0", "800x600x24", "-fbdir", file("")});
-        // Its number is a line; warnings may come before.
+        // The display's number is a line; warnings may come before it.
         std::string line;
         for (int lines = 1; line.empty() || line.find_first_not_of("0123456789") != std::string::npos;
              ++lines) {
@@ -62,7 +62,8 @@ class ViewTest : public CliTest {
                            ProcessOptions{.environment = environment()})
             .out;
     }
-    // Of the window of `candela view`, which has one as soon as it hears its user; before, nothing.
+    // The title of the window of `candela view`, which has one as soon as it takes input; before that,
+    // nothing.
     std::string title() const {
         std::string text = xdotool({"search", "--name", " samples per pixel", "getwindowname"});
         if (!text.empty()) text.pop_back();
@@ -71,7 +72,7 @@ class ViewTest : public CliTest {
     void wait_for_title(const std::string& expected) const {
         wait_until("the title is \"" + expected + "\"", [&] { return title() == expected; });
     }
-    // What the title says; -1 if there is none.
+    // The number of samples in the title; -1 if there is none.
     int samples() const {
         const std::string text = title();
         return text.empty() ? -1 : std::stoi(text.substr(text.find(": ") + 2));
@@ -94,8 +95,8 @@ class ViewTest : public CliTest {
         wait_until(name + " is there", [&] { return std::filesystem::exists(file(name)); });
         return file(name);
     }
-    // Saves the picture of the scene of that name until it is at rest: of that size and with so many samples
-    // in every pixel. What is saved shows all that was done before.
+    // Saves the picture of the scene of that name until it is at rest, with that size and that many samples
+    // in every pixel. What is saved shows everything that was done before.
     Image picture_at_rest(const std::string& name, uvec2 size, float spp) const {
         Image image;
         wait_until("the picture is at rest", [&] {
@@ -110,8 +111,8 @@ class ViewTest : public CliTest {
     }
 
     // The screen: words of blue, green, red and nothing, row-major. Xvfb keeps it in a file, X's window dump:
-    // 32-bit words, most significant byte first, of which 0 is the header's size and 19 the number of
-    // colours, each of twelve bytes, that follow it.
+    // 32-bit words, most significant byte first, of which word 0 is the header's size and word 19 the number
+    // of colours, of twelve bytes each, that follow it.
     std::vector<uint32_t> screen() const {
         const std::string bytes = read_file(file("Xvfb_screen0"));
         const auto word = [&](size_t at) {
@@ -146,7 +147,7 @@ class ViewTest : public CliTest {
         return true;
     }
 
-    // Closes the window as its user would and expects a clean end, which the validation layer has a say in.
+    // Closes the window as its user would and expects a clean end, also by the validation layer.
     void expect_clean_end() {
         press("Escape");
         const ProcessResult result = viewer_->finish();

@@ -1,5 +1,4 @@
-// What `candela view` must live through: a window that comes, goes and closes at any moment, and a device
-// that is lost.
+// What `candela view` must survive: a window that comes, goes and closes at any moment, and a lost device.
 #include <csignal>
 
 #include "cli/view_fixture.h"
@@ -7,7 +6,7 @@
 namespace candela {
 namespace {
 
-// A window that is taken from the screen and put back goes on, and shows its picture again.
+// A window that is removed from the screen and put back goes on, and shows its picture again.
 TEST_F(View, GoesOnWhileItIsNotOnTheScreen) {
     view({"--size", "200x150"});
     wait_until("there is a window", [&] { return !title().empty(); });
@@ -27,7 +26,7 @@ TEST_F(View, GoesOnWhileItIsNotOnTheScreen) {
     expect_clean_end();
 }
 
-// With a window manager, Openbox, which puts the window into the upper left corner, without a frame.
+// A window manager, Openbox, puts the window into the upper left corner, without a frame.
 class ManagedView : public View {
   protected:
     void SetUp() override {
@@ -46,7 +45,7 @@ class ManagedView : public View {
                          ProcessOptions{.environment = environment()});
         wait_until("openbox manages windows", [&] { return xdotool({"get_num_desktops"}) != "0\n"; });
     }
-    // Starts `candela view` and waits until the manager has given the window its attention.
+    // Starts `candela view` and waits until the manager has made the window active.
     void view_managed(const Words& arguments) {
         view(arguments);
         wait_until("the window is active", [&] {
@@ -137,8 +136,8 @@ TEST_F(View, AfterFiveFailuresWithoutProgressItWritesWhatThereIs) {
     const auto spp = uint32_t(std::get<float>(image.attributes.at("samplesPerPixel")));
     ASSERT_GE(spp, 8u);
     EXPECT_CONTAINS(result.err, "going on from " + std::to_string(spp) + " samples per pixel");
-    // A device that is slow beside other work is held between two submissions, when some pixels have more
-    // samples.
+    // A device that is slow because of other work is stopped between two submissions, when some pixels have
+    // more samples.
     const std::vector<float>& counts = image.find("SampleCount.V")->values;
     EXPECT_EQ(std::ranges::min(counts), float(spp));
     if (std::ranges::max(counts) == float(spp))

@@ -7,13 +7,13 @@
 namespace candela {
 namespace {
 
-// The saved camera, put into the scene, gives `candela render` the very picture that the window showed.
+// With the saved camera in the scene, `candela render` gives the very picture that the window showed.
 TEST_F(View, ADragTurnsTheCameraAndTheSavedCameraGivesTheSamePicture) {
     view({"--size", "320x240", "--spp", "4"});
     const Image before = picture_at_rest("cornell-box", {320, 240}, 4);
     xdotool({"mousemove", "310", "200", "mousedown", "1"});
-    // The first moving picture has a quarter of the sides, unless the machine stands still until the camera
-    // is taken to rest.
+    // The first moving picture has a quarter of the width and height, unless the machine stalls until the
+    // camera counts as resting.
     wait_until("a moving picture is saved", [&] {
         xdotool({"mousemove_relative", "--", "-4", "2"});
         const std::string path = saved_by("x", "cornell-box-1.exr");
@@ -84,7 +84,7 @@ TEST_F(View, ThePanelChangesThePicture) {
 class ViewControls : public View {
   protected:
     static Words click_at(const char* x, const char* y) { return {"mousemove", x, y, "click", "1"}; }
-    // Types a number into the slider at that height; the next thing begins before Return is let go.
+    // Types a number into the slider at that height; `next` begins before Return is released.
     void type(const char* y, const std::string& number, const Words& next = {}) const {
         xdotool(Words{"keydown", "ctrl"} + click_at("100", y) + Words{"keyup", "ctrl"});
         xdotool({"type", number});
@@ -116,7 +116,7 @@ class ViewControls : public View {
     }
 };
 
-// What is typed belongs to the slider and moves nothing, though E and 2 are among it.
+// What is typed goes to the slider and moves nothing, although it contains E and 2.
 TEST_F(ViewControls, WhatIsSetInThePanelIsRendered) {
     const Words settings{"--size", "310x380", "--spp", "1", "--max-depth", "1"};
     view(settings);
@@ -141,7 +141,7 @@ TEST_F(ViewControls, WhatIsSetInThePanelIsRendered) {
     expect_clean_end();
 }
 
-// All that is done while the program stands still reaches it at once, and counts as if it had waited for
+// Everything that is done while the program is stalled reaches it at once, and counts as if it had waited for
 // each.
 TEST_F(ViewControls, WhatIsDoneDuringAStallIsDoneInItsOrder) {
     const Words settings{"--size", "310x380", "--spp", "1", "--max-depth", "1"};
@@ -166,7 +166,7 @@ TEST_F(ViewControls, WhatIsDoneDuringAStallIsDoneInItsOrder) {
     const Words development{"--exposure", "1.5", "--tonemap", "agx", "--estimator", "light"};
     expect_same_rgb(image, rendered(settings + development, write("scene.json", scene.dump())));
 
-    // A key that goes down and up meanwhile was down.
+    // A key that went down and up meanwhile counts as pressed.
     std::filesystem::remove(file("cornell-box-1-camera.json"));
     const vec3 home = saved_camera().position;
     process.send(SIGSTOP);
@@ -204,13 +204,13 @@ TEST_F(ViewControls, TheButtonsDoWhatTheKeysDo) {
     expect_clean_end();
 }
 
-// In the frame of the camera: right, up, forwards. A turn and a step of the wheel leave what is looked at
-// where it is, and everything else moves it along with the camera.
+// In the frame of the camera: right, up, forwards. A turn and a step of the wheel leave the point that is
+// looked at where it is; everything else moves it along with the camera.
 TEST_F(ViewControls, MouseAndKeysMoveTheCameraTheirWay) {
     view({"--size", "200x200", "--spp", "1"});
     wait_for_title("cornell-box: 1 samples per pixel");
     press("Tab");
-    // In two steps, the first of which tells it from a click.
+    // Drags in two steps, the first of which distinguishes a drag from a click.
     const auto drag = [](const char* button, const char* x, const char* y) {
         const Words step{"mousemove_relative", "--", x, y};
         return Words{"mousemove", "100", "100", "mousedown", button} + step + step;
@@ -218,7 +218,7 @@ TEST_F(ViewControls, MouseAndKeysMoveTheCameraTheirWay) {
     struct Move {
         Words begin, end;
         vec3 direction;
-        bool about;  // What is looked at.
+        bool about;  // The point that is looked at stays.
     };
     const Move moves[] = {
         {{"keydown", "w"}, {"keyup", "w"}, {0, 0, 1}, false},
@@ -245,7 +245,8 @@ TEST_F(ViewControls, MouseAndKeysMoveTheCameraTheirWay) {
         const vec3 right = normalize(cross(forward, before.up));
         const vec3 shift = after.position - before.position;
         const vec3 seen(dot(shift, right), dot(shift, cross(right, forward)), dot(shift, forward));
-        // Of a turn by up to half a radian, the chord has an angle of up to a quarter with where it begins.
+        // The chord of a turn by up to half a radian is at an angle of up to a quarter to the direction in
+        // which the turn begins.
         EXPECT_GT(dot(normalize(seen), move.direction), std::cos(0.25f)) << move.begin.back();
         EXPECT_EQ(after.look_at == before.look_at, move.about) << move.begin.back();
     }

@@ -1,4 +1,4 @@
-// `candela view`, driven like a user would, and looked at.
+// `candela view`, driven as a user would, and its screen examined.
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -24,7 +24,7 @@ TEST_F(View, FramesThenScreenshotsAreWhatRenderMakes) {
     EXPECT_EQ(read_file(file("a.png")), read_file(file("rendered.png")));
 }
 
-// All channels and attributes, to the bit, but for what cannot be the same.
+// All channels and attributes, to the bit, except for those that cannot be the same.
 TEST_F(View, AnExrIsTheOneThatRenderWritesAndCanBeMerged) {
     view({"--size", "60x40", "--spp", "4", "--camera", "pinhole", "--sampler", "stratified"}, DEPTH_OF_FIELD);
     const Image saved = picture_at_rest("depth-of-field", {60, 40}, 4);
@@ -66,7 +66,7 @@ TEST_F(View, TheEstimatedErrorIsThatOfRender) {
     expect_clean_end();
 }
 
-// The panel hides a part of the picture; Tab takes it away.
+// The panel hides a part of the picture; Tab hides the panel.
 TEST_F(View, TheScreenShowsWhatTheFileHolds) {
     view({"--size", "320x240", "--spp", "2"});
     const Image image = picture_at_rest("cornell-box", {320, 240}, 2);
@@ -92,7 +92,7 @@ TEST_F(View, AClickSetsTheFocusDistance) {
     expect_clean_end();
 }
 
-// What is saved twice shows that it stands still: each takes a frame, and a frame comes after a submission.
+// Saving twice shows that it stands still: each takes a frame, and a frame comes after a submission.
 TEST_F(View, SpacePausesAndGoesOn) {
     view({"--size", "64x64"});
     wait_until("there are samples", [&] { return samples() > 8; });
@@ -107,7 +107,7 @@ TEST_F(View, SpacePausesAndGoesOn) {
     const int held = samples();
     press("space");
     wait_until("it goes on", [&] { return samples() > held && !says("paused"); });
-    // R begins anew while it is paused, too: with up to as many samples as come before the first look.
+    // R restarts it while it is paused, too, with at most as many samples as come before the first look.
     press("space");
     wait_until("it is paused", [&] { return says("paused"); });
     press("r");
@@ -180,7 +180,7 @@ class MovingView : public View {
         std::jthread thread_;
     };
 
-    // Waits until the picture beside the panel has changed so often; says how long that took [s].
+    // Waits until the picture beside the panel has changed that often; returns how long that took [s].
     double seconds_for(int updates) const {
         const auto start = std::chrono::steady_clock::now();
         std::vector<uint32_t> before;

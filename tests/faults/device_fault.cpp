@@ -1,8 +1,8 @@
-// A Vulkan layer that makes devices fail, for tests of what a program does then. Each of the first
-// FAULT_DEVICES devices that are opened runs FAULT_AFTER submissions; all others it answers with the VkResult
-// FAULT_RESULT, as a lost device would. With FAULT_WORK=1 submissions count from the first on that dispatches
-// more than one work group. After the first device, FAULT_OPENINGS times none can be opened. With
-// FAULT_ENUMERATION, a VkResult, no device is found; with FAULT_MEMORY=1 all have memory heaps of 0 bytes.
+// A Vulkan layer that makes devices fail, to test what a program does then. Each of the first FAULT_DEVICES
+// devices that are opened runs FAULT_AFTER submissions; it answers all others with the VkResult FAULT_RESULT,
+// as a lost device would. With FAULT_WORK=1 submissions count from the first on that dispatches more than one
+// work group. After the first device, FAULT_OPENINGS times none can be opened. With FAULT_ENUMERATION, a
+// VkResult, no device is found; with FAULT_MEMORY=1 all have memory heaps of 0 bytes.
 #include <cstdlib>
 #include <cstring>
 

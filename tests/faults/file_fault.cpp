@@ -1,8 +1,8 @@
 // A library for LD_PRELOAD that makes one call on files fail. Calls of open, write, fsync, rename, unlink and
 // mmap (in all their variants) count from 1 on if they concern a path below the folder FILE_FAULT_FOLDER, or
-// a descriptor of a file there. Call FILE_FAULT_AT fails with the errno FILE_FAULT_ERRNO; a write with
-// FILE_FAULT_ERRNO=0 writes half of its bytes instead, and other calls do what they should. The file
-// FILE_FAULT_LOG, in another folder, gets a line "NUMBER CALL PATH" for each.
+// a descriptor of a file there. Call FILE_FAULT_AT fails with the errno FILE_FAULT_ERRNO; with
+// FILE_FAULT_ERRNO=0 a write writes half of its bytes instead, and other calls succeed. Every call that
+// counts adds a line "NUMBER CALL PATH" to the file FILE_FAULT_LOG, in another folder.
 #include <atomic>
 #include <cerrno>
 #include <climits>
@@ -32,7 +32,7 @@ std::string variable(const char* name) {
     return value == nullptr ? "" : value;
 }
 
-// Absolute, but neither its links nor its dots resolved.
+// The absolute path, with neither links nor dots resolved.
 std::string absolute(int folder, const char* path) {
     if (path[0] == '/') return path;
     char base[PATH_MAX] = "";
@@ -56,7 +56,7 @@ std::string path_of(int descriptor) {
 bool is_chosen(const char* call, const std::string& path) {
     static const std::string folder = variable("FILE_FAULT_FOLDER") + '/';
     static const long chosen = std::atol(variable("FILE_FAULT_AT").c_str());
-    // By system calls, which are not counted.
+    // Opened by system calls, which are not counted.
     static const int log = int(::syscall(SYS_openat, AT_FDCWD, variable("FILE_FAULT_LOG").c_str(),
                                          O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
     static std::atomic<long> calls = 0;
@@ -75,7 +75,7 @@ bool fails(const char* call, const std::string& path) {
     return true;
 }
 
-// Bytes to write of so many, or -1 if the call is to fail.
+// The number of bytes to write, `size` at most, or -1 if the call is to fail.
 ssize_t bytes_to_write(int file, size_t size) {
     static const int error = std::atoi(variable("FILE_FAULT_ERRNO").c_str());
     if (!is_chosen("write", path_of(file))) return ssize_t(size);

@@ -21,7 +21,7 @@ void read_size(std::istream& words, Image& image) {
     image.data.y1 = std::clamp(y1, image.data.y0 + 1, image.full.y);
 }
 
-// Not >>, which takes neither "nan" nor "inf".
+// operator>> would accept neither "nan" nor "inf".
 float read_float(std::istream& words) {
     std::string word;
     words >> word;

@@ -13,7 +13,7 @@ namespace candela::fuzz {
 //     channel NAME [VALUE...]          its values, repeated for all pixels; half NAME: of 16 bits
 //     text NAME WORDS...               an attribute
 //     float NAME VALUE
-// Other lines are skipped. What no reader of ours hands on, such as a crop outside the picture, is made to
+// Other lines are skipped. What no reader of ours returns, such as a crop outside the picture, is made to
 // fit; a picture is at most 16x16 pixels.
 std::vector<Image> parse_images(std::string_view text);
 

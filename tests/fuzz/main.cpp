@@ -1,4 +1,4 @@
-// libFuzzer's way into the target TARGET.
+// libFuzzer's entry to the target TARGET.
 #include <cstddef>
 #include <cstdint>
 
@@ -8,7 +8,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     try {
         candela::fuzz::TARGET({reinterpret_cast<const char*>(data), size});
-    } catch (const candela::Error&) {  // What is to become of bad input.
+    } catch (const candela::Error&) {  // What bad input should cause.
     }
     return 0;
 }

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds the fuzzers of this folder with Clang, AddressSanitizer and UndefinedBehaviorSanitizer and runs them, each with
-# 512 MiB and two seconds for an input. What it finds is in build/fuzz/findings, and the exit code is not 0.
+# 512 MiB and two seconds per input. Findings are in build/fuzz/findings, and make the exit code differ from 0.
 #   usage: sh tests/fuzz/run.sh [-max_total_time=SECONDS | -runs=INPUTS] [TARGET...]   (180 seconds; all targets)
 # New inputs are kept in build/fuzz/corpora, for the next time.
 set -eu
@@ -18,7 +18,7 @@ cmake --build --preset fuzz
 mkdir -p build/fuzz/findings
 export effort
 export ASAN_OPTIONS=quarantine_size_mb=16 UBSAN_OPTIONS=print_stacktrace=1
-# As many at a time as there are processors; each says at its end how many inputs it ran.
+# Runs as many at a time as there are processors; each says at its end how many inputs it ran.
 printf '%s\n' "$@" | xargs -P "$(nproc)" -I NAME sh -c '
     name=NAME
     mkdir -p "build/fuzz/corpora/$name"

@@ -1,4 +1,4 @@
-// The ways in from outside, as functions of bytes. Each may throw Error; nothing else may happen.
+// The program's inputs from outside, as functions of bytes. Each may throw Error; nothing else may happen.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ void mtl(std::string_view bytes);
 void ply(std::string_view bytes);
 void hdr(std::string_view bytes);
 void exr(std::string_view bytes);
-// Images as text, see parse_image(): what the commands make of images that OpenEXR has read without
+// Images as text, see parse_images(): what the commands do with images that OpenEXR has read without
 // complaint.
 void checkpoint(std::string_view bytes);  // Whatever its checksum says, and what is done with it.
 void merge(std::string_view bytes);

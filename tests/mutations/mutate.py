@@ -2,7 +2,7 @@
 """The test of the tests: breaks a copy of the renderer on purpose, one way at a time, and says which tests notice.
 
 Each way of mutations.py is built in a copy of this tree below build/mutations, and the tests of its group run against
-it, for two minutes at most. Prints the table of README.md, and exits with 1 if some way went unnoticed. Takes about
+it, for two minutes at most. Prints the table of README.md, and exits with 1 if a way went unnoticed. Takes about
 forty minutes on two cores.
 
 usage: mutate.py [WORD]...      WORD: only the ways whose names have one of them
@@ -21,13 +21,13 @@ ROOT = Path(__file__).resolve().parents[2]
 COPY = ROOT / "build/mutations"
 BUILD = COPY / "build/ci"
 LIMIT = 120.0  # Seconds that the tests of one mutation may take.
-PROGRAMS = ("gpu_tests", "render_tests")  # As the filters of a group go.
+PROGRAMS = ("gpu_tests", "render_tests")  # In the order of a group's filters.
 FAILED = re.compile(r"^\[  FAILED  \] (\S+?)(?:,| \()", re.MULTILINE)
 SHOWN = 4  # Names in a line of the table.
 
 
 def update_copy():
-    """Brings the copy to the state of this tree, touching what differs alone, so that builds stay incremental."""
+    """Brings the copy to the state of this tree, touching only what differs, so that builds stay incremental."""
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True,
                             check=True)
     for name in listed.stdout.splitlines():
@@ -51,7 +51,7 @@ def build():
 
 
 def failed_tests(filters):
-    """Names of the tests that fail, in order, as far as time allows."""
+    """Names of the tests that fail, in order, up to the time limit."""
     failed, end = [], time.monotonic() + LIMIT
     for program, tests in zip(PROGRAMS, filters):
         try:

@@ -1,5 +1,5 @@
 """The ways in which mutate.py breaks the renderer, in groups: the tests to run, and for each way its name, the file,
-what stands there once, and what it becomes."""
+what occurs there once, and what it becomes."""
 
 PATH = "shaders/integrator/path.glsl"
 LIGHT_SAMPLER = "shaders/light/light_sampler.glsl"
@@ -22,7 +22,7 @@ CAMERA = "shaders/scene/camera.glsl"
 RENDER = "shaders/kernels/render.comp.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
 
-# What a group runs: filters for the tests of shaders and for those of whole images, each quick for what it tells.
+# What a group runs: filters for the tests of shaders and for those of whole images, which tell much in little time.
 INTEGRATOR = ("Interaction*",
               "Furnace*:Roulette*:*RouletteKeeps*:EstimatorTest*Lights:*Dielectric*Within*:*Absorbs:SkyFurnace*:"
               "DirectLight*Under*:DiffuseTransmission*:*Reference*/glass:*Reference*/absorbing_glass")

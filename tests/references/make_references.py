@@ -3,12 +3,12 @@
 
 A reference is the picture of a scene by an independent renderer: NAME.exr of NAME.json here, or of the scene of that
 name in scenes/; mean and variance of the mean over many renderings with seeds of their own. reference_test.cpp compares
-candela with them. Requirements, in a virtual environment of their own (they are none of candela's):
+candela with them. Requirements, in a virtual environment of their own (candela itself does not need them):
 
     python3 -m venv venv && venv/bin/pip install mitsuba==3.9.1 numpy && venv/bin/python make_references.py
 
 Mitsuba compiles its kernels with LLVM 16 or newer (Debian: libllvm19); where there are several, the variable
-DRJIT_LIBLLVM_PATH names the library. All references together take about seven minutes of two cores.
+DRJIT_LIBLLVM_PATH names the library. All references together take about seven minutes on two cores.
 """
 
 import json
@@ -105,7 +105,7 @@ def interior(material):
     if not absorption:
         return {}
     sigma_t = -np.log(rgb(absorption["transmittance"])) / absorption["distance"]
-    scale = float(max(sigma_t))  # Mitsuba takes it for a colour, in [0, 1].
+    scale = float(max(sigma_t))  # Mitsuba treats it as a colour, in [0, 1].
     medium = {"type": "homogeneous", "albedo": 0.0, "sigma_t": colour((sigma_t / scale).tolist()), "scale": scale}
     return {"interior": medium}
 
@@ -238,8 +238,8 @@ def sensor(camera):
 
 def baked(texels, factor=4):
     """Mitsuba interpolates between points of which the first and last row are the poles; candela's map is constant over
-    each texel. So this samples the constant texels at the points of a grid that many times finer; its columns begin at
-    -Z, where candela has the middle. Points between two rows of texels get the mean of both."""
+    each texel. So this samples the constant texels at the points of a grid `factor` times finer; its columns begin at
+    -Z, which is in the middle of candela's map. Points between two rows of texels get the mean of both."""
     height, width, _ = texels.shape
     columns = np.roll(np.repeat(texels, factor, axis=1), width * factor // 2, axis=1)
     at = np.arange(factor * height + 1) / factor
@@ -264,8 +264,8 @@ def environment_of(environment, folder):
 
 def integrator(scene):
     if any("absorption" in material for material in scene["materials"].values()):
-        # Of the two that know media, `volpath` has fireflies, and the roulette of `volpathmis` takes 0.2 % of light:
-        # so this one without roulette, and with more vertices than light survives.
+        # Of the two integrators with media, `volpath` has fireflies, and the roulette of `volpathmis` loses 0.2 % of
+        # the light: so this is the latter without roulette, and with more vertices than light survives.
         return {"type": "volpathmis", "max_depth": 64, "rr_depth": 64}
     depth = scene.get("integrator", {}).get("max_depth", "unlimited")
     # Mitsuba counts the light as a vertex, too.

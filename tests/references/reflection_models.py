@@ -1,7 +1,7 @@
 """The reflection models of candela's scenes that Mitsuba 3 lacks, as BSDFs for it, written from the papers.
 
-Mitsuba's words: wi points to the viewer and wo to the light, both in the local frame with z along the normal; a value
-includes the cosine. Both models are two-sided. Import this module after a variant of Mitsuba has been set.
+In Mitsuba's terms, wi points to the viewer and wo to the light, both in the local frame with z along the normal; a
+value includes the cosine. Both models are two-sided. Import this module after a variant of Mitsuba has been set.
 """
 
 import drjit as dr
@@ -107,13 +107,13 @@ class Metal(Reflection):
 
 
 def phong_value(wi, wo, kd, ks, n):
-    """Of wi (3) and wo (N x 3), without the cosine, in double precision."""
+    """The value for wi (3) and wo (N x 3), without the cosine, in double precision."""
     cos_alpha = wo @ (wi * (-1, -1, 1))
     return kd / np.pi + ks * (n + 2) / (2 * np.pi) * np.where(cos_alpha > 0, abs(cos_alpha) ** n, 0)
 
 
 def metal_value(wi, wo, reflectance, alpha):
-    """The same of the metal; Heitz 2014, equations 71, 72 and 99."""
+    """The same for the metal; Heitz 2014, equations 71, 72 and 99."""
 
     def smith_lambda(w):
         return (np.sqrt(1 + alpha**2 * (1 / w[..., 2] ** 2 - 1)) - 1) / 2
@@ -126,7 +126,7 @@ def metal_value(wi, wo, reflectance, alpha):
 
 
 def quadrature_albedo(value, wi, points=1000):
-    """Integral of value(wi, wo) cos over the hemisphere: Gauss and Legendre's rule in z^2, even steps in longitude."""
+    """Integral of value(wi, wo) cos over the hemisphere: Gauss and Legendre's rule in z^2, equal steps in longitude."""
     x, weights = np.polynomial.legendre.leggauss(points)
     z = np.sqrt((x + 1) / 2)[:, None]
     phi = 2 * np.pi * np.arange(points) / points

@@ -58,7 +58,7 @@ def wait_until(what, condition):
 
 
 class Cluster:
-    """Daemons that live in a folder, as long as the context."""
+    """Daemons that live in a folder as long as the context."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -104,7 +104,7 @@ class Cluster:
                                                  stdin=subprocess.DEVNULL, cwd=self.folder))
 
     def run(self, *command, check=True, **more):
-        """What the command prints."""
+        """Runs the command and returns what it prints."""
         result = subprocess.run([str(word) for word in command], env=self.environment | more, cwd=self.folder,
                                 capture_output=True, text=True, check=False)
         if check and result.returncode != 0:

@@ -18,7 +18,7 @@ CANDELA = os.path.abspath(sys.argv.pop(1))
 ROOT = Path(__file__).resolve().parents[2]
 SUBMIT = ROOT / "integrations/slurm/submit.sh"
 SCENE = ROOT / "scenes/cornell-box.json"
-ACTIVE = ("PENDING", "CONFIGURING", "RUNNING", "COMPLETING", "REQUEUED")  # Of a job that has not ended.
+ACTIVE = ("PENDING", "CONFIGURING", "RUNNING", "COMPLETING", "REQUEUED")  # States of a job that has not ended.
 
 
 class Slurm(unittest.TestCase):
@@ -35,8 +35,8 @@ class Slurm(unittest.TestCase):
         return subprocess.run([CANDELA, *map(str, arguments)], capture_output=True, text=True, check=True).stdout
 
     def submit(self, part, spp, size, candela=CANDELA, check=True):
-        """What it prints, and the numbers of the jobs that it submitted."""
-        # On one thread of the CPU a task takes seconds, so that it has a middle.
+        """Submits a picture; returns what that prints, and the numbers of the jobs."""
+        # On one thread of the CPU a task takes seconds, so that it can be ended midway.
         printed = self.cluster.run(
             SUBMIT, "--part", part, SCENE, "--spp", spp, "--size", size, "-o", self.folder / "box.exr",
             "-o", self.folder / "box.png", "--checkpoint-every", "0.1s", "--device", "llvmpipe",
@@ -44,7 +44,7 @@ class Slurm(unittest.TestCase):
         return printed, [line.split()[1].rstrip(":") for line in printed.splitlines() if line.startswith("Job ")]
 
     def drain(self):
-        """Lets no job begin until the test ends, and then none of its jobs."""
+        """Lets no job begin until the test ends, and cancels its jobs then."""
         self.addCleanup(self.cluster.set_nodes, "n1,n2", "RESUME")
         self.addCleanup(self.cluster.run, "scancel", "--me")
         self.cluster.set_nodes("n1,n2", "DRAIN")
@@ -57,7 +57,7 @@ class Slurm(unittest.TestCase):
         return (self.parts / "merge.log").read_text()
 
     def running_task(self, part):
-        """(task, first sample, process) of one that has written a checkpoint."""
+        """(job, first sample, process) of a running task that has written a checkpoint."""
         for line in self.cluster.run("squeue", "--noheader", "--states=R", "--array", "--format=%i %K").splitlines():
             job, index = line.split()
             if "_" not in job:

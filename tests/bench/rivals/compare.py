@@ -3,7 +3,7 @@
 
 All three read the same scene files and do the same work: size, depth, Russian roulette, box filter, no denoiser, no
 adaptive sampling. Runs take turns, because machines are noisy; figures are medians, and CPU time is that of rendering
-alone, over all threads. relMSE (see pictures.py) is each renderer's against its own converged picture, so that a
+alone, over all threads. relMSE (see pictures.py) compares each renderer with its own converged picture, so that a
 difference of models does not count as noise; how far these pictures are apart is printed with them. The README beside
 this folder says more.
 
@@ -24,7 +24,7 @@ from renderers import BLENDER_SCRIPT, Candela, Cycles, Job, Tracer, find, run
 
 ROOT = Path(__file__).resolve().parents[3]
 SCENES_FOLDER = ROOT / "tests" / "bench" / "scenes"
-# Scene file, and scattering vertices at most.
+# Scene file, and the most scattering vertices.
 SCENES = {
     "cornell-box": (ROOT / "scenes" / "cornell-box.json", 5),
     "suzannes": (SCENES_FOLDER / "suzannes.json", 8),
@@ -63,7 +63,7 @@ def arguments():
 
 
 def make_scenes(blender):
-    """What the scenes are made of and is not in the repository."""
+    """Makes what the scenes need and the repository does not have."""
     if not (SCENES_FOLDER / "made" / "many-lights.json").exists():
         run([sys.executable, SCENES_FOLDER / "make_many_lights.py"])
     if not (SCENES_FOLDER / "made" / "suzanne.ply").exists():

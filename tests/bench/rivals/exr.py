@@ -31,7 +31,7 @@ def header(data):
 
 
 def channel_names(attribute):
-    """In the order of the file; all must be 32-bit floats."""
+    """Names of the channels in the order of the file; all must be 32-bit floats."""
     names, at = [], 0
     while attribute[at]:
         name, at = take_string(attribute, at)

@@ -4,7 +4,7 @@ BLOCK = 32  # Pixels.
 
 
 def means(picture):
-    """Of the channels R, G and B."""
+    """Means of the channels R, G and B."""
     _, _, planes = picture
     return [sum(plane) / len(plane) for plane in planes]
 
@@ -19,7 +19,7 @@ def relmse(picture, reference):
 
 
 def block_means(picture):
-    """Of all channels together, row by row of blocks of BLOCK x BLOCK pixels."""
+    """Means of blocks of BLOCK x BLOCK pixels over all channels together, row by row."""
     width, height, planes = picture
     columns = -(-width // BLOCK)
     sums, counts = ([0] * (columns * -(-height // BLOCK)) for _ in range(2))

@@ -2,7 +2,7 @@
 
 Each renderer's render() writes an OpenEXR picture and returns {"cpu", "wall": seconds; "rays": per sample, or None
 where they are not counted}. Seconds are those that all samples after the first of each pixel took, over all threads,
-scaled to all samples: so that neither starting, nor compiling, nor preparing the scene counts.
+scaled to all samples, so that neither starting, nor compiling, nor preparing the scene counts.
 """
 
 import json
@@ -13,16 +13,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-# Bounces that always survive. All three ask for roulette after the second scattering first: Cycles cannot sooner.
+# Bounces that always survive. In all three, roulette begins after the second scattering: Cycles cannot begin earlier.
 RR_DEPTH = 1
-# Blender without windows and the user's settings; it fails if the script does.
+# Blender without windows or the user's settings; it fails if the script does.
 BLENDER_SCRIPT = ["-b", "--factory-startup", "--python-exit-code", "1", "-P"]
 
 
 @dataclass
 class Job:
     scene: Path
-    depth: int  # Scattering vertices at most.
+    depth: int  # The most scattering vertices.
     width: int  # Of the picture, and its height [pixels].
     threads: int
 
@@ -36,7 +36,7 @@ def run(command):
 
 
 def last_json(text):
-    """What the last line that is an object says."""
+    """The last line that is a JSON object."""
     return json.loads([line for line in text.splitlines() if line.startswith("{")][-1])
 
 

@@ -13,7 +13,7 @@ BOX_SIDES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1
 
 
 def read_scene(path):
-    """The scene as JSON has it."""
+    """The scene as JSON."""
     text = Path(path).read_text(encoding="utf-8")
     return json.loads(STRING_OR_COMMENT.sub(lambda match: match.group(1) or " ", text))
 

@@ -1,4 +1,4 @@
-// A minimal scalar path tracer over Embree 3: what candela is measured beside. It renders candela's scenes
+// A minimal scalar path tracer over Embree 3, with which candela is compared. It renders candela's scenes
 // with light samples and BSDF samples under multiple importance sampling, independent random numbers, and
 // Russian roulette.
 //
@@ -35,7 +35,7 @@ struct Ray {
     vec3 o, d;
 };
 
-// Without a camera's lens.
+// A camera without its lens.
 struct Pinhole {
     Pinhole(const Camera& camera, uint32_t width) : position(camera.position) {
         const float reach = std::tan(0.5f * camera.vertical_fov), pixel = 2.0f * reach / float(width);
@@ -70,14 +70,14 @@ class Tracer {
     uint64_t rays = 0;
 
   private:
-    // What a path carries from vertex to vertex.
+    // The state of a path between vertices.
     struct Path {
         Ray ray;
         vec3 beta{1};
         float eta_scale =
             1.0f;  // Product of the squared relative indices of refraction, by which beta was divided.
         vec3 L{0};
-        float pdf = 0.0f;  // Of the ray's direction [1/sr]; 0: light samples cannot find what it meets.
+        float pdf = 0.0f;  // Of the ray's direction [1/sr]; 0: light samples cannot find what it hits.
     };
     struct Vertex {
         vec3 p, wo, n, ns;  // Normals on the viewer's side; n is geometric.
@@ -95,8 +95,7 @@ class Tracer {
     const float gap_;  // Between a surface and the rays that leave it [m].
 };
 
-// Finds the next vertex and adds what it emits, or what the sky does; returns whether the path can go on
-// there.
+// Finds the next vertex and adds what it emits, or what the sky does; returns whether the path goes on there.
 bool Tracer::intersect(Path& path, Vertex& vertex) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -141,7 +140,7 @@ bool Tracer::occluded(vec3 from, vec3 d, float distance) {
     return ray.tfar < 0.0f;
 }
 
-// By one light sample, weighted.
+// Direct light by one light sample, weighted.
 vec3 Tracer::direct_light(const Vertex& vertex, const Frame& frame, vec3 wo, Random& random) {
     const vec3 from = vertex.p + gap_ * vertex.n;
     const LightSample light = scene_.sample_light(from, random);
@@ -153,7 +152,7 @@ vec3 Tracer::direct_light(const Vertex& vertex, const Frame& frame, vec3 wo, Ran
     return value.f * light.radiance * (wi.z * weight(light.pdf, value.pdf) / light.pdf);
 }
 
-// Sends the path on in a direction of the BSDF's choice; returns whether it goes on.
+// Continues the path in a direction that the BSDF samples; returns whether it goes on.
 bool Tracer::scatter(Path& path, const Vertex& vertex, const Frame& frame, vec3 wo, Random& random) const {
     const Surface& surface = *vertex.surface;
     BsdfSample sample;
@@ -211,7 +210,7 @@ struct Work {
     uint64_t rays = 0;
 };
 
-// One thread's share of the tiles of 16 x 16 pixels; `next` is the next tile that nobody has taken.
+// One thread's share of the tiles of 16 x 16 pixels; `next` is the next free tile.
 Work render_tiles(const TracerScene& scene, const Pinhole& camera, const Settings& settings,
                   std::atomic<uint32_t>& next, std::vector<vec3>& picture) {
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);

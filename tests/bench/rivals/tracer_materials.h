@@ -34,7 +34,7 @@ struct BsdfSample {
     vec3 wi{0};
     vec3 weight{0};    // f cos / pdf; 0 ends the path.
     float pdf = 0.0f;  // [1/sr]; 0 for glass, which has no density.
-    float eta = 1.0f;  // Index of refraction beyond the surface over that before it, if wi goes through.
+    float eta = 1.0f;  // Index of refraction behind the surface over that in front, if wi goes through.
 };
 
 // Smith's Lambda of the GGX distribution.

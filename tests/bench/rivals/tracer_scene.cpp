@@ -97,8 +97,8 @@ uint32_t TracerScene::add_lamp(const Shape& shape, vec3 p, vec3 e1, vec3 e2, boo
     return uint32_t(lamps.size() - 1);
 }
 
-// Lamps count by area times luminance, the environment by what falls onto a disk as wide as the scene but no
-// more than all lamps together and, if it is even, for nothing, as candela's do.
+// Lamps are weighted by area times luminance, the environment by the light that falls onto a disk as wide as
+// the scene, but at most as much as all lamps together; an even one not at all. candela does the same.
 void TracerScene::build_lights() {
     map_ = build_environment_map(environment_);
     for (uint32_t y = 0; y <= environment_.size.y; ++y)
@@ -156,7 +156,7 @@ LightSample TracerScene::sample_light(vec3 from, Random& random) const {
     return {wi, lamp.radiance, distance, lamp.pdf_area * distance_squared / cosine};
 }
 
-// A texel by luminance times solid angle, and a direction evenly within it.
+// Chooses a texel by luminance times solid angle, and a direction uniformly within it.
 LightSample TracerScene::sample_environment(Random& random) const {
     const uint32_t texel = choose(map_.alias, random);
     const uvec2 size = environment_.size;

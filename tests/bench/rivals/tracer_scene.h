@@ -28,7 +28,7 @@ struct Lamp {
     vec3 n{0};              // Unit normal of the front.
     vec3 radiance{0};       // [W/(m^2 sr)]
     double area = 0.0;      // [m^2]
-    float pdf_area = 0.0f;  // Of light samples at a point of it [1/m^2], choice among lights included.
+    float pdf_area = 0.0f;  // Density of light samples there [1/m^2], choice among lights included.
 };
 inline constexpr uint32_t NO_LAMP = UINT32_MAX;
 
@@ -39,7 +39,7 @@ struct Triangle {
     uint32_t lamp;  // Or NO_LAMP.
 };
 
-// A point on a light, seen from somewhere. pdf is 0 if it sends nothing there.
+// A point on a light, seen from another point. pdf is 0 if no light arrives there.
 struct LightSample {
     vec3 wi{0};
     vec3 radiance{0};
@@ -51,7 +51,7 @@ struct LightSample {
 // Algorithms for Random Number Generation.
 class Random {
   public:
-    // A stream of its own for each pair; the hash keeps neighbouring pairs apart, which the generator would
+    // Each pair has a stream of its own; the hash keeps neighbouring pairs apart, which the generator would
     // not. Ref: Steele et al. 2014, Fast Splittable Pseudorandom Number Generators.
     Random(uint32_t a, uint32_t b) {
         uint64_t x = (uint64_t(a) << 32 | b) + 0x9e3779b97f4a7c15u;

@@ -43,7 +43,7 @@ def columns():
 
 
 def lamps():
-    """One in each cell of the ceiling, shining downwards."""
+    """One lamp in each cell of the ceiling, shining downwards."""
     for i in range(LAMPS):
         for k in range(LAMPS):
             chance = random.Random(LAMPS * i + k)
