@@ -8,7 +8,7 @@
 
 namespace candela {
 
-// x, y, z, and a fourth lane that means nothing. Comparing gives all ones in an Int4's lane, or 0.
+// x, y, z, and a fourth lane without a meaning. A comparison sets all bits of an Int4's lane, or none.
 using Float4 [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = int32_t;
 
@@ -22,7 +22,7 @@ inline Float4 all4(float x) {
     return Float4{x, x, x, x};
 }
 
-// As Box, but a fresh one holds nothing in particular.
+// Like Box, but not initialised.
 struct Box4 {
     Float4 lo;
     Float4 hi;

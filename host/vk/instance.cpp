@@ -152,7 +152,7 @@ Instance::~Instance() = default;
 
 std::vector<DeviceInfo> Instance::devices() const {
     uint32_t count = 0;
-    // By VK_ERROR_INITIALIZATION_FAILED the loader says that no driver here has a device.
+    // VK_ERROR_INITIALIZATION_FAILED is how the loader says that no driver here has a device.
     const VkResult result = vkEnumeratePhysicalDevices(instance_.get(), &count, nullptr);
     if (result == VK_ERROR_INITIALIZATION_FAILED) return {};
     VK_CHECK(result);

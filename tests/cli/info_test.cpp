@@ -136,7 +136,7 @@ TEST_F(Devices, NoDriverIsAnErrorWithARemedy) {
     }
 }
 
-// As where drivers are installed, and the hardware is not.
+// This happens where drivers are installed, and the hardware is not.
 TEST_F(Devices, DriversWithoutADeviceAreAnErrorWithARemedy) {
     const ProcessResult result =
         candela({"devices"}, FAULT_LAYER + std::map<std::string, std::string>{
@@ -145,7 +145,7 @@ TEST_F(Devices, DriversWithoutADeviceAreAnErrorWithARemedy) {
     EXPECT_CONTAINS(result.err, "Vulkan finds no device; install the driver of your GPU");
 }
 
-// As where a driver compiles for hardware that is not there.
+// This happens where a driver compiles for hardware that is not there.
 TEST_F(Devices, OneWithoutMemoryWillNotDo) {
     const ProcessResult result =
         candela({"devices"}, FAULT_LAYER + std::map<std::string, std::string>{{"FAULT_MEMORY", "1"}});

@@ -133,7 +133,7 @@ PUBLIC ssize_t write(int file, const void* bytes, size_t size) {
 PWRITE(pwrite)
 PWRITE(pwrite64)
 
-// Of its parts, the first is a short count.
+// A short count concerns the first part only.
 PUBLIC ssize_t writev(int file, const iovec* parts, int count) {
     if (count == 0) return 0;
     const ssize_t some = bytes_to_write(file, parts[0].iov_len);

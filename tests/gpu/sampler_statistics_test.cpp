@@ -60,7 +60,7 @@ class SamplerStatisticsTest : public SamplerTest {
     }
 };
 
-// Of independent uniform u and v, 12 (u - 1/2) (v - 1/2) has the mean 0 and the variance 1.
+// For independent uniform u and v, 12 (u - 1/2) (v - 1/2) has the mean 0 and the variance 1.
 double correlation_z(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>& b, int i, int k) {
     double sum = 0.0;
     for (size_t j = 0; j < a.size(); ++j)
@@ -182,9 +182,9 @@ double error_slope(const std::function<std::vector<uvec2>(const std::vector<Samp
     return sum_ke / sum_kk;
 }
 
-// Of R scrambles, the logarithm of the RMSE has a standard deviation of 1 / sqrt(2 R), or less if errors have
-// lighter tails than normal ones; the slope's is that over log(2) sqrt(60), 60 being the sum of (k - 6)^2.
-// For R = 256 it is 0.0082: a tolerance of 0.05 is 6 of them.
+// With R scrambles, the logarithm of the RMSE has a standard deviation of 1 / sqrt(2 R), or less if errors
+// have lighter tails than normal ones; the slope's is that over log(2) sqrt(60), 60 being the sum of (k -
+// 6)^2. For R = 256 it is 0.0082: a tolerance of 0.05 is 6 of them.
 TEST_F(SamplerStatisticsTest, ErrorsOfIndependentSamplesFallLikeTheRootOfTheirNumber) {
     const double slope =
         error_slope([&](const auto& samples) { return pairs(SAMPLER_INDEPENDENT, samples); }, 256);

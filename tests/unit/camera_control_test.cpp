@@ -40,7 +40,7 @@ vec2 shown_at(const Camera& camera, vec3 point) {
 TEST(CameraControl, AQuarterOrbitComesFromTheSide) {
     Camera moved = camera();
     orbit(moved, PI / 2, 0.0f);
-    expect_near(moved.position, vec3(-2, 0, 0));  // So that what was in front has turned to the right.
+    expect_near(moved.position, vec3(-2, 0, 0));  // What was in front is now to the right.
     expect_near(moved.look_at, vec3(0));
     orbit(moved, -PI / 2, PI / 6);
     expect_near(moved.position, vec3(0, 1, std::sqrt(3.0f)));
