@@ -9,7 +9,7 @@
 namespace candela {
 namespace {
 
-// Appends one channel, its value at pixel i given by value(i).
+// Appends a channel whose value at pixel i is value(i).
 template <class Value>
 void add_channel(Image& image, const char* name, const Value& value) {
     Channel& channel = image.add(name);
@@ -54,7 +54,7 @@ class Half {
             sum += state.sample_count(i) == 0 ? 0.0 : value(state);
         return sum;
     }
-    // Compensated sums as the numbers that they stand for.
+    // The compensated sums, with their compensation applied.
     double total(uint32_t layer, size_t i, int component) const {
         return sum(i, [&](const Accumulation& state) {
             return double(state.at(layer, i)[component]) - double(state.at(layer + 1, i)[component]);
@@ -82,7 +82,7 @@ double mean_of(const std::vector<Half>& halves, size_t i, const Value& value) {
     return count == 0 ? 0.0 : sum / count;
 }
 
-// The halves are independent.
+// Variance of the image, which is the mean of independent halves.
 double variance_of_mean(const std::vector<Half>& halves, size_t i, int component) {
     if (std::ranges::any_of(halves, [i](const Half& half) { return half.count(i) == 0; })) return INFINITE;
     return mean_of(halves, i, [&](const Half& half) { return half.variance(i, component); }) /

@@ -1,4 +1,4 @@
-// The accumulation state on the host: what a renderer has gathered so far, and the image that it makes.
+// The accumulation state on the host: the sums of samples so far, and the image made from them.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Accumulation {
     uint32_t seed = 0;
     uint32_t first_sample = 0;                  // Index of each pixel's first sample.
     uint32_t layer_count = LAYER_COUNT_COLOUR;  // LAYER_COUNT_COLOUR or LAYER_COUNT_AOVS.
-    std::vector<float> values;                  // None: no pixel has a sample or a limit.
+    std::vector<float> values;                  // Empty if no pixel has a sample or a limit.
     RenderCounters counters{};                  // Of all the work that went into it.
 
     size_t pixel_count() const { return size_t(rect.width()) * rect.height(); }
@@ -41,18 +41,18 @@ struct Accumulation {
     double rays_per_sample(size_t i) const {
         return double(at(LAYER_SQUARE_COMPENSATION, i)[3]) / std::max(1u, sample_count(i));
     }
-    // The samples that pixel i gets at most, below 2^24; UINT32_MAX if it has no limit.
+    // The most samples that pixel i may get, below 2^24; UINT32_MAX if it has no limit.
     uint32_t limit(size_t i) const;
     void set_limit(size_t i, uint32_t samples);
-    // All samples of all pixels.
+    // The samples of all pixels together.
     uint64_t total_samples() const;
-    // The samples of the pixel that holds fewest, and of the one that holds most.
+    // The fewest and the most samples that a pixel holds.
     uint32_t least_samples() const;
     uint32_t most_samples() const;
 };
 
-// States are one; or two, whose samples are put together; or four, two and two, for two halves of a
-// rendering, each put together, whose image is the plain mean of theirs.
+// `states` below are one; or two, whose samples are combined; or four, for the two halves of an adaptive
+// rendering: the samples of each pair are combined, and the image is the unweighted mean of the two halves.
 
 struct SampleCounts {
     uint64_t total = 0;  // Of all pixels.
@@ -60,29 +60,29 @@ struct SampleCounts {
     uint32_t most = 0;   // ... and of the one that holds most.
 };
 SampleCounts count_samples(std::span<const Accumulation> states);
-// Those that every pixel holds at least; of halves, what a pixel holds on average, rounded down.
+// The samples that every pixel holds at least; for two halves, the mean over the pixels, rounded down.
 uint32_t samples_per_pixel(std::span<const Accumulation> states);
 RenderCounters total_counters(std::span<const Accumulation> states);
 
-// Which images beside R G B A.
+// The images to make besides R G B A.
 struct AovSelection {
     bool albedo = false;        // Albedo.R/G/B: mean albedo of the first hit.
     bool normal = false;        // N.X/Y/Z: mean shading normal of the first hit, world space.
-    bool position = false;      // P.X/Y/Z: what the pinhole ray through the pixel centre meets [m].
-    bool depth = false;         // Z: its distance along the view axis [m]; infinity where it meets nothing.
+    bool position = false;      // P.X/Y/Z: where the pinhole ray through the pixel centre hits [m].
+    bool depth = false;         // Z: depth of that hit along the view axis [m]; infinity at a miss.
     bool variance = false;      // Variance.R/G/B of the pixel mean; infinity below two samples.
     bool sample_count = false;  // SampleCount.V.
 
     bool operator==(const AovSelection&) const = default;
-    // The accumulation needs LAYER_COUNT_AOVS.
+    // Whether the accumulation needs LAYER_COUNT_AOVS.
     bool needs_layers() const { return albedo || normal; }
     bool needs_positions() const { return position || depth; }
 };
 
-// The image of the states, the first of which has samples: means over each pixel's own samples, in double
-// precision, of a half alone where the other has none, and 0 where there are none at all. A is the share of
-// camera rays that hit something visible. `positions` holds x, y, z, depth per pixel, row-major; may be empty
-// if the selection does not ask for it.
+// The image of the states: means over each pixel's own samples, in double precision; over one half alone
+// where the other has no samples, and 0 where there are none at all. A is the share of camera rays that hit
+// something visible. `positions` holds x, y, z, depth per pixel, row-major; it may be empty if the selection
+// does not need it.
 Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
                  const std::vector<float>& positions);
 

@@ -20,13 +20,13 @@ constexpr const char* SECONDS_ATTRIBUTE = "candela.renderSeconds";
 constexpr const char* FORMAT_ATTRIBUTE = "candela.checkpoint";
 constexpr const char* STATES_ATTRIBUTE = "candela.states";
 
-// Of the file; larger in a version whose checkpoints older ones would not understand.
+// Version of the file format; it grows when older programs cannot read newer checkpoints.
 constexpr uint32_t FORMAT = 1;
 
-// Of a rendering, and of an adaptive one: see adaptive.h.
+// Numbers of states of a plain and of an adaptive rendering; see adaptive.h.
 constexpr size_t PLAIN_STATES = 1, ADAPTIVE_STATES = 4;
 
-// What names of the first state's channels and attributes begin with, and those of others.
+// The prefix of the names of a state's channels and attributes; the first state has none.
 std::string prefix_of(size_t state) {
     return state == 0 ? "" : "State" + std::to_string(state) + ".";
 }
@@ -35,7 +35,7 @@ std::string channel_name(size_t state, uint32_t layer, size_t component) {
     return prefix_of(state) + "Layer" + std::to_string(layer) + "." + COMPONENTS[component];
 }
 
-// Of all that is read back. OpenEXR's own checks miss many a flipped bit.
+// Checksum of everything that is read back. OpenEXR's own checks miss many flipped bits.
 uint64_t checksum(const Image& header, std::span<const Accumulation> states) {
     uint64_t hash = FNV1A64_BASIS;
     for (const Accumulation& state : states)
@@ -61,7 +61,7 @@ Number number_attribute(const Image& image, const std::string& attribute, const 
                 "\"; give a file that candela render wrote, unchanged");
 }
 
-// The whole numbers of a state, and the attributes that hold them.
+// Calls each(attribute, number) for every integer of a state.
 template <class State, class Each>
 void for_each_number(State& state, const std::string& prefix, const Each& each) {
     each("candela." + prefix + "firstSample", state.first_sample);
@@ -130,7 +130,7 @@ bool is_count(float value, float most) {
     return value >= 0.0f && value <= most && value == std::floor(value);
 }
 
-// What a renderer relies on, and no checksum of a forger's tells.
+// Checks what a renderer relies on. The checksum alone does not ensure it: a forger can compute one.
 void check_state(const Accumulation& state, const std::string& name) {
     for (size_t i = 0; i < state.pixel_count(); ++i) {
         const float samples = state.at(LAYER_L_COMPENSATION, i)[3];

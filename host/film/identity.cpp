@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* HASH_ATTRIBUTE = "candela.identity";
 
-// How messages call the settings, and the attributes that hold them; size and crop are the image's own.
+// The settings' names in messages, and the attributes that hold them; size and crop are the image's own.
 struct SettingName {
     const char* word;
     const char* attribute;

@@ -1,5 +1,5 @@
-// Identity: everything that an image depends on but the samples that it holds, as attributes of the image.
-// What has one identity can be continued and joined.
+// Identity: everything that an image depends on except which samples it holds, as attributes of the image.
+// Renderings with the same identity can be continued and merged.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct Identity {
     uint64_t hash = 0;
 };
 
-// What made an image or a state: on another, the same samples may have other bits.
+// What made an image or a state. With another maker, the same samples may have other bits.
 struct Maker {
     std::string device;
     std::string driver;
@@ -30,26 +30,26 @@ struct Maker {
 // An attribute of the images of adaptive renderings.
 inline constexpr const char* ADAPTIVE_ATTRIBUTE = "candela.adaptive";
 
-// Size and crop as they stand among the settings.
+// Size and crop as text for Identity::settings.
 std::string size_text(uvec2 size);
 std::string crop_text(const PixelRect& crop);
 
 // Writes the identity as attributes candela.*; size and crop are the image's own.
 void set_identity(Image& image, const Identity& identity);
 
-// Reads it back. Throws Error, which says what is missing of `name`, if the image has none.
+// Reads it back. Throws Error that says what `name` lacks if the image has none.
 Identity identity_of(const Image& image, const std::string& name);
 
-// The same for the maker; "GPU, driver 1.2, candela 0.1.0" in messages.
+// The same for the maker. to_text() is for messages: "GPU, driver 1.2, candela 0.1.0".
 void set_maker(Image& image, const Maker& maker);
 Maker maker_of(const Image& image, const std::string& name);
 std::string to_text(const Maker& maker);
 
-// In what `theirs` differs from `ours`, e.g. "its seed is 8, not 7"; empty if they are the same.
+// How `theirs` differs from `ours`, e.g. "its seed is 8, not 7"; empty if they are the same.
 std::string difference(const Identity& theirs, const Identity& ours);
 
-// The text of an attribute; throws Error, which names the attribute and says that `name` is none of candela's
-// renderings, if the image has none.
+// The text of an attribute. If the image does not have it, throws Error that names the attribute and `name`,
+// and asks for a file that candela render wrote.
 const std::string& text_attribute(const Image& image, const std::string& attribute, const std::string& name);
 
 // 16 hexadecimal digits.

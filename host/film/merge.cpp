@@ -20,7 +20,7 @@ constexpr const char* SPP = "samplesPerPixel";
 constexpr const char* SECONDS = "renderTimeSeconds";
 constexpr const char* COUNT_CHANNEL = "SampleCount.V";
 
-// What a file says of itself, and its channels without their values.
+// The header of a file: what it says of the part, and its channels without their values.
 struct Part {
     std::filesystem::path file;
     std::string name;
@@ -41,7 +41,7 @@ float number_attribute(const Image& image, const char* attribute) {
     throw Error(name + ": " + why);
 }
 
-// Samples of each pixel: as the image counts them or, where it does not, as its attributes say.
+// Samples of each pixel, by the channel SampleCount.V or, without that, by the attributes.
 std::vector<uint32_t> sample_counts(const Image& image, const std::string& name,
                                     std::span<const SampleRange> samples) {
     const uint32_t most = total_count(samples);
@@ -68,7 +68,7 @@ std::vector<uint32_t> sample_counts(const Image& image, const std::string& name,
     return counts;
 }
 
-// Checks what one file's header alone can tell.
+// Describes one file by its header. Throws Error for whatever is wrong with that.
 Part describe(const std::filesystem::path& file, Image image) {
     Part part{.file = file, .name = file.string(), .identity = {}, .maker = {}, .samples = {}, .header = {}};
     part.identity = identity_of(image, part.name);
@@ -132,7 +132,7 @@ void warn_of_makers(const std::vector<Part>& parts, std::vector<std::string>& wa
     }
 }
 
-// The channels of all parts, in the order of the first; warns of those that some part lacks.
+// The channels that all parts have, sorted by name; warns of those that are left out.
 std::vector<std::string> common_channels(const std::vector<Part>& parts, std::vector<std::string>& warnings) {
     std::set<std::string> names;
     for (const Part& part : parts) {
@@ -171,7 +171,7 @@ void warn_of_halves(const Part& part, std::vector<std::string>& warnings) {
     }
 }
 
-// Positions depend on the scene alone, and differ between devices by rounding.
+// Positions depend only on the scene; between devices they differ by rounding.
 constexpr const char* POSITIONS[] = {"P.X", "P.Y", "P.Z", "Z"};
 
 void check_positions(const Part& first, const Image& first_image, const Part& part, const Image& image) {
@@ -186,7 +186,7 @@ void check_positions(const Part& first, const Image& first_image, const Part& pa
     }
 }
 
-// The values of those channels, and of the counts.
+// Reads a part's values of those channels, and its sample counts.
 Image read_values(const Part& part, const std::vector<std::string>& channels, const PartReader& read) {
     ImageLimits limits{.channels = {COUNT_CHANNEL}};
     limits.channels.insert(limits.channels.end(), channels.begin(), channels.end());
@@ -219,7 +219,7 @@ void set_attributes(Image& image, const std::vector<Part>& parts, uint64_t least
     image.attributes[SECONDS] = seconds;
 }
 
-// What all files say of themselves, by their samples. Throws Error if they do not belong together.
+// Describes all files, sorted by their samples. Throws Error if they do not belong together.
 std::vector<Part> describe_all(const std::vector<std::filesystem::path>& files, const PartReader& read) {
     std::vector<Part> parts;
     for (const std::filesystem::path& file : files)
@@ -251,7 +251,7 @@ Merged merge_files(const std::vector<std::filesystem::path>& files, const PartRe
     warn_of_makers(parts, merged.warnings);
     const std::vector<std::string> channels = common_channels(parts, merged.warnings);
     PartSum sum(first.header, channels);
-    Image first_image;  // Its positions.
+    Image first_image;  // Only its positions.
     for (const Part& part : parts) {
         Image image = read_values(part, channels, read);
         const std::vector<uint32_t> counts = sample_counts(image, part.name, part.samples);
@@ -284,7 +284,7 @@ Missing missing_samples(const std::vector<std::filesystem::path>& files, SampleR
             complete.insert(complete.end(), part.samples.begin(), part.samples.end());
         } else if (part.samples.size() == 1) {
             complete.push_back({part.samples[0].first, part.samples[0].first + least});
-        }  // Which samples pixels lack of several ranges, nothing tells.
+        }  // With several ranges, nothing says which samples are missing.
     }
     missing.samples = gaps(complete, wanted);
     return missing;

@@ -1,4 +1,5 @@
-// Parts of one rendering, each of other samples, and the image of all of them: what `candela merge` does.
+// Merges parts of one rendering, each with samples of its own, into the image of all samples: `candela
+// merge`.
 #pragma once
 
 #include <filesystem>
@@ -18,18 +19,18 @@ struct Merged {
         warnings;  // Odd, but no reason to refuse: gaps, interrupted parts, other devices.
 };
 
-// How parts are read, by the names of their files: what they say of themselves, and then their values, once.
+// How the files of parts are read: first their headers, then, once, their values.
 struct PartReader {
     std::function<Image(const std::filesystem::path&)> header = read_exr_header;
     std::function<Image(const std::filesystem::path&, const ImageLimits&)> image = read_exr;
 };
 
-// Merges EXR images as candela render writes them; parts of one identity whose samples do not overlap. Means
-// are weighted by the pixels' sample counts; PartSum says how, and how exactly. The image has the channels
-// that all parts have, and the attributes of the part with the first samples, but for those that speak of the
-// samples. The same files in any order give the same bits. Throws Error, which says what is wrong with which
-// file, if one cannot be read, is no such part, or does not belong with the others. Holds the values of one
-// part at a time in memory.
+// Merges EXR images by candela render: parts with the same identity whose samples do not overlap. Means are
+// weighted by the pixels' sample counts; PartSum says how, and how exact they are. The image has the channels
+// that all parts have, and the attributes of the part with the first samples, except for the samples, the
+// time and the makers, which are those of all parts. The order of the files changes no bit. Throws Error that
+// says what is wrong with which file if one cannot be read, is not such a part, or does not belong with the
+// others. Holds the values of one part at a time in memory.
 Merged merge_files(const std::vector<std::filesystem::path>& files, const PartReader& read = {});
 
 struct Missing {
@@ -37,8 +38,8 @@ struct Missing {
     std::vector<std::string> warnings;  // Of interrupted parts, some of whose pixels have fewer samples.
 };
 
-// Which of the samples `wanted` no part holds for all pixels. Reads headers alone. Throws Error as
-// merge_files() does for what these tell.
+// The samples among `wanted` that no part holds for all pixels. Reads only headers. Throws Error as
+// merge_files() does, as far as headers show what is wrong.
 Missing missing_samples(const std::vector<std::filesystem::path>& files, SampleRange wanted,
                         const PartReader& read = {});
 

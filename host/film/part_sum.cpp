@@ -58,7 +58,7 @@ void PartSum::add_variance(Sum& sum, const Image& part, const std::vector<uint32
         const double n = counts[i];
         if (n == 0.0) continue;
         const auto before = double(counts_[i]);
-        if (n > 1.0) sum.values[i] += double(variances[i]) * n * (n - 1.0);  // Of one sample it is infinite.
+        if (n > 1.0) sum.values[i] += double(variances[i]) * n * (n - 1.0);  // Infinite for one sample.
         if (before > 0.0) {
             const double difference = double(means[i]) - sum.samples[i] / before;
             sum.values[i] += difference * difference * (before * n / (before + n));

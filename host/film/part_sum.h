@@ -1,5 +1,5 @@
-// PartSum: the arithmetic of `candela merge`: images of different samples of the same pixels become that of
-// all samples.
+// PartSum: the arithmetic of `candela merge`, which turns images of different samples of the same pixels into
+// the image of all samples.
 #pragma once
 
 #include <cstdint>
@@ -10,33 +10,33 @@
 
 namespace candela {
 
-// Sums, in double precision, of images that differ only in their samples. What is stored in the images is
-// rounded to floats (u = 2^-24), what happens here to doubles, which is nothing beside it. So the mean of
-// non-negative values is within 2 u (relative) of that of the unrounded ones: u for the parts, u for the
-// result; and within 3 u of that of an image of all samples, which is rounded, too. For values of both signs
-// (N) that holds of the mean of |part|.
+// Sums, in double precision, of images that differ only in their samples. The values of the images are
+// rounded to floats (u = 2^-24); the rounding of the doubles here is negligible. So the mean of non-negative
+// values has a relative error of at most 2 u, u for the parts and u for the result; and it is within 3 u of
+// an image of all samples, which is rounded, too. For values of both signs (N) these errors are relative to
+// the mean of |part|.
 //
-// The sum of squared deviations of all N samples, N (N - 1) V for the Variance V, is that within the parts,
-// n (n - 1) Variance, and that between them, w d^2, where d is the difference of a part's mean from that of
-// the parts before, and w < n. Exact in reals. Rounded, the former is within u of V. The d are off by e <= 2
-// u M, for means up to M, and the sum of w (2 d e + e^2) is at most 4 u M sqrt(N sum(w d^2)) + 4 u^2 M^2 N by
-// Cauchy and Schwarz. With one more u for the result, V is off by less than
-// 3 u V + 4 u M sqrt(V / (N - 1)) + 4 u^2 M^2 / (N - 1).
+// The sum of squared deviations of all N samples, N (N - 1) V for the Variance V, consists of that within the
+// parts, n (n - 1) Variance, and that between them, w d^2, where d is the difference between a part's mean
+// and that of the parts before it, and w < n. In real numbers this is exact. With rounding, the former has a
+// relative error of u. The d are off by e <= 2 u M, for means up to M, and by Cauchy and Schwarz the sum of w
+// (2 d e + e^2) is at most 4 u M sqrt(N sum(w d^2)) + 4 u^2 M^2 N. With one more u for the result, V is off
+// by less than 3 u V + 4 u M sqrt(V / (N - 1)) + 4 u^2 M^2 / (N - 1).
 //
 // Ref: Chan, Golub, LeVeque, "Algorithms for Computing the Sample Variance" (1983), equation 2.1.
 class PartSum {
   public:
-    // For images of `like`'s size whose channels of these names are wanted, in that order. Known are R, G, B,
+    // For images of the size of `like`; sums their channels of these names, in that order. It knows R, G, B,
     // A, Albedo and N (means), Variance of R, G and B, SampleCount.V, and P and Z (the same in all images).
     PartSum(const Image& like, std::vector<std::string> channels);
     static bool knows(const std::string& channel);
 
-    // Adds an image that has all the channels and, if Variance is among them, R, G and B; counts[i] samples
-    // of pixel i.
+    // Adds an image with counts[i] samples of pixel i. It must have all the channels and, if Variance is
+    // among them, R, G and B.
     void add(const Image& part, const std::vector<uint32_t>& counts);
 
-    // The channels of all samples, in 32 bits; means are 0 where there is no sample, and Variance is infinite
-    // where there are fewer than two. No attributes.
+    // The image of all samples, in 32 bits, without attributes. Means are 0 where there is no sample, and
+    // Variance is infinite where there are fewer than two.
     Image image() const;
 
     const std::vector<uint64_t>& counts() const { return counts_; }

@@ -1,4 +1,4 @@
-// Ranges of sample indices, as text and together: which samples of a pixel an image holds.
+// Ranges of sample indices: which samples of a pixel an image holds.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,10 @@
 
 namespace candela {
 
-// Samples per pixel at most: their counts are kept as 32-bit floats, which are exact up to here.
+// The most samples per pixel: counts are stored as 32-bit floats, which are exact up to this number.
 inline constexpr uint32_t MAX_SPP = 1u << 24;
 
-// The samples first, first + 1, ... up to but without `end`, which is at most MAX_SPP; none if the two are
-// equal.
+// The samples first, first + 1, ..., end - 1; none if first == end. `end` is at most MAX_SPP.
 struct SampleRange {
     uint32_t first = 0;
     uint32_t end = 0;
@@ -25,16 +24,16 @@ struct SampleRange {
 // "0..64", or "0..64,128..192" for several.
 std::string to_text(std::span<const SampleRange> ranges);
 
-// The ranges that `text` lists, which must ascend without overlap; nothing if it is anything else.
+// The ranges that `text` lists, which must ascend without overlap; nothing for any other text.
 std::optional<std::vector<SampleRange>> parse_ranges(const std::string& text);
 
-// The same samples as ascending ranges, those that touch made one and empty ones left out; none may overlap.
+// The same samples in ascending ranges: adjacent ones are joined, empty ones left out. None may overlap.
 std::vector<SampleRange> joined(std::vector<SampleRange> ranges);
 
-// Those of `within` that no range holds, ascending.
+// The samples of `within` that no range holds, ascending.
 std::vector<SampleRange> gaps(std::vector<SampleRange> ranges, SampleRange within);
 
-// All samples of all ranges.
+// The number of samples in all ranges.
 uint32_t total_count(std::span<const SampleRange> ranges);
 
 }  // namespace candela

@@ -15,18 +15,19 @@ namespace {
 // The states of half h are 2h and 2h + 1: even, extra.
 constexpr size_t HALVES = 2;
 
-// All samples of the first pass are even. Fewer would say too little of where the error is.
+// All samples of the first pass are even. Fewer would say too little about where the error is.
 constexpr uint32_t FIRST_EVEN = 16;
 
-// Later, this part of them. More of them know better where the error is, and leave fewer to go there.
+// Later, one sample in this many is even. More even samples locate the error better, but leave fewer to send
+// there.
 constexpr uint32_t EVEN_PART = 8;
 
-// A pixel gets at most so many times the average: the error may be a single bright sample's.
+// A pixel gets at most this many times the average: its error may come from a single bright sample.
 constexpr double LARGEST_SHARE = 16.0;
 
-// Replaces each value of a row-major plane by the mean of those of its work group. One pixel alone has too
-// few samples to know its own error; and pixels of one group wait for each other, and better have the same
-// limit.
+// Replaces each value of a row-major plane by the mean over its work group. A single pixel has too few
+// samples to estimate its error; and the pixels of a group wait for each other, so that they should have the
+// same limit.
 void average_groups(std::vector<double>& plane, size_t width) {
     const size_t height = plane.size() / width;
     for (size_t y0 = 0; y0 < height; y0 += WORKGROUP_SIZE) {
@@ -43,8 +44,8 @@ void average_groups(std::vector<double>& plane, size_t width) {
     }
 }
 
-// The relative variance of a sample in each pixel's group, summed over the channels, over the rays that it
-// takes.
+// The relative variance of a sample in each pixel's group, summed over the channels, divided by the rays that
+// a sample takes.
 std::vector<double> variance_over_cost(const Accumulation& state) {
     const size_t width = state.rect.width();
     const Image image = make_image(state, {.variance = true}, {});
@@ -67,7 +68,7 @@ std::vector<double> variance_over_cost(const Accumulation& state) {
     return variance;
 }
 
-// The factor by which weights become samples whose mean is `mean`.
+// The factor that turns weights into numbers of samples whose mean is `mean`.
 template <class Samples>
 double solve_factor(double mean, const Samples& mean_with) {
     double low = 0.0, high = 1.0;

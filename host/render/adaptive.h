@@ -1,11 +1,11 @@
 // Adaptive sampling: samples go where the error is, and the image stays unbiased.
 //
-// A rendering is two halves with seeds of their own, and its image the plain mean of their images. A half is
-// two states: in one, every pixel has the same number of samples; in the other it has extra samples, as many
-// as its limit says. The limits of a half follow from the even samples of the other half, which nothing
-// steers. So no sample has a say in how many others it is averaged with, and both means are unbiased. Were it
-// otherwise, a pixel that missed a light at first would stop early, and stay dark: see Kirk and Arvo,
-// "Unbiased sampling techniques for image synthesis" (1991).
+// A rendering consists of two halves with different seeds, and its image is the unweighted mean of theirs. A
+// half has two states: in one, every pixel has the same number of samples; in the other, it has as many extra
+// samples as its limit says. The limits of a half follow from the even samples of the other half, whose
+// number depends on no sample. So no sample influences how many others it is averaged with, and both means
+// are unbiased. Otherwise a pixel that missed a light at first would stop early, and stay dark: see Kirk and
+// Arvo, "Unbiased sampling techniques for image synthesis" (1991).
 #pragma once
 
 #include <cstdint>
@@ -17,24 +17,25 @@
 
 namespace candela {
 
-// The four states, with values, but no sample yet. make_image() makes the image of them.
+// The four states, with values but without samples. make_image() turns them into the image.
 std::vector<Accumulation> adaptive_states(const RenderSettings& settings);
 
-// The end of the next pass, in samples that a pixel has on average, if there are `spp`; at most `target`. It
-// depends on nothing else, and never on time: one rendering always ends with the same samples.
+// The end of the pass after `spp`, both in samples per pixel on average; at most `target`. It does not depend
+// on time, so that a rendering always ends with the same samples.
 uint32_t next_pass_end(uint32_t spp, uint32_t target);
 
-// Of `half` samples that a pixel of a half has on average, those that all pixels have.
+// The even samples, which all pixels have, of the `half` samples that a pixel of a half has on average.
 uint32_t even_samples(uint32_t half);
 
 // Sets the limits of a half's extra samples, so that a pixel has `half` samples on average, `even` of which
 // all pixels have. The others go where the relative error is large and samples are cheap, in proportion to
-// the root of variance over rays, as the other half's even samples tell: that makes relative_mse() of the
-// image least for the time that it takes. All pixels of a work group get the same. A limit never falls.
+// the square root of variance over rays, estimated from the other half's even samples. This minimises
+// relative_mse() of the image for the time that it takes. All pixels of a work group get the same number. A
+// limit never decreases.
 void plan_extra_samples(const Accumulation& other_even, uint32_t even, uint32_t half, Accumulation& extra);
 
-// Renders to the end of a pass at `spp` samples on average, an even number. `planned` is the pass whose
-// limits the states have, 0 at first. As SteadyRenderer::render() otherwise.
+// Renders to the end of a pass, at `spp` samples per pixel on average, an even number. `planned`: the end of
+// the pass whose limits the states have; 0 at first. Otherwise as SteadyRenderer::render().
 bool render_pass(SteadyRenderer& renderer, uint32_t spp, uint32_t& planned,
                  const std::function<bool(double progress)>& keep_going);
 

@@ -13,8 +13,8 @@
 namespace candela {
 namespace {
 
-// Besides the scene's, a kernel has one storage buffer, for counters or for results. MoltenVK takes the
-// length of an array of buffers from its constant's default (its issue 1421).
+// The storage buffers that the scene may use: a kernel has one more, for counters or results. MoltenVK takes
+// the length of an array of buffers from the default of its constant (MoltenVK issue 1421).
 uint32_t available_buffers(const vk::DeviceInfo& device) {
     if (device.driver_id == VK_DRIVER_ID_MOLTENVK) return LEAST_STORAGE_BUFFERS;
     return device.limits.max_per_stage_descriptor_storage_buffers - 1;
@@ -33,7 +33,7 @@ uint64_t bytes_of(const GpuScene& scene, uint32_t array) {
                 ExitCode::out_of_memory);
 }
 
-// Throws Error if what one storage buffer is to hold is longer than a storage buffer may be.
+// Throws Error if these arrays together are too long for one storage buffer.
 void check_range(const vk::DeviceInfo& device, const GpuScene& scene, std::span<const uint32_t> arrays) {
     uint64_t bytes = 0;
     std::string names;

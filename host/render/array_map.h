@@ -24,10 +24,10 @@ struct ArrayMap {
     bool operator==(const ArrayMap&) const = default;
 };
 
-// Texel buffers for all arrays or storage buffers for all, as wanted; or, for `automatic`, a storage buffer
-// for each array that is too long for a texel buffer. Each has a storage buffer of its own where the device
-// allows so many; else the longest have, and the others share the last one. Throws Error (out_of_memory) that
-// names the arrays and the device's limits if one is too long.
+// Maps all arrays to texel buffers or all to storage buffers, as wanted; or, for `automatic`, only those to
+// storage buffers that are too long for a texel buffer. Each has a storage buffer of its own if the device
+// allows that many; otherwise the longest do, and the others share the last one. Throws Error (out_of_memory)
+// that names the arrays and the device's limits if a buffer would be too long.
 ArrayMap map_arrays(const vk::DeviceInfo& device, const GpuScene& scene, SceneAccess wanted);
 
 // Sets the kernel's constants.

@@ -27,9 +27,9 @@ uint32_t aperture_constant(const Lens& lens) {
     return lens.blades == 0 ? APERTURE_DISK : APERTURE_POLYGON;
 }
 
-// On lavapipe alone: a GPU has no registers for a list, and gives its lanes other work to do while some wait;
-// on SwiftShader the list takes 2.4 times as long as the tree. Of triangles alone, since lanes go through the
-// test of every kind that the scene has for every primitive.
+// The length of the list that replaces the tree; 0 for the tree. Only on lavapipe: a GPU has no registers for
+// a list, and runs other work while some lanes wait; on SwiftShader the list takes 2.4 times as long as the
+// tree. Only for triangles, since every lane executes the tests of all kinds in the scene for each primitive.
 uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
     const bool triangles = scene.primitives_present == 1u << PRIMITIVE_TRIANGLES;
     return device.info().is_lavapipe() && triangles && scene.primitive_count <= LIST_MAX

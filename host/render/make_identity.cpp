@@ -11,7 +11,7 @@
 namespace candela {
 namespace {
 
-// The shortest text that means just that float.
+// The shortest text that reads back as that float.
 std::string exact(float value) {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, value).ptr};

@@ -1,4 +1,4 @@
-// The identity of what a renderer is asked for.
+// The identity of a rendering.
 #pragma once
 
 #include "film/identity.h"
@@ -7,7 +7,7 @@
 
 namespace candela {
 
-// Not of the number of samples, the first sample, the AOVs or how the kernels read the scene.
+// It does not depend on the number of samples, the first sample, the AOVs or how the kernels read the scene.
 Identity make_identity(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
 }  // namespace candela

@@ -13,17 +13,17 @@
 namespace candela {
 namespace {
 
-// Submissions on a GPU must stay far from a driver's watchdog; on a CPU they only set how soon Ctrl-C is
-// heard.
+// Submissions on a GPU must stay far below the limit of a driver's watchdog; on a CPU they only determine how
+// soon Ctrl-C takes effect.
 constexpr double GPU_SUBMISSION_SECONDS = 0.075;
 constexpr double CPU_SUBMISSION_SECONDS = 0.25;
 
-// Rays of the position kernel per submission: one per pixel, far below a watchdog's patience.
+// Pixels per submission of the position kernel: at one ray each, far below a watchdog's limit.
 constexpr uint32_t POSITION_PIXELS = 1u << 20;
 
 constexpr uint64_t COUNTER_BYTES = COUNTER_COUNT * sizeof(uint32_t);
 
-// All that Vulkan promises of maxComputeWorkGroupInvocations, so that no device need be asked.
+// Vulkan guarantees this maxComputeWorkGroupInvocations, so that the device's need not be checked.
 static_assert(WORKGROUP_SIZE * WORKGROUP_SIZE <= 128);
 
 template <class T>
@@ -175,8 +175,8 @@ void Renderer::record(const vk::Kernel& kernel, Tile tile) {
     commands_.dispatch(kernel, bytes_of(tile), {count.x, count.y, 1});
 }
 
-// Dispatches a tile until all its pixels hold their samples. Once is enough, unless the driver ends loops
-// that run for long, as lavapipe does: see render.comp.glsl.
+// Dispatches a tile until all its pixels hold their samples. Once is enough, unless the driver ends long
+// loops, as lavapipe does: see render.comp.glsl.
 Renderer::Work Renderer::complete(const Tile& tile) {
     Work work;
     while (true) {

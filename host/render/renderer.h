@@ -39,14 +39,14 @@ struct RenderSettings {
 // The uniform record of a camera and settings for a scene.
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
-// The kernels' specialization constants for them; those that the device sets have their defaults.
+// The kernels' specialization constants for them; those that depend on the device have their defaults.
 KernelConstants make_constants(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
-// The same with those that the device sets.
+// The same, including those that depend on the device.
 KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene, const ArrayMap& map,
                                  const Camera& camera, const RenderSettings& settings);
 
-// The renderer's kernels, compiled for kernel_constants() and not bound to anything.
+// The renderer's kernels, compiled for kernel_constants(), with nothing bound.
 enum class RenderKernel { render, position };
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants);
 
@@ -58,33 +58,33 @@ uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings);
 
 class Renderer {
   public:
-    // Uploads the scene and compiles the kernel, an empty first dispatch included. `device` must outlive the
-    // renderer. Throws Error (out_of_memory) that says how much is needed and what the device allows.
+    // Uploads the scene and compiles the kernel, including an empty first dispatch. `device` must outlive the
+    // renderer. Throws Error (out_of_memory) that says how much memory is needed and what the device has.
     Renderer(const vk::Device& device, const GpuScene& scene, const Camera& camera,
              const RenderSettings& settings);
 
-    // Begins anew, without a sample, with another camera or other settings. Compiles the kernel only if they
-    // need another one (see make_constants). `scene` must be the one that the renderer was made with, but for
-    // the rotation of its environment; how it is read does not change.
+    // Starts over without samples, with another camera or other settings. Compiles the kernel only if its
+    // constants change (see make_constants). `scene` must be the one that the renderer was made with, except
+    // for the rotation of its environment. How its arrays are read does not change.
     void reset(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
-    // Adds samples until every pixel holds `target`, or its limit if that is less. Between submissions
-    // `keep_going(progress)` is asked, progress in [0, 1]; if it says no, rendering stops with pixels that
-    // may hold different numbers of samples. Returns whether the target was reached.
+    // Adds samples until every pixel holds `target`, or its limit if that is less. Calls
+    // `keep_going(progress)`, progress in [0, 1], between submissions; if it returns false, rendering stops,
+    // and pixels may hold different numbers of samples. Returns whether the target was reached.
     bool render(uint32_t target, const std::function<bool(double)>& keep_going);
 
-    // The state so far, counters included, and continuing from a state of the same size, first sample and
-    // layers. Throws Error if it does not fit.
+    // Copies the state, counters included, to the host; and from the host, to continue from it. Throws Error
+    // if its size, crop, seed, first sample or layers are not those of this rendering.
     Accumulation download() const;
     void upload(const Accumulation& state);
 
-    // x, y, z of what the pinhole ray through each pixel's centre meets and its distance along the view axis
-    // [m]; row-major. 0 0 0 infinity where it meets nothing.
+    // x, y, z of the hit of the pinhole ray through each pixel's centre, and its depth along the view axis
+    // [m]; row-major. 0 0 0 infinity at a miss.
     std::vector<float> positions();
 
     const RenderCounters& counters() const { return counters_; }
-    // The sums of samples, layers LAYER_*, for kernels that show them; another image after a reset() to
-    // another size.
+    // The sums of samples, layers LAYER_*, for kernels that display them. A reset() to another size replaces
+    // the image.
     const vk::StorageImage& accumulation() const { return image_; }
     // How the arrays of the scene are read.
     const ArrayMap& array_map() const { return scene_.map(); }
@@ -100,9 +100,9 @@ class Renderer {
         uint64_t samples = 0;
     };
 
-    // Makes the render kernel for constants_ and image_, an empty first dispatch included.
+    // Makes the render kernel for constants_ and image_, including an empty first dispatch.
     void compile();
-    // That kernel, bound to the scene.
+    // A kernel for constants_, bound to the scene.
     vk::Kernel scene_kernel(RenderKernel which) const;
     void record(const vk::Kernel& kernel, Tile tile);
     Work complete(const Tile& tile);
@@ -117,7 +117,7 @@ class Renderer {
     SceneBuffers scene_;
     KernelConstants constants_;
     vk::Buffer counter_buffer_;  // On the device, of one submission,
-    vk::Buffer counts_;          // and what the host sees of it.
+    vk::Buffer counts_;          // and the host's copy.
     vk::StorageImage image_;
     vk::Commands commands_;
     std::unique_ptr<vk::Kernel> render_kernel_;

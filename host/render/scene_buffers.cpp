@@ -11,7 +11,7 @@
 namespace candela {
 namespace {
 
-// What stands behind the parameters in their buffer: first words of arrays, four to a word.
+// The words that follow the parameters in their buffer: the arrays' starts, four to a word.
 constexpr uint32_t STARTS_WORDS = (ARRAY_COUNT + 3) / 4;
 
 // Words of each storage buffer.
@@ -26,7 +26,7 @@ std::vector<size_t> storage_sizes(const GpuScene& scene, const ArrayMap& map) {
 
 }  // namespace
 
-// A kernel's bindings must all be bound: in place of what it does not read there are buffers of one word.
+// All bindings of a kernel must be bound, so that those which it does not read get buffers of one word.
 SceneBuffers::SceneBuffers(const vk::Device& device, const GpuScene& scene, const Parameters& parameters,
                            const ArrayMap& map)
     : map_(map),

@@ -15,14 +15,14 @@ namespace candela {
 
 class SceneBuffers {
   public:
-    // Uploads the scene; the kernels' constants must say the same as `map`.
+    // Uploads the scene. The kernels' constants must agree with `map`.
     SceneBuffers(const vk::Device& device, const GpuScene& scene, const Parameters& parameters,
                  const ArrayMap& map);
 
     void set(const Parameters& parameters);
 
     const ArrayMap& map() const { return map_; }
-    // What a kernel with these constants declares.
+    // The bindings that a kernel with these constants declares.
     static std::vector<vk::Binding> bindings(const KernelConstants& constants);
     void bind_to(vk::Kernel& kernel) const;
 

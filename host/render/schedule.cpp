@@ -9,25 +9,25 @@
 namespace candela {
 namespace {
 
-// The first submission is small, since nothing is known of the device yet: 64 x 64 pixels, one sample.
+// The first submission is small, since nothing is known about the device yet: 64 x 64 pixels, one sample.
 constexpr double FIRST_BUDGET = 4096;
 
-// The budget grows by this factor at most from one submission to the next, in case that one was unusually
-// cheap.
+// The budget grows by at most this factor from one submission to the next: the last one may have been
+// unusually cheap.
 constexpr double LARGEST_GROWTH = 4;
 
-// Where the image takes several submissions per pass, the first pass takes one sample of every pixel, for a
-// quick look; the second goes on to this many, and later ones add so many at most. Within a pass, neighbours
-// of unequal path lengths each go on with their own next sample; at its end they wait for each other, which
-// takes as long as about two samples. A driver that ends an invocation's loops after 65 535 turns leaves 511
-// for each sample of the largest pass.
+// Where a pass takes several submissions, the first pass adds one sample per pixel, for a quick look; the
+// second continues to SECOND_PASS_TARGET, and later ones add at most LARGEST_PASS. Within a pass, neighbours
+// whose paths differ in length each continue with their own next sample; at its end they wait for each other,
+// which takes as long as about two samples. A driver that ends an invocation's loops after 65 535 iterations
+// leaves 511 for each sample of the largest pass.
 constexpr uint32_t SECOND_PASS_TARGET = 8;
 constexpr uint32_t LARGEST_PASS = 128;
 
 constexpr double GOLDEN_SECTION = 0.618;
 
-// A number without a common divisor with n, near n's golden section: so its multiples modulo n lie all over
-// n, whichever few in a row one takes.
+// A number coprime to n, near n's golden section, so that any few successive multiples of it modulo n are
+// spread over all of n.
 uint32_t stride_over(uint32_t n) {
     auto stride = uint32_t(GOLDEN_SECTION * n);
     while (std::gcd(stride, n) != 1)
@@ -72,8 +72,8 @@ Tile Schedule::next() const {
     return {.origin = at_, .size = min(tile, size_ - at_), .stride = {1, 1}, .target_samples = pass_target_};
 }
 
-// The budget is what a submission can do where no pixel has reached its limit. Where most have, what a
-// submission itself costs hides what a sample does: that is no reason to make it smaller.
+// The budget is for tiles in which no pixel has reached its limit. Where most pixels have, the cost of the
+// submission itself hides that of the samples, which is no reason to lower the budget.
 void Schedule::advance(double seconds, uint64_t samples) {
     const Tile tile = next();
     const uint64_t most = uint64_t{tile.size.x} * tile.size.y * (pass_target_ - pass_start_);

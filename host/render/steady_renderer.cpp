@@ -13,8 +13,8 @@ using Seconds = std::chrono::duration<double>;
 // Copying the state may take this share of the time.
 static constexpr double LARGEST_SHARE_OF_HOLDING = 0.05;
 
-// The pause before a device is opened again, which doubles from try to try: a driver needs a moment to reset
-// it.
+// The pause before a device is opened again, which doubles with each attempt: a driver needs a moment to
+// reset it.
 static constexpr Seconds FIRST_PAUSE{0.1};
 
 SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
@@ -73,8 +73,9 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
     }
 }
 
-// Gets rid of the device, or throws the error if it is of another kind or there is no hope left. While the
-// device is being opened again any error will do: a driver that is not ready has many ways to say so.
+// Closes the device, or throws the error if it is of another kind or the last allowed failure. While the
+// device is being opened again, any error counts as a failure: a driver that is not ready may report
+// anything.
 void SteadyRenderer::recover(const Error& error) {
     if (renderer_) {
         if (error.code() != ExitCode::device_lost && error.code() != ExitCode::out_of_memory)

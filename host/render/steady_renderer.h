@@ -1,5 +1,5 @@
-// SteadyRenderer: a renderer that goes on when its device is lost or out of memory, from a copy of the state
-// that the host holds.
+// SteadyRenderer: a renderer that continues when its device is lost or out of memory, from the host's copy of
+// the state.
 #pragma once
 
 #include <chrono>
@@ -25,28 +25,28 @@ class SteadyRenderer {
         const GpuScene* scene;
         const Camera* camera;
         RenderSettings settings;
-        std::vector<Accumulation> states;  // To continue from, one at least; each has a seed of its own.
-        bool positions = false;            // Whether positions() will be asked for.
+        std::vector<Accumulation> states;  // To continue from, at least one; each has a seed of its own.
+        bool positions = false;            // Whether positions() will be called.
         double hold_seconds = 10.0;        // From one copy of the state to the next.
     };
-    // Told of every failure that is survived: why, how many samples per pixel are kept at least, and how long
-    // submissions will take from now on [s].
+    // Called after every failure that is survived, with its cause, the samples that every pixel still holds
+    // at least, and how long submissions will take from now on [s].
     using OnFailure = std::function<void(const Error& error, uint32_t kept, double submission_seconds)>;
 
     // Opens the device and prepares everything, as Renderer does; what `source` points to must outlive it.
-    // Throws Error if that fails, or if the state does not fit.
+    // Throws Error if that fails, or if a state does not fit.
     SteadyRenderer(Source source, OnFailure on_failure);
 
-    // Goes on with this one of the states(), as it is there now. The first is selected at the start.
+    // Continues with this one of the states(), as it is there now. At the start, the first is selected.
     void select(size_t state);
 
     // As Renderer::render(), but `progress` is the share of all samples up to the target. If the device
-    // fails, it is opened anew and submissions become half as long. Throws the Error if that happens
-    // MOST_FAILURES times without progress of a state; the states are then the last ones.
+    // fails, opens it again and makes submissions half as long. Throws the Error at the MOST_FAILURES-th
+    // failure without progress of any state; the states are then the last copies.
     bool render(uint32_t target, const std::function<bool(double progress)>& keep_going);
 
-    // Copies the selected state from the device to the host. To be called from keep_going(), if at all:
-    // render() does it every hold_seconds, less often where copying takes long, and at its end.
+    // Copies the selected state from the device to the host. May only be called from keep_going(). render()
+    // itself does it every hold_seconds, less often where copying takes long, and at its end.
     void hold();
     // The states as last copied, or those of the source.
     std::vector<Accumulation>& states() { return source_.states; }
@@ -72,16 +72,16 @@ class SteadyRenderer {
     Source source_;
     OnFailure on_failure_;
     size_t selected_ = 0;
-    bool loaded_ = false;  // The renderer goes on from the selected state.
+    bool loaded_ = false;  // Whether the renderer has the selected state.
     std::unique_ptr<vk::Device> device_;
     std::unique_ptr<Renderer> renderer_;
     std::vector<float> positions_;
     ArrayMap array_map_;
     double pipeline_seconds_ = 0.0;
     std::chrono::steady_clock::time_point next_hold_;
-    std::optional<Error> cause_;  // Of the last failure that was not one of opening.
+    std::optional<Error> cause_;  // Of the last failure other than in opening.
     uint32_t failures_ = 0;
-    uint32_t failures_in_a_row_ = 0;   // Since a state went on.
+    uint32_t failures_in_a_row_ = 0;   // Since a state made progress.
     uint64_t samples_at_failure_ = 0;  // Of all states, at the last failure.
 };
 
