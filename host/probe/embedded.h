@@ -1,4 +1,4 @@
-// Files of the repository that are part of the program, byte for byte, so that it needs none beside itself.
+// Files of the repository, embedded byte for byte, so that the program needs no other files.
 #pragma once
 
 #include <string_view>

@@ -12,7 +12,7 @@
 namespace candela {
 namespace {
 
-// The least maxTexelBufferElements of any device.
+// The maxTexelBufferElements that Vulkan guarantees.
 constexpr size_t GUARANTEED_TEXELS = 65536;
 
 Parameters parameters_of(const GpuScene& scene) {

@@ -1,5 +1,5 @@
-// Probes: small kernels (shaders/probes) that map an array of items to an array of results by the renderer's
-// own shader functions, with or without a scene.
+// Probes: small kernels (shaders/probes) that map an array of items to an array of results with the
+// renderer's own shader functions, with or without a scene.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,10 @@ namespace candela {
 // A scene's records on the device, for probes that include scene/scene_data.glsl.
 class DeviceScene {
   public:
-    // `parameters` go to the device as they are.
+    // Uploads `parameters` as they are.
     DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access,
                 const Parameters& parameters);
-    // With the parameters that concern the scene alone.
+    // Sets only those parameters that depend on the scene alone.
     DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access);
 
     uint32_t primitive_count() const { return primitive_count_; }
@@ -36,7 +36,7 @@ class DeviceScene {
 
 // Specialization constants of probes that trace rays: what is in the scene.
 KernelConstants traversal_constants(const GpuScene& scene);
-// And of those that draw samples, by SAMPLER_*.
+// The same for probes that draw samples; `sampler` is one of SAMPLER_*.
 KernelConstants sampler_constants(uint32_t sampler);
 
 // What shaders/probes/items.glsl declares: invocations in a work group, and push constants.
@@ -46,13 +46,13 @@ struct ProbeCounts {
     uint32_t primitives;
 };
 
-// The probe `spirv`, bound to the scene unless that is null; the scene's buffers set the constants that say
-// how it is read. `name` is for messages.
+// Makes the probe `spirv`, bound to the scene unless that is null. The scene's buffers set the constants that
+// say how arrays are read. `name` is for messages.
 vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv, KernelConstants constants,
                       const DeviceScene* scene, const std::string& name);
 
-// Runs a probe on all items, `item_words` uvec4 each; returns `result_words` words for each, in order. A
-// scene may be another than that of make_probe(), in buffers of the same kinds.
+// Runs a probe on all items of `item_words` uvec4 each; returns `result_words` 32-bit words per item, in
+// order. The scene may differ from that of make_probe() if its buffers are of the same kinds.
 std::vector<uint32_t> run_probe(const vk::Device& device, vk::Kernel& kernel,
                                 std::span<const std::byte> items, size_t item_words, size_t result_words,
                                 const DeviceScene* scene);
@@ -72,7 +72,7 @@ std::vector<Result> probe(const vk::Device& device, vk::Kernel& kernel, const st
     return results;
 }
 
-// The same with a kernel that is made for it.
+// The same with a kernel made for this call.
 template <class Result, class Item>
 std::vector<Result> probe(const vk::Device& device, std::span<const uint32_t> spirv,
                           const std::vector<Item>& items, const KernelConstants& constants = {},

@@ -45,7 +45,7 @@ struct BsdfResult {
 // light_sample: random bits for a light sample from a reference point.
 struct LightItem {
     vec3 from{0};
-    uint32_t fill = 0;  // 8 bits count.
+    uint32_t fill = 0;  // Its low 8 bits are used.
     uvec2 u{0};
     uvec2 unused{0};
 };
@@ -55,15 +55,15 @@ struct LightSample {
     float pdf;
     vec3 shadow;
     float t_max;
-    uint32_t occluded;  // The shadow ray is.
-    // What a ray in the direction wi meets: a light, or NO_LIGHT for anything else and for the sky; the
-    // density that light samples have there; and its radiance.
+    uint32_t occluded;  // Whether the shadow ray is.
+    // What a ray in the direction wi hits: a light, or NO_LIGHT for other surfaces and for the sky; the
+    // density of light samples there; and its radiance.
     uint32_t light_met;
     float pdf_met;
     vec3 Li_met;
 };
 
-// sampler: what a pair of random words is a function of. The result is a uvec2.
+// sampler: the arguments that determine a pair of random words. The result is a uvec2.
 struct SampleOfPair {
     uint32_t pixel;  // x | y << 16
     uint32_t n;
@@ -71,12 +71,12 @@ struct SampleOfPair {
     uint32_t pair;
 };
 
-// warp: a point u of the unit square, and its image by every warp.
+// warp: a point u of the unit square, and its image under every warp.
 struct WarpItem {
     vec2 u{0};
     float exponent = 1.0f;  // Of power_cosine.
     float h_max = 1.0f;     // Of the cone.
-    vec3 w{0, 0, 1};        // What sees the normal,
+    vec3 w{0, 0, 1};        // For the visible normal: the view,
     float alpha = 0.5f;     // and the roughness.
     uint32_t corners = 3;   // Of the polygon.
     uvec3 unused{0};
@@ -92,7 +92,7 @@ struct WarpResult {
     vec2 polygon;
 };
 
-// traversal: a ray, and its nearest hit by the BVH and by looking at every primitive.
+// traversal: a ray, and its nearest hit by the BVH and by brute force.
 struct RayItem {
     vec3 o;
     float unused0;

@@ -1,4 +1,4 @@
-// Scenes and meshes for evidence, made in a few words.
+// Scenes and meshes for tests and benchmarks, and functions that make them.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,7 @@
 
 namespace candela {
 
-// Scenes of the folder scenes/, as they were when the program was built.
+// Scenes from the folder scenes/, as embedded when the program was built.
 Scene cornell_box();
 // A closed box that emits radiance 1 everywhere and reflects `albedo` of what it receives.
 Scene furnace(float albedo);
@@ -22,15 +22,15 @@ void add_shape(Scene& scene, const decltype(Shape::geometry)& geometry, uint32_t
                std::optional<Emission> emission = {});
 void add_shape(Scene& scene, TriangleMesh mesh, uint32_t material, std::optional<Emission> emission = {});
 
-// The same radiance from everywhere.
+// The same radiance from all directions.
 Environment constant_environment(vec3 radiance);
-// An environment that is black but for one texel, at the column and row (x, y).
+// An environment that is black except for one texel, at the column and row (x, y).
 Environment one_bright_texel(uvec2 size, uvec2 texel, vec3 radiance);
 
 // A quad with corners p, p + e1, p + e1 + e2, p + e2.
 Quad parallelogram(vec3 p, vec3 e1, vec3 e2);
 
-// A scene that a camera at `position` sees through a narrow vertical field of view [rad]; no shapes yet.
+// A scene without shapes, with a camera of that vertical field of view [rad].
 Scene scene_with_camera(vec3 position, vec3 look_at, float vertical_fov);
 
 // A grey room without lights, open in front and at the sides; its floor is at y = 0.
@@ -40,18 +40,18 @@ Scene open_room();
 // aperture, smooth normals.
 Scene scene_of_everything();
 
-// A sphere of rings * segments quads, two triangles each; unit radius, centre 0, closed, the front outside.
+// A sphere of rings * segments quads, two triangles each, at the poles one; unit radius, centre 0, closed,
+// the front outside.
 TriangleMesh sphere_mesh(uint32_t rings, uint32_t segments);
 
-// Triangles whose corners lie in a cube of edge 2 `size` around a random centre in [-1, 1]^3. Independent of
-// each other.
+// Independent triangles; the corners of each lie in a cube of edge 2 `size`, centred at random in [-1, 1]^3.
 TriangleMesh triangle_soup(uint32_t count, float size, uint32_t seed);
 
 void add_triangle(TriangleMesh& mesh, vec3 a, vec3 b, vec3 c);
 
-// All that is difficult. A quarter of the triangles each: slivers a million times longer than wide; triangles
-// that overlap in 20 planes; triangles of sizes from 10^-3 to 10^3; and copies of those, the corners in
-// another order.
+// Difficult triangles, a quarter each: slivers a million times longer than wide; triangles that overlap in 20
+// planes; triangles of sizes from 10^-3 to 10^3; and copies of some of these, every second one with rotated
+// corners.
 TriangleMesh nasty_mesh(uint32_t count);
 
 // The mesh with every position p replaced by f(p).

@@ -13,7 +13,7 @@
 namespace candela {
 namespace {
 
-constexpr float LAST = 1.0f - 0x1p-24f;  // The last random number below 1.
+constexpr float LAST = 1.0f - 0x1p-24f;  // The largest random number.
 
 // Random parameters, many of them extreme.
 class Adversary {
@@ -35,7 +35,7 @@ class Adversary {
     }
 
   private:
-    // Numbers of all sizes from `lo` to `hi`; every fourth one is one of the two.
+    // Numbers of all sizes from `lo` to `hi`; one in four is `lo` or `hi`.
     float of_any_size(float lo, float hi) {
         if (random_.bits() % 4 == 0) return random_.bits() % 2 == 0 ? lo : hi;
         return std::clamp(lo * std::pow(hi / lo, random_.unit()), lo, hi);
@@ -77,7 +77,7 @@ class Adversary {
                 return {};
         }
     }
-    // Anywhere on the sphere; within the surface or nearly so, above or below; along an axis.
+    // Anywhere on the sphere; in the surface, or just above or below it; along an axis.
     vec3 direction() {
         vec3 w = random_.direction();
         const uint32_t choice = random_.bits() % 8;

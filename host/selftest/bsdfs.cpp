@@ -1,4 +1,5 @@
-// BSDFs that are functions: samples follow the density, weights are f cos / pdf, and no light is made.
+// BSDFs that are not delta distributions: samples follow the density, weights are f cos / pdf, and no energy
+// is gained.
 #include "selftest/bsdfs.h"
 
 #include <cmath>
@@ -31,7 +32,7 @@ size_t cell_of(const BsdfCase& c, const Histogram& cells, vec3 w) {
     return at ? cells.cell(at->x, at->y) : BSDF_REST;
 }
 
-// One-sided: the probability of a mean at least as far above 1, beyond rounding, if it is 1.
+// One-sided: the probability of a mean at least this far above 1, beyond rounding, if the expectation is 1.
 double p_value_of_gain(double mean, double variance) {
     const double excess = mean - 1.0 - 0x1p-20;
     if (excess <= 0.0) return 1.0;
@@ -105,9 +106,9 @@ std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& 
     return probe<BsdfResult>(device, kernels::bsdf, items);
 }
 
-// The density is integrated over each cell by the midpoint rule. Cells through which the horizon runs, where
-// it jumps to 0, and all that the chart does not show, are one cell together with the samples that failed:
-// what is left of 1.
+// Integrates the density over each cell by the midpoint rule. One more cell takes what is left of 1: cells
+// that the horizon crosses, where the density jumps to 0; directions outside the chart; and samples that
+// failed.
 void test_density(const BsdfCase& c, const std::vector<BsdfResult>& results, Evidence& evidence) {
     std::vector<double> expected(BSDF_REST + 1), counts(BSDF_REST + 1);
     std::vector<bool> above(BSDF_REST + 1, true);
@@ -128,7 +129,7 @@ void test_density(const BsdfCase& c, const std::vector<BsdfResult>& results, Evi
             counts[BSDF_REST] += std::exchange(counts[cell], 0.0);
         }
     }
-    // Where nothing is left, the error of the integral is: a few times 10^-4.
+    // If nothing is left of 1, the rest is the error of the integral: a few times 10^-4.
     const double rest = expected[BSDF_REST];
     evidence.expect(rest >= -1e-3, [&] { return concat(c.name, ": the density adds up to ", 1.0 - rest); });
     if (!(rest >= 1e-3)) {
@@ -141,14 +142,14 @@ void test_density(const BsdfCase& c, const std::vector<BsdfResult>& results, Evi
 }
 
 // Phong: the exponent of the lobe is below 17 where it was sampled (u >= 2^-24) and has the roundings of the
-// chord and of the logarithm, 12 * 2^-24 of itself: 2^-16 of the lobe. Conductor: F changes by 5 times as
-// much as its cosine, which has a few roundings, so that the weight is off by 2^-19 of the whole. All else is
-// some dozen roundings.
+// chord and of the logarithm, 12 * 2^-24 of itself: the lobe is off by 2^-16 of itself. Conductor: the
+// relative error of F is 5 times that of its cosine, which has a few roundings, so that the weight is off by
+// 2^-19 of itself. Everything else has about a dozen roundings.
 void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evidence& evidence) {
     glm::dvec3 albedo(0.0), squares(0.0);
     for (const BsdfResult& s : results) {
         bool holds = s.delta == 0 && s.eta == 1.0f;
-        if (s.pdf != 0.0f) {  // Else it failed.
+        if (s.pdf != 0.0f) {  // Otherwise the sample failed.
             const bool transmits = c.material.model == MATERIAL_DIFFUSE_TRANSMISSION;
             holds = holds && std::abs(length(glm::dvec3(s.wi)) - 1.0) <= 0x1p-20 &&
                     (s.wi.z > 0.0f || transmits) &&

@@ -1,4 +1,4 @@
-// BSDFs on the device: their samples against their densities and values, and against adversarial input.
+// Tests BSDFs on the device: their samples against their densities and values, and adversarial input.
 #pragma once
 
 #include <string>
@@ -16,14 +16,15 @@ MaterialRecord diffuse(vec3 reflectance);
 MaterialRecord phong(vec3 kd, vec3 ks, float n);
 MaterialRecord mirror(vec3 reflectance);
 MaterialRecord conductor(vec3 reflectance, float alpha);
-// `model` is one of MATERIAL_DIELECTRIC_*; `eta` the index behind the surface over that before it.
+// `model` is one of MATERIAL_DIELECTRIC_*; `eta` is the index behind the surface divided by that in front of
+// it.
 MaterialRecord dielectric(uint32_t model, float eta);
 MaterialRecord diffuse_transmission(vec3 reflectance, vec3 transmittance);
 
 // Head-on, oblique and grazing.
 inline const std::vector<vec3> VIEWS{vec3(0, 0, 1), normalize(vec3(1, 0.5, 1)), normalize(vec3(-1, 2, 0.01))};
 
-// A material that is a function, seen from wo, and a chart that resolves its samples.
+// A material whose BSDF is not a delta distribution, seen from wo, and a chart that resolves its samples.
 struct BsdfCase {
     std::string name;
     MaterialRecord material;
@@ -32,17 +33,17 @@ struct BsdfCase {
 };
 std::vector<BsdfCase> bsdf_cases();
 
-// BSDF_CASE_SAMPLES random samples of a case; in the same items wi are the points of its chart, row by row.
+// BSDF_CASE_SAMPLES random samples of a case. The items' wi are the points of its chart, row by row.
 std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& c, uint32_t seed);
 inline constexpr size_t BSDF_CASE_SAMPLES = size_t{320} * 320;
 
 // Pearson's test of the samples against their density. `results` as run_bsdf_case() returns them.
 void test_density(const BsdfCase& c, const std::vector<BsdfResult>& results, Evidence& evidence);
-// Directions are unit vectors, densities and weights are those of the functions, and no light is made.
+// Directions must be unit vectors, densities and weights those of the BSDF, and no energy may be gained.
 void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evidence& evidence);
 
-// So many samples of a model (MATERIAL_*) with random and extreme parameters, directions and numbers: all
-// must be finite, not negative, and unit vectors.
+// Takes `count` samples of a model (MATERIAL_*) with random and extreme parameters, directions and random
+// numbers. Results must be finite and not negative, and directions unit vectors.
 Evidence test_soundness(const vk::Device& device, uint32_t model, size_t count, uint32_t seed);
 
 }  // namespace candela

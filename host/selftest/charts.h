@@ -16,7 +16,7 @@ struct ChartPoint {
     double solid_angle;  // Per area of the chart [sr].
 };
 
-// An orthonormal frame around z: x, y.
+// The axes x, y of an orthonormal frame around z.
 inline std::pair<glm::dvec3, glm::dvec3> axes_around(glm::dvec3 z) {
     const glm::dvec3 other = std::abs(z.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 x = normalize(cross(other, z));
@@ -27,7 +27,7 @@ inline double turn_of(double y, double x) {
     return std::atan2(y, x) / (2.0 * M_PI) + 0.5;
 }
 
-// The whole sphere, by height and angle: equal solid angles.
+// The whole sphere, by height and azimuth: equal areas have equal solid angles.
 class SphereChart {
   public:
     ChartPoint at(double a, double b) const {
@@ -39,8 +39,8 @@ class SphereChart {
     }
 };
 
-// The cone around an axis that holds SHARE of (n + 1) / (2 pi) cos^n, by its distribution function and the
-// angle.
+// The cone around an axis that holds SHARE of the density (n + 1) / (2 pi) cos^n, by the distribution
+// function and the azimuth.
 class LobeChart {
   public:
     LobeChart(glm::dvec3 axis, double n) : z_(axis), n_(n) { std::tie(x_, y_) = axes_around(axis); }
@@ -50,7 +50,7 @@ class LobeChart {
         return {r * std::cos(phi) * x_ + r * std::sin(phi) * y_ + (1.0 - h) * z_,
                 SHARE * 2.0 * M_PI / (n_ + 1.0) * std::exp(-n_ * log_cosine)};
     }
-    // None outside of the cone.
+    // None outside the cone.
     std::optional<glm::dvec2> find(glm::dvec3 w) const {
         const glm::dvec3 chord = w - z_;
         const double h = std::min(0.5 * dot(chord, chord), 1.0);
@@ -66,8 +66,9 @@ class LobeChart {
     double n_;
 };
 
-// The reflections of wo on facets, by the slopes of those: with a = 1 - t^2, those of the GGX distribution
-// seen from above are uniform in a; seen at grazing angles, their density grows like 1 / t at most.
+// The reflections of wo by microfacets, by the slopes of these. With a = 1 - t^2, slopes of the GGX
+// distribution are uniform in a if seen from above; if seen at grazing angles, their density grows at most
+// like 1 / t.
 class FacetChart {
   public:
     FacetChart(glm::dvec3 wo, double alpha) : wo_(wo), alpha_(alpha) {}

@@ -1,4 +1,4 @@
-// How much evidence is gathered: the two sizes of all that needs nothing but samples.
+// How much evidence is gathered: the two sizes of all tests that only need samples.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ enum class Effort { quick, full };
 inline constexpr std::array<std::pair<std::string_view, Effort>, 2> EFFORT_NAMES{
     {{"quick", Effort::quick}, {"full", Effort::full}}};
 
-// Of so many samples or rays, those that are taken. A sixteenth: a driver that needs half an hour for all of
-// them, such as SwiftShader, is done in minutes, and finds what is wrong by four times as much.
+// How many of `full` samples or rays to take. A sixteenth finds errors that are four times as large, and
+// takes minutes on a driver that needs half an hour for all, such as SwiftShader.
 inline uint32_t sized(Effort effort, uint32_t full) {
     constexpr uint32_t QUICK_SHARE = 16;
     return effort == Effort::quick ? full / QUICK_SHARE : full;

@@ -1,4 +1,4 @@
-// What a check finds: comparisons, of which every one must hold, and p-values of statistical tests.
+// What a check finds: comparisons, all of which must hold, and p-values of statistical tests.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace candela {
 
 class Evidence {
   public:
-    // Counts a comparison. Of the first that does not hold, describe() gives the words.
+    // Counts a comparison. Keeps the text that describe() returns for the first that does not hold.
     template <class Describe>
     void expect(bool holds, const Describe& describe) {
         ++compared_;
@@ -16,9 +16,9 @@ class Evidence {
         ++wrong_;
         if (wrong_ == 1) first_wrong_ = describe();
     }
-    // Adds the least p-value of so many statistical tests of something; NaN counts as 0.
+    // Adds the least p-value of `tests` statistical tests; `of` says what they test. NaN counts as 0.
     void add_p_value(const std::string& of, double p, uint64_t tests = 1);
-    // Adds all that another check found.
+    // Adds everything that another check found.
     void add(const Evidence& other);
 
     uint64_t compared() const { return compared_; }
@@ -26,10 +26,10 @@ class Evidence {
     const std::string& first_wrong() const { return first_wrong_; }
 
     uint64_t tests() const { return tests_; }
-    // Probability with which chance alone gives a least p-value as small as the one found, for independent
-    // tests (Sidak's correction); 1 if there was no test.
+    // The probability that chance alone gives a least p-value this small, for independent tests (Sidak's
+    // correction); 1 if there was no test.
     double p_value() const;
-    // What the least p-value is of.
+    // What the test with the least p-value tests.
     const std::string& least_likely() const { return least_likely_; }
 
     // True if all comparisons hold and the p-value is above `level`.

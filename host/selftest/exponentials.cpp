@@ -36,11 +36,11 @@ std::vector<Exponentials> run_exponentials(const vk::Device& device, const std::
     return probe<Exponentials>(device, kernels::exponential, items);
 }
 
-// In units of 2^-24 of the result: s = f / (2 + f) carries a division, 5 by Vulkan's rules (2.5 ulp), and a
-// sum, 1; where the mantissa is taken from the rounded 1 + x, below -0.2929, that is off by 1/2 of itself and
-// the logarithm by 1/2 / (0.7 * 0.35) = 2 at most, just there; the additions of the series, multiplied by
-// less than 0.36 where they add to an exponent, are less than 1 more. Vulkan lets a device round sums and
-// products to either neighbour, not the nearer one alone: all but the division may count twice.
+// Errors, in units of 2^-24 of the result: s = f / (2 + f) has a division, 5 by Vulkan's rules (2.5 ulp), and
+// a sum, 1. Below -0.2929 the mantissa comes from the rounded 1 + x, which is off by 1/2, and the logarithm
+// by at most 1/2 / (0.7 * 0.35) = 2, close to -0.2929. The additions of the series add less than 1: they are
+// multiplied by less than 0.36 where they add to an exponent. Vulkan allows sums and products to be rounded
+// to either neighbour, so that everything but the division may count twice.
 Evidence test_logarithm(const vk::Device& device) {
     std::vector<float> x = of_every_size(-1.0 + 0x1p-24);
     add_neighbours(x, -0.2929f);
@@ -61,11 +61,11 @@ Evidence test_logarithm(const vk::Device& device) {
     return evidence;
 }
 
-// exp(x) = 2^k (1 + p), in units of 2^-24 of the result, where it is worst, at |x - k log(2)| = 0.35: that is
-// off by 1/4; p, in [-0.3, 0.42], by 2.4 of itself (a product, a sum, what the rest of the series leaves),
-// which is 0.7 of 1 + p; the sum adds 0.7; the last product is exact. That is less than 2. expm1 cancels at
-// worst at k = -1, p = 0.41: 0.3 out of 0.5; less than 3. And twice that, since a device may round to either
-// neighbour.
+// exp(x) = 2^k (1 + p). Errors, in units of 2^-24 of the result, in the worst case, |x - k log(2)| = 0.35:
+// this difference is off by 1/4; p, in [-0.3, 0.42], by 2.4 of itself (a product, a sum, the rest of the
+// series), which is 0.7 of 1 + p; the sum adds 0.7; the last product is exact. Together that is less than 2.
+// expm1 cancels most at k = -1, p = 0.41: 0.3 out of 0.5; less than 3. Both count twice, since a device may
+// round to either neighbour.
 Evidence test_exponentials(const vk::Device& device) {
     constexpr float LEAST = -87.0f;
     std::vector<float> x = of_every_size(double(LEAST));

@@ -1,4 +1,4 @@
-// Exponentials and the logarithm on the device against the standard library's in double precision.
+// Tests exponentials and the logarithm on the device against the standard library's in double precision.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,8 @@ struct Exponentials {
 };
 std::vector<Exponentials> run_exponentials(const vk::Device& device, const std::vector<float>& x);
 
-// Numbers of every size, and those around the seams of the approximations, must be good to the last digits.
+// Results must be right to the last few bits for numbers of every size, and around the seams of the
+// approximations.
 Evidence test_logarithm(const vk::Device& device);
 Evidence test_exponentials(const vk::Device& device);
 

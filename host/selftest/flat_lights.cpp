@@ -1,4 +1,4 @@
-// Samples of flat lights: they are chosen by their power, points uniformly by area, and densities say so.
+// Samples of flat lights: lights are chosen by power, points uniformly by area, and densities agree.
 #include <algorithm>
 #include <cmath>
 
@@ -34,19 +34,19 @@ const std::vector<ExpectedLight> LIGHTS{
     {vec3(1, 1, 4), vec3(0, 2, 0), vec3(-2, 0, 0), true, true, vec3(0.2f, 0.3f, 2)},
 };
 
-// The light whose plane the shadow ray's end is next to, 256 representable numbers at most; LIGHTS.size() if
-// none.
+// The light whose plane is closest to the end of the shadow ray, which is at most 256 representable numbers
+// away; LIGHTS.size() if there is none.
 size_t light_of(const LightItem& item, const LightSample& s) {
     const float z = std::round(item.from.z + s.shadow.z);
     return z >= 0.0f && z < float(LIGHTS.size()) ? size_t(z) : LIGHTS.size();
 }
 
-// The point on light i; the shadow ray's end is moved from there along the normal, z, alone.
+// The point on light i. The shadow ray's end is offset from it only along the normal, z.
 glm::dvec3 point_of(const LightItem& item, const LightSample& s, size_t i) {
     return {double(item.from.x) + double(s.shadow.x), double(item.from.y) + double(s.shadow.y), double(i)};
 }
 
-// From random points above, between and below the lights, none of them nearer than 0.1 to a plane.
+// Items for random points above, between and below the lights, at least 0.1 from each plane.
 std::vector<LightItem> random_items(size_t count) {
     Random random(60);
     std::vector<LightItem> items = random_light_items(vec3(0), count, 61);
@@ -57,7 +57,7 @@ std::vector<LightItem> random_items(size_t count) {
     return items;
 }
 
-// Coordinates of a point along e1 and e2, and from them ones in which the samples are uniform.
+// The coordinates of a point in which the samples are uniform, from those along e1 and e2.
 glm::dvec2 uniform_coordinates(const ExpectedLight& l, glm::dvec3 p) {
     const glm::dvec3 d(p - glm::dvec3(l.p)), e1(l.e1), e2(l.e2);
     const double det = e1.x * e2.y - e1.y * e2.x;
@@ -66,8 +66,8 @@ glm::dvec2 uniform_coordinates(const ExpectedLight& l, glm::dvec3 p) {
     return l.triangle ? glm::dvec2(sum * sum, sum > 0.0 ? at.y / sum : 0.0) : at;
 }
 
-// The density is that of the light times that of the point, taken to solid angle: pmf / area * distance^2 /
-// cos.
+// The density is the probability of the light times the density of the point, converted to solid angle: pmf /
+// area * distance^2 / cos.
 bool is_right(const LightItem& item, const LightSample& s, size_t i, double total_power) {
     const ExpectedLight& l = LIGHTS[i];
     const glm::dvec3 to_light = point_of(item, s, i) - glm::dvec3(item.from);
@@ -82,9 +82,9 @@ bool is_right(const LightItem& item, const LightSample& s, size_t i, double tota
     // The shadow ray ends before the light, by at most 256 representable numbers, or 2^-16 near 0.
     const double gap = std::copysign(1.0, cosine) * (item.from.z + s.shadow.z - l.p.z);
     if (!(gap > 0.0 && gap <= std::max(257 * 0x1p-23 * 4.0, 0x1p-16) + 8 * 0x1p-24)) return false;
-    // A millionth before the point, at most two.
+    // t_max is a millionth below 1, at most two.
     if (!(s.t_max < 1.0f && s.t_max >= 1.0f - 0x1p-19f)) return false;
-    // A ray that meets the same light there says the same.
+    // A ray that hits the same light there agrees.
     if (s.light_met != i) return true;
     return s.Li_met == s.Li && std::abs(double(s.pdf_met) - double(s.pdf)) <= pdf * 0x1p-20 * relative;
 }

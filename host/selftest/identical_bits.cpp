@@ -18,11 +18,11 @@ bool keep_going(double) {
     return true;
 }
 
-// One scene, and its picture by one submission after another of any length.
+// One scene, and renderings of its picture with any settings.
 class Picture {
   public:
     explicit Picture(const vk::Device& device) : device_(&device), scene_(scene_of_everything()) {
-        // No multiple of the work group in either direction.
+        // Not a multiple of the work group in either direction.
         settings_.size = uvec2(37, 23);
         settings_.crop = {0, 0, 37, 23};
         settings_.seed = 77;
@@ -46,7 +46,7 @@ class Picture {
     RenderSettings settings_;
 };
 
-// Whether `part` holds, bit for bit, what `whole` holds of its pixels.
+// Whether `part` has the same bits as `whole` in its own pixels.
 bool same_bits(const Accumulation& part, const Accumulation& whole) {
     const PixelRect& rect = part.rect;
     for (uint32_t layer = 0; layer < whole.layer_count; ++layer) {

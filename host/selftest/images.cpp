@@ -1,4 +1,5 @@
-// Statistics of whole images. All use the independent sampler, since they take samples for independent.
+// Statistics of whole images. All use the independent sampler, since they assume that samples are
+// independent.
 #include "selftest/images.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace {
 
 constexpr uint32_t SIZE = 64;  // Of all pictures, in pixels along either side.
 
-// Renders with the variance of each pixel; no sample may be other than finite, and no path be cut off.
+// Renders with the variance of each pixel. All samples must be finite, and no path may be cut off.
 Image render(const vk::Device& device, const Scene& scene, Estimator estimator, uint32_t seed, uint32_t spp,
              Evidence& evidence) {
     RenderSettings settings;
@@ -40,8 +41,8 @@ Image render(const vk::Device& device, const Scene& scene, Estimator estimator, 
     return make_image(renderer.download(), {.variance = true}, {});
 }
 
-// Student's test of the pixels, whose samples are independent of each other. Every vertex of a path rounds
-// its radiance and throughput some ten times, always the same way at worst: 2^-20 of the sum.
+// Student's test of the mean of independent pixels. Each vertex of a path rounds its radiance and throughput
+// some ten times, at worst always the same way: 2^-20 of the sum.
 double p_value_of_mean(std::span<const float> pixels, double expected) {
     RunningMoments moments;
     for (const float value : pixels)
@@ -52,8 +53,8 @@ double p_value_of_mean(std::span<const float> pixels, double expected) {
     return student_t_p_value(t, double(moments.count() - 1));
 }
 
-// Two images of one expectation: means of blocks and of the image agree within their noise. A pixel alone has
-// too few samples for its mean to be normal.
+// Tests whether two images have the same expectation: the means of blocks and of the image must agree within
+// their noise. A single pixel has too few samples for its mean to be normal.
 void test_same_expectation(const std::string& name, const Image& a, const Image& b, Evidence& evidence) {
     const Comparison comparison = compare(a, b);
     const ZTests& z = comparison.tests.value();

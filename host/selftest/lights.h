@@ -1,4 +1,4 @@
-// Light samples on the device against their distributions, densities and radiance.
+// Tests light samples on the device against their distributions, densities and radiance.
 #pragma once
 
 #include <string>
@@ -16,19 +16,19 @@ std::vector<LightSample> sample_lights(const vk::Device& device, const GpuScene&
                                        const std::vector<LightItem>& items,
                                        SceneAccess access = SceneAccess::texel_buffers);
 
-// So many items with random bits, all from one point.
+// `count` items with random bits, all from one point.
 std::vector<LightItem> random_light_items(vec3 from, size_t count, uint32_t seed);
 
-// One flat light in each of the planes z = 0, 1, 2, ..., parallelograms and triangles of very different
+// Flat lights, one in each of the planes z = 0, 1, 2, ...: parallelograms and triangles of very different
 // power.
 Scene scene_of_flat_lights();
 // Lights are chosen by their power, and points uniformly by area.
 Evidence test_flat_light_points(const vk::Device& device, Effort effort);
-// A sample says what arrives and how likely it was; its shadow ray ends just before the light.
+// Samples have the right radiance and density, and their shadow rays end just before the light.
 Evidence test_flat_light_values(const vk::Device& device, SceneAccess access);
 
-// Spheres are sampled uniformly over the solid angle that they fill, from inside over their area; disks over
-// their area. Densities and radiance belong to the points, and nothing is in between.
+// Spheres are sampled uniformly over the solid angle that they subtend, from inside over their area; disks
+// over their area. Densities and radiance are those of the points, and nothing occludes them.
 Evidence test_spheres_from_outside(const vk::Device& device, Effort effort);
 Evidence test_spheres_from_inside(const vk::Device& device, Effort effort);
 Evidence test_disks(const vk::Device& device, Effort effort);

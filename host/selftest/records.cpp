@@ -19,8 +19,8 @@
 namespace candela {
 namespace {
 
-// The fields of the records in the order in which records.comp.glsl writes them. Every field that is asked
-// for has bits of its own.
+// The fields of the records in the order in which records.comp.glsl writes them. Each field gets bits of its
+// own.
 class Fields {
   public:
     uint u() { return keep(0xA0000001u + uint(words.size()) * 0x00010203u); }
@@ -85,7 +85,7 @@ struct Result {
     std::array<uint, 126> words;
 };
 
-// Records filled from `fields`, in the order in which the kernel writes them; the scale of a node must be
+// Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
 // powers of two.
 Records filled(Fields& fields) {
     Records r{};
@@ -182,7 +182,8 @@ GpuScene packed(const Records& r) {
     return scene;
 }
 
-// Axes, the fold of the octahedron (z = 0), its edges (x = 0, y = 0) from both sides, and 100 000 at random.
+// Axes, the fold of the octahedron (z = 0), its edges (x = 0, y = 0) from both sides, and 100 000 random
+// vectors.
 std::vector<vec3> unit_vectors() {
     std::vector<vec3> vectors;
     for (const float x : {-1.0f, -1e-4f, -0.0f, 0.0f, 1e-4f, 1.0f}) {
@@ -218,7 +219,7 @@ Evidence test_records(const vk::Device& device, SceneAccess access) {
 
 // A component of the octahedral map is off by h = 0.5 / 32767 at most, so z by 2 h, and the point on the
 // octahedron by sqrt(6) h. That point is at least 1/sqrt(3) away from the centre: an angle of sqrt(18) h. The
-// roundings of both sides, some 8 of 2^-24 each, are stretched by sqrt(18) as well.
+// roundings of both sides, some 8 of 2^-24 each, are multiplied by sqrt(18) as well.
 Evidence test_octahedral_normals(const vk::Device& device) {
     const std::vector<vec3> vectors = unit_vectors();
     std::vector<uvec4> items;

@@ -1,4 +1,4 @@
-// Records there and back: what the host packs, the device unpacks.
+// Tests records there and back: the device unpacks what the host packs.
 #pragma once
 
 #include "render/renderer.h"

@@ -36,7 +36,7 @@ uvec4 pcg4d(uvec4 v) {
     return v;
 }
 
-// Vegdahl 2021: steps that carry information upwards only, each a bijection.
+// Vegdahl 2021: each step is a bijection and carries information only upwards.
 uint32_t laine_karras(uint32_t x, uint32_t seed) {
     const uint32_t multiplier =
         seed / 65536u % 2u == 1u ? seed / 65536u : seed / 65536u + 1u;  // The next odd number.
@@ -48,7 +48,7 @@ uint32_t laine_karras(uint32_t x, uint32_t seed) {
 
 uint32_t permute_64(uint32_t i, uint32_t hash) {
     uint64_t repeated =
-        uint64_t{hash} << 32 | hash;  // Turning `hash` right by 10 k bits: bits 10 k and up of this.
+        uint64_t{hash} << 32 | hash;  // `hash` rotated right by 10 k bits is bits 10 k and up of this.
     for (int round = 0; round < 3; ++round, repeated >>= 10) {
         const uint32_t multiplier = uint32_t(repeated % 64) / 2 * 2 + 1;
         const auto offset = uint32_t(uint32_t(repeated) / 64);
@@ -95,7 +95,7 @@ uvec2 stratified_pair(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair) 
     return {cell % 8 * CELL + jitter.x / 8, cell / 8 * CELL + jitter.y / 8};
 }
 
-// Burley 2020: the index is shuffled, each dimension is scrambled, with seeds of their own.
+// Burley 2020: the index is shuffled and each dimension is scrambled, each with its own seed.
 uvec2 sobol_pair(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair) {
     const uvec3 seeds = pcg3d(uvec3(pixel, pair, seed));
     const uint32_t index = owen_scramble(n, seeds.x);

@@ -1,5 +1,5 @@
-// The samplers once more, written from the papers' definitions: bit loops, generator matrices and nested
-// permutations instead of the shader's shortcuts.
+// A second implementation of the samplers, from the papers' definitions: bit loops, generator matrices and
+// nested permutations instead of the shader's shortcuts.
 #pragma once
 
 #include "base/math.h"
@@ -15,10 +15,10 @@ uint32_t reverse_bits(uint32_t x);
 // Dimension 0 or 1 of the Sobol sequence at `index`, as a fraction of 2^32.
 uint32_t sobol(uint32_t index, uint32_t dimension);
 
-// Owen's nested scramble of a fraction of 2^32: how digit k is changed depends on the digits before it alone.
+// Owen's nested scramble of a fraction of 2^32: how digit k changes depends only on the digits before it.
 uint32_t owen_scramble(uint32_t x, uint32_t seed);
 
-// Two words of a sample and a pair of dimensions, by each sampler; `pixel` is x | y << 16.
+// The two words of a sample for a pair of dimensions, by each sampler; `pixel` is x | y << 16.
 uvec2 independent_pair(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair);
 uvec2 stratified_pair(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair);
 uvec2 sobol_pair(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair);

@@ -1,4 +1,5 @@
-// Samples of spheres and disks that emit: over the solid angle of a sphere from outside, over the area else.
+// Samples of spheres and disks that emit: over the solid angle of a sphere from outside, otherwise over the
+// area.
 #include <algorithm>
 #include <cmath>
 
@@ -47,12 +48,12 @@ const std::vector<Place> OUTSIDE{
     {{vec3(10, 0, 0), 2.0f}, vec3(7.999f, 0, 0)},
 };
 
-// In 1 - cos of the angle to the axis and the angle around it. The density has the error of 1 - cos(max) =
-// sin^2 / (1 + sqrt(1 - sin^2)): sin^2 is off by 16 * 2^-24 of itself (the centre as seen from the point
-// counts twice), and that of the root is as much over twice the root; the root itself, an inverse of an
-// inverse root to Vulkan, is off by 9, and two divisions by 5 each: 16 more and some roundings. wi has the
-// error of the axis, an inverse root of 4 and some roundings, and of a direction around it, a root of 9 and
-// sines of 4: 2^-19.
+// Samples are uniform in 1 - cos of the angle to the axis and in the angle around it. The density has the
+// error of 1 - cos(max) = sin^2 / (1 + sqrt(1 - sin^2)): sin^2 is off by 16 * 2^-24 of itself (the centre as
+// seen from the point counts twice), the root inherits this error over twice the root; the root itself, the
+// inverse of an inverse root to Vulkan, is off by 9, and two divisions by 5 each: 16 more and some roundings.
+// wi has the errors of the axis, an inverse root of 4 and some roundings, and of a direction around it, a
+// root of 9 and sines of 4: 2^-19.
 void test_sphere_from_outside(const vk::Device& device, const Place& place, uint32_t samples,
                               Evidence& evidence) {
     const Sphere& sphere = place.sphere;
@@ -82,7 +83,7 @@ void test_sphere_from_outside(const vk::Device& device, const Place& place, uint
     }
     const std::string name = concat("sphere of radius ", sphere.radius, ' ', length(to_center), " m away");
     evidence.add_p_value(name, points.uniformity());
-    // Rays past the limb: the centre's distance carries 4 roundings, which count in radii.
+    // Rays past the limb: the distance of the centre has 4 roundings, which count in radii.
     const double limb = std::min(1.0, 2.0 * 8 * 0x1p-24 / sine) * samples;
     evidence.expect(double(met) >= samples - 10.0 - 2.0 * limb && double(outside) <= 10.0 + 2.0 * limb, [&] {
         return concat(name, ": of ", samples, " samples ", met, " meet it, ", outside, " are beside it");
@@ -98,8 +99,8 @@ Evidence test_spheres_from_outside(const vk::Device& device, Effort effort) {
     return evidence;
 }
 
-// The point is uniform over the whole area; the density is that of the area, taken to solid angle. From
-// inside, a sphere shines only if it is two-sided.
+// The point is uniform over the whole area; the density is that over the area, converted to solid angle. A
+// sphere emits inwards only if it is two-sided.
 Evidence test_spheres_from_inside(const vk::Device& device, Effort effort) {
     const Sphere sphere{vec3(1, 2, 3), 2.0f};
     Evidence evidence;
@@ -114,7 +115,7 @@ Evidence test_spheres_from_inside(const vk::Device& device, Effort effort) {
             points.add({(n.z + 1.0) / 2.0, turn_of(n.y, n.x)});
             const double distance = length(to_light), cosine = dot(to_light, n) / distance;
             const double pdf = distance * distance / (16.0 * M_PI * cosine);
-            // What the shadow ray's end, about 10^-4 off the sphere, tells of the point.
+            // The error of taking the shadow ray's end, about 10^-4 off the sphere, for the point.
             const double off = 1e-4 * (1.0 / distance + 1.0 / cosine);
             const bool right = length(glm::dvec3(s.wi) - to_light / distance) <= 1e-4 / distance &&
                                std::abs(double(s.pdf) - pdf) <= pdf * 10.0 * off && s.Li == RADIANCE &&
@@ -138,7 +139,7 @@ Evidence test_disks(const vk::Device& device, Effort effort) {
         Histogram points(LIGHT_CELLS);
         for (const LightSample& s : sample_lights(
                  device, scene_of(disk, false), random_light_items(from, sized(effort, LIGHT_SAMPLES), 83))) {
-            const glm::dvec3 p(glm::dvec3(from) + glm::dvec3(s.shadow));  // Moved along z alone.
+            const glm::dvec3 p(glm::dvec3(from) + glm::dvec3(s.shadow));  // Offset only along z.
             const double y = (p.y - 2.0) / 3.0, x = (p.x - 1.0 - y) / 2.0;
             points.add({x * x + y * y, turn_of(y, x)});
             const glm::dvec3 to_light = glm::dvec3(p.x, p.y, 3.0) - glm::dvec3(from);
@@ -148,7 +149,7 @@ Evidence test_disks(const vk::Device& device, Effort effort) {
                          length(glm::dvec3(s.wi) - to_light / distance) <= 0x1p-20 &&
                          std::abs(double(s.pdf) - pdf) <= pdf * 0x1p-22 * relative &&
                          s.Li == (from.z > 3.0f ? RADIANCE : vec3(0.0f)) && s.occluded == 0;
-            if (s.light_met != NO_LIGHT)  // Else it is over the rim by a rounding.
+            if (s.light_met != NO_LIGHT)  // Otherwise it misses the rim by a rounding.
                 right = right && std::abs(double(s.pdf_met) - double(s.pdf)) <= pdf * 0x1p-20 * relative;
             evidence.expect(right, [&] { return describe("disk", from, s); });
         }

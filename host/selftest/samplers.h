@@ -1,4 +1,4 @@
-// The random numbers of the device against the reference on the CPU, bit for bit.
+// Tests the random numbers of the device against the reference on the CPU, bit for bit.
 #pragma once
 
 #include "selftest/evidence.h"
@@ -6,7 +6,7 @@
 
 namespace candela {
 
-// Hashes, permutations, and the step from words to floats.
+// Hashes, permutations, and the conversion of words to floats.
 Evidence test_integer_functions(const vk::Device& device);
 
 // Pairs of words of a sampler (SAMPLER_*).

@@ -54,7 +54,7 @@ Evidence through_both_buffers(const vk::Device& device) {
     return evidence;
 }
 
-// A test that is the same for every effort: what it asks has no random part, or takes no time to speak of.
+// A test that is the same for every effort: it has no random part, or takes hardly any time.
 template <Evidence (*test)(const vk::Device&)>
 Evidence always(const vk::Device& device, Effort) {
     return test(device);

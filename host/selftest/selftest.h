@@ -1,4 +1,4 @@
-// The selftest: a list of checks that show on any device whether the renderer is right there.
+// The selftest: a list of checks that show whether the renderer is right on a device.
 #pragma once
 
 #include <functional>
@@ -13,8 +13,8 @@
 
 namespace candela {
 
-// Probability that a correct device fails the whole selftest, by chance, at most. Seeds are fixed, so that
-// one device always gets one verdict.
+// Upper bound on the probability that a correct device fails the whole selftest by chance. Seeds are fixed,
+// so that a device always gets the same verdict.
 inline constexpr double SELFTEST_ALPHA = 1e-3;
 
 struct Check {
@@ -23,21 +23,21 @@ struct Check {
     std::function<Evidence()> run;  // May throw Error.
 };
 
-// All checks, in the order from small parts to whole images. They refer to `device`.
+// All checks, in order from small parts to whole images. They refer to `device`.
 std::vector<Check> selftest_checks(const vk::Device& device, Effort effort);
 
-// The level at which each of so many checks is judged: SELFTEST_ALPHA, Sidak-corrected.
+// The level at which each of `checks` checks is judged: SELFTEST_ALPHA, Sidak-corrected.
 double check_level(size_t checks);
 
 struct CheckResult {
     std::string name, unit;
     Evidence evidence;
-    std::optional<Error> error;  // What broke the check off.
+    std::optional<Error> error;  // What ended the check early.
     bool passed = false;
     double seconds = 0.0;  // Wall time.
 };
 
-// Runs a check and judges it. An Error that it throws fails it.
+// Runs a check and judges it. It fails if it throws Error.
 CheckResult run_check(const Check& check, double level);
 
 }  // namespace candela

@@ -48,9 +48,9 @@ size_t texel_of(const Environment& sky, glm::dvec2 place) {
     return index(place.y, sky.size.y) * sky.size.x + index(place.x, sky.size.x);
 }
 
-// Whether a direction is so near to a border between texels that it may be on either side. An angle is off by
-// 2^-22 turns and by `rounding`, that of its arguments, over their size; a colatitude by `colatitude` of its
-// range.
+// Whether a direction is so close to a border between texels that rounding may put it on either side. The
+// longitude is off by 2^-22 turns and by `rounding`, the error of its arguments, over their size; the
+// colatitude by `colatitude` of its range.
 bool at_border(const Environment& sky, glm::dvec3 w, double rounding, double colatitude) {
     const auto to_border = [](double x) { return std::abs(x - std::round(x)); };
     const glm::dvec2 place = place_of(sky, w);
@@ -111,7 +111,7 @@ void test_samples_of(const vk::Device& device, const Environment& sky, uint32_t 
         counts.add(sky, place);
         bool right = std::abs(length(w) - 1.0) <= 0x1p-20;
         if (at_border(sky, w, 0x1p-21, 0x1p-19)) {
-            ++at_borders;  // Counted in the neighbour, perhaps.
+            ++at_borders;  // May be counted in the neighbour.
         } else {
             const size_t texel = texel_of(sky, place);
             const double pdf = luminance_of(sky.radiance[texel]) / counts.irradiance;
@@ -126,7 +126,7 @@ void test_samples_of(const vk::Device& device, const Environment& sky, uint32_t 
     }
     evidence.expect(at_borders < 200,
                     [&] { return concat(name, ": ", at_borders, " samples are at borders of texels"); });
-    // A black texel holds none but those from its borders.
+    // A black texel holds only samples at its borders.
     for (size_t i = 0; i < counts.texels.size(); ++i) {
         if (counts.light[i] > 0.0) continue;
         const double found = std::exchange(counts.texels[i], 0.0);
@@ -188,8 +188,8 @@ Evidence test_sky_samples(const vk::Device& device, Effort effort) {
     return evidence;
 }
 
-// A panel of one square metre beside a sky of radiance 1 in the mean: powers over pi of 10 and of (0.71 m)^2
-// * 4 pi.
+// A panel of one square metre beside a sky of mean radiance 1: their powers, over pi, are 10 and (0.71 m)^2 *
+// 4 pi.
 Evidence test_choice_of_sky(const vk::Device& device, Effort effort) {
     Scene scene = scene_of_mesh({});
     scene.shapes = {{.geometry = parallelogram(vec3(-0.5f, -10, 0.5f), vec3(1, 0, 0), vec3(0, 0, -1)),

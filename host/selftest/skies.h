@@ -1,4 +1,4 @@
-// The sky on the device: where its texels are, and how light samples find them.
+// Tests the sky on the device: where its texels are, and how light samples find them.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace candela {
 
-// A scene with something in it, far below, where it hides next to nothing of the sky.
+// A scene under that sky, with one shape far below, which hides hardly any of the sky.
 Scene scene_under(const Environment& environment);
 
 // What the device finds in a direction.
@@ -21,10 +21,11 @@ struct SkyTexel {
 std::vector<SkyTexel> look_up(const vk::Device& device, const Environment& sky,
                               const std::vector<vec3>& directions);
 
-// Skies of several sizes: every direction has the texel that the convention says.
+// Skies of several sizes: every direction has the texel that the convention prescribes.
 Evidence test_sky_lookup(const vk::Device& device);
 
-// Texels are sampled by luminance times solid angle, and within a texel uniformly over its solid angle.
+// Texels are sampled in proportion to luminance times solid angle, and within a texel uniformly over its
+// solid angle.
 Evidence test_sky_samples(const vk::Device& device, Effort effort);
 
 // The sky and another light are chosen by their power.

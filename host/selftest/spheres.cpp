@@ -23,7 +23,7 @@ struct InteractionItem {
     float unused0 = 0.0f;
     vec3 d;
     float unused1 = 0.0f;
-    vec3 wi;            // Turned over where it does not point to that side:
+    vec3 wi;            // Reversed if it does not point to that side:
     uint32_t side = 0;  // 0: the viewer's, 1: the other.
 };
 
@@ -68,7 +68,7 @@ class Interactions {
     std::optional<vk::Kernel> kernel_;
 };
 
-// Rays at points of the sphere, from around it or from within.
+// Rays towards points of the sphere, from outside or from inside.
 std::vector<InteractionItem> items(Effort effort, const Sphere& sphere, bool from_inside, uint32_t side,
                                    uint32_t seed) {
     Random random(seed);
@@ -85,7 +85,7 @@ std::vector<InteractionItem> items(Effort effort, const Sphere& sphere, bool fro
     return items;
 }
 
-// wi, turned to a grazing angle with n: its cosine is `cosine`.
+// wi, turned to a grazing angle with n, with that cosine.
 vec3 grazing(vec3 wi, vec3 n, float cosine) {
     return normalize(normalize(wi - dot(wi, n) * n) + cosine * n);
 }
@@ -95,14 +95,14 @@ std::string name_of(const Sphere& sphere) {
                   sphere.center.z);
 }
 
-// More than a share of the rays must have met the shape, or the test would say nothing.
+// More than this share of the rays must have hit the shape; otherwise the test would say nothing.
 void expect_most_meet(const std::string& name, size_t met, double share, size_t rays, Evidence& evidence) {
     evidence.expect(double(met) > share * double(rays),
                     [&] { return concat(name, ": only ", met, " of ", rays, " rays meet it"); });
 }
 
-// Whether the second ray of `r` meets the far side of the sphere: at a distance of 2 r cos, but for the
-// offset of the origin, which at grazing angles is a larger part of it.
+// Whether the second ray of `r` hits the far side of the sphere. The expected distance is computed from the
+// ray's own origin, whose offset matters at grazing angles.
 bool meets_far_side(const Sphere& sphere, const InteractionResult& r) {
     if (r.next_t == NO_HIT) return false;
     const glm::dvec3 o(r.next_o), d(r.next_d), f = o - glm::dvec3(sphere.center);
@@ -136,8 +136,8 @@ void test_rays_within(Interactions& run, Effort effort, const Sphere& sphere, bo
 
 }  // namespace
 
-// The direction of the second ray lies in the hemisphere of the normal where it starts, down to grazing
-// angles: the outside of a sphere cannot be seen from there.
+// The second ray points into the hemisphere of the normal where it starts, down to grazing angles: in these
+// directions, it cannot hit the outside of the sphere.
 Evidence test_rays_outside_spheres(const vk::Device& device, Effort effort) {
     Interactions run(device);
     Evidence evidence;
@@ -145,7 +145,7 @@ Evidence test_rays_outside_spheres(const vk::Device& device, Effort effort) {
     for (const Sphere& sphere : SPHERES) {
         std::vector<InteractionItem> rays = items(effort, sphere, false, 0, seed++);
         std::vector<InteractionResult> results = run(sphere, rays);
-        // Once more, at a grazing angle to the normals that were found.
+        // Again, at a grazing angle to the normals found.
         for (size_t i = 0; i < rays.size(); ++i)
             rays[i].wi = grazing(rays[i].wi, results[i].n, 1e-4f);
         const std::vector<InteractionResult> more = run(sphere, rays);

@@ -15,7 +15,7 @@ void append(Rays& rays, const Rays& more) {
     rays.insert(rays.end(), more.begin(), more.end());
 }
 
-// Compares with brute force through both kinds of buffers. Returns how many rays met nothing.
+// Compares with brute force through both kinds of buffers. Returns how many rays missed.
 size_t test_rays(const vk::Device& device, const TriangleMesh& mesh, const Rays& rays, Evidence& evidence) {
     const GpuScene scene = build_gpu_scene(scene_of_mesh(mesh));
     size_t escapes = 0;
@@ -51,7 +51,7 @@ Rays rays_at_features(const TriangleMesh& mesh, size_t count, vec3 centre, float
         const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
         const vec3 o = centre + size * random.cube();
         add(rays, o, normalize(a - o));
-        add(rays, o, a - o);  // Not of unit length: the vertex is met at t = 1.
+        add(rays, o, a - o);  // Not of unit length: the vertex is hit at t = 1.
         add(rays, o, normalize(0.5f * (a + b) - o));
         add(rays, o, normalize((a + b + c) / 3.0f - o));
     }

@@ -18,7 +18,7 @@ namespace candela {
 namespace {
 
 constexpr size_t WARP_CELLS = 8;         // Along each axis of a histogram.
-constexpr size_t WARP_SAMPLES = 400000;  // In so many cells, they tell a density that is 2 % off.
+constexpr size_t WARP_SAMPLES = 400000;  // In this many cells, they reveal a density that is 2 % off.
 
 // Adds the p-value of the hypothesis that coordinates(result), in [0, 1]^2, are uniform.
 template <class Coordinates>
@@ -50,10 +50,10 @@ glm::dvec2 in_polygon(vec2 p, uint32_t corners) {
     return {sum * sum, (k + (sum > 0.0 ? b2 / sum : 0.0)) / corners};
 }
 
-// The share of visible normals in each cell, but for a factor, by slopes (x, y) = alpha sqrt(a / (1 - a))
-// (cos, sin): d(slopes) = pi alpha^2 / (1 - a)^2 da db, d(normal) = n.z^3 d(slopes), with 1 - a = (1 - s)^2.
-// The density is D(n) max(0, w.n) over the projected area of all facets that w sees, which a sum over the
-// cells gives as well as Smith's formula does; it is continuous, so that the midpoint rule is good to 10^-3.
+// The share of visible normals in each cell, up to a factor, by slopes (x, y) = alpha sqrt(a / (1 - a)) (cos,
+// sin): d(slopes) = pi alpha^2 / (1 - a)^2 da db, d(normal) = n.z^3 d(slopes), with 1 - a = (1 - s)^2. The
+// density is D(n) max(0, w.n) over the projected area of all facets that w sees, which a sum over the cells
+// gives as well as Smith's formula does; it is continuous, so that the midpoint rule is good to 10^-3.
 std::vector<double> visible_normals(vec3 w, float alpha) {
     constexpr size_t FINE = 32, ALONG = WARP_CELLS * FINE;
     std::vector<double> expected(WARP_CELLS * WARP_CELLS);
@@ -63,7 +63,8 @@ std::vector<double> visible_normals(vec3 w, float alpha) {
         const double phi = 2.0 * M_PI * ((double(column) + 0.5) / ALONG - 0.5);
         const double r = double(alpha) * std::sqrt(1.0 - t * t) / t;
         const glm::dvec3 n = normalize(glm::dvec3(r * std::cos(phi), r * std::sin(phi), 1.0));
-        // D n.z^4 is the density of slopes, uniform in (a, b): what is left of it is 1 / n.z.
+        // D n.z^4 is the density of slopes, uniform in (a, b); d(normal) has n.z^3 of it, which leaves 1 /
+        // n.z.
         const double share = std::max(0.0, dot(glm::dvec3(w), n)) / n.z * 2.0 * t;
         expected[row / FINE * WARP_CELLS + column / FINE] += share;
     }
@@ -80,7 +81,7 @@ void test_visible_normals_of(const vk::Device& device, vec3 w, float alpha, Evid
         const double r = std::hypot(n.x, n.y) / (double(alpha) * n.z);
         points.add({1.0 - 1.0 / std::sqrt(1.0 + r * r), turn_of(n.y, n.x)});
     }
-    // Of a cell of which no point is seen from w, a sliver may be.
+    // A cell none of whose midpoints is visible from w may have a visible sliver.
     const std::vector<double> expected = visible_normals(w, alpha);
     for (size_t i = 0; i < expected.size(); ++i) {
         if (expected[i] > 0.0) continue;
@@ -137,8 +138,8 @@ Evidence test_power_cosines(const vk::Device& device) {
     return evidence;
 }
 
-// The sine of a direction has a root, by Vulkan's table off by 9 * 2^-24, and the cosine or sine of the angle
-// around, by 4; its square, on which its height rests, twice that.
+// The sine of a direction has a root, by Vulkan's table off by 9 * 2^-24, and the cosine or sine of the
+// azimuth, off by 4; its square, from which the height is computed, is off by twice that.
 Evidence test_sphere_and_cones(const vk::Device& device) {
     Evidence evidence;
     for (const float h_max : {1e-8f, 1e-3f, 0.5f, 1.0f, 2.0f}) {
@@ -161,9 +162,9 @@ Evidence test_sphere_and_cones(const vk::Device& device) {
     return evidence;
 }
 
-// Uniform over the area, and within the sides but for some roundings: the angle of a corner has a division
-// of 2.5 ulp of a turn, 16 * 2^-24, its cosine and sine 4, over a distance of 1/2 at least from the centre to
-// a side; and the square has twice all that.
+// Points are uniform over the area, and within the sides up to some roundings: the angle of a corner has a
+// division of 2.5 ulp of a turn, 16 * 2^-24, its cosine and sine 4, over a distance of at least 1/2 from the
+// centre to a side; the square has twice all that.
 Evidence test_polygons(const vk::Device& device) {
     Evidence evidence;
     for (const uint32_t corners : {3u, 4u, 5u, 6u, 64u}) {

@@ -1,4 +1,4 @@
-// Warps on the device: points and directions are distributed as their densities say.
+// Tests warps on the device: points and directions are distributed as their densities say.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace candela {
 
-// 200 000 random points of the unit square through all warps.
+// Applies all warps to 400 000 random points of the unit square.
 std::vector<WarpResult> run_warps(const vk::Device& device, uint32_t seed, const WarpItem& parameters = {});
 
 // Disk, cosine-weighted hemisphere, triangle.
