@@ -20,7 +20,7 @@ TimedBvh build_ours(std::span<const Box> boxes) {
     return {std::move(bvh), watch.elapsed()};
 }
 
-// What pairing the triangles of a scene takes.
+// The time to pair the triangles of a scene.
 Clocks time_pairing(const Scene& scene) {
     const Stopwatch watch;
     for (const TriangleMesh& mesh : scene.meshes)
@@ -35,7 +35,7 @@ void add_speed(const Clocks& clocks, size_t triangles, std::vector<double>& valu
     wall_values.push_back(millions / clocks.wall);
 }
 
-// Speed and cost of the trees over a scene's triangles.
+// Adds the speed and cost of the trees over a scene's triangles.
 void add_builds(const std::string& subject, const Scene& scene, uint32_t runs, std::vector<Row>& rows) {
     std::vector<Box> triangles, pairs;
     for (const BenchTriangle& t : triangles_of(scene)) {

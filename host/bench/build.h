@@ -1,4 +1,4 @@
-// The benchmark of building trees: candela's builder, and Embree's where it is there, on the same boxes.
+// The benchmark of building trees: candela's builder, and Embree's if the program has it, on the same boxes.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,21 @@
 namespace candela {
 
 // For displaced_scene()s of options.triangles, whose triangles are paired first: the speed of pairing and
-// building, beside Embree's over the triangles themselves [Mtriangles/s], by CPU time of all cores with that
-// of wall time beside it; that of building alone, by both over the pairs, and the SAH cost of these trees
-// (see bvh/measure.h; less is better); and the bytes that a triangle takes on a device, smooth normals and
-// all. Embree's medium-quality builder takes turns with ours. Throws Error as build_gpu_scene() does.
+// building, compared with Embree's over the triangles themselves [Mtriangles/s]; the speed of both builders
+// over the pairs, and the SAH cost of these trees (see bvh/measure.h; less is better); and the bytes that a
+// triangle takes on a device, smooth normals included. Speeds are by CPU time of all cores, and by wall time
+// beside that. Embree's medium-quality builder takes turns with ours. Throws Error as build_gpu_scene() does.
 std::vector<Row> bench_build(const BenchOptions& options);
 
-// A tree and what building it took.
+// A tree and the time that building it took.
 struct TimedBvh {
     Bvh bvh;
     Clocks clocks;
 };
 
 // The tree that rtcBuildBVH makes of `boxes` (at least one) in medium quality with BVH_WIDTH children a node,
-// leaves of one and the costs of bvh/measure.h, in records of ours, which are no part of the time. Its depth
-// has no limit. None in a program that was built without Embree.
+// leaves of one and the costs of bvh/measure.h, converted to our records, which is not timed. Its depth has
+// no limit. None if the program was built without Embree.
 std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes);
 
 }  // namespace candela

@@ -16,7 +16,7 @@ struct Clocks {
     double wall = 0.0;
 };
 
-// Runs from its construction on.
+// Runs from its construction.
 class Stopwatch {
   public:
     Clocks elapsed() const {
@@ -40,13 +40,13 @@ inline double cores() {
     return double(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-// Whether what a device does takes CPU time. That of a GPU is measured by wall time alone.
+// Whether the device's work takes CPU time. A GPU's is measured only by wall time.
 inline bool works_on_cpu(const vk::DeviceInfo& device) {
     return device.type == vk::DeviceType::cpu;
 }
 
-// The seconds that a speed counts: by CPU time those in which all cores together would have done the work,
-// with nothing else to do; else wall time.
+// The seconds by which a speed is computed: CPU time over the number of cores, as if these had nothing else
+// to do; or wall time.
 inline double counted_seconds(const Clocks& clocks, bool by_cpu_time) {
     return by_cpu_time ? clocks.cpu / cores() : clocks.wall;
 }

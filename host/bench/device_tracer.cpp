@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t WORDS_PER_RAY = sizeof(BenchRay) / sizeof(uvec4);
 
-// As many rays as a texel buffer and one dimension of a dispatch may have on the device.
+// The most rays that a texel buffer and one dimension of a dispatch may have on the device.
 size_t largest_batch(const vk::DeviceLimits& limits) {
     return std::min<uint64_t>(limits.max_texel_buffer_elements / WORDS_PER_RAY,
                               uint64_t{limits.max_compute_work_group_count[0]} * PROBE_GROUP);
@@ -78,7 +78,7 @@ class DeviceTracer : public RayTracer {
     };
 
     const vk::Device* device_;
-    size_t batch_;  // Rays of a dispatch at most.
+    size_t batch_;  // The most rays of a dispatch.
     DeviceScene scene_;
     vk::Kernel closest_, any_;
     vk::Commands commands_;

@@ -1,4 +1,4 @@
-// The rival of the benchmark of building, where the program was built with it; see build.h.
+// The rival in the benchmark of building, if the program was built with it; see build.h.
 #include "bench/build.h"
 
 #ifdef CANDELA_EMBREE
@@ -15,8 +15,8 @@
 namespace candela {
 namespace {
 
-// What Embree's callbacks make: a node with children, or a leaf with primitives of the array that was built
-// over.
+// What Embree's callbacks make: a node with children, or a leaf with primitives of the array that Embree was
+// given.
 struct EmbreeNode {
     unsigned count = 0;  // Of either.
     const RTCBuildPrimitive* primitives = nullptr;

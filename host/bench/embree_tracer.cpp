@@ -1,4 +1,4 @@
-// The rival of the benchmark of rays, where the program was built with it; see tracer.h.
+// The rival in the benchmark of rays, if the program was built with it; see tracer.h.
 #include "bench/tracer.h"
 
 #ifdef CANDELA_EMBREE
@@ -89,7 +89,7 @@ class EmbreeTracer : public RayTracer {
     std::vector<uint32_t> results() const override { return results_; }
 
   private:
-    // Takes chunks, counted over all repeats, until there are no more.
+    // Traces chunks, counted over all repeats, until none are left.
     void trace_chunks(std::atomic<size_t>& next, uint32_t repeats) {
         // As Embree's manual recommends.
         _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);

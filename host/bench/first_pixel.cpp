@@ -23,11 +23,11 @@ double seconds(const timeval& time) {
     return double(time.tv_sec) + 1e-6 * double(time.tv_usec);
 }
 
-// A new, empty directory that goes away with all its contents.
+// A new, empty directory, which is removed with all its contents at the end.
 class ScratchDirectory {
   public:
     ScratchDirectory() {
-        std::error_code no_folder;  // Then it has no name either.
+        std::error_code no_folder;  // If set, there is no folder.
         const std::filesystem::path folder = std::filesystem::temp_directory_path(no_folder);
         std::string name = (folder / "candela-bench-XXXXXX").string();
         if (no_folder || ::mkdtemp(name.data()) == nullptr) {
@@ -57,7 +57,7 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
     return result;
 }
 
-// Our environment, but for those variables ("NAME=value").
+// Our environment with these variables ("NAME=value") added or replaced.
 std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
     std::vector<std::string> all = variables;
     for (char** variable = environ; *variable != nullptr; ++variable) {
@@ -70,7 +70,7 @@ std::vector<std::string> environment_with(const std::vector<std::string>& variab
     return all;
 }
 
-// Runs a program to its end, which must be a good one.
+// Runs a program to its end; it must succeed.
 Clocks run_program(std::vector<std::string> arguments, const std::vector<std::string>& variables) {
     std::vector<std::string> environment = environment_with(variables);
     const Stopwatch watch;

@@ -15,9 +15,9 @@ namespace candela {
 namespace {
 
 constexpr uint32_t SPHERES = 4;
-constexpr uint32_t PER_SPHERE = 12;  // Triangles of a displaced_sphere(), over n^2; the floor has as many.
+constexpr uint32_t PER_SPHERE = 12;  // Triangles of a displaced_sphere(), and of the floor, over n^2.
 
-// A sum of waves of all directions, the finer the lower; in [-1, 1].
+// A sum of waves in random directions, the finer ones lower; in [-1, 1].
 class Bumps {
   public:
     explicit Bumps(uint32_t seed) {
@@ -72,7 +72,7 @@ float across(uint32_t i, uint32_t n) {
     return float(2 * i) / float(n) - 1.0f;
 }
 
-// Wider than the room by 0.1 m all round, so that no ray slips out between floor and wall.
+// Wider than the room by 0.1 m on all sides, so that no ray escapes between floor and wall.
 TriangleMesh hilly_floor(uint32_t n) {
     const Bumps bumps(5);
     TriangleMesh mesh;
@@ -116,7 +116,7 @@ Scene displaced_scene(uint32_t triangles) {
     }
     add_shape(scene, hilly_floor(n), grey);
 
-    // Four walls, from below the floor on, the ceiling, and the light just under it.
+    // Four walls, which begin below the floor, the ceiling, and the light just under it.
     const vec3 up(0, 5, 0), x(6, 0, 0), z(0, 0, 6);
     add_shape(scene, parallelogram(vec3(-3, -1, -3), x, up), grey);
     add_shape(scene, parallelogram(vec3(3, -1, 3), -x, up), grey);
@@ -144,7 +144,7 @@ std::vector<BenchTriangle> triangles_of(const Scene& scene) {
 std::string triangles_text(uint64_t triangles) {
     const auto count = double(triangles);
     char text[40];
-    // From 999 500 on, three digits of thousands would be a thousand.
+    // From 999 500 on, three digits would round to 1000 k.
     if (triangles >= 999500) {
         std::snprintf(text, sizeof text, "%.3g M triangles", count / 1e6);
     } else if (triangles >= 1000) {

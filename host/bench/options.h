@@ -1,4 +1,4 @@
-// What every group of benchmarks is told.
+// The options of every group of benchmarks.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace candela {
 
 struct BenchOptions {
     uint32_t runs = 5;                                 // Of each figure, after a warm-up; at least 1.
-    std::vector<uint32_t> triangles{190000, 1000000};  // Sizes of the meshes, about; see meshes.h.
-    uint32_t rays = 1u << 20;                          // Camera rays, about.
+    std::vector<uint32_t> triangles{190000, 1000000};  // Approximate sizes of the meshes; see meshes.h.
+    uint32_t rays = 1u << 20;                          // Approximate number of camera rays.
     SceneAccess scene_access = SceneAccess::automatic;
-    std::function<void(const std::string&)> progress;  // Told what comes next: "traversal: 1 M triangles".
+    std::function<void(const std::string&)> progress;  // Gets what comes next: "traversal: 1 M triangles".
 };
 
 }  // namespace candela

@@ -14,10 +14,10 @@ namespace {
 
 using glm::dvec3;
 
-// Bounces start that share of the scene's extent above the surface: a hundred times the rounding of its
-// coordinates, so that no tracer meets the surface that a ray leaves.
+// Bounces start above the surface by this share of the scene's extent: a hundred times the rounding of its
+// coordinates, so that no tracer hits the surface that a ray leaves.
 constexpr double START_ABOVE = 1e-5;
-// Shadow rays end that share of their length before the light.
+// Shadow rays end before the light by this share of their length.
 constexpr float END_BEFORE = 1e-3f;
 
 std::vector<BenchRay> primary_rays(const Camera& camera, uint32_t count, Random& random) {
@@ -37,8 +37,8 @@ std::vector<BenchRay> primary_rays(const Camera& camera, uint32_t count, Random&
     return rays;
 }
 
-// Where a ray meets the plane of the triangle that it hit, moved a little off the surface, and the unit
-// normal there, both on the ray's own side.
+// Where a ray hits the plane of its triangle, moved slightly off the surface, and the unit normal there, both
+// on the ray's side.
 struct Vertex {
     vec3 p;
     vec3 n;
@@ -52,7 +52,7 @@ Vertex vertex_of(const BenchRay& ray, const BenchTriangle& triangle, double abov
     return {vec3(o + t * d + above * n), vec3(n)};
 }
 
-// The vertices at the hits of a set; rays that hit nothing have none.
+// The vertices at the hits of a set; rays that miss have none.
 std::vector<Vertex> vertices_of(const RaySet& set, std::span<const BenchTriangle> triangles, double above,
                                 const ClosestHits& trace) {
     const std::vector<uint32_t> hits = trace(set);
@@ -64,7 +64,7 @@ std::vector<Vertex> vertices_of(const RaySet& set, std::span<const BenchTriangle
     return vertices;
 }
 
-// The normal plus a point of the unit sphere follows the cosine.
+// The normal plus a random point of the unit sphere is distributed by the cosine.
 std::vector<BenchRay> bounces(const std::vector<Vertex>& vertices, Random& random) {
     std::vector<BenchRay> rays;
     rays.reserve(vertices.size());

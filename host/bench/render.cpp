@@ -7,8 +7,8 @@
 namespace candela {
 namespace {
 
-// A run that ends by the clock is cut into that many submissions or more, so that it ends in time. None is
-// longer than on a GPU.
+// A run of limited time is cut into at least this many submissions, so that it ends in time. None is longer
+// than on a GPU.
 constexpr double SUBMISSIONS = 50.0;
 constexpr double LONGEST_SUBMISSION = 0.075;
 
@@ -16,7 +16,7 @@ struct Outcome {
     Clocks clocks;
     uint64_t samples = 0;
     uint64_t rays = 0;
-    double relmse = 0.0;  // Where there is a reference.
+    double relmse = 0.0;  // If there is a reference.
 };
 
 Outcome run_once(const vk::Device& device, const GpuScene& scene, const RenderTask& task,

@@ -1,4 +1,4 @@
-// What a benchmark found: rows of figures, with every single run, and what a table says of them.
+// The results of a benchmark: rows of figures, with every single run, and what a table says about them.
 #pragma once
 
 #include <optional>
@@ -8,16 +8,16 @@
 
 namespace candela {
 
-// One line of the table. All lists have one value per run, in the order of the runs, or a single value if
-// nothing could make a difference; those of ours and of the rival belong together pairwise, since the two
-// take turns. Speeds and times are by CPU time wherever a CPU does the work.
+// One line of the table. All lists have one value per run, in the order of the runs, or a single value if all
+// runs must agree; values of ours and of the rival form pairs, since the two take turns. Speeds and times are
+// by CPU time wherever a CPU does the work.
 struct Row {
     std::string subject{};             // What is worked on: "Cornell box, 32 triangles".
     std::string what{};                // "primary rays".
-    std::string unit{};                // "Mrays/s"; empty for a mere number.
+    std::string unit{};                // "Mrays/s"; empty for a plain number.
     std::vector<double> ours{};        // Not empty.
     std::vector<double> rival{};       // Embree's; empty where there is none.
-    std::vector<double> ours_wall{};   // The same runs by wall time; empty where that is no other figure.
+    std::vector<double> ours_wall{};   // The same runs by wall time; empty if that is the same.
     std::vector<double> rival_wall{};  // Likewise.
 };
 

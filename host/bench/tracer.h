@@ -1,4 +1,4 @@
-// What is timed: something that traces a set of rays, candela's kernels or the rival.
+// RayTracer: traces a set of rays and times that, with candela's kernels or with the rival.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ class RayTracer {
     RayTracer& operator=(const RayTracer&) = delete;
     virtual ~RayTracer() = default;
 
-    // Makes ready for tracing that set, which must live until the next takes its place.
+    // Prepares for tracing that set, which must live until the next call of prepare().
     virtual void prepare(const RaySet& set) = 0;
-    // Traces all rays of the set that many times over, on all of the device, and returns how long that took.
+    // Traces all rays of the set `repeats` times, on the whole device, and returns how long that took.
     virtual Clocks trace(uint32_t repeats) = 0;
-    // Of the last trace(), one per ray: a triangle's id, ANY_HIT or NO_TRIANGLE, as rays.h says.
+    // The results of the last trace(), one per ray: a triangle's id, ANY_HIT or NO_TRIANGLE, as rays.h says.
     virtual std::vector<uint32_t> results() const = 0;
 };
 
@@ -37,11 +37,11 @@ class RayTracer {
 std::unique_ptr<RayTracer> make_device_tracer(const vk::Device& device, const GpuScene& scene,
                                               SceneAccess access, size_t batch = SIZE_MAX);
 
-// Embree's rtcIntersect1 and rtcOccluded1 on triangles (their ids are their positions), on all cores; null in
-// a program that was built without Embree.
+// Embree's rtcIntersect1 and rtcOccluded1 on triangles (their ids are their positions), on all cores; null if
+// the program was built without Embree.
 std::unique_ptr<RayTracer> make_embree_tracer(std::span<const BenchTriangle> triangles);
 
-// "Embree 3.13.5"; none in a program that was built without it.
+// "Embree 3.13.5"; none if the program was built without it.
 std::optional<std::string> embree_version();
 
 }  // namespace candela

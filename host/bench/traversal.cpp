@@ -13,19 +13,19 @@
 namespace candela {
 namespace {
 
-// A run traces its rays again and again until about that long has passed, so that clocks and idle ends do not
-// count.
+// A run repeats its rays for about this long, so that the clocks' resolution and idle threads at its end do
+// not matter.
 constexpr double RUN_SECONDS = 0.1;
 constexpr double MOST_REPEATS = 1000;
 
-// Of so many rays one may have another hit by the rival.
+// One in this many rays may have a different hit in the rival.
 constexpr size_t RAYS_PER_OTHER_HIT = 1000;
 
-// A tracer that has a set of rays to trace, and the figures that it gives.
+// A tracer with a set of rays, and its speed.
 class Contender {
   public:
-    // The rays are traced twice: some drivers compile at the first time, and the second says how long a run
-    // is.
+    // Traces the rays twice: some drivers compile the first time, and the second determines how often a run
+    // repeats them.
     Contender(RayTracer& tracer, const RaySet& set) : tracer_(&tracer), rays_(double(set.rays.size())) {
         tracer_->prepare(set);
         tracer_->trace(1);
