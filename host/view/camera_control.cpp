@@ -10,10 +10,10 @@
 namespace candela {
 namespace {
 
-// Closest that an orbit comes to a pole [rad]: from there, the picture's right would be undefined.
+// How close an orbit may come to a pole [rad], where the picture's right is undefined.
 constexpr float POLE_DISTANCE = 0.02f;
 
-// What a camera looks at stays at least so far away [m], so that a direction remains.
+// What a camera looks at stays at least this far away [m], so that the direction remains defined.
 constexpr float LEAST_DISTANCE = 1e-4f;
 
 struct Frame {

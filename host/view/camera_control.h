@@ -1,5 +1,5 @@
-// How a camera is moved by hand: orbit, pan, dolly and fly. Pure functions of a camera; what it looks at is
-// the point that it turns about.
+// Moves a camera by hand: orbit, pan, dolly and fly. Pure functions of a camera, which orbits the point that
+// it looks at.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace candela {
 
-// Moves the camera on the sphere around what it looks at: by `azimuth` [rad] about `up`, so that for positive
-// ones the scene turns to the right, and by `elevation` [rad] upwards, which stops short of the poles.
+// Moves the camera on the sphere around what it looks at: by `azimuth` [rad] about `up`, so that positive
+// values turn the scene to the right, and by `elevation` [rad] upwards, stopping short of the poles.
 void orbit(Camera& camera, float azimuth, float elevation);
 
-// Moves the camera and what it looks at across its view, so that what it looks at moves on the picture by
+// Moves the camera and what it looks at across its view, so that the scene there moves in the picture by
 // `shift`, x to the right, y up, in heights of the picture.
 void pan(Camera& camera, vec2 shift);
 
@@ -23,8 +23,8 @@ void dolly(Camera& camera, float factor);
 // Moves the camera and what it looks at by `shift`: to the right, up, forwards, in the camera's frame [m].
 void fly(Camera& camera, vec3 shift);
 
-// The camera as an object in the keywords of scene files, angles in degrees, to be pasted into a scene:
-// {"cameras": {NAME: {...}}}. Read back, it has the same bits.
+// {"cameras": {NAME: {...}}}: the camera in the syntax of scene files, angles in degrees, to be pasted into a
+// scene. Reading it back gives the same bits.
 std::string camera_json(const Camera& camera, const std::string& name);
 
 }  // namespace candela

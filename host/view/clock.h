@@ -1,4 +1,4 @@
-// The time in seconds, for what the viewer does now and then.
+// Time in seconds, for what the viewer does at intervals.
 #pragma once
 
 #include <chrono>

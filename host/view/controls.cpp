@@ -18,11 +18,11 @@ constexpr float ORBIT_PER_HEIGHT = PI;
 // One step of the wheel takes a tenth off the distance, or adds a ninth.
 constexpr float DOLLY_PER_STEP = 0.9f;
 
-// Flying covers the distance to what the camera looks at in so many seconds, with Shift in a fifth of it.
+// Flying covers the distance to what the camera looks at in this many seconds, with Shift in a fifth of them.
 constexpr double FLIGHT_SECONDS = 2.0;
 constexpr float FAST = 5.0f;
 
-// A button that went down and up within so many pixels was clicked, not dragged.
+// A button that went down and up within this many pixels was clicked, not dragged.
 constexpr float CLICK_PIXELS = 3.0f;
 
 void apply_mouse(ViewState& state, ViewRequests& requests) {
@@ -43,7 +43,7 @@ void apply_mouse(ViewState& state, ViewRequests& requests) {
     }
 }
 
-// As if these keys were down for so long.
+// Moves the camera as if these keys were down for `seconds`.
 void fly_by(const std::set<int>& keys, Camera& camera, double seconds) {
     const auto axis = [&](int forth, int back) {
         return float(keys.contains(forth)) - float(keys.contains(back));
@@ -96,7 +96,7 @@ ViewRequests Controls::apply(const Input* input, ViewState& state, double second
     return requests;
 }
 
-// A key that goes up was down until now; fly() will not see it any more, or has not seen it at all.
+// A key that goes up was down until now: fly() will not see it any more, or has never seen it.
 void Controls::apply_key(const KeyInput& key, ViewState& state, ViewRequests& requests, double seconds) {
     if (!key.down) {
         if (held_.erase(key.key) > 0) fly_by({key.key}, state.camera, seconds);

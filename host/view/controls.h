@@ -8,7 +8,7 @@
 
 namespace candela {
 
-// Every key and what it does, one per line, for the panel and for --help.
+// What the mouse and the keys do, for the panel and for --help.
 inline constexpr const char* CONTROLS_HELP =
     "drag        orbit\n"
     "Shift drag  pan (also right, middle)\n"
@@ -23,16 +23,16 @@ inline constexpr const char* CONTROLS_HELP =
 // `seconds`: since the last frame.
 class Controls {
   public:
-    // Applies to the camera and the rest what the user does, null if nothing; to be called within a turn of
-    // Gui, whose input that is.
+    // Applies the user's input, null if there is none, to `state`, and returns what else it requests. Call it
+    // within the turn of Gui for the same input.
     ViewRequests apply(const Input* input, ViewState& state, double seconds);
-    // Moves the camera as the keys that are down say; to be called once a frame.
+    // Moves the camera by the keys that are down; call it once per frame.
     void fly(Camera& camera, double seconds) const;
 
   private:
     void apply_key(const KeyInput& key, ViewState& state, ViewRequests& requests, double seconds);
 
-    std::set<int> held_;  // Keys that went down where nothing was typed, and have not gone up yet.
+    std::set<int> held_;  // Keys that went down while no text was typed, and have not gone up yet.
 };
 
 }  // namespace candela

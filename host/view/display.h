@@ -16,15 +16,15 @@
 
 namespace candela {
 
-// A picture that lies over a part of the window: sRGB codes premultiplied by alpha, one word per pixel with
-// red in the lowest byte and alpha in the highest, row-major.
+// A picture over a part of the window: sRGB codes premultiplied by alpha, one word per pixel with red in the
+// lowest byte and alpha in the highest, row-major.
 struct Overlay {
     PixelRect rect;  // In the window; may be empty.
     std::vector<uint32_t> pixels;
 };
 
-// The kernel that develops, compiled for a tone curve and not bound to anything. `blue_first`: the order of
-// the bytes on the screen, see vk::Presenter.
+// The kernel that develops, compiled for a tone curve, with nothing bound. `blue_first`: the order of the
+// bytes on the screen, see vk::Presenter.
 vk::Kernel make_display_kernel(const vk::Device& device, Tonemap curve, bool blue_first);
 
 class Display {
@@ -33,9 +33,9 @@ class Display {
     Display(const vk::Device& device, bool blue_first);
 
     // Develops the mean of the samples in `image` (layers LAYER_*, of any size: it is stretched over the
-    // window), multiplied by 2^exposure_ev, into size.x * size.y pixels, as develop() does but for rounding,
-    // and lays `overlay` over them. A pixel without samples shows what it showed before, or black in a window
-    // of another size.
+    // window), multiplied by 2^exposure_ev, into size.x * size.y pixels, as develop() does up to rounding,
+    // and blends `overlay` over them. A pixel without samples keeps what it showed, or is black if the
+    // window's size has changed.
     void draw(const vk::StorageImage& image, uvec2 size, Tonemap curve, float exposure_ev,
               const Overlay& overlay);
 

@@ -15,10 +15,10 @@
 namespace candela {
 namespace {
 
-// Where Dear ImGui takes the mouse for absent.
+// The position by which Dear ImGui knows that there is no mouse.
 constexpr vec2 NOWHERE(-FLT_MAX);
 
-// The time passes once in a frame; its further turns take next to none [s].
+// Time passes once per frame; further turns take almost none [s].
 constexpr float INSTANT = 1e-6f;
 
 }  // namespace
@@ -28,13 +28,14 @@ Gui::Gui(Window& window) : window_(window), mouse_(NOWHERE) {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;  // Leave no file behind.
-    // Lines as triangles: the texture is read at the nearest texel, which serves letters, but not lines of
-    // any width.
+    // Draw lines as triangles: the texture is read at the nearest texel, which suits letters, but not lines
+    // of any width.
     io.Fonts->Flags |= ImFontAtlasFlags_NoBakedLines;
     io.Fonts->Build();
     ImGui::StyleColorsDark();
     ImGui_ImplGlfw_InitForOther(window.handle(), false);
-    // Else newer versions ask the system for the mouse, which may be farther by now than what is dealt with.
+    // Otherwise newer versions ask the system for the mouse's position, which may be ahead of the input being
+    // handled.
     ImGui_ImplGlfw_CursorEnterCallback(window.handle(), GLFW_TRUE);
 }
 
@@ -87,7 +88,7 @@ void Gui::take(const MoveInput& input) {
     mouse_ = input.place;
 }
 
-// A drag goes on outside.
+// A drag continues outside.
 void Gui::take(const LeaveInput&) {
     if (std::ranges::none_of(buttons_, [](bool down) { return down; })) mouse_ = NOWHERE;
 }

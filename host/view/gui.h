@@ -8,10 +8,9 @@
 
 namespace candela {
 
-// One at a time. A frame has one turn or more: Dear ImGui takes all that it hears before a turn for one
-// moment, in which a key that went down and up was never down, and the mouse was where it is last. So each
-// thing that the user does gets a turn of its own, and what comes of it does not depend on how long a frame
-// takes.
+// Only one may exist at a time. A frame has one turn or more: Dear ImGui takes all input before a turn as
+// simultaneous, so that a key that went down and up was never down, and the mouse was only at its last place.
+// So each input gets a turn of its own, and its effect does not depend on how long a frame takes.
 class Gui {
   public:
     // `window` must outlive it.
@@ -22,7 +21,7 @@ class Gui {
 
     // Takes in the window's size and the time.
     void begin_frame();
-    // Between the two the widgets of Dear ImGui may be called. `input`: what the user does, null if nothing.
+    // Between the two, widgets of Dear ImGui may be called. `input`: what the user does; null if nothing.
     void begin_turn(const Input* input);
     void end_turn();
     // What the widgets looked like in the last turn, in a window of `size` pixels; valid until the next call.

@@ -14,14 +14,14 @@ struct KeyInput {
     int modifiers;  // GLFW_MOD_*
 };
 struct CharacterInput {
-    unsigned int code;  // Of Unicode.
+    unsigned int code;  // A Unicode code point.
 };
 struct ButtonInput {
     int button;  // GLFW_MOUSE_BUTTON_*
     bool down;   // Else it went up.
 };
 struct MoveInput {
-    vec2 place;  // From the top left of the window, in its system's units.
+    vec2 place;  // From the top left of the window, in the window system's units.
 };
 struct LeaveInput {};  // The mouse left the window.
 struct WheelInput {
@@ -34,7 +34,7 @@ struct FocusInput {
 using Input =
     std::variant<KeyInput, CharacterInput, ButtonInput, MoveInput, LeaveInput, WheelInput, FocusInput>;
 
-// Of these there may be a thousand a second: they wait for no picture.
+// There may be a thousand of these per second, so that they do not wait for a picture.
 inline bool is_motion(const Input& input) {
     return std::holds_alternative<MoveInput>(input) || std::holds_alternative<WheelInput>(input);
 }

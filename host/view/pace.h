@@ -1,4 +1,4 @@
-// What the viewer decides by numbers alone: how coarse the picture is while the camera moves, and when to
+// What the viewer decides from numbers alone: how coarse the picture is while the camera moves, and when to
 // look at the error of a picture at rest.
 #pragma once
 
@@ -8,25 +8,24 @@
 
 namespace candela {
 
-// While the camera moves, the first sample of every pixel shall be there after so many seconds: with a
-// picture's development, the panel and the window's own work that makes more than ten pictures per second.
+// While the camera moves, every pixel should have its first sample after this many seconds: with the
+// picture's development, the panel and the window's own work, that makes more than ten pictures per second.
 inline constexpr double MOVING_SECONDS = 0.05;
 
 // The coarsest moving picture has an eighth of the pixels along each side; the first one has a quarter.
 inline constexpr uint32_t COARSEST_SCALE = 8;
 inline constexpr uint32_t FIRST_SCALE = 4;
 
-// While the camera moves, the sides of the picture are divided by a power of two. By what the next one's are,
-// if the last one's were by `scale` and its first samples took so many seconds: by more if that was longer
-// than MOVING_SECONDS, by less if four times as many pixels would clearly not take longer.
+// While the camera moves, the sides of the picture are divided by a power of two. Returns that of the next
+// picture, if the last one's was `scale` and its first samples took `seconds`: more if that was longer than
+// MOVING_SECONDS, less if four times as many pixels would clearly not take longer.
 uint32_t next_scale(uint32_t scale, double seconds);
 
 // `size` divided by `scale`, at least 1 in each direction.
 uvec2 scaled_size(uvec2 size, uint32_t scale);
 
-// Up to how many samples per pixel to render before the next look at a picture that has `spp` of them and
-// shall get `target`: a power of two, beginning with the first that the estimate of its error takes, and
-// `target` at most.
+// The samples per pixel at which to look next at a picture that has `spp` of them, on its way to `target`: a
+// power of two, beginning with the first that the estimate of its error needs, and at most `target`.
 uint32_t next_look(uint32_t spp, uint32_t target);
 
 }  // namespace candela

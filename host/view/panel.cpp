@@ -13,7 +13,7 @@ namespace candela {
 namespace {
 
 constexpr float WIDTH = 290.0f;          // [pixels]
-constexpr float LABEL_WIDTH = 90.0f;     // What labels leave of it.
+constexpr float LABEL_WIDTH = 90.0f;     // The part of it for labels.
 constexpr float EXPOSURE_RANGE = 10.0f;  // [EV] to either side.
 constexpr float INTENSITY_RANGE = 100.0f;
 constexpr int DEEPEST = 32;  // Bounces on the slider; one more stands for no limit.
@@ -76,13 +76,13 @@ void show_camera(ViewState& state, ViewRequests& requests, std::span<const Camer
 }
 
 void show_environment(ViewState& state) {
-    // Not SliderAngle(), which rounds the angle whether it is moved or not.
+    // Not SliderAngle(), which rounds the angle even if nobody moves it.
     float degrees = glm::degrees(state.environment_rotation);
     if (ImGui::SliderFloat("sky turned", &degrees, -180.0f, 180.0f, "%.0f deg",
                            ImGuiSliderFlags_AlwaysClamp)) {
         state.environment_rotation = glm::radians(degrees);
     }
-    // Only when it is let go: another intensity takes new tables.
+    // Applied when the slider is released: another intensity needs new tables.
     ImGui::SliderFloat("sky times", &state.intensity_slider, 1.0f / INTENSITY_RANGE, INTENSITY_RANGE, "%.3g",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (ImGui::IsItemDeactivatedAfterEdit()) state.environment_intensity = state.intensity_slider;

@@ -7,8 +7,9 @@
 
 namespace candela {
 
-// Shows the panel, within a frame of Dear ImGui, and applies to `state` and `requests` what the user does
-// there. `cameras` are the scene's; `home` is the camera that the sliders of the lens take their ranges from.
+// Shows the panel, within a frame of Dear ImGui, and applies what the user does there to `state` and
+// `requests`. `cameras` are the scene's; `home` is the camera from which the sliders of the lens take their
+// ranges.
 void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& figures,
                 std::span<const Camera> cameras, const Camera& home, bool has_environment);
 

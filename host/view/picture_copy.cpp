@@ -11,7 +11,7 @@ namespace candela {
 static constexpr double COPY_SECONDS = 10.0;
 static constexpr double LARGEST_SHARE = 0.05;
 
-// A look that keeps the window waiting no longer than this is never left out [s].
+// A look that keeps the window waiting no longer than this is never skipped [s].
 static constexpr double SHORT_LOOK = 0.1;
 
 void PictureCopy::clear() {

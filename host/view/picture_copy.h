@@ -15,15 +15,15 @@ class PictureCopy {
     // Forgets the picture: another begins.
     void clear();
 
-    // Copies the picture as it is now. To be called when it is due(): every ten seconds, or less often where
-    // that would take more than a twentieth of the time.
+    // Copies the picture as it is now. Call it when it is due(): every ten seconds, or less often if copying
+    // would take more than a twentieth of the time.
     void take(const Renderer& renderer);
     bool due() const { return Clock::now() >= next_; }
 
-    // Copies the picture when all its pixels hold `spp` samples, and estimates its error, as `candela render
-    // --target-error` does, if they held half of that at the last look and LEAST_ESTIMATED_SPP are there.
-    // A look that takes both more than a tenth of a second and more than a twentieth of `seconds`, those that
-    // the picture took so far, is left out.
+    // Copies the picture, all of whose pixels hold `spp` samples. Estimates its error, as `candela render
+    // --target-error` does, if the last look was at half as many and there are at least LEAST_ESTIMATED_SPP.
+    // Does nothing if a look takes both more than a tenth of a second and more than a twentieth of `seconds`,
+    // the time that the picture has taken so far.
     void look(const Renderer& renderer, uint32_t spp, double seconds);
 
     const std::optional<Accumulation>& state() const { return state_; }
@@ -34,7 +34,7 @@ class PictureCopy {
     std::optional<Accumulation> state_;
     std::optional<Image> seen_;  // At the last look.
     std::optional<double> error_;
-    double look_seconds_ = 0.0;  // How long a look takes; of any picture.
+    double look_seconds_ = 0.0;  // How long the last look took, at any picture.
     Clock::time_point next_;
 };
 

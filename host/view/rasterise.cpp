@@ -66,7 +66,7 @@ float cross2(vec2 a, vec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
-// Lays a colour that is not premultiplied over a pixel.
+// Blends a colour that is not premultiplied over a pixel.
 void Canvas::blend(int x, int y, vec4 colour) {
     const size_t row = size_t(y - bounds_.y0);
     uint32_t& word = overlay_.pixels[row * size_t(bounds_.x1 - bounds_.x0) + size_t(x - bounds_.x0)];
@@ -74,8 +74,8 @@ void Canvas::blend(int x, int y, vec4 colour) {
     word = pack(above + (1.0f - colour.w) * unpack(word));
 }
 
-// Colours the pixels whose centres lie inside; of those on an edge that two triangles share, one of the two
-// takes each, so that nothing translucent is laid over a pixel twice.
+// Colours the pixels whose centres lie inside. A centre on an edge that two triangles share belongs to only
+// one of them, so that nothing translucent is blended over a pixel twice.
 void Canvas::triangle(std::array<Vertex, 3> v, Bounds clip) {
     float area = cross2(v[1].position - v[0].position, v[2].position - v[0].position);
     if (area == 0.0f) return;

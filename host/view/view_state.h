@@ -1,4 +1,4 @@
-// What the user of the viewer can change, and what the viewer tells.
+// What the user of the viewer can change, and what the viewer shows.
 #pragma once
 
 #include <optional>
@@ -16,13 +16,13 @@ struct ViewState {
     float exposure_ev = 0.0f;
     Tonemap tonemap = Tonemap::linear;
     float environment_rotation = 0.0f;   // [rad]
-    float environment_intensity = 1.0f;  // Times what the scene says.
-    float intensity_slider = 1.0f;       // The same while the slider is dragged.
+    float environment_intensity = 1.0f;  // Relative to the scene's.
+    float intensity_slider = 1.0f;       // The same, while the slider is dragged.
     bool paused = false;
-    bool panel = true;  // Is shown.
+    bool panel = true;  // Whether it is shown.
 };
 
-// What the user asks for once.
+// What the user requests once.
 struct ViewRequests {
     bool restart = false;
     bool home = false;      // The camera as the scene has it.
@@ -30,19 +30,19 @@ struct ViewRequests {
     bool save_exr = false;  // Radiance and more.
     bool save_camera = false;
     bool close = false;
-    std::optional<size_t> camera;  // The scene's camera to take.
+    std::optional<size_t> camera;  // Switch to this camera of the scene.
     std::optional<vec2>
-        focus;  // What lies there shall be sharp; in the window, (0,0) .. (1,1) from the top left.
+        focus;  // Focus on what is seen there; in the window, (0,0) .. (1,1) from the top left.
 };
 
-// What the panel tells.
+// What the panel shows.
 struct ViewFigures {
     std::string device;
     uint64_t device_bytes = 0;
     uvec2 size{0, 0};      // Of the picture right now; smaller than the window while the camera moves.
-    double samples = 0.0;  // Per pixel, in the mean.
+    double samples = 0.0;  // Per pixel, on average.
     double samples_per_second = 0.0;  // Of all pixels together.
-    std::optional<double> error;      // Relative, as estimated last; see estimate_relative_error().
+    std::optional<double> error;      // Relative, the last estimate; see estimate_relative_error().
     std::string message;              // What happened last.
 };
 

@@ -12,20 +12,20 @@
 namespace candela {
 namespace {
 
-// How long a submission should take [s]: so soon the window hears its user.
+// How long a submission should take [s], which is how soon the window responds.
 constexpr double SUBMISSION_SECONDS = 0.03;
 
-// The camera rests when nothing has changed for so long [s]; then the picture gets all its pixels.
+// The camera rests when nothing has changed for this long [s]; then the picture gets all its pixels.
 constexpr double REST_SECONDS = 0.25;
 
-// How long a window with nothing to do waits for its user at a time [s].
+// How long an idle window waits for input at a time [s].
 constexpr double IDLE_SECONDS = 0.1;
 
-// The rate is a mean over about so long [s].
+// The rate is a mean over about this long [s].
 constexpr double RATE_SECONDS = 0.5;
 
-// The pause before a lost device is opened again [s], which doubles from try to try: a driver needs a moment
-// to reset it.
+// The pause before a lost device is opened again [s], which doubles with each attempt: a driver needs a
+// moment to reset it.
 constexpr double FIRST_PAUSE = 0.1;
 
 // Settings for the whole of a picture of another size.
@@ -92,8 +92,9 @@ void Viewer::open() {
     display_ = std::make_unique<Display>(*device_, presenter_->blue_first());
 }
 
-// Gets rid of the device, or throws the error if it is of another kind or there is no hope left. While the
-// device is being opened again any error will do: a driver that is not ready has many ways to say so.
+// Closes the device, or throws the error if it is of another kind or the last allowed failure. While the
+// device is being opened again, any error counts as a failure: a driver that is not ready may report
+// anything.
 void Viewer::recover(const Error& error) {
     if (renderer_) {
         if (error.code() != ExitCode::device_lost && error.code() != ExitCode::out_of_memory)
@@ -118,8 +119,7 @@ void Viewer::recover(const Error& error) {
     std::this_thread::sleep_for(std::chrono::duration<double>(FIRST_PAUSE * (1u << (failures_ - 1))));
 }
 
-// Begins a picture of what the user wants by now or, if that is shown already but the device is another, goes
-// on with it.
+// Begins the picture that the user wants now or, if only the device has changed, continues the current one.
 void Viewer::begin() {
     restart_ |= outdated();
     if (intensity_ != state_.environment_intensity) {
@@ -158,7 +158,7 @@ void Viewer::begin() {
     measured_samples_ = double(spp_) * figures_.size.x * figures_.size.y;
 }
 
-// Renders until the picture has all samples, if nothing stops it before. Returns whether it has them.
+// Renders until the picture has all samples, or something stops it. Returns whether it has them.
 bool Viewer::accumulate() {
     while (spp_ < options_.target) {
         stop_ = scale_ > 1 ? options_.target : next_look(spp_, options_.target);
@@ -174,7 +174,7 @@ bool Viewer::accumulate() {
 
 void Viewer::measure(double progress) {
     const double pixels = double(figures_.size.x) * figures_.size.y;
-    const double samples = std::round((spp_ + progress * (stop_ - spp_)) * pixels);  // There are no halves.
+    const double samples = std::round((spp_ + progress * (stop_ - spp_)) * pixels);  // Samples are whole.
     figures_.samples = samples / pixels;
     const double seconds = seconds_between(measured_from_, Clock::now());
     render_seconds_ += seconds;
@@ -185,12 +185,12 @@ void Viewer::measure(double progress) {
     measured_samples_ = samples;
 }
 
-// Called between submissions. Returns whether the device shall go on.
+// Called between submissions. Returns whether the device should continue.
 bool Viewer::step(double progress) {
     measure(progress);
     window_.poll();
     const bool whole = figures_.samples >= 1.0;
-    // A moving picture first becomes whole, however fast the user moves.
+    // A moving picture always gets its first samples, however fast the user moves.
     if (moving_ && !whole) return !ended();
     if (moving_ && is_first_) next_scale_ = next_scale(scale_, seconds_between(begun_, Clock::now()));
     is_first_ = false;
@@ -204,7 +204,7 @@ bool Viewer::step(double progress) {
     return !restart_ && !ended();
 }
 
-// Whether the picture in the making is no longer what the user wants.
+// Whether the picture in progress is no longer what the user wants.
 bool Viewer::outdated() const {
     const RenderSettings& wanted = state_.settings;
     return state_.camera != camera_ || scaled_size(wanted.size, scale_) != settings_.size ||

@@ -1,4 +1,4 @@
-// Viewer: shows in a window how a picture accumulates, and lets the user move the camera and change the
+// Viewer: shows a picture in a window as it accumulates, and lets the user move the camera and change the
 // settings.
 #pragma once
 
@@ -42,10 +42,10 @@ struct ViewerOptions {
     std::optional<std::filesystem::path> pipeline_cache_folder;
     std::string name;               // Of the scene, for the title and for files.
     uint32_t target = 0;            // Samples per pixel to stop at, above 0.
-    bool close_at_target = false;   // End there, and keep the picture's size whatever the window's.
-    std::function<bool()> stopped;  // Asked now and then: end now?
-    std::function<void(const std::string&)> say;  // Told what happened: "wrote box-1.png".
-    // Gives the image of an EXR its attributes.
+    bool close_at_target = false;   // Close then, and keep the picture's size whatever the window's.
+    std::function<bool()> stopped;  // Asked regularly whether to end.
+    std::function<void(const std::string&)> say;  // Gets what happened: "wrote box-1.png".
+    // Adds the attributes of an EXR to its image.
     std::function<void(Image&, const ViewedPicture&)> add_attributes;
 };
 
@@ -56,10 +56,10 @@ class Viewer {
     Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewState state, ViewerOptions options);
 
     // Runs until the window is closed, options.stopped() says so or, if asked for, the target is reached.
-    // Returns whether the picture is at rest and has all samples. If the device is lost or out of memory, it
-    // is opened anew, and a picture at rest goes on from its copy on the host to the same bits. Throws the
-    // Error if that happens SteadyRenderer::MOST_FAILURES times without progress of the copy, and writes that
-    // to a file before.
+    // Returns whether the picture is at rest and has all samples. If the device is lost or out of memory,
+    // opens it again, and a picture at rest continues from its copy on the host, to the same bits. At the
+    // SteadyRenderer::MOST_FAILURES-th failure without progress of the copy, writes the copy to a file and
+    // throws the Error.
     bool run();
 
     // Writes the picture as it is: .png as it is shown, without the panel, or .exr as `candela render` would
@@ -93,7 +93,7 @@ class Viewer {
     const vk::Instance& instance_;
     Scene scene_;
     std::vector<vec3> radiance_;  // Of the scene's environment, at intensity 1 ...
-    float intensity_ = 1.0f;      // ... and what scene_ has it multiplied by.
+    float intensity_ = 1.0f;      // ... and its factor in scene_.
     GpuScene gpu_scene_;
     ViewState state_;
     ViewerOptions options_;
@@ -108,12 +108,12 @@ class Viewer {
     std::unique_ptr<vk::Presenter> presenter_;
     std::unique_ptr<Display> display_;
     std::unique_ptr<Renderer> renderer_;
-    std::optional<Error> cause_;       // Of the last failure that was not one of opening.
-    uint32_t failures_ = 0;            // In a row, since the copy of the picture went on.
+    std::optional<Error> cause_;       // Of the last failure other than in opening.
+    uint32_t failures_ = 0;            // In a row, without progress of the copy.
     uint64_t samples_at_failure_ = 0;  // Of the copy, at the last failure.
 
-    // The picture in the making: what it was begun with, the samples that every pixel holds at least, at how
-    // many it is looked at next, and how long it took so far [s].
+    // The picture in progress: its camera and settings, the samples that every pixel holds at least, at how
+    // many the next look is, and how long it has taken so far [s].
     Camera camera_;
     RenderSettings settings_;
     uint32_t spp_ = 0;
@@ -123,15 +123,15 @@ class Viewer {
 
     uint32_t scale_ = 1;    // The picture's sides are divided by this: by 1 unless it was begun while ...
     bool moving_ = false;   // ... the camera moved; then what comes next depends ...
-    bool is_first_ = true;  // ... on when it has its first samples, of which none was seen yet.
+    bool is_first_ = true;  // ... on when its first samples come, which have not been seen yet.
     uint32_t next_scale_;
-    bool restart_ = true;  // The picture no longer shows what it shall.
+    bool restart_ = true;  // The picture no longer shows what it should.
     Clock::time_point begun_;
     Clock::time_point last_change_;
     Clock::time_point last_frame_;
-    double frame_seconds_ = 0.0;  // From the last frame to this one, if it was not long.
+    double frame_seconds_ = 0.0;  // From the last frame to this one, up to a limit.
     Clock::time_point next_draw_;
-    // For the rate: since when the device has worked without a break, and what had been done then.
+    // For the rate: since when the device has worked without a break, and how many samples there were then.
     Clock::time_point measured_from_;
     double measured_samples_ = 0.0;
 };

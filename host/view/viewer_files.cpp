@@ -7,7 +7,7 @@
 
 namespace candela {
 
-// `positions` may be empty: then the image lacks P and Z, which take a device.
+// `positions` may be empty: then the image lacks P and Z, which need a device.
 void Viewer::write_radiance(const std::filesystem::path& path, const Accumulation& state,
                             const std::vector<float>& positions) {
     const bool placed = !positions.empty();
@@ -42,8 +42,8 @@ void Viewer::save_as_asked(const ViewRequests& requests) {
     }
 }
 
-// Writes to the first file NAME-1, NAME-2, ... that is not there yet. A failure is told; the user may try
-// again.
+// Writes to the first file NAME-1, NAME-2, ... that does not exist yet. Tells the user of a failure; they may
+// try again.
 void Viewer::save_as_next(const std::string& extension,
                           const std::function<void(const std::string&)>& write) {
     std::string path;

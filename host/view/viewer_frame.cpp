@@ -14,13 +14,13 @@ namespace {
 // Drawing may take this share of the time, unless the user does something.
 constexpr double DRAWING_SHARE = 0.1;
 
-// After a pause the camera flies no farther than in so long [s].
+// After a pause, the camera flies no farther than in this time [s].
 constexpr double LONGEST_FRAME = 0.1;
 
 }  // namespace
 
-// Deals with all that the user did, and shows what is there. A change of the picture takes effect before
-// anything but motions is dealt with: what is saved then shows what was done before.
+// Handles all input, and shows the result. After a change of the picture, only motions are handled until a
+// new picture has begun, so that a file saved next shows the change.
 void Viewer::frame() {
     const Clock::time_point start = Clock::now();
     frame_seconds_ = std::min(seconds_between(last_frame_, start), LONGEST_FRAME);
@@ -35,7 +35,7 @@ void Viewer::frame() {
         const Input input = inputs.front();
         inputs.pop_front();
         turn(&input);
-        if (!is_motion(input)) turn(nullptr);  // Dear ImGui says then only that typing has ended.
+        if (!is_motion(input)) turn(nullptr);  // Only then does Dear ImGui say that typing has ended.
     }
     controls_.fly(state_.camera, frame_seconds_);
     turn(nullptr);

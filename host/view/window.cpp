@@ -1,7 +1,7 @@
 // See window.h.
 #include "view/window.h"
 
-// Before GLFW's header, which then declares what it has for Vulkan.
+// Included before GLFW's header, which then declares its functions for Vulkan.
 #include <volk.h>
 
 #define GLFW_INCLUDE_NONE
@@ -13,7 +13,7 @@
 namespace candela {
 namespace {
 
-// What GLFW said last; its callback has no other place to put it.
+// GLFW's last message; its callback has no other place to put it.
 std::string last_error;
 
 Error no_window() {
@@ -53,7 +53,7 @@ void Window::add(const Input& input) {
 
 void Window::watch() {
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
-        // A key that is held repeats itself, which is nothing that its user does.
+        // Repeats of a held key are not done by the user.
         if (action != GLFW_REPEAT) window_of(w).add(KeyInput{key, scancode, action == GLFW_PRESS, modifiers});
     });
     glfwSetCharCallback(window_,
@@ -77,7 +77,7 @@ void Window::watch() {
 std::vector<std::string> Window::instance_extensions() const {
     uint32_t count = 0;
     const char** names = glfwGetRequiredInstanceExtensions(&count);
-    // Null, too, where there is no Vulkan at all; then the instance says so.
+    // Also null where there is no Vulkan at all; then the instance says so.
     return names == nullptr ? std::vector<std::string>{} : std::vector<std::string>(names, names + count);
 }
 
