@@ -10,9 +10,9 @@
 
 int main(int argc, char** argv) {
     using candela::ExitCode;
-    // A file that may not grow further is an error of writing like any other, not the end.
+    // A write beyond the limit on file sizes must be an ordinary error, not the end of the program.
     std::signal(SIGXFSZ, SIG_IGN);
-    // And whoever reads the messages may go away.
+    // So must a write to a pipe that nobody reads any more.
     std::signal(SIGPIPE, SIG_IGN);
     try {
         return int(candela::run_program(argc, argv));

@@ -26,7 +26,7 @@ inline constexpr const char* AOV_NAMES = "albedo,n,p,z,variance,samples";
 // The parts of `text` between separators, empty ones included.
 std::vector<std::string> split(const std::string& text, char separator);
 
-// Each reads all of `text`; nothing if it is anything else than described.
+// Each parses all of `text`; returns nothing if that is not as described.
 
 // A whole decimal number in [least, most].
 std::optional<uint32_t> parse_uint(const std::string& text, uint32_t least, uint32_t most);
@@ -45,9 +45,9 @@ static_assert(MAX_SPP == 16777216);
 // "all", "none" or names of images with commas between, as AOV_NAMES lists them.
 std::optional<AovSelection> parse_aovs(const std::string& text);
 
-// Adds an option that stores parse(value) in `target` (a T or std::optional<T>) if it is a value, and else
-// throws an Error (usage) such as `--size: cannot use "12"; expected WIDTHxHEIGHT`. `names` as in CLI11, e.g.
-// "-o,--output".
+// Adds an option that stores parse(value) in `target` (a T or std::optional<T>) if there is one, and
+// otherwise throws an Error (usage) such as `--size: cannot use "12"; expected WIDTHxHEIGHT`. `names` as in
+// CLI11, e.g. "-o,--output".
 template <class Target, class Parse>
 CLI::Option* add_value(CLI::App& app, const std::string& names, Target& target, const Parse& parse,
                        const std::string& expected, const std::string& description) {
@@ -77,14 +77,15 @@ CLI::Option* add_choice(CLI::App& app, const std::string& names, Target& target,
     return add_value(app, names, target, parse, words, description)->type_name(words);
 }
 
-// The size and the part of the picture that commands ask for.
+// The options for the size of the picture and the part of it to render.
 struct PictureOptions {
     std::optional<uvec2> size;
     std::optional<PixelRect> crop;
 
     // Adds --size and --crop.
     void add_to(CLI::App& app);
-    // The crop within a picture of `size`, all of it by default. Throws Error (usage) if it reaches beyond.
+    // The crop within a picture of `full` pixels, by default all of it. Throws Error (usage) if the crop
+    // exceeds it.
     PixelRect crop_within(uvec2 full) const;
 };
 

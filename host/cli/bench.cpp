@@ -1,4 +1,4 @@
-// `candela bench`: how fast this program is on this device, and beside Embree.
+// `candela bench`: how fast this program is on this device, and compared with Embree.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -31,7 +31,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// How long a run of the group `render` lasts unless the samples are given [s].
+// How long a run of the group `render` lasts unless --spp is given [s].
 constexpr double DEFAULT_SECONDS = 3.0;
 
 // A run is limited by time unless the command line limits it by samples.
@@ -58,7 +58,7 @@ std::string size_text(uvec2 size) {
     return std::to_string(size.x) + 'x' + std::to_string(size.y);
 }
 
-// The reference of the only task. Throws Error if it is of another size, or no picture.
+// The colours of the reference of the only task. Throws Error if its size differs, or it lacks R, G or B.
 RgbPlanes reference_planes(const std::string& file, const Image& image, const RenderTask& task) {
     const PixelRect& crop = task.settings.crop;
     const uvec2 size(crop.width(), crop.height()), found(image.data.width(), image.data.height());
@@ -72,8 +72,8 @@ RgbPlanes reference_planes(const std::string& file, const Image& image, const Re
     return *planes;
 }
 
-// Says on stderr what is running: on a terminal in a line that goes away; elsewhere only if no table is
-// printed.
+// Prints on stderr what is running: on a terminal in a line that is cleared later; elsewhere only if no table
+// is printed.
 void print_progress(const std::string& text, bool table) {
     const bool terminal = stderr_is_terminal();
     if (terminal) std::fputs("\r\x1b[K", stderr);

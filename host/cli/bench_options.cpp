@@ -10,7 +10,7 @@ constexpr uint32_t MOST_RUNS = 1000;
 constexpr uint32_t LEAST_RAYS = 64, MOST_RAYS = 1u << 24;
 constexpr uint32_t LEAST_TRIANGLES = 72, MOST_TRIANGLES = 100'000'000;
 
-// The parts of a list with commas between, if parse() takes all of them.
+// The values of a comma-separated list, if parse() accepts all of them.
 template <class T>
 std::optional<std::vector<T>> parse_list(const std::string& text,
                                          std::optional<T> (*parse)(const std::string&)) {

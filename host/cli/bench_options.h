@@ -19,18 +19,18 @@ inline constexpr Choices<BenchGroup, 4> BENCH_GROUP_NAMES{{{"traversal", BenchGr
                                                            {"render", BenchGroup::render},
                                                            {"first-pixel", BenchGroup::first_pixel}}};
 
-// What stands on the command line.
+// The arguments of the command line.
 struct BenchArguments {
-    std::vector<std::string> scenes;  // None: the Cornell box that is part of the program.
+    std::vector<std::string> scenes;  // Empty: the embedded Cornell box.
     std::vector<BenchGroup> only{BenchGroup::traversal, BenchGroup::build, BenchGroup::render,
                                  BenchGroup::first_pixel};
     std::optional<std::string> json;  // "-": stdout.
     BenchOptions bench;
     std::optional<double> seconds;
     std::optional<std::string> reference;
-    RenderOptions render;  // Those that add_rendering_to() declares.
+    RenderOptions render;  // Only those that add_rendering_to() declares.
 
-    // Declares them all on `app`, which fills them in when it parses; this object must stay where it is.
+    // Declares all options on `app`, which fills them in when it parses; this object must not move.
     void add_to(CLI::App& app);
 };
 

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Four digits, which is more than any benchmark has.
+// Four digits, which is more than any benchmark is good for.
 std::string number_text(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", value);

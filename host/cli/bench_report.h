@@ -1,4 +1,4 @@
-// What `candela bench` shows of its figures: a table for people, JSON for programs.
+// How `candela bench` shows its figures: a table for people, JSON for programs.
 #pragma once
 
 #include <string>
@@ -16,9 +16,8 @@ struct BenchTable {
     std::vector<Row> rows;
 };
 
-// A line of headings, then the rows, each subject under a line of its own: what, unit, ours as median and
-// (least .. largest), its median by wall time, and, if any row has a rival, the rival's likewise and the
-// ratio.
+// A line of headings, then the rows, below a line for each subject: what, unit, ours as median and (least ..
+// largest), its median by wall time, and, if any row has a rival, the same for the rival and the ratio.
 std::string table_text(const BenchTable& table);
 
 // {"group": ..., "rows": [...]}: per row subject, what, unit, and all runs of `candela` and `embree` as

@@ -14,7 +14,7 @@ void check_checkpoint(const CheckpointOptions& options) {
     if (!options.file) return;
     const std::string& path = *options.file;
     check_writable(path);
-    std::error_code unreadable;  // What is wrong with it is found when it is read.
+    std::error_code unreadable;  // Ignored: reading the file will report it.
     if (!options.resume && std::filesystem::exists(path, unreadable)) {
         throw Error("--checkpoint: \"" + path +
                         "\" exists; add --resume to go on from it, or remove it to start anew",

@@ -1,4 +1,4 @@
-// The checkpoints of `candela render`: the one to continue from, and those that are written on the way.
+// The checkpoints of `candela render`: the one to continue from, and those that are written while rendering.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,23 @@
 
 namespace candela {
 
-// Throws Error if --checkpoint could not be written, or names a file that exists already although there is no
-// --resume (usage). To be called before any long work.
+// Throws Error if --checkpoint could not be written, or names an existing file without --resume (usage). Call
+// it before any long work.
 void check_checkpoint(const CheckpointOptions& options);
 
-// What --resume says to continue from; nothing, which a line on stderr tells, if the file does not exist yet.
-// Throws Error if it is damaged, belongs to another rendering than `identity` or the job, is adaptive where
-// the job is not or the other way round, or holds more samples per pixel than the job's target.
+// The checkpoint that --resume continues from. If the file does not exist yet, says so on stderr and returns
+// nothing. Throws Error if it is damaged, belongs to another rendering than `identity` or the job, is adaptive
+// where the job is not or the other way round, or holds more samples per pixel than the job's target.
 std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& identity);
 
-// Writes checkpoints, the first after one interval. A write that fails is a warning: the rendering goes on,
-// the file keeps its old contents, and the next interval tries again.
+// Writes checkpoints, the first after one interval. A failed write is a warning: the rendering continues, the
+// file keeps its old contents, and the next write comes after another interval.
 class CheckpointWriter {
   public:
     // `every`: seconds from the end of a write to the next.
     CheckpointWriter(std::filesystem::path path, double every);
 
-    // The interval is over.
+    // Whether the interval is over.
     bool due() const { return interval_.over(); }
     void write(const CheckpointHeader& header, std::span<const Accumulation> states);
 

@@ -11,7 +11,7 @@
 namespace candela {
 
 struct Command {
-    CLI::App* app;                  // Its options; parsed() says whether it was asked for.
+    CLI::App* app;                  // Its options; parsed() says whether the command was called.
     std::function<ExitCode()> run;  // Does the work with the options as parsed. Throws Error.
 };
 

@@ -1,4 +1,4 @@
-// The files of one command: none that is written may be another of them under whatever name.
+// The files of one command. A file that is written may not be any other of them, by whatever name.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,9 @@ namespace candela {
 
 class CommandFiles {
   public:
-    // A file that is read, and one that is written; `role` is what messages call it: "SCENE", "-o". "-", for
-    // standard output, is no file. Throws Error (usage) that names both roles and paths if one of them was
-    // added before, unless both are only read.
+    // Add a file that is read, or one that is written; messages call it `role`: "SCENE", "-o". A written "-"
+    // means standard output, and is ignored. Throw Error (usage) that names both roles and paths if the same
+    // file was added before, unless both only read it.
     void read(const std::string& role, const std::filesystem::path& path);
     void write(const std::string& role, const std::filesystem::path& path);
     void read_all(const std::string& role, const std::vector<std::filesystem::path>& paths);

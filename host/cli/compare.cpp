@@ -1,4 +1,4 @@
-// `candela compare`: whether two renderings of one picture differ by more than their noise.
+// `candela compare`: whether two renderings of the same picture differ by more than their noise.
 #include "base/compare.h"
 
 #include <cmath>

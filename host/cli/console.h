@@ -1,4 +1,4 @@
-// What goes to stderr: warnings and errors. stdout is for results alone.
+// Messages on stderr, and numbers as people read them. stdout is only for results.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How the error of an image falls while it is rendered: what --target-error and --reference look at, at fixed
+// How the error of an image falls while it is rendered: what --target-error and --reference measure, at fixed
 // numbers of samples.
 #pragma once
 
@@ -18,11 +18,11 @@ namespace candela {
 // the settings', or if it lacks R, G or B, holds a value that is not finite, or is black.
 Image load_reference(const std::string& path, const RenderSettings& settings);
 
-// The image at one moment.
+// The error of the image at one moment.
 struct ConvergencePoint {
     uint32_t spp = 0;                // As samples_per_pixel() says.
     double seconds = 0.0;            // Wall time of rendering.
-    std::optional<double> estimate;  // Of its relative error; see relative_error.h.
+    std::optional<double> estimate;  // Of the relative error; see relative_error.h.
     std::optional<double> relmse;    // relative_mse() to the reference, if there is one.
 };
 
@@ -31,14 +31,14 @@ class Convergence {
     // `target`: relative error to reach.
     Convergence(std::optional<double> target, std::optional<Image> reference);
 
-    // The samples per pixel to render to before the next look(), if there are `spp`: the next power of two,
-    // and `most` at most, or at once if neither target nor reference asks for a look. It depends on nothing
-    // else, and never on time: so one rendering always ends with the same samples.
+    // The samples per pixel of the next look(), after `spp`: the next power of two, at most `most`; or `most`
+    // itself if neither target nor reference needs a look. It does not depend on time, so that a rendering
+    // always ends with the same samples.
     uint32_t next(uint32_t spp, uint32_t most) const;
     // Measures the image of the states after `seconds` of rendering.
     void look(std::span<const Accumulation> states, double seconds);
 
-    // The estimate is at most the target.
+    // Whether the last estimate is at most the target.
     bool reached() const;
     // The last estimate; nothing if there is none yet.
     std::optional<double> estimate() const;

@@ -20,7 +20,8 @@ constexpr double LEGEND_LINE = 18;
 constexpr std::array<const char*, 8> COLOURS = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                 "#56b4e9", "#e69f00", "#000000", "#8c6d00"};
 
-// What XML would take for its own, in other words. Control characters, which it cannot hold, become spaces.
+// Escapes the characters that mean something in XML. Control characters, which XML cannot hold, become
+// spaces.
 std::string escape(const std::string& text) {
     std::string escaped;
     for (const char c : text) {
@@ -39,10 +40,10 @@ std::string escape(const std::string& text) {
     return escaped;
 }
 
-// A logarithmic axis: numbers to places in the drawing.
+// A logarithmic axis: maps numbers to places in the drawing.
 class Axis {
   public:
-    // From `least` to `most` (more than 0), widened a little, and to one decade at least, which has three
+    // From `least` to `most` (more than 0), widened slightly, and to at least one decade, which has three
     // numbers to label. The ends lie at `from` and `to`.
     Axis(double least, double most, double from, double to) : from_(from), to_(to) {
         const double margin = std::max(MARGIN, 0.5 - 0.5 * std::log10(most / least));
@@ -53,7 +54,7 @@ class Axis {
     double place(double value) const {
         return from_ + (to_ - from_) * (std::log10(value) - least_) / (most_ - least_);
     }
-    // Numbers to label: 1, 2 and 5 times powers of ten, or, where these are many, the powers alone.
+    // Numbers to label: 1, 2 and 5 times powers of ten, or, if these are many, only the powers.
     std::vector<double> ticks() const {
         const bool many = most_ - least_ > MOST_DECADES;
         std::vector<double> ticks;
@@ -125,7 +126,7 @@ std::string draw_curve(const Curve& curve, const std::string& colour, const Axis
            marks;
 }
 
-// On the lower left, where curves that fall leave room.
+// At the lower left, where falling curves leave room.
 std::string draw_legend(const std::vector<Curve>& curves) {
     std::string svg;
     double y = HEIGHT - BOTTOM - 12 - LEGEND_LINE * double(curves.size() - 1);

@@ -16,9 +16,9 @@ struct Curve {
     std::vector<CurvePoint> points;
 };
 
-// An SVG document that shows each curve as a line with marks, with labelled axes and a legend. There is at
-// least one point. Colours are told apart by the colour-blind, too, and are used again after the eighth
-// curve. Ref: Okabe and Ito, "Color Universal Design" (2008).
+// An SVG document that shows each curve as a line with marks, with labelled axes and a legend. There must be
+// at least one point. The colours are distinct to the colour-blind, too, and repeat after eight curves. Ref:
+// Okabe and Ito, "Color Universal Design" (2008).
 std::string draw_curves(const std::vector<Curve>& curves);
 
 }  // namespace candela

@@ -1,4 +1,4 @@
-// `candela devices`: every Vulkan device, what it offers, and whether it will do.
+// `candela devices`: every Vulkan device, what it offers, and whether candela can use it.
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -66,7 +66,8 @@ void print(const vk::DeviceInfo& info, bool is_default) {
     print_row("maxMemoryAllocationSize", bytes_text(info.limits.max_memory_allocation_size));
 }
 
-// The index of the device that is used by default; none, and the reason in `failure`, if no device will do.
+// The index of the device that is used by default; none, and the reason in `failure`, if no device can be
+// used.
 std::optional<uint32_t> find_default(const std::vector<vk::DeviceInfo>& devices,
                                      std::optional<Error>& failure) {
     try {

@@ -1,4 +1,4 @@
-// `candela info`: what a scene holds and what rendering it will need. No device is touched.
+// `candela info`: what a scene holds and what rendering it will need. Uses no device.
 #include <algorithm>
 #include <cstdio>
 #include <iterator>

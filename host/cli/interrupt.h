@@ -1,4 +1,4 @@
-// Ctrl-C, termination and the end of the terminal, caught so that what is rendered so far can be kept.
+// Catches Ctrl-C, termination and the end of the terminal, so that the image so far can be kept.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 namespace candela {
 
 // While it lives, the first SIGINT, SIGTERM or SIGHUP only sets a flag; a second one ends the program at
-// once. A SIGHUP that was ignored before, as by nohup, stays so. One at a time.
+// once. A SIGHUP that was ignored before, as by nohup, stays ignored. Only one may exist at a time.
 class InterruptGuard {
   public:
     InterruptGuard();

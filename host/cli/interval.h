@@ -7,11 +7,11 @@ namespace candela {
 
 class Interval {
   public:
-    // `seconds`: from the end of a piece of work to the next. The first one begins here.
+    // `seconds`: from the end of a piece of work to the next. The first interval begins here.
     explicit Interval(double seconds) : seconds_(seconds) {}
 
     bool over() const { return std::chrono::steady_clock::now() - start_ >= seconds_; }
-    // Begins the next.
+    // Begins the next interval.
     void restart() { start_ = std::chrono::steady_clock::now(); }
 
   private:

@@ -1,4 +1,5 @@
-// `candela merge`: from parts of one rendering, each of other samples, to the image of all of them.
+// `candela merge`: merges parts of one rendering, each with samples of its own, into the image of all
+// samples.
 #include "film/merge.h"
 
 #include <cstdio>
@@ -22,10 +23,10 @@ namespace {
 struct MergeArguments {
     std::vector<std::string> parts;
     std::optional<SampleRange> missing;
-    RenderOptions options;  // The outputs alone.
+    RenderOptions options;  // Only the outputs.
 };
 
-// Prints the samples that no part holds, a range per line.
+// Prints the samples that no part holds, one range per line.
 ExitCode print_missing(const MergeArguments& arguments) {
     const Missing missing =
         missing_samples({arguments.parts.begin(), arguments.parts.end()}, *arguments.missing);

@@ -52,8 +52,8 @@ std::string samples_text(const RenderRecord& record) {
     return to_text({&held, 1});
 }
 
-// Marks R G B A and Albedo as 16-bit. A channel that 16 bits cannot hold stays as it is, with a warning: the
-// samples are paid for.
+// Marks R G B A and Albedo as 16-bit. A channel that 16 bits cannot hold stays as it is, with a warning: its
+// samples must not be lost.
 void use_half(Image& image) {
     constexpr float LARGEST_HALF = 65504.0f;
     constexpr std::string_view COLOUR_CHANNELS[] = {"R", "G", "B", "A", "Albedo.R", "Albedo.G", "Albedo.B"};
@@ -82,7 +82,7 @@ Json or_null(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
 }
 
-// What --target-error and --reference add to the report.
+// Adds what --target-error and --reference put into the report.
 void add_convergence(Json& report, const RenderRecord& record) {
     if (record.target_error) {
         report["target_error"] = *record.target_error;
@@ -151,7 +151,7 @@ void write_report(const std::string& target, const Json& report) {
     }
 }
 
-// Tries one thing after the other, and in the end throws the last Error; those before are printed.
+// Tries one thing after another; in the end throws the last Error, after the others have been printed.
 class Attempts {
   public:
     void attempt(const std::function<void()>& write) {

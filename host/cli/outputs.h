@@ -29,8 +29,8 @@ struct RenderRecord {
     double load_seconds = 0.0;      // Wall times: reading the scene file ...
     double bvh_seconds = 0.0;       // ... building the BVH ...
     double pipeline_seconds = 0.0;  // ... compiling kernels, an empty first dispatch included ...
-    double render_seconds = 0.0;    // ... and rendering alone, before it was resumed as well.
-    double cpu_seconds = 0.0;       // CPU time of the whole process while rendering; a resumed part alone.
+    double render_seconds = 0.0;    // ... and rendering, including before it was resumed.
+    double cpu_seconds = 0.0;       // CPU time of the process while rendering, since it was resumed.
     bool complete = false;          // All samples are there, or as many as the target error needs.
     uint32_t spp = 0;               // Samples that every pixel holds at least; on average if adaptive.
     uint32_t most_spp = 0;          // And the most that one holds.
@@ -47,25 +47,25 @@ struct RenderRecord {
     size_t validation_messages = 0;
 };
 
-// Throws Error if an output is missing, has an unknown extension (both: usage) or could not be written. To be
-// called before any long work.
+// Throws Error if an output is missing, has an unknown extension (both: usage) or could not be written. Call
+// it before any long work.
 void check_outputs(const ImageOutputs& outputs);
 // Throws Error if the report could not be written.
 void check_report(const std::optional<std::string>& file);
 
-// Gives an image its attributes: of the record the camera, the samples and their time, maker, identity and
+// Adds an image's attributes, from the record: the camera, the samples, their time, maker, identity and
 // command line.
 void add_attributes(Image& image, const RenderRecord& record);
 
-// Writes all images. Where one fails, the others are written all the same; then the Error is thrown.
+// Writes all images. If one fails, still writes the others, and then throws the Error.
 void write_images(const ImageOutputs& outputs, Image image);
 
-// Writes all images, with attributes, in the middle of a rendering. What fails is a warning: the file keeps
-// its old contents.
+// Writes all images, with attributes, during a rendering. A failure is a warning: the file keeps its old
+// contents.
 void write_current_images(const ImageOutputs& outputs, const RenderRecord& record, Image image);
 
-// Writes all images, with attributes, and the report, if there shall be one. Where one fails, the others are
-// written all the same; then the Error is thrown.
+// Writes all images, with attributes, and the report, if a file is given. If one fails, still writes the
+// others, and then throws the Error.
 void write_outputs(const ImageOutputs& outputs, const std::optional<std::string>& report,
                    const RenderRecord& record, Image image);
 

@@ -1,4 +1,4 @@
-// Help, version, dispatch, and what is wrong with a command line.
+// Help, version, dispatch, and the errors of a command line.
 #include "cli/program.h"
 
 #include <string>
@@ -17,7 +17,7 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
     app.name("candela");
     app.description("candela: a physically based path tracer for any Vulkan device, GPU or CPU");
     app.set_version_flag("--version", "candela " CANDELA_VERSION, "Print the version and exit");
-    // Commands take over the column width, but must not take over the footer, which therefore comes last.
+    // Commands inherit the column width, but must not inherit the footer, which is therefore set last.
     app.get_formatter()->column_width(36);
     std::vector<Command> commands{add_render_command(app, command_line),
                                   add_view_command(app, command_line),
@@ -37,7 +37,7 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
     return commands;
 }
 
-// The call as one line that a shell would take: words with odd characters are quoted.
+// The call as one line that a shell would accept: words with special characters are quoted.
 static std::string command_line_text(int argc, const char* const* argv) {
     std::string line;
     for (int i = 0; i < argc; ++i) {
@@ -57,7 +57,7 @@ static std::string command_line_text(int argc, const char* const* argv) {
     return line;
 }
 
-// The command that was asked for, or null.
+// The command that was called, or null.
 static const CLI::App* find_parsed(const CLI::App& app) {
     const auto parsed = app.get_subcommands();
     return parsed.empty() ? nullptr : parsed.front();

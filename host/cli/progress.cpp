@@ -11,8 +11,8 @@
 
 namespace candela {
 
-// A live line is renewed ten times a second, and JSON comes twice; a plain line comes after both a tenth of
-// the work and ten seconds.
+// A live line is renewed ten times per second, JSON is printed twice per second, and a plain line after both
+// a tenth of the work and ten seconds.
 static constexpr double LIVE_SECONDS = 0.1;
 static constexpr double JSON_SECONDS = 0.5;
 static constexpr double PLAIN_SECONDS = 10.0;
@@ -53,7 +53,7 @@ double Progress::seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
-// Whole samples per pixel; the share may be a rounding short of one.
+// Whole samples per pixel; the share may fall short of one by rounding.
 uint32_t Progress::spp_done() const {
     return uint32_t(now_.done * spp_ + 1e-3);
 }

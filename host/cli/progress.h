@@ -1,4 +1,4 @@
-// The progress of a rendering on stderr: a live line on a terminal, now and then a plain line elsewhere, or
+// The progress of a rendering on stderr: a live line on a terminal, plain lines at intervals elsewhere, or
 // lines of JSON for programs.
 #pragma once
 
@@ -13,8 +13,8 @@ namespace candela {
 
 class Progress {
   public:
-    // `pixels` get `spp` samples each, of which the share `done` is there already, unless `time_limit` [s],
-    // if given, is over before. The clock starts here.
+    // `pixels` get `spp` samples each, of which the share `done` exists already, unless `time_limit` [s], if
+    // given, ends the rendering earlier. The clock starts here.
     Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit,
              ProgressStyle style);
     // Clears the live line, if there is one.
@@ -22,18 +22,19 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    // Says that the share `done`, in [0, 1], of all samples is there, and what the error of the image is
-    // estimated to be; prints at most as often as fits the output.
+    // Reports the share `done`, in [0, 1], of all samples and the estimated error of the image; prints no
+    // more often than suits the output.
     void update(double done, std::optional<double> error);
     // Clears the live line, so that others can print.
     void clear();
-    // The last line of JSON, whose "state" says how it ended; to be called when all files are written.
+    // Prints the last line of JSON, whose "state" says how the rendering ended. Call it when all files are
+    // written.
     void end(const std::string& state) const;
     // Wall time since the start [s].
     double seconds() const;
 
   private:
-    // How it stood at an update.
+    // The progress at an update.
     struct Status {
         double done;
         double seconds = 0.0;

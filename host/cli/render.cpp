@@ -38,7 +38,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// What --verbose tells before rendering.
+// Prints what --verbose adds before rendering.
 void print_details(const vk::Device& device, const GpuScene& scene, const RenderRecord& record) {
     const vk::DeviceInfo& info = device.info();
     std::fprintf(stderr, "device: %s (%s), Vulkan %s, driver %s\n", info.name.c_str(),
@@ -62,7 +62,7 @@ Image collect_image(SteadyRenderer& renderer, const AovSelection& aovs, RenderRe
     return image;
 }
 
-// What is looked after while a rendering goes on.
+// What is done at intervals during a rendering.
 struct Upkeep {
     std::optional<CheckpointWriter> checkpoints;
     std::optional<Interval> images;  // From one writing of the outputs to the next.
@@ -82,7 +82,7 @@ void write_checkpoint(SteadyRenderer& renderer, const RenderRecord& record, doub
                               renderer.states());
 }
 
-// Writes a checkpoint and the images if their times have come.
+// Writes a checkpoint and the images if they are due.
 void keep(SteadyRenderer& renderer, const ImageOutputs& outputs, const RenderRecord& record, Upkeep& upkeep) {
     if (upkeep.checkpoints && upkeep.checkpoints->due()) {
         renderer.hold();
@@ -98,8 +98,9 @@ void keep(SteadyRenderer& renderer, const ImageOutputs& outputs, const RenderRec
     }
 }
 
-// Renders until all samples are there, the error is small enough or `keep_going` says no. Returns whether it
-// never did. Stops for a look at the error at fixed numbers of samples, and otherwise only at the end.
+// Renders until all samples are there, the error is small enough or `keep_going` returns false; returns false
+// only in the last case. Looks at the error at fixed numbers of samples or, if nobody needs that, only at the
+// end.
 bool render_and_look(SteadyRenderer& renderer, bool adaptive, uint32_t target, Upkeep& upkeep,
                      const std::function<bool()>& keep_going) {
     Convergence& convergence = upkeep.convergence;
@@ -121,8 +122,8 @@ bool render_and_look(SteadyRenderer& renderer, bool adaptive, uint32_t target, U
     return true;
 }
 
-// Renders, with all that is to be looked after; the record learns what it took. Returns the Error if the
-// device failed for good.
+// Renders, with all upkeep, and records times, counters and errors. Returns the Error if the device failed
+// for good.
 std::optional<Error> trace(SteadyRenderer& renderer, const RenderJob& job, const InterruptGuard& guard,
                            Upkeep& upkeep, RenderRecord& record) {
     const std::clock_t cpu_start = std::clock();
@@ -189,7 +190,7 @@ void warn_of_maker(const Maker& before, const Maker& now) {
                   ": the image is right, but not the same bits as if one had made it all");
 }
 
-// What is left to do once there is an instance.
+// Renders on an instance, and writes the files.
 ExitCode render_on(const vk::Instance& instance, const vk::DeviceInfo& device, const GpuScene& scene,
                    const RenderJob& job, const std::optional<std::string>& report,
                    std::optional<Image> reference, RenderRecord& record) {

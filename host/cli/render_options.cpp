@@ -1,4 +1,4 @@
-// Declares the options of `candela render` and joins them with what the scene file says.
+// Declares the options of `candela render` and combines them with what the scene file says.
 #include "cli/render_options.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ static constexpr const char* DURATIONS = "a duration such as 90, 90s, 1.5m or 2h
 static constexpr const char* SAMPLING_GROUP = "Sampling (defaults: the scene's)";
 
 void RenderOptions::add_to(CLI::App& app) {
-    app.option_defaults()->take_last();  // A script's options can be followed by others that overrule them.
+    app.option_defaults()->take_last();  // Later options override a script's.
     app.add_option("SCENE", scene_file, "Scene file (.json, .obj, .ply)")->required()->type_name("");
     add_output_options(app);
     add_rendering_to(app);

@@ -40,8 +40,8 @@ struct ImageOutputs {
     double exposure = 0.0;                                  // PNG [EV].
     Tonemap tonemap = Tonemap::linear;                      // PNG.
 
-    // The images beside R G B A that will be written: those selected if there is an EXR among the files,
-    // else none.
+    // The images besides R G B A that will be written: those selected if there is an EXR among the files,
+    // otherwise none.
     AovSelection written_aovs() const;
 };
 
@@ -61,7 +61,7 @@ struct MessageOptions {
 struct RenderJob {
     Camera camera;
     RenderSettings settings;
-    uint32_t target = 0;                 // Samples per pixel, if nothing else ends it before.
+    uint32_t target = 0;                 // Samples per pixel, unless an error or a time ends it earlier.
     bool adaptive = false;               // Samples go where the error is.
     std::optional<double> target_error;  // Relative error of the image.
     std::optional<double> time_limit;    // Seconds.
@@ -71,7 +71,7 @@ struct RenderJob {
     MessageOptions messages;
 };
 
-// What stands on the command line; an empty optional leaves the choice to the scene file.
+// The options of the command line; an empty optional leaves the choice to the scene file.
 struct RenderOptions {
     std::string scene_file;
     ImageOutputs images;
@@ -86,7 +86,7 @@ struct RenderOptions {
     std::optional<double> target_error;  // Relative error of the image.
     std::optional<double> time_limit;    // Seconds.
     bool adaptive = false;               // Samples go where the error is.
-    std::optional<SampleRange> samples;  // Instead of spp: these alone.
+    std::optional<SampleRange> samples;  // Only these, instead of spp.
     std::optional<uint32_t> seed;
     std::optional<uint32_t> max_depth;  // DEPTH_SAFETY_LIMIT: unlimited.
     std::optional<uint32_t> rr_depth;
@@ -98,13 +98,13 @@ struct RenderOptions {
     SceneAccess scene_access = SceneAccess::automatic;
     MessageOptions messages;
 
-    // Declares them all on `app`, which fills them in when it parses; this object must stay where it is.
+    // Declares all options on `app`, which fills them in when it parses; this object must not move.
     void add_to(CLI::App& app);
-    // Declares those alone that say what is computed and where: picture, sampling, device.
+    // Declares only those that say what is computed and where: picture, sampling, device.
     void add_rendering_to(CLI::App& app);
-    // Declares those alone that say which images are written, and how: outputs, 16 bits, development.
+    // Declares only those that say which images are written, and how: outputs, 16 bits, development.
     void add_images_to(CLI::App& app);
-    // Declares those alone that say how radiance becomes a picture: exposure and tone map.
+    // Declares only those that say how radiance becomes a picture: exposure and tone map.
     void add_development_to(CLI::App& app);
     // Declares --camera.
     void add_camera_to(CLI::App& app);
@@ -115,7 +115,7 @@ struct RenderOptions {
     // The camera of that name, by default the scene's first. Throws Error (usage) that lists the names if
     // there is none.
     const Camera& choose_camera(const Scene& scene) const;
-    // The renderer's settings for a scene. Throws Error (usage) if the crop reaches beyond the picture.
+    // The renderer's settings for a scene. Throws Error (usage) if the crop exceeds the picture.
     RenderSettings settings(const Scene& scene) const;
 
   private:

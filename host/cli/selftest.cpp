@@ -29,7 +29,7 @@ struct SelftestOptions {
     bool json = false;
 };
 
-// Three digits that say how small a probability is.
+// A probability with three significant digits.
 std::string probability_text(double p) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", p);
@@ -128,7 +128,7 @@ void print_verdict(const std::vector<CheckResult>& results, size_t checks, size_
     std::printf("\n%s, in %s\n", verdict.c_str(), duration_text(seconds).c_str());
 }
 
-// Shows which check is running: on a terminal in a line that goes away; elsewhere only if no table is
+// Shows which check is running: on a terminal in a line that is cleared later; elsewhere only if no table is
 // printed.
 void print_progress(size_t done, const std::vector<Check>& checks, bool json) {
     const bool terminal = stderr_is_terminal();
@@ -165,7 +165,7 @@ ExitCode run_selftest(const std::vector<Check>& checks, Effort effort, const vk:
         if (result.error && result.error->code() == ExitCode::device_lost) lost = result.error;
         results.push_back(result);
     }
-    // Checks that were left out have not passed.
+    // Skipped checks have not passed.
     const auto passed = std::ranges::count(results, true, &CheckResult::passed);
     const size_t failed = checks.size() - size_t(passed);
     if (json) {

@@ -34,7 +34,7 @@ struct ViewArguments {
     std::optional<uint32_t> frames;
     std::vector<std::string> screenshots;
 
-    // Declares them all on `app`; this object must stay where it is.
+    // Declares all options on `app`; this object must not move.
     void add_to(CLI::App& app);
     // Throws Error (usage) for options that do not go together, or if a screenshot could not be written.
     void check() const;
@@ -55,7 +55,7 @@ void ViewArguments::add_to(CLI::App& app) {
     render.add_development_to(app);
     render.add_rendering_to(app);
     render.add_camera_to(app);
-    app.get_option("--crop")->group("");  // Hidden: refused below, with the reason.
+    app.get_option("--crop")->group("");  // Hidden; check() refuses it with the reason.
     app.get_option("--spp")->description("Stop accumulating at this many samples per pixel (default: never)");
 }
 

@@ -24,8 +24,8 @@ static bool is_on(const char* name) {
     return !value.empty() && value != "0";
 }
 
-// Where programs keep what they can make again; nothing if the environment does not tell. The XDG
-// specification has a relative path ignored.
+// Where programs keep what they can make again; nothing if the environment does not say. By the XDG
+// specification, a relative path is ignored.
 static std::optional<std::filesystem::path> cache_home() {
     const std::filesystem::path cache = environment("XDG_CACHE_HOME");
     if (cache.is_absolute()) return cache;
@@ -33,7 +33,7 @@ static std::optional<std::filesystem::path> cache_home() {
     return home.is_absolute() ? std::optional(home / ".cache") : std::nullopt;
 }
 
-// Mesa writes to its cache through memory: where the disk is full, that is the end of the program by SIGBUS.
+// Mesa writes to its cache through mapped memory: on a full disk, SIGBUS ends the program.
 static void keep_drivers_off_full_disks() {
     constexpr uintmax_t ENOUGH = uintmax_t{64} << 20;
     std::filesystem::path folder = environment("MESA_SHADER_CACHE_DIR");
@@ -45,7 +45,7 @@ static void keep_drivers_off_full_disks() {
         ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
 }
 
-// Where drivers find no room for threads and code, they end the program without a word or wait for ever.
+// Drivers that find no room for threads and code end the program silently or hang.
 static void check_address_space() {
     constexpr size_t NEEDED = size_t{768} << 20;
     void* const room = ::mmap(nullptr, NEEDED, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

@@ -1,4 +1,4 @@
-// What commands that use Vulkan share: the environment variables, and the check that nothing was done wrong.
+// What commands that use Vulkan share: the environment variables, and the check of the validation layer.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,12 @@
 
 namespace candela {
 
-// The options of the instance: validation is on if CANDELA_VALIDATION is set to anything but "" or "0". Has
-// the drivers that it will load keep no files of their own where the disk has less than 64 MiB left.
+// The options of the instance: validation is on if CANDELA_VALIDATION is set to anything but "" or "0".
+// Disables the drivers' own caches if the disk has less than 64 MiB left. Throws Error (out_of_memory) if the
+// process has too little address space for drivers.
 vk::Instance::Options instance_options();
 
-// Throws Error if the validation layer has found fault with anything so far.
+// Throws Error if the validation layer has reported anything so far.
 void check_validation(const vk::Instance& instance);
 
 // The folder where compiled kernels are kept: candela in $XDG_CACHE_HOME or ~/.cache. None if there is no
