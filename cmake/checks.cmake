@@ -1,5 +1,5 @@
-# The tests that read the sources, the shaders and the documents. Their label is `check`, and `quick` but for those
-# that take longer; a tool that is not here shows as a skipped test.
+# The tests that read the sources, the shaders and the documents. They are labelled `check`, and `quick` unless they
+# take longer; a test whose tool is not installed is skipped.
 find_program(SPIRV_VAL NAMES spirv-val REQUIRED)
 find_program(SPIRV_CROSS NAMES spirv-cross REQUIRED)
 # Debian's own interpreter first, since the package python3-jsonschema belongs to it.
@@ -21,7 +21,7 @@ set_tests_properties(shaders_alone PROPERTIES LABELS check)
 candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes tests/references tests/bench/scenes)
 candela_check(sky ${PYTHON3} tests/unit/sky_test.py scenes)
 
-# Need a device, unlike the others.
+# These need a device, unlike the others.
 file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/docs/*.md)
 candela_check(readme ${PYTHON3} cmake/checks/readme.py $<TARGET_FILE:candela> README.md ${pages})
 set_tests_properties(readme PROPERTIES LABELS cli RUN_SERIAL TRUE)

@@ -1,7 +1,7 @@
 # The packages that candela is built from (packages.txt says what each is for) and the flags that all targets share.
 find_package(Threads REQUIRED)
 find_package(glm REQUIRED)
-# Debian's Imath names a Python library that is in another package, and wonders about it at length.
+# Debian's Imath names a Python library that is in another package, and reports at length that it is missing.
 set(CMAKE_MESSAGE_LOG_LEVEL NOTICE)
 find_package(OpenEXR 3 REQUIRED)
 unset(CMAKE_MESSAGE_LOG_LEVEL)
@@ -19,8 +19,8 @@ if(CANDELA_VIEW)
     find_library(STB_LIBRARY NAMES stb)
     if(glfw3_FOUND AND IMGUI_INCLUDE_DIR AND IMGUI_LIBRARY AND STB_LIBRARY)
         set(CANDELA_HAS_VIEW TRUE)
-        # Of Debian's library, which holds all backends, the linker takes what is called: not the one for Vulkan, whose
-        # calls of Vulkan's functions volk's variables of the same names would catch.
+        # Debian's library holds all backends, and the linker takes those that are called: not the one for Vulkan, whose
+        # calls of Vulkan's functions would resolve to volk's variables of the same names.
         add_library(imgui INTERFACE)
         target_include_directories(imgui SYSTEM INTERFACE ${IMGUI_INCLUDE_DIR})
         target_link_libraries(imgui INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY})
@@ -33,8 +33,8 @@ find_program(GLSLANG_VALIDATOR NAMES glslangValidator glslang REQUIRED)
 find_path(VOLK_INCLUDE_DIR NAMES volk.c REQUIRED)
 find_path(STB_INCLUDE_DIR NAMES stb_image_write.h PATH_SUFFIXES stb REQUIRED)
 
-# Flags of every target of ours. NaN and infinity are data here: no fast-math anywhere; and the compiler must not
-# fuse multiply and add where the shaders do not, so that CPU references agree with the device bit for bit.
+# Flags of all our targets. NaN and infinity are data here: no fast-math anywhere; and the compiler must not fuse
+# multiply and add where the shaders do not, so that CPU references agree with the device bit for bit.
 add_library(candela_flags INTERFACE)
 target_compile_options(candela_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -ffp-contract=off $<$<BOOL:${CANDELA_WERROR}>:-Werror>)

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Tries candela on two drivers other than the system's, and compares their images with its own:
-#   lavapipe of the Mesa in Debian 12's backports, a compiler that differs much from the stock one's;
+# Tests candela on two drivers other than the system's, and compares their images with those of the system's driver:
+#   lavapipe of the Mesa in Debian 12's backports, whose compiler differs much from the stock one's;
 #   SwiftShader, of Chromium, which shares nothing with Mesa: four lanes, denormal numbers flushed to zero, and texel
 #   buffers of no more than 65 536 elements.
-# Both are unpacked below build/, beside the system's, which stays as it is, and are downloaded once. Needs build/ci (sh
-# cmake/test.sh) on Debian 12; elsewhere it says so and exits with 3. It tells how long each step took, for information.
+# Both are downloaded once and unpacked below build/; the system's driver stays as it is. Needs build/ci (sh
+# cmake/test.sh) and Debian 12; on other systems it says so and exits with 3. Prints how long each step took.
 #
 # usage: sh cmake/other_drivers.sh          all tests that need a device, on both
 #        sh cmake/other_drivers.sh quick    SwiftShader alone, and what a foreign driver breaks first
@@ -27,13 +27,13 @@ if ! grep -qs '^VERSION_CODENAME=bookworm$' /etc/os-release || [ "$(uname -m)" !
 fi
 [ -x "$candela" ] || { echo "There is no $candela; run sh cmake/test.sh first." >&2; exit 1; }
 
-# mirror SUITE: where apt finds it; nothing if it does not know.
+# mirror SUITE: prints where apt finds it; nothing if apt does not know.
 mirror() {
     apt-get indextargets --format '$(REPO_URI)' "Codename: $1" | head -n 1
 }
 
 # unpack SUITE MIRROR NAME...: downloads packages and unpacks them into $folder/root, without installing them. Apt works
-# with lists of its own, so that it needs no root and asks for what the mirror has today.
+# with lists of its own, so that it needs no root and asks for the mirror's current versions.
 unpack() {
     suite=$1
     [ -n "$2" ] || { echo "apt knows no mirror of Debian 12." >&2; exit 1; }
@@ -51,19 +51,20 @@ unpack() {
     done
 }
 
-# describe LIBRARY: a driver, for Vulkan's loader. The packages' own descriptions do not say where the library is now.
+# describe LIBRARY: prints the manifest of a driver, for Vulkan's loader. The packages' own manifests do not say where
+# the library is now.
 describe() {
     echo '{"file_format_version": "1.0.0", "ICD": {"library_path": "'"$1"'", "api_version": "1.2.0"}}'
 }
 
-# on DRIVER COMMAND...: runs it on that driver alone. (Mesa's needs the libdrm beside it, SwiftShader none.)
+# on DRIVER COMMAND...: runs it on only that driver. (Mesa's needs the libdrm beside it, SwiftShader needs none.)
 on() {
     icd=$folder/$1.json
     shift
     env VK_ICD_FILENAMES="$icd" VK_DRIVER_FILES="$icd" LD_LIBRARY_PATH="$mesa" "$@"
 }
 
-# step NAME COMMAND...: runs it, and tells how long it took.
+# step NAME COMMAND...: runs it, and prints how long it took.
 step() {
     echo "== $1"
     begin=$(date +%s)
@@ -73,7 +74,7 @@ step() {
     echo "== $name: $(($(date +%s) - begin)) s"
 }
 
-# tests DRIVER EFFORT CTEST-OPTION...: runs tests, with the validation layer, as they all do.
+# tests DRIVER EFFORT CTEST-OPTION...: runs tests on that driver, with the validation layer.
 tests() {
     driver=$1
     effort=$2
@@ -81,8 +82,8 @@ tests() {
     on "$driver" CANDELA_TEST_EFFORT="$effort" ctest --preset ci --parallel "$(nproc)" "$@"
 }
 
-# compare DRIVER SIZE SCENE...: its images with those of the system's driver. Other seeds, so that the samples of the
-# two are independent and their difference is judged by its noise alone.
+# compare DRIVER SIZE SCENE...: compares its images with those of the system's driver. The seeds differ, so that the
+# samples are independent and the difference is judged only by its noise.
 compare() {
     driver=$1
     options="--size $2 --spp 64 --sampler independent --aov variance --quiet"
@@ -112,8 +113,8 @@ dpkg-deb -W "$packages"/chromium-common_*.deb
 on swiftshader "$candela" devices
 if [ "$extent" = quick ]; then
     step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
-    # Records, exponentials, traversal and identical bits, of the scene that has everything. What the statistics of
-    # pictures tell, the self-test tells in brief.
+    # Records, exponentials, traversal and identical bits, of the scene that has everything. The statistics of pictures
+    # are left to the selftest, which covers them in brief.
     step "SwiftShader: tests" \
         tests swiftshader quick -R '^gpu\.(Records|Exponential|Traversal)Test|IdentityTest.*/Everything'
     step "SwiftShader: images" compare swiftshader 64x48 showcase
@@ -128,6 +129,7 @@ step "Mesa: tests" tests mesa full -L '^(vk|gpu|render)$'
 step "Mesa: images" compare mesa 128x96 $scenes
 # SwiftShader takes 30 to 70 times as long as lavapipe: a sixteenth of the samples, a quarter of the pixels.
 step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
-# Left out: bounds that hold for one number of samples alone; and what they judge, an estimate, is the host's work.
+# Without ConvergenceTest: its bounds hold only for one number of samples, and what they judge, an estimate, is the
+# host's work.
 step "SwiftShader: tests" tests swiftshader quick -L '^(vk|gpu|render)$' -E ConvergenceTest
 step "SwiftShader: images" compare swiftshader 64x48 $scenes

@@ -1,15 +1,15 @@
 # `cmake --install` puts the program into bin, the shared libraries that it brings along into lib, where its run path
-# finds them wherever both are moved to, scenes and integrations into share; `cpack` in the build folder makes an archive
-# of that.
+# finds them wherever both are moved, and scenes and integrations into share; `cpack` in the build folder makes an
+# archive of that.
 #
 # Configure with -DCANDELA_VIEW=OFF for that: the libraries of the window system must be the system's own.
 #
-# What every system with a Vulkan driver has stays out: glibc and the run-time library of C++, of which a process should
-# have one, and drivers bring theirs.
+# Left out are the libraries that every system with a Vulkan driver has: glibc and the C++ run-time library. A process
+# should have only one of each, and drivers need the system's.
 include(GNUInstallDirs)
 
 set_target_properties(candela PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-# The old kind of run path, which also serves the libraries that those libraries need.
+# The old kind of run path, which also applies to the libraries that those libraries need.
 target_link_options(candela PRIVATE LINKER:--disable-new-dtags)
 install(TARGETS candela RUNTIME_DEPENDENCY_SET candela_libraries)
 install(RUNTIME_DEPENDENCY_SET candela_libraries

@@ -1,21 +1,21 @@
-# Sourced by demo.sh and test.sh: installs the packages of packages.txt that are missing, through apt, as root or
-# through sudo. Does nothing, and needs no network, when nothing is missing.
+# Sourced by demo.sh and test.sh: installs the missing packages of packages.txt with apt, as root or with sudo. Does
+# nothing, and needs no network, if none is missing.
 
-# packages WHEN...: the names of packages.txt that are for one of these uses.
+# packages WHEN...: prints the names in packages.txt that are for one of these uses.
 packages() {
     grep -v '^#' cmake/packages.txt | while read -r name when purpose; do
         case " $* " in *" $when "*) echo "$name" ;; esac
     done
 }
 
-# list_packages NAME...: each on a line with what it is for.
+# list_packages NAME...: prints each on a line with what it is for.
 list_packages() {
     grep -v '^#' cmake/packages.txt | while read -r name when purpose; do
         case " $* " in *" $name "*) printf '  %-24s  %s\n' "$name" "$purpose" ;; esac
     done
 }
 
-# missing NAME...: those that are not installed. Of the optional ones, only those that apt can install.
+# missing NAME...: prints those that are not installed. Of the optional ones, only those that apt can install.
 missing() {
     for name in "$@"; do
         status=$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) || status=absent
@@ -40,7 +40,7 @@ give_up() {
     exit 1
 }
 
-# install_packages WHEN...: installs what is missing of these uses.
+# install_packages WHEN...: installs the missing packages for these uses.
 install_packages() {
     wanted=$(echo $(packages "$@"))
     command -v apt-get >/dev/null || give_up "This system has no apt-get." $wanted
@@ -51,7 +51,7 @@ install_packages() {
     fi
     echo "Updating apt's lists of packages"
     as_root apt-get update -qq
-    # Once more: before the update, a fresh system knew no optional package.
+    # Again: before the update, a fresh system knew no optional package.
     absent=$(echo $(missing $wanted))
     echo "Installing these packages, and what they depend on:"
     list_packages $absent

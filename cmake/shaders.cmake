@@ -1,5 +1,5 @@
-# candela_add_kernels(TARGET KERNEL.comp.glsl...) compiles kernels to SPIR-V with glslang, exact dependencies
-# included, and adds to TARGET one generated source per kernel that holds the words; headers of ours declare them.
+# candela_add_kernels(TARGET KERNEL.comp.glsl...) compiles kernels to SPIR-V with glslang, with exact dependencies, and
+# adds to TARGET one generated source per kernel that holds the words; our headers declare them.
 function(candela_add_kernels target)
     foreach(source IN LISTS ARGN)
         get_filename_component(path ${source} ABSOLUTE)
@@ -23,8 +23,8 @@ function(candela_add_kernels target)
     endforeach()
 endfunction()
 
-# candela_embed_files(TARGET FILE...) adds to TARGET one generated source per file that holds its bytes; NAME.EXT is
-# candela::embedded::NAME_EXT, which a header of ours must declare.
+# candela_embed_files(TARGET FILE...) adds to TARGET one generated source per file that holds its bytes; NAME.EXT
+# becomes candela::embedded::NAME_EXT, which one of our headers must declare.
 function(candela_embed_files target)
     foreach(file IN LISTS ARGN)
         get_filename_component(name ${file} NAME)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs what is missing, builds candela with warnings as errors, and runs all tests and checks, but for the slow ones,
+# Installs what is missing, builds candela with warnings as errors, and runs all tests and checks except the slow ones,
 # on the Vulkan device that it finds.   usage: sh cmake/test.sh
 set -eu
 cd "$(dirname "$0")/.."

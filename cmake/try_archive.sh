@@ -1,14 +1,14 @@
 #!/bin/sh
-# Makes the portable archive and renders from it in a root folder that holds nothing else but glibc, the C++ run-time
-# library and lavapipe; says which versions of the first two it asks for, and refuses newer ones than Debian 12 has.
-# Takes a build with the preset `release`, and root.   usage: sh cmake/try_archive.sh
+# Makes the portable archive and renders from it in a root folder that holds nothing but glibc, the C++ run-time
+# library and lavapipe; prints which versions of the first two it needs, and fails if they are newer than Debian 12's.
+# Needs a build with the preset `release`, and root.   usage: sh cmake/try_archive.sh
 set -eu
 cd "$(dirname "$0")/.."
 
 GLIBC=2.36
 GLIBCXX=3.4.30  # GCC 12
 
-# The archive has no `candela view`: its window takes the system's own libraries, which cannot be brought along.
+# The archive has no `candela view`: its window needs the system's own libraries, which no archive can bring along.
 build=build/release
 if ldd "$build/candela" | grep -q libglfw; then
     build=build/archive
@@ -25,7 +25,7 @@ mkdir -p "$root/opt" "$root/tmp" "$root/proc"
 tar -C "$root/opt" -xzf "$archive"
 home=$(cd "$root" && ls -d opt/candela-*)
 
-# newest NAME: the highest version NAME_... that the program and its libraries ask for.
+# newest NAME: prints the highest version NAME_... that the program and its libraries need.
 newest() {
     objdump -T "$root/$home/bin/candela" "$root/$home"/lib/lib*.so* |
         grep -o "[( ]$1_[0-9.]*" | sed "s/.*_//" | sort -uV | tail -n 1

@@ -7,7 +7,7 @@ import re
 import sys
 from pathlib import Path
 
-# Folder -> folders (or single headers) that its files may include, itself always.
+# Folder -> folders (or single headers) that its files may include besides itself.
 MAY_INCLUDE = {
     "host/base": [],
     "host/scene": ["host/base"],
@@ -45,7 +45,7 @@ MAY_INCLUDE = {
 KERNEL_FOLDERS = ("shaders/kernels", "shaders/probes")
 DECLARE_BUFFERS = ("shaders/scene/scene_data.glsl", "shaders/probes/items.glsl")
 
-# Library -> what its includes look like, and the folders that may see it, even through other files.
+# Library -> what its includes look like, and the folders that may see it, directly or through other files.
 LIBRARIES = {
     "GLM": (r"glm/", ["host/base", "host/scene", "host/load", "host/load/json", "host/load/obj", "host/load/ply",
                       "host/bvh", "host/gpu_scene", "host/film", "host/render", "host/probe", "host/selftest",

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Translates every kernel into Metal's language, as MoltenVK does on macOS: once with texel buffers of Metal's own, once
-with those that a texture stands in for. Nothing here compiles what comes out.
+"""Translates every kernel into Metal's language, as MoltenVK does on macOS: once with Metal's own texel buffers, once
+with textures in their place. Nothing here compiles the result.
 
 usage: metal.py SPIRV_CROSS KERNEL.spv...      Prints what the translator says; exits 1 if it says anything.
 """
@@ -13,7 +13,7 @@ FORMS = {"native": ["--msl-texture-buffer-native"], "emulated": []}
 
 
 def complaint(translator, kernel, options):
-    """What the translator says of a kernel; empty if it is content."""
+    """What the translator says about a kernel; empty if it accepts it."""
     result = subprocess.run([translator, *LANGUAGE, *options, kernel], capture_output=True, text=True, check=False)
     said = result.stderr.strip()
     return said or ("" if result.returncode == 0 and result.stdout else f"exits with {result.returncode}, prints nothing")

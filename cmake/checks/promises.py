@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sees that each test which a document names is there: docs/files.md promises nothing without one.
+"""Checks that each test which a document names exists: docs/files.md promises nothing without a test.
 
 usage: promises.py DOCUMENT ROOT      Prints the names that no test has; exits 1 if there are any.
 """

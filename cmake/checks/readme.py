@@ -2,8 +2,8 @@
 """Runs the commands of README.md and of the pages in docs/ as a reader would. Each page has a folder of its own, empty
 but for links to the scenes, the tests and the program, as if it were the root of the repository; the page's commands
 run there in order. Every ```sh block counts, so a command of an unknown kind is an error; other blocks are not run.
-Scripts (sh, python3) must only exist, and cmake and ctest are left to the stages that run them: this check is a part of
-what they do. What would take minutes is cut short: a rendering takes 64 samples per pixel at most, a benchmark runs
+Scripts (sh, python3) only have to exist, and cmake and ctest are left to the stages that run them: this check is part
+of what they do. What would take minutes is cut short: a rendering takes 64 samples per pixel at most, a benchmark runs
 once at the smallest sizes, the commands in the captions of pictures take a single sample, and the selftest, which has a
 test of its own, shows its help.
 
@@ -24,7 +24,7 @@ BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 SPP = re.compile(r"--spp (\d+)")
 MOST_SPP = 64
 SHORTER = {"bench": " --runs 1 --spp 1 --triangles 72 --rays 64", "selftest": " --help"}  # What is added to a command.
-WRITES = ("-o", "--output", "--heatmap", "--report")  # Options whose value is a file that must be there then.
+WRITES = ("-o", "--output", "--heatmap", "--report")  # Options whose value is a file that must exist afterwards.
 
 
 def commands(text):
@@ -42,7 +42,7 @@ def caption_commands(text):
 
 
 def subcommand(command):
-    """What a command asks of candela, such as "render"; an empty string if it calls another program."""
+    """The subcommand of candela that a command runs, such as "render"; an empty string if it runs another program."""
     words = shlex.split(command, comments=True)
     return words[1] if Path(words[0]).name == "candela" and len(words) > 1 else ""
 

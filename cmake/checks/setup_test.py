@@ -21,7 +21,7 @@ STUBS = {
 
 
 def install(absent="", unknown="", user_id=0, without=()):
-    """Runs install_packages where those packages are not installed, those unknown to apt, and commands absent."""
+    """Runs install_packages where packages are `absent`, or `unknown` to apt, and `without` some commands."""
     with tempfile.TemporaryDirectory() as path:
         for name, body in STUBS.items():
             if name not in without:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Compiles every file of the shader library alone: it must include what it uses, and compile without a warning.
-Probes are kernels, with what they share: not of the library.
+Probes are kernels: they, and what they share, are not part of the library.
 
 usage: shaders_alone.py GLSLANG ROOT      Prints what the compiler says; exits 1 if it says anything.
 """
@@ -17,7 +17,7 @@ void main() {{}}
 
 
 def complaint(glslang, shaders, name):
-    """What the compiler says of a kernel that includes that file and nothing else; empty if it is content."""
+    """What the compiler says about a kernel that includes that file and nothing else; empty if it accepts it."""
     command = [glslang, "--quiet", "--stdin", "-S", "comp", "--target-env", "vulkan1.2", f"-I{shaders}", "-o", "/dev/null"]
     result = subprocess.run(command, input=KERNEL.format(name=name), capture_output=True, text=True, check=False)
     said = (result.stdout + result.stderr).strip()

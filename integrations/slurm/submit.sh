@@ -1,6 +1,6 @@
 #!/bin/bash
-# Renders a scene on a cluster that Slurm runs: an array of tasks, each of other samples, and a job that merges their
-# images. The same command again submits what is missing, from the checkpoints of tasks that did not end, and the merge.
+# Renders a scene on a Slurm cluster: an array of tasks, each with samples of its own, and a job that merges their
+# images. The same command again submits what is missing, from the checkpoints of unfinished tasks, and the merge.
 #
 #   usage: submit.sh [OPTIONS] SCENE --spp N -o IMAGE [-o IMAGE...] [OPTIONS of candela render]
 #
@@ -10,7 +10,7 @@
 #   --speed S       CANDELA_SPEED       samples per pixel that a node renders in a minute; else measured here, for 5 s
 #   --folder F      CANDELA_FOLDER      where parts, checkpoints, reports and logs go (IMAGE.parts); all nodes must see it
 #                   CANDELA             the program (candela)
-# All else is for Slurm in Slurm's own variables, such as SBATCH_PARTITION, SBATCH_ACCOUNT and SBATCH_GRES.
+# Everything else is set by Slurm's own variables, such as SBATCH_PARTITION, SBATCH_ACCOUNT and SBATCH_GRES.
 set -euo pipefail
 scripts=$(cd "$(dirname "$0")" && pwd)
 candela=${CANDELA:-candela}
@@ -92,7 +92,7 @@ tasks=$(((spp + part - 1) / part))
 most=$(scontrol show config | sed -n 's/^MaxArraySize *= *//p')
 [ "$tasks" -lt "$most" ] || fail "$tasks tasks of $part sample(s) are more than Slurm takes, $((most - 1)); give a longer --task-time or a larger --part"
 
-# The tasks whose samples no part holds yet, as Slurm lists them.
+# The tasks whose samples no part holds yet, in Slurm's notation.
 parts=("$folder"/part-*.exr)
 if [ -e "${parts[0]}" ]; then
     missing=$("$candela" merge --missing "0..$spp" "${parts[@]}")
