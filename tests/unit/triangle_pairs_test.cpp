@@ -73,7 +73,7 @@ TEST(TrianglePairs, SquaresArePairedWhereverTheirTrianglesStand) {
     EXPECT_LT(pairs.size(), 440u);
 }
 
-TEST(TrianglePairs, TheSmallestBoxWins) {
+TEST(TrianglePairs, TheLargestSavingWins) {
     // Triangle 0 touches 1 and 2; with 2 it is a unit square.
     const TriangleMesh mesh{
         .positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(1, 1, 0), vec3(2, -1, 0), vec3(0, 1, 0)},
