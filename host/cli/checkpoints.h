@@ -17,8 +17,9 @@ namespace candela {
 void check_checkpoint(const CheckpointOptions& options);
 
 // The checkpoint that --resume continues from. If the file does not exist yet, says so on stderr and returns
-// nothing. Throws Error if it is damaged, belongs to another rendering than `identity` or the job, is adaptive
-// where the job is not or the other way round, or holds more samples per pixel than the job's target.
+// nothing. Throws Error if it is damaged, belongs to another rendering than `identity` or the job, is
+// adaptive where the job is not or the other way round, or holds more samples per pixel than the job's
+// target.
 std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& identity);
 
 // Writes checkpoints, the first after one interval. A failed write is a warning: the rendering continues, the
