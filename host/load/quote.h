@@ -1,4 +1,4 @@
-// Words of a file in messages.
+// Quotes the words of a file in messages.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Words and numbers, without regard to the locale.
+// Words and numbers, whatever the locale.
 #include "load/text_lines.h"
 
 #include <charconv>

@@ -13,7 +13,7 @@ namespace candela {
 // Throws Error if `text`, the contents of `file`, begins with a byte order mark.
 void refuse_byte_order_mark(std::string_view text, const std::string& file);
 
-// Cuts the next word off `line`; empty at its end. Words are separated by spaces and tabs.
+// Cuts the next word off `line` and returns it; empty at its end. Words are separated by spaces and tabs.
 std::string_view next_word(std::string_view& line);
 
 // `text` without the spaces and tabs at its ends.
@@ -22,16 +22,17 @@ std::string_view trimmed(std::string_view text);
 // The decimal number that is the whole of `word`; none if it is something else. May be infinite or NaN.
 std::optional<double> parse_number(std::string_view word);
 
-// The number that is the whole of `word`, if a float can hold it; none for NaN, too.
+// The same, if a float can hold it; none for NaN, too.
 std::optional<double> parse_finite(std::string_view word);
 
 // "a, b, c", cut off after 20.
 std::string joined(const std::vector<std::string>& names);
 
-// Cuts the next line off `text`, with its end, which is \n, \r\n or \r. `text` is not empty.
+// Cuts the next line and its end, which is \n, \r\n or \r, off `text`, which is not empty. Returns the line
+// without its end.
 std::string_view next_line(std::string_view& text);
 
-// Calls visit(line number, first word, rest) for each line, the empty ones included.
+// Calls visit(line number, first word, rest) for each line, including empty ones.
 template <class Visit>
 void for_each_line(std::string_view text, Visit visit) {
     for (uint64_t number = 1; !text.empty(); ++number) {

@@ -10,7 +10,7 @@ namespace candela {
 void add_default_view(Scene& scene) {
     const Box box = bounds(scene);
     const vec3 center = box.is_empty() ? vec3(0.0f) : box.centroid();
-    // Of the sphere around the box [m]; some length where there is nothing to see.
+    // Radius of the sphere around the box [m]; any length where there is nothing to see.
     const float radius = box.is_empty() || box.extent() == vec3(0.0f) ? 1.0f : 0.5f * length(box.extent());
     const vec3 towards_viewer = normalize(vec3(0.5f, 0.4f, 1.0f));
     Camera camera;

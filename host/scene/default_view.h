@@ -6,7 +6,7 @@
 namespace candela {
 
 // Adds what a file without cameras or lights lacks: a camera, named "default", that looks at all shapes from
-// the front, a little from the right and from above; and, where nothing emits, an even sky of radiance 1.
+// the front, slightly from the right and from above; and, where nothing emits, a constant sky of radiance 1.
 void add_default_view(Scene& scene);
 
 }  // namespace candela

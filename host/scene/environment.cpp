@@ -1,4 +1,4 @@
-// Checks what an image says before it lights a scene.
+// Checks an image before it lights a scene.
 #include "scene/environment.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ RgbPlanes find_colours(const Image& image, const std::string& file) {
                 "; write it with one of these");
 }
 
-// Negative or not finite, in any channel; then the other channels are not to be trusted either.
+// Whether any channel is negative or not finite; then the others cannot be trusted either.
 bool is_unusable(vec3 radiance) {
     for (int c = 0; c < 3; ++c) {
         if (!std::isfinite(radiance[c]) || radiance[c] < 0.0f) return true;

@@ -1,4 +1,4 @@
-// The light from infinitely far away, from an image file.
+// Light from infinitely far away, from an image file.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,10 @@ namespace candela {
 
 // Loads a latitude-longitude map from an OpenEXR or Radiance file (.exr, .hdr, .pic): the channels R, G and B
 // as radiance [W/(m^2 sr)] in linear Rec.709, or Y for all three where they are missing; other channels are
-// ignored. Rotation and visibility stay at their defaults. A texel of which a channel is negative or not
-// finite is black. That, a shape other than 2:1 and an image without any light are told in `warnings`, each
-// text beginning with the file's name. Throws Error if the file cannot be read, lacks these channels, is a
-// crop of a larger picture or has more than 2^26 texels.
+// ignored. Rotation and visibility stay at their defaults. A texel with a channel that is negative or not
+// finite becomes black. For such texels, a shape other than 2:1 and an image without any light, appends a
+// text to `warnings` that begins with the file's name. Throws Error if the file cannot be read, lacks these
+// channels, is a crop of a larger picture or has more than 2^26 texels.
 Environment load_environment(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace candela

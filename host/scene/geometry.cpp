@@ -1,4 +1,4 @@
-// Sums over the shapes of a scene.
+// Bounds and counts over the shapes of a scene.
 #include "scene/geometry.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ void extend(Box& box, const Scene&, const Sphere& sphere) {
     box.extend(sphere.center + sphere.radius);
 }
 
-// Along an axis, x e1 + y e2 is greatest where (x, y) is parallel to the axis' components of e1 and e2.
+// Along an axis, x e1 + y e2 is greatest where (x, y) is parallel to the components of e1 and e2 along it.
 void extend(Box& box, const Scene&, const Disk& disk) {
     vec3 reach;
     for (glm::length_t axis = 0; axis < 3; ++axis)

@@ -1,4 +1,4 @@
-// The treatment of meshes, in double precision where it decides something.
+// Operations on meshes, in double precision where a decision depends on it.
 #include "scene/mesh.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ glm::dvec3 scaled_normal(const TriangleMesh& mesh, uvec3 triangle) {
                  glm::dvec3(mesh.positions[triangle.z]) - origin);
 }
 
-// For each vertex, the first vertex in the order of sorting that has the same position.
+// For each vertex, the one of least index that has the same position.
 std::vector<uint32_t> representatives(const std::vector<vec3>& positions) {
     std::vector<uint32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -48,7 +48,7 @@ double angle_between(glm::dvec3 a, glm::dvec3 b) {
 uint32_t append_vertex(TriangleMesh& mesh, const TriangleMesh& source, uint32_t index) {
     const auto append = [&](auto array) {
         if ((source.*array).empty()) return;
-        const auto element = (source.*array)[index];  // A copy, for the case of a single mesh.
+        const auto element = (source.*array)[index];  // A copy, since both may be one mesh.
         (mesh.*array).push_back(element);
     };
     std::apply([&](auto... arrays) { (append(arrays), ...); }, VERTEX_ARRAYS);
@@ -117,7 +117,7 @@ void smooth_normals(TriangleMesh& mesh) {
     }
     mesh.normals.resize(mesh.positions.size());
     for (size_t i = 0; i < first.size(); ++i) {
-        constexpr double CANCELLED = 1e-9;  // Radians; rounding leaves less than that.
+        constexpr double CANCELLED = 1e-9;  // [rad]; rounding leaves less than this.
         const glm::dvec3 sum = sums[first[i]];
         mesh.normals[i] = length(sum) > CANCELLED ? vec3(normalize(sum)) : vec3(0.0f);
     }

@@ -12,12 +12,12 @@ namespace candela {
 
 // Where the shading normals of a mesh from a file come from.
 enum class MeshNormals {
-    file,    // As the file says, flat where it says nothing.
-    smooth,  // Averages, as smooth_normals() says.
+    file,    // From the file; flat where it has none.
+    smooth,  // Averages, by smooth_normals().
     flat,
 };
 
-// The arrays of a mesh that have an element per vertex, or none.
+// The arrays of a mesh that have one element per vertex, or are empty.
 inline constexpr auto VERTEX_ARRAYS =
     std::tuple(&TriangleMesh::positions, &TriangleMesh::normals, &TriangleMesh::tangents, &TriangleMesh::uv0,
                &TriangleMesh::uv1, &TriangleMesh::colors);
@@ -27,9 +27,9 @@ inline constexpr auto VERTEX_ARRAYS =
 uint32_t append_vertex(TriangleMesh& mesh, const TriangleMesh& source, uint32_t index);
 
 // Gives a mesh its positions [m], which floats can hold, and its origin: the middle of their bounds,
-// truncated to a multiple of a power of two that is greater than the mesh. So a coordinate that is a float
-// loses nothing, any other is rounded to a part of the mesh's size, however far from 0 it lies, and a mesh
-// around 0 has its origin there.
+// truncated to a multiple of the least power of two that is greater than the mesh. So a coordinate that is a
+// float is kept exactly, any other is off by a small fraction of the mesh's size, however far from 0 it lies,
+// and a mesh around 0 has its origin there.
 void set_positions(TriangleMesh& mesh, std::vector<glm::dvec3> positions);
 
 // Adds the triangles of a polygon with at least 3 corners, given as indices of vertices; see polygon.h.
@@ -41,8 +41,8 @@ Box local_bounds(const TriangleMesh& mesh);
 // Removes the triangles whose corners lie on a line or point. Returns how many there were.
 size_t drop_flat_triangles(TriangleMesh& mesh);
 
-// Replaces the normals by unit averages of those of the triangles around each position, weighted by the angle
-// there. Vertices at equal positions share one normal. It is zero where the triangles cancel each other.
+// Replaces the normals by unit averages of those of the triangles around each position, weighted by their
+// angles there. Vertices at equal positions share one normal, which is zero where the average cancels.
 // Ref: Thuermer, Wuethrich, "Computing Vertex Normals from Polygonal Facets" (1998).
 void smooth_normals(TriangleMesh& mesh);
 
@@ -56,7 +56,7 @@ std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh, std::span<const u
                                      size_t count);
 
 // The mesh in world space: its origin is 0, its positions are rounded to floats, its normals and tangents
-// have unit length. Triangles that the rounding made flat are still there.
+// have unit length. Triangles that rounding makes flat remain.
 TriangleMesh placed(const TriangleMesh& mesh, const Transform& transform);
 
 }  // namespace candela

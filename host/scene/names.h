@@ -1,4 +1,4 @@
-// The names of the settings that are chosen by name, in scene files, on the command line and in reports.
+// The names of settings in scene files, on the command line and in reports.
 #pragma once
 
 #include <algorithm>

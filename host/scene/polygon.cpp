@@ -7,8 +7,8 @@
 namespace candela {
 namespace {
 
-// The corners in the coordinate plane in which the polygon looks largest, turned so that it runs
-// counter-clockwise.
+// The corners projected onto the coordinate plane where the polygon is largest, mirrored if need be so that
+// it runs counter-clockwise.
 std::vector<glm::dvec2> flatten(std::span<const vec3> corners) {
     const glm::dvec3 origin(corners[0]);
     glm::dvec3 normal(0.0);  // Newell's: twice the areas of the three projections.
@@ -32,8 +32,8 @@ double area(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// True if the corner `here` of the remaining polygon sticks out and no other corner lies in the triangle that
-// it spans with its neighbours.
+// Whether the corner ear.y of the remaining polygon is convex and no other corner lies in the triangle `ear`
+// that it spans with its neighbours.
 bool is_ear(const std::vector<glm::dvec2>& points, const std::vector<uint32_t>& remaining, uvec3 ear) {
     const glm::dvec2 a = points[ear.x];
     const glm::dvec2 b = points[ear.y];

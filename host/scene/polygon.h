@@ -8,7 +8,7 @@
 
 namespace candela {
 
-// How many corners the polygons of a file may have: cutting one takes up to cubic time.
+// The most corners that a polygon of a file may have: cutting one takes up to cubic time.
 inline constexpr size_t MOST_CORNERS = 1024;
 
 // Cuts a polygon of n >= 3 corners, convex or concave, nearly planar, into n - 2 triangles of the same

@@ -16,7 +16,7 @@ namespace candela {
 // A thin lens. Its aperture is a disk, or a regular polygon whose corners lie on the disk's rim.
 struct Lens {
     float radius = 0.0f;          // Of the aperture [m]; 0: a pinhole, everything is sharp.
-    float focal_distance = 1.0f;  // From the lens to the plane that is sharp, along the view [m]; above 0.
+    float focal_distance = 1.0f;  // From the lens to the plane in focus, along the view [m]; above 0.
     uint32_t blades = 0;          // Corners of the polygon, 3 .. MAX_BLADES; 0: a disk.
     float rotation = 0.0f;        // Of the polygon [rad]: its first corner, from the right towards up.
 
@@ -24,7 +24,7 @@ struct Lens {
 };
 inline constexpr uint32_t MAX_BLADES = 64;
 
-// A perspective camera. Right is cross(forward, up); square pixels.
+// A perspective camera. Right is cross(forward, up); pixels are square.
 struct Camera {
     std::string name;
     vec3 position{0};
@@ -66,7 +66,7 @@ struct DiffuseMaterial {
 };
 
 // A diffuse base under a glossy lobe around the mirrored direction: modified Phong. diffuse + specular is at
-// most 1 in each channel, so that no light is made.
+// most 1 in each channel, so that it creates no energy.
 struct PhongMaterial {
     vec3 diffuse{0};        // kd.
     vec3 specular{0};       // ks.
@@ -86,12 +86,12 @@ struct ConductorMaterial {
 };
 inline constexpr float MIN_ALPHA = 1e-3f;
 
-// A thin sheet that scatters light diffusely to both sides. In each channel, the two add up to at most 1, so
-// that no light is made.
+// A thin sheet that scatters light diffusely to both sides. reflectance + transmittance is at most 1 in each
+// channel, so that it creates no energy.
 struct DiffuseTransmissionMaterial {
-    vec3 reflectance{0.5f};          // On the side from which light comes.
-    vec3 transmittance{0.5f};        // On the other.
-    std::optional<Medium> inside{};  // Behind the surface; none: the same as before it.
+    vec3 reflectance{0.5f};          // On the side that light comes from.
+    vec3 transmittance{0.5f};        // On the other side.
+    std::optional<Medium> inside{};  // Behind the surface; none: the same as in front of it.
 };
 
 enum class Fresnel { schlick, exact };
@@ -100,7 +100,7 @@ enum class Fresnel { schlick, exact };
 // be closed and must not overlap each other.
 struct DielectricMaterial {
     float ior = 1.5f;           // Index of refraction behind the surface; above 0 ...
-    float exterior_ior = 1.0f;  // ... and before it.
+    float exterior_ior = 1.0f;  // ... and in front of it.
     Fresnel fresnel = Fresnel::schlick;
     Medium inside{};  // Behind the surface.
 };
@@ -112,14 +112,14 @@ struct Material {
         model;
 };
 
-// Radiance that a surface sends out [W/(m^2 sr)], from its front side (counter-clockwise) or from both.
+// Radiance that a surface emits [W/(m^2 sr)], from its front side (counter-clockwise) or from both.
 struct Emission {
     vec3 radiance{0};  // Each >= 0 and finite.
     bool two_sided = false;
 };
 
-// Triangles over shared vertices, counter-clockwise seen from the front, in a space of their own. An
-// attribute of the vertices is empty or has one element per position.
+// Triangles over shared vertices, counter-clockwise seen from the front, in a space of their own. The array
+// of an attribute is empty or has one element per position.
 struct TriangleMesh {
     glm::dvec3 origin{0};            // Of the positions; see set_positions() in mesh.h.
     std::vector<vec3> positions{};   // Relative to the origin.
@@ -131,13 +131,13 @@ struct TriangleMesh {
     std::vector<uvec3> triangles{};  // Indices of vertices.
 };
 
-// A mesh of the scene that is placed in the world.
+// A mesh of the scene, placed in the world.
 struct MeshInstance {
     uint32_t mesh = 0;      // Index into Scene::meshes.
     Transform transform{};  // From the mesh's space to the world's.
 };
 
-// A planar quadrilateral with counter-clockwise corners; convex.
+// A planar, convex quadrilateral with counter-clockwise corners.
 struct Quad {
     vec3 corners[4];
 };
@@ -180,7 +180,7 @@ struct Scene {
     std::vector<TriangleMesh> meshes;
     std::vector<Shape> shapes;
     std::optional<Environment> environment;    // None: black.
-    std::vector<std::filesystem::path> files;  // That the scene file names: meshes, materials, images.
+    std::vector<std::filesystem::path> files;  // Read besides a JSON scene file: meshes, materials, images.
     std::vector<std::string> warnings;         // What the loader found odd but usable, each with its place.
 };
 

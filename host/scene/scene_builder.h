@@ -1,4 +1,4 @@
-// What finishes the shapes that a loader of any format brings, and puts them into a scene.
+// Finishes the shapes that a loader of any format brings, and adds them to a scene.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace candela {
 
-// What a shape is apart from its geometry.
+// What a shape has besides its geometry.
 struct Appearance {
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
@@ -42,26 +42,26 @@ class SceneBuilder {
         scene_.warnings.push_back(place + ": " + warning);
     }
 
-    // Adds a finished geometry, which is in world space.
+    // Adds a finished geometry in world space.
     template <class Geometry>
     void add(const Appearance& appearance, Geometry&& geometry) {
         scene_.shapes.push_back({std::forward<Geometry>(geometry), appearance.material, appearance.emission});
     }
-    // Adds a mesh, given in parts, and an instance of it. Leaves out flat triangles with a warning; throws
-    // Error if no other is left in any part, or if the mesh reaches too far.
+    // Adds the parts of a mesh, each as a mesh with one instance. Completes their normals, and leaves out
+    // flat triangles with a warning. Throws Error if there are no others, or if the mesh reaches too far.
     void add_mesh(const std::string& place, const Transform& transform, std::vector<MeshPart> parts);
     // Adds a mesh of one part.
     void add_mesh(const std::string& place, const Appearance& appearance, const Transform& transform,
                   TriangleMesh mesh);
 
-    // Materials that files bring along: `name` is the file's and the material's, as `pot.obj/clay`. In the
-    // scene a material is called so, or similarly if another has that name. `find` returns null for one that
+    // Materials that come from files: `name` joins those of file and material, as in `pot.obj/clay`. The
+    // scene's material gets this name, or a similar one if it is taken. `find` returns null for a name that
     // was not added.
     const Appearance* find_file_appearance(const std::string& name) const;
     void add_file_appearance(const std::string& name, const decltype(Material::model)& model,
                              const std::optional<Emission>& emission);
 
-    // Index of the material of emitters that reflect nothing.
+    // Index of the black material, for emitters that reflect nothing.
     uint32_t black();
 
   private:

@@ -12,7 +12,7 @@ bool Transform::append(const glm::dmat4& step) {
     cofactor_ = {cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])};
     const double volume = dot(m[0], cofactor_[0]);
     mirrors_ = volume < 0.0;
-    // False for NaN as well.
+    // Also false for NaN.
     return std::abs(volume) > FLAT * length(m[0]) * length(m[1]) * length(m[2]) && std::isfinite(volume);
 }
 
@@ -26,11 +26,11 @@ vec3 Transform::normal(vec3 n) const {
 
 std::optional<double> Transform::uniform_scale() const {
     // A matrix whose numbers were written to six decimals of the largest, M + E with |E_ij| <= 5e-7, has
-    // products off by at most 2 * 5e-7 * sqrt(3): |column|_1 <= sqrt(3) |column|. Some of them in a chain may
-    // add up.
+    // products off by at most 2 * 5e-7 * sqrt(3): |column|_1 <= sqrt(3) |column|. The errors of several in a
+    // chain may add up.
     constexpr double UNEVEN = 1e-5;
     const glm::dmat3 m(matrix_);
-    const glm::dmat3 products = transpose(m) * m;  // s^2 times the identity if the transform is even.
+    const glm::dmat3 products = transpose(m) * m;  // s^2 times the identity if the scale is uniform.
     const double square = (products[0][0] + products[1][1] + products[2][2]) / 3.0;
     for (glm::length_t i = 0; i < 3; ++i) {
         for (glm::length_t j = 0; j < 3; ++j) {

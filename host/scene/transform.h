@@ -7,11 +7,12 @@
 
 namespace candela {
 
-// A chain of steps; starts as the identity. Not singular.
+// A chain of steps, initially the identity; not singular.
 class Transform {
   public:
     // Appends a step (affine, its last row 0 0 0 1). Returns false, and leaves the transform useless, if the
-    // result is singular: if it flattens space to less than 1e-12 of its volume, or overflows.
+    // result is singular: if it turns a cube into a parallelepiped of at most 1e-12 the volume of a box with
+    // such edges, or overflows.
     bool append(const glm::dmat4& step);
 
     // A point in world space; it need not fit into a float.
@@ -24,7 +25,7 @@ class Transform {
     bool mirrors() const { return mirrors_; }
 
     // The factor of a transform that only moves, turns, mirrors and scales evenly, so that spheres stay
-    // spheres within 2e-5 of their radius; nothing for any other.
+    // spheres within 2e-5 of their radius; none for any other.
     std::optional<double> uniform_scale() const;
 
   private:

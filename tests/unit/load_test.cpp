@@ -1,4 +1,4 @@
-// Scenes by the extension of their files; meshes that are a scene of their own.
+// Formats by the file's extension; meshes that are scenes of their own.
 #include "load/load.h"
 
 #include <gtest/gtest.h>

@@ -59,7 +59,7 @@ TEST(Mesh, TheOriginOfAMeshAroundZeroIsZero) {
     EXPECT_EQ(with_positions({dvec3(-1000, 0, 0), dvec3(-999, 0, 0)}).origin, dvec3(-998, 0, 0));
 }
 
-// Of a metre, two thousand kilometres away: floats have steps of 12 cm there.
+// A mesh of one metre, two thousand kilometres away, where floats have steps of 12 cm.
 TEST(Mesh, FarFromZeroPositionsAreRoundedToAPartOfTheSize) {
     Random random(2);
     const dvec3 centre(2e6, -1e6, 3e5);
@@ -68,13 +68,13 @@ TEST(Mesh, FarFromZeroPositionsAreRoundedToAPartOfTheSize) {
         positions.push_back(centre + 0.5 * dvec3(random.cube()) + 1e-9 * dvec3(random.cube()));
     const TriangleMesh mesh = with_positions(positions);
     for (size_t i = 0; i < positions.size(); ++i) {
-        // A mesh of less than 1 m lies within 1.5 m of its origin: half a unit in the last place of that.
+        // A mesh of less than 1 m lies within 1.5 m of its origin, where floats round by at most 2^-24 m.
         const dvec3 error = abs(position(mesh, i) - positions[i]);
         ASSERT_LE(std::max({error.x, error.y, error.z}), 0x1p-24 + 1e-9);
     }
 }
 
-// A square, its corners told apart by every attribute.
+// A square whose corners differ in every attribute.
 TriangleMesh square_of_everything() {
     TriangleMesh mesh = with_positions({dvec3(0), dvec3(1, 0, 0), dvec3(1, 1, 0), dvec3(0, 1, 0)});
     for (uint32_t i = 0; i < 4; ++i) {
@@ -117,7 +117,7 @@ TEST(Mesh, ACornerThatGetsANormalKeepsItsOtherAttributes) {
     mesh.normals[2] = vec3(0);
     TriangleMesh completed = mesh;
     complete_normals(completed);
-    ASSERT_EQ(completed.positions.size(), 6u);  // The corner of two triangles that had none.
+    ASSERT_EQ(completed.positions.size(), 6u);  // Two more, for the triangles at the corner without one.
     mesh.normals[2] = vec3(0, 0, 1);
     for (size_t triangle = 0; triangle < 2; ++triangle) {
         for (glm::length_t corner = 0; corner < 3; ++corner) {
@@ -144,8 +144,8 @@ TEST(Mesh, IsPlacedWithItsAttributes) {
     EXPECT_EQ(world.colors, mesh.colors);
 }
 
-// A shape of a kilometre's size, placed a thousand kilometres from where it was made, and back: the sum of
-// origin and transform is taken before anything is rounded.
+// A mesh of one metre, made a million kilometres away and moved back: origin and transform are added before
+// anything is rounded.
 TEST(Mesh, IsPlacedInDoublePrecision) {
     const dvec3 far(1e9, 0, 0);
     const std::vector<dvec3> corners{dvec3(0.125, 0, 0), dvec3(1, 0, 0), dvec3(0, 1, 0.375)};
@@ -170,7 +170,7 @@ TEST(SceneBuilder, RefusesAMeshThatReachesTooFar) {
     EXPECT_EQ(scene.meshes.size(), 1u);
 }
 
-// Two instances of one mesh, one of them mirrored, and triangles that vanish when they are placed far away.
+// Two instances of one mesh; the second is mirrored, or so far away that a triangle vanishes.
 TEST(GpuScene, PlacesEveryInstanceAndSaysWhatRoundingFlattens) {
     Scene scene;
     add_diffuse(scene, vec3(0.5f));

@@ -22,7 +22,7 @@ class ObjMaterials : public testing::Test {
         return folder_.load(scene_of(shapes));
     }
 
-    // The message for m.obj, after the place of the file's name in the scene.
+    // Checks the message for m.obj, after the place of the file's name in the scene.
     void expect_error(const std::string& text, const std::string& message) {
         SCOPED_TRACE(text);
         write(text);

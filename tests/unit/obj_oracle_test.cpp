@@ -95,7 +95,7 @@ TEST(ObjOracle, ReadsWhatTinyobjloaderReads) {
         ASSERT_EQ(ours.normals.size(), theirs.normals.size());
         ASSERT_EQ(ours.sizes, theirs.sizes);
         ASSERT_EQ(ours.corners.size(), theirs.corners.size());
-        // Theirs are floats, and not those next to the text.
+        // Theirs are floats, and not always those nearest to the text.
         const auto near = [](glm::dvec3 a, vec3 b) {
             return all(lessThanEqual(abs(a - glm::dvec3(b)), 0x1p-23 * abs(a)));
         };

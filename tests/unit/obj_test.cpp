@@ -73,7 +73,7 @@ TEST_F(Obj, GivesCornersWithoutNormalThatOfTheirTriangle) {
     EXPECT_TRUE(load(std::string(TRIANGLE) + "f 1 2 3").normals.empty());
 }
 
-// A cube's corner touches three or six triangles; weights by angle make all normals diagonals nevertheless.
+// A cube's corner touches three or five triangles; weights by angle still make all normals diagonals.
 TEST_F(Obj, SmoothsNormalsByAngleOverEqualPositions) {
     std::string cube;
     for (int copy = 0; copy < 2; ++copy) {  // Each corner is in the file twice, as at a texture seam.

@@ -111,7 +111,7 @@ TEST_F(Ply, LinesEndInAnyWay) {
     }
 }
 
-// Every type, in both orders, in elements and lists that are skipped as well as in those that are not. The
+// Every type, in both byte orders, in elements and lists that are read and in those that are skipped. The
 // values need all bytes of their types.
 template <class X, class Y, class Z, class Length, class Index>
 std::string file_of_types(const std::array<std::string, 5>& names, bool big_endian, X x, Y y, Z z) {
@@ -334,7 +334,7 @@ TEST_F(Ply, MakesNoRoomForWhatTheFileCannotHold) {
                  "m.ply: face 0 is missing or incomplete; is the file cut off?");
 }
 
-// Text may be cut within its last number, which then is another number.
+// Cutting within the last number of a text would leave another number; here it has one digit.
 TEST_F(Ply, IsRefusedWhenCutOffAnywhere) {
     for (const std::string& text : {ascii_square(), binary_square(false), binary_square(true)}) {
         for (size_t size = 0; size < text.size(); ++size) {

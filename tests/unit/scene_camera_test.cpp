@@ -1,4 +1,4 @@
-// Cameras of a scene file: placed, opened, and with a lens.
+// Cameras of a scene file: their place, field of view and lens.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -101,7 +101,7 @@ TEST(SceneCamera, ReadsItsLens) {
     EXPECT_EQ(lens(R"({"radius": 0, "blades": 3})").blades, 3u);
     EXPECT_EQ(lens(R"({"radius": 0, "blades": 64})").blades, 64u);
     EXPECT_FLOAT_EQ(lens(R"({"radius": 0, "blades": 5, "rotation": 150})").rotation, PI * 5 / 6);
-    // Whole turns are taken off before the angle becomes a float, which could not hold the rest of them.
+    // Whole turns are removed before the angle becomes a float, which would lose the rest.
     EXPECT_FLOAT_EQ(lens(R"({"radius": 0, "blades": 5, "rotation": 3600000030})").rotation, PI / 6);
     EXPECT_FLOAT_EQ(lens(R"({"radius": 0, "blades": 5, "rotation": -390})").rotation, -PI / 6);
     EXPECT_EQ(folder.load(settings(GOOD_CAMERA)).cameras[0].lens.radius, 0.0f);  // A pinhole.

@@ -8,7 +8,7 @@
 namespace candela {
 namespace {
 
-// An emitter and an environment.
+// A scene with an emitter and this environment.
 std::string lit(const std::string& environment) {
     return "{" + GOOD_CAMERA +
            ",\n\"shapes\": [{\"type\": \"sphere\", \"emission\": 1}],\n\"environment\": " + environment + "}";
@@ -16,8 +16,7 @@ std::string lit(const std::string& environment) {
 
 class SceneEnvironment : public testing::Test {
   protected:
-    // Writes a map of 4x2 texels: in the red channel 1 .. 8 times `brightness`, in the others half and none
-    // of that.
+    // Writes a map of 4x2 texels: red is 1 .. 8 times `brightness`, green half of that, blue 0.
     void write_sky(float brightness) {
         Image image{uvec2(4, 2), {0, 0, 4, 2}, {}, {}};
         for (const char* name : {"R", "G", "B"})
@@ -99,7 +98,7 @@ TEST_F(SceneEnvironment, HandsOnTheWarningsOfTheImage) {
 TEST_F(SceneEnvironment, ReportsAnImageThatCannotBeRead) {
     folder_.expect_error(lit(R"({"file": @"none.exr"})"),
                          "cannot read \"none.exr\": the file does not exist; check the name");
-    // What exactly is wrong with a file is the image reader's to say; the place is ours.
+    // The image reader says what is wrong with a file, the loader where the scene names it.
     folder_.write("empty.hdr", "");
     folder_.write("text.exr", "This is no image.");
     for (const std::string file : {"empty.hdr", "text.exr"}) {

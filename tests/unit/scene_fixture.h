@@ -43,8 +43,7 @@ class SceneFolder {
         EXPECT_EQ(without_folder(error_of([&] { load(text); })), "scene.json:" + place + ": " + message);
     }
 
-    // Loads a scene that is odd at its '@', and checks that it has one warning, after
-    // `scene.json:line:column: `.
+    // Loads a scene that is odd at its '@', and checks its only warning, after `scene.json:line:column: `.
     void expect_warning(std::string text, const std::string& message) {
         SCOPED_TRACE(text);
         const std::string place = take_mark(text);
@@ -77,12 +76,12 @@ inline TriangleMesh world_mesh(const Scene& scene, size_t shape = 0) {
 inline const std::string GOOD_CAMERA =
     R"("cameras": {"main": {"position": [0, 0, 5], "look_at": [0, 0, 0], "vertical_fov": 40}})";
 
-// A scene without shapes around some of its other members.
+// A scene with these members and without shapes.
 inline std::string settings(const std::string& members) {
     return "{" + members + ",\n\"shapes\": []}";
 }
 
-// A valid scene around the text of its shapes; `mark` is set before the list of them unless it is 0.
+// A valid scene with these shapes; `mark`, unless it is 0, stands before their list.
 inline std::string scene_of(const std::string& shapes, char mark = '\0') {
     return "{" + GOOD_CAMERA + R"(,
 "materials": {"glass": {"type": "diffuse", "reflectance": 1}, "white": {"type": "diffuse", "reflectance": 0.5}},

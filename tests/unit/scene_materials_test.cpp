@@ -95,7 +95,7 @@ TEST(SceneMaterials, PhongMakesNoLight) {
                         "diffuse + specular is 1.000000000001 in blue" + remedy);
 }
 
-// All sums of decimals that are 1 are accepted, and still are at most 1 as floats.
+// Decimals that add up to 1 are always accepted, and add up to at most 1 as floats.
 TEST(SceneMaterials, PhongMayReflectAllLight) {
     constexpr int STEPS = 1000;
     std::string members;
@@ -178,7 +178,7 @@ TEST(SceneMaterials, ReadDielectrics) {
             "absorption": {"transmittance": [0.5, 1, 0.25], "distance": 0.1}})");
     EXPECT_EQ(bubble.exterior_ior, 1.33f);
     EXPECT_EQ(bubble.fresnel, Fresnel::exact);
-    // ln 2 / 0.1 m, nothing, and twice as much.
+    // ln 2 / 0.1 m, 0, and twice the first.
     EXPECT_EQ(bubble.inside.absorption, vec3(6.9314718056f, 0.0f, 13.8629436112f));
     const auto same = load<DielectricMaterial>(R"({"type": "dielectric", "ior": 1.5, "exterior_ior": 1.5})");
     EXPECT_EQ(same.ior, same.exterior_ior);

@@ -58,13 +58,13 @@ TEST(SceneShapes, ReadSpheres) {
     const auto moved = load<Sphere>(R"("type": "sphere", "center": [1, 2, 3], "radius": 0.1)");
     EXPECT_EQ(moved.center, vec3(1, 2, 3));
     EXPECT_EQ(moved.radius, 0.1f);
-    // A quarter turn about y takes x to -z and z to x; mirrored and doubled: x to z, z to -x.
+    // A quarter turn about y takes x to -z and z to x; mirrored and doubled, x to 2 z and z to -2 x.
     const auto turned = load<Sphere>(R"("type": "sphere", "center": [1, 2, 3], "radius": 0.25, "transform":
         [{"rotate": 90, "axis": [0, 1, 0]}, {"scale": -2}, {"translate": [0, 10, 0]}])");
-    // The turn's cosine is 6e-17 in doubles; times 3 and 2 that stays far below this.
+    // The turn's cosine is 6e-17 in doubles; times 3 and 2 that stays far below the tolerance.
     EXPECT_LT(length(turned.center - vec3(-6, 6, 2)), 1e-6f);
     EXPECT_EQ(turned.radius, 0.5f);
-    // An emitter as any other shape.
+    // An emitter, as any other shape may be.
     SceneFolder folder;
     const Scene scene = folder.load(scene_of(R"({"type": "sphere", "emission": 2, "two_sided": true})"));
     EXPECT_EQ(scene.shapes[0].emission->radiance, vec3(2));
@@ -119,8 +119,8 @@ TEST(SceneShapes, ReadDisks) {
         double x = 0, y = 0, z = 0;
         ASSERT_EQ(std::sscanf(normal, "[%lf, %lf, %lf]", &x, &y, &z), 3);
         const glm::dvec3 n = normalize(glm::dvec3(x, y, z) / std::abs(x + y + z));
-        // Components of at most 3, rounded to floats: off by 1.2e-7 each, so 4e-7 for e1, e2 and products
-        // with unit vectors, and 9 times a bit more than that for the area.
+        // Components of at most 3, rounded to floats, are off by 1.2e-7 each: e1, e2 and their products with
+        // unit vectors by 4e-7, the area by 9 times a little more.
         EXPECT_NEAR(length(tilted.e1), 3.0f, 1e-6f);
         EXPECT_NEAR(length(tilted.e2), 3.0f, 1e-6f);
         EXPECT_NEAR(dot(tilted.e1, tilted.e2), 0.0f, 4e-6f);

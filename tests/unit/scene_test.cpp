@@ -172,7 +172,7 @@ TEST(Scene, ReportsAFileThatCannotBeRead) {
                         "found a byte of value 0: this is not text; a scene is JSON in UTF-8");
 }
 
-// A scene with what the Cornell box has not.
+// A scene with what the Cornell box lacks.
 const std::string ROUND_SCENE = R"({
 "cameras": {"main": {"position": [0, 0, 5], "look_at": [0, 0, 0], "vertical_fov": 40,
     "lens": {"radius": 0.1, "focal_distance": 5, "blades": 6, "rotation": 30}}},

@@ -16,7 +16,7 @@
 namespace candela::json {
 namespace {
 
-constexpr size_t MOST_NESTING = 256;  // A value of this depth is destroyed by recursion.
+constexpr size_t MOST_NESTING = 256;  // A value's destructor recurses this deep.
 
 class Cursor {
   public:
@@ -81,8 +81,7 @@ class Cursor {
 };
 
 // The readable part of a message such as "[json.exception.parse_error.101] parse error at line 1, column 2:
-// syntax error while parsing value - invalid literal; last read: 'x'". The place and the text there are told
-// by us.
+// syntax error while parsing value - invalid literal; last read: 'x'". The place is left to fail().
 std::string cause_of(const nlohmann::json::exception& exception) {
     constexpr int NUMBER_OVERFLOW = 406;
     if (exception.id == NUMBER_OVERFLOW) return "the number is too large; write one below 1.8e308";
@@ -121,8 +120,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
         return true;
     }
 
-    // `position` is the offset behind the token that the parser refused. It may have accepted separators
-    // since the last event.
+    // `position` is the offset after the token that the parser refused. The parser may have accepted
+    // separators since the last event.
     bool parse_error(size_t position, const std::string&,
                      const nlohmann::json::exception& exception) override {
         cursor_.skip_space();
@@ -140,7 +139,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
         std::unordered_set<std::string> keys;
     };
 
-    // Moves behind the token of the current event and returns its place.
+    // Moves past the token of the current event and returns its place.
     Place next_token() {
         cursor_.skip_space();
         while (cursor_.at_separator()) {
@@ -194,7 +193,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     Value root_;
 };
 
-// Refuses what the parser would only complain of in its own words, or not at all.
+// Refuses what the parser would report in its own words, or not at all.
 void check_encoding(std::string_view text, const std::string& file) {
     if (text.empty()) fail(file, {}, "the file is empty; a scene is a JSON object { ... }");
     if (text.starts_with("\xEF\xBB\xBF")) {

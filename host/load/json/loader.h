@@ -9,13 +9,13 @@
 
 namespace candela {
 
-// Reads a scene and the files that it names, relative to its folder. Throws Error, with `file:line:column:`
-// in front unless the scene file itself cannot be read, for everything that the schema or the meaning of a
-// value forbids. What is odd but usable goes to Scene::warnings.
+// Reads a scene and the files that it names, relative to its folder. Throws Error, beginning with
+// `file:line:column:` unless the scene file itself cannot be read, for everything that the schema or the
+// meaning of a value forbids. What is odd but usable goes to Scene::warnings.
 Scene load_json_scene(const std::filesystem::path& path);
 
-// The same for the text of a scene file: `file` is its name in messages, `folder` where the files are that it
-// names.
+// The same for the text of a scene file: `file` is its name in messages, and the files that it names are
+// relative to `folder`.
 Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder);
 
 }  // namespace candela

@@ -1,4 +1,4 @@
-// Cameras: placed by what they look at, opened by an angle or by film and focal length, and their lenses.
+// Cameras: place and view, field of view (an angle, or film and focal length), and lens.
 #include <cmath>
 
 #include "load/json/loader_parts.h"
@@ -6,7 +6,7 @@
 namespace candela {
 namespace {
 
-// The full vertical angle [rad] under which a film of the given height is seen from its lens.
+// The full vertical field of view [rad] of a film behind a lens of this focal length.
 double angle_of_film(const Node& size_node, const Node& focal_length, const Film& film) {
     constexpr double ASPECT_TOLERANCE = 1e-3;  // Film sizes are given to about three digits.
     const std::vector<Node> sides = size_node.elements();

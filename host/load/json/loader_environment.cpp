@@ -20,7 +20,7 @@ Environment load(const Node& file, const std::filesystem::path& folder, std::vec
     }
 }
 
-// Multiplies all radiance by the intensity that stands at `node`.
+// Multiplies all radiance by the intensity that `node` gives.
 void scale(Environment& environment, const Node& node) {
     const double intensity = node.non_negative();
     for (vec3& radiance : environment.radiance) {
@@ -47,7 +47,7 @@ Environment read_environment(const Node& node, const std::filesystem::path& fold
         scene.files.push_back(folder / file->string());
     }
     if (radiance) environment.radiance = {vec3(radiance->rgb())};
-    const bool reported = file && !gives_light(environment);  // By load_environment().
+    const bool reported = file && !gives_light(environment);  // Already, by load_environment().
     if (const auto rotation = node.find("rotation")) {
         if (!file) {
             rotation->fail(

@@ -15,13 +15,13 @@ Model read_diffuse(const Node& node) {
     return DiffuseMaterial{vec3(node.require("reflectance").reflectance())};
 }
 
-// Throws Error at the place of `b` if a channel would send out more light than it receives; `names` are those
-// of a and b.
+// Throws Error at `place`, that of b, if a channel would send out more light than it receives; `names` names
+// the sum of a and b.
 void check_sum(const Node& place, std::string_view names, dvec3 a, dvec3 b) {
     constexpr std::array<const char*, 3> CHANNELS{"red", "green", "blue"};
-    // Decimals that add up to 1, such as 0.7 and 0.3, do so as doubles within 2e-16. More than 1e-14 is
-    // meant, and shows in 15 digits. Floats, of which the greater is off by at most 2^-25 and the lesser by
-    // 2^-26, add up to less than 1 + 2^-24, which rounds to 1.
+    // Decimals that add up to 1, such as 0.7 and 0.3, do so as doubles within 2e-16. An excess above 1e-14 is
+    // deliberate, and shows in 15 digits. As floats, the greater is off by at most 2^-25 and the lesser by
+    // 2^-26, so that they add up to less than 1 + 2^-24, which rounds to 1.
     constexpr double SLACK = 1e-14;
     constexpr int DIGITS = 15;
     for (glm::length_t i = 0; i < 3; ++i) {
@@ -60,7 +60,7 @@ Model read_conductor(const Node& node) {
     return ConductorMaterial{reflectance, alpha.number(MIN_ALPHA, 1.0f)};
 }
 
-// Absorption [1/m] given by the share of light that is left after a distance.
+// Absorption [1/m] from the fraction of light that is left after a distance.
 vec3 read_absorption(const Node& node) {
     node.allow_only({"transmittance", "distance"});
     const Node transmittance = node.require("transmittance");
@@ -89,7 +89,7 @@ Model read_diffuse_transmission(const Node& node) {
 }
 
 Model read_dielectric(const Node& node) {
-    constexpr double MOST_CONTRAST = 1e6;  // Its square, by which radiance is scaled, stays within floats.
+    constexpr double MOST_CONTRAST = 1e6;  // Its square, which scales radiance, fits into floats.
     node.allow_only({"type", "ior", "exterior_ior", "fresnel", "absorption"});
     DielectricMaterial material;
     const Node ior = node.require("ior");

@@ -10,19 +10,19 @@
 
 namespace candela {
 
-// Reads the camera that stands under its name; its film must have the aspect ratio of `film`.
+// Reads a camera, whose key is its name; its film must have the aspect ratio of `film`.
 Camera read_camera(const Node& node, const Film& film);
 
-// Reads the material that stands under its name.
+// Reads a material, whose key is its name.
 Material read_material(const Node& node);
 
-// Reads the light from infinitely far away. Its file is relative to `folder`; that and what is odd go to
-// scene.files and scene.warnings.
+// Reads the environment. Its file is relative to `folder` and goes to scene.files; what is odd goes to
+// scene.warnings.
 Environment read_environment(const Node& node, const std::filesystem::path& folder, Scene& scene);
 
-// Reads the list of shapes into scene.shapes and scene.warnings, and appends to scene.materials those that
-// the shapes bring along: black for an emitter without one, and the materials of OBJ files. Files are
-// relative to `folder`; scene.materials holds the materials of the scene file.
+// Reads the list of shapes into the scene, with their meshes, files and warnings. Files are relative to
+// `folder`. scene.materials must hold the scene file's; it gets those that the shapes bring: black for
+// emitters without a material, and those of OBJ files.
 void read_shapes(const Node& node, const std::filesystem::path& folder, Scene& scene);
 
 // Round shapes: "sphere" and "disk".

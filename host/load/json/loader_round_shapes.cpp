@@ -19,13 +19,13 @@ double radius_of(const Node& node) {
     return radius ? radius->positive() : 1.0;
 }
 
-// The greatest component of a vector; dividing by it keeps squares from over- and underflowing.
+// The greatest magnitude of a component; dividing by it keeps squares from over- and underflowing.
 double greatest(dvec3 v) {
     const dvec3 size = abs(v);
     return std::max({size.x, size.y, size.z});
 }
 
-// Throws Error if the box center +- reach goes too far. False comparisons catch NaN as well.
+// Throws Error if the box center +- reach goes too far. A comparison with NaN is false, which throws, too.
 void check_reach(const Node& node, dvec3 center, dvec3 reach) {
     if (!glm::all(glm::lessThan(abs(center) + reach, dvec3(double(MAX_COORDINATE))))) {
         node.fail(TOO_FAR);
@@ -34,7 +34,7 @@ void check_reach(const Node& node, dvec3 center, dvec3 reach) {
 
 // Throws Error if a disk is too small for floats, or so narrow that their rounding would turn its normal.
 void check_breadth(const Node& node, const Disk& disk) {
-    constexpr double NARROW = 1e-6;  // Against the length; a float is off by 6e-8.
+    constexpr double NARROW = 1e-6;  // Relative to the length; a float is off by 6e-8.
     const dvec3 e1(disk.e1);
     const dvec3 e2(disk.e2);
     const double size = std::max(greatest(e1), greatest(e2));

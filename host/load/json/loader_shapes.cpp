@@ -1,4 +1,4 @@
-// Shapes of flat faces that the scene file itself describes: read, transformed and checked one by one.
+// Shapes with flat faces that the scene file itself describes: read, transformed and checked one by one.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,7 +13,7 @@ using glm::dvec3;
 
 // Throws Error unless the corners span a convex, planar quadrilateral.
 void check_quad(const Node& node, const Quad& quad) {
-    // Relative to the longer diagonal. The first leaves room for coordinates that were given to three digits.
+    // Relative to the longer diagonal. PLANAR allows for coordinates that are given to three digits.
     constexpr double PLANAR = 1e-3;
     constexpr double DEGENERATE = 1e-9;
     const auto corner = [&](size_t i) { return dvec3(quad.corners[i % 4]); };

@@ -31,7 +31,7 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 // The name that was probably meant, or null if none is close.
 const std::string* nearest(std::string_view name, std::span<const std::string> known) {
     const std::string* best = nullptr;
-    size_t least = std::min<size_t>(3, name.size());  // Two slips at most, and less than the whole name.
+    size_t least = std::min<size_t>(3, name.size());  // At most two slips, and not the whole name.
     for (const std::string& candidate : known) {
         const size_t longer = std::max(candidate.size(), name.size());
         if (longer - std::min(candidate.size(), name.size()) >= least) continue;
@@ -146,7 +146,7 @@ double Node::number() const {
 float Node::number(float lo, float hi) const {
     const auto value = float(number());
     if (value < lo || value > hi) {
-        constexpr int DIGITS = 6;  // As many as a float surely has.
+        constexpr int DIGITS = 6;  // As many as every float has.
         fail_expected("a number from " + number_text(lo, DIGITS) + " to " + number_text(hi, DIGITS));
     }
     return value;

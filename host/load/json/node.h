@@ -20,7 +20,7 @@ namespace candela {
 // A view: the file name, the key and the value must outlive it.
 class Node {
   public:
-    // `key` names the value in messages: the key that it, or the array that it is in, stands under.
+    // `key` names the value in messages: its key, or that of the array that it is in.
     Node(const std::string& file, std::string_view key, const json::Value& value)
         : file_(&file), key_(key), value_(&value) {}
 
@@ -37,8 +37,8 @@ class Node {
                                    std::span<const std::string> known,
                                    const std::string& word = "known") const;
 
-    // Objects. `allow_only` checks that no other keys are present, `find` returns nothing if the key is
-    // absent, `require` throws then. `members` are in the order of the file.
+    // Objects. `allow_only` checks that no other keys are present. If the key is absent, `find` returns
+    // nothing and `require` throws Error. `members` are in the order of the file.
     void allow_only(std::initializer_list<std::string_view> keys,
                     std::span<const std::string_view> more_keys = {}) const;
     std::optional<Node> find(std::string_view key) const;
@@ -57,13 +57,13 @@ class Node {
     const std::string& file_name() const;
     // A number that a float can hold.
     double number() const;
-    // A number in [lo, hi], compared as floats: what is written like a limit is within it.
+    // A number in [lo, hi], compared as floats, so that a limit written in decimals is within it.
     float number(float lo, float hi) const;
     // A number of at least 0.
     double non_negative() const;
     // A number above 0 that a float can hold with full precision.
     double positive() const;
-    // An angle given in degrees, in radians from -pi to pi.
+    // An angle in [-pi, pi] [rad], which the file gives in degrees.
     double angle() const;
     // A whole number in [lo, hi].
     uint32_t integer(uint32_t lo, uint32_t hi) const;
@@ -73,7 +73,7 @@ class Node {
     glm::dvec3 rgb() const;
     // The same, none above 1.
     glm::dvec3 reflectance() const;
-    // The value that belongs to the string.
+    // The value that the string names.
     template <class T, size_t N>
     T choice(const std::array<std::pair<std::string_view, T>, N>& values) const {
         std::vector<std::string> names;

@@ -30,7 +30,7 @@ class ShapeList : public SceneBuilder {
     std::filesystem::path path_of(const std::string& file) const { return folder_ / file; }
 
     // The material and emission that a shape's node names. An emitter without a material gets a black one,
-    // and emission of zero is none. Throws Error if the node has neither, or for a name of no material.
+    // and zero emission is none. Throws Error if the node has neither, or names an unknown material.
     Appearance appearance_of(const Node& node);
     // The emission of a shape's node; none if it is absent or zero. Throws Error for two_sided without it.
     static std::optional<Emission> emission_of(const Node& node);
@@ -44,8 +44,7 @@ class ShapeList : public SceneBuilder {
     std::map<std::string, uint32_t, std::less<>> indices_;  // Of the materials that the scene file defines.
 };
 
-// A point in world space as floats. Throws Error at the place of `node`, where it came from, if it does not
-// fit.
+// A point in world space as floats. Throws Error at the place of `node`, its source, if it does not fit.
 vec3 rounded(const Node& node, glm::dvec3 p);
 
 }  // namespace candela

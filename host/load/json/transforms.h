@@ -1,4 +1,4 @@
-// The transforms of shapes, as a scene file writes them.
+// The transforms of shapes in a scene file.
 #pragma once
 
 #include "load/json/node.h"

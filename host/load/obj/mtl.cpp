@@ -1,5 +1,5 @@
 // One pass over the lines. tinyobjloader could read these files as well, but it takes malformed numbers for 0
-// and does not tell what is absent.
+// and does not say what is absent.
 #include "load/obj/mtl.h"
 
 #include <algorithm>
@@ -106,7 +106,7 @@ class Reader {
         fail(std::string(command) + " needs a finite number, found " + quote(word));
     }
 
-    // One number for grey, or three; what follows those is ignored.
+    // One number for grey, or three; what follows the three is ignored.
     dvec3 colour(std::string_view command, std::string_view rest) const {
         std::vector<double> values;
         for (std::string_view word = next_word(rest);

@@ -79,9 +79,9 @@ class Converter {
         return dvec3(GREY);
     }
 
-    // Scales kd and ks by one factor so that they add up to 1 at most; `what` says what adds up.
+    // Scales kd and ks by one factor so that they add up to at most 1; `what` names the sum in messages.
     void limit(dvec3& kd, dvec3& ks, const char* what) {
-        constexpr double ROUNDING = 2e-6;  // Two numbers of six digits, as most programs write them.
+        constexpr double ROUNDING = 2e-6;  // Of two numbers of six digits, as most programs write them.
         const dvec3 sum = kd + ks;
         const double largest = std::max({sum.x, sum.y, sum.z});
         if (largest <= 1.0) return;

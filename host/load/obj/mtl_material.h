@@ -14,7 +14,7 @@ namespace candela {
 struct MtlStatements {
     std::string name;
     uint64_t line = 0;             // Of newmtl.
-    std::optional<glm::dvec3> kd;  // Finite and >= 0, as ks and ke.
+    std::optional<glm::dvec3> kd;  // Finite and >= 0, as are ks and ke.
     std::optional<glm::dvec3> ks;
     vec3 ke{0};       // [W/(m^2 sr)].
     double ns = 1.0;  // >= 0.
@@ -23,7 +23,7 @@ struct MtlStatements {
     uint32_t illum = 2;  // 0 .. 10.
     std::optional<double> d;
     std::optional<double> tr;
-    bool has_texture = false;  // In place of kd.
+    bool has_texture = false;  // Whether there is a map_Kd.
 };
 
 // What one `newmtl` describes.
@@ -35,11 +35,11 @@ struct MtlMaterial {
 
 // The material by its `illum`:
 //   0, 1      diffuse: Kd;
-//   2         Phong: Kd, Ks, and Ns as the exponent; diffuse if Ks is 0;
+//   2         Phong: Kd, Ks, and Ns as the exponent; diffuse if Ks is 0 or absent;
 //   3, 5      a mirror: Ks (1 if absent);
 //   4, 6, 7   a dielectric: Ni (1.5 if absent);
 //   8, 9, 10  as 2, with a warning.
-// Where Kd + Ks exceeds 1 in a channel, all are scaled by one factor, with a warning, so that it does not.
+// Where Kd + Ks exceeds 1 in a channel, one factor scales both to a sum of at most 1, with a warning.
 // `file` is the file's name in messages. Throws Error `file:line: cause` for an Ni that is not above 0.
 // Ref: Alias|Wavefront, "MTL material format" (1995).
 MtlMaterial mtl_material(const MtlStatements& statements, const std::string& file);

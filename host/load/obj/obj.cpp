@@ -32,7 +32,7 @@ class Vertices {
         return newest;
     }
 
-    // A mesh of them, without triangles.
+    // A mesh of these vertices, without triangles.
     TriangleMesh mesh() const {
         TriangleMesh mesh;
         std::vector<glm::dvec3> positions;
@@ -59,7 +59,7 @@ class Vertices {
     std::vector<Vertex> vertices_;
 };
 
-// Takes `obj` apart.
+// Leaves `obj` without corners, positions and normals, to save memory.
 TriangleMesh build_mesh(ObjFile& obj, MeshNormals normals) {
     std::vector<uint32_t> corners;
     corners.reserve(obj.corners.size());
@@ -103,7 +103,7 @@ ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals) 
         require_name(use, "usemtl needs the name of a material", file);
 
     ObjParts result{std::move(obj.libraries), {}};
-    std::map<std::string_view, uint32_t> indices;  // Of the parts, by name; that of no material is empty.
+    std::map<std::string_view, uint32_t> indices;  // Of the parts, by name; empty for no material.
     std::vector<uint32_t> part_of;                 // For each triangle.
     for (size_t face = 0; face < obj.sizes.size(); ++face) {
         const ObjName& use = obj.uses[obj.use_of[face]];

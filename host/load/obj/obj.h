@@ -13,25 +13,25 @@
 namespace candela {
 
 // Reads all faces of a file as one mesh, in the units of the file; groups, materials and texture coordinates
-// are ignored. Polygons are cut into triangles; corners with equal position and normal share a vertex; unused
-// vertices are dropped. There are no normals if no corner has one. Throws Error as read_file() and
-// parse_obj() do.
+// are ignored. Polygons are cut into triangles; corners with the same indices of position and normal share a
+// vertex; unused vertices are dropped. With MeshNormals::file, a corner without a normal gets one of length
+// zero, and a file without normals gives a mesh without. Throws Error as read_file() and parse_obj() do.
 TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals);
 
 // The faces of one material.
 struct ObjPart {
-    std::optional<ObjName> material;  // Its first `usemtl`; none: the faces stand before any `usemtl`.
+    std::optional<ObjName> material;  // The `usemtl` of its first face; none: the faces precede any `usemtl`.
     uint64_t faces = 0;
     TriangleMesh mesh;  // Has at least one triangle.
 };
 
 struct ObjParts {
     std::vector<ObjName> libraries;  // What each `mtllib` names, in the order of the file.
-    std::vector<ObjPart> parts;      // For each material that a face uses, in the order of first use.
+    std::vector<ObjPart> parts;      // One for each material in use, in the order of first use.
 };
 
-// Reads a file as load_obj() does, but one mesh for each material; smooth normals are averaged over all of
-// them together. The libraries are not read. Throws Error for `usemtl` and `mtllib` without a name, too.
+// Reads a file as load_obj() does, but into one mesh per material; smooth normals are averaged across them.
+// Does not read the libraries. Throws Error for `usemtl` and `mtllib` without a name, too.
 ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals);
 
 // A file with the materials that it names.
@@ -41,9 +41,9 @@ struct ObjShape {
     std::vector<std::string> warnings{};  // `file:line: ...` or `file: ...`.
 };
 
-// Reads a file as load_obj_parts() does, and its libraries. Adds the materials to the scene, as
-// `name`/material, unless a shape of that name has brought them before; and all files to Scene::files. Where
-// only some faces have a material, the others are grey, with a warning. Throws Error `file:line: cause` for a
+// Reads a file as load_obj_parts() does, and its libraries. Adds the materials to the scene as
+// `name`/material, unless a shape of that name has already done so, and the files to Scene::files. Where only
+// some faces have a material, the others are grey, with a warning. Throws Error `file:line: cause` for a
 // library that is missing, a material that is not in it, and as load_mtl() does.
 ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, const std::string& name,
                         SceneBuilder& builder);

@@ -1,4 +1,4 @@
-// Two passes over the lines of an OBJ file: one counts what faces may refer to, one reads.
+// Two passes over the lines of an OBJ file: one counts what faces may refer to, the other reads.
 #include "load/obj/obj_file.h"
 
 #include <array>
@@ -14,7 +14,7 @@
 namespace candela {
 namespace {
 
-// What a face refers to, in the order of `1/2/3`.
+// What the corner of a face refers to, in the order of `1/2/3`.
 struct Kind {
     std::string_view command;
     const char* singular;
@@ -121,7 +121,7 @@ class ObjReader {
         fail_malformed(corner);
     }
 
-    // Counted from 0. Negative indices count backwards from the last element so far.
+    // The index in `word`, counted from 0. Negative ones count backwards from the last element so far.
     uint32_t read_index(std::string_view word, size_t kind, std::string_view corner) const {
         int64_t index = 0;
         const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), index);

@@ -37,10 +37,10 @@ struct ObjFile {
     std::vector<uint32_t> use_of;  // For each face, an index into `uses`.
 };
 
-// Reads the text of a file; `file` is its name in messages. Texture coordinates and groups are ignored;
-// colours behind positions, too. Throws Error `file:line: cause` for a vertex or normal without three finite
-// numbers, a face with fewer than 3 or more than MOST_CORNERS corners, a malformed index or one that is out
-// of range, and Error `file: cause` if there is no face at all.
+// Reads the text of a file; `file` is its name in messages. Texture coordinates, groups and colours after
+// positions are ignored. Throws Error `file:line: cause` for a vertex or normal without three finite numbers,
+// a face with fewer than 3 or more than MOST_CORNERS corners, a malformed index or one that is out of range,
+// and Error `file: cause` if there is no face at all.
 ObjFile parse_obj(std::string_view text, const std::string& file);
 
 }  // namespace candela

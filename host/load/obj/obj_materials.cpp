@@ -1,4 +1,4 @@
-// Looks files and names up.
+// Looks up files and names.
 #include "load/obj/obj_materials.h"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ MtlLibrary load_mtl_libraries(const std::filesystem::path& obj, const std::vecto
     }
     for (const std::filesystem::path& path : all.files) {
         MtlLibrary library = load_mtl(path);
-        all.materials.merge(library.materials);  // Keeps those that are there.
+        all.materials.merge(library.materials);  // Keeps those that are already there.
         std::move(library.warnings.begin(), library.warnings.end(), std::back_inserter(all.warnings));
     }
     return all;

@@ -10,7 +10,7 @@
 namespace candela {
 
 // Reads the libraries that the OBJ file `obj` names, each relative to the file's folder, and merges them: the
-// first material of a name counts. A name with spaces is one library if there is such a file, else several.
+// first definition of a name counts. A name with spaces is one library if there is such a file, else several.
 // Throws Error `file:line: cause` for a library that is missing, and as load_mtl() does.
 MtlLibrary load_mtl_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& names);
 

@@ -9,7 +9,7 @@
 namespace candela {
 namespace {
 
-// The name of a part's material in the scene.
+// The name by which the builder finds a part's material.
 std::string name_of(const std::string& shape, const ObjPart& part) {
     return part.material ? shape + '/' + part.material->name : shape + " (no material)";
 }

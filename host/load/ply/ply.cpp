@@ -88,7 +88,7 @@ class BodyReader {
 
   private:
     void read_element(const PlyElement& element, size_t row_size) {
-        // Before room is made for the rows. The last line of a text may lack its end.
+        // Checked before memory is reserved for the rows. The last line of a text may lack its end.
         if (element.rows > (rows_.bytes_left() + 1) / row_size) {
             throw Error(position_.file + ':' + std::to_string(element.line) + ": " +
                         std::to_string(element.rows) + " rows of " + quote(element.name) +
@@ -128,7 +128,7 @@ class BodyReader {
         if (with_normals_) polygons_.normals.reserve(vertex.rows);
     }
 
-    // Makes room for as many triangles, or for what the file can hold of them.
+    // Reserves memory for this many triangles, or for as many as the rest of the file can hold.
     void begin_faces(const PlyElement& face, const PlyProperty& indices) {
         const size_t least_size = header_.format == PlyFormat::ascii ? 2 : size_of(indices.type);
         const size_t most = rows_.bytes_left() / least_size;

@@ -55,7 +55,7 @@ class HeaderReader {
         throw Error(file_ + ':' + std::to_string(header_.lines) + ": " + cause);
     }
 
-    // Binary rows may begin with any byte, so that how lines end must be known when the header does.
+    // Binary rows may begin with any byte, even of a line's end: so the first line says how lines end.
     void find_line_end() {
         constexpr std::string_view MAGIC = "ply";
         for (const std::string_view end : {"\r\n", "\n", "\r"}) {
@@ -68,7 +68,7 @@ class HeaderReader {
         throw Error(file_ + ": the file does not begin with the line \"ply\"; is it a PLY file?");
     }
 
-    // False after the last.
+    // Returns false after the last.
     bool read_statement() {
         const size_t length = rest_.find(line_end_);
         if (length == std::string_view::npos)
@@ -148,7 +148,7 @@ class HeaderReader {
     }
 
     std::string_view bytes_;
-    std::string_view rest_;  // What follows the lines that are read.
+    std::string_view rest_;  // What follows the lines read so far.
     const std::string& file_;
     std::string_view line_end_;
     bool has_format_ = false;

@@ -19,7 +19,7 @@ bool is_integer(PlyType type);
 struct PlyProperty {
     std::string name;
     PlyType type = PlyType::float32;
-    std::optional<PlyType> length;  // The type of a list's length, an integer; none: a single number.
+    std::optional<PlyType> length;  // Of a list's length, an integer type; none: a single number.
 };
 
 // A table with a row for, say, each vertex.
@@ -30,7 +30,7 @@ struct PlyElement {
     uint64_t line = 0;                    // Where the header declares it.
 
     const PlyProperty* find(std::string_view property) const;  // Null if there is none.
-    size_t least_size(PlyFormat format) const;                 // Of a row [bytes], its lists being empty.
+    size_t least_size(PlyFormat format) const;                 // Of a row whose lists are empty [bytes].
 };
 
 struct PlyHeader {
@@ -42,9 +42,9 @@ struct PlyHeader {
     const PlyElement* find(std::string_view element) const;  // Null if there is none.
 };
 
-// Reads the header at the front of `bytes`; `file` is the name in messages. Lines end as the first of them
-// does. Throws Error `file:line: cause` for what the format does not know, and `file: cause` if the bytes do
-// not begin with a header, or end in it.
+// Reads the header at the front of `bytes`; `file` is the name in messages. All lines end as the first does.
+// Throws Error `file:line: cause` for what the format does not allow, and `file: cause` if the bytes do not
+// begin with a header, or end within it.
 // Ref: Turk, "The PLY Polygon File Format" (1994).
 PlyHeader read_ply_header(std::string_view bytes, const std::string& file);
 

@@ -24,13 +24,13 @@ struct PlyPosition {
     [[noreturn]] void fail_at_end() const;
 };
 
-// Each row is a line of numbers. Empty lines are skipped.
+// Rows of text: each is a line of numbers. Empty lines are skipped.
 class PlyAsciiRows {
   public:
     // `text` is what follows the header, `position` has the line of the header's end; both must outlive this.
     PlyAsciiRows(std::string_view text, PlyPosition& position) : text_(text), position_(position) {}
 
-    // Throws Error if there is no row any more.
+    // Throws Error if no row is left.
     void begin_row();
     // The next number of the row. Throws Error if there is none, or none of this type.
     double next(PlyType type);
@@ -38,7 +38,7 @@ class PlyAsciiRows {
     void end_row();
 
     size_t bytes_left() const { return text_.size(); }
-    // How many bytes follow that are not empty lines.
+    // How many bytes follow, apart from empty lines in front of them.
     size_t trailing_bytes();
 
   private:
