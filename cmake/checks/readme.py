@@ -38,7 +38,7 @@ def commands(text):
 def caption_commands(text):
     """The commands in running text, each at one sample per pixel."""
     found = [" ".join(command.split()) for command in CAPTION.findall(text)]
-    return [re.sub(r" --spp \d+", "", command) + " --spp 1" for command in found if "scenes/" in command]
+    return [re.sub(r" --spp \d+| --adaptive", "", command) + " --spp 1" for command in found if "scenes/" in command]
 
 
 def subcommand(command):
