@@ -9,6 +9,7 @@
 
 namespace candela {
 
+using glm::dvec3;
 using glm::mat3;
 using glm::mat4;
 using glm::uvec2;
@@ -31,27 +32,32 @@ inline bool is_finite(vec3 v) {
 }
 
 // Axis-aligned box [lo, hi], metres. A fresh one is empty: lo = +infinity, hi = -infinity.
-struct Box {
-    vec3 lo{INFINITE};
-    vec3 hi{-INFINITE};
+template <class Vec>
+struct BoxOf {
+    using Number = typename Vec::value_type;
 
-    void extend(vec3 p) {
+    Vec lo{std::numeric_limits<Number>::infinity()};
+    Vec hi{-std::numeric_limits<Number>::infinity()};
+
+    void extend(Vec p) {
         lo = glm::min(lo, p);
         hi = glm::max(hi, p);
     }
-    void extend(const Box& box) {
+    void extend(const BoxOf& box) {
         lo = glm::min(lo, box.lo);
         hi = glm::max(hi, box.hi);
     }
     bool is_empty() const { return lo.x > hi.x || lo.y > hi.y || lo.z > hi.z; }
-    vec3 extent() const { return hi - lo; }
-    vec3 centroid() const { return 0.5f * lo + 0.5f * hi; }
+    Vec extent() const { return hi - lo; }
+    Vec centroid() const { return Number(0.5) * lo + Number(0.5) * hi; }
     // Half the surface area [m^2]; 0 for an empty box.
-    float half_area() const {
-        if (is_empty()) return 0.0f;
-        const vec3 d = extent();
+    Number half_area() const {
+        if (is_empty()) return Number(0);
+        const Vec d = extent();
         return d.x * d.y + d.y * d.z + d.z * d.x;
     }
 };
+using Box = BoxOf<vec3>;
+using DoubleBox = BoxOf<glm::dvec3>;
 
 }  // namespace candela

@@ -43,7 +43,7 @@ void add_builds(const std::string& subject, const Scene& scene, uint32_t runs, s
         for (const vec3 corner : {t.a, t.b, t.c})
             triangles.back().extend(corner);
     }
-    for (const Primitive& primitive : flatten(scene).primitives)
+    for (const Primitive& primitive : flatten(scene, SceneFrame{}).primitives)
         pairs.push_back(bounds(primitive));
 
     Row whole{.subject = subject, .what = "pairs and tree", .unit = "Mtri/s"};

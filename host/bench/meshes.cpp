@@ -107,7 +107,7 @@ TriangleMesh displaced_sphere(uint32_t n, uint32_t seed) {
 Scene displaced_scene(uint32_t triangles) {
     const double quads = double(triangles) / ((SPHERES + 1) * PER_SPHERE);
     const uint32_t n = std::max(1u, uint32_t(std::lround(std::sqrt(quads))));
-    Scene scene = scene_with_camera(vec3(-2.6f, 2.6f, 2.6f), vec3(0.0f, 0.8f, 0.0f), 1.0f);
+    Scene scene = scene_with_camera(dvec3(-2.6, 2.6, 2.6), dvec3(0.0, 0.8, 0.0), 1.0f);
     const uint32_t grey = add_diffuse(scene, vec3(0.7f));
 
     for (uint32_t i = 0; i < SPHERES; ++i) {
@@ -129,7 +129,7 @@ Scene displaced_scene(uint32_t triangles) {
 }
 
 std::vector<BenchTriangle> triangles_of(const Scene& scene) {
-    const FlatScene flat = flatten(scene);
+    const FlatScene flat = flatten(scene, SceneFrame{});
     std::vector<BenchTriangle> triangles(flat.id_count);
     for (size_t i = 0; i < flat.primitives.size(); ++i) {
         const Primitive& p = flat.primitives[i];

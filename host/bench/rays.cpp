@@ -12,8 +12,6 @@
 namespace candela {
 namespace {
 
-using glm::dvec3;
-
 // Bounces start above the surface by this share of the scene's extent: a hundred times the rounding of its
 // coordinates, so that no tracer hits the surface that a ray leaves.
 constexpr double START_ABOVE = 1e-5;
@@ -74,13 +72,14 @@ std::vector<BenchRay> bounces(const std::vector<Vertex>& vertices, Random& rando
 }
 
 std::vector<BenchRay> shadow_rays(const std::vector<Vertex>& vertices, const Quad& light, Random& random) {
-    const vec3 e1 = light.corners[1] - light.corners[0];
-    const vec3 e2 = light.corners[3] - light.corners[0];
+    const vec3 corner(light.corners[0]);
+    const vec3 e1(light.corners[1] - light.corners[0]);
+    const vec3 e2(light.corners[3] - light.corners[0]);
     std::vector<BenchRay> rays;
     rays.reserve(vertices.size());
     for (const Vertex& vertex : vertices) {
         const vec2 u = random.square();
-        const vec3 to_light = light.corners[0] + u.x * e1 + u.y * e2 - vertex.p;
+        const vec3 to_light = corner + u.x * e1 + u.y * e2 - vertex.p;
         const float distance = length(to_light);
         rays.push_back({vertex.p, (1.0f - END_BEFORE) * distance, to_light / distance});
     }

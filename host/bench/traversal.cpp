@@ -59,7 +59,7 @@ void add_rows(const vk::Device& device, const BenchOptions& options, const std::
     const std::vector<BenchTriangle> triangles = triangles_of(scene);
     const std::string subject = (name.empty() ? "" : name + ", ") + triangles_text(triangles.size());
     options.progress("traversal: " + subject);
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     assert(gpu.primitives_present == 1u << PRIMITIVE_TRIANGLES);
     const auto ours = make_device_tracer(device, gpu, options.scene_access);
     const auto rival = make_embree_tracer(triangles);

@@ -28,7 +28,7 @@ struct InfoOptions {
     bool json = false;
 };
 
-Json to_json(const Box& box) {
+Json to_json(const DoubleBox& box) {
     if (box.is_empty()) return nullptr;
     return {{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
 }

@@ -27,22 +27,26 @@ constexpr const char* STDOUT = "-";
 
 // From the world to the camera as OpenEXR's standard attributes define its space: left-handed, x to the
 // right, y up, and z forwards, so that what is in front of the camera has positive z.
-mat4 world_to_camera(const Camera& camera) {
-    const vec3 forward = normalize(camera.look_at - camera.position);
-    const vec3 right = normalize(cross(forward, camera.up));
-    const vec3 up = cross(right, forward);
-    const mat4 axes = transpose(mat4(vec4(right, 0), vec4(up, 0), vec4(forward, 0), vec4(0, 0, 0, 1)));
-    return axes * mat4(vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0), vec4(-camera.position, 1));
+glm::dmat4 world_to_camera(const Camera& camera) {
+    using glm::dvec4;
+    const dvec3 forward = normalize(camera.look_at - camera.position);
+    const dvec3 right = normalize(cross(forward, dvec3(camera.up)));
+    const dvec3 up = cross(right, forward);
+    const glm::dmat4 axes =
+        transpose(glm::dmat4(dvec4(right, 0), dvec4(up, 0), dvec4(forward, 0), dvec4(0, 0, 0, 1)));
+    return axes *
+           glm::dmat4(dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0), dvec4(-camera.position, 1));
 }
 
 // From the world to OpenEXR's normalised device coordinates, after the division by w: x to the right and y
 // down, (0,0) and (1,1) the upper left and lower right corners of the display window. The standard leaves z
 // open; here it is the inverse of the depth [1/m], so that the matrix can be inverted.
-mat4 world_to_ndc(const Camera& camera, uvec2 size) {
-    const float tan_y = std::tan(0.5f * camera.vertical_fov);
-    const float tan_x = tan_y * float(size.x) / float(size.y);
-    const mat4 projection(vec4(0.5f / tan_x, 0, 0, 0), vec4(0, -0.5f / tan_y, 0, 0), vec4(0.5f, 0.5f, 0, 1),
-                          vec4(0, 0, 1, 0));
+glm::dmat4 world_to_ndc(const Camera& camera, uvec2 size) {
+    using glm::dvec4;
+    const double tan_y = std::tan(0.5 * double(camera.vertical_fov));
+    const double tan_x = tan_y * size.x / size.y;
+    const glm::dmat4 projection(dvec4(0.5 / tan_x, 0, 0, 0), dvec4(0, -0.5 / tan_y, 0, 0),
+                                dvec4(0.5, 0.5, 0, 1), dvec4(0, 0, 1, 0));
     return projection * world_to_camera(camera);
 }
 
@@ -173,8 +177,8 @@ class Attempts {
 }  // namespace
 
 void add_attributes(Image& image, const RenderRecord& record) {
-    image.attributes["worldToCamera"] = world_to_camera(record.camera);
-    image.attributes["worldToNDC"] = world_to_ndc(record.camera, record.settings.size);
+    image.attributes["worldToCamera"] = mat4(world_to_camera(record.camera));
+    image.attributes["worldToNDC"] = mat4(world_to_ndc(record.camera, record.settings.size));
     image.attributes["samplesPerPixel"] = float(record.spp);
     image.attributes["renderTimeSeconds"] = float(record.render_seconds);
     image.attributes["candela.samples"] = samples_text(record);

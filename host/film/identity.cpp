@@ -10,6 +10,9 @@ namespace candela {
 namespace {
 
 constexpr const char* HASH_ATTRIBUTE = "candela.identity";
+constexpr const char* FRAME_ATTRIBUTE = "candela.frame";
+constexpr const char* OLDER = "that of an older candela";
+constexpr const char* ANOTHER_SCENE = "it shows another scene, or another version of it";
 
 // The settings' names in messages, and the attributes that hold them; size and crop are the image's own.
 struct SettingName {
@@ -23,7 +26,8 @@ constexpr std::array<SettingName, Identity::SETTING_COUNT> NAMES{{{"size", nullp
                                                                   {"estimator", "candela.estimator"},
                                                                   {"max depth", "candela.maxDepth"},
                                                                   {"rr depth", "candela.rrDepth"},
-                                                                  {"camera", "candela.camera"}}};
+                                                                  {"camera", "candela.camera"},
+                                                                  {"frame", FRAME_ATTRIBUTE}}};
 
 }  // namespace
 
@@ -67,8 +71,10 @@ Identity identity_of(const Image& image, const std::string& name) {
                     "\"; give a file that candela render wrote, unchanged");
     }
     for (size_t i = 0; i < NAMES.size(); ++i) {
-        if (NAMES[i].attribute != nullptr)
-            identity.settings[i] = text_attribute(image, NAMES[i].attribute, name);
+        if (NAMES[i].attribute == nullptr) continue;
+        const bool older =
+            NAMES[i].attribute == FRAME_ATTRIBUTE && !image.attributes.contains(FRAME_ATTRIBUTE);
+        identity.settings[i] = older ? OLDER : text_attribute(image, NAMES[i].attribute, name);
     }
     identity.settings[0] = size_text(image.full);
     identity.settings[1] = crop_text(image.data);
@@ -95,10 +101,13 @@ std::string difference(const Identity& theirs, const Identity& ours) {
     std::string text;
     for (size_t i = 0; i < NAMES.size(); ++i) {
         if (theirs.settings[i] == ours.settings[i]) continue;
+        // A frame follows from the scene.
+        if (NAMES[i].attribute == FRAME_ATTRIBUTE && theirs.settings[i] != OLDER && text.empty())
+            text = ANOTHER_SCENE;
         text += (text.empty() ? "its " : ", its ") + std::string(NAMES[i].word) + " is " +
                 theirs.settings[i] + ", not " + ours.settings[i];
     }
-    if (text.empty() && theirs.hash != ours.hash) text = "it shows another scene, or another version of it";
+    if (text.empty() && theirs.hash != ours.hash) text = ANOTHER_SCENE;
     return text;
 }
 

@@ -4,16 +4,22 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <span>
 
+#include "base/error.h"
+#include "base/text.h"
 #include "bvh/bvh.h"
 #include "gpu_scene/alias_table.h"
 #include "gpu_scene/environment_map.h"
 #include "gpu_scene/flatten.h"
 #include "gpu_scene/material_record.h"
+#include "scene/geometry.h"
+#include "scene/mesh.h"
 #include "shared/bvh_node.h"
 #include "shared/material.h"
+#include "shared/primitive.h"
 
 namespace candela {
 namespace {
@@ -76,7 +82,11 @@ bool add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box
 }
 
 // Appends the records of materials and of the media behind them, each medium once.
-void append_materials(GpuScene& gpu, const std::vector<Material>& materials) {
+void append_materials(GpuScene& gpu, const std::vector<Material>& materials, double unit) {
+    if (materials.size() > MAX_MATERIALS) {
+        throw Error("the scene has " + std::to_string(materials.size()) + " materials, but at most " +
+                    std::to_string(MAX_MATERIALS) + " fit into the records; use fewer");
+    }
     std::vector<Medium> media(1);
     static_assert(MEDIUM_NONE == 0);
     for (const Material& material : materials) {
@@ -88,7 +98,7 @@ void append_materials(GpuScene& gpu, const std::vector<Material>& materials) {
         gpu.materials_present |= 1u << record.model;
     }
     for (const Medium& medium : media)
-        append(gpu.arrays[ARRAY_MEDIA], pack(MediumRecord{medium.absorption}));
+        append(gpu.arrays[ARRAY_MEDIA], pack(MediumRecord{vec3(unit * dvec3(medium.absorption))}));
     gpu.has_media = media.size() > 1;
 }
 
@@ -101,16 +111,42 @@ uint64_t GpuScene::bytes() const {
     return words * sizeof(uvec4);
 }
 
+SceneFrame choose_frame(const Scene& scene) {
+    const DoubleBox box = bounds(scene);
+    if (box.is_empty()) return {};
+    const dvec3 extent = box.extent();
+    const double size = std::max({extent.x, extent.y, extent.z});
+    SceneFrame frame{.origin = box.centroid()};
+    if (size > 0.0) {
+        int exponent = 0;
+        std::frexp(size, &exponent);
+        frame.unit = std::ldexp(1.0, exponent);
+    }
+    return frame;
+}
+
 GpuScene build_gpu_scene(const Scene& scene) {
-    FlatScene flat = flatten(scene);
+    return build_gpu_scene(scene, choose_frame(scene));
+}
+
+GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame) {
+    FlatScene flat = flatten(scene, frame);
     GpuScene gpu;
+    gpu.frame = frame;
     gpu.primitive_count = uint32_t(flat.primitives.size());
     gpu.id_count = flat.id_count;
     gpu.has_normals = !flat.normals.empty();
+    if (is_too_coarse(flat.coarse, flat.triangles)) {
+        gpu.warnings.push_back(
+            std::to_string(flat.coarse) + " of " + std::to_string(flat.triangles) +
+            " triangles are smaller than 16 steps of 32-bit coordinates in a scene of this "
+            "size, " +
+            number_text(frame.unit, 3) + " m: they look rough; render what is far apart by itself");
+    }
     if (flat.flattened > 0) {
         gpu.warnings.push_back("left out " + std::to_string(flat.flattened) +
                                (flat.flattened == 1 ? " triangle" : " triangles") +
-                               " too small for 32-bit coordinates at their distance from the origin");
+                               " too small for 32-bit coordinates in a scene of this size");
     }
 
     const auto start = std::chrono::steady_clock::now();
@@ -156,7 +192,7 @@ GpuScene build_gpu_scene(const Scene& scene) {
         for (const uint32_t i : bvh.order)
             append(gpu.arrays[ARRAY_NORMALS], flat.normals[i]);
     }
-    append_materials(gpu, scene.materials);
+    append_materials(gpu, scene.materials, frame.unit);
     for (const Light& light : flat.lights) {
         append(gpu.arrays[ARRAY_LIGHTS], pack(light));
         gpu.lights_present |= 1u << light.kind;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/frame.h"
 #include "scene/scene.h"
 #include "shared/kernel_constants.h"
 #include "shared/parameters.h"
@@ -13,6 +14,8 @@
 namespace candela {
 
 struct GpuScene {
+    SceneFrame frame;  // Of all lengths and points below.
+
     // Records as shared/*.h describe them, in words of uvec4, by ARRAY_*.
     std::array<std::vector<uvec4>, ARRAY_COUNT> arrays;
 
@@ -45,8 +48,14 @@ struct GpuScene {
     uint64_t bytes() const;
 };
 
+// The frame for a scene: its origin is the centre of the box around all shapes, its unit the least power of
+// two that is greater than the box's longest side. It depends on no camera.
+SceneFrame choose_frame(const Scene& scene);
+
 // Flattens the shapes into primitives, builds the BVH and packs everything. Throws Error if the scene has
 // more primitives than a BVH can address.
+// The records are in the frame that choose_frame() chooses, or in `frame`.
 GpuScene build_gpu_scene(const Scene& scene);
+GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame);
 
 }  // namespace candela

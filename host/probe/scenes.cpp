@@ -49,13 +49,17 @@ Environment one_bright_texel(uvec2 size, uvec2 texel, vec3 radiance) {
     return environment;
 }
 
-Quad parallelogram(vec3 p, vec3 e1, vec3 e2) {
+Quad parallelogram(dvec3 p, dvec3 e1, dvec3 e2) {
     return {{p, p + e1, p + e1 + e2, p + e2}};
 }
 
-Scene scene_with_camera(vec3 position, vec3 look_at, float vertical_fov) {
+Quad parallelogram(vec3 p, vec3 e1, vec3 e2) {
+    return {{dvec3(p), dvec3(p + e1), dvec3(p + e1 + e2), dvec3(p + e2)}};
+}
+
+Scene scene_with_camera(dvec3 position, dvec3 look_at, float vertical_fov) {
     Scene scene;
-    const vec3 up = std::abs(normalize(look_at - position).y) < 0.9f ? vec3(0, 1, 0) : vec3(0, 0, 1);
+    const vec3 up = std::abs(normalize(look_at - position).y) < 0.9 ? vec3(0, 1, 0) : vec3(0, 0, 1);
     scene.cameras.push_back({.name = "main",
                              .position = position,
                              .look_at = look_at,
@@ -66,7 +70,7 @@ Scene scene_with_camera(vec3 position, vec3 look_at, float vertical_fov) {
 }
 
 Scene open_room() {
-    Scene scene = scene_with_camera(vec3(0, 1, 2.9f), vec3(0, 0.9f, 0), 1.0f);
+    Scene scene = scene_with_camera(dvec3(0, 1, 2.9), dvec3(0, 0.9, 0), 1.0f);
     const uint32_t wall = add_diffuse(scene, vec3(0.5f, 0.6f, 0.7f));
     add_shape(scene, parallelogram(vec3(-2, 0, 2), vec3(4, 0, 0), vec3(0, 0, -4)), wall);  // Floor.
     add_shape(scene, parallelogram(vec3(-2, 0, -2), vec3(4, 0, 0), vec3(0, 2, 0)), wall);  // Back wall.
@@ -95,20 +99,20 @@ Scene scene_of_everything() {
     const vec3 bright(3, 2, 1);
     add_shape(scene, parallelogram(vec3(-1, 1.99f, -1), vec3(0.8f, 0, 0), vec3(0, 0, 0.8f)), black,
               Emission{bright, false});
-    add_shape(scene, Sphere{vec3(1.5f, 1.6f, -1), 0.2f}, black, Emission{bright, false});
-    add_shape(scene, Sphere{vec3(-1.6f, 1.2f, 0), 0.15f}, metal, Emission{bright, true});
-    add_shape(scene, Disk{vec3(0.6f, 1.95f, -0.5f), vec3(0.3f, 0, 0), vec3(0, 0, 0.2f)}, phong,
+    add_shape(scene, Sphere{dvec3(1.5, 1.6, -1), 0.2}, black, Emission{bright, false});
+    add_shape(scene, Sphere{dvec3(-1.6, 1.2, 0), 0.15}, metal, Emission{bright, true});
+    add_shape(scene, Disk{dvec3(0.6, 1.95, -0.5), dvec3(0.3, 0, 0), dvec3(0, 0, 0.2)}, phong,
               Emission{bright, true});
 
-    add_shape(scene, Sphere{vec3(-0.9f, 0.5f, -0.3f), 0.4f}, glass);
-    add_shape(scene, Sphere{vec3(-0.9f, 0.5f, -0.3f), 0.1f}, phong);  // Within the glass.
-    add_shape(scene, Sphere{vec3(0.1f, 0.4f, 0.4f), 0.3f}, exact_glass);
-    add_shape(scene, Sphere{vec3(0.9f, 0.5f, -0.8f), 0.4f}, mirror);
-    add_shape(scene, Disk{vec3(0, 0.9f, -1.9f), vec3(0.6f, 0, 0.1f), vec3(0, 0.6f, 0)}, metal);
+    add_shape(scene, Sphere{dvec3(-0.9, 0.5, -0.3), 0.4}, glass);
+    add_shape(scene, Sphere{dvec3(-0.9, 0.5, -0.3), 0.1}, phong);  // Within the glass.
+    add_shape(scene, Sphere{dvec3(0.1, 0.4, 0.4), 0.3}, exact_glass);
+    add_shape(scene, Sphere{dvec3(0.9, 0.5, -0.8), 0.4}, mirror);
+    add_shape(scene, Disk{dvec3(0, 0.9, -1.9), dvec3(0.6, 0, 0.1), dvec3(0, 0.6, 0)}, metal);
     TriangleMesh ball = sphere_mesh(8, 12);
     ball.normals = ball.positions;
     add_shape(scene, transformed(ball, [](vec3 p) { return vec3(0.9f, 0.3f, 0.5f) + 0.25f * p; }), phong);
-    add_shape(scene, Disk{vec3(-0.3f, 1.1f, 0.2f), vec3(0.3f, 0.1f, 0), vec3(0, 0.1f, 0.3f)}, leaf);
+    add_shape(scene, Disk{dvec3(-0.3, 1.1, 0.2), dvec3(0.3, 0.1, 0), dvec3(0, 0.1, 0.3)}, leaf);
     return scene;
 }
 
@@ -194,7 +198,7 @@ TriangleMesh transformed(TriangleMesh mesh, const std::function<vec3(vec3)>& f) 
 }
 
 Scene scene_of_mesh(TriangleMesh mesh) {
-    Scene scene = scene_with_camera(vec3(0), vec3(0, 0, -1), 1.0f);
+    Scene scene = scene_with_camera(dvec3(0), dvec3(0, 0, -1), 1.0f);
     add_diffuse(scene, vec3(0.5f));
     add_shape(scene, std::move(mesh), 0);
     return scene;

@@ -28,10 +28,11 @@ Environment constant_environment(vec3 radiance);
 Environment one_bright_texel(uvec2 size, uvec2 texel, vec3 radiance);
 
 // A quad with corners p, p + e1, p + e1 + e2, p + e2.
+Quad parallelogram(dvec3 p, dvec3 e1, dvec3 e2);
 Quad parallelogram(vec3 p, vec3 e1, vec3 e2);
 
 // A scene without shapes, with a camera of that vertical field of view [rad].
-Scene scene_with_camera(vec3 position, vec3 look_at, float vertical_fov);
+Scene scene_with_camera(dvec3 position, dvec3 look_at, float vertical_fov);
 
 // A grey room without lights, open in front and at the sides; its floor is at y = 0.
 Scene open_room();

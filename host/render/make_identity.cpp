@@ -11,13 +11,18 @@
 namespace candela {
 namespace {
 
-// The shortest text that reads back as that float.
-std::string exact(float value) {
+// Grows with every change of what the records mean: the same numbers then make other pictures.
+constexpr uint32_t RECORDS_VERSION = 2;
+
+// The shortest text that reads back as that number.
+template <class Number>
+std::string exact(Number value) {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-std::string exact(vec3 v) {
+template <class Number>
+std::string exact(const glm::vec<3, Number>& v) {
     return exact(v.x) + ' ' + exact(v.y) + ' ' + exact(v.z);
 }
 
@@ -31,6 +36,11 @@ std::string camera_text(const Camera& camera) {
             text += ", " + std::to_string(lens.blades) + " blades at " + exact(lens.rotation) + " rad";
     }
     return text;
+}
+
+std::string frame_text(const SceneFrame& frame) {
+    return "origin " + exact(frame.origin) + ", unit " + exact(frame.unit) + " m, records " +
+           std::to_string(RECORDS_VERSION);
 }
 
 template <class T>
@@ -53,7 +63,7 @@ Identity make_identity(const GpuScene& scene, const Camera& camera, const Render
     return {.settings = {size_text(settings.size), crop_text(settings.crop), std::to_string(settings.seed),
                          name_of(settings.sampler, SAMPLER_NAMES),
                          name_of(settings.estimator, ESTIMATOR_NAMES), std::to_string(settings.max_depth),
-                         std::to_string(settings.rr_depth), camera_text(camera)},
+                         std::to_string(settings.rr_depth), camera_text(camera), frame_text(scene.frame)},
             .hash = hash};
 }
 

@@ -58,15 +58,17 @@ const vk::Device& check_memory(const vk::Device& device, const GpuScene& scene,
 }  // namespace
 
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
-    const vec3 forward = normalize(camera.look_at - camera.position);
+    const SceneFrame& frame = scene.frame;
+    const vec3 forward(normalize(camera.look_at - camera.position));
     const vec3 right = normalize(cross(forward, camera.up));
     const vec3 up = cross(right, forward);
     const float tan_y = std::tan(0.5f * camera.vertical_fov);
     const float tan_x = tan_y * float(settings.size.x) / float(settings.size.y);
     const Lens& lens = camera.lens;
+    const float lens_radius = frame.length(double(lens.radius));
     const float cos_lens = std::cos(lens.rotation);
     const float sin_lens = std::sin(lens.rotation);
-    return {.position = camera.position,
+    return {.position = frame.point(camera.position),
             .right = tan_x * right,
             .up = tan_y * up,
             .forward = forward,
@@ -79,9 +81,9 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .environment_light = scene.environment_light,
             .environment_size = scene.environment_size,
             .environment_turn = {std::cos(scene.environment_rotation), std::sin(scene.environment_rotation)},
-            .lens_x = lens.radius * (cos_lens * right + sin_lens * up),
-            .lens_y = lens.radius * (cos_lens * up - sin_lens * right),
-            .focal_distance = lens.focal_distance,
+            .lens_x = lens_radius * (cos_lens * right + sin_lens * up),
+            .lens_y = lens_radius * (cos_lens * up - sin_lens * right),
+            .focal_distance = frame.length(double(lens.focal_distance)),
             .blades = lens.blades,
             .first_sample = settings.first_sample};
 }
@@ -113,6 +115,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
                    const RenderSettings& settings)
     : device_(&check_memory(device, scene, settings)),
       settings_(settings),
+      frame_(scene.frame),
       scene_(device, scene, make_parameters(scene, camera, settings),
              map_arrays(device.info(), scene, settings.scene_access)),
       constants_(kernel_constants(device, scene, scene_.map(), camera, settings)),
@@ -243,7 +246,15 @@ std::vector<float> Renderer::positions() {
         record(kernel, {.origin = {0, y}, .size = tile, .stride = {1, 1}, .target_samples = 0});
         commands_.submit_and_wait();
     }
-    return vk::download(image, 0, 1);
+    std::vector<float> values = vk::download(image, 0, 1);
+    for (size_t i = 0; i < values.size(); i += 4) {
+        if (values[i + 3] == INFINITE) continue;  // A miss.
+        const dvec3 p = frame_.world(vec3(values[i], values[i + 1], values[i + 2]));
+        for (glm::length_t c = 0; c < 3; ++c)
+            values[i + size_t(c)] = float(p[c]);
+        values[i + 3] *= float(frame_.unit);
+    }
+    return values;
 }
 
 }  // namespace candela

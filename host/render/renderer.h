@@ -110,6 +110,7 @@ class Renderer {
 
     const vk::Device* device_;
     RenderSettings settings_;
+    SceneFrame frame_;
     RenderCounters counters_;
     double pipeline_seconds_ = 0.0;
     uint32_t samples_ = 0;  // That every pixel holds at least.

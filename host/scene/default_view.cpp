@@ -8,16 +8,15 @@
 namespace candela {
 
 void add_default_view(Scene& scene) {
-    const Box box = bounds(scene);
-    const vec3 center = box.is_empty() ? vec3(0.0f) : box.centroid();
+    const DoubleBox box = bounds(scene);
     // Radius of the sphere around the box [m]; any length where there is nothing to see.
-    const float radius = box.is_empty() || box.extent() == vec3(0.0f) ? 1.0f : 0.5f * length(box.extent());
-    const vec3 towards_viewer = normalize(vec3(0.5f, 0.4f, 1.0f));
+    const double radius = box.is_empty() || box.extent() == dvec3(0.0) ? 1.0 : 0.5 * length(box.extent());
+    const dvec3 towards_viewer = normalize(dvec3(0.5, 0.4, 1.0));
     Camera camera;
     camera.name = "default";
-    camera.look_at = center;
+    camera.look_at = box.is_empty() ? dvec3(0.0) : box.centroid();
     camera.vertical_fov = 0.7f;
-    camera.position = center + radius / std::sin(0.5f * camera.vertical_fov) * towards_viewer;
+    camera.position = camera.look_at + radius / std::sin(0.5 * double(camera.vertical_fov)) * towards_viewer;
     scene.cameras.push_back(camera);
     if (emitter_count(scene) == 0) scene.environment = Environment{.radiance = {vec3(1.0f)}};
 }

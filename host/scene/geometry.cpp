@@ -7,27 +7,27 @@
 namespace candela {
 namespace {
 
-void extend(Box& box, const Scene& scene, const MeshInstance& instance) {
+void extend(DoubleBox& box, const Scene& scene, const MeshInstance& instance) {
     const TriangleMesh& mesh = scene.meshes[instance.mesh];
     for (const uvec3 t : mesh.triangles) {
         for (glm::length_t i = 0; i < 3; ++i)
-            box.extend(vec3(instance.transform.point(mesh.origin + glm::dvec3(mesh.positions[t[i]]))));
+            box.extend(instance.transform.point(mesh.origin + dvec3(mesh.positions[t[i]])));
     }
 }
 
-void extend(Box& box, const Scene&, const Quad& quad) {
-    for (const vec3 corner : quad.corners)
+void extend(DoubleBox& box, const Scene&, const Quad& quad) {
+    for (const dvec3 corner : quad.corners)
         box.extend(corner);
 }
 
-void extend(Box& box, const Scene&, const Sphere& sphere) {
+void extend(DoubleBox& box, const Scene&, const Sphere& sphere) {
     box.extend(sphere.center - sphere.radius);
     box.extend(sphere.center + sphere.radius);
 }
 
 // Along an axis, x e1 + y e2 is greatest where (x, y) is parallel to the components of e1 and e2 along it.
-void extend(Box& box, const Scene&, const Disk& disk) {
-    vec3 reach;
+void extend(DoubleBox& box, const Scene&, const Disk& disk) {
+    dvec3 reach;
     for (glm::length_t axis = 0; axis < 3; ++axis)
         reach[axis] = std::hypot(disk.e1[axis], disk.e2[axis]);
     box.extend(disk.center - reach);
@@ -52,8 +52,8 @@ uint64_t triangles_of(const Scene&, const Disk&) {
 
 }  // namespace
 
-Box bounds(const Scene& scene) {
-    Box box;
+DoubleBox bounds(const Scene& scene) {
+    DoubleBox box;
     for (const Shape& shape : scene.shapes) {
         std::visit([&](const auto& geometry) { extend(box, scene, geometry); }, shape.geometry);
     }

@@ -7,7 +7,7 @@
 namespace candela {
 
 // The least box around all shapes; empty for a scene without shapes.
-Box bounds(const Scene& scene);
+DoubleBox bounds(const Scene& scene);
 
 // How many triangles the shapes have; a quad counts as two, a sphere or disk as none.
 uint64_t triangle_count(const Scene& scene);

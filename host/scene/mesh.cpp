@@ -97,6 +97,20 @@ Box local_bounds(const TriangleMesh& mesh) {
     return box;
 }
 
+size_t count_coarse_triangles(const TriangleMesh& mesh) {
+    constexpr double STEPS = 16.0;
+    const auto greatest = [](dvec3 v) { return std::max({v.x, v.y, v.z}); };
+    return size_t(std::ranges::count_if(mesh.triangles, [&](uvec3 t) {
+        const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+        const double side = greatest(max(a, max(b, c)) - min(a, min(b, c)));
+        return side < STEPS * 0x1p-23 * greatest(abs(mesh.origin + a));
+    }));
+}
+
+bool is_too_coarse(uint64_t coarse, uint64_t triangles) {
+    return 100 * coarse > triangles;
+}
+
 size_t drop_flat_triangles(TriangleMesh& mesh) {
     return std::erase_if(mesh.triangles, [&](uvec3 t) { return scaled_normal(mesh, t) == glm::dvec3(0.0); });
 }
@@ -162,11 +176,11 @@ std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh, std::span<const u
     return parts;
 }
 
-TriangleMesh placed(const TriangleMesh& mesh, const Transform& transform) {
+TriangleMesh placed(const TriangleMesh& mesh, const Transform& transform, const SceneFrame& frame) {
     TriangleMesh result = mesh;
     result.origin = glm::dvec3(0.0);
     for (vec3& p : result.positions)
-        p = vec3(transform.point(mesh.origin + glm::dvec3(p)));
+        p = frame.point(transform.point(mesh.origin + dvec3(p)));
     for (vec3& n : result.normals)
         n = transform.normal(n);
     for (vec4& t : result.tangents) {

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "scene/frame.h"
 #include "scene/scene.h"
 
 namespace candela {
@@ -38,6 +39,12 @@ void add_polygon(TriangleMesh& mesh, std::span<const uint32_t> corners);
 // The least box around the positions, relative to the origin.
 Box local_bounds(const TriangleMesh& mesh);
 
+// How many triangles are smaller than 16 steps of the floats that their coordinates would be around 0, which
+// is too coarse for their shape.
+size_t count_coarse_triangles(const TriangleMesh& mesh);
+// Whether a warning is due: more than one in a hundred of `triangles`.
+bool is_too_coarse(uint64_t coarse, uint64_t triangles);
+
 // Removes the triangles whose corners lie on a line or point. Returns how many there were.
 size_t drop_flat_triangles(TriangleMesh& mesh);
 
@@ -55,8 +62,8 @@ void complete_normals(TriangleMesh& mesh);
 std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh, std::span<const uint32_t> part_of,
                                      size_t count);
 
-// The mesh in world space: its origin is 0, its positions are rounded to floats, its normals and tangents
-// have unit length. Triangles that rounding makes flat remain.
-TriangleMesh placed(const TriangleMesh& mesh, const Transform& transform);
+// The mesh in `frame`: its origin is 0, its positions are rounded to floats, its normals and tangents have
+// unit length. Triangles that rounding makes flat remain.
+TriangleMesh placed(const TriangleMesh& mesh, const Transform& transform, const SceneFrame& frame = {});
 
 }  // namespace candela

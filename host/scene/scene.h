@@ -27,8 +27,8 @@ inline constexpr uint32_t MAX_BLADES = 64;
 // A perspective camera. Right is cross(forward, up); pixels are square.
 struct Camera {
     std::string name;
-    vec3 position{0};
-    vec3 look_at{0, 0, -1};
+    dvec3 position{0};
+    dvec3 look_at{0, 0, -1};
     vec3 up{0, 1, 0};
     float vertical_fov = 0.0f;  // Full angle [rad], in (0, pi).
     Lens lens;
@@ -139,21 +139,21 @@ struct MeshInstance {
 
 // A planar, convex quadrilateral with counter-clockwise corners.
 struct Quad {
-    vec3 corners[4];
+    dvec3 corners[4];
 };
 
 // A true sphere; its front is outside.
 struct Sphere {
-    vec3 center{0};
-    float radius = 1.0f;  // Above 0.
+    dvec3 center{0};
+    double radius = 1.0;  // Above 0.
 };
 
 // center + x e1 + y e2 with x^2 + y^2 <= 1: a disk, or an ellipse. Its front is the side that cross(e1, e2)
 // points to.
 struct Disk {
-    vec3 center{0};
-    vec3 e1{1, 0, 0};
-    vec3 e2{0, 1, 0};
+    dvec3 center{0};
+    dvec3 e1{1, 0, 0};
+    dvec3 e2{0, 1, 0};
 };
 
 struct Shape {

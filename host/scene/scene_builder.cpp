@@ -9,9 +9,8 @@
 
 namespace candela {
 
-std::optional<vec3> rounded(glm::dvec3 p) {
-    if (!glm::all(glm::lessThanEqual(abs(p), glm::dvec3(double(MAX_COORDINATE))))) return std::nullopt;
-    return vec3(p);
+bool is_within_reach(dvec3 p) {
+    return glm::all(glm::lessThanEqual(abs(p), dvec3(double(MAX_COORDINATE))));
 }
 
 namespace {
@@ -21,7 +20,7 @@ bool fits(const TriangleMesh& mesh, const Transform& transform) {
     for (unsigned corner = 0; corner < 8; ++corner) {
         const glm::dvec3 p(corner & 1u ? box.hi.x : box.lo.x, corner & 2u ? box.hi.y : box.lo.y,
                            corner & 4u ? box.hi.z : box.lo.z);
-        if (!rounded(transform.point(mesh.origin + p))) return false;
+        if (!is_within_reach(transform.point(mesh.origin + p))) return false;
     }
     return true;
 }

@@ -23,8 +23,8 @@ struct MeshPart {
     TriangleMesh mesh;
 };
 
-// A point in world space as floats; none if it lies beyond MAX_COORDINATE.
-std::optional<vec3> rounded(glm::dvec3 p);
+// Whether no coordinate of a point in world space lies beyond MAX_COORDINATE.
+bool is_within_reach(dvec3 p);
 
 // What messages say of a shape with such a point.
 inline constexpr const char* TOO_FAR =

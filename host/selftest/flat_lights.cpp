@@ -79,9 +79,10 @@ bool is_right(const LightItem& item, const LightSample& s, size_t i, double tota
     // A cosine of 1e-2 has a relative error of 1e2 times 2^-22.
     const double relative = 4.0 + 2.0 / std::abs(cosine);
     if (!(std::abs(double(s.pdf) - pdf) <= pdf * 0x1p-22 * relative)) return false;
-    // The shadow ray ends before the light, by at most 256 representable numbers, or 2^-16 near 0.
+    // The shadow ray ends before the light: by at most eight roundings of the distance and sixteen
+    // of the light's z, and a rounding of each.
     const double gap = std::copysign(1.0, cosine) * (item.from.z + s.shadow.z - l.p.z);
-    if (!(gap > 0.0 && gap <= std::max(257 * 0x1p-23 * 4.0, 0x1p-16) + 8 * 0x1p-24)) return false;
+    if (!(gap > 0.0 && gap <= 0x1p-24 * (9.0 * distance + 17.0 * 4.0))) return false;
     // t_max is a millionth below 1, at most two.
     if (!(s.t_max < 1.0f && s.t_max >= 1.0f - 0x1p-19f)) return false;
     // A ray that hits the same light there agrees.
@@ -114,7 +115,7 @@ Evidence test_flat_light_points(const vk::Device& device, Effort effort) {
     std::vector<Histogram> points(LIGHTS.size(), Histogram(CELLS));
     const std::vector<LightItem> items = random_items(sized(effort, 200000));
     const std::vector<LightSample> samples =
-        sample_lights(device, build_gpu_scene(scene_of_flat_lights()), items);
+        sample_lights(device, build_gpu_scene(scene_of_flat_lights(), SceneFrame{}), items);
     for (size_t k = 0; k < items.size(); ++k) {
         const size_t i = light_of(items[k], samples[k]);
         const glm::dvec2 at = i < LIGHTS.size()
@@ -142,7 +143,7 @@ Evidence test_flat_light_values(const vk::Device& device, SceneAccess access) {
     Evidence evidence;
     const std::vector<LightItem> items = random_items(20000);
     const std::vector<LightSample> samples =
-        sample_lights(device, build_gpu_scene(scene_of_flat_lights()), items, access);
+        sample_lights(device, build_gpu_scene(scene_of_flat_lights(), SceneFrame{}), items, access);
     for (size_t k = 0; k < items.size(); ++k) {
         const LightSample& s = samples[k];
         const size_t i = light_of(items[k], s);

@@ -76,11 +76,11 @@ Scene room_of_lights() {
     const vec3 warm(4, 3, 2), cool(1, 2, 3);
     add_shape(scene, parallelogram(vec3(-1, 1.99f, -1), vec3(0.8f, 0, 0), vec3(0, 0, 0.8f)), grey,
               Emission{warm, false});
-    add_shape(scene, Sphere{vec3(-1.2f, 1.2f, -1), 0.4f}, grey, Emission{warm, false});
-    add_shape(scene, Disk{vec3(0.9f, 1.4f, -0.9f), vec3(0.6f, 0, 0), vec3(0, 0, 0.4f)}, grey,
+    add_shape(scene, Sphere{dvec3(-1.2, 1.2, -1), 0.4}, grey, Emission{warm, false});
+    add_shape(scene, Disk{dvec3(0.9, 1.4, -0.9), dvec3(0.6, 0, 0), dvec3(0, 0, 0.4)}, grey,
               Emission{cool, true});
     const auto ball = [&](float x, const decltype(Material::model)& model) {
-        add_shape(scene, Sphere{vec3(x, 0.4f, 0.2f), 0.35f}, add_material(scene, model));
+        add_shape(scene, Sphere{dvec3(x, 0.4, 0.2), 0.35}, add_material(scene, model));
     };
     ball(-1.2f, PhongMaterial{vec3(0.3f, 0.2f, 0.1f), vec3(0.6f, 0.5f, 0.4f), 10.0f});
     ball(-0.4f, ConductorMaterial{vec3(0.9f, 0.7f, 0.4f), 0.3f});

@@ -82,7 +82,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 126> words;
+    std::array<uint, 128> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -128,9 +128,10 @@ Records filled(Fields& fields) {
               .c = fields.f3(),
               .d = vec3(0)};
     r.surface = {.id = fields.u2(),
-                 .material = fields.keep(0x2AAAAAA5u),
+                 .material = fields.keep(0x2AAAA5u),
                  .has_normals = fields.keep(1u),
-                 .light = fields.u()};
+                 .light = fields.u(),
+                 .error = std::bit_cast<float>(fields.keep(floatBitsToUint(0x1p-21f)))};
     r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), vec3(0, -1, 0));
     for (const int i : {0, 1, 2, 3})
         fields.keep(r.normals[0][i]);
@@ -145,9 +146,10 @@ Records filled(Fields& fields) {
                .e1 = fields.f3(),
                .e2 = fields.f3(),
                .radiance = fields.f3(),
-               .two_sided = fields.u(),
+               .two_sided = fields.keep(1u),
                .pdf_area = fields.f(),
-               .pmf = fields.f()};
+               .pmf = fields.f(),
+               .error = fields.f()};
     const auto entry = [&] { return AliasEntry{.threshold = fields.u(), .alias = fields.u()}; };
     r.light_even = entry();
     r.light_odd = entry();

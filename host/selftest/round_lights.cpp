@@ -22,7 +22,7 @@ GpuScene scene_of(const decltype(Shape::geometry)& geometry, bool two_sided) {
     scene.shapes = {{.geometry = geometry,
                      .material = 0,
                      .emission = Emission{.radiance = RADIANCE, .two_sided = two_sided}}};
-    return build_gpu_scene(scene);
+    return build_gpu_scene(scene, SceneFrame{});
 }
 
 std::string describe(const char* what, vec3 from, const LightSample& s) {
@@ -38,14 +38,14 @@ struct Place {
 
 // From far away to almost touching; a tiny sphere and a huge one; away from the origin.
 const std::vector<Place> OUTSIDE{
-    {{vec3(0, 0, -3), 1.0f}, vec3(0)},
-    {{vec3(1, 2, 3), 0.25f}, vec3(-1, 0.5f, 2)},
-    {{vec3(5, 4, 3), 1.0f}, vec3(300, 400, 500)},
-    {{vec3(0, 2, 0), 1e-3f}, vec3(0.5f, 0, 0)},
-    {{vec3(0), 1e-3f}, vec3(60, 0, 80)},
-    {{vec3(0, -1e4f, 0), 1e4f}, vec3(3, 1, 2)},
-    {{vec3(0, 0, -1), 1.0f}, vec3(0, 0, 0.01f)},
-    {{vec3(10, 0, 0), 2.0f}, vec3(7.999f, 0, 0)},
+    {{dvec3(0, 0, -3), 1.0f}, vec3(0)},
+    {{dvec3(1, 2, 3), 0.25f}, vec3(-1, 0.5f, 2)},
+    {{dvec3(5, 4, 3), 1.0f}, vec3(300, 400, 500)},
+    {{dvec3(0, 2, 0), 1e-3f}, vec3(0.5f, 0, 0)},
+    {{dvec3(0), 1e-3f}, vec3(60, 0, 80)},
+    {{dvec3(0, -1e4f, 0), 1e4f}, vec3(3, 1, 2)},
+    {{dvec3(0, 0, -1), 1.0f}, vec3(0, 0, 0.01f)},
+    {{dvec3(10, 0, 0), 2.0f}, vec3(7.999f, 0, 0)},
 };
 
 // Samples are uniform in 1 - cos of the angle to the axis and in the angle around it. The density has the
@@ -58,16 +58,16 @@ void test_sphere_from_outside(const vk::Device& device, const Place& place, uint
                               Evidence& evidence) {
     const Sphere& sphere = place.sphere;
     const vec3 from = place.from;
-    const glm::dvec3 to_center = glm::dvec3(sphere.center) - glm::dvec3(from);
+    const dvec3 to_center = dvec3(sphere.center) - dvec3(from);
     const double sine = double(sphere.radius) / length(to_center), root = std::sqrt(1.0 - sine * sine);
     const double h_max = sine * sine / (1.0 + root), pdf = 1.0 / (2.0 * M_PI * h_max);
-    const glm::dvec3 axis = normalize(to_center);
+    const dvec3 axis = normalize(to_center);
     const auto [x, y] = axes_around(axis);
     Histogram points(LIGHT_CELLS);
     size_t met = 0, outside = 0;
     for (const LightSample& s :
          sample_lights(device, scene_of(sphere, false), random_light_items(from, samples, 80))) {
-        const glm::dvec3 wi(s.wi), chord = wi - axis;
+        const dvec3 wi(s.wi), chord = wi - axis;
         const double h = 0.5 * dot(chord, chord);
         outside += h > h_max;
         points.add({h / h_max, turn_of(dot(wi, y), dot(wi, x))});
@@ -102,22 +102,21 @@ Evidence test_spheres_from_outside(const vk::Device& device, Effort effort) {
 // The point is uniform over the whole area; the density is that over the area, converted to solid angle. A
 // sphere emits inwards only if it is two-sided.
 Evidence test_spheres_from_inside(const vk::Device& device, Effort effort) {
-    const Sphere sphere{vec3(1, 2, 3), 2.0f};
+    const Sphere sphere{dvec3(1, 2, 3), 2.0};
     Evidence evidence;
     for (const vec3 from : {vec3(1, 2, 3), vec3(2, 3, 3), vec3(1, 2, 4.99f)}) {
         Histogram points(LIGHT_CELLS);
         for (const LightSample& s :
              sample_lights(device, scene_of(sphere, true),
                            random_light_items(from, sized(effort, LIGHT_SAMPLES), 81))) {
-            const glm::dvec3 n =
-                normalize(glm::dvec3(from) + glm::dvec3(s.shadow) - glm::dvec3(sphere.center));
-            const glm::dvec3 to_light = glm::dvec3(sphere.center) + 2.0 * n - glm::dvec3(from);
+            const dvec3 n = normalize(dvec3(from) + dvec3(s.shadow) - dvec3(sphere.center));
+            const dvec3 to_light = dvec3(sphere.center) + 2.0 * n - dvec3(from);
             points.add({(n.z + 1.0) / 2.0, turn_of(n.y, n.x)});
             const double distance = length(to_light), cosine = dot(to_light, n) / distance;
             const double pdf = distance * distance / (16.0 * M_PI * cosine);
             // The error of taking the shadow ray's end, about 10^-4 off the sphere, for the point.
             const double off = 1e-4 * (1.0 / distance + 1.0 / cosine);
-            const bool right = length(glm::dvec3(s.wi) - to_light / distance) <= 1e-4 / distance &&
+            const bool right = length(dvec3(s.wi) - to_light / distance) <= 1e-4 / distance &&
                                std::abs(double(s.pdf) - pdf) <= pdf * 10.0 * off && s.Li == RADIANCE &&
                                s.occluded == 0 && s.light_met == 0 &&
                                std::abs(double(s.pdf_met) - double(s.pdf)) <= double(s.pdf) * off;
@@ -133,20 +132,20 @@ Evidence test_spheres_from_inside(const vk::Device& device, Effort effort) {
 
 // An ellipse, in the coordinates of its axes; its front is where cross(e1, e2) points.
 Evidence test_disks(const vk::Device& device, Effort effort) {
-    const Disk disk{.center = vec3(1, 2, 3), .e1 = vec3(2, 0, 0), .e2 = vec3(1, 3, 0)};
+    const Disk disk{.center = dvec3(1, 2, 3), .e1 = dvec3(2, 0, 0), .e2 = dvec3(1, 3, 0)};
     Evidence evidence;
     for (const vec3 from : {vec3(0, 0, 5), vec3(1, 2, 3.5f), vec3(4, 0, -20)}) {
         Histogram points(LIGHT_CELLS);
         for (const LightSample& s : sample_lights(
                  device, scene_of(disk, false), random_light_items(from, sized(effort, LIGHT_SAMPLES), 83))) {
-            const glm::dvec3 p(glm::dvec3(from) + glm::dvec3(s.shadow));  // Offset only along z.
+            const dvec3 p(dvec3(from) + dvec3(s.shadow));  // Offset only along z.
             const double y = (p.y - 2.0) / 3.0, x = (p.x - 1.0 - y) / 2.0;
             points.add({x * x + y * y, turn_of(y, x)});
-            const glm::dvec3 to_light = glm::dvec3(p.x, p.y, 3.0) - glm::dvec3(from);
+            const dvec3 to_light = dvec3(p.x, p.y, 3.0) - dvec3(from);
             const double distance = length(to_light), cosine = std::abs(to_light.z) / distance;
             const double pdf = distance * distance / (6.0 * M_PI * cosine), relative = 4.0 + 2.0 / cosine;
             bool right = x * x + y * y <= 1.0 + 1e-5 &&
-                         length(glm::dvec3(s.wi) - to_light / distance) <= 0x1p-20 &&
+                         length(dvec3(s.wi) - to_light / distance) <= 0x1p-20 &&
                          std::abs(double(s.pdf) - pdf) <= pdf * 0x1p-22 * relative &&
                          s.Li == (from.z > 3.0f ? RADIANCE : vec3(0.0f)) && s.occluded == 0;
             if (s.light_met != NO_LIGHT)  // Otherwise it misses the rim by a rounding.

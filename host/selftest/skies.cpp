@@ -104,8 +104,8 @@ void test_samples_of(const vk::Device& device, const Environment& sky, uint32_t 
     const std::string name = concat("sky of ", sky.size.x, 'x', sky.size.y);
     SkyCounts counts(sky);
     size_t at_borders = 0;
-    for (const LightSample& s :
-         sample_lights(device, build_gpu_scene(scene_under(sky)), random_light_items(vec3(0), samples, 91))) {
+    for (const LightSample& s : sample_lights(device, build_gpu_scene(scene_under(sky), SceneFrame{}),
+                                              random_light_items(vec3(0), samples, 91))) {
         const glm::dvec3 w(s.wi);
         const glm::dvec2 place = place_of(sky, w);
         counts.add(sky, place);
@@ -149,7 +149,8 @@ Scene scene_under(const Environment& environment) {
 
 std::vector<SkyTexel> look_up(const vk::Device& device, const Environment& sky,
                               const std::vector<vec3>& directions) {
-    const DeviceScene scene(device, build_gpu_scene(scene_under(sky)), SceneAccess::texel_buffers);
+    const DeviceScene scene(device, build_gpu_scene(scene_under(sky), SceneFrame{}),
+                            SceneAccess::texel_buffers);
     std::vector<vec4> items;
     for (const vec3 w : directions)
         items.emplace_back(w, 0.0f);
@@ -199,7 +200,7 @@ Evidence test_choice_of_sky(const vk::Device& device, Effort effort) {
     const double sky_power = 0.5 * 4.0 * M_PI, pmf = sky_power / (10.0 + sky_power);
     std::vector<double> counts(2);
     Evidence evidence;
-    for (const LightSample& s : sample_lights(device, build_gpu_scene(scene),
+    for (const LightSample& s : sample_lights(device, build_gpu_scene(scene, SceneFrame{}),
                                               random_light_items(vec3(0), sized(effort, 100000), 92))) {
         const bool of_the_sky = s.Li.x == 0.5f || s.Li.x == 1.5f;
         ++counts[of_the_sky ? 1 : 0];

@@ -39,14 +39,14 @@ struct InteractionResult {
 };
 
 const std::vector<Sphere> SPHERES{
-    {vec3(0), 1.0f},
-    {vec3(0), 1e-3f},
-    {vec3(0), 1e4f},
-    {vec3(0, -1000, 0), 1000.0f},  // A ground whose top is at the origin.
-    {vec3(0.3f, 0.6f, -0.2f), 0.5f},
-    {vec3(1000, -2000, 3000), 1.0f},
-    {vec3(100, 0, 100), 0.1f},
-    {vec3(0, 0, 5), 1e-2f},
+    {dvec3(0), 1.0f},
+    {dvec3(0), 1e-3f},
+    {dvec3(0), 1e4f},
+    {dvec3(0, -1000, 0), 1000.0f},  // A ground whose top is at the origin.
+    {dvec3(0.3f, 0.6f, -0.2f), 0.5f},
+    {dvec3(1000, -2000, 3000), 1.0f},
+    {dvec3(100, 0, 100), 0.1f},
+    {dvec3(0, 0, 5), 1e-2f},
 };
 
 // Runs shaders/probes/interaction. One kernel for all scenes: it takes longer to compile than to run.
@@ -58,7 +58,8 @@ class Interactions {
                                               const std::vector<InteractionItem>& items) {
         Scene scene = scene_of_mesh({});
         scene.shapes = {{.geometry = geometry, .material = 0, .emission = {}}};
-        const DeviceScene on_device(device_, build_gpu_scene(scene), SceneAccess::texel_buffers);
+        const DeviceScene on_device(device_, build_gpu_scene(scene, SceneFrame{}),
+                                    SceneAccess::texel_buffers);
         if (!kernel_) kernel_ = make_probe(device_, kernels::interaction, {}, &on_device, "interaction");
         return probe<InteractionResult>(device_, *kernel_, items, &on_device);
     }
@@ -75,9 +76,11 @@ std::vector<InteractionItem> items(Effort effort, const Sphere& sphere, bool fro
     std::vector<InteractionItem> items(sized(effort, COUNT));
     for (InteractionItem& item : items) {
         const vec3 n = random.direction();
-        const vec3 target = sphere.center + sphere.radius * n;
+        const vec3 center(sphere.center);
+        const auto radius = float(sphere.radius);
+        const vec3 target = center + radius * n;
         const float away = from_inside ? 0.9f * random.unit() : 1.1f + 3.0f * random.unit();
-        item.o = sphere.center + away * sphere.radius * random.direction();
+        item.o = center + away * radius * random.direction();
         item.d = normalize(target - item.o);
         item.wi = random.direction();
         item.side = side;
@@ -184,13 +187,12 @@ Evidence test_points_on_spheres(const vk::Device& device, Effort effort) {
             if (r.t == NO_HIT) continue;
             const glm::dvec3 p(r.p), n(r.n), from_center = p - glm::dvec3(sphere.center);
             const double error = double(r.p_error);
-            // The step off the surface is of the order of the error, or of what offset_origin takes.
             const double step = length(glm::dvec3(r.next_o) - p);
             const bool right =
                 std::abs(length(from_center) - double(sphere.radius)) <= error &&
                 std::abs(length(n) - 1.0) <= 0x1p-20 &&
                 length(normalize(from_center) - n) <= 2.0 * double(r.p_error / sphere.radius) + 0x1p-20 &&
-                step <= 2.0 * error + 0x1p-15 + 0x1p-14 * length(p);
+                step <= error + 0x1p-23 * length(p);
             evidence.expect(right, [&] {
                 return concat(name_of(sphere), ": point ", r.p.x, ' ', r.p.y, ' ', r.p.z, ", error ",
                               r.p_error, ", normal ", r.n.x, ' ', r.n.y, ' ', r.n.z, ", step ", step);
@@ -207,11 +209,11 @@ Evidence test_rays_at_disks(const vk::Device& device, Effort effort) {
         for (const vec3 center : {vec3(0), vec3(0, -1, 0), vec3(100, 200, -300)}) {
             Random random(160);
             const vec3 e1 = radius * random.direction();
-            const Disk disk{
-                .center = center, .e1 = e1, .e2 = cross(e1, normalize(cross(e1, random.direction())))};
+            const vec3 e2 = cross(e1, normalize(cross(e1, random.direction())));
+            const Disk disk{.center = dvec3(center), .e1 = dvec3(e1), .e2 = dvec3(e2)};
             std::vector<InteractionItem> rays;
             for (size_t i = 0; i < sized(effort, COUNT); ++i) {
-                const vec3 target = center + 0.7f * random.unit() * disk.e1 + 0.7f * random.unit() * disk.e2;
+                const vec3 target = center + 0.7f * random.unit() * e1 + 0.7f * random.unit() * e2;
                 const vec3 o = center + 2.0f * radius * random.direction();
                 rays.push_back({.o = o,
                                 .d = normalize(target - o),

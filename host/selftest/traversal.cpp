@@ -17,7 +17,7 @@ void append(Rays& rays, const Rays& more) {
 
 // Compares with brute force through both kinds of buffers. Returns how many rays missed.
 size_t test_rays(const vk::Device& device, const TriangleMesh& mesh, const Rays& rays, Evidence& evidence) {
-    const GpuScene scene = build_gpu_scene(scene_of_mesh(mesh));
+    const GpuScene scene = build_gpu_scene(scene_of_mesh(mesh), SceneFrame{});
     size_t escapes = 0;
     for (const SceneAccess access : {SceneAccess::texel_buffers, SceneAccess::storage_buffers}) {
         const std::vector<TraversalResult> results = trace(device, scene, rays, access);

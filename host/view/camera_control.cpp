@@ -11,29 +11,30 @@ namespace candela {
 namespace {
 
 // How close an orbit may come to a pole [rad], where the picture's right is undefined.
-constexpr float POLE_DISTANCE = 0.02f;
+constexpr double POLE_DISTANCE = 0.02;
 
-// What a camera looks at stays at least this far away [m], so that the direction remains defined.
-constexpr float LEAST_DISTANCE = 1e-4f;
+// What a camera looks at stays at least that share of the numbers away, so that the direction remains
+// defined.
+constexpr double LEAST_DISTANCE = 1e-9;
 
 struct Frame {
-    vec3 right, up, forward;
+    dvec3 right, up, forward;
 };
 
 Frame frame_of(const Camera& camera) {
-    const vec3 forward = normalize(camera.look_at - camera.position);
-    const vec3 right = normalize(cross(forward, camera.up));
+    const dvec3 forward = normalize(camera.look_at - camera.position);
+    const dvec3 right = normalize(cross(forward, dvec3(camera.up)));
     return {right, cross(right, forward), forward};
 }
 
 // `v` turned about the unit vector `axis` by `angle` [rad], counter-clockwise seen from its tip.
 // Ref: Rodrigues 1840.
-vec3 rotate(vec3 v, vec3 axis, float angle) {
-    const float c = std::cos(angle);
-    return c * v + std::sin(angle) * cross(axis, v) + (1.0f - c) * dot(axis, v) * axis;
+dvec3 rotate(dvec3 v, dvec3 axis, double angle) {
+    const double c = std::cos(angle);
+    return c * v + std::sin(angle) * cross(axis, v) + (1.0 - c) * dot(axis, v) * axis;
 }
 
-void move(Camera& camera, vec3 shift) {
+void move(Camera& camera, dvec3 shift) {
     camera.position += shift;
     camera.look_at += shift;
 }
@@ -45,7 +46,8 @@ std::string number(Number value) {
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-std::string vector(vec3 v) {
+template <class Vec>
+std::string vector(Vec v) {
     return "[" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]";
 }
 
@@ -62,34 +64,35 @@ std::string lens_json(const Lens& lens) {
 }  // namespace
 
 void orbit(Camera& camera, float azimuth, float elevation) {
-    const vec3 pole = normalize(camera.up);
-    const vec3 out = camera.position - camera.look_at;
-    const float distance = length(out);
-    const float now = std::asin(std::clamp(dot(out, pole) / distance, -1.0f, 1.0f));
-    const float limit = PI / 2 - POLE_DISTANCE;
+    const dvec3 pole = normalize(dvec3(camera.up));
+    const dvec3 out = camera.position - camera.look_at;
+    const double distance = length(out);
+    const double now = std::asin(std::clamp(dot(out, pole) / distance, -1.0, 1.0));
+    const double limit = double(PI) / 2 - POLE_DISTANCE;
     // A camera that begins closer to a pole may stay there.
-    const float lowest = std::min(now, -limit);
-    const float highest = std::max(now, limit);
-    const float rise = std::clamp(now + elevation, lowest, highest) - now;
-    const vec3 raised = rotate(out, frame_of(camera).right, -rise);
-    const vec3 turned = rotate(raised, pole, -azimuth);
+    const double lowest = std::min(now, -limit);
+    const double highest = std::max(now, limit);
+    const double rise = std::clamp(now + double(elevation), lowest, highest) - now;
+    const dvec3 raised = rotate(out, frame_of(camera).right, -rise);
+    const dvec3 turned = rotate(raised, pole, -double(azimuth));
     camera.position = camera.look_at + turned * (distance / length(turned));
 }
 
 void pan(Camera& camera, vec2 shift) {
     const Frame frame = frame_of(camera);
-    const float height =
-        2.0f * std::tan(0.5f * camera.vertical_fov) * length(camera.look_at - camera.position);
-    move(camera, -height * (shift.x * frame.right + shift.y * frame.up));
+    const double height =
+        2.0 * std::tan(0.5 * double(camera.vertical_fov)) * length(camera.look_at - camera.position);
+    move(camera, -height * (double(shift.x) * frame.right + double(shift.y) * frame.up));
 }
 
 void dolly(Camera& camera, float factor) {
-    const vec3 out = camera.position - camera.look_at;
-    const float distance = length(out);
-    camera.position = camera.look_at + out * (std::max(factor * distance, LEAST_DISTANCE) / distance);
+    const dvec3 out = camera.position - camera.look_at;
+    const double distance = length(out);
+    const double least = LEAST_DISTANCE * length(camera.look_at) + double(FLOAT_MIN);
+    camera.position = camera.look_at + out * (std::max(double(factor) * distance, least) / distance);
 }
 
-void fly(Camera& camera, vec3 shift) {
+void fly(Camera& camera, dvec3 shift) {
     const Frame frame = frame_of(camera);
     move(camera, shift.x * frame.right + shift.y * frame.up + shift.z * frame.forward);
 }

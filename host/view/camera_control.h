@@ -21,7 +21,7 @@ void pan(Camera& camera, vec2 shift);
 void dolly(Camera& camera, float factor);
 
 // Moves the camera and what it looks at by `shift`: to the right, up, forwards, in the camera's frame [m].
-void fly(Camera& camera, vec3 shift);
+void fly(Camera& camera, dvec3 shift);
 
 // {"cameras": {NAME: {...}}}: the camera in the syntax of scene files, angles in degrees, to be pasted into a
 // scene. Reading it back gives the same bits.

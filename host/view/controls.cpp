@@ -46,13 +46,13 @@ void apply_mouse(ViewState& state, ViewRequests& requests) {
 // Moves the camera as if these keys were down for `seconds`.
 void fly_by(const std::set<int>& keys, Camera& camera, double seconds) {
     const auto axis = [&](int forth, int back) {
-        return float(keys.contains(forth)) - float(keys.contains(back));
+        return double(keys.contains(forth)) - double(keys.contains(back));
     };
-    const vec3 direction(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
-                         axis(GLFW_KEY_W, GLFW_KEY_S));
-    if (direction == vec3(0.0f)) return;
-    const float speed = length(camera.look_at - camera.position) * float(seconds / FLIGHT_SECONDS);
-    candela::fly(camera, direction * speed * (ImGui::GetIO().KeyShift ? FAST : 1.0f));
+    const dvec3 direction(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
+                          axis(GLFW_KEY_W, GLFW_KEY_S));
+    if (direction == dvec3(0.0)) return;
+    const double speed = length(camera.look_at - camera.position) * (seconds / FLIGHT_SECONDS);
+    candela::fly(camera, direction * speed * (ImGui::GetIO().KeyShift ? double(FAST) : 1.0));
 }
 
 void apply_press(int key, ViewState& state, ViewRequests& requests) {

@@ -66,7 +66,7 @@ void show_camera(ViewState& state, ViewRequests& requests, std::span<const Camer
     requests.home |= ImGui::Button("camera back");
     ImGui::SameLine();
     requests.save_camera |= ImGui::Button("save camera");
-    const float distance = length(home.look_at - home.position);
+    const float distance = float(length(home.look_at - home.position));
     Lens& lens = state.camera.lens;
     constexpr ImGuiSliderFlags LOGARITHMIC = ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp;
     ImGui::SliderFloat("aperture", &lens.radius, 0.0f, std::max(0.1f * distance, home.lens.radius), "%.4g m",

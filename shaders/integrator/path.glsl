@@ -100,7 +100,7 @@ void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u) estimate.visible = true;
 }
 
-// Adds the emission of light s.light, which the path's ray hit at s, `t` metres away.
+// Adds the emission of light s.light, which the path's ray hit at s, at that `t`.
 void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     LitPoint lit = path_lit_point(path);
     float distance_squared = LIT_FROM_BEHIND ? dot(s.p - lit.p, s.p - lit.p) : square(t);

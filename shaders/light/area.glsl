@@ -18,19 +18,19 @@ float area_light_pdf_li(Light l, float distance_squared, float cos_light) {
     return cos_light != 0.0 ? l.pdf_area * distance_squared / abs(cos_light) : 0.0;
 }
 
-// The sample that is the point p of a light, chosen uniformly by area; n is the unit normal of the front there, and
-// p_error [m] is how far p may be off the surface beyond the rounding of its coordinates.
-LightSample area_light_sample_at(Light l, vec3 p_lit, vec3 p, vec3 n, float p_error) {
+// The sample that is the point p of a light, chosen uniformly by area; n is the unit normal of the front there.
+LightSample area_light_sample_at(Light l, vec3 p_lit, vec3 p, vec3 n) {
     LightSample s;
     s.delta = false;
     vec3 to_light = p - p_lit;
     float distance_squared = dot(to_light, to_light);
-    s.wi = to_light * inversesqrt(distance_squared);
+    float inv_distance = inversesqrt(distance_squared);
+    s.wi = to_light * inv_distance;
     float cos_light = -dot(s.wi, n);
     s.Li = area_light_le(l, cos_light > 0.0);
     if (cos_light < 0.0) n = -n;
     s.pdf = distance_squared > 0.0 ? area_light_pdf_li(l, distance_squared, cos_light) : 0.0;
-    s.shadow = offset_origin(p, n) + p_error * n - p_lit;
+    s.shadow = to_light + light_end_error(l.error, distance_squared * inv_distance) * n;
     s.t_max = LIGHT_T_MAX;
     return s;
 }
@@ -40,7 +40,7 @@ LightSample area_light_sample_li(Light l, vec3 p_lit, vec2 u) {
     vec2 b = u;
     if (is_light(l, LIGHT_TRIANGLE)) b = warp_triangle(u);
     if (is_light(l, LIGHT_DISK)) b = warp_disk(u);
-    return area_light_sample_at(l, p_lit, l.p + b.x * l.e1 + b.y * l.e2, normalize(cross(l.e1, l.e2)), 0.0);
+    return area_light_sample_at(l, p_lit, l.p + b.x * l.e1 + b.y * l.e2, normalize(cross(l.e1, l.e2)));
 }
 
 #endif

@@ -12,13 +12,19 @@ bool is_light(Light l, const uint kind) {
     return (LIGHTS & ~(1u << kind)) == 0u || l.kind == kind;
 }
 
-// Shadow rays end a little before a light, so that they do not hit it: from far away, rounding moves its point by more
-// than offset_origin does.
+// Shadow rays end that part of their length earlier: so large may the error be of the distance at which a light is hit
+// from far away.
 const float LIGHT_T_MAX = 1.0 - 1.0 / 524288.0;
 
-// A point that is lit: what the choice of a light may depend on. World space.
+// How far before a light, along its normal, a ray from that distance must end, so that it does not hit it: error is the
+// light's own; some roundings of the distance come from the differences that an intersection test begins with.
+float light_end_error(float error, float distance) {
+    return error + 8.0 / 16777216.0 * distance;
+}
+
+// A point that is lit: what the choice of a light may depend on. In the frame of the scene.
 struct LitPoint {
-    vec3 p;   // Where rays to the lights begin [m].
+    vec3 p;   // Where rays to the lights begin.
     vec3 ns;  // Unit shading normal, on the viewer's side.
 };
 

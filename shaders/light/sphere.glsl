@@ -18,10 +18,9 @@ LightSample sphere_light_sample_li(Light l, vec3 p_lit, vec2 u) {
     float radius = l.e1.x;
     vec3 to_center = l.p - p_lit;
     float distance_squared = dot(to_center, to_center);
-    float error = sphere_error(l.p, radius);
     if (distance_squared <= square(radius)) {
         vec3 n = warp_sphere(u);
-        return area_light_sample_at(l, p_lit, l.p + radius * n, n, error);
+        return area_light_sample_at(l, p_lit, l.p + radius * n, n);
     }
     float cap = sphere_light_cap(radius, distance_squared);
     vec3 w = warp_cone(u, cap);
@@ -37,7 +36,7 @@ LightSample sphere_light_sample_li(Light l, vec3 p_lit, vec2 u) {
     float half_chord = sqrt(max(0.0, square(radius) - distance_squared * sin2_theta));
     float t = distance * w.z - half_chord;
     vec3 n = frame_to_world(frame, vec3(t * w.xy, -distance * sin2_theta - half_chord * w.z) / radius);
-    s.shadow = offset_origin(l.p + radius * n, n) + error * n - p_lit;
+    s.shadow = to_center + (radius + light_end_error(l.error, distance)) * n;
     s.t_max = LIGHT_T_MAX;
     return s;
 }

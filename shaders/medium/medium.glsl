@@ -4,7 +4,7 @@
 
 #include "scene/scene_data.glsl"
 
-// Share of the light that the medium transmits over that distance [m]. An infinite distance is replaced by a finite
+// Share of the light that the medium transmits over that distance. An infinite distance is replaced by a finite
 // one, since infinity times 0 is NaN. (A compiler that takes all numbers for finite may drop a min with FLOAT_MAX.)
 // Ref: Beer and Lambert's law.
 vec3 medium_transmittance(uint medium, float distance) {

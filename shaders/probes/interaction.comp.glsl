@@ -20,7 +20,7 @@ void main() {
     }
     Interaction s = interaction_at(ray, hit);
     put(s.p);
-    put(s.p_error);
+    put(s.error);
     put(s.n);
     put(uint(s.front));
     bool viewers_side = item(2u).w == 0u;

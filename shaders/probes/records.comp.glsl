@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 126u
+#define RESULT_WORDS 128u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -52,6 +52,7 @@ void put_surface(Surface s) {
     put(s.material);
     put(s.has_normals);
     put(s.light);
+    put(s.error);
 }
 
 void put_material(MaterialRecord m) {
@@ -75,6 +76,7 @@ void put_light(Light l) {
     put(l.two_sided);
     put(l.pdf_area);
     put(l.pmf);
+    put(l.error);
 }
 
 void put_alias_entry(AliasEntry e) {

@@ -1,4 +1,4 @@
-// For spawn_test.cpp: item (triangle; b1, b2; direction). Spawns a ray from the point b1, b2 of the triangle and
+// For spawn_test.cpp: item (triangle; b1, b2; error; direction). Spawns a ray from the point b1, b2 of the triangle and
 // intersects it with that triangle; writes the distance, and the ray's origin and the triangle's normal.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -18,7 +18,7 @@ void main() {
     vec3 n = normalize(cross(v1 - v0, v2 - v0));
     vec3 wi = item_floats(3u).xyz;
     if (dot(wi, n) < 0.0) n = -n;
-    Ray ray = Ray(offset_origin(p, n), wi);
+    Ray ray = Ray(p + item_floats(2u).w * n, wi);
     put(triangles_intersect(ray, ray_shear(ray.d, reciprocals(ray.d)), v0, v1, v2, v2).t);
     put(ray.o);
     put(n);

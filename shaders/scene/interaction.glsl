@@ -6,15 +6,15 @@
 #include "scene/scene_data.glsl"
 #include "scene/traversal.glsl"
 
-// World space [m]. Both normals are unit vectors on the viewer's side of the surface; the geometric normal alone
+// In the frame of the scene. Both normals are unit vectors on the viewer's side of the surface; the geometric normal alone
 // decides which side that is.
 struct Interaction {
     vec3 p;
-    float p_error;  // How far p may be off the surface beyond the rounding of its coordinates [m].
     vec3 wo;        // Towards the viewer, unit.
     vec3 n;         // Geometric normal.
     vec3 ns;        // Shading normal.
     bool front;     // The viewer sees the front side.
+    float error;    // How far from p, along n, rays must begin.
     uint material;
     uint light;  // Light that the surface belongs to, or NO_LIGHT.
 };
@@ -38,11 +38,9 @@ Interaction interaction_at(Ray ray, Hit hit) {
     vec3 a = primitive.a;
     vec2 at = hit_coordinates(ray, primitive, hit);
     Interaction s;
-    s.p_error = 0.0;
     if (is_kind(primitive.kind, PRIMITIVE_SPHERE)) {
         s.n = normalize((ray.o - a) + hit.t * ray.d);
         s.p = a + primitive.b.x * s.n;
-        s.p_error = sphere_error(a, primitive.b.x);
     } else if (is_kind(primitive.kind, PRIMITIVE_DISK)) {
         s.n = normalize(cross(primitive.b, primitive.c));
         s.p = a + at.x * primitive.b + at.y * primitive.c;
@@ -61,6 +59,7 @@ Interaction interaction_at(Ray ray, Hit hit) {
         s.n = -s.n;
         s.ns = -s.ns;
     }
+    s.error = surface.error;
     s.material = surface.material;
     s.light = surface.light;
     return s;
@@ -68,8 +67,7 @@ Interaction interaction_at(Ray ray, Hit hit) {
 
 // The origin of a ray that leaves the surface on the viewer's side, or on the other.
 vec3 interaction_spawn_origin(Interaction s, bool viewers_side) {
-    vec3 n = viewers_side ? s.n : -s.n;
-    return offset_origin(s.p, n) + s.p_error * n;
+    return s.p + (viewers_side ? s.error : -s.error) * s.n;
 }
 
 #endif

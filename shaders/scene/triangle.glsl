@@ -93,7 +93,7 @@ TrianglesHit triangles_intersect(RayShear shear, ShearedVertex a, ShearedVertex 
     return TrianglesHit(t, second);
 }
 
-// The same for vertices in world space.
+// The same for vertices as they are.
 TrianglesHit triangles_intersect(Ray ray, RayShear shear, vec3 a, vec3 b, vec3 c, vec3 d) {
     return triangles_intersect(shear, shear_vertex(ray, shear, a), shear_vertex(ray, shear, b),
                                shear_vertex(ray, shear, c), shear_vertex(ray, shear, d));

@@ -42,7 +42,7 @@ const uint BVH_LEAF_BIT = 0x80000000u;
 
 // A decoded node.
 struct BvhNode {
-    vec3 origin;    // World space [m].
+    vec3 origin;    // In the frame of the scene.
     vec3 scale;     // Metres per step, on each axis a positive normal power of two.
     uvec3 q_lo[2];  // Byte i of each component of [0]: child i; of [1]: child 4 + i.
     uvec3 q_hi[2];

@@ -3,7 +3,7 @@
 //
 //   Light                         EnvironmentTexel                 AliasEntry
 //     0: p.xyz, kind                0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
-//     1: e1.xyz, two_sided                                              entry 2i + 1: threshold, alias
+//     1: e1.xyz, error |                                                entry 2i + 1: threshold, alias
 //     2: e2.xyz, pmf
 //     3: radiance.rgb, pdf_area
 #ifndef SHARED_LIGHT_H
@@ -27,7 +27,7 @@ const uint LIGHT_SPHERE = 3u;         // Centre p, radius e1.x.
 const uint LIGHT_ENVIRONMENT = 4u;  // All around, infinitely far away; its texels are in tables of their own.
 
 // An emitter. The front of a flat one is the side that cross(e1, e2) points to, that of a sphere is outside.
-// World space [m].
+// In the frame of the scene.
 struct Light {
     uint kind;  // LIGHT_*
     vec3 p;
@@ -37,6 +37,7 @@ struct Light {
     uint two_sided;  // 1: emits from the back as well.
     float pdf_area;  // Of a point on it, chosen uniformly by area [1/m^2]; 0 for the environment.
     float pmf;       // Probability of choosing the light among all.
+    float error;     // How far from a point of it, along its normal, rays towards it must end; >= 0.
 };
 
 // A piece of the sky in latitude and longitude.
@@ -56,8 +57,8 @@ struct AliasEntry {
 #ifdef __cplusplus
 
 inline std::array<uvec4, LIGHT_WORDS> pack(const Light& l) {
-    return {word(l.p, l.kind), word(l.e1, l.two_sided), word(l.e2, floatBitsToUint(l.pmf)),
-            word(l.radiance, floatBitsToUint(l.pdf_area))};
+    return {word(l.p, l.kind), word(l.e1, floatBitsToUint(l.error) | l.two_sided << 31),
+            word(l.e2, floatBitsToUint(l.pmf)), word(l.radiance, floatBitsToUint(l.pdf_area))};
 }
 
 inline std::array<uvec4, ENVIRONMENT_TEXEL_WORDS> pack(const EnvironmentTexel& t) {
@@ -76,7 +77,8 @@ Light light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     l.p = uintBitsToFloat(a.xyz);
     l.kind = a.w;
     l.e1 = uintBitsToFloat(b.xyz);
-    l.two_sided = b.w;
+    l.two_sided = b.w >> 31u;
+    l.error = uintBitsToFloat(b.w & 0x7FFFFFFFu);
     l.e2 = uintBitsToFloat(c.xyz);
     l.pmf = uintBitsToFloat(c.w);
     l.radiance = uintBitsToFloat(d.xyz);

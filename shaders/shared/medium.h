@@ -17,7 +17,7 @@ const uint MEDIUM_NONE = 0u;         // Index of the medium that absorbs nothing
 const uint MEDIUM_SAME = 0xFFFFFFu;  // Behind a surface: the same medium as in front of it.
 
 struct MediumRecord {
-    vec3 absorption;  // [1/m], each >= 0.
+    vec3 absorption;  // For each unit of the frame, >= 0.
 };
 
 #ifdef __cplusplus

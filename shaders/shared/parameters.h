@@ -36,7 +36,7 @@ struct Parameters {
     vec2 environment_turn;   // Cosine and sine of the environment's rotation about +Y.
     vec3 lens_x;             // The point (x, y) of an aperture of radius 1 is position + x lens_x + y lens_y.
     vec3 lens_y;
-    float focal_distance;  // Along `forward` [m].
+    float focal_distance;  // Along `forward`.
     uint blades;           // Corners of a polygonal aperture.
     uint first_sample;     // Index of the first sample of every pixel.
 };

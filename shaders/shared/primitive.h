@@ -5,7 +5,8 @@
 //   Primitive, 3 words of uvec4   Surface, 1 word                   Normals, 1 word
 //     0: a.xyz, d.x or tag          0: id, id of the second           0: at a, b, c, d
 //     1: b.xyz, d.y                    triangle, material |              (octahedral, 2 x 16 bits)
-//     2: c.xyz, d.z                    smooth << 31, light
+//     2: c.xyz, d.z                    error | smooth << 31,
+//                                      light
 #ifndef SHARED_PRIMITIVE_H
 #define SHARED_PRIMITIVE_H
 
@@ -21,7 +22,7 @@ const uint PRIMITIVE_WORDS = 3u;
 const uint SURFACE_WORDS = 1u;
 const uint NORMALS_WORDS = 1u;
 
-// Kinds of primitives. World space [m].
+// Kinds of primitives. In the frame of the scene.
 //
 // Two triangles that share an edge, as most in a mesh do, are one primitive: this halves memory and leaves,
 // and costs less than testing each. A single triangle has a second one, a c d, without area.
@@ -33,6 +34,8 @@ const uint PRIMITIVE_DISK = 2u;       // a + x b + y c with x^2 + y^2 <= 1; cros
 const uint PRIMITIVE_TAG = 0x7FC00000u;
 
 const uint SURFACE_SMOOTH_BIT = 0x80000000u;
+const uint SURFACE_ERROR_BITS = 0x7F800000u;  // The exponent of a float.
+const uint MAX_MATERIALS = 0x00800000u;
 
 struct Primitive {
     uint kind;  // PRIMITIVE_*
@@ -44,9 +47,10 @@ struct Primitive {
 
 struct Surface {
     uvec2 id;          // Position in the scene's own order, of each triangle.
-    uint material;     // Index of a material record, below 2^31.
+    uint material;     // Index of a material record, below MAX_MATERIALS.
     uint has_normals;  // 1: has shading normals.
     uint light;        // Index of a light record, or NO_LIGHT.
+    float error;       // How far from a point of it rays must begin, along its normal: 0 or a power of two.
 };
 
 #ifdef __cplusplus
@@ -57,7 +61,8 @@ inline std::array<uvec4, PRIMITIVE_WORDS> pack(const Primitive& p) {
 }
 
 inline std::array<uvec4, SURFACE_WORDS> pack(const Surface& s) {
-    return {uvec4(s.id.x, s.id.y, s.material | s.has_normals * SURFACE_SMOOTH_BIT, s.light)};
+    return {uvec4(s.id.x, s.id.y, s.material | floatBitsToUint(s.error) | s.has_normals * SURFACE_SMOOTH_BIT,
+                  s.light)};
 }
 
 // Octahedral map of a unit vector to 2 x 16 signed bits. Ref: Cigolle et al. 2014, A Survey of Efficient
@@ -95,7 +100,8 @@ Primitive primitive_unpack(uvec4 u, uvec4 v, uvec4 w) {
 Surface surface_unpack(uvec4 u) {
     Surface s;
     s.id = u.xy;
-    s.material = u.z & ~SURFACE_SMOOTH_BIT;
+    s.material = u.z & MAX_MATERIALS - 1u;
+    s.error = uintBitsToFloat(u.z & SURFACE_ERROR_BITS);
     s.has_normals = u.z / SURFACE_SMOOTH_BIT;
     s.light = u.w;
     return s;

@@ -106,12 +106,13 @@ class ViewControls : public View {
         const nlohmann::json saved = nlohmann::json::parse(read_file(path))["cameras"]["view"];
         std::filesystem::remove(path);
         const auto vector = [&](const char* key) {
-            return vec3(saved[key][0].get<float>(), saved[key][1].get<float>(), saved[key][2].get<float>());
+            return dvec3(saved[key][0].get<double>(), saved[key][1].get<double>(),
+                         saved[key][2].get<double>());
         };
         Camera camera;
         camera.position = vector("position");
         camera.look_at = vector("look_at");
-        camera.up = vector("up");
+        camera.up = vec3(vector("up"));
         return camera;
     }
 };
@@ -168,7 +169,7 @@ TEST_F(ViewControls, WhatIsDoneDuringAStallIsDoneInItsOrder) {
 
     // A key that went down and up meanwhile counts as pressed.
     std::filesystem::remove(file("cornell-box-1-camera.json"));
-    const vec3 home = saved_camera().position;
+    const dvec3 home = saved_camera().position;
     process.send(SIGSTOP);
     xdotool({"key", "w"});
     process.send(SIGCONT);
@@ -195,7 +196,7 @@ TEST_F(ViewControls, TheButtonsDoWhatTheKeysDo) {
     xdotool(click_at("30", "134"));
     wait_until("it goes on", [&] { return samples() >= 0 && !says("paused"); });
 
-    const vec3 home = saved_camera().position;
+    const dvec3 home = saved_camera().position;
     xdotool({"mousemove", "305", "375", "click", "4"});
     EXPECT_NE(saved_camera().position, home);
     xdotool(click_at("58", "230"));
@@ -217,7 +218,7 @@ TEST_F(ViewControls, MouseAndKeysMoveTheCameraTheirWay) {
     };
     struct Move {
         Words begin, end;
-        vec3 direction;
+        dvec3 direction;
         bool about;  // The point that is looked at stays.
     };
     const Move moves[] = {
@@ -241,13 +242,13 @@ TEST_F(ViewControls, MouseAndKeysMoveTheCameraTheirWay) {
         wait_until("the camera has moved",
                    [&] { return (after = saved_camera()).position != before.position; });
         if (!move.end.empty()) xdotool(move.end);
-        const vec3 forward = normalize(before.look_at - before.position);
-        const vec3 right = normalize(cross(forward, before.up));
-        const vec3 shift = after.position - before.position;
-        const vec3 seen(dot(shift, right), dot(shift, cross(right, forward)), dot(shift, forward));
+        const dvec3 forward = normalize(before.look_at - before.position);
+        const dvec3 right = normalize(cross(forward, dvec3(before.up)));
+        const dvec3 shift = after.position - before.position;
+        const dvec3 seen(dot(shift, right), dot(shift, cross(right, forward)), dot(shift, forward));
         // The chord of a turn by up to half a radian is at an angle of up to a quarter to the direction in
         // which the turn begins.
-        EXPECT_GT(dot(normalize(seen), move.direction), std::cos(0.25f)) << move.begin.back();
+        EXPECT_GT(dot(normalize(seen), move.direction), std::cos(0.25)) << move.begin.back();
         EXPECT_EQ(after.look_at == before.look_at, move.about) << move.begin.back();
     }
     expect_clean_end();

@@ -54,7 +54,7 @@ TEST_F(AliasTest, LightsOfVeryUnequalPowerAreChosenByIt) {
                       Emission{radiance, true});
         }
         const std::vector<LightSample> samples =
-            sample(build_gpu_scene(scene), random_light_items(vec3(0, 0, 5), SAMPLES, 231));
+            sample(build_gpu_scene(scene, SceneFrame{}), random_light_items(vec3(0, 0, 5), SAMPLES, 231));
         EXPECT_GT(pearson_p_value(count_by_red(samples, count), powers), level);
     }
 }
@@ -73,8 +73,8 @@ TEST_F(AliasTest, TexelsOfVeryUnequalLuminanceAreChosenByIt) {
             sky.radiance.push_back(luminances[i] > 0.0 ? vec3(red, green, 0.0) : vec3(0.0f));
             luminances[i] = luminances[i] > 0.0 ? 0.2126 * red + 0.7152 * double(sky.radiance[i].y) : 0.0;
         }
-        const std::vector<LightSample> samples =
-            sample(build_gpu_scene(scene_under(sky)), random_light_items(vec3(0), SAMPLES, 241));
+        const std::vector<LightSample> samples = sample(build_gpu_scene(scene_under(sky), SceneFrame{}),
+                                                        random_light_items(vec3(0), SAMPLES, 241));
         EXPECT_GT(pearson_p_value(count_by_red(samples, count), luminances), level);
     }
 }

@@ -11,7 +11,7 @@ namespace {
 
 class BenchTest : public DeviceTest {
   protected:
-    BenchTest() : scene_(displaced_scene(300)), gpu_(build_gpu_scene(scene_)) {}
+    BenchTest() : scene_(displaced_scene(300)), gpu_(build_gpu_scene(scene_, SceneFrame{})) {}
 
     // The benchmark's own sets, of 256 camera rays and what follows from them, and rays from outside and
     // inside the room, many of which miss it.

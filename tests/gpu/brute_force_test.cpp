@@ -57,7 +57,7 @@ class BruteForceTest : public TraversalTest {
                 rays.insert(rays.end(), random.begin(), random.end());
                 rays.insert(rays.end(), aimed.begin(), aimed.end());
             }
-            const GpuScene scene = build_gpu_scene(scene_of_mesh(mesh));
+            const GpuScene scene = build_gpu_scene(scene_of_mesh(mesh), SceneFrame{});
             ASSERT_EQ(scene.id_count, mesh.triangles.size());
             const std::vector<TraversalResult> results = trace(scene, rays, SceneAccess::texel_buffers);
             expect_holds(compare_with_brute_force(results));

@@ -140,7 +140,7 @@ class EscapeTest : public DeviceTest {
                 items.push_back(
                     {closed.points[i % closed.points.size()], 0.5f * closed.room, counter, RAYS_PER_ITEM});
             }
-            const DeviceScene scene(device(), build_gpu_scene(scene_of_mesh(closed.mesh)),
+            const DeviceScene scene(device(), build_gpu_scene(scene_of_mesh(closed.mesh), SceneFrame{}),
                                     SceneAccess::texel_buffers);
             for (const EscapeResult& r : map<EscapeResult>(kernels::escape, items, {}, &scene)) {
                 ASSERT_EQ(r.shot, RAYS_PER_ITEM) << "the driver ended a loop before its time";

@@ -36,9 +36,9 @@ class LightRobustnessTest : public LightTest {
                 add_triangle(triangle, p, p + e1, p + e2);
                 return add_shape(scene, std::move(triangle), 0, emission);
             case 2:
-                return add_shape(scene, Disk{p, e1, e2}, 0, emission);
+                return add_shape(scene, Disk{dvec3(p), dvec3(e1), dvec3(e2)}, 0, emission);
             default:
-                return add_shape(scene, Sphere{p, length(e1)}, 0, emission);
+                return add_shape(scene, Sphere{dvec3(p), length(e1)}, 0, emission);
         }
     }
     // At the light's own points, a rounding beside them, in its plane, at its centre, or anywhere.
@@ -87,7 +87,7 @@ TEST_F(LightRobustnessTest, NoPlaceMakesAnUnsoundSample) {
         scene.shapes.clear();
         const float power = size() * size();
         add_lamp(scene, uint32_t(light) % 4, p, e1, e2, Emission{power * vec3(1, 0.5f, 0), light % 3 == 0});
-        const GpuScene gpu = build_gpu_scene(scene);
+        const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
         if (gpu.light_count == 0) continue;  // Flat, when its corners are rounded.
         const std::vector<LightItem> from = items(p, e1, e2);
         const std::vector<LightSample> results = sample(gpu, from);

@@ -18,20 +18,19 @@ TEST_F(LightTest, APointOnTheLightItselfReceivesNothingFromThere) {
     const LightItem at_the_sample{.from = vec3(0)};  // Light 0's corner.
     const LightItem in_the_plane{.from = vec3(-1, 0, 0)};
     for (const LightSample& s :
-         sample(build_gpu_scene(scene_of_flat_lights()), {at_the_sample, in_the_plane}))
+         sample(build_gpu_scene(scene_of_flat_lights(), SceneFrame{}), {at_the_sample, in_the_plane}))
         EXPECT_EQ(s.pdf, 0.0f);
 }
 
-// A panel that slopes a little, next to a coordinate plane, where offset_origin moves a point by 2^-16 only:
-// seen from afar, the points are rounded by more.
+// A panel that slopes a little: seen from afar, its points are rounded by more than its own coordinates are.
 TEST_F(LightTest, AFarLightDoesNotShadowItself) {
-    Scene scene = scene_with_camera(vec3(0), vec3(0, 0, -1), 1.0f);
+    Scene scene = scene_with_camera(dvec3(0), dvec3(0, 0, -1), 1.0f);
     add_diffuse(scene, vec3(0.0f));
     scene.shapes.push_back(
         {.geometry = parallelogram(vec3(-1, 0, 0.01f), vec3(2, 0, 0.003f), vec3(0, 1, 0.002f)),
          .material = 0,
          .emission = Emission{.radiance = vec3(1), .two_sided = false}});
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     uint32_t seed = 70;
     for (const float distance : {1.0f, 1e2f, 1e3f, 1e4f, 1e5f}) {
         const vec3 from = distance * normalize(vec3(0.5f, 0.4f, 1));

@@ -20,14 +20,14 @@ RoundScene round_scene(uint32_t count, uint32_t seed) {
     round.scene.shapes.clear();
     const auto size = [&] { return std::pow(10.0f, -3.0f + 2.5f * random.unit()); };
     for (uint32_t i = 0; i < count; ++i) {
-        round.spheres.push_back({.center = random.cube(), .radius = size()});
+        round.spheres.push_back({.center = dvec3(random.cube()), .radius = size()});
         round.scene.shapes.push_back({.geometry = round.spheres.back(), .material = 0, .emission = {}});
     }
     for (uint32_t i = 0; i < count; ++i) {
         const vec3 e1 = size() * random.direction();
         const vec3 e2 = i % 4 == 0 ? size() * random.direction()  // An ellipse; or else a disk.
                                    : cross(e1, normalize(cross(e1, random.direction())));
-        round.disks.push_back({.center = random.cube(), .e1 = e1, .e2 = e2});
+        round.disks.push_back({.center = dvec3(random.cube()), .e1 = dvec3(e1), .e2 = dvec3(e2)});
         round.scene.shapes.push_back({.geometry = round.disks.back(), .material = 0, .emission = {}});
     }
     add_shape(round.scene, triangle_soup(count, 0.1f, seed), 0);
@@ -41,10 +41,10 @@ Rays rays_at_shapes(const RoundScene& round, size_t count, float size, uint32_t 
     while (rays.size() < count) {
         const vec3 o = size * random.cube();
         const Sphere& s = round.spheres[random.bits() % round.spheres.size()];
-        add(rays, o, normalize(s.center + s.radius * random.cube() - o));
+        add(rays, o, normalize(vec3(s.center) + float(s.radius) * random.cube() - o));
         const Disk& d = round.disks[random.bits() % round.disks.size()];
         const vec3 at = random.cube();
-        add(rays, o, d.center + at.x * d.e1 + at.y * d.e2 - o);  // Not of unit length.
+        add(rays, o, vec3(d.center) + at.x * vec3(d.e1) + at.y * vec3(d.e2) - o);  // Not of unit length.
     }
     return rays;
 }
@@ -81,7 +81,7 @@ struct Expected {
 // D.
 std::optional<Expected> expected(const Sphere& sphere, const RayItem& ray) {
     const glm::dvec3 d(ray.d), f = glm::dvec3(ray.o) - glm::dvec3(sphere.center);
-    const double a = length(d), b = -dot(f, d) / a, D = length(f), r = double(sphere.radius);
+    const double a = length(d), b = -dot(f, d) / a, D = length(f), r = sphere.radius;
     const double near = length(f + b / a * d), e = 8 * 0x1p-24 * (D + r);
     if (near > r - 4.0 * e) return std::nullopt;
     const double half = std::sqrt(r * r - near * near);
@@ -106,10 +106,11 @@ TEST_F(RoundShapesTest, DistancesAgreeWithDoublePrecision) {
     Random random(105);
     for (const float distance : {0.5f, 2.0f, 100.0f}) {
         for (int i = 0; i < 8; ++i) {
-            const Sphere sphere{.center = random.cube(), .radius = 0.01f + random.unit()};
+            const Sphere sphere{.center = dvec3(random.cube()), .radius = 0.01f + random.unit()};
             const vec3 e1 = random.direction();
-            const Disk disk{
-                .center = random.cube(), .e1 = e1, .e2 = 0.5f * normalize(cross(e1, random.direction()))};
+            const Disk disk{.center = dvec3(random.cube()),
+                            .e1 = dvec3(e1),
+                            .e2 = dvec3(0.5f * normalize(cross(e1, random.direction())))};
             Scene ball = scene_of_mesh({}), plate = ball;
             ball.shapes = {{.geometry = sphere, .material = 0, .emission = {}}};
             plate.shapes = {{.geometry = disk, .material = 0, .emission = {}}};
@@ -117,12 +118,14 @@ TEST_F(RoundShapesTest, DistancesAgreeWithDoublePrecision) {
             for (int k = 0; k < 2000; ++k) {
                 const vec3 o = distance * random.cube();
                 add(rays, o, normalize(random.cube() - o));
-                add(rays, o, sphere.center + sphere.radius * random.cube() - o);
-                add(rays, o, disk.center + disk.e1 * random.unit() + disk.e2 * random.unit() - o);
+                add(rays, o, vec3(sphere.center) + float(sphere.radius) * random.cube() - o);
+                add(rays, o,
+                    vec3(disk.center) + vec3(disk.e1) * random.unit() + vec3(disk.e2) * random.unit() - o);
             }
             const auto check = [&](const Scene& scene, const auto& shape) {
                 size_t checked = 0;
-                const auto results = trace(build_gpu_scene(scene), rays, SceneAccess::texel_buffers);
+                const auto results =
+                    trace(build_gpu_scene(scene, SceneFrame{}), rays, SceneAccess::texel_buffers);
                 for (size_t k = 0; k < rays.size(); ++k) {
                     const std::optional<Expected> e = expected(shape, rays[k]);
                     if (!e) continue;
@@ -140,7 +143,7 @@ TEST_F(RoundShapesTest, DistancesAgreeWithDoublePrecision) {
 // Surface coordinates of a disk, and rays that miss: beside it, behind it, within its plane.
 TEST_F(RoundShapesTest, ADiskIsMetWithinItsRimOnly) {
     Scene scene = scene_of_mesh({});
-    scene.shapes = {{.geometry = Disk{.center = vec3(1, 2, 0), .e1 = vec3(2, 0, 0), .e2 = vec3(0, 1, 0)},
+    scene.shapes = {{.geometry = Disk{.center = dvec3(1, 2, 0), .e1 = dvec3(2, 0, 0), .e2 = dvec3(0, 1, 0)},
                      .material = 0,
                      .emission = {}}};
     Rays rays;

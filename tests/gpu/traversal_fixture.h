@@ -18,7 +18,7 @@ class TraversalTest : public DeviceTest {
 
     // Traces the rays with either scene access and expects the hits of brute force. Returns the results.
     std::vector<TraversalResult> expect_brute_force(const Scene& scene, const Rays& rays) const {
-        const GpuScene gpu = build_gpu_scene(scene);
+        const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
         std::vector<TraversalResult> results;
         for (const SceneAccess access : {SceneAccess::storage_buffers, SceneAccess::texel_buffers}) {
             results = trace(gpu, rays, access);

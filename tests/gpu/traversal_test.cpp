@@ -54,7 +54,7 @@ TEST_F(TraversalTest, OfTwoTrianglesWithACommonEdgeTheNearerOneIsHit) {
         .positions = {vec3(0, 0, 0), vec3(1, 0.1f, 0.5f), vec3(0, 0, 1), vec3(1, -0.1f, 0.5f)},
         .normals = {},
         .triangles = {uvec3(0, 1, 2), uvec3(0, 2, 3)}};
-    ASSERT_EQ(build_gpu_scene(scene_of_mesh(mesh)).primitive_count, 1u);
+    ASSERT_EQ(build_gpu_scene(scene_of_mesh(mesh), SceneFrame{}).primitive_count, 1u);
     Rays rays;
     add(rays, vec3(0.5f, 5, 0.5f), vec3(0, -1, 0));
     add(rays, vec3(0.5f, -5, 0.5f), vec3(0, 1, 0));
@@ -182,7 +182,7 @@ Expected in_double(const RayItem& ray, const TriangleMesh& mesh, uint32_t id) {
 
 TEST_F(TraversalTest, DistancesAgreeWithDoublePrecision) {
     const auto check = [&](const TriangleMesh& mesh, const Rays& rays, double required_share) {
-        const GpuScene gpu = build_gpu_scene(scene_of_mesh(mesh));
+        const GpuScene gpu = build_gpu_scene(scene_of_mesh(mesh), SceneFrame{});
         const std::vector<TraversalResult> results = trace(gpu, rays, SceneAccess::texel_buffers);
         size_t checked = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
@@ -205,7 +205,7 @@ TEST_F(TraversalTest, TheNearestHitIsTheOneOfDoublePrecision) {
     const TriangleMesh mesh = sphere_mesh(16, 16);
     const Rays rays = random_rays(2000, vec3(0), 0.5f, 29);
     const std::vector<TraversalResult> results =
-        trace(build_gpu_scene(scene_of_mesh(mesh)), rays, SceneAccess::texel_buffers);
+        trace(build_gpu_scene(scene_of_mesh(mesh), SceneFrame{}), rays, SceneAccess::texel_buffers);
     for (size_t i = 0; i < rays.size(); ++i) {
         const glm::dvec3 o(rays[i].o), d(rays[i].d);
         double nearest = INFINITE;

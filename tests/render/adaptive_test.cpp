@@ -116,7 +116,7 @@ TEST_F(AdaptiveTest, TheExpectationStaysThoughTheSamplesGoWhereLightWasFound) {
     constexpr float RADIUS = 0.025f;
     constexpr double FORM_FACTOR = double(RADIUS) * RADIUS / (1.0 + double(RADIUS) * RADIUS);
     Scene scene = floor_seen_closely(vec3(0.8f));
-    add_shape(scene, Disk{vec3(0, 1, 0), vec3(RADIUS, 0, 0), vec3(0, 0, RADIUS)}, 1,
+    add_shape(scene, Disk{dvec3(0, 1, 0), dvec3(RADIUS, 0, 0), dvec3(0, 0, RADIUS)}, 1,
               Emission{.radiance = vec3(1.0f)});
     RenderSettings settings = independent_settings(16, Estimator::bsdf, 0);
     settings.max_depth = 1;

@@ -9,7 +9,7 @@ namespace {
 
 // A camera at z = 3 looks down -z at a square in the plane z = 0 that covers the left half of the picture.
 Scene half_covered() {
-    Scene scene = scene_with_camera(vec3(0, 0, 3), vec3(0), 2.0f * std::atan(1.0f / 3.0f));
+    Scene scene = scene_with_camera(dvec3(0, 0, 3), dvec3(0), 2.0f * std::atan(1.0f / 3.0f));
     add_diffuse(scene, vec3(0.1f, 0.2f, 0.3f));
     scene.shapes.push_back({.geometry = parallelogram(vec3(-2, -2, 0), vec3(2, 0, 0), vec3(0, 4, 0)),
                             .material = 0,
@@ -54,7 +54,7 @@ TEST_F(AovTest, NormalsFaceTheViewer) {
 
 // A unit sphere whose normals are its positions: interpolated ones point away from the centre.
 TEST_F(AovTest, NormalsAreInterpolated) {
-    Scene scene = scene_with_camera(vec3(0, 0, 5), vec3(0), 0.2f);
+    Scene scene = scene_with_camera(dvec3(0, 0, 5), dvec3(0), 0.2f);
     add_diffuse(scene, vec3(0.5f));
     TriangleMesh ball = sphere_mesh(16, 16);
     ball.normals = ball.positions;

@@ -61,8 +61,8 @@ class DielectricTest : public RenderTest {
     // average.
     static Scene scene_seen_at(double theta, double distance) {
         constexpr float FIELD_OF_VIEW = 1e-3f;
-        const vec3 position(float(distance * std::sin(theta)), float(distance * std::cos(theta)), 0);
-        Scene scene = scene_with_camera(position, vec3(0), FIELD_OF_VIEW);
+        const dvec3 position(distance * std::sin(theta), distance * std::cos(theta), 0);
+        Scene scene = scene_with_camera(position, dvec3(0), FIELD_OF_VIEW);
         return scene;
     }
     // Light of RADIANCE must reach the camera with that share. Roundings: some ten vertices of some ten each.
@@ -136,14 +136,13 @@ TEST_F(DielectricTest, AnEmitterWithinTheGlass) {
 TEST_F(DielectricTest, ALampWithinTheGlass) {
     constexpr float DEPTH = 1.0f;
     constexpr double LAMP_RADIUS = 0.25;
-    const vec3 center(-0.5f, 0.5f - DEPTH, 0);
+    const dvec3 center(-0.5, 0.5 - double(DEPTH), 0);
     const double distance = std::sqrt(0.5);
     Scene scene = scene_seen_at(0.0, 2.0);
     add_slab(scene, {.ior = IOR, .inside = {ABSORPTION}}, 2.0f * DEPTH);
     add_panel(scene, -DEPTH, false, {});
     scene.materials.back().model = DiffuseMaterial{vec3(1)};
-    add_shape(scene, Sphere{center, float(LAMP_RADIUS)}, add_diffuse(scene, vec3(0)),
-              Emission{RADIANCE, false});
+    add_shape(scene, Sphere{center, LAMP_RADIUS}, add_diffuse(scene, vec3(0)), Emission{RADIANCE, false});
 
     constexpr int POINTS = 10000;  // Of the midpoint rule: x = sin^2(t), 2 sin(t) cos(t) dt = dx.
     const double sin2_max = std::pow(LAMP_RADIUS / distance, 2.0);

@@ -24,7 +24,7 @@ class DiffuseTransmissionTest : public EstimatorTest {
     // A camera that looks at the origin along the y axis, from above or from below; its rays are as good as
     // parallel.
     static Scene scene_seen_from(float height) {
-        Scene scene = scene_with_camera(vec3(0, height, 0), vec3(0), 1e-3f);
+        Scene scene = scene_with_camera(dvec3(0, height, 0), dvec3(0), 1e-3f);
         scene.cameras[0].up = vec3(0, 0, 1);
         return scene;
     }
@@ -54,8 +54,8 @@ TEST_F(DiffuseTransmissionTest, ALampBehindTheSheetShinesThroughIt) {
         DiffuseTransmissionMaterial sheet{vec3(0.3f), transmittance};
         if (absorbs) sheet.inside = Medium{ABSORPTION};
         add_sheet(scene, 0, sheet);
-        add_shape(scene, Sphere{vec3(0, float(-DISTANCE), 0), float(LAMP_RADIUS)},
-                  add_diffuse(scene, vec3(0)), Emission{RADIANCE, false});
+        add_shape(scene, Sphere{dvec3(0, -DISTANCE, 0), LAMP_RADIUS}, add_diffuse(scene, vec3(0)),
+                  Emission{RADIANCE, false});
         for (const Estimator estimator : ESTIMATORS) {
             SCOPED_TRACE(testing::Message() << int(estimator) << ' ' << absorbs);
             expect_share(scene, estimator, estimator == Estimator::bsdf ? 4096 : 512,
@@ -73,7 +73,7 @@ TEST_F(DiffuseTransmissionTest, EitherSideIsLitByEither) {
             Scene scene = scene_seen_from(camera);
             add_sheet(scene, 0, {reflectance, transmittance});
             // Beside the camera's view: at 45 degrees.
-            const vec3 center(lamp, lamp, 0);
+            const dvec3 center(lamp, lamp, 0);
             add_shape(scene, Sphere{center, LAMP_RADIUS}, add_diffuse(scene, vec3(0)),
                       Emission{RADIANCE, false});
             const double irradiance_over_pi =
@@ -115,7 +115,7 @@ TEST_F(DiffuseTransmissionTest, ALeafWithinAMediumLeavesItAsItIs) {
 
 // Nothing is lost: a ball of such a sheet cannot be seen under a constant sky.
 TEST_F(DiffuseTransmissionTest, ALosslessBallIsInvisible) {
-    Scene scene = scene_with_camera(vec3(1, 2, 4.5f), vec3(0), 0.4f);
+    Scene scene = scene_with_camera(dvec3(1, 2, 4.5), dvec3(0), 0.4f);
     scene.environment = constant_environment(vec3(1));
     add_shape(scene, Sphere{}, add_material(scene, DiffuseTransmissionMaterial{vec3(0.25f), vec3(0.75f)}));
     for (const Estimator estimator : ESTIMATORS) {
@@ -130,8 +130,8 @@ TEST_F(DiffuseTransmissionTest, EstimatorsAgreeOnALampWithinItsShade) {
     scene.environment = one_bright_texel({8, 4}, {4, 1}, vec3(5, 4, 3));
     const uint32_t shade =
         add_material(scene, DiffuseTransmissionMaterial{vec3(0.3f, 0.2f, 0.1f), vec3(0.6f, 0.5f, 0.4f)});
-    add_shape(scene, Sphere{vec3(-0.7f, 0.8f, 0), 0.5f}, shade);
-    add_shape(scene, Sphere{vec3(-0.7f, 0.8f, 0), 0.2f}, 0, Emission{vec3(4, 3, 2), false});
+    add_shape(scene, Sphere{dvec3(-0.7, 0.8, 0), 0.5}, shade);
+    add_shape(scene, Sphere{dvec3(-0.7, 0.8, 0), 0.2}, 0, Emission{vec3(4, 3, 2), false});
     TriangleMesh ball = sphere_mesh(6, 9);
     ball.normals = ball.positions;
     add_shape(scene, transformed(ball, [](vec3 p) { return vec3(0.7f, 0.6f, 0) + 0.5f * p; }), shade);

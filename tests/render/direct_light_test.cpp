@@ -109,7 +109,7 @@ TEST_F(DirectLightTest, ABlockerCastsAFullShadow) {
 }
 
 TEST_F(DirectLightTest, AScreenThatIsLookedAtShowsItsRadianceOnTheFrontOnly) {
-    Scene scene = scene_with_camera(vec3(0, 0, 2), vec3(0), 0.5f);
+    Scene scene = scene_with_camera(dvec3(0, 0, 2), dvec3(0), 0.5f);
     add_diffuse(scene, vec3(0));
     for (const bool front : {true, false}) {
         const vec3 e1(2, 0, 0), e2(0, 2, 0);

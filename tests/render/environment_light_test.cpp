@@ -71,7 +71,7 @@ TEST_F(EnvironmentLightTest, RotationMovesTheLight) {
             SCOPED_TRACE(testing::Message() << "column " << column << " turned by " << degrees);
             Scene scene = floor_under(one_bright_texel({COLUMNS, 4}, {column, 1}, RADIANCE));
             scene.environment->rotation = float(degrees * DEGREE);
-            scene.cameras[0].position = vec3(0, 1, -5);
+            scene.cameras[0].position = dvec3(0, 1, -5);
             scene.shapes[0].geometry = parallelogram(vec3(-50, -50, 0), vec3(0, 100, 0), vec3(100, 0, 0));
             const double rows = M_PI / 8.0 + 0.25;  // From 45 to 90 degrees.
             // Longitude from -Z to the right, +X.
@@ -91,7 +91,7 @@ TEST_F(EnvironmentLightTest, TheMapSurroundsTheScene) {
         map.radiance[i] = vec3(float(i), 1, 2);
     const auto seen = [&](vec3 direction, float rotation) {
         // A column of the map spans 90 degrees from -180; the views are off the axes, which lie on edges.
-        Scene scene = scene_with_camera(vec3(0), direction, 0.2f);
+        Scene scene = scene_with_camera(dvec3(0), dvec3(direction), 0.2f);
         scene.environment = map;
         scene.environment->rotation = rotation;
         return image_of(render(scene, settings(Estimator::mis), 1));
@@ -110,7 +110,7 @@ TEST_F(EnvironmentLightTest, TheMapSurroundsTheScene) {
 
 // A floor that fills the left half of the picture.
 TEST_F(EnvironmentLightTest, AHiddenSkyIsTransparentAndLightsAllTheSame) {
-    Scene scene = scene_with_camera(vec3(0, 0, 3), vec3(0), 0.5f);
+    Scene scene = scene_with_camera(dvec3(0, 0, 3), dvec3(0), 0.5f);
     add_diffuse(scene, REFLECTANCE);
     add_shape(scene, parallelogram(vec3(-9, -9, 0), vec3(9, 0, 0), vec3(0, 18, 0)), 0);
     for (const bool visible : {true, false}) {
@@ -129,7 +129,7 @@ TEST_F(EnvironmentLightTest, AHiddenSkyIsTransparentAndLightsAllTheSame) {
 }
 
 TEST_F(EnvironmentLightTest, AHiddenSkyShowsInAMirror) {
-    Scene scene = scene_with_camera(vec3(0, 0, 3), vec3(0), 0.5f);
+    Scene scene = scene_with_camera(dvec3(0, 0, 3), dvec3(0), 0.5f);
     add_shape(scene, parallelogram(vec3(-9, -9, 0), vec3(18, 0, 0), vec3(0, 18, 0)),
               add_material(scene, MirrorMaterial{}));
     scene.environment = constant_environment(RADIANCE);
@@ -150,9 +150,9 @@ TEST_F(EnvironmentLightTest, ABlackSkyAndAnEmptySceneAreRendered) {
 TEST_F(EnvironmentLightTest, TheSkyAndALampAddUp) {
     Scene scene = floor_under(constant_environment(RADIANCE));
     // A floor of the lamp's size, as the sky's share of the samples grows with the scene.
-    scene.shapes[0].geometry = Disk{vec3(0), vec3(0, 0, 1), vec3(1, 0, 0)};
+    scene.shapes[0].geometry = Disk{dvec3(0), dvec3(0, 0, 1), dvec3(1, 0, 0)};
     // Twenty times as bright as the part of the sky that it hides.
-    add_shape(scene, Sphere{vec3(0, 2, 0), 0.5f}, 1, Emission{20.0f * RADIANCE, false});
+    add_shape(scene, Sphere{dvec3(0, 2, 0), 0.5}, 1, Emission{20.0f * RADIANCE, false});
     expect_form_factor(scene, 1.0 + 19.0 / 16.0, 2048, 4096);
 }
 

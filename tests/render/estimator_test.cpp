@@ -12,10 +12,9 @@ Scene scene_with_lights() {
     const uint32_t black = add_diffuse(scene, vec3(0));
     add_shape(scene, parallelogram(vec3(-1, 1.99f, -1), vec3(0.8f, 0, 0), vec3(0, 0, 0.8f)), black,
               Emission{vec3(4, 3, 2), false});
-    add_shape(
-        scene,
-        Quad{{vec3(0.5f, 1.9f, -1), vec3(1.5f, 1.9f, -1.2f), vec3(1.2f, 1.9f, 0), vec3(0.6f, 1.9f, -0.2f)}},
-        grey, Emission{vec3(1, 2, 3), false});
+    add_shape(scene,
+              Quad{{dvec3(0.5, 1.9, -1), dvec3(1.5, 1.9, -1.2), dvec3(1.2, 1.9, 0), dvec3(0.6, 1.9, -0.2)}},
+              grey, Emission{vec3(1, 2, 3), false});
     add_shape(scene, parallelogram(vec3(-1.5f, 0.5f, -1), vec3(0.8f, 0, 0.3f), vec3(0, 0.9f, 0)), grey,
               Emission{vec3(2), true});
     add_shape(scene, transformed(sphere_mesh(6, 8), [](vec3 p) { return vec3(0.7f, 0.8f, 0) + 0.3f * p; }),

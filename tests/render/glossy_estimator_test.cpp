@@ -18,11 +18,11 @@ Environment textured_sky() {
 
 void add_round_lights(Scene& scene) {
     const uint32_t grey = 0;
-    add_shape(scene, Sphere{vec3(-1.2f, 1.3f, -1), 0.4f}, grey, Emission{WARM, false});
-    add_shape(scene, Sphere{vec3(1.4f, 0.5f, -1.2f), 0.3f}, grey, Emission{COOL, true});
-    add_shape(scene, Disk{vec3(0, 1.95f, -0.5f), vec3(0.6f, 0, 0), vec3(0, 0, 0.4f)}, grey,
+    add_shape(scene, Sphere{dvec3(-1.2, 1.3, -1), 0.4}, grey, Emission{WARM, false});
+    add_shape(scene, Sphere{dvec3(1.4, 0.5, -1.2), 0.3}, grey, Emission{COOL, true});
+    add_shape(scene, Disk{dvec3(0, 1.95, -0.5), dvec3(0.6, 0, 0), dvec3(0, 0, 0.4)}, grey,
               Emission{COOL, false});
-    add_shape(scene, Disk{vec3(0.2f, 1.2f, -1.7f), vec3(0.4f, 0.1f, 0), vec3(0, 0.4f, 0.1f)}, grey,
+    add_shape(scene, Disk{dvec3(0.2, 1.2, -1.7), dvec3(0.4, 0.1, 0), dvec3(0, 0.4, 0.1)}, grey,
               Emission{WARM, true});
 }
 
@@ -30,7 +30,7 @@ void add_round_lights(Scene& scene) {
 void add_balls(Scene& scene, const std::vector<decltype(Material::model)>& models) {
     for (size_t i = 0; i < models.size(); ++i) {
         const float x = -1.2f + 0.8f * float(i);
-        add_shape(scene, Sphere{vec3(x, 0.4f, 0.2f), 0.35f}, add_material(scene, models[i]));
+        add_shape(scene, Sphere{dvec3(x, 0.4, 0.2), 0.35}, add_material(scene, models[i]));
     }
 }
 
@@ -70,7 +70,7 @@ TEST_F(GlossyEstimatorTest, AgreeOnMirrorsAndGlass) {
 // The room is within a sphere that shines inwards, with the camera.
 TEST_F(GlossyEstimatorTest, AgreeWithinALight) {
     Scene scene = open_room();
-    add_shape(scene, Sphere{vec3(0.5f, 1, 0), 5.0f}, 0, Emission{vec3(0.5f, 0.7f, 0.9f), true});
+    add_shape(scene, Sphere{dvec3(0.5, 1, 0), 5.0}, 0, Emission{vec3(0.5f, 0.7f, 0.9f), true});
     add_balls(scene, {DiffuseMaterial{vec3(0.5f)}, PhongMaterial{vec3(0.1f), vec3(0.7f), 10.0f},
                       ConductorMaterial{vec3(0.9f, 0.7f, 0.4f), 0.5f}, DielectricMaterial{}});
     expect_estimators_agree(scene, 512, 1024);
@@ -90,14 +90,14 @@ TEST_F(GlossyEstimatorTest, AgreeOnAHiddenSky) {
 // samples seldom find the small one from the rough plate, light samples seldom that part of the large one
 // which the smooth plate mirrors.
 TEST_F(GlossyEstimatorTest, AgreeOnPlatesUnderASmallAndALargeLamp) {
-    Scene scene = scene_with_camera(vec3(0, 1.5f, 4), vec3(0, 0.2f, 0), 0.6f);
+    Scene scene = scene_with_camera(dvec3(0, 1.5, 4), dvec3(0, 0.2, 0), 0.6f);
     const uint32_t black = add_diffuse(scene, vec3(0));
     const uint32_t smooth = add_material(scene, PhongMaterial{vec3(0.1f), vec3(0.8f, 0.7f, 0.6f), 2000.0f});
     const uint32_t rough = add_material(scene, ConductorMaterial{vec3(0.6f, 0.7f, 0.8f), 0.4f});
     add_shape(scene, parallelogram(vec3(-2, 0, 0), vec3(4, 0, 0), vec3(0, 0, -1)), smooth);
     add_shape(scene, parallelogram(vec3(-2, 0, 1), vec3(4, 0, 0), vec3(0, 0, -1)), rough);
-    add_shape(scene, Sphere{vec3(0.7f, 0.9f, -1.5f), 0.1f}, black, Emission{25.0f * COOL, false});
-    add_shape(scene, Sphere{vec3(-0.7f, 0.9f, -1.5f), 0.5f}, black, Emission{WARM, false});
+    add_shape(scene, Sphere{dvec3(0.7, 0.9, -1.5), 0.1}, black, Emission{25.0f * COOL, false});
+    add_shape(scene, Sphere{dvec3(-0.7, 0.9, -1.5), 0.5}, black, Emission{WARM, false});
     expect_estimators_agree(scene, 2048, 2048);
 }
 
@@ -105,10 +105,10 @@ TEST_F(GlossyEstimatorTest, AgreeOnPlatesUnderASmallAndALargeLamp) {
 // glass both kinds find it, but for the light that comes back from the boundary.
 TEST_F(GlossyEstimatorTest, AgreeOnALampWithinGlass) {
     Scene scene = open_room();
-    add_shape(scene, Sphere{vec3(0, 0.8f, 0), 0.7f},
+    add_shape(scene, Sphere{dvec3(0, 0.8, 0), 0.7},
               add_material(scene, DielectricMaterial{.inside = {vec3(1, 0.5f, 0.2f)}}));
-    add_shape(scene, Sphere{vec3(-0.3f, 0.9f, 0), 0.25f}, 0, Emission{WARM, false});
-    add_shape(scene, Sphere{vec3(0.3f, 0.7f, 0), 0.25f}, add_diffuse(scene, vec3(0.9f)));
+    add_shape(scene, Sphere{dvec3(-0.3, 0.9, 0), 0.25}, 0, Emission{WARM, false});
+    add_shape(scene, Sphere{dvec3(0.3, 0.7, 0), 0.25}, add_diffuse(scene, vec3(0.9f)));
     expect_estimators_agree(scene, 1024, 1024);
 }
 

@@ -19,7 +19,7 @@ class LensTest : public RenderTest {
 
     // A camera at the origin that looks along -Z at a black world.
     static Scene black_scene(Lens lens) {
-        Scene scene = scene_with_camera(vec3(0), vec3(0, 0, -1), float(2.0 * std::atan(HALF_WIDTH)));
+        Scene scene = scene_with_camera(dvec3(0), dvec3(0, 0, -1), float(2.0 * std::atan(HALF_WIDTH)));
         scene.cameras[0].lens = lens;
         add_diffuse(scene, vec3(0));
         return scene;
@@ -119,7 +119,7 @@ TEST_P(BlurTest, IsAnImageOfTheAperture) {
                                .blades = p.blades,
                                .rotation = p.rotation});
     const float lamp_radius = LAMP_SLOPE * p.lamp;
-    add_shape(scene, Disk{vec3(0, 0, -p.lamp), vec3(lamp_radius, 0, 0), vec3(0, lamp_radius, 0)}, 0,
+    add_shape(scene, Disk{dvec3(0, 0, -p.lamp), dvec3(lamp_radius, 0, 0), dvec3(0, lamp_radius, 0)}, 0,
               Emission{vec3(RADIANCE), false});
     const Image image = image_of(render(scene, settings(2), samples(2048)));
     const Blur blur{image, 2.0 * HALF_WIDTH / SIZE};

@@ -80,8 +80,8 @@ TEST_F(FiniteTest, SamplesThatAreNotFiniteAddNothingAndAreCounted) {
     const vk::Device other(instance_, info);
     for (const float radiance : {1e15f, 1e30f}) {
         Scene scene = cornell_box();
-        scene.cameras[0].position = vec3(0.278f, 0.4f, 0.28f);  // Under the light, which fills the view.
-        scene.cameras[0].look_at = vec3(0.278f, 0.5485f, 0.28f);
+        scene.cameras[0].position = dvec3(0.278, 0.4, 0.28);  // Under the light, which fills the view.
+        scene.cameras[0].look_at = dvec3(0.278, 0.5485, 0.28);
         scene.cameras[0].up = vec3(0, 0, 1);
         scene.cameras[0].vertical_fov = 0.1f;
         for (Shape& shape : scene.shapes) {

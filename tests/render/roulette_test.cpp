@@ -67,12 +67,12 @@ CountMoments up_to_three(double second, double third) {
 // it where it hits something white.
 TEST_F(RouletteTest, WithinClearGlassNoMorePathsEndThanMust) {
     constexpr float IOR = 1.8f;
-    Scene scene = scene_with_camera(vec3(0, 2, 0), vec3(0), 1e-3f);
+    Scene scene = scene_with_camera(dvec3(0, 2, 0), dvec3(0), 1e-3f);
     scene.environment = constant_environment(vec3(1));
     const uint32_t glass = add_material(scene, DielectricMaterial{.ior = IOR, .fresnel = Fresnel::exact});
     const uint32_t white = add_material(scene, DiffuseMaterial{vec3(1)});
-    add_shape(scene, Disk{vec3(0), vec3(0, 0, 9), vec3(9, 0, 0)}, glass);
-    add_shape(scene, Disk{vec3(0, -1, 0), vec3(0, 0, 9), vec3(9, 0, 0)}, white);
+    add_shape(scene, Disk{dvec3(0), dvec3(0, 0, 9), dvec3(9, 0, 0)}, glass);
+    add_shape(scene, Disk{dvec3(0, -1, 0), dvec3(0, 0, 9), dvec3(9, 0, 0)}, white);
     RenderSettings two = settings(0);
     two.max_depth = 2;
     const double r = std::pow((double(IOR) - 1.0) / (double(IOR) + 1.0), 2.0);
@@ -83,12 +83,12 @@ TEST_F(RouletteTest, WithinClearGlassNoMorePathsEndThanMust) {
 // hit, on a wall, its throughput counts.
 TEST_F(RouletteTest, AMirrorEndsNoMorePathsThanItMust) {
     constexpr float REFLECTANCE = 0.25f;
-    Scene scene = scene_with_camera(vec3(0, 2, 0), vec3(0), 1e-3f);
+    Scene scene = scene_with_camera(dvec3(0, 2, 0), dvec3(0), 1e-3f);
     scene.environment = constant_environment(vec3(1));
     const uint32_t mirror = add_material(scene, MirrorMaterial{vec3(REFLECTANCE)});
     const uint32_t white = add_material(scene, DiffuseMaterial{vec3(1)});
-    add_shape(scene, Disk{vec3(0), vec3(0, 0, 9), vec3(9, 0, 0)}, mirror);
-    add_shape(scene, Disk{vec3(0, 3, 0), vec3(9, 0, 0), vec3(0, 0, 9)}, white);
+    add_shape(scene, Disk{dvec3(0), dvec3(0, 0, 9), dvec3(9, 0, 0)}, mirror);
+    add_shape(scene, Disk{dvec3(0, 3, 0), dvec3(9, 0, 0), dvec3(0, 0, 9)}, white);
     RenderSettings two = settings(0);
     two.max_depth = 2;
     expect_rays(scene, two, up_to_three(S, S * std::sqrt(double(REFLECTANCE) / S)));
@@ -98,11 +98,11 @@ TEST_F(RouletteTest, AMirrorEndsNoMorePathsThanItMust) {
 // only where the mirror shows it: if the number that chose the lobe decided survival as well, only one lobe
 // would survive.
 TEST_F(RouletteTest, WhichLobeWasChosenDoesNotDecideWhoSurvives) {
-    Scene scene = scene_with_camera(vec3(0, 2, 0), vec3(0), 1e-3f);
+    Scene scene = scene_with_camera(dvec3(0, 2, 0), dvec3(0), 1e-3f);
     scene.environment = Environment{.size = {1, 8}, .radiance = std::vector<vec3>(8, vec3(0.1f))};
     scene.environment->radiance[0] = vec3(4);
     const uint32_t phong = add_material(scene, PhongMaterial{vec3(0.4f), vec3(0.4f), 1e5f});
-    add_shape(scene, Disk{vec3(0), vec3(0, 0, 9), vec3(9, 0, 0)}, phong);
+    add_shape(scene, Disk{dvec3(0), dvec3(0, 0, 9), dvec3(9, 0, 0)}, phong);
     RenderSettings once = settings(0);
     once.max_depth = 1;
     RenderSettings never = once;

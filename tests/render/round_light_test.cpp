@@ -38,8 +38,8 @@ class RoundLightTest : public RenderTest {
         return scene;
     }
     // Direction to the left, at that angle from the floor's normal [degrees].
-    static vec3 direction(double theta) {
-        return vec3(float(-std::sin(theta * M_PI / 180.0)), float(std::cos(theta * M_PI / 180.0)), 0);
+    static dvec3 direction(double theta) {
+        return dvec3(-std::sin(theta * M_PI / 180.0), std::cos(theta * M_PI / 180.0), 0);
     }
 };
 
@@ -53,9 +53,9 @@ TEST_F(RoundLightTest, ASphereAboveTheHorizon) {
     for (const Case c : {Case{0.5, 2.0, 0.0, 64, 4096}, Case{1.9, 2.0, 0.0, 1024, 128},
                          Case{1.0, 2.0, 45.0, 256, 2048}, Case{0.01, 3.0, 60.0, 16, 0}}) {
         SCOPED_TRACE(testing::Message() << "radius " << c.radius << " at " << c.distance << " m");
-        const vec3 center = float(c.distance) * direction(c.theta);
-        const double ratio = double(float(c.radius)) / c.distance;
-        expect_form_factor(floor_under(Sphere{center, float(c.radius)}),
+        const dvec3 center = c.distance * direction(c.theta);
+        const double ratio = c.radius / c.distance;
+        expect_form_factor(floor_under(Sphere{center, c.radius}),
                            ratio * ratio * std::cos(c.theta * M_PI / 180.0), c.light_spp, c.bsdf_spp);
     }
 }
@@ -66,42 +66,42 @@ TEST_F(RoundLightTest, ASphereAboveTheHorizon) {
 TEST_F(RoundLightTest, ASphereThatTheFloorCuts) {
     const double s = 0.9;
     const double form_factor = (std::asin(s) - s * std::sqrt(1.0 - s * s)) / M_PI;
-    expect_form_factor(floor_under(Sphere{vec3(-2, 0, 0), 1.8f}), form_factor, 2048, 2048);
+    expect_form_factor(floor_under(Sphere{dvec3(-2, 0, 0), 1.8}), form_factor, 2048, 2048);
 }
 
 // From within, a sphere fills the sky, if it shines inwards.
 TEST_F(RoundLightTest, ASphereAroundTheFloor) {
     for (const bool two_sided : {false, true}) {
-        Scene scene = floor_under(Sphere{vec3(0.5f, 1, 0.3f), 20.0f}, two_sided);
-        scene.shapes[0].geometry = Disk{vec3(0), vec3(0, 0, 9), vec3(9, 0, 0)};
+        Scene scene = floor_under(Sphere{dvec3(0.5, 1, 0.3), 20.0}, two_sided);
+        scene.shapes[0].geometry = Disk{dvec3(0), dvec3(0, 0, 9), dvec3(9, 0, 0)};
         expect_form_factor(scene, two_sided ? 1.0 : 0.0, 1024, 16);
     }
 }
 
 TEST_F(RoundLightTest, SpheresOfDifferentPowerAddUp) {
-    Scene scene = floor_under(Sphere{vec3(-1.5f, 2, 0), 0.5f});
-    add_shape(scene, Sphere{vec3(2, 1.5f, 0), 0.1f}, 1, Emission{9.0f * RADIANCE, true});
+    Scene scene = floor_under(Sphere{dvec3(-1.5, 2, 0), 0.5});
+    add_shape(scene, Sphere{dvec3(2, 1.5, 0), 0.1}, 1, Emission{9.0f * RADIANCE, true});
     const double d3 = std::pow(2.5, 3.0);
     expect_form_factor(scene, 0.25 * 2.0 / d3 + 9.0 * 0.01 * 1.5 / d3, 256, 0);
 }
 
 TEST_F(RoundLightTest, ASphereCastsAFullShadow) {
-    Scene scene = floor_under(Sphere{vec3(0, 3, 0), 0.2f});
-    add_shape(scene, Sphere{vec3(0, 1.5f, 0), 0.5f}, 1);
+    Scene scene = floor_under(Sphere{dvec3(0, 3, 0), 0.2});
+    add_shape(scene, Sphere{dvec3(0, 1.5, 0), 0.5}, 1);
     expect_form_factor(scene, 0.0, 64, 64);
 }
 
 // r^2 / (r^2 + d^2) on the axis. Ref: Howell, B-12.
 TEST_F(RoundLightTest, ADiskOnItsAxis) {
     struct Case {
-        float radius, height;
+        double radius, height;
         uint32_t light_spp, bsdf_spp;
     };
-    for (const Case c : {Case{1.0f, 2.0f, 256, 2048}, Case{4.0f, 1.0f, 2048, 64}, Case{0.02f, 2.0f, 16, 0}}) {
+    for (const Case c : {Case{1.0, 2.0, 256, 2048}, Case{4.0, 1.0, 2048, 64}, Case{0.02, 2.0, 16, 0}}) {
         SCOPED_TRACE(testing::Message() << "radius " << c.radius << " at " << c.height << " m");
-        const double r2 = double(c.radius) * double(c.radius);
-        const double form_factor = r2 / (r2 + double(c.height) * double(c.height));
-        const Disk down{vec3(0, c.height, 0), vec3(c.radius, 0, 0), vec3(0, 0, c.radius)};
+        const double r2 = c.radius * c.radius;
+        const double form_factor = r2 / (r2 + c.height * c.height);
+        const Disk down{dvec3(0, c.height, 0), dvec3(c.radius, 0, 0), dvec3(0, 0, c.radius)};
         expect_form_factor(floor_under(down), form_factor, c.light_spp, c.bsdf_spp);
         const Disk up{down.center, down.e2, down.e1};
         expect_form_factor(floor_under(up), 0.0, 16, 16);
@@ -112,23 +112,23 @@ TEST_F(RoundLightTest, ADiskOnItsAxis) {
 // A small ellipse that faces the origin: area / (pi d^2) times the floor's cosine. Its own extent changes
 // that by no more than (0.01 / 2)^2 of itself.
 TEST_F(RoundLightTest, AnEllipseAcrossTheView) {
-    const vec3 n = -direction(50.0);
-    const vec3 e1(0, 0, 0.01f);
-    const vec3 e2 = 0.005f * cross(n, vec3(0, 0, 1));
-    ASSERT_GT(dot(cross(e1, e2), n), 0.0f);
+    const dvec3 n = -direction(50.0);
+    const dvec3 e1(0, 0, 0.01);
+    const dvec3 e2 = 0.005 * cross(n, dvec3(0, 0, 1));
+    ASSERT_GT(dot(cross(e1, e2), n), 0.0);
     const double area_over_pi = 0.01 * 0.005;
-    expect_form_factor(floor_under(Disk{-2.0f * n, e1, e2}),
+    expect_form_factor(floor_under(Disk{-2.0 * n, e1, e2}),
                        area_over_pi / 4.0 * std::cos(50.0 * M_PI / 180.0), 64, 0);
 }
 
 // What a camera sees is the light's radiance, on the front only.
 TEST_F(RoundLightTest, ALightThatIsLookedAtShowsItsRadiance) {
-    Scene scene = scene_with_camera(vec3(0, 0, 3), vec3(0), 0.1f);
+    Scene scene = scene_with_camera(dvec3(0, 0, 3), dvec3(0), 0.1f);
     add_diffuse(scene, vec3(0));
-    const Disk front{vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
-    const Disk back{vec3(0), vec3(0, 1, 0), vec3(1, 0, 0)};
-    const Sphere outside{vec3(0), 1.0f};
-    const Sphere inside{vec3(0), 9.0f};
+    const Disk front{dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)};
+    const Disk back{dvec3(0), dvec3(0, 1, 0), dvec3(1, 0, 0)};
+    const Sphere outside{dvec3(0), 1.0};
+    const Sphere inside{dvec3(0), 9.0};
     const auto seen = [&](const decltype(Shape::geometry)& light, bool two_sided) {
         scene.shapes.clear();
         add_shape(scene, light, 0, Emission{RADIANCE, two_sided});

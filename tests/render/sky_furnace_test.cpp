@@ -17,7 +17,7 @@ class SkyFurnaceTest : public RenderTest {
     // A unit sphere that fills most of the picture, seen against a sky of radiance 1.
     template <class Model>
     static Scene sphere_of(const Model& model) {
-        Scene scene = scene_with_camera(vec3(1, 2, 4.5f), vec3(0), 0.4f);
+        Scene scene = scene_with_camera(dvec3(1, 2, 4.5), dvec3(0), 0.4f);
         scene.environment = constant_environment(vec3(1));
         add_shape(scene, Sphere{}, add_material(scene, model));
         return scene;
@@ -72,7 +72,7 @@ TEST_F(SkyFurnaceTest, ClearGlassIsInvisible) {
 TEST_F(SkyFurnaceTest, AWhiteBallInClearGlassIsInvisible) {
     for (const Fresnel fresnel : {Fresnel::schlick, Fresnel::exact}) {
         Scene scene = sphere_of(DielectricMaterial{.ior = 1.7f, .exterior_ior = 1.1f, .fresnel = fresnel});
-        add_shape(scene, Sphere{vec3(0.1f, 0.2f, 0), 0.5f}, add_diffuse(scene, vec3(1)));
+        add_shape(scene, Sphere{dvec3(0.1, 0.2, 0), 0.5}, add_diffuse(scene, vec3(1)));
         for (const Estimator estimator : ESTIMATORS) {
             SCOPED_TRACE(testing::Message() << int(fresnel) << ' ' << int(estimator));
             expect_invisible_on_average(scene, settings(estimator, 4), samples(512));
@@ -90,8 +90,8 @@ TEST_F(SkyFurnaceTest, AWhiteBallIsInvisible) {
 // Between the rays that return at once and those that are caught: two mirrors and a white floor.
 TEST_F(SkyFurnaceTest, BodiesThatLightEachOtherAreInvisible) {
     Scene scene = sphere_of(MirrorMaterial{vec3(1)});
-    add_shape(scene, Sphere{vec3(0.9f, -0.6f, 1), 0.5f}, add_material(scene, DielectricMaterial{}));
-    add_shape(scene, Disk{vec3(0, -1.2f, 0), vec3(0, 0, 2), vec3(2, 0, 0)}, add_diffuse(scene, vec3(1)));
+    add_shape(scene, Sphere{dvec3(0.9, -0.6, 1), 0.5}, add_material(scene, DielectricMaterial{}));
+    add_shape(scene, Disk{dvec3(0, -1.2, 0), dvec3(0, 0, 2), dvec3(2, 0, 0)}, add_diffuse(scene, vec3(1)));
     for (const Estimator estimator : ESTIMATORS)
         expect_invisible_on_average(scene, settings(estimator, 8), samples(1024));
 }
@@ -153,10 +153,10 @@ class AlbedoTest : public RenderTest {
     template <class Model>
     static Scene plane_of(const Model& model, double theta) {
         constexpr float FIELD_OF_VIEW = 1e-3f;
-        const vec3 position(float(std::sin(theta)), float(std::cos(theta)), 0);
-        Scene scene = scene_with_camera(5.0f * position, vec3(0), FIELD_OF_VIEW);
+        const dvec3 position(std::sin(theta), std::cos(theta), 0);
+        Scene scene = scene_with_camera(5.0 * position, dvec3(0), FIELD_OF_VIEW);
         scene.environment = constant_environment(vec3(1));
-        add_shape(scene, Disk{vec3(0), vec3(0, 0, 9), vec3(9, 0, 0)}, add_material(scene, model));
+        add_shape(scene, Disk{dvec3(0), dvec3(0, 0, 9), dvec3(9, 0, 0)}, add_material(scene, model));
         return scene;
     }
     // The angle differs by half the field of view at the picture's edge, by a third of that in the mean

@@ -10,8 +10,6 @@
 namespace candela {
 namespace {
 
-using glm::dvec3;
-
 // Distance along the ray at which it hits the triangle, in double precision; infinite if it misses.
 // Ref: Moeller and Trumbore 1997, Fast, Minimum Storage Ray/Triangle Intersection.
 double distance_to(const BenchRay& ray, const BenchTriangle& triangle) {
@@ -95,7 +93,7 @@ TEST_F(BenchRays, PrimaryRaysGoThroughTheirPixelsInTiles) {
         // Directions have rounding errors of a few 2^-24, pixels a size of 2^-5.
         EXPECT_NEAR(x, double(column) + 0.5, 0.5 + 1e-4) << i;
         EXPECT_NEAR(y, double(row) + 0.5, 0.5 + 1e-4) << i;
-        EXPECT_EQ(ray.o, scene_.cameras.front().position);
+        EXPECT_EQ(ray.o, vec3(scene_.cameras.front().position));
         EXPECT_EQ(ray.t_max, INFINITE);
     }
 }

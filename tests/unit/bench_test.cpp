@@ -205,7 +205,7 @@ TEST(BenchMeshes, ASceneHasAboutTheTrianglesAskedFor) {
 
 TEST(BenchMeshes, TheCameraSeesTheRoomFromWithinAndTheLightShinesDown) {
     const Scene scene = displaced_scene(1000);
-    const vec3 eye = scene.cameras.front().position;
+    const vec3 eye(scene.cameras.front().position);
     EXPECT_LT(std::max(std::abs(eye.x), std::abs(eye.z)), 3.0f);
     EXPECT_LT(eye.y, 4.0f);
     for (const TriangleMesh& mesh : scene.meshes) {

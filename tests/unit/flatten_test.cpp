@@ -19,24 +19,24 @@ Shape shape(const decltype(Shape::geometry)& geometry, uint32_t material,
 FlatScene flatten_shapes(const std::vector<Shape>& shapes) {
     Scene scene;
     scene.shapes = shapes;
-    return flatten(scene);
+    return flatten(scene, SceneFrame{});
 }
 
-const Sphere BALL{.center = vec3(1, -2, 3), .radius = 0.5f};
-const Disk ELLIPSE{.center = vec3(4, 5, 6), .e1 = vec3(2, 0, 0), .e2 = vec3(1, 0, -3)};
+const Sphere BALL{.center = dvec3(1, -2, 3), .radius = 0.5};
+const Disk ELLIPSE{.center = dvec3(4, 5, 6), .e1 = dvec3(2, 0, 0), .e2 = dvec3(1, 0, -3)};
 
 TEST(Flatten, ASphereIsOnePrimitiveAndOneLight) {
     const FlatScene flat =
         flatten_shapes({shape(BALL, 7, Emission{.radiance = vec3(0, 2, 0), .two_sided = false})});
     ASSERT_EQ(flat.primitives.size(), 1u);
     EXPECT_EQ(flat.primitives[0].kind, PRIMITIVE_SPHERE);
-    EXPECT_EQ(flat.primitives[0].a, BALL.center);
+    EXPECT_EQ(flat.primitives[0].a, vec3(BALL.center));
     EXPECT_EQ(flat.primitives[0].b.x, BALL.radius);
     EXPECT_EQ(flat.surfaces[0].material, 7u);
     EXPECT_EQ(flat.surfaces[0].light, 0u);
     ASSERT_EQ(flat.lights.size(), 1u);
     EXPECT_EQ(flat.lights[0].kind, LIGHT_SPHERE);
-    EXPECT_EQ(flat.lights[0].p, BALL.center);
+    EXPECT_EQ(flat.lights[0].p, vec3(BALL.center));
     EXPECT_EQ(flat.lights[0].e1.x, BALL.radius);
     EXPECT_EQ(flat.lights[0].radiance, vec3(0, 2, 0));
     EXPECT_NEAR(1.0 / flat.lights[0].pdf_area, M_PI, 1e-6);  // 4 pi / 2^2
@@ -48,9 +48,9 @@ TEST(Flatten, ADiskIsOnePrimitiveAndOneLight) {
         flatten_shapes({shape(ELLIPSE, 3, Emission{.radiance = vec3(1), .two_sided = true})});
     ASSERT_EQ(flat.primitives.size(), 1u);
     EXPECT_EQ(flat.primitives[0].kind, PRIMITIVE_DISK);
-    EXPECT_EQ(flat.primitives[0].a, ELLIPSE.center);
-    EXPECT_EQ(flat.primitives[0].b, ELLIPSE.e1);
-    EXPECT_EQ(flat.primitives[0].c, ELLIPSE.e2);
+    EXPECT_EQ(flat.primitives[0].a, vec3(ELLIPSE.center));
+    EXPECT_EQ(flat.primitives[0].b, vec3(ELLIPSE.e1));
+    EXPECT_EQ(flat.primitives[0].c, vec3(ELLIPSE.e2));
     EXPECT_EQ(flat.surfaces[0].light, 0u);
     ASSERT_EQ(flat.lights.size(), 1u);
     EXPECT_EQ(flat.lights[0].kind, LIGHT_DISK);
@@ -61,7 +61,7 @@ TEST(Flatten, ADiskIsOnePrimitiveAndOneLight) {
 
 TEST(Flatten, BlackShapesAreNoLights) {
     const Emission black{.radiance = vec3(0), .two_sided = true};
-    const Disk without_area{.center = vec3(0), .e1 = vec3(1, 0, 0), .e2 = vec3(2, 0, 0)};
+    const Disk without_area{.center = dvec3(0), .e1 = dvec3(1, 0, 0), .e2 = dvec3(2, 0, 0)};
     const FlatScene flat =
         flatten_shapes({shape(BALL, 0), shape(BALL, 0, black), shape(ELLIPSE, 0), shape(ELLIPSE, 0, black),
                         shape(without_area, 0, Emission{.radiance = vec3(1), .two_sided = false})});
@@ -93,7 +93,7 @@ TEST(Flatten, EveryPrimitiveHasARecordOfNormalsIfOneIsSmooth) {
     add_shape(scene, BALL, 0);
     add_shape(scene, smooth, 0);
     add_shape(scene, ELLIPSE, 0);
-    const FlatScene flat = flatten(scene);
+    const FlatScene flat = flatten(scene, SceneFrame{});
     ASSERT_EQ(flat.normals.size(), flat.primitives.size());
     for (size_t i = 0; i < flat.normals.size(); ++i) {
         const bool of_the_mesh = flat.primitives[i].kind == PRIMITIVE_TRIANGLES;

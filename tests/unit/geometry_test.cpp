@@ -51,15 +51,15 @@ TEST(Geometry, BoxesHaveOutwardSides) {
     const Scene scene =
         folder.load(scene_of(R"({"type": "box", "min": [-1, -2, -3], "max": [3, 2, 1], "emission": 1})"));
     ASSERT_EQ(scene.shapes.size(), 6u);
-    const vec3 center(1, 0, -1);
-    vec3 sum(0);
+    const dvec3 center(1, 0, -1);
+    dvec3 sum(0);
     for (const Shape& shape : scene.shapes) {
         const auto& c = std::get<Quad>(shape.geometry).corners;
-        const vec3 n = cross(c[1] - c[0], c[3] - c[0]);
-        EXPECT_EQ(dot(n, c[0] - center), 32.0f);  // 16 m^2 at a distance of 2 m.
+        const dvec3 n = cross(c[1] - c[0], c[3] - c[0]);
+        EXPECT_EQ(dot(n, c[0] - center), 32.0);  // 16 m^2 at a distance of 2 m.
         sum += n;
     }
-    EXPECT_EQ(sum, vec3(0));
+    EXPECT_EQ(sum, dvec3(0));
     folder.expect_error(scene_of(R"({"type": "box", "min": [0, 0, 0], "max": @[1, 0, 1], "emission": 1})"),
                         "each number of max must be above that of min");
 }
@@ -104,33 +104,33 @@ TEST(Geometry, AnswersForTheWholeScene) {
             "triangles": [[0, 1, 2]], "material": "white"})"));
     EXPECT_EQ(triangle_count(scene), 3u);
     EXPECT_EQ(emitter_count(scene), 1u);
-    const Box box = bounds(scene);
-    EXPECT_EQ(box.lo, vec3(0, 0, -3));
-    EXPECT_EQ(box.hi, vec3(1, 2, 0));  // The unused position does not count.
+    const DoubleBox box = bounds(scene);
+    EXPECT_EQ(box.lo, dvec3(0, 0, -3));
+    EXPECT_EQ(box.hi, dvec3(1, 2, 0));  // The unused position does not count.
     EXPECT_TRUE(bounds(Scene()).is_empty());
     EXPECT_EQ(triangle_count(Scene()), 0u);
 }
 
 TEST(Geometry, BoundsRoundShapes) {
     Scene scene;
-    scene.shapes.push_back({Sphere{vec3(1, 2, 3), 0.5f}, 0, std::nullopt});
-    EXPECT_EQ(bounds(scene).lo, vec3(0.5f, 1.5f, 2.5f));
-    EXPECT_EQ(bounds(scene).hi, vec3(1.5f, 2.5f, 3.5f));
+    scene.shapes.push_back({Sphere{dvec3(1, 2, 3), 0.5}, 0, std::nullopt});
+    EXPECT_EQ(bounds(scene).lo, dvec3(0.5, 1.5, 2.5));
+    EXPECT_EQ(bounds(scene).hi, dvec3(1.5, 2.5, 3.5));
     EXPECT_EQ(triangle_count(scene), 0u);
 
     // A disk of radius r reaches r sqrt(1 - n_i^2) along axis i. Any two radii at right angles span it.
     const glm::dvec3 n = glm::dvec3(1, 2, 2) / 3.0;
     const glm::dvec3 u = glm::dvec3(2, 1, -2) / 3.0;
     const glm::dvec3 v = cross(n, u);
-    const vec3 center(-1, 4, 0.25f);
+    const dvec3 center(-1, 4, 0.25);
     for (const double angle : {0.0, 0.3, 1.0, 2.5}) {
         const glm::dvec3 e1 = 3.0 * (std::cos(angle) * u + std::sin(angle) * v);
         const glm::dvec3 e2 = 3.0 * (-std::sin(angle) * u + std::cos(angle) * v);
-        scene.shapes = {{Disk{center, vec3(e1), vec3(e2)}, 0, std::nullopt}};
-        const vec3 reach(3.0 * sqrt(1.0 - n * n));
-        // Five roundings of numbers below 8, each by at most 2.4e-7.
-        EXPECT_LT(length(bounds(scene).lo - (center - reach)), 2e-6f);
-        EXPECT_LT(length(bounds(scene).hi - (center + reach)), 2e-6f);
+        scene.shapes = {{Disk{center, e1, e2}, 0, std::nullopt}};
+        const dvec3 reach = 3.0 * sqrt(1.0 - n * n);
+        // Some ten roundings of numbers below 8, each by at most 4.5e-16.
+        EXPECT_LT(length(bounds(scene).lo - (center - reach)), 5e-15);
+        EXPECT_LT(length(bounds(scene).hi - (center + reach)), 5e-15);
     }
     EXPECT_EQ(triangle_count(scene), 0u);
 }

@@ -17,14 +17,14 @@ namespace {
 TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
     const Quad slanted = parallelogram(vec3(100, -50, 3), vec3(1, 0.3f, 0.1f), vec3(-0.2f, 1.7f, 0.3f));
     for (const Quad& quad : {SQUARE, slanted}) {
-        const GpuScene gpu = build_gpu_scene(scene_of({emitter(quad, vec3(2))}));
+        const GpuScene gpu = build_gpu_scene(scene_of({emitter(quad, vec3(2))}), SceneFrame{});
         ASSERT_EQ(gpu.light_count, 1u);
         ASSERT_EQ(gpu.primitive_count, 1u);
         const Light l = light(gpu, 0);
         EXPECT_EQ(l.kind, LIGHT_PARALLELOGRAM);
-        EXPECT_EQ(l.p, quad.corners[0]);
-        EXPECT_EQ(l.e1, quad.corners[1] - quad.corners[0]);
-        EXPECT_EQ(l.e2, quad.corners[3] - quad.corners[0]);
+        EXPECT_EQ(l.p, vec3(quad.corners[0]));
+        EXPECT_EQ(l.e1, vec3(quad.corners[1] - quad.corners[0]));
+        EXPECT_EQ(l.e2, vec3(quad.corners[3] - quad.corners[0]));
         EXPECT_EQ(l.radiance, vec3(2));
         EXPECT_EQ(l.two_sided, 0u);
         EXPECT_NEAR(double(l.pdf_area) * area(l), 1.0, 1e-6);
@@ -35,8 +35,8 @@ TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
 }
 
 TEST(GpuScene, AnyOtherQuadIsTwoLightsThatCoverIt) {
-    const Quad kite{{vec3(0, 0, 0), vec3(2, 0, 0), vec3(3, 3, 0), vec3(0, 2, 0)}};
-    const GpuScene gpu = build_gpu_scene(scene_of({emitter(kite, vec3(1))}));
+    const Quad kite{{dvec3(0, 0, 0), dvec3(2, 0, 0), dvec3(3, 3, 0), dvec3(0, 2, 0)}};
+    const GpuScene gpu = build_gpu_scene(scene_of({emitter(kite, vec3(1))}), SceneFrame{});
     ASSERT_EQ(gpu.light_count, 2u);
     double covered = 0.0, probability = 0.0;
     for (const uint32_t i : {0u, 1u}) {
@@ -69,7 +69,7 @@ TEST(GpuScene, LightsAreChosenByAreaLuminanceAndSides) {
     Scene scene = scene_of(
         {emitter(SQUARE, vec3(1)), emitter(large, vec3(0, 1, 0)), emitter(SQUARE, vec3(0.5f), true)});
     add_shape(scene, mesh, 0, Emission{.radiance = vec3(3), .two_sided = false});
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     const std::vector<double> powers{1.0, 6.0 * 0.7152, 1.0, 3.0 * 2.0, 3.0 * 4.0};
     ASSERT_EQ(gpu.light_count, powers.size());
     const std::vector<double> chosen = light_probabilities(gpu);
@@ -91,7 +91,8 @@ TEST(GpuScene, EmittersWithoutAreaOrRadianceAreHarmless) {
     const Quad flat = parallelogram(vec3(0), vec3(1, 0, 0), vec3(2, 0, 0));
     EXPECT_EQ(build_gpu_scene(scene_of({emitter(flat, vec3(1))})).light_count, 0u);
     EXPECT_EQ(build_gpu_scene(scene_of({emitter(SQUARE, vec3(0))})).light_count, 0u);
-    const GpuScene gpu = build_gpu_scene(scene_of({emitter(SQUARE, vec3(0)), emitter(SQUARE, vec3(1))}));
+    const GpuScene gpu =
+        build_gpu_scene(scene_of({emitter(SQUARE, vec3(0)), emitter(SQUARE, vec3(1))}), SceneFrame{});
     for (uint32_t i = 0; i < gpu.light_count; ++i)
         EXPECT_TRUE(std::isfinite(light(gpu, i).pdf_area));
 }
@@ -101,7 +102,7 @@ TEST(GpuScene, IdsFollowTheOrderOfTheSceneAndEveryTriangleIsThere) {
     Scene scene = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
     add_diffuse(scene, vec3(1));
     add_shape(scene, mesh, 1);
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     ASSERT_EQ(gpu.id_count, 102u);
     EXPECT_EQ(gpu.primitive_count, 101u);  // No two of the soup touch.
     const std::vector<Triangle> all = triangles(gpu);
@@ -110,7 +111,8 @@ TEST(GpuScene, IdsFollowTheOrderOfTheSceneAndEveryTriangleIsThere) {
         EXPECT_EQ(t.surface.light, NO_LIGHT);
         EXPECT_EQ(t.surface.material, id < 2 ? 0u : 1u);
         if (id < 2) {
-            EXPECT_TRUE(same_corners(t, SQUARE.corners[0], SQUARE.corners[id + 1], SQUARE.corners[id + 2]));
+            EXPECT_TRUE(same_corners(t, vec3(SQUARE.corners[0]), vec3(SQUARE.corners[id + 1]),
+                                     vec3(SQUARE.corners[id + 2])));
         } else {
             const uvec3 corners = mesh.triangles[id - 2];
             EXPECT_TRUE(same_corners(t, mesh.positions[corners.x], mesh.positions[corners.y],
@@ -128,7 +130,7 @@ TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
     Scene scene = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
     add_shape(scene, smooth, 0);
     add_shape(scene, SQUARE, 0);
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     EXPECT_TRUE(gpu.has_normals);
     EXPECT_LT(gpu.primitive_count, 2 + smooth.triangles.size());
     const std::vector<Triangle> all = triangles(gpu);
@@ -150,7 +152,7 @@ TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
 TEST(GpuScene, ArraysHoldTheRecordsOfWhatThereIs) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1))});
     add_diffuse(scene, vec3(1));
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     const std::array<uint32_t, ARRAY_COUNT> records{1, 1, 1, 0, 2, 1, 1, 0, 0, 1};
     uint64_t words = 0;
     for (const SceneArray& array : SCENE_ARRAYS) {
@@ -174,7 +176,7 @@ TEST(GpuScene, TheSkyIsALightAndChosenByThePowerThatFallsOntoTheScene) {
     Scene scene = scene_of({emitter(SQUARE, vec3(10))});
     const std::vector<vec3> radiance{vec3(1), vec3(1), vec3(1.5f, 0.6089f / 0.7152f, 1)};
     scene.environment = Environment{.size = {3, 1}, .radiance = radiance, .rotation = 0.5f};
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     ASSERT_EQ(gpu.light_count, 2u);
     EXPECT_EQ(light(gpu, 1).kind, LIGHT_ENVIRONMENT);
     EXPECT_EQ(gpu.environment, ENVIRONMENT_VISIBLE);
@@ -202,7 +204,7 @@ TEST(GpuScene, TheSkyIsALightAndChosenByThePowerThatFallsOntoTheScene) {
 TEST(GpuScene, TheSkyIsChosenForHalfOfTheSamplesAtMost) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1)), emitter(SQUARE, vec3(2))});
     scene.environment = Environment{.size = {2, 1}, .radiance = {vec3(50), vec3(150)}};
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     const std::vector<double> chosen = light_probabilities(gpu);
     EXPECT_NEAR(chosen[0], 1.0 / 6.0, 1e-6);
     EXPECT_NEAR(chosen[1], 2.0 / 6.0, 1e-6);
@@ -220,7 +222,7 @@ TEST(GpuScene, ASkyThatIsEvenOrLightsNothingIsNotSampled) {
     Scene even = black;
     even.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(1)}};
     for (const Scene* scene : {&black, &empty, &even}) {
-        const GpuScene gpu = build_gpu_scene(*scene);
+        const GpuScene gpu = build_gpu_scene(*scene, SceneFrame{});
         EXPECT_EQ(gpu.light_count, 0u);
         EXPECT_EQ(gpu.environment, ENVIRONMENT_VISIBLE);
         EXPECT_EQ(texel(gpu, 0).pdf, 0.0f);
@@ -231,7 +233,7 @@ TEST(GpuScene, ASkyThatIsEvenOrLightsNothingIsNotSampled) {
 TEST(GpuScene, AnEvenSkyLeavesAllSamplesToTheLamps) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1))});
     scene.environment = Environment{.size = {1, 1}, .radiance = {vec3(100)}};
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     ASSERT_EQ(gpu.light_count, 1u);
     EXPECT_EQ(light(gpu, 0).pmf, 1.0f);
     EXPECT_EQ(texel(gpu, 0).radiance, vec3(100));
@@ -260,7 +262,7 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
         {MATERIAL_DIFFUSE_TRANSMISSION, MEDIUM_SAME, vec3(0.2f), vec3(0.3f), 0.0f},
         {MATERIAL_DIFFUSE_TRANSMISSION, 1, vec3(0.2f), vec3(0.3f), 0.0f},
     };
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     for (uint32_t i = 0; i < expected.size(); ++i) {
         const auto words = pack(expected[i]);
         EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i], words[0]) << i;
@@ -309,7 +311,7 @@ TEST(GpuScene, OfCornersInOnePlaceTheFirstIsNamed) {
     Scene scene = scene_of({Shape{.geometry = SQUARE, .material = 0, .emission = {}},
                             Shape{.geometry = next, .material = 0, .emission = {}}});
     add_shape(scene, triangle, 0);
-    const GpuScene gpu = build_gpu_scene(scene);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     ASSERT_EQ(gpu.primitive_count, 3u);
     std::vector<vec3> corners;
     for (size_t i = 0; i < gpu.primitive_count; ++i) {

@@ -23,13 +23,13 @@ class Load : public testing::Test {
         ASSERT_EQ(scene.cameras.size(), 1u);
         const Camera& camera = scene.cameras[0];
         EXPECT_EQ(camera.name, "default");
-        const Box box = bounds(scene);
-        const vec3 forward = normalize(camera.look_at - camera.position);
+        const DoubleBox box = bounds(scene);
+        const dvec3 forward = normalize(camera.look_at - camera.position);
         double widest = 0.0;
         for (int corner = 0; corner < 8; ++corner) {
-            const vec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                         corner & 4 ? box.hi.z : box.lo.z);
-            const double angle = std::acos(double(dot(normalize(p - camera.position), forward)));
+            const dvec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                          corner & 4 ? box.hi.z : box.lo.z);
+            const double angle = std::acos(dot(normalize(p - camera.position), forward));
             EXPECT_LT(angle, 0.5 * double(camera.vertical_fov));
             widest = std::max(widest, angle);
         }

@@ -25,9 +25,10 @@ inline Light light(const GpuScene& gpu, uint32_t i) {
             .e1 = floats(w[1]),
             .e2 = floats(w[2]),
             .radiance = floats(w[3]),
-            .two_sided = w[1].w,
+            .two_sided = w[1].w >> 31,
             .pdf_area = std::bit_cast<float>(w[3].w),
-            .pmf = std::bit_cast<float>(w[2].w)};
+            .pmf = std::bit_cast<float>(w[2].w),
+            .error = std::bit_cast<float>(w[1].w & 0x7FFFFFFFu)};
 }
 
 // Entry i of an alias table.
@@ -66,7 +67,8 @@ inline std::vector<Triangle> triangles(const GpuScene& gpu) {
     for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
         const uvec4* w = &gpu.arrays[ARRAY_PRIMITIVES][i * PRIMITIVE_WORDS];
         const uvec4 s = gpu.arrays[ARRAY_SURFACES][i];
-        const Surface surface{uvec2(s.x, s.y), s.z & 0x7FFFFFFFu, s.z >> 31, s.w};
+        const Surface surface{uvec2(s.x, s.y), s.z & (MAX_MATERIALS - 1), s.z >> 31, s.w,
+                              std::bit_cast<float>(s.z & SURFACE_ERROR_BITS)};
         const vec3 d = std::bit_cast<vec3>(uvec3(w[0].w, w[1].w, w[2].w));
         const uvec4 n = gpu.has_normals ? gpu.arrays[ARRAY_NORMALS][i] : uvec4(0);
         EXPECT_TRUE(

@@ -76,10 +76,10 @@ TEST_F(PictureIdentity, AnotherSceneIsAnother) {
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.meshes.at(0).positions[0].x += 0x1p-10f; }),
               another);
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.meshes.at(0).origin.x += 0x1p-10; }), another);
-    EXPECT_EQ(after([](RenderSettings&, Scene& scene) {
-                  add_shape(scene, Sphere{.center = vec3(0), .radius = 0.01f}, 0);
-              }),
-              another);
+    const std::string another_frame = after([](RenderSettings&, Scene& scene) {
+        add_shape(scene, Sphere{.center = dvec3(0), .radius = 0.01}, 0);
+    });
+    EXPECT_EQ(another_frame.rfind(another + ", its frame is origin ", 0), 0u) << another_frame;
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.environment->radiance[0].x += 0.25f; }),
               another);
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.environment->rotation += 0.1f; }), another);

@@ -139,7 +139,8 @@ TEST_F(Ply, ReadsAllTypes) {
         for (size_t i = 0; i < 3; ++i)
             EXPECT_EQ(mesh.positions[i], first + vec3(0, float(i), 0));
         EXPECT_EQ(mesh.triangles, std::vector<uvec3>(1, uvec3(2, 0, 1)));
-        EXPECT_TRUE(warnings_.empty());
+        for (const std::string& warning : warnings_)  // Steps of floats near 10^9 are coarse.
+            EXPECT_NE(warning.find("16 steps of the file's 32-bit coordinates"), std::string::npos);
     };
     for (const bool big : {false, true}) {
         check(file_of_types<int8_t, int16_t, int32_t, uint8_t, uint16_t>(
@@ -223,6 +224,24 @@ TEST_F(Ply, WarnsOfTrailingBytes) {
     load(ascii_square() + "\n\n 3 0 1 2\n");
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_EQ(folder_.without_folder(warnings_[0]), "m.ply: ignored 9 bytes after the last row");
+}
+
+// A square of 1 cm, 10 km away: floats have steps of a millimetre there.
+TEST_F(Ply, WarnsOfFloatsThatAreTooCoarse) {
+    const std::string rows = "10000 0 0\n10000.01 0 0\n10000.01 0.01 0\n10000 0.01 0\n3 0 1 2\n3 0 2 3\n";
+    std::string floats = ascii_square();
+    floats = floats.substr(0, floats.find("end_header\n") + 11) + rows;
+    load(floats);
+    EXPECT_EQ(warnings_.size(), 1u);
+    EXPECT_EQ(folder_.without_folder(warnings_.at(0)),
+              "m.ply: 2 of 2 triangles are smaller than 16 steps of the file's 32-bit coordinates; write x, "
+              "y and z "
+              "as doubles, or nearer to 0");
+    std::string doubles = floats;
+    for (const char* name : {"x", "y", "z"})
+        doubles = replaced(doubles, std::string("float ") + name, std::string("double ") + name);
+    load(doubles);
+    EXPECT_TRUE(warnings_.empty());
 }
 
 TEST_F(Ply, RefusesBadHeaders) {

@@ -50,9 +50,9 @@ TEST(Records, TheFourthVertexOrTheKindFillsTheLastWords) {
     EXPECT_TRUE(std::isnan(std::bit_cast<float>(pack(disk)[0].w)));
 }
 
-TEST(Records, SmoothAndMaterialShareAWord) {
-    const Surface surface{uvec2(1, 2), 0x7FFFFFFEu, 1u, 3u};
-    EXPECT_EQ(pack(surface)[0], uvec4(1u, 2u, 0xFFFFFFFEu, 3u));
+TEST(Records, SmoothErrorAndMaterialShareAWord) {
+    const Surface surface{uvec2(1, 2), MAX_MATERIALS - 2, 1u, 3u, 0x1p-20f};
+    EXPECT_EQ(pack(surface)[0], uvec4(1u, 2u, 0x80000000u | (127u - 20u) << 23 | 0x7FFFFEu, 3u));
 }
 
 }  // namespace

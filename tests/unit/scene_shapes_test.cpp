@@ -53,17 +53,17 @@ Geometry load(const std::string& members) {
 
 TEST(SceneShapes, ReadSpheres) {
     const auto unit = load<Sphere>(R"("type": "sphere")");
-    EXPECT_EQ(unit.center, vec3(0));
-    EXPECT_EQ(unit.radius, 1.0f);
+    EXPECT_EQ(unit.center, dvec3(0));
+    EXPECT_EQ(unit.radius, 1.0);
     const auto moved = load<Sphere>(R"("type": "sphere", "center": [1, 2, 3], "radius": 0.1)");
-    EXPECT_EQ(moved.center, vec3(1, 2, 3));
-    EXPECT_EQ(moved.radius, 0.1f);
+    EXPECT_EQ(moved.center, dvec3(1, 2, 3));
+    EXPECT_EQ(moved.radius, 0.1);
     // A quarter turn about y takes x to -z and z to x; mirrored and doubled, x to 2 z and z to -2 x.
     const auto turned = load<Sphere>(R"("type": "sphere", "center": [1, 2, 3], "radius": 0.25, "transform":
         [{"rotate": 90, "axis": [0, 1, 0]}, {"scale": -2}, {"translate": [0, 10, 0]}])");
     // The turn's cosine is 6e-17 in doubles; times 3 and 2 that stays far below the tolerance.
-    EXPECT_LT(length(turned.center - vec3(-6, 6, 2)), 1e-6f);
-    EXPECT_EQ(turned.radius, 0.5f);
+    EXPECT_LT(length(turned.center - dvec3(-6, 6, 2)), 1e-6f);
+    EXPECT_EQ(turned.radius, 0.5);
     // An emitter, as any other shape may be.
     SceneFolder folder;
     const Scene scene = folder.load(scene_of(R"({"type": "sphere", "emission": 2, "two_sided": true})"));
@@ -107,24 +107,23 @@ TEST(SceneShapes, CheckSpheres) {
 
 TEST(SceneShapes, ReadDisks) {
     const auto disk = load<Disk>(R"("type": "disk", "center": [1, 2, 3], "normal": [0, 0, 5], "radius": 2)");
-    EXPECT_EQ(disk.center, vec3(1, 2, 3));
-    EXPECT_EQ(disk.e1, vec3(2, 0, 0));
-    EXPECT_EQ(disk.e2, vec3(0, 2, 0));
+    EXPECT_EQ(disk.center, dvec3(1, 2, 3));
+    EXPECT_EQ(disk.e1, dvec3(2, 0, 0));
+    EXPECT_EQ(disk.e2, dvec3(0, 2, 0));
     const auto unit = load<Disk>(R"("type": "disk", "normal": [0, -1, 0])");
-    EXPECT_EQ(unit.center, vec3(0));
-    EXPECT_EQ(cross(unit.e1, unit.e2), vec3(0, -1, 0));
+    EXPECT_EQ(unit.center, dvec3(0));
+    EXPECT_EQ(cross(unit.e1, unit.e2), dvec3(0, -1, 0));
     for (const char* normal : {"[1, 2, -2]", "[-3, 0, 4]", "[1, 1, 1]", "[1e-200, 2e-200, 3e-200]",
                                "[-3e38, 1e38, 0]", "[0, 1, 1e-9]"}) {
         const auto tilted = load<Disk>(R"("type": "disk", "radius": 3, "normal": )" + std::string(normal));
         double x = 0, y = 0, z = 0;
         ASSERT_EQ(std::sscanf(normal, "[%lf, %lf, %lf]", &x, &y, &z), 3);
         const glm::dvec3 n = normalize(glm::dvec3(x, y, z) / std::abs(x + y + z));
-        // Components of at most 3, rounded to floats, are off by 1.2e-7 each: e1, e2 and their products with
-        // unit vectors by 4e-7, the area by 9 times a little more.
-        EXPECT_NEAR(length(tilted.e1), 3.0f, 1e-6f);
-        EXPECT_NEAR(length(tilted.e2), 3.0f, 1e-6f);
-        EXPECT_NEAR(dot(tilted.e1, tilted.e2), 0.0f, 4e-6f);
-        EXPECT_LT(length(glm::dvec3(cross(tilted.e1, tilted.e2)) / 9.0 - n), 1e-6);
+        // Some ten roundings of numbers below 10, each by at most 9e-16.
+        EXPECT_NEAR(length(tilted.e1), 3.0, 1e-14);
+        EXPECT_NEAR(length(tilted.e2), 3.0, 1e-14);
+        EXPECT_NEAR(dot(tilted.e1, tilted.e2), 0.0, 1e-14);
+        EXPECT_LT(length(cross(tilted.e1, tilted.e2) / 9.0 - n), 1e-14);
     }
 }
 
@@ -137,18 +136,18 @@ TEST(SceneShapes, TransformDisks) {
         const auto disk = load<Disk>(R"("type": "disk", "center": [1, 1, 1], "normal": [1, 2, 2], "radius": 2,
             "transform": [{"scale": [)" +
                                      factors + "]}, {\"translate\": [5, 6, 7]}]");
-        // Floats of at most 10 are off by 5e-7; undoing the scale does not enlarge that.
-        constexpr double TOLERANCE = 4e-6;
+        // Some ten roundings of numbers below 16, each by at most 9e-16; undoing the scale does not enlarge
+        // that.
+        constexpr double TOLERANCE = 1e-14;
         for (int i = 0; i < 12; ++i) {
             const double angle = glm::radians(30.0 * i);
-            const glm::dvec3 p = glm::dvec3(disk.center) + std::cos(angle) * glm::dvec3(disk.e1) +
-                                 std::sin(angle) * glm::dvec3(disk.e2);
+            const dvec3 p = disk.center + std::cos(angle) * disk.e1 + std::sin(angle) * disk.e2;
             const glm::dvec3 original = (p - glm::dvec3(5, 6, 7)) / scale - glm::dvec3(1);
             EXPECT_NEAR(length(original), 2.0, TOLERANCE);
             EXPECT_NEAR(dot(original, n), 0.0, TOLERANCE);
         }
         // In front of the disk lies what was in front of it before.
-        EXPECT_GT(dot(glm::dvec3(cross(disk.e1, disk.e2)), scale * n), 0.0);
+        EXPECT_GT(dot(cross(disk.e1, disk.e2), scale * n), 0.0);
     }
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 const std::string SCENES = CANDELA_SCENES;
 
-void expect_near(vec3 actual, vec3 expected, float tolerance) {
+void expect_near(dvec3 actual, dvec3 expected, double tolerance) {
     EXPECT_LE(length(actual - expected), tolerance)
         << actual.x << ", " << actual.y << ", " << actual.z << " instead of " << expected.x << ", "
         << expected.y << ", " << expected.z;
@@ -27,15 +27,15 @@ TEST(Scene, CornellBoxHasThePublishedFigures) {
     ASSERT_EQ(scene.cameras.size(), 1u);
     EXPECT_EQ(scene.cameras[0].name, "main");
     EXPECT_NEAR(glm::degrees(scene.cameras[0].vertical_fov), 39.3077f, 1e-4f);
-    EXPECT_EQ(scene.cameras[0].position, vec3(0.278f, 0.273f, -0.8f));
+    EXPECT_EQ(scene.cameras[0].position, dvec3(0.278, 0.273, -0.8));
     EXPECT_EQ(scene.film.size, uvec2(512, 512));
     EXPECT_EQ(scene.integrator.spp, 256u);
     EXPECT_FALSE(scene.integrator.max_depth.has_value());
     EXPECT_EQ(triangle_count(scene), 32u);
     EXPECT_EQ(emitter_count(scene), 1u);
-    const Box box = bounds(scene);
-    EXPECT_EQ(box.lo, vec3(0));
-    EXPECT_EQ(box.hi, vec3(0.556f, 0.5488f, 0.5592f));
+    const DoubleBox box = bounds(scene);
+    EXPECT_EQ(box.lo, dvec3(0));
+    EXPECT_EQ(vec3(box.hi), vec3(0.556f, 0.5488f, 0.5592f));
 }
 
 TEST(Scene, CornellBoxLightShinesDownAndIsBlack) {
@@ -45,7 +45,7 @@ TEST(Scene, CornellBoxLightShinesDownAndIsBlack) {
     EXPECT_EQ(light.emission->radiance, vec3(17, 12, 4));
     EXPECT_FALSE(light.emission->two_sided);
     const auto& c = std::get<Quad>(light.geometry).corners;
-    expect_near(normalize(cross(c[1] - c[0], c[2] - c[0])), vec3(0, -1, 0), 1e-6f);
+    expect_near(normalize(cross(c[1] - c[0], c[2] - c[0])), dvec3(0, -1, 0), 1e-6);
     const auto& black = std::get<DiffuseMaterial>(scene.materials[light.material].model);
     EXPECT_EQ(black.reflectance, vec3(0));
 }

@@ -169,8 +169,8 @@ TEST(Transform, KeepsFrontsInFront) {
         ASSERT_EQ(scene.shapes.size(), 9u);
         for (size_t shape = 0; shape < scene.shapes.size(); ++shape) {
             if (const auto* q = std::get_if<Quad>(&scene.shapes[shape].geometry)) {
-                const vec3 n = cross(q->corners[1] - q->corners[0], q->corners[2] - q->corners[0]);
-                EXPECT_GT(dot(n, q->corners[0]), 0.0f);
+                const dvec3 n = cross(q->corners[1] - q->corners[0], q->corners[2] - q->corners[0]);
+                EXPECT_GT(dot(n, q->corners[0]), 0.0);
                 continue;
             }
             const TriangleMesh mesh = world_mesh(scene, shape);

@@ -64,13 +64,13 @@ Camera read_camera(const Node& node, const Film& film) {
     Camera camera;
     camera.name = node.key();
     const Node look_at = node.require("look_at");
-    camera.position = vec3(node.require("position").vector());
-    camera.look_at = vec3(look_at.vector());
+    camera.position = node.require("position").vector();
+    camera.look_at = look_at.vector();
     if (camera.position == camera.look_at)
         look_at.fail("the camera looks at its own position; move one of the two");
     const auto up = node.find("up");
     if (up) camera.up = vec3(up->vector());
-    const glm::dvec3 view = glm::dvec3(camera.look_at) - glm::dvec3(camera.position);
+    const dvec3 view = camera.look_at - camera.position;
     const glm::dvec3 upwards(camera.up);
     if (length(cross(view, upwards)) <= PARALLEL * length(view) * length(upwards)) {
         (up ? *up : node)

@@ -7,7 +7,6 @@
 namespace candela {
 namespace {
 
-using glm::dvec3;
 using Model = decltype(Material::model);
 
 Model read_diffuse(const Node& node) {

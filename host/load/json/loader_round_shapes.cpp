@@ -7,8 +7,6 @@
 namespace candela {
 namespace {
 
-using glm::dvec3;
-
 dvec3 center_of(const Node& node) {
     const auto center = node.find("center");
     return center ? center->vector() : dvec3(0.0);
@@ -35,10 +33,8 @@ void check_reach(const Node& node, dvec3 center, dvec3 reach) {
 // Throws Error if a disk is too small for floats, or so narrow that their rounding would turn its normal.
 void check_breadth(const Node& node, const Disk& disk) {
     constexpr double NARROW = 1e-6;  // Relative to the length; a float is off by 6e-8.
-    const dvec3 e1(disk.e1);
-    const dvec3 e2(disk.e2);
-    const double size = std::max(greatest(e1), greatest(e2));
-    if (!(size >= FLOAT_MIN && length(cross(e1 / size, e2 / size)) > NARROW)) {
+    const double size = std::max(greatest(disk.e1), greatest(disk.e2));
+    if (!(size >= FLOAT_MIN && length(cross(disk.e1 / size, disk.e2 / size)) > NARROW)) {
         node.fail(
             "the transform makes the disk too small or too narrow for 32-bit floats; use greater factors");
     }
@@ -61,7 +57,7 @@ void read_sphere(const Node& node, ShapeList& shapes) {
         node.fail("the transform makes the sphere too small for 32-bit floats; use greater factors");
     }
     check_reach(node, center, dvec3(radius));
-    shapes.add(appearance, Sphere{vec3(center), float(radius)});
+    shapes.add(appearance, Sphere{center, radius});
 }
 
 void read_disk(const Node& node, ShapeList& shapes) {
@@ -82,7 +78,7 @@ void read_disk(const Node& node, ShapeList& shapes) {
     const dvec3 e1 = transform.vector(radius * u);
     const dvec3 e2 = transform.vector(radius * v);
     check_reach(node, center, abs(e1) + abs(e2));
-    Disk disk{vec3(center), vec3(e1), vec3(e2)};
+    Disk disk{center, e1, e2};
     if (transform.mirrors()) std::swap(disk.e1, disk.e2);
     check_breadth(node, disk);
     shapes.add(appearance, disk);

@@ -9,14 +9,12 @@
 namespace candela {
 namespace {
 
-using glm::dvec3;
-
 // Throws Error unless the corners span a convex, planar quadrilateral.
 void check_quad(const Node& node, const Quad& quad) {
     // Relative to the longer diagonal. PLANAR allows for coordinates that are given to three digits.
     constexpr double PLANAR = 1e-3;
     constexpr double DEGENERATE = 1e-9;
-    const auto corner = [&](size_t i) { return dvec3(quad.corners[i % 4]); };
+    const auto corner = [&](size_t i) { return quad.corners[i % 4]; };
     const dvec3 diagonal = corner(2) - corner(0);
     const dvec3 other_diagonal = corner(3) - corner(1);
     const double size = std::max(length(diagonal), length(other_diagonal));
@@ -46,7 +44,7 @@ void read_quad(const Node& node, ShapeList& shapes) {
     Quad quad;
     for (size_t i = 0; i < 4; ++i) {
         const size_t corner = transform.mirrors() ? (4 - i) % 4 : i;
-        quad.corners[corner] = rounded(points[i], transform.point(points[i].vector()));
+        quad.corners[corner] = within_reach(points[i], transform.point(points[i].vector()));
     }
     check_quad(vertices, quad);
     shapes.add(appearance, quad);
@@ -69,7 +67,7 @@ void read_box(const Node& node, ShapeList& shapes) {
         for (size_t i = 0; i < 4; ++i) {
             const size_t corner = side[transform.mirrors() ? 3 - i : i];
             const dvec3 p(corner & 1u ? hi.x : lo.x, corner & 2u ? hi.y : lo.y, corner & 4u ? hi.z : lo.z);
-            quad.corners[i] = rounded(node, transform.point(p));
+            quad.corners[i] = within_reach(node, transform.point(p));
         }
         check_quad(node, quad);
         shapes.add(appearance, quad);

@@ -5,10 +5,9 @@
 
 namespace candela {
 
-vec3 rounded(const Node& node, glm::dvec3 p) {
-    const std::optional<vec3> result = rounded(p);
-    if (!result) node.fail(TOO_FAR);
-    return *result;
+dvec3 within_reach(const Node& node, dvec3 p) {
+    if (!is_within_reach(p)) node.fail(TOO_FAR);
+    return p;
 }
 
 ShapeList::ShapeList(std::filesystem::path folder, Scene& scene)

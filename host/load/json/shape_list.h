@@ -44,7 +44,8 @@ class ShapeList : public SceneBuilder {
     std::map<std::string, uint32_t, std::less<>> indices_;  // Of the materials that the scene file defines.
 };
 
-// A point in world space as floats. Throws Error at the place of `node`, its source, if it does not fit.
-vec3 rounded(const Node& node, glm::dvec3 p);
+// Returns a point in world space. Throws Error at the place of `node`, where it came from, if it lies too far
+// out.
+dvec3 within_reach(const Node& node, dvec3 p);
 
 }  // namespace candela

@@ -17,8 +17,6 @@
 namespace candela {
 namespace {
 
-using glm::dvec3;
-
 bool is_texture(std::string_view command) {
     constexpr std::array<std::string_view, 5> OTHERS{"bump", "disp", "decal", "refl", "norm"};
     return command.starts_with("map_") || std::find(OTHERS.begin(), OTHERS.end(), command) != OTHERS.end();

@@ -10,7 +10,6 @@
 namespace candela {
 namespace {
 
-using glm::dvec3;
 using Model = decltype(Material::model);
 
 constexpr double GREY = 0.5;  // The reflectance where a file states no colour.

@@ -28,6 +28,7 @@ struct PlyPolygons {
     std::vector<vec3> normals;
     std::vector<uint32_t> corners;  // Of all polygons, one after the other.
     std::vector<uint32_t> sizes;    // Corners of each polygon.
+    bool floats = false;            // The file's coordinates have 32 bits.
 };
 
 const PlyElement& require_element(const PlyHeader& header, std::string_view name, const std::string& file) {
@@ -200,7 +201,9 @@ PlyPolygons read_polygons(const std::filesystem::path& file, MeshNormals normals
     const bool with_normals = normals == MeshNormals::file && has_normals(*header.find("vertex"));
     const std::string_view body = std::string_view(bytes).substr(header.size);
     const auto read = [&](auto rows) {
-        return BodyReader(header, with_normals, rows, position).read(warnings);
+        PlyPolygons polygons = BodyReader(header, with_normals, rows, position).read(warnings);
+        polygons.floats = header.find("vertex")->find("x")->type == PlyType::float32;
+        return polygons;
     };
     if (header.format == PlyFormat::ascii) position.line = header.lines;
     return header.format == PlyFormat::ascii ? read(PlyAsciiRows(body, position))
@@ -221,6 +224,13 @@ TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
         rest = rest.subspan(size);
     }
     if (normals == MeshNormals::smooth) smooth_normals(mesh);
+    const size_t coarse = polygons.floats ? count_coarse_triangles(mesh) : 0;
+    if (is_too_coarse(coarse, mesh.triangles.size())) {
+        warnings.push_back(
+            file.string() + ": " + std::to_string(coarse) + " of " + std::to_string(mesh.triangles.size()) +
+            " triangles are smaller than 16 steps of the file's 32-bit coordinates; write x, y "
+            "and z as doubles, or nearer to 0");
+    }
     return mesh;
 }
 

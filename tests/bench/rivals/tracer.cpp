@@ -39,7 +39,7 @@ struct Ray {
 struct Pinhole {
     Pinhole(const Camera& camera, uint32_t width) : position(camera.position) {
         const float reach = std::tan(0.5f * camera.vertical_fov), pixel = 2.0f * reach / float(width);
-        const vec3 forward = normalize(camera.look_at - camera.position);
+        const vec3 forward(normalize(camera.look_at - camera.position));
         const vec3 r = normalize(cross(forward, camera.up)), u = cross(r, forward);
         corner = forward - reach * r + reach * u;
         right = pixel * r;

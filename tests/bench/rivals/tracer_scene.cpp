@@ -48,8 +48,7 @@ TracerScene::TracerScene(const Scene& scene) {
     std::transform(scene.materials.begin(), scene.materials.end(), std::back_inserter(surfaces), surface);
     for (const Shape& shape : scene.shapes)
         add(shape, scene.meshes);
-    const Box box = bounds(scene);
-    diagonal = length(box.extent());
+    diagonal = float(length(bounds(scene).extent()));
     if (scene.environment) {
         if (!scene.environment->visible) refuse("hidden environment");
         environment_ = *scene.environment;
@@ -70,7 +69,7 @@ void TracerScene::add(const Shape& shape, const std::vector<TriangleMesh>& meshe
         triangles.push_back({{a, b, c}, {n, n, n}, shape.material, lamp});
     };
     if (const auto* quad = std::get_if<Quad>(&shape.geometry)) {
-        const vec3 a = quad->corners[0], b = quad->corners[1], c = quad->corners[2], d = quad->corners[3];
+        const vec3 a(quad->corners[0]), b(quad->corners[1]), c(quad->corners[2]), d(quad->corners[3]);
         const bool is_parallelogram = length(b - a + d - c) <= 1e-6f * length(c - a);
         const uint32_t first = add_lamp(shape, a, b - a, is_parallelogram ? d - a : c - a, !is_parallelogram);
         add_triangle(a, b, c, first);
