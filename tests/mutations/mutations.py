@@ -21,6 +21,8 @@ INTERACTION = "shaders/scene/interaction.glsl"
 CAMERA = "shaders/scene/camera.glsl"
 RENDER = "shaders/kernels/render.comp.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
+RENDERER = "host/render/renderer.cpp"
+FLATTEN = "host/gpu_scene/flatten.cpp"
 
 # What a group runs: filters for the tests of shaders and for those of whole images, which tell much in little time.
 INTEGRATOR = ("Interaction*",
@@ -31,6 +33,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
+FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
@@ -100,7 +103,8 @@ GROUPS = [
         ("sums without compensation", "shaders/base/math.glsl", "(t - sum) - y", "0.0 * ((t - sum) - y)"),
     ]),
     (GEOMETRY, [
-        ("rays leave on the wrong side", "shaders/base/ray.glsl", "mix(offset, -offset,", "mix(-offset, offset,"),
+        ("rays leave on the wrong side", INTERACTION, "viewers_side ? s.error : -s.error",
+         "viewers_side ? -s.error : s.error"),
         ("child boxes rounded inwards", "host/bvh/quantise.cpp",
          "std::ceil(steps(x)));\n        while (decode(q) < x)", "steps(x));\n        while (decode(q + 1) < x)"),
         ("a single child left to visit is forgotten", TRAVERSAL, "down && siblings",
@@ -121,6 +125,24 @@ GROUPS = [
          "bool second = !meets0;"),
         ("the first triangle's normals on the second", INTERACTION, "normals.yz = normals.zw;",
          "normals.yz = normals.yz;"),
+    ]),
+    (FRAMES, [
+        ("the frame's origin not subtracted from quads", FLATTEN, "c[i] = frame_.point(quad.corners[i])",
+         "c[i] = frame_.vector(quad.corners[i])"),
+        ("the frame's origin not subtracted from spheres", FLATTEN, "frame_.point(sphere.center)",
+         "frame_.vector(sphere.center)"),
+        ("the frame's unit forgotten for radii", FLATTEN, "frame_.length(sphere.radius)", "float(sphere.radius)"),
+        ("the frame's unit forgotten for media", "host/gpu_scene/gpu_scene.cpp",
+         "vec3(unit * dvec3(medium.absorption))", "medium.absorption"),
+        ("the camera rounded before it is in the frame", RENDERER, "frame.point(camera.position)",
+         "frame.point(dvec3(vec3(camera.position)))"),
+        ("depths left in the frame", RENDERER, "values[i + 3] *= float(frame_.unit);", ""),
+        ("rays begin nearer to triangles than their test can tell", "host/gpu_scene/ray_error.cpp",
+         "side * std::min(8.0 * ROUNDING", "side * std::min(0.5 * ROUNDING"),
+        ("rays begin on their surfaces", INTERACTION, "(viewers_side ? s.error : -s.error) * s.n", "0.0 * s.n"),
+        ("rays begin beside their points, along another axis", INTERACTION,
+         "(viewers_side ? s.error : -s.error) * s.n", "(viewers_side ? s.error : -s.error) * s.n.yzx"),
+        ("shadow rays end on the light", AREA, "to_light + light_end_error(l.error, distance_squared * inv_distance) * n", "to_light"),
     ]),
     (DEVICES, [
         ("a work group's counts in the place of those before", RENDER, "if (n > 0u) atomicAdd(counters[i], n);",
