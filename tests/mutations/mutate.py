@@ -27,10 +27,15 @@ SHOWN = 4  # Names in a line of the table.
 
 
 def update_copy():
-    """Brings the copy to the state of this tree, touching only what differs, so that builds stay incremental."""
+    """Brings the copy to the state of this tree; touches only what differs, so that builds stay incremental."""
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True,
                             check=True)
-    for name in listed.stdout.splitlines():
+    names = listed.stdout.splitlines()
+    for path in COPY.rglob("*"):
+        relative = path.relative_to(COPY)
+        if path.is_file() and relative.parts[0] != "build" and relative.as_posix() not in names:
+            path.unlink()
+    for name in names:
         source, target = ROOT / name, COPY / name
         if source.is_file() and (not target.exists() or source.read_bytes() != target.read_bytes()):
             target.parent.mkdir(parents=True, exist_ok=True)
