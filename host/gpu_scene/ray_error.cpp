@@ -26,7 +26,8 @@ double triangle_error(vec3 a, vec3 b, vec3 c) {
     const dvec3 lo(min(a, min(b, c))), hi(max(a, max(b, c)));
     const double side = greatest(hi - lo);
     const double test = side * std::min(8.0 * ROUNDING * side * side / twice_area, OF_SLIVERS);
-    return 8.0 * ROUNDING * dot(n, max(abs(lo), abs(hi))) + std::min(test, dot(n, hi - lo));
+    const double point = ROUNDING * dot(n, 3.0 * max(abs(lo), abs(hi)) + 6.0 * (hi - lo));
+    return point + std::min(test, dot(n, hi - lo));
 }
 
 double sphere_error(vec3 center, float radius) {
@@ -48,9 +49,9 @@ double disk_error(vec3 center, vec3 e1, vec3 e2) {
 double flat_light_error(vec3 p, vec3 e1, vec3 e2) {
     const dvec3 product = cross(dvec3(e1), dvec3(e2));
     const double area = length(product);
-    return area == 0.0
-               ? 0.0
-               : 8.0 * ROUNDING * dot(abs(product / area), abs(dvec3(p)) + abs(dvec3(e1)) + abs(dvec3(e2)));
+    return area == 0.0 ? 0.0
+                       : ROUNDING * dot(abs(product / area),
+                                        2.0 * abs(dvec3(p)) + 6.0 * (abs(dvec3(e1)) + abs(dvec3(e2))));
 }
 
 float power_of_two_above(double error) {

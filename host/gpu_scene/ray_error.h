@@ -10,14 +10,16 @@
 
 namespace candela {
 
-// Of the point (1 - b1 - b2) a + b1 b + b2 c: five roundings of the vertices, one of the ray's origin, and
-// some of the normal along which it is moved. Then that of triangles_intersect: its edge functions are off by
+// Of the point a + (b1 (b - a) + b2 (c - a)): a rounding of its coordinates, one of the ray's origin and one
+// to spare, and six of the triangle's extent. Then that of triangles_intersect: its edge functions are off by
 // some roundings of the square of the longest side; so are the vertices' weights, by these over twice the
 // area; and the distance of the hit, by these times the side. (Of thirteen million rays from all kinds of
 // triangles, one hit its own with four roundings, none with eight.) But hits lie in the box around the
 // triangle: an origin outside of that, seen along the normal, needs no more, and where an axis is the normal
 // nothing is added. For slivers the second error is limited to a thousandth of their length, and some of
-// their rays hit them again. Ref: Pharr, Jakob and Humphreys 2023, Physically Based Rendering, section 6.8.
+// their rays hit them again.
+//
+// Ref: Pharr, Jakob and Humphreys 2023, Physically Based Rendering, section 6.8.
 double triangle_error(vec3 a, vec3 b, vec3 c);
 
 // Of the point center + radius n with a computed normal n: seven roundings of the radius, and two of the

@@ -14,7 +14,7 @@ void main() {
     vec3 v1 = item_floats(1u).xyz;
     vec3 v2 = item_floats(2u).xyz;
     vec2 b = vec2(item_floats(0u).w, item_floats(1u).w);
-    vec3 p = (1.0 - b.x - b.y) * v0 + b.x * v1 + b.y * v2;
+    vec3 p = v0 + (b.x * (v1 - v0) + b.y * (v2 - v0));
     vec3 n = normalize(cross(v1 - v0, v2 - v0));
     vec3 wi = item_floats(3u).xyz;
     if (dot(wi, n) < 0.0) n = -n;

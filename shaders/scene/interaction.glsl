@@ -46,10 +46,10 @@ Interaction interaction_at(Ray ray, Hit hit) {
         s.p = a + at.x * primitive.b + at.y * primitive.c;
     } else {
         bool second = hit_second(hit);
-        vec3 b = second ? primitive.c : primitive.b;
-        vec3 c = second ? primitive.d : primitive.c;
-        s.n = normalize(cross(b - a, c - a));
-        s.p = (1.0 - at.x - at.y) * a + at.x * b + at.y * c;
+        vec3 e1 = (second ? primitive.c : primitive.b) - a;
+        vec3 e2 = (second ? primitive.d : primitive.c) - a;
+        s.n = normalize(cross(e1, e2));
+        s.p = a + (at.x * e1 + at.y * e2);  // Where triangles are small, no sum but the last rounds by much.
     }
     s.ns = s.n;
     if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit, at, s.n);

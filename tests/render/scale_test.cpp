@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "render/render_fixture.h"
+#include "scene/geometry.h"
 #include "scene/mesh.h"
 
 namespace candela {
@@ -37,6 +38,12 @@ TriangleMesh wave(const Place& place) {
             add_polygon(mesh, std::array{5 * i + k, 5 * i + k + 1, 5 * i + k + 6, 5 * i + k + 5});
     }
     return mesh;
+}
+
+// Two triangles of a quad.
+void add_triangles(TriangleMesh& mesh, uvec4 q) {
+    mesh.triangles.emplace_back(q.x, q.y, q.z);
+    mesh.triangles.emplace_back(q.x, q.z, q.w);
 }
 
 // Every kind of primitive, light and material, smooth normals, a medium, a lens, a sky; a lamp 1 mm under the
@@ -206,6 +213,88 @@ TEST_F(FloorTest, ASheetOfPaperHasItsOwnShadowAndTheFloorHasNone) {
                                                                  gap, {0.4 * gap, 2.5 * gap, 1.5});
         EXPECT_LT(values[0], 0.02f * values[2]);
         EXPECT_GT(values[1], 0.9f * values[2]);
+    }
+}
+
+// Ten thousand cubes of 1 m on a plain of 10 km, seen next to the one in the corner: as if only those nearby
+// were there, and that one were the origin.
+TEST_F(ScaleTest, CubesOnAPlainOfTenKilometresLookAlike) {
+    const auto plain = [](dvec3 corner, double reach) {
+        Scene scene;
+        const uint32_t white = add_diffuse(scene, vec3(0.7f));
+        const uint32_t brown = add_diffuse(scene, vec3(0.7f, 0.4f, 0.2f));
+        add_shape(scene, parallelogram(corner + dvec3(-50, 0, 9950), dvec3(10000, 0, 0), dvec3(0, 0, -10000)),
+                  white);
+        TriangleMesh cubes;
+        std::vector<dvec3> positions;
+        for (double x = 0; x <= reach; x += 100) {
+            for (double z = 0; z <= reach; z += 100) {
+                const auto first = uint32_t(positions.size());
+                for (unsigned i = 0; i < 8; ++i) {
+                    positions.push_back(
+                        corner + dvec3(x + (i & 1u ? 0.5 : -0.5), i & 2u ? 1 : 0, z + (i & 4u ? 0.5 : -0.5)));
+                }
+                for (const uvec4 side : {uvec4(0, 4, 6, 2), uvec4(1, 3, 7, 5), uvec4(2, 6, 7, 3),
+                                         uvec4(0, 2, 3, 1), uvec4(4, 5, 7, 6)})
+                    add_triangles(cubes, first + side);
+            }
+        }
+        set_positions(cubes, std::move(positions));
+        add_shape(scene, std::move(cubes), brown);
+        scene.environment = constant_environment(vec3(0.5f));
+        Camera camera;
+        camera.position = corner + dvec3(2.2, 1.5, 3);
+        camera.look_at = corner + dvec3(0, 0.4, 0);
+        camera.vertical_fov = 0.6f;
+        scene.cameras = {camera};
+        return scene;
+    };
+    const uint32_t spp = sized(test_effort(), 256);
+    const Scene many = plain(dvec3(-4950, 0, -4950), 9900);
+    EXPECT_EQ(triangle_count(many), 2u + 100 * 100 * 10);
+    const Scene few = plain(dvec3(0), 1500);
+    expect_same_expectation(image_of(render(many, independent_settings(SIZE, Estimator::mis, 1), spp)),
+                            image_of(render(few, independent_settings(SIZE, Estimator::mis, 2), spp)));
+}
+
+// A ring of 1 mm on a floor of 100 m, away from its middle: as on a floor of 10 cm.
+TEST_F(ScaleTest, ARingOfAMillimetreLiesOnAFloorOfAHundredMetres) {
+    const auto ring = [](dvec3 at, double floor_size) {
+        Scene scene;
+        const uint32_t white = add_diffuse(scene, vec3(0.7f));
+        const uint32_t gold = add_diffuse(scene, vec3(0.7f, 0.5f, 0.2f));
+        const double h = 0.5 * floor_size;
+        add_shape(scene, parallelogram(dvec3(-h, 0, h), dvec3(2 * h, 0, 0), dvec3(0, 0, -2 * h)), white);
+        constexpr uint32_t AROUND = 24, ACROSS = 8;
+        TriangleMesh mesh;
+        std::vector<dvec3> positions;
+        for (uint32_t i = 0; i < AROUND; ++i) {
+            for (uint32_t k = 0; k < ACROSS; ++k) {
+                const double a = 2.0 * M_PI * i / AROUND, b = 2.0 * M_PI * k / ACROSS;
+                const double radius = 5e-4 + 1.2e-4 * std::cos(b);
+                positions.push_back(
+                    at + dvec3(radius * std::cos(a), 1.2e-4 * (1.0 + std::sin(b)), radius * std::sin(a)));
+                const uint32_t next = (i + 1) % AROUND * ACROSS, above = (k + 1) % ACROSS;
+                add_triangles(mesh, {i * ACROSS + k, i * ACROSS + above, next + above, next + k});
+            }
+        }
+        set_positions(mesh, std::move(positions));
+        add_shape(scene, std::move(mesh), gold);
+        scene.environment = constant_environment(vec3(1));
+        Camera camera;
+        camera.position = at + dvec3(0.002, 0.0015, 0.003);
+        camera.look_at = at + dvec3(0, 0.0001, 0);
+        camera.vertical_fov = 0.5f;
+        scene.cameras = {camera};
+        return scene;
+    };
+    const uint32_t spp = sized(test_effort(), 256);
+    const Image small =
+        image_of(render(ring(dvec3(0), 0.1), independent_settings(SIZE, Estimator::mis, 1), spp));
+    for (const dvec3 at : {dvec3(0), dvec3(30, 0, -20)}) {
+        const Image large =
+            image_of(render(ring(at, 100), independent_settings(SIZE, Estimator::mis, 2), spp));
+        expect_same_expectation(small, large);
     }
 }
 
