@@ -90,13 +90,13 @@ def main():
     if words in (["-h"], ["--help"]):
         sys.exit(__doc__)
     update_copy()
-    problem = build()
-    if problem:
-        sys.exit(f"the unbroken copy does not compile\n{problem[-4000:]}")
     print("| broken on purpose | in | tests that notice |\n|---|---|---|", flush=True)
     unnoticed = 0
     for filters, ways in GROUPS:
         chosen = [way for way in ways if any(word in way[0] for word in words)]
+        problem = build() if chosen else ""  # After the last way of another group.
+        if problem:
+            sys.exit(f"the unbroken copy does not compile\n{problem[-4000:]}")
         failed = failed_tests(filters) if chosen else []
         if failed:
             sys.exit("tests fail without any mutation: " + ", ".join(failed))
