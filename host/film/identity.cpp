@@ -102,8 +102,8 @@ std::string difference(const Identity& theirs, const Identity& ours) {
     for (size_t i = 0; i < NAMES.size(); ++i) {
         if (theirs.settings[i] == ours.settings[i]) continue;
         // A frame follows from the scene.
-        if (NAMES[i].attribute == FRAME_ATTRIBUTE && theirs.settings[i] != OLDER && text.empty())
-            text = ANOTHER_SCENE;
+        const bool older = theirs.settings[i] == OLDER || ours.settings[i] == OLDER;
+        if (NAMES[i].attribute == FRAME_ATTRIBUTE && !older && text.empty()) text = ANOTHER_SCENE;
         text += (text.empty() ? "its " : ", its ") + std::string(NAMES[i].word) + " is " +
                 theirs.settings[i] + ", not " + ours.settings[i];
     }
