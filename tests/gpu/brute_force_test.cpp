@@ -36,7 +36,10 @@ std::vector<NamedMesh> meshes() {
             {"soup", triangle_soup(6000, 0.1f, 202), {1.5f}},
             {"rectangles", rectangles(3000), {1.0f, 1.5f}},
             {"knot", load_ply(CANDELA_SCENES "/knot.ply", MeshNormals::flat, warnings), {3.0f, 10.0f}},
-            {"nasty", nasty_mesh(8000), {1e-3f, 1e-1f, 1e1f, 1e3f}}};
+            {"nasty", nasty_mesh(8000), {1e-3f, 1e-1f, 1e1f, 1e3f}},
+            {"a micrometre", in_its_frame(sphere_mesh(48, 64), 1e-6, dvec3(0)), {0.4f, 1.5f}},
+            {"a thousand kilometres", in_its_frame(triangle_soup(6000, 0.1f, 203), 1e6, dvec3(0)), {0.7f}},
+            {"far away", in_its_frame(rectangles(3000), 1.0, dvec3(1e7, -3e6, 0)), {0.5f, 0.7f}}};
 }
 
 class BruteForceTest : public TraversalTest {

@@ -117,6 +117,9 @@ std::vector<ClosedMesh> closed_meshes() {
                                    around(far, "far away", sphere_at(far, 1.0f)),
                                    around(vec3(0), "tiny", sphere_at(vec3(0), 1e-6f)),
                                    around(vec3(0), "huge", sphere_at(vec3(0), 1e6f))};
+    for (const double scale : {1e-6, 1e-3, 1e3, 1e6})
+        meshes.push_back(around(vec3(0), "scaled", in_its_frame(sphere_mesh(48, 64), scale, dvec3(0))));
+    meshes.push_back(around(vec3(0), "moved", in_its_frame(cube_mesh(16), 1.0, dvec3(1e7, -3e6, 2e7))));
     meshes.push_back(knot());
     return meshes;
 }

@@ -9,4 +9,8 @@ namespace candela {
 // Material 0 is that of the floor, material 1 is black.
 Scene floor_seen_closely(vec3 reflectance);
 
+// The mesh as the records hold it, in the frame of its scene, if it is first moved by `shift` and then
+// scaled.
+TriangleMesh in_its_frame(const TriangleMesh& mesh, double scale, dvec3 shift);
+
 }  // namespace candela
