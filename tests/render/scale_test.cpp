@@ -220,7 +220,7 @@ TEST_F(FloorTest, ASheetOfPaperHasItsOwnShadowAndTheFloorHasNone) {
 // were there, and that one were the origin.
 TEST_F(ScaleTest, CubesOnAPlainOfTenKilometresLookAlike) {
     const auto plain = [](dvec3 corner, double reach) {
-        Scene scene;
+        Scene scene = scene_with_camera(corner + dvec3(2.2, 1.5, 3), corner + dvec3(0, 0.4, 0), 0.6f);
         const uint32_t white = add_diffuse(scene, vec3(0.7f));
         const uint32_t brown = add_diffuse(scene, vec3(0.7f, 0.4f, 0.2f));
         add_shape(scene, parallelogram(corner + dvec3(-50, 0, 9950), dvec3(10000, 0, 0), dvec3(0, 0, -10000)),
@@ -242,11 +242,6 @@ TEST_F(ScaleTest, CubesOnAPlainOfTenKilometresLookAlike) {
         set_positions(cubes, std::move(positions));
         add_shape(scene, std::move(cubes), brown);
         scene.environment = constant_environment(vec3(0.5f));
-        Camera camera;
-        camera.position = corner + dvec3(2.2, 1.5, 3);
-        camera.look_at = corner + dvec3(0, 0.4, 0);
-        camera.vertical_fov = 0.6f;
-        scene.cameras = {camera};
         return scene;
     };
     const uint32_t spp = sized(test_effort(), 256);
@@ -260,7 +255,7 @@ TEST_F(ScaleTest, CubesOnAPlainOfTenKilometresLookAlike) {
 // A ring of 1 mm on a floor of 100 m, away from its middle: as on a floor of 10 cm.
 TEST_F(ScaleTest, ARingOfAMillimetreLiesOnAFloorOfAHundredMetres) {
     const auto ring = [](dvec3 at, double floor_size) {
-        Scene scene;
+        Scene scene = scene_with_camera(at + dvec3(0.002, 0.0015, 0.003), at + dvec3(0, 0.0001, 0), 0.5f);
         const uint32_t white = add_diffuse(scene, vec3(0.7f));
         const uint32_t gold = add_diffuse(scene, vec3(0.7f, 0.5f, 0.2f));
         const double h = 0.5 * floor_size;
@@ -281,11 +276,6 @@ TEST_F(ScaleTest, ARingOfAMillimetreLiesOnAFloorOfAHundredMetres) {
         set_positions(mesh, std::move(positions));
         add_shape(scene, std::move(mesh), gold);
         scene.environment = constant_environment(vec3(1));
-        Camera camera;
-        camera.position = at + dvec3(0.002, 0.0015, 0.003);
-        camera.look_at = at + dvec3(0, 0.0001, 0);
-        camera.vertical_fov = 0.5f;
-        scene.cameras = {camera};
         return scene;
     };
     const uint32_t spp = sized(test_effort(), 256);
