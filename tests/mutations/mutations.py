@@ -85,6 +85,8 @@ GROUPS = [
          "u.x = u.x"),
         ("cosine missing from an area light's density", AREA, "distance_squared / abs(cos_light)", "distance_squared"),
         ("emission from the back", AREA, "front || l.two_sided != 0u", "true"),
+        ("shadow rays end on the light", AREA,
+         "to_light + light_end_error(l.error, distance_squared * inv_distance) * n", "to_light"),
         ("a sphere light's density 2 % low", SPHERE, "return warp_cone_pdf(sphere_light_cap(radius, center_squared));",
          "return 0.98 * warp_cone_pdf(sphere_light_cap(radius, center_squared));"),
         ("a light's density without the probability of its choice", LIGHT_SAMPLER, "return light_pmf(i, lit) * pdf;",
@@ -103,6 +105,8 @@ GROUPS = [
         ("sums without compensation", "shaders/base/math.glsl", "(t - sum) - y", "0.0 * ((t - sum) - y)"),
     ]),
     (GEOMETRY, [
+        ("rays leave on the wrong side", INTERACTION, "viewers_side ? s.error : -s.error",
+         "viewers_side ? -s.error : s.error"),
         ("child boxes rounded inwards", "host/bvh/quantise.cpp",
          "std::ceil(steps(x)));\n        while (decode(q) < x)", "steps(x));\n        while (decode(q + 1) < x)"),
         ("a single child left to visit is forgotten", TRAVERSAL, "down && siblings",
