@@ -61,6 +61,9 @@ Image decode_exr(std::string_view bytes, const std::filesystem::path& name, cons
 // Ref: Ward, "Real Pixels", Graphics Gems II (1991); "Radiance File Formats" (1994), "Picture File Format".
 Image read_hdr(const std::filesystem::path& path, const ImageLimits& limits = {});
 
+// read_hdr() for the bytes of a file; `name` is what messages call it.
+Image decode_hdr(std::string_view bytes, const std::filesystem::path& name, const ImageLimits& limits = {});
+
 // read_exr() or read_hdr(), as the extension of `path` says: .exr, .hdr or .pic, whatever its case. Throws
 // Error as these do, and for any other extension.
 Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});

@@ -24,7 +24,7 @@ using Rgbe = std::array<uint8_t, 4>;  // Three mantissas and the exponent that t
 
 class HdrReader {
   public:
-    explicit HdrReader(const fs::path& path) : path_(path), bytes_(read_file(path)) {}
+    HdrReader(std::string_view bytes, const fs::path& name) : bytes_(bytes), path_(name) {}
 
     Image read(const ImageLimits& limits) {
         read_header();
@@ -61,8 +61,8 @@ class HdrReader {
 
     std::string_view line() {
         const size_t end = bytes_.find('\n', at_);
-        if (end == std::string::npos) fail_damaged("it ends in its header");
-        const std::string_view text(bytes_.data() + at_, end - at_);
+        if (end == std::string_view::npos) fail_damaged("it ends in its header");
+        const std::string_view text = bytes_.substr(at_, end - at_);
         at_ = end + 1;
         return text;
     }
@@ -210,8 +210,8 @@ class HdrReader {
         return scales;
     }();
 
+    std::string_view bytes_;
     const fs::path& path_;
-    std::string bytes_;
     size_t at_ = 0;   // In bytes_.
     size_t row_ = 0;  // Being read, from 1; 0: the header.
     vec3 divisor_{1};
@@ -219,13 +219,17 @@ class HdrReader {
 
 }  // namespace
 
-Image read_hdr(const fs::path& path, const ImageLimits& limits) {
+Image decode_hdr(std::string_view bytes, const fs::path& name, const ImageLimits& limits) {
     try {
-        return HdrReader(path).read(limits);
+        return HdrReader(bytes, name).read(limits);
     } catch (const std::bad_alloc&) {
-        throw Error("cannot read " + quoted(path) +
+        throw Error("cannot read " + quoted(name) +
                     ": there is not enough memory for its pixels; use a smaller image or a larger machine");
     }
+}
+
+Image read_hdr(const fs::path& path, const ImageLimits& limits) {
+    return decode_hdr(read_file(path), path, limits);
 }
 
 }  // namespace candela
