@@ -18,14 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The extension in lower case, whatever the locale.
-std::string extension_of(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return extension;
-}
-
 std::string describe_unknown(const fs::path& path, const std::string& supported) {
     const std::string extension = extension_of(path);
     return "image file " + quoted(path) + " has " +
@@ -34,6 +26,17 @@ std::string describe_unknown(const fs::path& path, const std::string& supported)
 }
 
 }  // namespace
+
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    std::ranges::transform(lower, lower.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    return lower;
+}
+
+std::string extension_of(const fs::path& path) {
+    return lower_case(path.extension().string());
+}
 
 void check_pixel_count(const fs::path& path, uint64_t width, uint64_t height, uint64_t max_pixels) {
     if (width * height <= max_pixels) return;

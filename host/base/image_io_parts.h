@@ -1,8 +1,9 @@
-// What the files image_io*.cpp share.
+// What the files image_io*.cpp share, some of it with texel_io*.cpp.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "base/image.h"
@@ -12,6 +13,12 @@ namespace candela {
 
 // Pixels along either side of an image that is read; more can only be a damaged header.
 inline constexpr uint32_t MAX_IMAGE_SIDE = 1 << 20;
+
+// The text with the letters A to Z in lower case, whatever the locale.
+std::string lower_case(std::string_view text);
+
+// The extension of a path in lower case, with its dot.
+std::string extension_of(const std::filesystem::path& path);
 
 // Throws Error if width * height exceeds `max_pixels`; both sides are at most MAX_IMAGE_SIDE.
 void check_pixel_count(const std::filesystem::path& path, uint64_t width, uint64_t height,
