@@ -223,8 +223,10 @@ Image decode_hdr(std::string_view bytes, const fs::path& name, const ImageLimits
     try {
         return HdrReader(bytes, name).read(limits);
     } catch (const std::bad_alloc&) {
-        throw Error("cannot read " + quoted(name) +
-                    ": there is not enough memory for its pixels; use a smaller image or a larger machine");
+        throw Error(
+            "cannot read " + quoted(name) +
+                ": there is not enough memory for its pixels; use a smaller image or a larger machine",
+            ExitCode::out_of_memory);
     }
 }
 
