@@ -7,6 +7,7 @@
 
 #include "base/compare.h"
 #include "base/image_io.h"
+#include "base/texel_io.h"
 #include "cli/report_curve.h"
 #include "film/checkpoint.h"
 #include "film/merge.h"
@@ -19,12 +20,34 @@
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
 #include "render/adaptive.h"
+#include "support/png_writer.h"
 
 namespace candela::fuzz {
 namespace {
 
 // Keeps a run short: more pixels are only more of the same.
 const ImageLimits SMALL{.max_pixels = 1 << 14};
+
+void texels(std::string_view bytes, const char* name) {
+    std::vector<std::string> warnings;
+    decode_texels(bytes, name, warnings, {.max_pixels = SMALL.max_pixels});
+}
+
+// A PNG file with the checksums of its chunks set right: a fuzzer does not guess them.
+std::string with_checksums(std::string_view file) {
+    constexpr size_t TYPE = 4, DATA = 8, AROUND_DATA = 12;
+    std::string mended(file.substr(0, PNG_SIGNATURE.size()));
+    file.remove_prefix(mended.size());
+    while (file.size() >= AROUND_DATA) {
+        uint32_t size = 0;
+        for (size_t i = 0; i < TYPE; ++i)
+            size = size << 8 | uint8_t(file[i]);
+        if (size > file.size() - AROUND_DATA) break;
+        mended += png_chunk(file.substr(TYPE, 4), file.substr(DATA, size));
+        file.remove_prefix(AROUND_DATA + size);
+    }
+    return mended.append(file);
+}
 
 }  // namespace
 
@@ -53,6 +76,18 @@ void hdr(std::string_view bytes) {
 
 void exr(std::string_view bytes) {
     decode_exr(bytes, "fuzz.exr", SMALL);
+}
+
+void png(std::string_view bytes) {
+    texels(with_checksums(bytes), "fuzz.png");
+}
+
+void jpeg(std::string_view bytes) {
+    texels(bytes, "fuzz.jpg");
+}
+
+void webp(std::string_view bytes) {
+    texels(bytes, "fuzz.webp");
 }
 
 void checkpoint(std::string_view bytes) {

@@ -12,6 +12,10 @@ void mtl(std::string_view bytes);
 void ply(std::string_view bytes);
 void hdr(std::string_view bytes);
 void exr(std::string_view bytes);
+// Images of textures.
+void png(std::string_view bytes);  // With checksums that are right, whatever they are.
+void jpeg(std::string_view bytes);
+void webp(std::string_view bytes);
 // Images as text, see parse_images(): what the commands do with images that OpenEXR has read without
 // complaint.
 void checkpoint(std::string_view bytes);  // Whatever its checksum says, and what is done with it.
@@ -23,12 +27,15 @@ struct Target {
     std::string_view name;  // Its inputs are in corpora/NAME.
     void (*run)(std::string_view bytes);
 };
-inline constexpr std::array<Target, 10> TARGETS{{{"scene", scene},
+inline constexpr std::array<Target, 13> TARGETS{{{"scene", scene},
                                                  {"obj", obj},
                                                  {"mtl", mtl},
                                                  {"ply", ply},
                                                  {"hdr", hdr},
                                                  {"exr", exr},
+                                                 {"png", png},
+                                                 {"jpeg", jpeg},
+                                                 {"webp", webp},
                                                  {"checkpoint", checkpoint},
                                                  {"merge", merge},
                                                  {"compare", compare},
