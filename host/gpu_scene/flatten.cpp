@@ -2,11 +2,17 @@
 #include "gpu_scene/flatten.h"
 
 #include <algorithm>
+#include <bit>
+#include <map>
+#include <memory>
 #include <numeric>
 #include <utility>
 
+#include <glm/packing.hpp>
+
 #include "base/color.h"
 #include "gpu_scene/ray_error.h"
+#include "gpu_scene/texture_mean.h"
 #include "gpu_scene/triangle_pairs.h"
 #include "scene/mesh.h"
 
@@ -18,9 +24,40 @@ double pair_error(vec3 a, vec3 b, vec3 c, vec3 d) {
     return std::max(triangle_error(a, b, c), triangle_error(a, c, d));
 }
 
+// Texture coordinates of the corners of a quad.
+constexpr std::array<vec2, 4> UNIT_SQUARE{vec2(0, 0), vec2(1, 0), vec2(1, 1), vec2(0, 1)};
+
+// The values at four vertices; `absent` if the mesh has none.
+template <class Value>
+std::array<Value, 4> corner_values(const std::vector<Value>& values, uvec4 v, const Value& absent) {
+    if (values.empty()) return {absent, absent, absent, absent};
+    return {values[v.x], values[v.y], values[v.z], values[v.w]};
+}
+
+// Four numbers in [0, 65504] as half floats.
+uvec2 pack_halves(vec4 v) {
+    return {glm::packHalf2x16(vec2(v.x, v.y)), glm::packHalf2x16(vec2(v.z, v.w))};
+}
+
+// Texture coordinates over a piece of a surface: origin + b1 along_b1 + b2 along_b2, at the surface
+// coordinates of its light.
+struct PieceUv {
+    vec2 origin{0};
+    vec2 along_b1{0};
+    vec2 along_b2{0};
+};
+
+PieceUv piece_uv(vec2 a, vec2 b, vec2 c) {
+    return {a, b - a, c - a};
+}
+
+// The texture coordinates of disks: their middle, and the ends of e1 and e2.
+constexpr std::array<vec2, 4> DISK_UV{vec2(0.5f, 0.5f), vec2(1.0f, 0.5f), vec2(0.5f, 1.0f), vec2(0.0f)};
+
 class Flattener {
   public:
-    Flattener(const Scene& scene, const SceneFrame& frame) : scene_(scene), frame_(frame) {
+    Flattener(const Scene& scene, const SceneFrame& frame, uint attributes)
+        : scene_(scene), frame_(frame), attributes_(attributes) {
         size_t count = 0;
         for (const Shape& shape : scene.shapes) {
             const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
@@ -30,6 +67,7 @@ class Flattener {
         }
         flat_.primitives.reserve(count);
         if (has_normals_) flat_.normals.reserve(count);
+        flat_.attributes.reserve(count * attribute_words(attributes_));
         for (const Shape& shape : scene.shapes) {
             std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
         }
@@ -52,12 +90,15 @@ class Flattener {
         for (const auto& [v, first, second] :
              shape.emission ? single_triangles(mesh) : pair_triangles(mesh)) {
             const double error = pair_error(p[v.x], p[v.y], p[v.z], p[v.w]);
-            const uint light =
-                add_flat_light(shape, LIGHT_TRIANGLE, p[v.x], p[v.y] - p[v.x], p[v.z] - p[v.x], error);
+            const uint light = add_flat_light(shape, LIGHT_TRIANGLE, p[v.x], p[v.y] - p[v.x], p[v.z] - p[v.x],
+                                              error, emission_uv(shape, mesh, v));
             add_primitive(
                 {PRIMITIVE_TRIANGLES, p[v.x], p[v.y], p[v.z], p[v.w]},
                 {first_id + uvec2(first, second), shape.material, smooth, light, power_of_two_above(error)});
             if (smooth) flat_.normals.back() = pack_normals(n[v.x], n[v.y], n[v.z], n[v.w]);
+            add_attributes(corner_values(mesh.uv0, v, vec2(0.0f)), corner_values(mesh.uv1, v, vec2(0.0f)),
+                           corner_values(mesh.colors, v, vec4(1.0f)),
+                           corner_values(mesh.tangents, v, vec4(1.0f, 0.0f, 0.0f, 1.0f)));
         }
     }
 
@@ -76,16 +117,22 @@ class Flattener {
         const double error = pair_error(c[0], c[1], c[2], c[3]);
         const float origin_error = power_of_two_above(error);
         if (!shape.emission || length(c[0] + e1 + e2 - c[2]) <= rounding) {
-            const uint light = add_flat_light(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2, error);
+            const uint light = add_flat_light(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2, error,
+                                              piece_uv(UNIT_SQUARE[0], UNIT_SQUARE[1], UNIT_SQUARE[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[3]},
                           {uvec2(id, id + 1), shape.material, 0, light, origin_error});
+            add_uvs(UNIT_SQUARE, e1);
         } else {
-            uint light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], e1, diagonal, error);
+            uint light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], e1, diagonal, error,
+                                        piece_uv(UNIT_SQUARE[0], UNIT_SQUARE[1], UNIT_SQUARE[2]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[2]},
                           {uvec2(id), shape.material, 0, light, origin_error});
-            light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], diagonal, e2, error);
+            add_uvs({UNIT_SQUARE[0], UNIT_SQUARE[1], UNIT_SQUARE[2], UNIT_SQUARE[2]}, e1);
+            light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], diagonal, e2, error,
+                                   piece_uv(UNIT_SQUARE[0], UNIT_SQUARE[2], UNIT_SQUARE[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[2], c[3], c[3]},
                           {uvec2(id + 1), shape.material, 0, light, origin_error});
+            add_uvs({UNIT_SQUARE[0], UNIT_SQUARE[2], UNIT_SQUARE[3], UNIT_SQUARE[3]}, e1);
         }
     }
 
@@ -94,9 +141,13 @@ class Flattener {
         const vec3 radius(frame_.length(sphere.radius), 0.0f, 0.0f);
         const double area = 4.0 * double(PI) * double(radius.x) * double(radius.x);
         const double error = sphere_error(center, radius.x);
-        const uint light = add_light(shape, LIGHT_SPHERE, center, radius, vec3(0.0f), area, error);
+        // All around and from pole to pole; where the poles get too much, that only makes the choice of
+        // lights worse.
+        const uint light = add_light(shape, LIGHT_SPHERE, center, radius, vec3(0.0f), area, error,
+                                     piece_uv(UNIT_SQUARE[0], UNIT_SQUARE[1], UNIT_SQUARE[3]));
         add_primitive({PRIMITIVE_SPHERE, center, radius, vec3(0.0f), vec3(0.0f)},
                       {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error)});
+        add_uvs({}, radius);  // All computed from the normal.
     }
 
     void add(const Shape& shape, const Disk& disk) {
@@ -104,9 +155,11 @@ class Flattener {
         const vec3 e1 = frame_.vector(disk.e1);
         const vec3 e2 = frame_.vector(disk.e2);
         const double error = disk_error(center, e1, e2);
-        const uint light = add_flat_light(shape, LIGHT_DISK, center, e1, e2, error);
+        const uint light = add_flat_light(shape, LIGHT_DISK, center, e1, e2, error,
+                                          piece_uv(DISK_UV[0], DISK_UV[1], DISK_UV[2]));
         add_primitive({PRIMITIVE_DISK, center, e1, e2, vec3(0.0f)},
                       {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error)});
+        add_uvs(DISK_UV, e1);
     }
 
     void add_primitive(const Primitive& primitive, const Surface& surface) {
@@ -115,35 +168,99 @@ class Flattener {
         if (has_normals_) flat_.normals.push_back({});
     }
 
-    uint add_flat_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2, double error) {
+    // The attributes of a primitive's corners.
+    void add_attributes(const std::array<vec2, 4>& uv0, const std::array<vec2, 4>& uv1,
+                        const std::array<vec4, 4>& colors, const std::array<vec4, 4>& tangents) {
+        if ((attributes_ & ATTRIBUTE_UV0) != 0) add_pairs(uv0);
+        if ((attributes_ & ATTRIBUTE_UV1) != 0) add_pairs(uv1);
+        for (size_t i = 0; (attributes_ & ATTRIBUTE_COLOR) != 0 && i < 4; i += 2) {
+            const uvec2 a = pack_halves(colors[i]), b = pack_halves(colors[i + 1]);
+            flat_.attributes.emplace_back(a.x, a.y, b.x, b.y);
+        }
+        if ((attributes_ & ATTRIBUTE_TANGENT) == 0) return;
+        flat_.attributes.emplace_back(pack_tangent(tangents[0]), pack_tangent(tangents[1]),
+                                      pack_tangent(tangents[2]), pack_tangent(tangents[3]));
+    }
+
+    // The attributes of a primitive of one colour and, along u, of one direction.
+    void add_uvs(const std::array<vec2, 4>& uv, vec3 along_u) {
+        constexpr vec4 WHITE(1.0f);
+        const vec4 tangent(normalize(along_u), 1.0f);
+        add_attributes(uv, uv, {WHITE, WHITE, WHITE, WHITE}, {tangent, tangent, tangent, tangent});
+    }
+
+    void add_pairs(const std::array<vec2, 4>& v) {
+        for (size_t i = 0; i < 4; i += 2) {
+            flat_.attributes.push_back(std::bit_cast<uvec4>(vec4(v[i].x, v[i].y, v[i + 1].x, v[i + 1].y)));
+        }
+    }
+
+    uint add_flat_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2, double error,
+                        const PieceUv& uv) {
         if (!shape.emission) return NO_LIGHT;
         const double share = kind == LIGHT_TRIANGLE ? 0.5 : kind == LIGHT_DISK ? double(PI) : 1.0;
         return add_light(shape, kind, p, e1, e2, share * length(cross(dvec3(e1), dvec3(e2))),
-                         error + flat_light_error(p, e1, e2));
+                         error + flat_light_error(p, e1, e2), uv);
+    }
+
+    // The texture coordinates of the first of the triangles at these vertices, as the shape's emission looks
+    // them up.
+    static PieceUv emission_uv(const Shape& shape, const TriangleMesh& mesh, uvec4 v) {
+        if (!shape.emission || !shape.emission->radiance.texture) return {};
+        const std::vector<vec2>& uv = shape.emission->radiance.texture->uv_set == 0 ? mesh.uv0 : mesh.uv1;
+        return uv.empty() ? PieceUv{} : piece_uv(uv[v.x], uv[v.y], uv[v.z]);
+    }
+
+    // The mean radiance of an emitter over a piece of it.
+    vec3 mean_radiance(const Emission& emission, uint kind, const PieceUv& uv) {
+        const std::optional<Texture>& texture = emission.radiance.texture;
+        if (!texture) return emission.radiance.factor;
+        std::unique_ptr<ImagePyramid>& pyramid = pyramids_[{texture->image, texture->encoding}];
+        if (!pyramid)
+            pyramid = std::make_unique<ImagePyramid>(scene_.images[texture->image].image, texture->encoding);
+        constexpr int SIDE = 4;
+        std::vector<vec2> places;
+        for (int i = 0; i < SIDE * SIDE; ++i) {
+            vec2 b = (vec2(i % SIDE, i / SIDE) + 0.5f) / float(SIDE);
+            if (kind == LIGHT_TRIANGLE)
+                b = b.x < b.y ? vec2(0.5f * b.x, b.y - 0.5f * b.x) : vec2(b.x - 0.5f * b.y, 0.5f * b.y);
+            if (kind == LIGHT_DISK) b = 2.0f * b - 1.0f;
+            places.push_back(uv.origin + b.x * uv.along_b1 + b.y * uv.along_b2);
+        }
+        const float longest =
+            std::max({length(uv.along_b1), length(uv.along_b2), length(uv.along_b1 - uv.along_b2)});
+        const float spacing = (kind == LIGHT_DISK ? 2.0f : 1.0f) * longest / float(SIDE);
+        return emission.radiance.factor * pyramid->mean(*texture, places, spacing);
     }
 
     // The index of a new light, or NO_LIGHT if the piece emits nothing.
-    uint add_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2, double area, double error) {
+    uint add_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2, double area, double error,
+                   const PieceUv& uv) {
         if (!shape.emission) return NO_LIGHT;
         const Emission& emission = *shape.emission;
-        const double power = area * luminance(emission.radiance) * (emission.two_sided ? 2.0 : 1.0);
+        const double power =
+            area * luminance(mean_radiance(emission, kind, uv)) * (emission.two_sided ? 2.0 : 1.0);
         if (power == 0.0) return NO_LIGHT;
-        flat_.lights.push_back({kind, p, e1, e2, emission.radiance, emission.two_sided ? 1u : 0u,
+        flat_.lights.push_back({kind, p, e1, e2, emission.radiance.factor, emission.two_sided ? 1u : 0u,
                                 float(1.0 / area), 0.0f, float(error)});
         flat_.powers.push_back(power);
+        flat_.light_surfaces.push_back({uint(flat_.primitives.size()), &shape});
         return uint(flat_.lights.size() - 1);
     }
 
     const Scene& scene_;
     const SceneFrame& frame_;
+    uint attributes_;
     bool has_normals_ = false;
+    std::map<std::pair<uint32_t, TextureEncoding>, std::unique_ptr<ImagePyramid>>
+        pyramids_;  // Of images that emit.
     FlatScene flat_;
 };
 
 }  // namespace
 
-FlatScene flatten(const Scene& scene, const SceneFrame& frame) {
-    return Flattener(scene, frame).take();
+FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes) {
+    return Flattener(scene, frame, attributes).take();
 }
 
 void assign_probabilities(FlatScene& flat) {

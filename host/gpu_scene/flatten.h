@@ -8,23 +8,33 @@
 #include "scene/scene.h"
 #include "shared/light.h"
 #include "shared/primitive.h"
+#include "shared/texture.h"
 
 namespace candela {
+
+// The surface of a light.
+struct LightSurface {
+    uint32_t primitive = 0;  // Index of its first primitive.
+    const Shape* shape = nullptr;
+};
 
 struct FlatScene {
     std::vector<Primitive> primitives;
     std::vector<Surface> surfaces;                          // One per primitive.
     std::vector<std::array<uvec4, NORMALS_WORDS>> normals;  // One per primitive, or none if all are flat.
+    std::vector<uvec4> attributes;                          // attribute_words() per primitive.
     uint64_t triangles = 0;                                 // Of meshes; and of these,
     uint64_t coarse = 0;                                    // as count_coarse_triangles() says.
     uint64_t flattened = 0;      // Triangles that are left out: rounded to floats, they have no area.
     uint32_t id_count = 0;       // Ids that the surfaces have: one for each triangle, sphere and disk.
     std::vector<Light> lights;   // Those that emit; pmf is 0 until assign_probabilities().
-    std::vector<double> powers;  // Power of each light over pi, by its luminance [W].
+    std::vector<double> powers;  // Power of each light over pi, by its luminance [W],
+    std::vector<LightSurface> light_surfaces;  // and what it belongs to.
 };
 
-// The records are in `frame`; so are areas and powers.
-FlatScene flatten(const Scene& scene, const SceneFrame& frame);
+// The records are in `frame`; so are areas and powers. `attributes` (bits ATTRIBUTE_*) says which of the
+// vertices' attributes are kept.
+FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes = 0);
 
 // Sets the probability of choosing each light: its share of the total power, which is not 0.
 void assign_probabilities(FlatScene& flat);

@@ -15,6 +15,7 @@
 #include "gpu_scene/environment_map.h"
 #include "gpu_scene/flatten.h"
 #include "gpu_scene/material_record.h"
+#include "gpu_scene/texture_table.h"
 #include "scene/geometry.h"
 #include "scene/mesh.h"
 #include "shared/bvh_node.h"
@@ -81,8 +82,33 @@ bool add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box
     return true;
 }
 
-// Appends the records of materials and of the media behind them, each medium once.
-void append_materials(GpuScene& gpu, const std::vector<Material>& materials, double unit) {
+uint32_t textured_bits(const MaterialTextures& t) {
+    const auto bit = [](bool used, uint32_t of) { return used ? of : 0; };
+    return bit(t.base != TEXTURE_NONE, TEXTURED_BASE) | bit(t.specular != TEXTURE_NONE, TEXTURED_SPECULAR) |
+           bit(t.parameter != TEXTURE_NONE, TEXTURED_PARAMETER) |
+           bit(t.normal != TEXTURE_NONE, TEXTURED_NORMAL) |
+           bit(t.opacity_texture != TEXTURE_NONE || t.opacity < 1.0f, TEXTURED_OPACITY) |
+           bit(t.vertex_colors != 0, TEXTURED_VERTEX_COLORS);
+}
+
+MaterialTextures textures_of(const Material& material, const EncodedMaterial& encoded,
+                             TextureTable& textures) {
+    constexpr float NO_CUTOFF = -1.0f;
+    const auto& [opacity, cutoff] = material.opacity;
+    const std::optional<NormalMap>& map = material.normal_map;
+    return {.base = textures.add(encoded.base),
+            .specular = textures.add(encoded.specular),
+            .parameter = textures.add(encoded.parameter),
+            .normal = map ? textures.add(map->texture) : TEXTURE_NONE,
+            .normal_scale = map ? map->scale : 1.0f,
+            .opacity_texture = textures.add(opacity.texture),
+            .opacity = opacity.factor,
+            .cutoff = cutoff.value_or(NO_CUTOFF),
+            .vertex_colors = material.vertex_colors ? 1u : 0u};
+}
+
+// Appends the records of materials, and of the media behind them, each once.
+void append_materials(GpuScene& gpu, const std::vector<Material>& materials, TextureTable& textures) {
     if (materials.size() > MAX_MATERIALS) {
         throw Error("the scene has " + std::to_string(materials.size()) + " materials, but at most " +
                     std::to_string(MAX_MATERIALS) + " fit into the records; use fewer");
@@ -93,13 +119,41 @@ void append_materials(GpuScene& gpu, const std::vector<Material>& materials, dou
         const Medium medium = medium_behind(material.model).value_or(Medium{});
         auto place = std::ranges::find(media, medium);
         if (place == media.end()) place = media.insert(place, medium);
-        const MaterialRecord record = material_record(material.model, uint32_t(place - media.begin()));
-        append(gpu.arrays[ARRAY_MATERIALS], pack(record));
-        gpu.materials_present |= 1u << record.model;
+        const EncodedMaterial encoded = encode_material(material.model, uint32_t(place - media.begin()));
+        append(gpu.arrays[ARRAY_MATERIALS], pack(encoded.record));
+        gpu.materials_present |= 1u << encoded.record.model;
+        const MaterialTextures used = textures_of(material, encoded, textures);
+        append(gpu.arrays[ARRAY_MATERIAL_TEXTURES], pack(used));
+        gpu.textured |= textured_bits(used);
     }
     for (const Medium& medium : media)
-        append(gpu.arrays[ARRAY_MEDIA], pack(MediumRecord{vec3(unit * dvec3(medium.absorption))}));
+        append(gpu.arrays[ARRAY_MEDIA], pack(MediumRecord{vec3(gpu.frame.unit * dvec3(medium.absorption))}));
     gpu.has_media = media.size() > 1;
+    if (gpu.textured == 0) gpu.arrays[ARRAY_MATERIAL_TEXTURES].clear();
+}
+
+// The attributes of vertices that textures and materials read.
+uint32_t needed_attributes(const GpuScene& gpu) {
+    const auto bit = [](bool used, uint32_t of) { return used ? of : 0; };
+    return bit((gpu.texture_traits & TEXTURE_UV0) != 0, ATTRIBUTE_UV0) |
+           bit((gpu.texture_traits & TEXTURE_UV1) != 0, ATTRIBUTE_UV1) |
+           bit((gpu.textured & TEXTURED_VERTEX_COLORS) != 0, ATTRIBUTE_COLOR) |
+           bit((gpu.textured & TEXTURED_NORMAL) != 0, ATTRIBUTE_TANGENT);
+}
+
+// Appends the textures of lights, for their surfaces' places in leaf order, if a kernel reads them.
+void append_light_textures(GpuScene& gpu, const FlatScene& flat, std::span<const uint32_t> order,
+                           TextureTable& textures) {
+    if ((gpu.textured & (TEXTURED_EMISSION | TEXTURED_OPACITY)) == 0) return;
+    std::vector<uint32_t> places(order.size());
+    for (uint32_t i = 0; i < order.size(); ++i)
+        places[order[i]] = i;
+    for (const auto& [primitive, shape] : flat.light_surfaces) {
+        append(gpu.arrays[ARRAY_LIGHT_TEXTURES],
+               pack(LightTextures{.primitive = places[primitive],
+                                  .emission = textures.add(shape->emission->radiance.texture),
+                                  .material = shape->material}));
+    }
 }
 
 }  // namespace
@@ -130,9 +184,19 @@ GpuScene build_gpu_scene(const Scene& scene) {
 }
 
 GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame) {
-    FlatScene flat = flatten(scene, frame);
     GpuScene gpu;
     gpu.frame = frame;
+    TextureTable textures(scene.images);
+    append_materials(gpu, scene.materials, textures);
+    for (const Shape& shape : scene.shapes) {
+        if (shape.emission && textures.add(shape.emission->radiance.texture) != TEXTURE_NONE)
+            gpu.textured |= TEXTURED_EMISSION;
+    }
+    gpu.texture_traits = textures.traits();
+    gpu.attributes = needed_attributes(gpu);
+    gpu.arrays[ARRAY_TEXTURES] = textures.records();
+    gpu.arrays[ARRAY_TEXELS] = textures.texels();
+    FlatScene flat = flatten(scene, frame, gpu.attributes);
     gpu.primitive_count = uint32_t(flat.primitives.size());
     gpu.id_count = flat.id_count;
     gpu.has_normals = !flat.normals.empty();
@@ -167,6 +231,7 @@ GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame) {
     if (flat.primitives.empty())
         gpu.arrays[ARRAY_PRIMITIVES].resize(PRIMITIVE_WORDS);  // Traversal may read it all the same.
 
+    append_light_textures(gpu, flat, bvh.order, textures);
     if (scene.environment) {
         EnvironmentMap map = build_environment_map(*scene.environment);
         const bool is_light = add_environment_light(flat, map, bvh.bounds);
@@ -192,7 +257,12 @@ GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame) {
         for (const uint32_t i : bvh.order)
             append(gpu.arrays[ARRAY_NORMALS], flat.normals[i]);
     }
-    append_materials(gpu, scene.materials, frame.unit);
+    const size_t attribute_count = attribute_words(gpu.attributes);
+    gpu.arrays[ARRAY_ATTRIBUTES].reserve(flat.attributes.size());
+    for (const uint32_t i : bvh.order) {
+        append(gpu.arrays[ARRAY_ATTRIBUTES],
+               std::span(flat.attributes).subspan(i * attribute_count, attribute_count));
+    }
     for (const Light& light : flat.lights) {
         append(gpu.arrays[ARRAY_LIGHTS], pack(light));
         gpu.lights_present |= 1u << light.kind;

@@ -34,6 +34,9 @@ struct GpuScene {
     uint32_t materials_present = 0;                 // Bit i: a material of model i.
     uint32_t primitives_present = 0;                // Bit i: a primitive of kind i.
     uint32_t lights_present = 0;                    // Bit i: a light of kind i.
+    uint32_t attributes = 0;                        // Bits ATTRIBUTE_*.
+    uint32_t textured = 0;                          // Bits TEXTURED_*.
+    uint32_t texture_traits = 0;                    // Of all textures.
     std::array<uint32_t, LIST_MAX> list_corners{};  // Of the first primitives; see LIST_CORNERS_0.
 
     uint32_t bvh_depth = 1;  // Levels of nodes.

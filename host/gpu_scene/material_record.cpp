@@ -4,35 +4,45 @@
 namespace candela {
 namespace {
 
-MaterialRecord record(uint model, vec3 base, vec3 specular = vec3(0.0f), float parameter = 0.0f) {
-    return {
-        .model = model, .medium = MEDIUM_SAME, .base = base, .specular = specular, .parameter = parameter};
+const Textured<vec3> NO_COLOR = vec3(0.0f);
+const Textured<float> NO_NUMBER = 0.0f;
+
+EncodedMaterial encoded(uint model, const Textured<vec3>& base, const Textured<vec3>& specular = NO_COLOR,
+                        const Textured<float>& parameter = NO_NUMBER) {
+    return {{.model = model,
+             .medium = MEDIUM_SAME,
+             .base = base.factor,
+             .specular = specular.factor,
+             .parameter = parameter.factor},
+            base.texture,
+            specular.texture,
+            parameter.texture};
 }
 
-MaterialRecord encode(const DiffuseMaterial& m) {
-    return record(MATERIAL_DIFFUSE, m.reflectance);
+EncodedMaterial encode(const DiffuseMaterial& m) {
+    return encoded(MATERIAL_DIFFUSE, m.reflectance);
 }
 
-MaterialRecord encode(const PhongMaterial& m) {
-    return record(MATERIAL_PHONG, m.diffuse, m.specular, m.exponent);
+EncodedMaterial encode(const PhongMaterial& m) {
+    return encoded(MATERIAL_PHONG, m.diffuse, m.specular, m.exponent);
 }
 
-MaterialRecord encode(const MirrorMaterial& m) {
-    return record(MATERIAL_MIRROR, m.reflectance);
+EncodedMaterial encode(const MirrorMaterial& m) {
+    return encoded(MATERIAL_MIRROR, m.reflectance);
 }
 
-MaterialRecord encode(const ConductorMaterial& m) {
-    return record(MATERIAL_CONDUCTOR, m.reflectance, vec3(0.0f), m.alpha);
+EncodedMaterial encode(const ConductorMaterial& m) {
+    return encoded(MATERIAL_CONDUCTOR, m.reflectance, NO_COLOR, m.alpha);
 }
 
-MaterialRecord encode(const DielectricMaterial& m) {
+EncodedMaterial encode(const DielectricMaterial& m) {
     const bool exact = m.fresnel == Fresnel::exact;
-    return record(exact ? MATERIAL_DIELECTRIC_EXACT : MATERIAL_DIELECTRIC_SCHLICK, vec3(0.0f), vec3(0.0f),
-                  m.ior / m.exterior_ior);
+    return encoded(exact ? MATERIAL_DIELECTRIC_EXACT : MATERIAL_DIELECTRIC_SCHLICK, NO_COLOR, NO_COLOR,
+                   m.ior / m.exterior_ior);
 }
 
-MaterialRecord encode(const DiffuseTransmissionMaterial& m) {
-    return record(MATERIAL_DIFFUSE_TRANSMISSION, m.reflectance, m.transmittance);
+EncodedMaterial encode(const DiffuseTransmissionMaterial& m) {
+    return encoded(MATERIAL_DIFFUSE_TRANSMISSION, m.reflectance, m.transmittance);
 }
 
 template <class OpaqueMaterial>
@@ -50,9 +60,9 @@ std::optional<Medium> behind(const DiffuseTransmissionMaterial& m) {
 
 }  // namespace
 
-MaterialRecord material_record(const decltype(Material::model)& model, uint32_t medium) {
-    MaterialRecord result = std::visit([](const auto& m) { return encode(m); }, model);
-    if (medium_behind(model)) result.medium = medium;
+EncodedMaterial encode_material(const decltype(Material::model)& model, uint32_t medium) {
+    EncodedMaterial result = std::visit([](const auto& m) { return encode(m); }, model);
+    if (medium_behind(model)) result.record.medium = medium;
     return result;
 }
 

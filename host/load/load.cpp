@@ -10,6 +10,7 @@
 #include "load/json/loader.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
+#include "scene/images.h"
 
 namespace candela {
 
@@ -21,7 +22,9 @@ Scene load_scene(const std::filesystem::path& path) {
     std::ranges::transform(extension, extension.begin(),
                            [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
     const auto loader = std::ranges::find(LOADERS, extension, [](const auto& known) { return known.first; });
-    return loader == LOADERS.end() ? load_json_scene(path) : loader->second(path);
+    Scene scene = loader == LOADERS.end() ? load_json_scene(path) : loader->second(path);
+    load_images(scene);
+    return scene;
 }
 
 }  // namespace candela

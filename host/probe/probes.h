@@ -11,7 +11,7 @@
 namespace candela::kernels {
 
 extern const std::span<const uint32_t> any_hit, bsdf, closest_hit, environment, escape, exponential, frame,
-    hash, interaction, light_sample, math, octahedral, records, sampler, spawn, traversal, warp;
+    hash, interaction, light_sample, math, octahedral, records, sampler, spawn, texture, traversal, warp;
 
 }  // namespace candela::kernels
 

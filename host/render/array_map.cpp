@@ -38,6 +38,7 @@ void check_range(const vk::DeviceInfo& device, const GpuScene& scene, std::span<
     uint64_t bytes = 0;
     std::string names;
     for (const uint32_t array : arrays) {
+        if (bytes_of(scene, array) == 0) continue;
         bytes += bytes_of(scene, array);
         names += (names.empty() ? "" : ", ") + to_text(SCENE_ARRAYS[array]);
     }

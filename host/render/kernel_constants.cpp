@@ -29,10 +29,12 @@ uint32_t aperture_constant(const Lens& lens) {
 
 // The length of the list that replaces the tree; 0 for the tree. Only on lavapipe: a GPU has no registers for
 // a list, and runs other work while some lanes wait; on SwiftShader the list takes 2.4 times as long as the
-// tree. Only for triangles, since every lane executes the tests of all kinds in the scene for each primitive.
+// tree. Only for triangles, since every lane executes the tests of all kinds in the scene for each primitive;
+// and only if rays pass none of them.
 uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
     const bool triangles = scene.primitives_present == 1u << PRIMITIVE_TRIANGLES;
-    return device.info().is_lavapipe() && triangles && scene.primitive_count <= LIST_MAX
+    const bool opaque = (scene.textured & TEXTURED_OPACITY) == 0;
+    return device.info().is_lavapipe() && triangles && opaque && scene.primitive_count <= LIST_MAX
                ? scene.primitive_count
                : 0;
 }
@@ -65,6 +67,9 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
     constants[CONSTANT_LIGHTS] = scene.lights_present;
     constants[CONSTANT_HAS_MEDIA] = scene.has_media;
+    constants[CONSTANT_ATTRIBUTES] = scene.attributes;
+    constants[CONSTANT_TEXTURED] = scene.textured;
+    constants[CONSTANT_TEXTURE_TRAITS] = scene.texture_traits;
     constants[CONSTANT_ONE_LIGHT] = scene.light_count == 1;
     return constants;
 }

@@ -31,4 +31,15 @@ inline constexpr Choices<SamplerKind, 3> SAMPLER_NAMES{{{"independent", SamplerK
 inline constexpr Choices<Fresnel, 2> FRESNEL_NAMES{
     {{"schlick", Fresnel::schlick}, {"exact", Fresnel::exact}}};
 
+inline constexpr Choices<Wrap, 3> WRAP_NAMES{
+    {{"repeat", Wrap::repeat}, {"mirror", Wrap::mirror}, {"clamp", Wrap::clamp}}};
+
+inline constexpr Choices<TextureFilter, 2> FILTER_NAMES{
+    {{"bilinear", TextureFilter::bilinear}, {"nearest", TextureFilter::nearest}}};
+
+inline constexpr Choices<TextureEncoding, 2> ENCODING_NAMES{
+    {{"srgb", TextureEncoding::srgb}, {"linear", TextureEncoding::linear}}};
+
+inline constexpr Choices<uint32_t, 4> CHANNEL_NAMES{{{"red", 0}, {"green", 1}, {"blue", 2}, {"alpha", 3}}};
+
 }  // namespace candela

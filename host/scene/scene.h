@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "scene/texture.h"
 #include "scene/transform.h"
 
 namespace candela {
@@ -62,36 +63,36 @@ struct Medium {
 
 // Lambert: f = reflectance / pi on both sides.
 struct DiffuseMaterial {
-    vec3 reflectance{0.5f};  // Each in [0, 1].
+    Textured<vec3> reflectance{vec3(0.5f)};  // Each in [0, 1].
 };
 
 // A diffuse base under a glossy lobe around the mirrored direction: modified Phong. diffuse + specular is at
 // most 1 in each channel, so that it creates no energy.
 struct PhongMaterial {
-    vec3 diffuse{0};        // kd.
-    vec3 specular{0};       // ks.
-    float exponent = 1.0f;  // n, in [0, MAX_PHONG_EXPONENT].
+    Textured<vec3> diffuse{vec3(0)};   // kd.
+    Textured<vec3> specular{vec3(0)};  // ks.
+    Textured<float> exponent = 1.0f;   // n, in [0, MAX_PHONG_EXPONENT].
 };
 inline constexpr float MAX_PHONG_EXPONENT = 1e5f;
 
 // An ideal mirror.
 struct MirrorMaterial {
-    vec3 reflectance{1};  // Each in [0, 1], at any angle.
+    Textured<vec3> reflectance{vec3(1)};  // Each in [0, 1], at any angle.
 };
 
 // A metal with microfacets (GGX). Its reflectance rises to 1 towards grazing angles (Schlick).
 struct ConductorMaterial {
-    vec3 reflectance{1};  // At normal incidence, each in [0, 1].
-    float alpha = 0.1f;   // Roughness, in [MIN_ALPHA, 1].
+    Textured<vec3> reflectance{vec3(1)};  // At normal incidence, each in [0, 1].
+    Textured<float> alpha = 0.1f;         // Roughness, in [MIN_ALPHA, 1].
 };
 inline constexpr float MIN_ALPHA = 1e-3f;
 
 // A thin sheet that scatters light diffusely to both sides. reflectance + transmittance is at most 1 in each
 // channel, so that it creates no energy.
 struct DiffuseTransmissionMaterial {
-    vec3 reflectance{0.5f};          // On the side that light comes from.
-    vec3 transmittance{0.5f};        // On the other side.
-    std::optional<Medium> inside{};  // Behind the surface; none: the same as in front of it.
+    Textured<vec3> reflectance{vec3(0.5f)};    // On the side that light comes from.
+    Textured<vec3> transmittance{vec3(0.5f)};  // On the other side.
+    std::optional<Medium> inside{};            // Behind the surface; none: the same as in front of it.
 };
 
 enum class Fresnel { schlick, exact };
@@ -105,16 +106,34 @@ struct DielectricMaterial {
     Medium inside{};  // Behind the surface.
 };
 
+// A normal for shading at every point: in the image's red, green and blue, from -1 to 1 (0 to 1 in the file),
+// along the tangent, the bitangent and the normal of the surface.
+struct NormalMap {
+    Texture texture{};
+    float scale = 1.0f;  // Factor of red and green.
+};
+
+// Some rays pass a surface as if it were not there.
+struct Opacity {
+    Textured<float> value = 1.0f;  // The probability that a ray does not, in [0, 1].
+    std::optional<float>
+        cutoff{};  // If there is one, no ray passes where the value is at least this, else every ray.
+};
+
 struct Material {
     std::string name;
     std::variant<DiffuseMaterial, PhongMaterial, MirrorMaterial, ConductorMaterial, DielectricMaterial,
                  DiffuseTransmissionMaterial>
         model;
+    std::optional<NormalMap> normal_map{};
+    Opacity opacity{};
+    bool vertex_colors =
+        false;  // The colours of vertices are factors of the model's first colour and of opacity.
 };
 
 // Radiance that a surface emits [W/(m^2 sr)], from its front side (counter-clockwise) or from both.
 struct Emission {
-    vec3 radiance{0};  // Each >= 0 and finite.
+    Textured<vec3> radiance{vec3(0)};  // Each >= 0 and finite.
     bool two_sided = false;
 };
 
@@ -125,7 +144,7 @@ struct TriangleMesh {
     std::vector<vec3> positions{};   // Relative to the origin.
     std::vector<vec3> normals{};     // For shading; of any length, zero where there is none. Empty: flat.
     std::vector<vec4> tangents{};    // x, y, z: where u grows; w: -1 if the bitangent is mirrored, else 1.
-    std::vector<vec2> uv0{};         // Texture coordinates, ...
+    std::vector<vec2> uv0{};         // Texture coordinates, v upwards, ...
     std::vector<vec2> uv1{};         // ... two sets of them.
     std::vector<vec4> colors{};      // Linear RGB, and opacity.
     std::vector<uvec3> triangles{};  // Indices of vertices.
@@ -176,6 +195,7 @@ struct Scene {
     std::vector<Camera> cameras;  // At least one; the first is the default.
     Film film;
     IntegratorSettings integrator;
+    std::vector<ImageFile> images;  // That textures look up.
     std::vector<Material> materials;
     std::vector<TriangleMesh> meshes;
     std::vector<Shape> shapes;

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "scene/material_textures.h"
 #include "scene/mesh.h"
+#include "scene/tangents.h"
 
 namespace candela {
 
@@ -25,6 +27,27 @@ bool fits(const TriangleMesh& mesh, const Transform& transform) {
     return true;
 }
 
+// Throws Error if a mesh lacks the attributes that its material and emission look up; adds tangents for a
+// normal map.
+void complete_attributes(const Scene& scene, const std::string& place, const Appearance& appearance,
+                         TriangleMesh& mesh) {
+    const Material& material = scene.materials[appearance.material];
+    std::vector<const Texture*> textures = textures_of(material);
+    if (appearance.emission && appearance.emission->radiance.texture)
+        textures.push_back(&*appearance.emission->radiance.texture);
+    const uint32_t sets = uv_sets_of(textures);
+    for (const auto& [set, uvs] : {std::pair(0, &mesh.uv0), std::pair(1, &mesh.uv1)}) {
+        if ((sets >> set & 1u) == 0) continue;
+        const std::string name = set == 0 ? "texture coordinates" : "second set of texture coordinates";
+        if (uvs->empty()) {
+            throw Error(place + ": the material \"" + material.name +
+                        "\" has textures, but the mesh has no " + name +
+                        "; export it with them, or use a material without textures");
+        }
+    }
+    if (material.normal_map && mesh.tangents.empty()) add_tangents(mesh, material.normal_map->texture.uv_set);
+}
+
 }  // namespace
 
 void SceneBuilder::add_mesh(const std::string& place, const Transform& transform,
@@ -42,6 +65,7 @@ void SceneBuilder::add_mesh(const std::string& place, const Transform& transform
     for (MeshPart& part : parts) {
         if (!fits(part.mesh, transform)) throw Error(place + ": " + TOO_FAR);
         complete_normals(part.mesh);
+        complete_attributes(scene_, place, part.appearance, part.mesh);
         add(part.appearance, MeshInstance{uint32_t(scene_.meshes.size()), transform});
         scene_.meshes.push_back(std::move(part.mesh));
     }

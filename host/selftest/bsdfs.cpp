@@ -42,28 +42,28 @@ double p_value_of_gain(double mean, double variance) {
 }  // namespace
 
 MaterialRecord diffuse(vec3 reflectance) {
-    return material_record(DiffuseMaterial{reflectance});
+    return encode_material(DiffuseMaterial{reflectance}).record;
 }
 
 MaterialRecord phong(vec3 kd, vec3 ks, float n) {
-    return material_record(PhongMaterial{kd, ks, n});
+    return encode_material(PhongMaterial{kd, ks, n}).record;
 }
 
 MaterialRecord mirror(vec3 reflectance) {
-    return material_record(MirrorMaterial{reflectance});
+    return encode_material(MirrorMaterial{reflectance}).record;
 }
 
 MaterialRecord conductor(vec3 reflectance, float alpha) {
-    return material_record(ConductorMaterial{reflectance, alpha});
+    return encode_material(ConductorMaterial{reflectance, alpha}).record;
 }
 
 MaterialRecord dielectric(uint32_t model, float eta) {
     const Fresnel fresnel = model == MATERIAL_DIELECTRIC_EXACT ? Fresnel::exact : Fresnel::schlick;
-    return material_record(DielectricMaterial{.ior = eta, .fresnel = fresnel, .inside{}});
+    return encode_material(DielectricMaterial{.ior = eta, .fresnel = fresnel, .inside{}}).record;
 }
 
 MaterialRecord diffuse_transmission(vec3 reflectance, vec3 transmittance) {
-    return material_record(DiffuseTransmissionMaterial{reflectance, transmittance, {}});
+    return encode_material(DiffuseTransmissionMaterial{reflectance, transmittance, {}}).record;
 }
 
 std::vector<BsdfCase> bsdf_cases() {

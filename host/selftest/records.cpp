@@ -15,6 +15,7 @@
 #include "shared/light.h"
 #include "shared/material.h"
 #include "shared/primitive.h"
+#include "shared/texture.h"
 
 namespace candela {
 namespace {
@@ -74,6 +75,11 @@ struct Records {
     AliasEntry light_even, light_odd;
     EnvironmentTexel texel;
     AliasEntry texel_even, texel_odd;
+    MaterialTextures material_textures;
+    LightTextures light_textures;
+    TextureRecord texture;
+    uvec4 texels;
+    std::array<uvec4, 7> attributes;  // Of all kinds: attribute_words(ATTRIBUTES_ALL).
 };
 
 struct Item {
@@ -82,7 +88,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 128> words;
+    std::array<uint, 182> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -156,6 +162,24 @@ Records filled(Fields& fields) {
     r.texel = {.radiance = fields.f3(), .pdf = fields.f()};
     r.texel_even = entry();
     r.texel_odd = entry();
+    r.material_textures = {.base = fields.keep(0x2BCDEF01u),
+                           .specular = fields.u(),
+                           .parameter = fields.u(),
+                           .normal = fields.u(),
+                           .normal_scale = fields.f(),
+                           .opacity_texture = fields.u(),
+                           .opacity = fields.f(),
+                           .cutoff = fields.f(),
+                           .vertex_colors = fields.keep(1u)};
+    r.light_textures = {.primitive = fields.u(), .emission = fields.u(), .material = fields.u()};
+    r.texture = {.first = fields.u(),
+                 .size = {fields.keep(0xABCDu), fields.keep(0xFEDCu)},
+                 .traits = fields.u(),
+                 .row_u = fields.f3(),
+                 .row_v = fields.f3()};
+    r.texels = fields.u4();
+    for (uvec4& word : r.attributes)
+        word = fields.u4();
     return r;
 }
 
@@ -181,6 +205,11 @@ GpuScene packed(const Records& r) {
     append_second(array(ARRAY_LIGHT_ALIAS), pack(r.light_even, r.light_odd));
     append_second(array(ARRAY_ENVIRONMENT), pack(r.texel));
     append_second(array(ARRAY_ENVIRONMENT_ALIAS), pack(r.texel_even, r.texel_odd));
+    append_second(array(ARRAY_MATERIAL_TEXTURES), pack(r.material_textures));
+    append_second(array(ARRAY_LIGHT_TEXTURES), pack(r.light_textures));
+    append_second(array(ARRAY_TEXTURES), pack(r.texture));
+    append_second(array(ARRAY_TEXELS), std::array{r.texels});
+    append_second(array(ARRAY_ATTRIBUTES), r.attributes);
     return scene;
 }
 
@@ -208,7 +237,10 @@ Evidence test_records(const vk::Device& device, SceneAccess access) {
     const Records records = filled(fields);
     assert(fields.words.size() == Result{}.words.size());
     const DeviceScene on_device(device, packed(records), access, records.parameters);
-    const Result read = probe<Result>(device, kernels::records, std::vector<Item>(1), {}, &on_device)[0];
+    KernelConstants constants;
+    constants[CONSTANT_ATTRIBUTES] = ATTRIBUTES_ALL;
+    const Result read =
+        probe<Result>(device, kernels::records, std::vector<Item>(1), constants, &on_device)[0];
     Evidence evidence;
     for (size_t i = 0; i < fields.words.size(); ++i) {
         evidence.expect(read.words[i] == fields.words[i], [&] {

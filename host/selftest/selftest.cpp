@@ -13,6 +13,7 @@
 #include "selftest/samplers.h"
 #include "selftest/skies.h"
 #include "selftest/spheres.h"
+#include "selftest/textures.h"
 #include "selftest/traversal.h"
 #include "selftest/warps.h"
 #include "shared/constants.h"
@@ -54,6 +55,10 @@ Evidence through_both_buffers(const vk::Device& device) {
     return evidence;
 }
 
+Evidence test_some_textures(const vk::Device& device, SceneAccess access) {
+    return test_textures(device, access, 100000);
+}
+
 // A test that is the same for every effort: it has no random part, or takes hardly any time.
 template <Evidence (*test)(const vk::Device&)>
 Evidence always(const vk::Device& device, Effort) {
@@ -78,6 +83,7 @@ std::vector<Row> rows() {
         {"rays at spheres",
          "rays",
          {test_rays_outside_spheres, test_rays_within_spheres, test_points_on_spheres, test_rays_at_disks}},
+        {"textures", "look-ups", {always<through_both_buffers<test_some_textures>>}},
         {"warps",
          "samples",
          {always<test_basic_warps>, always<test_power_cosines>, always<test_sphere_and_cones>,

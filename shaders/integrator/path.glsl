@@ -21,9 +21,11 @@
 
 #include "base/sampler.glsl"
 #include "bsdf/bsdf.glsl"
+#include "integrator/bent_normal.glsl"
 #include "light/light_sampler.glsl"
 #include "medium/medium.glsl"
 #include "scene/interaction.glsl"
+#include "scene/material.glsl"
 
 // Survival is never more likely than this, so that every path ends.
 const float RR_MAX_SURVIVAL = 0.99;
@@ -105,12 +107,20 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     LitPoint lit = path_lit_point(path);
     float distance_squared = LIT_FROM_BEHIND ? dot(s.p - lit.p, s.p - lit.p) : square(t);
     float pdf_light = light_pdf_li(s.light, lit, distance_squared, dot(s.wo, s.n));
-    estimate.L += emission_weight(path, pdf_light) * path.beta * area_light_le(light_at(s.light), s.front);
+    estimate.L += emission_weight(path, pdf_light) * path.beta *
+                  area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
 }
+
+// How a surface is shaded.
+struct Shading {
+    Frame frame;  // Around the shading normal.
+    vec3 wo;      // Towards the viewer, in that frame.
+    bool bent;    // The shading normal is that of a normal map.
+};
 
 // The shadow ray from s towards a point on a light, and what it adds to L if it is not blocked: beta f cos Li / pdf,
 // weighted and attenuated. `behind` is the medium behind the surface.
-ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, Bsdf bsdf, uint behind, uvec2 u, uint fill) {
+ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uint behind, uvec2 u, uint fill) {
     LitPoint lit = lit_point(s);
     LightSample light = light_sample_li(lit, u, fill);
     Ray ray = Ray(lit.p, light.shadow);
@@ -122,12 +132,19 @@ ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, Bsdf bsdf
         if (light.t_max < FLOAT_MAX) ray.d += lit.p - ray.o;
         if (!viewers_side) medium = medium_beyond(path.medium, behind, s.front);
     }
-    vec3 wi = frame_to_local(frame, light.wi);
-    BsdfValue value = bsdf_evaluate(bsdf, wo, wi);
-    vec3 Ld = path.beta * value.f * abs(wi.z) * light.Li;
+    vec3 wi = frame_to_local(shading.frame, light.wi);
+    BsdfValue value;
+    vec3 Ld;
+    if (shading.bent) {
+        value = bent_evaluate(bsdf, shading.wo, wi, frame_to_local(shading.frame, s.n));
+        Ld = path.beta * value.f * light.Li;
+    } else {
+        value = bsdf_evaluate(bsdf, shading.wo, wi);
+        Ld = path.beta * value.f * abs(wi.z) * light.Li;
+    }
     Ld *= medium_transmittance(medium, light.t_max * length(ray.d));
     // A light is not seen if the geometric and the shading normal disagree about its side.
-    bool sides_differ = LIT_FROM_BEHIND ? (wi.z > 0.0) != viewers_side : dot(light.wi, s.n) <= 0.0;
+    bool sides_differ = LIT_FROM_BEHIND ? !shading.bent && (wi.z > 0.0) != viewers_side : dot(light.wi, s.n) <= 0.0;
     bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
     float weight = 1.0;
     if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, value.pdf);
@@ -137,10 +154,10 @@ ShadowRay direct_light(Path path, Interaction s, Frame frame, vec3 wo, Bsdf bsdf
 // Continues the path from s in the direction that its BSDF sampled; returns whether the path goes on. `behind` is the
 // medium behind the surface. A direction carries nothing if the geometric and the shading normal disagree about its
 // side.
-bool path_scatter(inout Path path, Interaction s, Frame frame, uint behind, BsdfSample scattered) {
-    vec3 wi = frame_to_world(frame, scattered.wi);
+bool path_scatter(inout Path path, Interaction s, Shading shading, uint behind, BsdfSample scattered) {
+    vec3 wi = frame_to_world(shading.frame, scattered.wi);
     path.beta *= scattered.weight;
-    bool viewers_side = scattered.wi.z > 0.0;
+    bool viewers_side = shading.bent ? dot(wi, s.n) > 0.0 : scattered.wi.z > 0.0;
     if (scattered.pdf == 0.0 || max_component(path.beta) == 0.0) return false;
     if (viewers_side ? dot(wi, s.n) <= 0.0 : dot(wi, s.n) >= 0.0) return false;
     path.eta_scale *= square(scattered.eta);
@@ -163,8 +180,9 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         return false;
     }
     Interaction s = interaction_at(path.ray, hit);
-    MaterialRecord material = scene_material(s.material);
+    MaterialRecord material = material_at(s.material, s.attributes);
     Bsdf bsdf = bsdf_at(material, s.front);
+    bool bent = bend_normal(s);
     if (path.depth == 0u) {
         estimate.visible = true;
         estimate.albedo = bsdf_albedo(bsdf);
@@ -183,20 +201,22 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         return false;
     }
     Frame frame = frame_from_z(s.ns);
-    vec3 wo = frame_to_local(frame, s.wo);
+    Shading shading = Shading(frame, frame_to_local(frame, s.wo), bent);
+    if (bent) shading.wo = bent_wo(shading.wo);
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
     uvec2 choice = sampler_pair(random, pair + PAIR_CHOICE);
 
     // Add direct light.
     if (ESTIMATOR != ESTIMATOR_BSDF) {
         uvec2 bits = sampler_pair(random, pair + PAIR_LIGHT);
-        shadow = direct_light(path, s, frame, wo, bsdf, material.medium, bits, choice.x);
+        shadow = direct_light(path, s, shading, bsdf, material.medium, bits, choice.x);
     }
 
     // Scatter.
     vec2 u = unit_float(sampler_pair(random, pair + PAIR_BSDF));
-    BsdfSample scattered = bsdf_sample_f(bsdf, wo, unit_float(choice.y), u);
-    if (!path_scatter(path, s, frame, material.medium, scattered)) return false;
+    BsdfSample scattered = bsdf_sample_f(bsdf, shading.wo, unit_float(choice.y), u);
+    if (bent) bend_sample(scattered, bsdf, shading.wo, frame_to_local(frame, s.n));
+    if (!path_scatter(path, s, shading, material.medium, scattered)) return false;
 
     // Russian roulette: paths with a low throughput end early, and the survivors are weighted up. The square root lets
     // them end a vertex or two later, which reduces the noise by more than its rays cost. After ideal scattering the

@@ -35,11 +35,16 @@ LightSample area_light_sample_at(Light l, vec3 p_lit, vec3 p, vec3 n) {
     return s;
 }
 
+// Surface coordinates of the point on the light that u in [0,1)^2 chooses.
+vec2 area_light_coordinates(Light l, vec2 u) {
+    if (is_light(l, LIGHT_TRIANGLE)) return warp_triangle(u);
+    if (is_light(l, LIGHT_DISK)) return warp_disk(u);
+    return u;
+}
+
 // A point on the light from u in [0,1)^2.
 LightSample area_light_sample_li(Light l, vec3 p_lit, vec2 u) {
-    vec2 b = u;
-    if (is_light(l, LIGHT_TRIANGLE)) b = warp_triangle(u);
-    if (is_light(l, LIGHT_DISK)) b = warp_disk(u);
+    vec2 b = area_light_coordinates(l, u);
     return area_light_sample_at(l, p_lit, l.p + b.x * l.e1 + b.y * l.e2, normalize(cross(l.e1, l.e2)));
 }
 

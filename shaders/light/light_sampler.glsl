@@ -6,6 +6,7 @@
 #include "light/area.glsl"
 #include "light/environment.glsl"
 #include "light/sphere.glsl"
+#include "scene/material.glsl"
 
 // The light of a scene that has only one; an invocation reads it once.
 Light only_light;
@@ -24,6 +25,25 @@ Light light_at(uint i) {
 // Probability with which light_sample_li chooses light i for that point.
 float light_pmf(uint i, LitPoint lit) {
     return ONE_LIGHT ? 1.0 : light_at(i).pmf;
+}
+
+// The attributes of light i at surface coordinates b; on a sphere, at the unit normal n.
+Attributes light_attributes(uint i, Light l, vec2 b, vec3 n) {
+    AttributePlace place = AttributePlace(scene_light_textures(i).primitive, false, b, is_light(l, LIGHT_SPHERE), n);
+    if (is_light(l, LIGHT_PARALLELOGRAM)) {
+        // Its triangles are a b c and a c d.
+        place.second = b.y > b.x;
+        place.b = place.second ? vec2(b.x, b.y - b.x) : vec2(b.x - b.y, b.y);
+    }
+    return attributes_at(place);
+}
+
+// Multiplies a sample of light i by what its surface says there.
+void light_apply_textures(inout LightSample s, uint i, Light l, LitPoint lit, vec2 u) {
+    vec3 n = (lit.p + s.shadow - l.p) / l.e1.x;
+    Attributes at = light_attributes(i, l, area_light_coordinates(l, u), n);
+    s.Li *= light_texture(i, at);
+    if ((TEXTURED & TEXTURED_OPACITY) != 0u) s.Li *= material_opacity(scene_light_textures(i).material, at);
 }
 
 // A sample of a point on one of the lights, from 2 x 32 random bits. If there are several lights, the first word also
@@ -49,6 +69,9 @@ LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
         s = area_light_sample_li(l, lit.p, unit_float(u));
     }
     s.pdf *= light_pmf(i, lit);
+    if ((TEXTURED & (TEXTURED_EMISSION | TEXTURED_OPACITY)) != 0u && !is_light(l, LIGHT_ENVIRONMENT)) {
+        light_apply_textures(s, i, l, lit, unit_float(u));
+    }
     return s;
 }
 

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 128u
+#define RESULT_WORDS 182u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -89,6 +89,33 @@ void put_texel(EnvironmentTexel t) {
     put(t.pdf);
 }
 
+void put_material_textures(MaterialTextures t) {
+    put(t.base);
+    put(t.specular);
+    put(t.parameter);
+    put(t.normal);
+    put(t.normal_scale);
+    put(t.opacity_texture);
+    put(t.opacity);
+    put(t.cutoff);
+    put(t.vertex_colors);
+}
+
+void put_texture(TextureRecord t) {
+    put(t.first);
+    put(t.size);
+    put(t.traits);
+    put(t.row_u);
+    put(t.row_v);
+}
+
+void put_attributes(uint primitive, const uint first) {
+    uvec4 ab, cd;
+    scene_attributes(primitive, first, ab, cd);
+    put(ab);
+    put(cd);
+}
+
 void main() {
     if (past_end()) return;
     put_parameters(scene_parameters());
@@ -105,4 +132,13 @@ void main() {
     put_texel(scene_environment_texel(1u));
     put_alias_entry(scene_environment_alias(2u));
     put_alias_entry(scene_environment_alias(3u));
+    put_material_textures(scene_material_textures(1u));
+    LightTextures light_textures = scene_light_textures(1u);
+    put(uvec3(light_textures.primitive, light_textures.emission, light_textures.material));
+    put_texture(scene_texture(1u));
+    put(scene_texels(1u));
+    put_attributes(1u, 0u);
+    put_attributes(1u, UV1_WORD);
+    put_attributes(1u, COLOR_WORD);
+    put(scene_tangents(1u));
 }

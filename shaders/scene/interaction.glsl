@@ -3,6 +3,7 @@
 #define SCENE_INTERACTION_GLSL
 
 #include "base/frame.glsl"
+#include "scene/attributes.glsl"
 #include "scene/scene_data.glsl"
 #include "scene/traversal.glsl"
 
@@ -17,6 +18,7 @@ struct Interaction {
     float error;    // How far from p, along n, rays must begin.
     uint material;
     uint light;  // Light that the surface belongs to, or NO_LIGHT.
+    Attributes attributes;
 };
 
 // The interpolated shading normal of the triangle that was hit, on the side of n.
@@ -53,6 +55,7 @@ Interaction interaction_at(Ray ray, Hit hit) {
     }
     s.ns = s.n;
     if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit, at, s.n);
+    s.attributes = attributes_at(AttributePlace(hit_primitive(hit), hit_second(hit), at, is_kind(primitive.kind, PRIMITIVE_SPHERE), s.n));
     s.wo = -normalize(ray.d);
     s.front = dot(s.wo, s.n) >= 0.0;
     if (!s.front) {

@@ -44,17 +44,27 @@ Hit triangles_hit(TrianglesHit found, uint position) {
     return Hit(found.t, int(2u * position + uint(found.second)));
 }
 
-// Replaces `hit` with a hit of the primitive at that position in leaf order if that is nearer.
-void primitive_intersect(Ray ray, RayShear shear, Primitive p, uint position, inout Hit hit) {
-    Hit found = Hit(0.0, int(2u * position));
-    if (is_kind(p.kind, PRIMITIVE_SPHERE)) {
-        found.t = sphere_intersect(ray, p.a, p.b.x);
-    } else if (is_kind(p.kind, PRIMITIVE_DISK)) {
-        found.t = disk_intersect(ray, p.a, p.b, p.c).x;
-    } else {
-        found = triangles_hit(triangles_intersect(ray, shear, p.a, p.b, p.c, p.d), position);
-    }
-    if (found.t > 0.0 && (found.t < hit.t || (found.t == hit.t && found.place < hit.place))) hit = found;
+// Whether `found` is a hit that is nearer than `hit`.
+bool is_nearer(Hit found, Hit hit) {
+    return found.t > 0.0 && (found.t < hit.t || (found.t == hit.t && found.place < hit.place));
+}
+
+// The first hit of the primitive at that position in leaf order; its t is not above 0 if the ray misses.
+Hit primitive_hit(Ray ray, RayShear shear, Primitive p, uint position) {
+    if (is_kind(p.kind, PRIMITIVE_SPHERE)) return Hit(sphere_intersect(ray, p.a, p.b.x).x, int(2u * position));
+    if (is_kind(p.kind, PRIMITIVE_DISK)) return Hit(disk_intersect(ray, p.a, p.b, p.c).x, int(2u * position));
+    return triangles_hit(triangles_intersect(ray, shear, p.a, p.b, p.c, p.d), position);
+}
+
+// The hit beyond that first one: of the other triangle, or of the sphere's far side.
+Hit primitive_second_hit(Ray ray, RayShear shear, Primitive p, Hit first) {
+    if (is_kind(p.kind, PRIMITIVE_SPHERE)) return Hit(sphere_intersect(ray, p.a, p.b.x).y, first.place);
+    if (is_kind(p.kind, PRIMITIVE_DISK)) return Hit(-1.0, first.place);
+    // The same triangle twice, so that the rounding of no other has a part in it.
+    bool second = !hit_second(first);
+    vec3 b = second ? p.c : p.b;
+    vec3 c = second ? p.d : p.c;
+    return Hit(triangles_intersect(ray, shear, p.a, b, c, c).t, first.place ^ 1);
 }
 
 // Surface coordinates of a hit of that primitive: for a triangle, the barycentric ones of its second and third vertex;

@@ -128,4 +128,49 @@ AliasEntry scene_environment_alias(uint i) {
     return alias_unpack(a, i);
 }
 
+// The textures of the material at that place.
+MaterialTextures scene_material_textures(uint i) {
+    uvec4 a, b;
+    READ_2(MATERIAL_TEXTURES, i * MATERIAL_TEXTURES_WORDS, a, b);
+    return material_textures_unpack(a, b);
+}
+
+// The textures of the light at that place.
+LightTextures scene_light_textures(uint i) {
+    uvec4 a;
+    READ_1(LIGHT_TEXTURES, i * LIGHT_TEXTURES_WORDS, a);
+    return light_textures_unpack(a);
+}
+
+TextureRecord scene_texture(uint i) {
+    uvec4 a, b, c;
+    READ_3(TEXTURES, i * TEXTURE_WORDS, a, b, c);
+    return texture_unpack(a, b, c);
+}
+
+// A word of the images' tiles.
+uvec4 scene_texels(uint i) {
+    uvec4 a;
+    READ_1(TEXELS, i, a);
+    return a;
+}
+
+// Words that a primitive has in the array of attributes, and where those of each begin.
+const uint UV1_WORD = (ATTRIBUTES & ATTRIBUTE_UV0) != 0u ? 2u : 0u;
+const uint COLOR_WORD = UV1_WORD + ((ATTRIBUTES & ATTRIBUTE_UV1) != 0u ? 2u : 0u);
+const uint TANGENT_WORD = COLOR_WORD + ((ATTRIBUTES & ATTRIBUTE_COLOR) != 0u ? 2u : 0u);
+const uint PRIMITIVE_ATTRIBUTE_WORDS = TANGENT_WORD + ((ATTRIBUTES & ATTRIBUTE_TANGENT) != 0u ? 1u : 0u);
+
+// Two words of the attributes of the primitive at that position in leaf order, from word `first` on.
+void scene_attributes(uint primitive, const uint first, out uvec4 ab, out uvec4 cd) {
+    READ_2(ATTRIBUTES, primitive * PRIMITIVE_ATTRIBUTE_WORDS + first, ab, cd);
+}
+
+// The tangents of the primitive at that position in leaf order.
+uvec4 scene_tangents(uint primitive) {
+    uvec4 a;
+    READ_1(ATTRIBUTES, primitive * PRIMITIVE_ATTRIBUTE_WORDS + TANGENT_WORD, a);
+    return a;
+}
+
 #endif

@@ -4,7 +4,7 @@
 
 #include "scene/list.glsl"
 #include "scene/node.glsl"
-#include "scene/primitive.glsl"
+#include "scene/opacity.glsl"
 #include "scene/scene_data.glsl"
 #include "scene/stack.glsl"
 

@@ -28,6 +28,10 @@ const uint MATERIAL_DIELECTRIC_EXACT = 5u;
 const uint MATERIAL_DIFFUSE_TRANSMISSION = 6u;
 const uint MATERIAL_COUNT = 7u;
 
+// Limits of `parameter`.
+const float LEAST_ALPHA = 1e-3f;
+const float GREATEST_EXPONENT = 1e5f;
+
 struct MaterialRecord {
     uint model;       // MATERIAL_*
     uint medium;      // Behind the surface: index of a medium record, or MEDIUM_SAME; 24 bits.

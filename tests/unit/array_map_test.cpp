@@ -104,7 +104,7 @@ TEST(ArrayMap, WhatFitsIntoThreeBuffersByKindFits) {
     for (int i = 0; i < 1000; ++i) {
         Sizes sizes;
         for (size_t& size : sizes)
-            size = random() % 250;
+            size = random() % 150;
         sizes[ARRAY_NODES] = random() % 1000, sizes[ARRAY_PRIMITIVES] = random() % 1000;
         size_t others = 0;
         for (uint32_t k = ARRAY_PRIMITIVES + 1; k < ARRAY_COUNT; ++k)

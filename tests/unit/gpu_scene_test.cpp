@@ -153,7 +153,7 @@ TEST(GpuScene, ArraysHoldTheRecordsOfWhatThereIs) {
     Scene scene = scene_of({emitter(SQUARE, vec3(1))});
     add_diffuse(scene, vec3(1));
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
-    const std::array<uint32_t, ARRAY_COUNT> records{1, 1, 1, 0, 2, 1, 1, 0, 0, 1};
+    const std::array<uint32_t, ARRAY_COUNT> records{1, 1, 1, 0, 2, 1, 1, 0, 0, 1, 0, 0, 0, 0, 0};
     uint64_t words = 0;
     for (const SceneArray& array : SCENE_ARRAYS) {
         EXPECT_EQ(gpu.arrays[array.number].size(), records[array.number] * array.words) << array.name;

@@ -37,7 +37,7 @@ class ObjMaterials : public testing::Test {
 
     static vec3 reflectance(const Scene& scene, size_t shape) {
         return std::get<DiffuseMaterial>(scene.materials.at(scene.shapes.at(shape).material).model)
-            .reflectance;
+            .reflectance.factor;
     }
 
     SceneFolder folder_;

@@ -86,7 +86,7 @@ TEST_F(PictureIdentity, AnotherSceneIsAnother) {
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.environment->visible ^= true; }), another);
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) {
                   for (Shape& shape : scene.shapes) {
-                      if (shape.emission) shape.emission->radiance *= 1.01f;
+                      if (shape.emission) shape.emission->radiance.factor *= 1.01f;
                   }
               }),
               another);

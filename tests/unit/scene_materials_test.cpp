@@ -39,8 +39,9 @@ TEST(SceneMaterials, HaveAKnownType) {
                         "unknown type \"difuse\" (did you mean \"diffuse\"? known: diffuse, phong, mirror, "
                         "conductor, dielectric, diffuse_transmission)");
     folder.expect_error(material(R"(@{"reflectance": 1})"), "the key \"type\" is missing here; add it");
-    folder.expect_error(material(R"({"type": "mirror", @"alpha": 0.1})"),
-                        "unknown key \"alpha\" (known: type, reflectance)");
+    folder.expect_error(
+        material(R"({"type": "mirror", @"alpha": 0.1})"),
+        "unknown key \"alpha\" (known: type, reflectance, normal_map, opacity, vertex_colors)");
 }
 
 TEST(SceneMaterials, ReadDiffuse) {
@@ -113,8 +114,8 @@ TEST(SceneMaterials, PhongMayReflectAllLight) {
     ASSERT_EQ(scene.materials.size(), size_t(STEPS + 1));
     for (const Material& m : scene.materials) {
         const auto& phong = std::get<PhongMaterial>(m.model);
-        EXPECT_LE(phong.diffuse.x + phong.specular.x, 1.0f) << m.name;
-        EXPECT_GT(phong.diffuse.x + phong.specular.x, 0.999999f) << m.name;
+        EXPECT_LE(phong.diffuse.factor.x + phong.specular.factor.x, 1.0f) << m.name;
+        EXPECT_GT(phong.diffuse.factor.x + phong.specular.factor.x, 0.999999f) << m.name;
     }
 }
 

@@ -57,7 +57,7 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
     if (const auto integrator = root.find("integrator")) scene.integrator = read_integrator(*integrator);
     if (const auto materials = root.find("materials")) {
         for (const Node& material : materials->members())
-            scene.materials.push_back(read_material(material));
+            scene.materials.push_back(read_material(material, {folder, scene}));
     }
     const Node shapes = root.require("shapes");
     read_shapes(shapes, folder, scene);

@@ -9,9 +9,22 @@ namespace {
 
 using Model = decltype(Material::model);
 
-Model read_diffuse(const Node& node) {
-    node.allow_only({"type", "reflectance"});
-    return DiffuseMaterial{vec3(node.require("reflectance").reflectance())};
+// The keys that every material may have besides those of its model.
+constexpr std::array<std::string_view, 3> MATERIAL_KEYS{"normal_map", "opacity", "vertex_colors"};
+
+Textured<vec3> as_floats(const Textured<dvec3>& color) {
+    Textured<vec3> result(vec3(color.factor));
+    result.texture = color.texture;
+    return result;
+}
+
+Textured<vec3> reflectance_of(const Node& node, const ImageFolder& images) {
+    return as_floats(read_reflectance(node, images));
+}
+
+Model read_diffuse(const Node& node, const ImageFolder& images) {
+    node.allow_only({"type", "reflectance"}, MATERIAL_KEYS);
+    return DiffuseMaterial{reflectance_of(node.require("reflectance"), images)};
 }
 
 // Throws Error at `place`, that of b, if a channel would send out more light than it receives; `names` names
@@ -31,32 +44,33 @@ void check_sum(const Node& place, std::string_view names, dvec3 a, dvec3 b) {
     }
 }
 
-Model read_phong(const Node& node) {
-    node.allow_only({"type", "diffuse", "specular", "exponent"});
+Model read_phong(const Node& node, const ImageFolder& images) {
+    node.allow_only({"type", "diffuse", "specular", "exponent"}, MATERIAL_KEYS);
     const auto diffuse = node.find("diffuse");
     const Node specular = node.require("specular");
-    const dvec3 kd = diffuse ? diffuse->reflectance() : dvec3(0.0);
-    const dvec3 ks = specular.reflectance();
-    check_sum(specular, "diffuse + specular", kd, ks);
-    return PhongMaterial{vec3(kd), vec3(ks), node.require("exponent").number(0.0f, MAX_PHONG_EXPONENT)};
+    const Textured<dvec3> kd = diffuse ? read_reflectance(*diffuse, images) : dvec3(0.0);
+    const Textured<dvec3> ks = read_reflectance(specular, images);
+    check_sum(specular, "diffuse + specular", kd.factor, ks.factor);
+    return PhongMaterial{as_floats(kd), as_floats(ks),
+                         read_number(node.require("exponent"), images, 0.0f, MAX_PHONG_EXPONENT)};
 }
 
-Model read_mirror(const Node& node) {
-    node.allow_only({"type", "reflectance"});
+Model read_mirror(const Node& node, const ImageFolder& images) {
+    node.allow_only({"type", "reflectance"}, MATERIAL_KEYS);
     MirrorMaterial material;
     if (const auto reflectance = node.find("reflectance"))
-        material.reflectance = vec3(reflectance->reflectance());
+        material.reflectance = reflectance_of(*reflectance, images);
     return material;
 }
 
-Model read_conductor(const Node& node) {
-    node.allow_only({"type", "reflectance", "alpha"});
-    const vec3 reflectance(node.require("reflectance").reflectance());
+Model read_conductor(const Node& node, const ImageFolder& images) {
+    node.allow_only({"type", "reflectance", "alpha"}, MATERIAL_KEYS);
+    const Textured<vec3> reflectance = reflectance_of(node.require("reflectance"), images);
     const Node alpha = node.require("alpha");
-    if (alpha.number() == 0.0) {
+    if (alpha.is_number() && alpha.number() == 0.0) {
         alpha.fail(R"(a metal without any roughness is no "conductor"; use the type "mirror")");
     }
-    return ConductorMaterial{reflectance, alpha.number(MIN_ALPHA, 1.0f)};
+    return ConductorMaterial{reflectance, read_number(alpha, images, MIN_ALPHA, 1.0f)};
 }
 
 // Absorption [1/m] from the fraction of light that is left after a distance.
@@ -75,21 +89,21 @@ vec3 read_absorption(const Node& node) {
     return vec3(absorption);
 }
 
-Model read_diffuse_transmission(const Node& node) {
-    node.allow_only({"type", "reflectance", "transmittance", "absorption"});
-    const dvec3 reflectance = node.require("reflectance").reflectance();
+Model read_diffuse_transmission(const Node& node, const ImageFolder& images) {
+    node.allow_only({"type", "reflectance", "transmittance", "absorption"}, MATERIAL_KEYS);
+    const Textured<dvec3> reflectance = read_reflectance(node.require("reflectance"), images);
     const Node place = node.require("transmittance");
-    const dvec3 transmittance = place.reflectance();
-    check_sum(place, "reflectance + transmittance", reflectance, transmittance);
-    DiffuseTransmissionMaterial material{vec3(reflectance), vec3(transmittance), {}};
+    const Textured<dvec3> transmittance = read_reflectance(place, images);
+    check_sum(place, "reflectance + transmittance", reflectance.factor, transmittance.factor);
+    DiffuseTransmissionMaterial material{as_floats(reflectance), as_floats(transmittance), {}};
     if (const auto absorption = node.find("absorption"))
         material.inside = Medium{read_absorption(*absorption)};
     return material;
 }
 
-Model read_dielectric(const Node& node) {
+Model read_dielectric(const Node& node, const ImageFolder&) {
     constexpr double MOST_CONTRAST = 1e6;  // Its square, which scales radiance, fits into floats.
-    node.allow_only({"type", "ior", "exterior_ior", "fresnel", "absorption"});
+    node.allow_only({"type", "ior", "exterior_ior", "fresnel", "absorption"}, MATERIAL_KEYS);
     DielectricMaterial material;
     const Node ior = node.require("ior");
     material.ior = float(ior.positive());
@@ -105,15 +119,19 @@ Model read_dielectric(const Node& node) {
 
 }  // namespace
 
-Material read_material(const Node& node) {
-    constexpr std::array<std::pair<std::string_view, Model (*)(const Node&)>, 6> READERS{
+Material read_material(const Node& node, const ImageFolder& images) {
+    constexpr std::array<std::pair<std::string_view, Model (*)(const Node&, const ImageFolder&)>, 6> READERS{
         {{"diffuse", &read_diffuse},
          {"phong", &read_phong},
          {"mirror", &read_mirror},
          {"conductor", &read_conductor},
          {"dielectric", &read_dielectric},
          {"diffuse_transmission", &read_diffuse_transmission}}};
-    return {std::string(node.key()), node.require("type").choice(READERS)(node)};
+    Material material{std::string(node.key()), node.require("type").choice(READERS)(node, images)};
+    if (const auto map = node.find("normal_map")) material.normal_map = read_normal_map(*map, images);
+    if (const auto opacity = node.find("opacity")) material.opacity = read_opacity(*opacity, images);
+    if (const auto colors = node.find("vertex_colors")) material.vertex_colors = colors->boolean();
+    return material;
 }
 
 }  // namespace candela

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "load/json/loader_textures.h"
 #include "load/json/node.h"
 #include "load/json/shape_list.h"
 #include "scene/scene.h"
@@ -14,7 +15,7 @@ namespace candela {
 Camera read_camera(const Node& node, const Film& film);
 
 // Reads a material, whose key is its name.
-Material read_material(const Node& node);
+Material read_material(const Node& node, const ImageFolder& images);
 
 // Reads the environment. Its file is relative to `folder` and goes to scene.files; what is odd goes to
 // scene.warnings.

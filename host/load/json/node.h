@@ -48,6 +48,7 @@ class Node {
     // Arrays.
     std::vector<Node> elements() const;
 
+    bool is_object() const { return std::holds_alternative<json::Object>(value_->data); }
     bool is_array() const { return std::holds_alternative<json::Array>(value_->data); }
     bool is_number() const { return std::holds_alternative<double>(value_->data); }
     bool is_string() const { return std::holds_alternative<std::string>(value_->data); }

@@ -32,8 +32,9 @@ std::optional<Emission> ShapeList::emission_of(const Node& node) {
     if (two_sided && !emission) {
         two_sided->fail("two_sided says where emission leaves; it needs \"emission\"");
     }
-    const vec3 radiance = emission ? vec3(emission->rgb()) : vec3(0.0f);
-    if (radiance == vec3(0.0f)) return std::nullopt;
+    if (!emission) return std::nullopt;
+    const Textured<vec3> radiance = read_radiance(*emission, {folder_, scene()});
+    if (radiance.factor == vec3(0.0f)) return std::nullopt;
     return Emission{radiance, both_sides};
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "load/json/loader_textures.h"
 #include "load/json/node.h"
 #include "load/json/transforms.h"
 #include "scene/scene_builder.h"
@@ -33,7 +34,7 @@ class ShapeList : public SceneBuilder {
     // and zero emission is none. Throws Error if the node has neither, or names an unknown material.
     Appearance appearance_of(const Node& node);
     // The emission of a shape's node; none if it is absent or zero. Throws Error for two_sided without it.
-    static std::optional<Emission> emission_of(const Node& node);
+    std::optional<Emission> emission_of(const Node& node);
     // The transform of a shape's node; the identity if it has none.
     static Transform transform_of(const Node& node);
 

@@ -1,0 +1,99 @@
+// See texture_mean.h.
+#include "gpu_scene/texture_mean.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include <glm/packing.hpp>
+
+namespace candela {
+namespace {
+
+// IEC 61966-2-1.
+float srgb_decode(float code) {
+    return code > 0.04045f ? std::pow((code + 0.055f) / 1.055f, 2.4f) : code / 12.92f;
+}
+
+float decode(const std::byte* code, TexelType type, bool is_srgb) {
+    if (type == TexelType::unorm8) {
+        const float x = float(std::to_integer<unsigned>(*code)) / 255.0f;
+        return is_srgb ? srgb_decode(x) : x;
+    }
+    uint16_t word = 0;
+    std::memcpy(&word, code, sizeof word);
+    if (type == TexelType::half) return glm::unpackHalf2x16(word).x;
+    return is_srgb ? srgb_decode(float(word) / 65535.0f) : float(word) / 65535.0f;
+}
+
+// Texel i along an axis of n, wherever that is.
+uint32_t wrapped(double i, uint32_t n, Wrap wrap) {
+    if (wrap == Wrap::clamp) return uint32_t(std::clamp(i, 0.0, n - 1.0));
+    const double period = wrap == Wrap::repeat ? n : 2.0 * n;
+    const auto within = uint32_t(std::min(i - period * std::floor(i / period), period - 1.0));
+    return within < n ? within : 2 * n - 1 - within;
+}
+
+}  // namespace
+
+vec3 texel_color(const TexelImage& image, TextureEncoding encoding, size_t i) {
+    const bool is_srgb = encoding == TextureEncoding::srgb && image.type != TexelType::half;
+    const size_t bytes = byte_size(image.type);
+    const std::byte* texel = image.texels.data() + i * image.channels * bytes;
+    const float red = decode(texel, image.type, is_srgb);
+    if (image.channels < 3) return vec3(red);
+    return {red, decode(texel + bytes, image.type, is_srgb), decode(texel + 2 * bytes, image.type, is_srgb)};
+}
+
+ImagePyramid::ImagePyramid(const TexelImage& image, TextureEncoding encoding) {
+    Level base{image.size, std::vector<vec3>(size_t(image.size.x) * image.size.y)};
+    for (size_t i = 0; i < base.texels.size(); ++i)
+        base.texels[i] = texel_color(image, encoding, i);
+    levels_.push_back(std::move(base));
+    while (levels_.back().texels.size() > 1) {
+        const Level& fine = levels_.back();
+        Level half{(fine.size + 1u) / 2u, {}};
+        for (uint32_t y = 0; y < half.size.y; ++y) {
+            for (uint32_t x = 0; x < half.size.x; ++x) {
+                vec3 sum(0.0f);
+                for (const uvec2 corner : {uvec2(0, 0), uvec2(1, 0), uvec2(0, 1), uvec2(1, 1)}) {
+                    const uvec2 at = min(2u * uvec2(x, y) + corner, fine.size - 1u);
+                    sum += fine.texels[size_t(at.y) * fine.size.x + at.x];
+                }
+                half.texels.push_back(0.25f * sum);
+            }
+        }
+        levels_.push_back(std::move(half));
+    }
+}
+
+// A texel that is not black and that the texture mixes into some place of the piece is at most a texel of the
+// image and one gap away from one of `places`. On a level whose texels are at least four times as large as
+// either, it lies in one of the four texels that are mixed there.
+vec3 ImagePyramid::mean(const Texture& texture, std::span<const vec2> places, float spacing) const {
+    constexpr float SAFETY = 4.0f;
+    const float stretch = std::max(length(texture.rows[0]), length(texture.rows[1]));
+    const float gap =
+        SAFETY * std::max(1.0f, stretch * spacing * float(std::max(levels_[0].size.x, levels_[0].size.y)));
+    const auto level = std::min(size_t(std::ceil(std::log2(gap))), levels_.size() - 1);
+    vec3 sum(0.0f);
+    for (const vec2 place : places)
+        sum += look_up(levels_[level], texture, place);
+    return sum / float(places.size());
+}
+
+vec3 ImagePyramid::look_up(const Level& level, const Texture& texture, vec2 place) const {
+    const dvec3 uv1(place.x, place.y, 1.0);
+    const double x = dot(dvec3(texture.rows[0]), uv1) * level.size.x - 0.5;
+    const double y = (1.0 - dot(dvec3(texture.rows[1]), uv1)) * level.size.y - 0.5;
+    const auto texel = [&](double column, double row) {
+        return level.texels[size_t(wrapped(row, level.size.y, texture.wrap_v)) * level.size.x +
+                            wrapped(column, level.size.x, texture.wrap_u)];
+    };
+    const double i = std::floor(x), j = std::floor(y);
+    const vec3 upper = mix(texel(i, j), texel(i + 1, j), float(x - i));
+    return mix(upper, mix(texel(i, j + 1), texel(i + 1, j + 1), float(x - i)), float(y - j));
+}
+
+}  // namespace candela

@@ -1,0 +1,36 @@
+// The mean of a texture over a piece of a surface: how much light a textured emitter sends out.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scene/texture.h"
+
+namespace candela {
+
+// The colours of an image, decoded, at all levels of a pyramid.
+class ImagePyramid {
+  public:
+    ImagePyramid(const TexelImage& image, TextureEncoding encoding);
+
+    // About the mean of `texture`, which looks up this image, over places (u, v) that are spread evenly over
+    // a piece of a surface, with gaps of at most `spacing` between them. It is positive in every channel in
+    // which the texture is not 0 all over the piece.
+    vec3 mean(const Texture& texture, std::span<const vec2> places, float spacing) const;
+
+  private:
+    struct Level {
+        uvec2 size;
+        std::vector<vec3> texels;
+    };
+
+    // Between the centres of texels, linearly.
+    vec3 look_up(const Level& level, const Texture& texture, vec2 place) const;
+
+    std::vector<Level> levels_;  // The image, and each at half the size of that before, down to one texel.
+};
+
+// The linear red, green and blue of texel i, row-major from the top.
+vec3 texel_color(const TexelImage& image, TextureEncoding encoding, size_t i);
+
+}  // namespace candela

@@ -1,0 +1,45 @@
+// Textures and their images -> records and texels.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scene/scene.h"
+#include "shared/texture.h"
+
+namespace candela {
+
+// Collects the textures of a scene, each once, and the images that they look up.
+class TextureTable {
+  public:
+    // The scene's images must outlive the table.
+    explicit TextureTable(const std::vector<ImageFile>& images) : images_(images), firsts_(images.size()) {}
+
+    // The index of a texture's record, or TEXTURE_NONE for none. Throws Error if there are too many texels.
+    uint32_t add(const std::optional<Texture>& texture);
+
+    // OR of the traits of all textures.
+    uint32_t traits() const { return traits_; }
+
+    std::vector<uvec4> records() const;
+    // Of all images that some texture looks up, tile by tile.
+    std::vector<uvec4> texels() const;
+
+  private:
+    const std::vector<ImageFile>& images_;
+    std::vector<std::optional<uint32_t>> firsts_;  // Word of each image's first tile, if a texture uses it.
+    uint64_t words_ = 0;
+    std::vector<Texture> textures_;
+    std::vector<TextureRecord> records_;
+    uint32_t traits_ = 0;
+};
+
+// Words of uvec4 that the tiles of an image take.
+uint64_t texel_words(const TexelImage& image);
+
+// Writes the tiles of an image; `words` has texel_words() elements.
+void pack_texels(const TexelImage& image, std::span<uvec4> words);
+
+}  // namespace candela

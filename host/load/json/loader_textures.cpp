@@ -1,0 +1,121 @@
+// See loader_textures.h.
+#include "load/json/loader_textures.h"
+
+#include <cmath>
+
+#include "scene/images.h"
+#include "scene/names.h"
+
+namespace candela {
+namespace {
+
+constexpr std::array<std::string_view, 9> TEXTURE_KEYS{
+    "image", "encoding", "wrap", "filter", "channel", "uv_set", "uv_rotation", "uv_offset", "uv_scale"};
+
+// Two numbers that floats can hold.
+glm::dvec2 pair_of(const Node& node) {
+    const std::vector<Node> elements = node.elements();
+    if (elements.size() != 2) node.fail_expected("two numbers");
+    return {elements[0].number(), elements[1].number()};
+}
+
+void read_wrap(const Node& node, Texture& texture) {
+    if (node.is_string()) {
+        texture.wrap_u = texture.wrap_v = node.choice(WRAP_NAMES);
+        return;
+    }
+    const std::vector<Node> elements = node.elements();
+    if (elements.size() != 2) node.fail_expected("a name, or one for each of u and v");
+    texture.wrap_u = elements[0].choice(WRAP_NAMES);
+    texture.wrap_v = elements[1].choice(WRAP_NAMES);
+}
+
+// uv_scale, then uv_rotation, then uv_offset.
+void read_uv_transform(const Node& node, Texture& texture) {
+    constexpr double MOST = 1e6;  // So that no coordinate leaves the range of floats.
+    const auto checked = [&](const Node& value, glm::dvec2 v) {
+        if (std::abs(v.x) > MOST || std::abs(v.y) > MOST) value.fail_expected("numbers from -1e6 to 1e6");
+        return v;
+    };
+    glm::dvec2 scale(1.0), offset(0.0);
+    double angle = 0.0;
+    if (const auto value = node.find("uv_scale"))
+        scale = checked(*value, value->is_number() ? glm::dvec2(value->number()) : pair_of(*value));
+    if (const auto value = node.find("uv_offset")) offset = checked(*value, pair_of(*value));
+    if (const auto value = node.find("uv_rotation")) angle = value->angle();
+    const double c = std::cos(angle), s = std::sin(angle);
+    texture.rows[0] = vec3(dvec3(c * scale.x, -s * scale.y, offset.x));
+    texture.rows[1] = vec3(dvec3(s * scale.x, c * scale.y, offset.y));
+}
+
+std::vector<std::string_view> keys_with(std::span<const std::string_view> more_keys) {
+    std::vector<std::string_view> keys(TEXTURE_KEYS.begin(), TEXTURE_KEYS.end());
+    keys.insert(keys.end(), more_keys.begin(), more_keys.end());
+    return keys;
+}
+
+}  // namespace
+
+Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncoding encoding,
+                     std::span<const std::string_view> more_keys) {
+    node.allow_only({}, keys_with(more_keys));
+    const Node image = node.require("image");
+    Texture texture{.encoding = encoding};
+    texture.image = add_image(folder.scene, folder.path / image.file_name(), image.place());
+    if (const auto value = node.find("encoding")) texture.encoding = value->choice(ENCODING_NAMES);
+    if (const auto value = node.find("wrap")) read_wrap(*value, texture);
+    if (const auto value = node.find("filter")) texture.filter = value->choice(FILTER_NAMES);
+    if (const auto value = node.find("channel")) texture.channel = value->choice(CHANNEL_NAMES);
+    if (const auto value = node.find("uv_set")) texture.uv_set = value->integer(0, 1);
+    read_uv_transform(node, texture);
+    return texture;
+}
+
+static constexpr std::array<std::string_view, 1> FACTOR{"factor"};
+
+Textured<vec3> read_radiance(const Node& node, const ImageFolder& folder) {
+    if (!node.is_object()) return vec3(node.rgb());
+    const auto factor = node.find("factor");
+    return {factor ? vec3(factor->rgb()) : vec3(1.0f),
+            read_texture(node, folder, TextureEncoding::srgb, FACTOR)};
+}
+
+NormalMap read_normal_map(const Node& node, const ImageFolder& folder) {
+    constexpr std::array<std::string_view, 1> SCALE{"scale"};
+    constexpr float MOST = 1e3f;
+    NormalMap map{.texture = read_texture(node, folder, TextureEncoding::linear, SCALE)};
+    if (const auto scale = node.find("scale")) map.scale = scale->number(-MOST, MOST);
+    return map;
+}
+
+Opacity read_opacity(const Node& node, const ImageFolder& folder) {
+    constexpr std::array<std::string_view, 2> MORE{"factor", "cutoff"};
+    constexpr uint32_t ALPHA = 3;
+    Opacity opacity;
+    if (!node.is_object()) {
+        opacity.value = node.number(0.0f, 1.0f);
+        return opacity;
+    }
+    const auto factor = node.find("factor");
+    Texture texture = read_texture(node, folder, TextureEncoding::linear, MORE);
+    if (!node.find("channel")) texture.channel = ALPHA;
+    opacity.value = {factor ? factor->number(0.0f, 1.0f) : 1.0f, texture};
+    if (const auto cutoff = node.find("cutoff")) opacity.cutoff = cutoff->number(0.0f, 1.0f);
+    return opacity;
+}
+
+Textured<dvec3> read_reflectance(const Node& node, const ImageFolder& folder) {
+    if (!node.is_object()) return node.reflectance();
+    const auto factor = node.find("factor");
+    return {factor ? factor->reflectance() : dvec3(1.0),
+            read_texture(node, folder, TextureEncoding::srgb, FACTOR)};
+}
+
+Textured<float> read_number(const Node& node, const ImageFolder& folder, float lo, float hi) {
+    if (!node.is_object()) return node.number(lo, hi);
+    const auto factor = node.find("factor");
+    return {factor ? factor->number(0.0f, hi) : 1.0f,
+            read_texture(node, folder, TextureEncoding::linear, FACTOR)};
+}
+
+}  // namespace candela

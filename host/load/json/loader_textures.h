@@ -1,0 +1,36 @@
+// Values of materials that may come from images.
+#pragma once
+
+#include <filesystem>
+
+#include "load/json/node.h"
+#include "scene/scene.h"
+
+namespace candela {
+
+// Where the images of a scene file are.
+struct ImageFolder {
+    std::filesystem::path path;  // To which the names of images are relative.
+    Scene& scene;                // Gets the images.
+};
+
+// Reads a texture; `more_keys` are allowed besides its own. Its encoding is `encoding` unless it says
+// otherwise.
+Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncoding encoding,
+                     std::span<const std::string_view> more_keys = {});
+
+// A colour, each channel in [0, 1], or a texture with such a factor (1 if it has none).
+Textured<dvec3> read_reflectance(const Node& node, const ImageFolder& folder);
+
+// A number in [lo, hi], or a texture with such a factor (1 if it has none); `default_factor` otherwise.
+Textured<float> read_number(const Node& node, const ImageFolder& folder, float lo, float hi);
+
+// A colour, no channel below 0, or a texture with such a factor.
+Textured<vec3> read_radiance(const Node& node, const ImageFolder& folder);
+
+NormalMap read_normal_map(const Node& node, const ImageFolder& folder);
+
+// A number in [0, 1], or a texture with such a factor and perhaps a cutoff.
+Opacity read_opacity(const Node& node, const ImageFolder& folder);
+
+}  // namespace candela

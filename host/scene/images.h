@@ -1,0 +1,20 @@
+// The image files that a scene's textures look up.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace candela {
+
+// The index of an image file in scene.images, which it joins if it is not there yet; load_images() reads it.
+// `place` is what messages about it begin with.
+uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place);
+
+// Reads all images that have not been read, on all cores. Throws Error if one cannot be read; what is odd but
+// usable goes to scene.warnings.
+void load_images(Scene& scene);
+
+}  // namespace candela

@@ -1,0 +1,61 @@
+// Images on surfaces, and the values of materials that come from them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/math.h"
+#include "base/texel_image.h"
+
+namespace candela {
+
+// An image file that textures look up.
+struct ImageFile {
+    std::filesystem::path path;
+    std::filesystem::path real_path{};  // The same for all names of the file.
+    std::string place{};                // Where the scene names it first, for messages.
+    TexelImage image{};
+};
+
+// What lies outside of [0, 1] along an axis of an image.
+enum class Wrap { repeat, mirror, clamp };
+
+// Between the centres of texels: nothing, or linearly along both axes, in linear light.
+enum class TextureFilter { nearest, bilinear };
+
+// What the numbers of the colour channels are. Alpha is always linear, as are half floats.
+enum class TextureEncoding { linear, srgb };
+
+// An image as a function of the coordinates (u, v) of a surface, v upwards: (0, 0) is the lower left corner
+// of the image, (1, 1) the upper right one.
+struct Texture {
+    uint32_t image = 0;  // Index into Scene::images.
+    TextureEncoding encoding = TextureEncoding::linear;
+    TextureFilter filter = TextureFilter::bilinear;
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
+    uint32_t uv_set = 0;  // 0 or 1.
+    uint32_t channel =
+        0;  // The one that is taken where a single number is asked for, 0 .. 3: red, green, blue, alpha.
+    // The image is looked up at rows[i] . (u, v, 1).
+    vec3 rows[2]{{1, 0, 0}, {0, 1, 0}};
+
+    bool operator==(const Texture&) const = default;
+};
+
+// A value that is the same everywhere, or that of a texture times a factor.
+template <class Value>
+struct Textured {
+    // Not explicit: every value is one.
+    Textured(const Value& everywhere) : factor(everywhere) {}
+    Textured(const Value& times, const Texture& image) : factor(times), texture(image) {}
+
+    Value factor;
+    std::optional<Texture> texture{};
+
+    bool operator==(const Textured&) const = default;
+};
+
+}  // namespace candela
