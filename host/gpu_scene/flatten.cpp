@@ -24,9 +24,6 @@ double pair_error(vec3 a, vec3 b, vec3 c, vec3 d) {
     return std::max(triangle_error(a, b, c), triangle_error(a, c, d));
 }
 
-// Texture coordinates of the corners of a quad.
-constexpr std::array<vec2, 4> UNIT_SQUARE{vec2(0, 0), vec2(1, 0), vec2(1, 1), vec2(0, 1)};
-
 // The values at four vertices; `absent` if the mesh has none.
 template <class Value>
 std::array<Value, 4> corner_values(const std::vector<Value>& values, uvec4 v, const Value& absent) {
@@ -116,23 +113,27 @@ class Flattener {
         flat_.id_count += 2;
         const double error = pair_error(c[0], c[1], c[2], c[3]);
         const float origin_error = power_of_two_above(error);
+        const auto& uv = quad.uvs;
+        // Where u grows; the corners are those of a square in (u, v), in either order.
+        const vec3 along_u = uv[1].x != uv[0].x ? (uv[1].x - uv[0].x) * e1 : (uv[3].x - uv[0].x) * e2;
+        const float handedness = uv[1].x != uv[0].x ? 1.0f : -1.0f;
         if (!shape.emission || length(c[0] + e1 + e2 - c[2]) <= rounding) {
             const uint light = add_flat_light(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2, error,
-                                              piece_uv(UNIT_SQUARE[0], UNIT_SQUARE[1], UNIT_SQUARE[3]));
+                                              piece_uv(uv[0], uv[1], uv[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[3]},
                           {uvec2(id, id + 1), shape.material, 0, light, origin_error});
-            add_uvs(UNIT_SQUARE, e1);
+            add_uvs({uv[0], uv[1], uv[2], uv[3]}, vec4(along_u, handedness));
         } else {
             uint light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], e1, diagonal, error,
-                                        piece_uv(UNIT_SQUARE[0], UNIT_SQUARE[1], UNIT_SQUARE[2]));
+                                        piece_uv(uv[0], uv[1], uv[2]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[2]},
                           {uvec2(id), shape.material, 0, light, origin_error});
-            add_uvs({UNIT_SQUARE[0], UNIT_SQUARE[1], UNIT_SQUARE[2], UNIT_SQUARE[2]}, e1);
+            add_uvs({uv[0], uv[1], uv[2], uv[2]}, vec4(along_u, handedness));
             light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], diagonal, e2, error,
-                                   piece_uv(UNIT_SQUARE[0], UNIT_SQUARE[2], UNIT_SQUARE[3]));
+                                   piece_uv(uv[0], uv[2], uv[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[2], c[3], c[3]},
                           {uvec2(id + 1), shape.material, 0, light, origin_error});
-            add_uvs({UNIT_SQUARE[0], UNIT_SQUARE[2], UNIT_SQUARE[3], UNIT_SQUARE[3]}, e1);
+            add_uvs({uv[0], uv[2], uv[3], uv[3]}, vec4(along_u, handedness));
         }
     }
 
@@ -144,10 +145,10 @@ class Flattener {
         // All around and from pole to pole; where the poles get too much, that only makes the choice of
         // lights worse.
         const uint light = add_light(shape, LIGHT_SPHERE, center, radius, vec3(0.0f), area, error,
-                                     piece_uv(UNIT_SQUARE[0], UNIT_SQUARE[1], UNIT_SQUARE[3]));
+                                     piece_uv(vec2(0, 0), vec2(1, 0), vec2(0, 1)));
         add_primitive({PRIMITIVE_SPHERE, center, radius, vec3(0.0f), vec3(0.0f)},
                       {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error)});
-        add_uvs({}, radius);  // All computed from the normal.
+        add_uvs({}, vec4(1, 0, 0, 1));  // All computed from the normal.
     }
 
     void add(const Shape& shape, const Disk& disk) {
@@ -159,7 +160,7 @@ class Flattener {
                                           piece_uv(DISK_UV[0], DISK_UV[1], DISK_UV[2]));
         add_primitive({PRIMITIVE_DISK, center, e1, e2, vec3(0.0f)},
                       {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error)});
-        add_uvs(DISK_UV, e1);
+        add_uvs(DISK_UV, vec4(e1, 1));
     }
 
     void add_primitive(const Primitive& primitive, const Surface& surface) {
@@ -182,10 +183,10 @@ class Flattener {
                                       pack_tangent(tangents[2]), pack_tangent(tangents[3]));
     }
 
-    // The attributes of a primitive of one colour and, along u, of one direction.
-    void add_uvs(const std::array<vec2, 4>& uv, vec3 along_u) {
+    // The attributes of a primitive of one colour and one tangent, of any length.
+    void add_uvs(const std::array<vec2, 4>& uv, vec4 along_u) {
         constexpr vec4 WHITE(1.0f);
-        const vec4 tangent(normalize(along_u), 1.0f);
+        const vec4 tangent(normalize(vec3(along_u.x, along_u.y, along_u.z)), along_u.w);
         add_attributes(uv, uv, {WHITE, WHITE, WHITE, WHITE}, {tangent, tangent, tangent, tangent});
     }
 

@@ -159,6 +159,7 @@ struct MeshInstance {
 // A planar, convex quadrilateral with counter-clockwise corners.
 struct Quad {
     dvec3 corners[4];
+    vec2 uvs[4]{{0, 0}, {1, 0}, {1, 1}, {0, 1}};  // Texture coordinates.
 };
 
 // A true sphere; its front is outside.

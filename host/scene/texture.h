@@ -11,6 +11,9 @@
 
 namespace candela {
 
+// No texture coordinate is further from 0, so that no transform of one leaves the range of floats.
+inline constexpr double MAX_UV = 1e30;
+
 // An image file that textures look up.
 struct ImageFile {
     std::filesystem::path path;

@@ -271,9 +271,12 @@ TEST_P(IdentityTest, AnotherSeedIsAnotherImage) {
     EXPECT_NE(image_hash(image_of(in_one_go(s))), hash);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, IdentityTest, testing::Values(cornell_box, scene_of_everything),
+INSTANTIATE_TEST_SUITE_P(Scenes, IdentityTest,
+                         testing::Values(cornell_box, scene_of_everything, textured_scene),
                          [](const testing::TestParamInfo<Scene (*)()>& scene) -> std::string {
-                             return scene.param == cornell_box ? "CornellBox" : "Everything";
+                             return scene.param == cornell_box      ? "CornellBox"
+                                    : scene.param == textured_scene ? "Textured"
+                                                                    : "Everything";
                          });
 
 using ListTest = RenderTest;

@@ -1,6 +1,8 @@
 // Scenes for tests: those that the program itself has for its selftest, and more.
 #pragma once
 
+#include <functional>
+
 #include "probe/scenes.h"
 
 namespace candela {
@@ -12,5 +14,13 @@ Scene floor_seen_closely(vec3 reflectance);
 // The mesh as the records hold it, in the frame of its scene, if it is first moved by `shift` and then
 // scaled.
 TriangleMesh in_its_frame(const TriangleMesh& mesh, double scale, dvec3 shift);
+
+// A texture of `scene` whose image of that size has the colour texel(x, y) at each texel, in halves; (0, 0)
+// is the upper left one.
+Texture add_texture(Scene& scene, uvec2 size, const std::function<vec4(uint32_t, uint32_t)>& texel);
+
+// Textures on every kind of shape and value: colours, roughness, emission of all kinds of lights, masks,
+// opacity, a normal map, the colours of vertices.
+Scene textured_scene();
 
 }  // namespace candela

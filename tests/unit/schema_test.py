@@ -42,7 +42,23 @@ GOOD = {
     "materials": {
         "white": {"type": "diffuse", "reflectance": [1, 0.5, 0]},
         "lacquer": {"type": "phong", "diffuse": 0.5, "specular": [0.1, 0.2, 0.3], "exponent": 0},
-        "silver": {"type": "mirror"},
+        "silver": {"type": "mirror", "vertex_colors": True},
+        "wood": {
+            "type": "diffuse",
+            "reflectance": {
+                "image": "wood.jpg",
+                "factor": [1, 0.5, 0],
+                "encoding": "linear",
+                "wrap": ["mirror", "clamp"],
+                "filter": "nearest",
+                "uv_set": 1,
+                "uv_scale": [2, -3],
+                "uv_rotation": 30,
+                "uv_offset": [0.5, 0],
+            },
+            "normal_map": {"image": "bumps.png", "scale": 2},
+            "opacity": {"image": "wood.png", "channel": "alpha", "cutoff": 0.5},
+        },
         "gold": {"type": "conductor", "reflectance": [1, 0.8, 0.3], "alpha": 0.001},
         "glass": {
             "type": "dielectric",
@@ -70,6 +86,17 @@ REMOVE = object()
 
 # What to change in GOOD so that the schema must refuse it: the path of a value, and the value.
 BAD = [
+    (["materials", "wood", "reflectance", "image"], REMOVE),
+    (["materials", "wood", "reflectance", "file"], "wood.jpg"),
+    (["materials", "wood", "reflectance", "factor"], 2),
+    (["materials", "wood", "reflectance", "wrap"], ["repeat"]),
+    (["materials", "wood", "reflectance", "uv_scale"], 1e7),
+    (["materials", "wood", "reflectance", "cutoff"], 0.5),
+    (["materials", "wood", "opacity", "cutoff"], 2),
+    (["materials", "wood", "opacity"], 1.5),
+    (["materials", "wood", "normal_map"], 1),
+    (["materials", "wood", "normal_map", "scale"], "2"),
+    (["materials", "gold", "alpha"], {"image": "a.png", "factor": -1}),
     (["cameras"], REMOVE),
     (["cameras"], {}),
     (["lights"], []),

@@ -45,6 +45,7 @@ void read_quad(const Node& node, ShapeList& shapes) {
     for (size_t i = 0; i < 4; ++i) {
         const size_t corner = transform.mirrors() ? (4 - i) % 4 : i;
         quad.corners[corner] = within_reach(points[i], transform.point(points[i].vector()));
+        quad.uvs[corner] = Quad{}.uvs[i];
     }
     check_quad(vertices, quad);
     shapes.add(appearance, quad);
@@ -68,14 +69,49 @@ void read_box(const Node& node, ShapeList& shapes) {
             const size_t corner = side[transform.mirrors() ? 3 - i : i];
             const dvec3 p(corner & 1u ? hi.x : lo.x, corner & 2u ? hi.y : lo.y, corner & 4u ? hi.z : lo.z);
             quad.corners[i] = within_reach(node, transform.point(p));
+            if (transform.mirrors()) quad.uvs[i] = Quad{}.uvs[3 - i];
         }
         check_quad(node, quad);
         shapes.add(appearance, quad);
     }
 }
 
+// The elements of an array that has one for each of `positions`.
+std::vector<Node> one_per_position(const Node& node, size_t positions) {
+    std::vector<Node> elements = node.elements();
+    if (elements.size() != positions)
+        node.fail_expected("as many elements as positions, " + std::to_string(positions));
+    return elements;
+}
+
+std::vector<vec2> read_uvs(const Node& node, size_t positions) {
+    std::vector<vec2> uvs;
+    for (const Node& element : one_per_position(node, positions)) {
+        const std::vector<Node> numbers = element.elements();
+        if (numbers.size() != 2) element.fail_expected("two numbers [u, v]");
+        const glm::dvec2 uv(numbers[0].number(), numbers[1].number());
+        if (std::max(std::abs(uv.x), std::abs(uv.y)) > MAX_UV)
+            element.fail_expected("numbers from -1e30 to 1e30");
+        uvs.emplace_back(uv);
+    }
+    return uvs;
+}
+
+std::vector<vec4> read_colors(const Node& node, size_t positions) {
+    std::vector<vec4> colors;
+    for (const Node& element : one_per_position(node, positions)) {
+        const std::vector<Node> numbers = element.elements();
+        if (numbers.size() != 3 && numbers.size() != 4) element.fail_expected("three or four numbers");
+        vec4 color(1.0f);
+        for (size_t i = 0; i < numbers.size(); ++i)
+            color[int(i)] = numbers[i].number(0.0f, 1.0f);
+        colors.push_back(color);
+    }
+    return colors;
+}
+
 void read_mesh(const Node& node, ShapeList& shapes) {
-    node.allow_only({"positions", "triangles", "normals"}, SHAPE_KEYS);
+    node.allow_only({"positions", "triangles", "normals", "uvs", "uvs1", "colors"}, SHAPE_KEYS);
     const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     TriangleMesh mesh;
@@ -99,6 +135,9 @@ void read_mesh(const Node& node, ShapeList& shapes) {
             normals->fail_expected("as many normals as positions, " + std::to_string(mesh.positions.size()));
         }
     }
+    if (const auto uvs = node.find("uvs")) mesh.uv0 = read_uvs(*uvs, mesh.positions.size());
+    if (const auto uvs = node.find("uvs1")) mesh.uv1 = read_uvs(*uvs, mesh.positions.size());
+    if (const auto colors = node.find("colors")) mesh.colors = read_colors(*colors, mesh.positions.size());
     shapes.add_mesh(node.place(), appearance, transform, std::move(mesh));
 }
 

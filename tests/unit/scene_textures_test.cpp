@@ -1,0 +1,134 @@
+// Textures of a scene file: what their keys say, and what is refused.
+#include <gtest/gtest.h>
+
+#include "scene_fixture.h"
+#include "support/png_writer.h"
+
+namespace candela {
+namespace {
+
+class SceneTextures : public testing::Test {
+  protected:
+    SceneTextures() { write_image("a.png"); }
+
+    void write_image(const std::string& name) { folder_.write(name, PNG); }
+    // A scene with the material "m".
+    static std::string material(const std::string& value) {
+        return settings(GOOD_CAMERA + ",\n\"materials\": {\"m\": " + value + "}");
+    }
+    Material load(const std::string& value) { return folder_.load(material(value)).materials.at(0); }
+    // The texture of a diffuse material's reflectance.
+    Texture load_texture(const std::string& keys) {
+        const Material m = load(R"({"type": "diffuse", "reflectance": {"image": "a.png")" + keys + "}}");
+        return std::get<DiffuseMaterial>(m.model).reflectance.texture.value();
+    }
+
+    // 2 x 2 texels.
+    inline static const std::string PNG = encode_png(
+        {.size = uvec2(2), .bits = 8, .color = png_rgb, .samples = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}});
+    SceneFolder folder_;
+};
+
+TEST_F(SceneTextures, HaveDefaultsForColours) {
+    EXPECT_EQ(load_texture(""), (Texture{.image = 0, .encoding = TextureEncoding::srgb}));
+}
+
+TEST_F(SceneTextures, ReadAllKeys) {
+    const Texture texture = load_texture(
+        R"(, "encoding": "linear", "wrap": ["mirror", "clamp"], "filter": "nearest", "channel": "blue", "uv_set": 1,
+            "uv_scale": [2, 3], "uv_rotation": 90, "uv_offset": [0.5, -1])");
+    EXPECT_EQ(texture.encoding, TextureEncoding::linear);
+    EXPECT_EQ(texture.wrap_u, Wrap::mirror);
+    EXPECT_EQ(texture.wrap_v, Wrap::clamp);
+    EXPECT_EQ(texture.filter, TextureFilter::nearest);
+    EXPECT_EQ(texture.channel, 2u);
+    EXPECT_EQ(texture.uv_set, 1u);
+    // (u, v) -> (2 u, 3 v) -> (-3 v, 2 u) -> + (0.5, -1).
+    const vec3 expected[2] = {vec3(0, -3, 0.5f), vec3(2, 0, -1)};
+    for (int i = 0; i < 2; ++i)
+        EXPECT_LT(length(texture.rows[i] - expected[i]), 1e-6f) << i;
+    EXPECT_EQ(load_texture(R"(, "wrap": "clamp", "uv_scale": 4)").wrap_v, Wrap::clamp);
+}
+
+TEST_F(SceneTextures, StandWhereverAColourOrNumberDoes) {
+    const Material phong = load(R"({"type": "phong", "diffuse": {"image": "a.png", "factor": 0.5},
+        "specular": {"image": "a.png", "factor": [0.1, 0.2, 0.3]}, "exponent": {"image": "a.png", "factor": 50}})");
+    const auto& p = std::get<PhongMaterial>(phong.model);
+    EXPECT_EQ(p.diffuse.factor, vec3(0.5f));
+    EXPECT_EQ(p.specular.factor, vec3(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(p.exponent.factor, 50.0f);
+    EXPECT_EQ(p.diffuse.texture->encoding, TextureEncoding::srgb);
+    EXPECT_EQ(p.exponent.texture->encoding, TextureEncoding::linear);
+    const auto metal = std::get<ConductorMaterial>(
+        load(
+            R"({"type": "conductor", "reflectance": {"image": "a.png"}, "alpha": {"image": "a.png", "channel": "green"}})")
+            .model);
+    EXPECT_EQ(metal.alpha.factor, 1.0f);
+    EXPECT_EQ(metal.alpha.texture->channel, 1u);
+    const Material leaf = load(
+        R"({"type": "diffuse_transmission", "reflectance": 0.1, "transmittance": {"image": "a.png", "factor": 0.9},
+        "opacity": {"image": "a.png", "factor": 0.75, "cutoff": 0.5}, "normal_map": {"image": "a.png", "scale": 2}})");
+    EXPECT_EQ(leaf.opacity.value.factor, 0.75f);
+    EXPECT_EQ(leaf.opacity.value.texture->channel, 3u);
+    EXPECT_EQ(leaf.opacity.cutoff, 0.5f);
+    EXPECT_EQ(leaf.normal_map->scale, 2.0f);
+    EXPECT_EQ(leaf.normal_map->texture.encoding, TextureEncoding::linear);
+    EXPECT_EQ(load(R"({"type": "dielectric", "ior": 1.5, "opacity": 0.25})").opacity.value.factor, 0.25f);
+    EXPECT_TRUE(load(R"({"type": "mirror", "vertex_colors": true})").vertex_colors);
+
+    const Scene scene =
+        folder_.load("{" + GOOD_CAMERA + R"(, "shapes": [{"type": "sphere", "center": [0, 0, 0], "radius": 1,
+        "emission": {"image": "a.png", "factor": 3}}]})");
+    EXPECT_EQ(scene.shapes.at(0).emission->radiance.factor, vec3(3));
+    EXPECT_TRUE(scene.shapes.at(0).emission->radiance.texture);
+}
+
+TEST_F(SceneTextures, OfOneFileShareItsImage) {
+    write_image("b.png");
+    const Scene scene = folder_.load(settings(GOOD_CAMERA + R"(, "materials": {
+        "m": {"type": "phong", "diffuse": {"image": "a.png", "factor": 0.5}, "specular": {"image": "./a.png", "factor": 0.5},
+              "exponent": {"image": "b.png"}}})"));
+    ASSERT_EQ(scene.images.size(), 2u);
+    EXPECT_EQ(scene.images[0].image.size, uvec2(2));
+    EXPECT_EQ(scene.files.size(), 2u);
+}
+
+TEST_F(SceneTextures, RefuseWhatIsWrong) {
+    const auto diffuse = [](const std::string& value) {
+        return material(R"({"type": "diffuse", "reflectance": )" + value + "}");
+    };
+    folder_.expect_error(diffuse(R"(@{"factor": 1})"), "the key \"image\" is missing here; add it");
+    folder_.expect_error(diffuse(R"({"image": "a.png", "factor": @2})"),
+                         "\"factor\": expected numbers from 0 to 1, found 2");
+    folder_.expect_error(diffuse(R"({"image": "a.png", "wrap": @["clamp"]})"),
+                         "\"wrap\": expected a name, or one for each of u and v, found an array of 1");
+    folder_.expect_error(diffuse(R"({"image": "a.png", "uv_scale": @1e7})"),
+                         "\"uv_scale\": expected numbers from -1e6 to 1e6, found 1e+07");
+    folder_.expect_error(diffuse(R"({"image": "a.png", "uv_set": @2})"),
+                         "\"uv_set\": expected a whole number from 0 to 1, found 2");
+    folder_.expect_error(
+        material(R"({"type": "phong", "specular": @{"image": "a.png"}, "diffuse": 0.5, "exponent": 1})"),
+        "diffuse + specular is 1.5 in red; lower one of the two until the sum is at most 1");
+}
+
+TEST_F(SceneTextures, AnImageThatCannotBeReadIsNamedWithItsPlace) {
+    folder_.expect_error(material(R"({"type": "diffuse", "reflectance": {"image": @"b.png"}})"),
+                         "cannot read \"b.png\": the file does not exist; check the name");
+    folder_.write("b.png", PNG.substr(0, 40));
+    const std::string error =
+        error_of([&] { load(R"({"type": "diffuse", "reflectance": {"image": "b.png"}})"); });
+    EXPECT_NE(error.find("scene.json:2:"), std::string::npos) << error;
+    EXPECT_NE(error.find("b.png"), std::string::npos) << error;
+}
+
+TEST_F(SceneTextures, AMeshUnderATextureNeedsCoordinates) {
+    folder_.expect_error(
+        "{" + GOOD_CAMERA + R"(, "materials": {"m": {"type": "diffuse", "reflectance": {"image": "a.png"}}},
+        "shapes": [@{"type": "mesh", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]],
+                    "material": "m"}]})",
+        "the material \"m\" has textures, but the mesh has no texture coordinates; export it with them, "
+        "or use a material without textures");
+}
+
+}  // namespace
+}  // namespace candela

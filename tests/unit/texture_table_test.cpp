@@ -1,0 +1,136 @@
+// Texels in tiles, textures each once, and the light of textured emitters.
+#include "gpu_scene/texture_table.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "gpu_scene/flatten.h"
+#include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/texture_mean.h"
+#include "support/scene_builders.h"
+
+namespace candela {
+namespace {
+
+// An image whose bytes count up.
+TexelImage counting(uvec2 size, uint32_t channels, TexelType type) {
+    TexelImage image{.size = size, .channels = channels, .type = type, .texels = {}, .gamma = {}};
+    image.texels.resize(size_t(size.x) * size.y * channels * byte_size(type));
+    for (size_t i = 0; i < image.texels.size(); ++i)
+        image.texels[i] = std::byte(i);
+    return image;
+}
+
+TEST(TextureTable, TexelsLieInTiles) {
+    const TexelImage grey = counting({6, 5}, 1, TexelType::unorm8);
+    ASSERT_EQ(texel_words(grey), 4u);
+    std::vector<uvec4> words(4);
+    pack_texels(grey, words);
+    EXPECT_EQ(words[0], uvec4(0x03020100, 0x09080706, 0x0f0e0d0c, 0x15141312));
+    // Beyond the edges, the edge is repeated.
+    EXPECT_EQ(words[1], uvec4(0x05050504, 0x0b0b0b0a, 0x11111110, 0x17171716));
+    EXPECT_EQ(words[3], uvec4(0x1d1d1d1c));
+
+    const TexelImage rgb = counting({5, 1}, 3, TexelType::unorm8);
+    ASSERT_EQ(texel_words(rgb), 8u);
+    words.resize(8);
+    pack_texels(rgb, words);
+    EXPECT_EQ(words[0], uvec4(0xff020100, 0xff050403, 0xff080706, 0xff0b0a09));
+    EXPECT_EQ(words[4], uvec4(0xff0e0d0c));
+
+    const TexelImage deep = counting({1, 2}, 2, TexelType::unorm16);
+    ASSERT_EQ(texel_words(deep), 8u);
+    pack_texels(deep, words);
+    EXPECT_EQ(words[0], uvec4(0x01000100, 0x03020100, 0x01000100, 0x03020100));
+    EXPECT_EQ(words[2], uvec4(0x05040504, 0x07060504, 0x05040504, 0x07060504));
+
+    const TexelImage half = counting({1, 1}, 3, TexelType::half);
+    pack_texels(half, words);
+    EXPECT_EQ(words[0].y, 0x3c000504u);  // Alpha is 1.
+}
+
+TEST(TextureTable, HoldsEveryTextureAndImageOnce) {
+    std::vector<ImageFile> images(3);
+    for (ImageFile& file : images)
+        file.image = counting({4, 4}, 4, TexelType::unorm8);
+    TextureTable table(images);
+    EXPECT_EQ(table.add(std::nullopt), TEXTURE_NONE);
+    EXPECT_EQ(table.add(Texture{.image = 2}), 0u);
+    EXPECT_EQ(table.add(Texture{.image = 2, .wrap_u = Wrap::clamp}), 1u);
+    EXPECT_EQ(table.add(Texture{.image = 2}), 0u);
+    EXPECT_EQ(table.add(Texture{.image = 0, .encoding = TextureEncoding::srgb}), 2u);
+    EXPECT_EQ(table.records().size(), 3 * TEXTURE_WORDS);
+    EXPECT_EQ(table.texels().size(), 2 * 4u);  // Image 1 is not looked up.
+    EXPECT_EQ(table.traits(), TEXEL_RGBA8 | TEXTURE_LINEAR | TEXTURE_SRGB | TEXTURE_BILINEAR |
+                                  TEXTURE_REPEAT | TEXTURE_CLAMP | TEXTURE_REPEAT << TEXTURE_WRAP_V |
+                                  TEXTURE_UV0);
+}
+
+TEST(TextureTable, AttributesAreThoseThatAreLookedUp) {
+    Scene scene = scene_of_mesh(sphere_mesh(4, 4));
+    EXPECT_EQ(build_gpu_scene(scene).attributes, 0u);
+    EXPECT_TRUE(build_gpu_scene(scene).arrays[ARRAY_MATERIAL_TEXTURES].empty());
+    const Texture texture = add_texture(scene, {1, 1}, [](uint32_t, uint32_t) { return vec4(1); });
+    scene.materials[0].model = DiffuseMaterial{Textured<vec3>(vec3(1), texture)};
+    EXPECT_EQ(build_gpu_scene(scene).attributes, ATTRIBUTE_UV0);
+    scene.materials[0].vertex_colors = true;
+    scene.materials[0].opacity.value = {1.0f, Texture{.image = 0, .uv_set = 1}};
+    scene.materials[0].normal_map = NormalMap{texture, 1.0f};
+    const GpuScene gpu = build_gpu_scene(scene);
+    EXPECT_EQ(gpu.attributes, ATTRIBUTES_ALL);
+    EXPECT_EQ(gpu.arrays[ARRAY_ATTRIBUTES].size(), 7 * gpu.primitive_count);
+}
+
+// The power of a light that looks up an image of 64 x 64 texels, all black but for one block.
+double power_of(const decltype(Shape::geometry)& geometry, uvec2 lo, uvec2 hi,
+                const std::vector<vec2>& uvs = {}) {
+    Scene scene = scene_with_camera(dvec3(0), dvec3(0, 0, -1), 1.0f);
+    const Texture texture = add_texture(scene, {64, 64}, [&](uint32_t x, uint32_t y) {
+        return vec4(vec3(x >= lo.x && x < hi.x && y >= lo.y && y < hi.y ? 1.0f : 0.0f), 1.0f);
+    });
+    const Emission emission{{vec3(1), texture}, false};
+    if (uvs.empty()) {
+        add_shape(scene, geometry, add_diffuse(scene, vec3(0)), emission);
+    } else {
+        TriangleMesh mesh{.uv0 = uvs};
+        add_triangle(mesh, vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0));
+        add_shape(scene, mesh, add_diffuse(scene, vec3(0)), emission);
+    }
+    const FlatScene flat = flatten(scene, SceneFrame{}, ATTRIBUTE_UV0);
+    return std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0);
+}
+
+TEST(TextureMean, TheWholeImageHasItsMean) {
+    const Quad quad = parallelogram(vec3(0), vec3(2, 0, 0), vec3(0, 3, 0));
+    EXPECT_NEAR(power_of(quad, {0, 0}, {64, 64}), 6.0, 1e-5);
+    EXPECT_NEAR(power_of(quad, {0, 0}, {32, 64}), 3.0, 1e-5);
+    EXPECT_NEAR(power_of(quad, {5, 7}, {6, 8}), 6.0 / 4096, 1e-5);
+}
+
+// However small the piece that emits, and wherever it lies.
+TEST(TextureMean, NoLightWithABrightTexelHasNoPower) {
+    for (uint32_t i = 0; i < 64; i += 3) {
+        for (uint32_t j = 0; j < 64; j += 7) {
+            const uvec2 texel(i, j);
+            EXPECT_GT(power_of(Sphere{dvec3(0), 1.0}, texel, texel + 1u), 0.0);
+            // A triangle over the texel's middle, and one over the whole image.
+            const vec2 middle((float(i) + 0.5f) / 64, 1.0f - (float(j) + 0.5f) / 64);
+            for (const float size : {1e-4f, 0.02f, 0.3f}) {
+                const std::vector<vec2> uvs{middle - vec2(size), middle + vec2(2 * size, 0),
+                                            middle + vec2(0, 2 * size)};
+                EXPECT_GT(power_of({}, texel, texel + 1u, uvs), 0.0) << i << ' ' << j << ' ' << size;
+            }
+        }
+    }
+}
+
+// A triangle far from all that is bright is no light.
+TEST(TextureMean, WhatIsBlackHasNoPower) {
+    const std::vector<vec2> uvs{vec2(0.8f, 0.8f), vec2(0.82f, 0.8f), vec2(0.8f, 0.82f)};
+    EXPECT_EQ(power_of({}, {10, 50}, {12, 52}, uvs), 0.0);
+}
+
+}  // namespace
+}  // namespace candela
