@@ -48,9 +48,6 @@ PieceUv piece_uv(vec2 a, vec2 b, vec2 c) {
     return {a, b - a, c - a};
 }
 
-// The texture coordinates of disks: their middle, and the ends of e1 and e2.
-constexpr std::array<vec2, 4> DISK_UV{vec2(0.5f, 0.5f), vec2(1.0f, 0.5f), vec2(0.5f, 1.0f), vec2(0.0f)};
-
 class Flattener {
   public:
     Flattener(const Scene& scene, const SceneFrame& frame, uint attributes)
@@ -157,10 +154,11 @@ class Flattener {
         const vec3 e2 = frame_.vector(disk.e2);
         const double error = disk_error(center, e1, e2);
         const uint light = add_flat_light(shape, LIGHT_DISK, center, e1, e2, error,
-                                          piece_uv(DISK_UV[0], DISK_UV[1], DISK_UV[2]));
+                                          piece_uv(disk.uvs[0], disk.uvs[1], disk.uvs[2]));
         add_primitive({PRIMITIVE_DISK, center, e1, e2, vec3(0.0f)},
                       {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error)});
-        add_uvs(DISK_UV, vec4(e1, 1));
+        const bool swapped = disk.uvs[1].x < disk.uvs[2].x;
+        add_uvs({disk.uvs[0], disk.uvs[1], disk.uvs[2], disk.uvs[2]}, swapped ? vec4(e2, -1) : vec4(e1, 1));
     }
 
     void add_primitive(const Primitive& primitive, const Surface& surface) {

@@ -174,6 +174,9 @@ struct Disk {
     dvec3 center{0};
     dvec3 e1{1, 0, 0};
     dvec3 e2{0, 1, 0};
+    vec2 uvs[3]{{0.5f, 0.5f},
+                {1.0f, 0.5f},
+                {0.5f, 1.0f}};  // Texture coordinates of the centre, and of the ends of e1, e2.
 };
 
 struct Shape {

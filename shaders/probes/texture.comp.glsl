@@ -5,7 +5,7 @@
 #define ITEM_WORDS 1u
 #define RESULT_WORDS 5u
 #include "probes/items.glsl"
-#include "texture/texture.glsl"
+#include "scene/texture.glsl"
 
 void main() {
     if (past_end()) return;

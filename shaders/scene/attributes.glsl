@@ -4,7 +4,7 @@
 
 #include "base/math.glsl"
 #include "scene/scene_data.glsl"
-#include "texture/texel.glsl"
+#include "texture/decode.glsl"
 
 // What a surface has at a point besides its geometry; 0, or white, where the scene has none.
 struct Attributes {

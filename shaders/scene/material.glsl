@@ -3,7 +3,7 @@
 #define SCENE_MATERIAL_GLSL
 
 #include "scene/attributes.glsl"
-#include "texture/texture.glsl"
+#include "scene/texture.glsl"
 
 // What texture t says at a point.
 vec4 texture_value(TextureRecord t, Attributes at) {

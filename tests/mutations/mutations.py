@@ -18,6 +18,12 @@ LIST = "shaders/scene/list.glsl"
 TRIANGLE = "shaders/scene/triangle.glsl"
 PRIMITIVE = "shaders/scene/primitive.glsl"
 INTERACTION = "shaders/scene/interaction.glsl"
+TEXTURE = "shaders/scene/texture.glsl"
+FILTER = "shaders/texture/filter.glsl"
+ATTRIBUTES = "shaders/scene/attributes.glsl"
+MATERIAL = "shaders/scene/material.glsl"
+OPACITY = "shaders/scene/opacity.glsl"
+BENT_NORMAL = "shaders/integrator/bent_normal.glsl"
 CAMERA = "shaders/scene/camera.glsl"
 RENDER = "shaders/kernels/render.comp.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
@@ -34,6 +40,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
+TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Opacity*")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
@@ -135,7 +142,7 @@ GROUPS = [
          "frame_.vector(sphere.center)"),
         ("the frame's unit forgotten for radii", FLATTEN, "frame_.length(sphere.radius)", "float(sphere.radius)"),
         ("the frame's unit forgotten for media", "host/gpu_scene/gpu_scene.cpp",
-         "vec3(unit * dvec3(medium.absorption))", "vec3(0.0 * unit + dvec3(medium.absorption))"),
+         "vec3(gpu.frame.unit * dvec3(medium.absorption))", "vec3(0.0 * gpu.frame.unit + dvec3(medium.absorption))"),
         ("the camera rounded before it is in the frame", RENDERER, "frame.point(camera.position)",
          "frame.point(dvec3(vec3(camera.position)))"),
         ("depths left in the frame", RENDERER, "values[i + 3] *= float(frame_.unit);", ""),
@@ -144,6 +151,32 @@ GROUPS = [
         ("rays begin on their surfaces", INTERACTION, "(viewers_side ? s.error : -s.error) * s.n", "0.0 * s.n"),
         ("rays begin beside their points, along another axis", INTERACTION,
          "(viewers_side ? s.error : -s.error) * s.n", "(viewers_side ? s.error : -s.error) * s.n.yzx"),
+    ]),
+    (TEXTURES, [
+        ("columns of a tile of texels for its rows", TEXTURE, "t.first + 4u * tile + within.y), within.x",
+         "t.first + 4u * tile + within.x), within.y"),
+        ("sRGB codes taken for light", TEXTURE, "code.rgb = srgb_decode(code.rgb);", ""),
+        ("textures upside down", "host/gpu_scene/texture_table.cpp", "vec3(-row_v.x, -row_v.y, 1.0f - row_v.z)", "row_v"),
+        ("no texel across the seam", FILTER, "repeats ? 0 : last", "last"),
+        ("mirrored textures repeated", FILTER, "at > 1.0 ? 2.0 - at : at", "at > 1.0 ? at - 1.0 : at"),
+        ("weights of the two axes swapped", TEXTURE, "lerp(lerp(a, b, u.weight), lerp(c, d, u.weight), v.weight)",
+         "lerp(lerp(a, b, v.weight), lerp(c, d, v.weight), u.weight)"),
+        ("alpha for blue where a number is asked for", TEXTURE, "(channel & 1u) == 0u ? pair.x", "channel == 0u ? pair.x"),
+        ("the second triangle's coordinates for the first", ATTRIBUTES, "uintBitsToFloat(second ? cd.xy : ab.zw)",
+         "uintBitsToFloat(cd.xy)"),
+        ("lights sampled without their textures", LIGHT_SAMPLER, "s.Li *= light_texture(i, at);", ""),
+        ("lights hit without their textures", PATH, "* light_texture(s.light, s.attributes)", ""),
+        ("a lamp sampled where it is transparent", LIGHT_SAMPLER,
+         "s.Li *= material_opacity(scene_light_textures(i).material, at)", "s.Li *= 1.0"),
+        ("both triangles of a lamp for the first", LIGHT_SAMPLER, "place.second = b.y > b.x;", "place.second = false;"),
+        ("the same rays pass all surfaces", OPACITY, "floatBitsToUint(ray.d), id)", "floatBitsToUint(ray.d), 0u)"),
+        ("the other triangle of a pair not tested", OPACITY, "found = primitive_second_hit(ray, shear, p, found);",
+         "return;"),
+        ("opaque below the cutoff", MATERIAL, "opacity >= textures.cutoff ? 1.0 : 0.0",
+         "opacity >= textures.cutoff ? 0.0 : 1.0"),
+        ("light below the surface of a bent normal lost", BENT_NORMAL,
+         "scattered.wi = mirrored(scattered.wi, n);", "scattered.pdf = 0.0;"),
+        ("the density of one of two directions", BENT_NORMAL, "sum.pdf += value.pdf;", "sum.pdf = value.pdf;"),
     ]),
     (DEVICES, [
         ("a work group's counts in the place of those before", RENDER, "if (n > 0u) atomicAdd(counters[i], n);",

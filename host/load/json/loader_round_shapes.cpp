@@ -79,7 +79,10 @@ void read_disk(const Node& node, ShapeList& shapes) {
     const dvec3 e2 = transform.vector(radius * v);
     check_reach(node, center, abs(e1) + abs(e2));
     Disk disk{center, e1, e2};
-    if (transform.mirrors()) std::swap(disk.e1, disk.e2);
+    if (transform.mirrors()) {
+        std::swap(disk.e1, disk.e2);
+        std::swap(disk.uvs[1], disk.uvs[2]);
+    }
     check_breadth(node, disk);
     shapes.add(appearance, disk);
 }

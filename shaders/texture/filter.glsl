@@ -1,10 +1,9 @@
-// Look-up of textures: wrap, filter and decoding by arithmetic that has one result on every device (`precise`: no
-// multiplication is fused with an addition). Hardware filters round as they like, to 8 bits on software Vulkan.
-#ifndef TEXTURE_TEXTURE_GLSL
-#define TEXTURE_TEXTURE_GLSL
+// Where an image is looked up, by arithmetic that has one result on every device (`precise`: no multiplication is fused
+// with an addition). Hardware filters round as they like, to 8 bits on software Vulkan.
+#ifndef TEXTURE_FILTER_GLSL
+#define TEXTURE_FILTER_GLSL
 
-#include "scene/scene_data.glsl"
-#include "texture/texel.glsl"
+#include "texture/decode.glsl"
 
 // Where one axis of an image is looked up: the texels on either side, and the weight of the second.
 struct AxisPlace {
@@ -42,27 +41,6 @@ AxisPlace axis_place(float t, uint n, uint traits, const uint group_shift) {
 vec4 lerp(vec4 a, vec4 b, float t) {
     precise vec4 x = a + t * (b - a);
     return x;
-}
-
-// The image of texture t at (u, v) of its set: linear red, green, blue and alpha.
-vec4 texture_at(TextureRecord t, vec2 uv) {
-    precise float x = t.row_u.x * uv.x + t.row_u.y * uv.y + t.row_u.z;
-    precise float y = t.row_v.x * uv.x + t.row_v.y * uv.y + t.row_v.z;
-    AxisPlace u = axis_place(x, t.size.x, t.traits, 0u);
-    AxisPlace v = axis_place(y, t.size.y, t.traits, TEXTURE_WRAP_V);
-    vec4 a = texel_at(t, uvec2(u.first, v.first));
-    if (has_trait(t.traits, TEXTURE_NEAREST, TEXTURE_FILTERS)) return a;
-    vec4 b = texel_at(t, uvec2(u.second, v.first));
-    vec4 c = texel_at(t, uvec2(u.first, v.second));
-    vec4 d = texel_at(t, uvec2(u.second, v.second));
-    return lerp(lerp(a, b, u.weight), lerp(c, d, u.weight), v.weight);
-}
-
-// The number that texture t takes from its channel.
-float texture_number(TextureRecord t, vec4 value) {
-    uint channel = t.traits >> TEXTURE_CHANNEL_SHIFT & 3u;
-    vec2 pair = channel < 2u ? value.xy : value.zw;
-    return (channel & 1u) == 0u ? pair.x : pair.y;
 }
 
 #endif
