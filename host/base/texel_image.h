@@ -31,4 +31,8 @@ struct TexelImage {
     std::optional<double> gamma;
 };
 
+// Red, green, blue and alpha of texel i, row-major from the top: the numbers of the file, from 0 to 1 unless
+// they are halves. Alpha is 1 where the image has none.
+vec4 texel_codes(const TexelImage& image, size_t i);
+
 }  // namespace candela

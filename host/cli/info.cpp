@@ -53,6 +53,20 @@ Json memory_of(const GpuScene& gpu, RenderSettings settings) {
     return parts;
 }
 
+// The images that textures look up.
+Json images_of(const Scene& scene) {
+    Json images = Json::array();
+    for (const ImageFile& file : scene.images) {
+        const TexelImage& image = file.image;
+        images.push_back({{"file", file.path.string()},
+                          {"width", image.size.x},
+                          {"height", image.size.y},
+                          {"channels", image.channels},
+                          {"bits", 8 * byte_size(image.type)}});
+    }
+    return images;
+}
+
 Json describe(const InfoOptions& options, const Scene& scene) {
     const GpuScene gpu = build_gpu_scene(scene);
     std::vector<std::string> warnings = scene.warnings;
@@ -70,6 +84,7 @@ Json describe(const InfoOptions& options, const Scene& scene) {
             {"lights", gpu.light_count},
             {"environment", environment_of(gpu)},
             {"materials", scene.materials.size()},
+            {"images", images_of(scene)},
             {"cameras", cameras},
             {"bounds", to_json(bounds(scene))},
             {"bvh_nodes", gpu.arrays[ARRAY_NODES].size() / BVH_NODE_WORDS},
@@ -116,6 +131,8 @@ void print(const Json& info) {
     row("environment",
         environment.is_null() ? "none" : environment[0].dump() + 'x' + environment[1].dump() + " texels");
     row("materials", info["materials"].dump());
+    if (!info["images"].empty())
+        row("images", std::to_string(info["images"].size()) + ", " + bytes("texels"));
     row("cameras", join(info["cameras"]));
     row("bounds", bounds_text(info["bounds"]));
     row("BVH", info["bvh_nodes"].dump() + " nodes, depth " + info["bvh_depth"].dump() + ", SAH cost " +

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-
-#include <glm/packing.hpp>
 
 namespace candela {
 namespace {
@@ -14,17 +11,6 @@ namespace {
 // IEC 61966-2-1.
 float srgb_decode(float code) {
     return code > 0.04045f ? std::pow((code + 0.055f) / 1.055f, 2.4f) : code / 12.92f;
-}
-
-float decode(const std::byte* code, TexelType type, bool is_srgb) {
-    if (type == TexelType::unorm8) {
-        const float x = float(std::to_integer<unsigned>(*code)) / 255.0f;
-        return is_srgb ? srgb_decode(x) : x;
-    }
-    uint16_t word = 0;
-    std::memcpy(&word, code, sizeof word);
-    if (type == TexelType::half) return glm::unpackHalf2x16(word).x;
-    return is_srgb ? srgb_decode(float(word) / 65535.0f) : float(word) / 65535.0f;
 }
 
 // Texel i along an axis of n, wherever that is.
@@ -38,12 +24,10 @@ uint32_t wrapped(double i, uint32_t n, Wrap wrap) {
 }  // namespace
 
 vec3 texel_color(const TexelImage& image, TextureEncoding encoding, size_t i) {
-    const bool is_srgb = encoding == TextureEncoding::srgb && image.type != TexelType::half;
-    const size_t bytes = byte_size(image.type);
-    const std::byte* texel = image.texels.data() + i * image.channels * bytes;
-    const float red = decode(texel, image.type, is_srgb);
-    if (image.channels < 3) return vec3(red);
-    return {red, decode(texel + bytes, image.type, is_srgb), decode(texel + 2 * bytes, image.type, is_srgb)};
+    const vec4 codes = texel_codes(image, i);
+    const vec3 color(codes.x, codes.y, codes.z);
+    if (encoding != TextureEncoding::srgb || image.type == TexelType::half) return color;
+    return {srgb_decode(color.x), srgb_decode(color.y), srgb_decode(color.z)};
 }
 
 ImagePyramid::ImagePyramid(const TexelImage& image, TextureEncoding encoding) {

@@ -2,11 +2,13 @@
 #include "scene/images.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/texel_io.h"
+#include "base/text.h"
 
 namespace candela {
 namespace {
@@ -16,6 +18,41 @@ std::filesystem::path identity_of(const std::filesystem::path& path) {
     std::error_code ignored;
     const std::filesystem::path real = std::filesystem::weakly_canonical(path, ignored);
     return real.empty() ? path.lexically_normal() : real;
+}
+
+// The mean of some thousand texels all over the image.
+vec4 mean_codes(const TexelImage& image) {
+    constexpr size_t MOST = 4096;
+    const size_t count = size_t(image.size.x) * image.size.y;
+    const size_t step = std::max<size_t>(1, count / MOST);
+    vec4 sum(0.0f);
+    size_t taken = 0;
+    for (size_t i = 0; i < count; i += step, ++taken)
+        sum += texel_codes(image, i);
+    return sum / float(taken);
+}
+
+void check_normal_map(Scene& scene, const Material& material) {
+    const ImageFile& file = scene.images[material.normal_map->texture.image];
+    const vec4 mean = mean_codes(file.image);
+    // Of any bumpy surface, the mean points away from it.
+    constexpr float FAR = 0.2f;
+    const bool points_up = mean.z > 0.6f && std::abs(mean.x - 0.5f) < FAR && std::abs(mean.y - 0.5f) < FAR;
+    if (points_up) return;
+    scene.warnings.push_back(file.place + ": the normal map of the material \"" + material.name + "\", " +
+                             file.path.string() + ", has a mean of " + number_text(double(mean.x), 2) + ' ' +
+                             number_text(double(mean.y), 2) + ' ' + number_text(double(mean.z), 2) +
+                             ", not about 0.5 0.5 1; is it one in tangent space?");
+}
+
+void check_opacity(Scene& scene, const Material& material) {
+    constexpr uint32_t ALPHA = 3;
+    const Texture& texture = *material.opacity.value.texture;
+    const ImageFile& file = scene.images[texture.image];
+    if (texture.channel != ALPHA || file.image.channels % 2 == 0) return;
+    scene.warnings.push_back(file.place + ": the opacity of the material \"" + material.name +
+                             "\" is the alpha of " + file.path.string() +
+                             ", which has none: it is opaque; name another channel");
 }
 
 }  // namespace
@@ -43,6 +80,10 @@ void load_images(Scene& scene) {
     for (size_t i = 0; i < scene.images.size(); ++i) {
         for (const std::string& warning : warnings[i])
             scene.warnings.push_back(scene.images[i].place + ": " + warning);
+    }
+    for (const Material& material : scene.materials) {
+        if (material.normal_map) check_normal_map(scene, material);
+        if (material.opacity.value.texture) check_opacity(scene, material);
     }
 }
 
