@@ -155,6 +155,7 @@ TEST(Mesh, IsPlacedInDoublePrecision) {
 
 TEST(SceneBuilder, RefusesAMeshThatReachesTooFar) {
     Scene scene;
+    add_diffuse(scene, vec3(0.5f));
     SceneBuilder builder(scene);
     TriangleMesh mesh = with_positions({dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)});
     mesh.triangles = {uvec3(0, 1, 2)};
