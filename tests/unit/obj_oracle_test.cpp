@@ -12,8 +12,10 @@ namespace {
 
 struct Oracle {
     std::vector<vec3> positions;
+    std::vector<vec2> uvs;
     std::vector<vec3> normals;
     std::vector<ObjCorner> corners;
+    std::vector<uint32_t> corner_uvs;
     std::vector<uint32_t> sizes;
 };
 
@@ -23,23 +25,43 @@ Oracle read(const std::string& text) {
     callbacks.vertex_cb = [](void* out, float x, float y, float z, float) {
         static_cast<Oracle*>(out)->positions.emplace_back(x, y, z);
     };
+    callbacks.texcoord_cb = [](void* out, float u, float v, float) {
+        static_cast<Oracle*>(out)->uvs.emplace_back(u, v);
+    };
     callbacks.normal_cb = [](void* out, float x, float y, float z) {
         static_cast<Oracle*>(out)->normals.emplace_back(x, y, z);
     };
     callbacks.index_cb = [](void* out, tinyobj::index_t* indices, int count) {
-        auto& [positions, normals, corners, sizes] = *static_cast<Oracle*>(out);
+        auto& [positions, uvs, normals, corners, corner_uvs, sizes] = *static_cast<Oracle*>(out);
         const auto absolute = [](int index, size_t size) {
             return index == 0 ? ObjCorner::NONE : uint32_t(index > 0 ? index - 1 : int(size) + index);
         };
         for (int i = 0; i < count; ++i) {
             corners.push_back({absolute(indices[i].vertex_index, positions.size()),
                                absolute(indices[i].normal_index, normals.size())});
+            corner_uvs.push_back(absolute(indices[i].texcoord_index, uvs.size()));
         }
         sizes.push_back(uint32_t(count));
     };
     std::istringstream stream(text);
     EXPECT_TRUE(tinyobj::LoadObjWithCallback(stream, callbacks, &oracle));
     return oracle;
+}
+
+// The colours of all positions; the function above does not pass them on.
+std::vector<vec3> read_colors(const std::string& text) {
+    tinyobj::attrib_t attributes;
+    std::vector<tinyobj::shape_t> shapes;
+    std::vector<tinyobj::material_t> materials;
+    std::string warnings, errors;
+    std::istringstream stream(text);
+    EXPECT_TRUE(tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &stream, nullptr,
+                                 /*triangulate=*/false))
+        << errors;
+    std::vector<vec3> colors;
+    for (size_t i = 0; i + 2 < attributes.colors.size(); i += 3)
+        colors.emplace_back(attributes.colors[i], attributes.colors[i + 1], attributes.colors[i + 2]);
+    return colors;
 }
 
 // Numbers of all sizes and spellings, faces of all forms, in any order.
@@ -53,15 +75,25 @@ std::string random_obj(uint32_t seed) {
         std::snprintf(text, sizeof text, formats[random.bits() % 5], value);
         return std::string(text);
     };
+    const auto color = [&] {
+        char text[64];
+        std::snprintf(text, sizeof text, " %.6f %.9g\t%.3e", double(random.unit()), double(random.unit()),
+                      double(random.unit()));
+        return std::string(text);
+    };
     std::string text;
     int vertices = 0, uvs = 0, normals = 0;
     for (int line = 0; line < 400; ++line) {
         const uint32_t kind = random.bits() % 8;
         if (kind < 3 || vertices == 0) {
-            text += "v " + number() + "  " + number() + '\t' + number() + (kind == 0 ? " 1.0" : "") + '\n';
+            text += "v " + number() + "  " + number() + '\t' + number() +
+                    (kind == 0   ? " 1.0"
+                     : kind == 1 ? color()
+                                 : "") +
+                    '\n';
             ++vertices;
         } else if (kind == 3) {
-            text += "vt " + number() + ' ' + number() + '\n';
+            text += "vt " + number() + (random.bits() % 4 == 0 ? "" : ' ' + number()) + '\n';
             ++uvs;
         } else if (kind == 4) {
             text += "vn " + number() + ' ' + number() + ' ' + number() + '\n';
@@ -107,6 +139,14 @@ TEST(ObjOracle, ReadsWhatTinyobjloaderReads) {
             ASSERT_EQ(ours.corners[i].position, theirs.corners[i].position) << i;
             ASSERT_EQ(ours.corners[i].normal, theirs.corners[i].normal) << i;
         }
+        ASSERT_EQ(ours.uvs.size(), theirs.uvs.size());
+        for (size_t i = 0; i < ours.uvs.size(); ++i)
+            ASSERT_TRUE(near(glm::dvec3(ours.uvs[i], 0.0), vec3(theirs.uvs[i], 0.0f))) << i;
+        ASSERT_EQ(ours.corner_uvs, theirs.corner_uvs);
+        const std::vector<vec3> colors = read_colors(text);
+        ASSERT_EQ(ours.colors.size(), colors.size());
+        for (size_t i = 0; i < colors.size(); ++i)
+            ASSERT_TRUE(near(glm::dvec3(ours.colors[i]), colors[i])) << i;
     }
 }
 

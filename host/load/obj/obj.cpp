@@ -14,20 +14,24 @@ namespace {
 
 constexpr uint32_t NONE = ObjCorner::NONE;
 
-// The vertices of a mesh, one for each pair of position and normal that a corner has.
+// The vertices of a mesh, one for each triple of position, texture coordinates and normal that a corner has.
 class Vertices {
   public:
     Vertices(const ObjFile& obj, bool with_normals)
         : obj_(obj), with_normals_(with_normals), newest_(obj.positions.size(), NONE) {}
 
-    // The index of a corner's vertex.
-    uint32_t add(ObjCorner corner) {
+    // The index of the vertex of the file's corner `i`.
+    uint32_t add(size_t i) {
+        ObjCorner corner = obj_.corners[i];
         if (!with_normals_) corner.normal = NONE;
+        const bool with_uvs = !obj_.corner_uvs.empty();
+        const uint32_t uv = with_uvs ? obj_.corner_uvs[i] : NONE;
         uint32_t& newest = newest_[corner.position];
         for (uint32_t v = newest; v != NONE; v = vertices_[v].next) {
-            if (vertices_[v].corner.normal == corner.normal) return v;
+            if (vertices_[v].corner.normal == corner.normal && (!with_uvs || uvs_[v] == uv)) return v;
         }
         vertices_.push_back({corner, newest});
+        if (with_uvs) uvs_.push_back(uv);
         newest = uint32_t(vertices_.size() - 1);
         return newest;
     }
@@ -40,6 +44,14 @@ class Vertices {
         for (const Vertex& vertex : vertices_)
             positions.push_back(obj_.positions[vertex.corner.position]);
         set_positions(mesh, std::move(positions));
+        mesh.uv0.reserve(uvs_.size());
+        for (const uint32_t uv : uvs_)
+            mesh.uv0.push_back(uv == NONE ? vec2(0.0f) : obj_.uvs[uv]);
+        if (!obj_.colors.empty()) {
+            mesh.colors.reserve(vertices_.size());
+            for (const auto& [corner, next] : vertices_)
+                mesh.colors.emplace_back(obj_.colors[corner.position], 1.0f);
+        }
         if (!with_normals_) return mesh;
         mesh.normals.reserve(vertices_.size());
         for (const auto& [corner, next] : vertices_)
@@ -57,21 +69,25 @@ class Vertices {
     bool with_normals_;
     std::vector<uint32_t> newest_;  // Of each position: its newest vertex, or NONE.
     std::vector<Vertex> vertices_;
+    std::vector<uint32_t> uvs_;  // Of each vertex, or NONE; empty if no corner has any.
 };
 
-// Leaves `obj` without corners, positions and normals, to save memory.
+// Leaves `obj` without corners and what they refer to, to save memory.
 TriangleMesh build_mesh(ObjFile& obj, MeshNormals normals) {
     std::vector<uint32_t> corners;
     corners.reserve(obj.corners.size());
     TriangleMesh mesh;
     {
         Vertices vertices(obj, normals == MeshNormals::file && !obj.normals.empty());
-        for (const ObjCorner corner : obj.corners)
-            corners.push_back(vertices.add(corner));
+        for (size_t i = 0; i < obj.corners.size(); ++i)
+            corners.push_back(vertices.add(i));
         obj.corners = {};
+        obj.corner_uvs = {};
         mesh = vertices.mesh();
     }
     obj.positions = {};
+    obj.colors = {};
+    obj.uvs = {};
     obj.normals = {};
     mesh.triangles.reserve(corners.size() - 2 * obj.sizes.size());
     std::span<const uint32_t> rest = corners;
@@ -105,19 +121,28 @@ ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals) 
     ObjParts result{std::move(obj.libraries), {}};
     std::map<std::string_view, uint32_t> indices;  // Of the parts, by name; empty for no material.
     std::vector<uint32_t> part_of;                 // For each triangle.
+    std::vector<bool> has_uvs;                     // For each part: whether a corner has some.
+    size_t corner = 0;
     for (size_t face = 0; face < obj.sizes.size(); ++face) {
         const ObjName& use = obj.uses[obj.use_of[face]];
         const auto [found, is_new] = indices.emplace(use.name, uint32_t(result.parts.size()));
         if (is_new) {
             result.parts.emplace_back();
+            has_uvs.push_back(false);
             if (!use.name.empty()) result.parts.back().material = use;
         }
         ++result.parts[found->second].faces;
         part_of.insert(part_of.end(), obj.sizes[face] - 2, found->second);
+        const size_t end = corner + obj.sizes[face];
+        for (; corner < end && !obj.corner_uvs.empty(); ++corner) {
+            if (obj.corner_uvs[corner] != NONE) has_uvs[found->second] = true;
+        }
     }
     std::vector<TriangleMesh> meshes = split_mesh(build_mesh(obj, normals), part_of, result.parts.size());
-    for (size_t i = 0; i < meshes.size(); ++i)
+    for (size_t i = 0; i < meshes.size(); ++i) {
+        if (!has_uvs[i]) meshes[i].uv0 = {};
         result.parts[i].mesh = std::move(meshes[i]);
+    }
     return result;
 }
 

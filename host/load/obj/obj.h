@@ -12,10 +12,11 @@
 
 namespace candela {
 
-// Reads all faces of a file as one mesh, in the units of the file; groups, materials and texture coordinates
-// are ignored. Polygons are cut into triangles; corners with the same indices of position and normal share a
-// vertex; unused vertices are dropped. With MeshNormals::file, a corner without a normal gets one of length
-// zero, and a file without normals gives a mesh without. Throws Error as read_file() and parse_obj() do.
+// Reads all faces of a file as one mesh, in the units of the file; groups and materials are ignored. Polygons
+// are cut into triangles; corners with the same indices share a vertex; unused vertices are dropped. A corner
+// without texture coordinates has (0, 0), and a mesh all of whose corners lack them has none. With
+// MeshNormals::file, a corner without a normal gets one of length zero, and a file without normals gives a
+// mesh without. Throws Error as read_file() and parse_obj() do.
 TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals);
 
 // The faces of one material.

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "base/error.h"
+#include "load/mesh_limits.h"
 #include "load/quote.h"
 #include "load/text_lines.h"
 #include "scene/polygon.h"
@@ -24,7 +26,16 @@ constexpr std::array<Kind, 3> KINDS{{{"v", "vertex", "vertices"},
                                      {"vt", "texture coordinate", "texture coordinates"},
                                      {"vn", "normal", "normals"}}};
 constexpr size_t POSITION = 0;
+constexpr size_t UV = 1;
 constexpr size_t NORMAL = 2;
+
+// The indices of a corner, one of each kind.
+using Indices = std::array<uint32_t, KINDS.size()>;
+
+// Whether a statement ends before this word.
+bool is_end(std::string_view word) {
+    return word.empty() || word.starts_with('#');
+}
 
 class ObjReader {
   public:
@@ -38,8 +49,10 @@ class ObjReader {
             if (command == "f") ++faces;
         });
         obj_.positions.reserve(size_t(totals_[POSITION]));
+        obj_.uvs.reserve(size_t(totals_[UV]));
         obj_.normals.reserve(size_t(totals_[NORMAL]));
         obj_.corners.reserve(3 * faces);
+        if (totals_[UV] > 0) obj_.corner_uvs.reserve(3 * faces);
         obj_.sizes.reserve(faces);
         obj_.use_of.reserve(faces);
         for_each_line(text_, [this](uint64_t line, std::string_view command, std::string_view rest) {
@@ -48,6 +61,10 @@ class ObjReader {
         });
         if (faces == 0)
             throw Error(file_ + ": the file has no faces (lines \"f 1 2 3\"); is it a Wavefront OBJ file?");
+        if (!has_uvs_) {
+            obj_.uvs = {};
+            obj_.corner_uvs = {};
+        }
         return std::move(obj_);
     }
 
@@ -72,12 +89,60 @@ class ObjReader {
             obj_.uses.push_back({std::string(trimmed(rest)), line_});
         } else if (const auto kind = kind_of(command)) {
             ++counts_[*kind];
-            if (*kind == POSITION) obj_.positions.push_back(read_numbers(rest, KINDS[*kind]));
+            if (*kind == POSITION) read_vertex(rest);
+            if (*kind == UV) read_uv(rest);
             if (*kind == NORMAL) obj_.normals.emplace_back(read_numbers(rest, KINDS[*kind]));
         }
     }
 
-    glm::dvec3 read_numbers(std::string_view rest, const Kind& kind) const {
+    void read_vertex(std::string_view rest) {
+        const vec3 white(1.0f);
+        obj_.positions.push_back(read_numbers(rest, KINDS[POSITION]));
+        const std::optional<vec3> color = rest.empty() ? std::nullopt : read_color(rest);
+        if (color && obj_.colors.empty()) {
+            obj_.colors.reserve(size_t(totals_[POSITION]));
+            obj_.colors.resize(obj_.positions.size() - 1, white);
+        }
+        if (color || !obj_.colors.empty()) obj_.colors.push_back(color.value_or(white));
+    }
+
+    // The colour after a position. One number is the w of a rational curve.
+    std::optional<vec3> read_color(std::string_view rest) const {
+        std::array<std::string_view, 3> words;
+        for (std::string_view& word : words) {
+            word = next_word(rest);
+            if (is_end(word)) return std::nullopt;
+        }
+        vec3 color;
+        for (glm::length_t i = 0; i < 3; ++i) {
+            const std::optional<double> number = parse_finite(words[size_t(i)]);
+            if (!number || *number < 0.0 || *number > 1.0) {
+                fail("the colour of a vertex needs three numbers from 0 to 1, found " +
+                     quote(words[size_t(i)]) + "; scale the colours, or leave them out");
+            }
+            color[i] = float(*number);
+        }
+        return color;
+    }
+
+    void read_uv(std::string_view rest) {
+        vec2 uv(0.0f);
+        for (glm::length_t i = 0; i < 2; ++i) {
+            const std::string_view word = next_word(rest);
+            if (is_end(word)) {
+                if (i == 0) fail("a texture coordinate needs one to three numbers; is the file cut off?");
+                break;
+            }
+            const std::optional<double> number = parse_finite(word);
+            if (!number || std::abs(*number) > MOST_UV)
+                fail("a texture coordinate needs finite numbers from -1e30 to 1e30, found " + quote(word));
+            uv[i] = float(*number);
+        }
+        obj_.uvs.push_back(uv);
+    }
+
+    // Cuts three numbers off `rest`.
+    glm::dvec3 read_numbers(std::string_view& rest, const Kind& kind) const {
         glm::dvec3 numbers;
         for (glm::length_t i = 0; i < 3; ++i) {
             const std::string_view word = next_word(rest);
@@ -94,8 +159,11 @@ class ObjReader {
     void read_face(std::string_view rest) {
         uint32_t corners = 0;
         for (std::string_view corner = next_word(rest); !corner.empty(); corner = next_word(rest)) {
-            const ObjCorner read = read_corner(corner);
-            if (corners++ < MOST_CORNERS) obj_.corners.push_back(read);
+            const Indices read = read_corner(corner);
+            if (corners++ >= MOST_CORNERS) continue;
+            obj_.corners.push_back({read[POSITION], read[NORMAL]});
+            if (totals_[UV] > 0) obj_.corner_uvs.push_back(read[UV]);
+            has_uvs_ = has_uvs_ || read[UV] != ObjCorner::NONE;
         }
         if (corners < 3)
             fail(face() + " has " + std::to_string(corners) + " corners; a face needs at least 3");
@@ -108,14 +176,14 @@ class ObjReader {
     }
 
     // `corner` is v, v/vt, v//vn or v/vt/vn.
-    ObjCorner read_corner(std::string_view corner) const {
-        std::array<uint32_t, KINDS.size()> indices{ObjCorner::NONE, ObjCorner::NONE, ObjCorner::NONE};
+    Indices read_corner(std::string_view corner) const {
+        Indices indices{ObjCorner::NONE, ObjCorner::NONE, ObjCorner::NONE};
         std::string_view rest = corner;
         for (size_t kind = 0; kind < KINDS.size(); ++kind) {
             const size_t slash = rest.find('/');
             const bool may_be_empty = KINDS[kind].command == "vt" && slash != std::string_view::npos;
             if (slash != 0 || !may_be_empty) indices[kind] = read_index(rest.substr(0, slash), kind, corner);
-            if (slash == std::string_view::npos) return {indices[POSITION], indices[NORMAL]};
+            if (slash == std::string_view::npos) return indices;
             rest.remove_prefix(slash + 1);
         }
         fail_malformed(corner);
@@ -147,6 +215,7 @@ class ObjReader {
     std::array<int64_t, 3> totals_{};  // Of each kind, in the whole file.
     std::array<int64_t, 3> counts_{};  // Of each kind, so far.
     uint64_t line_ = 0;
+    bool has_uvs_ = false;  // Whether a corner has texture coordinates.
     ObjFile obj_;
 };
 
