@@ -1,6 +1,8 @@
 // Colours.
 #pragma once
 
+#include <cmath>
+
 #include "base/math.h"
 
 namespace candela {
@@ -8,6 +10,11 @@ namespace candela {
 // Luminance of a linear Rec.709 colour.
 inline float luminance(vec3 rgb) {
     return dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f));
+}
+
+// Linear light, 0 to 1, from a code of sRGB from 0 to 1. Ref: IEC 61966-2-1.
+inline float srgb_decode(float code) {
+    return code > 0.04045f ? std::pow((code + 0.055f) / 1.055f, 2.4f) : code / 12.92f;
 }
 
 }  // namespace candela

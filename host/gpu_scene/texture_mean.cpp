@@ -5,13 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "base/color.h"
+
 namespace candela {
 namespace {
-
-// IEC 61966-2-1.
-float srgb_decode(float code) {
-    return code > 0.04045f ? std::pow((code + 0.055f) / 1.055f, 2.4f) : code / 12.92f;
-}
 
 // Texel i along an axis of n, wherever that is.
 uint32_t wrapped(double i, uint32_t n, Wrap wrap) {

@@ -50,6 +50,11 @@ void complete_attributes(const Scene& scene, const std::string& place, const App
 
 }  // namespace
 
+Material default_material(bool has_colors) {
+    if (!has_colors) return {.name = {}, .model = DiffuseMaterial{}};
+    return {.name = {}, .model = DiffuseMaterial{vec3(1.0f)}, .vertex_colors = true};
+}
+
 void SceneBuilder::add_mesh(const std::string& place, const Transform& transform,
                             std::vector<MeshPart> parts) {
     size_t dropped = 0;
@@ -83,15 +88,15 @@ const Appearance* SceneBuilder::find_file_appearance(const std::string& name) co
     return found == file_appearances_.end() ? nullptr : &found->second;
 }
 
-void SceneBuilder::add_file_appearance(const std::string& name, const decltype(Material::model)& model,
+void SceneBuilder::add_file_appearance(const std::string& name, Material material,
                                        const std::optional<Emission>& emission) {
     std::vector<Material>& materials = scene_.materials;
-    std::string unique = name;
-    const auto is_taken = [&](const Material& material) { return material.name == unique; };
+    material.name = name;
+    const auto is_taken = [&](const Material& other) { return other.name == material.name; };
     for (int i = 2; std::any_of(materials.begin(), materials.end(), is_taken); ++i)
-        unique = name + " (" + std::to_string(i) + ')';
+        material.name = name + " (" + std::to_string(i) + ')';
     file_appearances_[name] = {uint32_t(materials.size()), emission};
-    materials.push_back({unique, model});
+    materials.push_back(std::move(material));
 }
 
 uint32_t SceneBuilder::black() {

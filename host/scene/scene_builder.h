@@ -30,6 +30,9 @@ bool is_within_reach(dvec3 p);
 inline constexpr const char* TOO_FAR =
     "the shape reaches beyond 1e37 along an axis; check its numbers and its transform";
 
+// What a file's faces without a material are made of: grey, or the colours of their vertices.
+Material default_material(bool has_colors);
+
 // Appends to a scene's shapes, materials and warnings. A place is what messages begin with, such as
 // `file:line:column`.
 class SceneBuilder {
@@ -57,9 +60,9 @@ class SceneBuilder {
 
     // Materials that come from files: `name` joins those of file and material, as in `pot.obj/clay`. The
     // scene's material gets this name, or a similar one if it is taken. `find` returns null for a name that
-    // was not added.
+    // was not added. The material's own name does not count.
     const Appearance* find_file_appearance(const std::string& name) const;
-    void add_file_appearance(const std::string& name, const decltype(Material::model)& model,
+    void add_file_appearance(const std::string& name, Material material,
                              const std::optional<Emission>& emission);
 
     // Index of the black material, for emitters that reflect nothing.

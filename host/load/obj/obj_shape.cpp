@@ -22,18 +22,20 @@ std::vector<std::string> add_materials(const std::filesystem::path& file, const 
     std::vector<std::string> warnings = std::move(library.warnings);
     for (const ObjPart& part : obj.parts) {
         if (!part.material) {
+            const bool has_colors = !part.mesh.colors.empty();
             if (obj.parts.size() > 1) {
                 warnings.push_back(file.string() + ": " + std::to_string(part.faces) +
                                    (part.faces == 1 ? " face" : " faces") +
-                                   " before the first usemtl; shown in grey");
+                                   " before the first usemtl; shown in " +
+                                   (has_colors ? "the colours of their vertices" : "grey"));
             }
-            builder.add_file_appearance(name_of(name, part), DiffuseMaterial{}, std::nullopt);
+            builder.add_file_appearance(name_of(name, part), default_material(has_colors), std::nullopt);
             continue;
         }
         const MtlMaterial& material = find_mtl_material(library, file, *part.material);
         std::ranges::copy(material.warnings, std::back_inserter(warnings));
         const bool emits = material.emission != vec3(0.0f);
-        builder.add_file_appearance(name_of(name, part), material.material.model,
+        builder.add_file_appearance(name_of(name, part), material.material,
                                     emits ? std::optional(Emission{material.emission}) : std::nullopt);
     }
     return warnings;

@@ -2,9 +2,6 @@
 #include "load/ply/ply.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -12,6 +9,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "load/ply/ply_rows.h"
+#include "load/ply/ply_vertex.h"
 #include "load/quote.h"
 #include "scene/default_view.h"
 #include "scene/polygon.h"
@@ -20,12 +18,12 @@
 namespace candela {
 namespace {
 
-constexpr std::array<std::string_view, 6> COORDINATES{"x", "y", "z", "nx", "ny", "nz"};
-
 // What the rows of a file hold, as they stand.
 struct PlyPolygons {
     std::vector<glm::dvec3> positions;
     std::vector<vec3> normals;
+    std::vector<vec2> uvs;
+    std::vector<vec4> colors;
     std::vector<uint32_t> corners;  // Of all polygons, one after the other.
     std::vector<uint32_t> sizes;    // Corners of each polygon.
     bool floats = false;            // The file's coordinates have 32 bits.
@@ -50,10 +48,9 @@ void check_header(const PlyHeader& header, const std::string& file) {
                     " needs " + needs);
     };
     const PlyElement& vertex = require_element(header, "vertex", file);
-    for (size_t i = 0; i < 3; ++i) {
-        const PlyProperty* property = vertex.find(COORDINATES[i]);
-        if (!property || property->length)
-            fail(vertex, "the property " + quote(COORDINATES[i]) + ", a number");
+    for (const std::string_view name : {"x", "y", "z"}) {
+        const PlyProperty* property = vertex.find(name);
+        if (!property || property->length) fail(vertex, "the property " + quote(name) + ", a number");
     }
     const PlyElement& face = require_element(header, "face", file);
     const PlyProperty* indices = find_indices(face);
@@ -61,19 +58,11 @@ void check_header(const PlyHeader& header, const std::string& file) {
         fail(face, "the property \"vertex_indices\", a list of integers");
 }
 
-bool has_normals(const PlyElement& vertex) {
-    for (size_t i = 3; i < COORDINATES.size(); ++i) {
-        const PlyProperty* property = vertex.find(COORDINATES[i]);
-        if (!property || property->length) return false;
-    }
-    return true;
-}
-
 template <class Rows>
 class BodyReader {
   public:
-    BodyReader(const PlyHeader& header, bool with_normals, Rows rows, PlyPosition& position)
-        : header_(header), with_normals_(with_normals), rows_(rows), position_(position) {}
+    BodyReader(const PlyHeader& header, const PlyVertexFields& fields, Rows rows, PlyPosition& position)
+        : header_(header), fields_(fields), rows_(rows), position_(position) {}
 
     PlyPolygons read(std::vector<std::string>& warnings) {
         for (const PlyElement& element : header_.elements) {
@@ -119,14 +108,10 @@ class BodyReader {
     }
 
     void begin_vertices(const PlyElement& vertex) {
-        const size_t used = with_normals_ ? COORDINATES.size() : 3;
-        for (const PlyProperty& property : vertex.properties) {
-            const auto found = std::find(COORDINATES.begin(), COORDINATES.begin() + used, property.name);
-            slots_.push_back(size_t(found - COORDINATES.begin()));
-            if (slots_.back() == used) slots_.back() = SKIPPED;
-        }
         polygons_.positions.reserve(vertex.rows);
-        if (with_normals_) polygons_.normals.reserve(vertex.rows);
+        if (fields_.has_normals) polygons_.normals.reserve(vertex.rows);
+        if (fields_.has_uvs) polygons_.uvs.reserve(vertex.rows);
+        if (fields_.has_colors) polygons_.colors.reserve(vertex.rows);
     }
 
     // Reserves memory for this many triangles, or for as many as the rest of the file can hold.
@@ -138,20 +123,22 @@ class BodyReader {
     }
 
     void read_vertex(const PlyElement& vertex) {
-        std::array<double, COORDINATES.size()> values{};
-        for (size_t i = 0; i < slots_.size(); ++i) {
+        PlyVertex v{};
+        v[PLY_ALPHA] = 1.0;
+        for (size_t i = 0; i < fields_.fields.size(); ++i) {
             const PlyProperty& property = vertex.properties[i];
-            if (slots_[i] == SKIPPED) {
+            const size_t field = fields_.fields[i];
+            if (field == PLY_SKIPPED) {
                 skip(property);
-                continue;
+            } else {
+                v[field] = vertex_number(property, field, rows_.next(property.type), position_);
             }
-            const double value = rows_.next(property.type);
-            if (!(std::abs(value) <= double(std::numeric_limits<float>::max())))
-                position_.fail("needs a finite " + property.name + ", found " + number_text(value, 6));
-            values[slots_[i]] = value;
         }
-        polygons_.positions.emplace_back(values[0], values[1], values[2]);
-        if (with_normals_) polygons_.normals.emplace_back(values[3], values[4], values[5]);
+        const auto three = [&](size_t first) { return dvec3(v[first], v[first + 1], v[first + 2]); };
+        polygons_.positions.push_back(three(PLY_X));
+        if (fields_.has_normals) polygons_.normals.emplace_back(three(PLY_NX));
+        if (fields_.has_uvs) polygons_.uvs.emplace_back(v[PLY_U], v[PLY_U + 1]);
+        if (fields_.has_colors) polygons_.colors.emplace_back(vec3(three(PLY_RED)), float(v[PLY_ALPHA]));
     }
 
     void read_face(const PlyProperty& indices) {
@@ -181,13 +168,10 @@ class BodyReader {
             rows_.next(property.type);
     }
 
-    static constexpr size_t SKIPPED = COORDINATES.size();
-
     const PlyHeader& header_;
-    bool with_normals_;
+    const PlyVertexFields& fields_;
     Rows rows_;
     PlyPosition& position_;
-    std::vector<size_t> slots_;  // Of each property of a vertex: its index in COORDINATES, or SKIPPED.
     PlyPolygons polygons_;
 };
 
@@ -198,10 +182,11 @@ PlyPolygons read_polygons(const std::filesystem::path& file, MeshNormals normals
     PlyPosition position{file.string(), 0, "", 0};
     const PlyHeader header = read_ply_header(bytes, position.file);
     check_header(header, position.file);
-    const bool with_normals = normals == MeshNormals::file && has_normals(*header.find("vertex"));
+    const PlyVertexFields fields =
+        find_vertex_fields(*header.find("vertex"), normals == MeshNormals::file, position.file, warnings);
     const std::string_view body = std::string_view(bytes).substr(header.size);
     const auto read = [&](auto rows) {
-        PlyPolygons polygons = BodyReader(header, with_normals, rows, position).read(warnings);
+        PlyPolygons polygons = BodyReader(header, fields, rows, position).read(warnings);
         polygons.floats = header.find("vertex")->find("x")->type == PlyType::float32;
         return polygons;
     };
@@ -215,7 +200,9 @@ PlyPolygons read_polygons(const std::filesystem::path& file, MeshNormals normals
 TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
                       std::vector<std::string>& warnings) {
     PlyPolygons polygons = read_polygons(file, normals, warnings);
-    TriangleMesh mesh{.normals = std::move(polygons.normals)};
+    TriangleMesh mesh{.normals = std::move(polygons.normals),
+                      .uv0 = std::move(polygons.uvs),
+                      .colors = std::move(polygons.colors)};
     set_positions(mesh, std::move(polygons.positions));
     mesh.triangles.reserve(polygons.corners.size() - 2 * polygons.sizes.size());
     std::span<const uint32_t> rest = polygons.corners;
@@ -237,9 +224,10 @@ TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
 Scene load_ply_scene(const std::filesystem::path& file) {
     Scene scene;
     SceneBuilder builder(scene);
-    builder.add_file_appearance(file.filename().string(), DiffuseMaterial{}, std::nullopt);
-    const Appearance& grey = *builder.find_file_appearance(file.filename().string());
-    builder.add_mesh(file.string(), grey, Transform(), load_ply(file, MeshNormals::file, scene.warnings));
+    TriangleMesh mesh = load_ply(file, MeshNormals::file, scene.warnings);
+    const std::string name = file.filename().string();
+    builder.add_file_appearance(name, default_material(!mesh.colors.empty()), std::nullopt);
+    builder.add_mesh(file.string(), *builder.find_file_appearance(name), Transform(), std::move(mesh));
     scene.files.push_back(file);
     add_default_view(scene);
     return scene;

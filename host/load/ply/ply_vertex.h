@@ -1,0 +1,39 @@
+// What the properties of a PLY file's vertices mean.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "load/ply/ply_header.h"
+#include "load/ply/ply_rows.h"
+
+namespace candela {
+
+// The numbers of a vertex: x y z nx ny nz u v red green blue alpha.
+inline constexpr size_t PLY_X = 0, PLY_NX = 3, PLY_U = 6, PLY_RED = 8, PLY_ALPHA = 11, PLY_NUMBERS = 12;
+using PlyVertex = std::array<double, PLY_NUMBERS>;
+inline constexpr size_t PLY_SKIPPED = PLY_NUMBERS;
+
+// Which properties are read, and as what.
+struct PlyVertexFields {
+    std::vector<size_t> fields;  // Of each property, in the order of the file: its number, or PLY_SKIPPED.
+    bool has_normals = false;
+    bool has_uvs = false;
+    bool has_colors = false;
+};
+
+// Finds positions, colours (red green blue, and alpha), texture coordinates under the first of the names
+// (u v), (s t), (texture_u texture_v), (texture_s texture_t), and normals if they are asked for. What is
+// incomplete or a list is skipped. `warnings` gets colours of a type that they cannot have; `file` is the
+// name in messages.
+PlyVertexFields find_vertex_fields(const PlyElement& vertex, bool with_normals, const std::string& file,
+                                   std::vector<std::string>& warnings);
+
+// A number of a property as candela uses it: colours linear, in [0, 1]. Integers stand for 0 to 1, and those
+// of red, green and blue for sRGB, as Blender and MeshLab write them. Throws Error as PlyPosition::fail()
+// does for a number that is not finite or out of range.
+double vertex_number(const PlyProperty& property, size_t field, double number, const PlyPosition& position);
+
+}  // namespace candela
