@@ -17,4 +17,9 @@ inline float srgb_decode(float code) {
     return code > 0.04045f ? std::pow((code + 0.055f) / 1.055f, 2.4f) : code / 12.92f;
 }
 
+// The inverse of srgb_decode().
+inline float srgb_encode(float light) {
+    return light > 0.0031308f ? 1.055f * std::pow(light, 1.0f / 2.4f) - 0.055f : 12.92f * light;
+}
+
 }  // namespace candela

@@ -3,12 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <map>
+#include <utility>
 #include <vector>
 
+#include "base/color.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/texel_io.h"
 #include "base/text.h"
+#include "scene/material_textures.h"
 
 namespace candela {
 namespace {
@@ -30,6 +35,52 @@ vec4 mean_codes(const TexelImage& image) {
     for (size_t i = 0; i < count; i += step, ++taken)
         sum += texel_codes(image, i);
     return sum / float(taken);
+}
+
+// The image of a file whose samples are light^gamma, in sRGB codes of 16 bits.
+TexelImage in_srgb(const TexelImage& image) {
+    TexelImage result{.size = image.size,
+                      .channels = image.channels,
+                      .type = TexelType::unorm16,
+                      .texels = {},
+                      .gamma = {}};
+    const size_t count = size_t(image.size.x) * image.size.y;
+    result.texels.resize(count * image.channels * byte_size(result.type));
+    const bool has_alpha = image.channels % 2 == 0;
+    parallel_for(image.size.y, [&](size_t y) {
+        for (size_t i = y * image.size.x; i < (y + 1) * image.size.x; ++i) {
+            const vec4 codes = texel_codes(image, i);
+            for (uint32_t c = 0; c < image.channels; ++c) {
+                const bool is_alpha = has_alpha && c + 1 == image.channels;
+                const float code =
+                    is_alpha ? codes.w : srgb_encode(std::pow(codes[int(c)], float(1.0 / *image.gamma)));
+                const auto word = uint16_t(std::lround(65535.0f * code));
+                std::memcpy(&result.texels[(i * image.channels + c) * sizeof word], &word, sizeof word);
+            }
+        }
+    });
+    return result;
+}
+
+// Lets textures that take an image with a gamma of its own for sRGB look up a converted copy.
+void convert_gammas(Scene& scene) {
+    std::map<uint32_t, uint32_t> copies;
+    const auto convert = [&](Texture& texture) {
+        if (texture.encoding != TextureEncoding::srgb || !scene.images[texture.image].image.gamma) return;
+        const auto [copy, is_new] = copies.emplace(texture.image, uint32_t(scene.images.size()));
+        if (is_new) {
+            ImageFile file = scene.images[texture.image];
+            file.image = in_srgb(file.image);
+            file.real_path.clear();
+            scene.images.push_back(std::move(file));
+        }
+        texture.image = copy->second;
+    };
+    for (Material& material : scene.materials)
+        for_each_texture(material, convert);
+    for (Shape& shape : scene.shapes) {
+        if (shape.emission && shape.emission->radiance.texture) convert(*shape.emission->radiance.texture);
+    }
 }
 
 void check_normal_map(Scene& scene, const Material& material) {
@@ -81,6 +132,7 @@ void load_images(Scene& scene) {
         for (const std::string& warning : warnings[i])
             scene.warnings.push_back(scene.images[i].place + ": " + warning);
     }
+    convert_gammas(scene);
     for (const Material& material : scene.materials) {
         if (material.normal_map) check_normal_map(scene, material);
         if (material.opacity.value.texture) check_opacity(scene, material);

@@ -1,16 +1,39 @@
 // The textures of materials.
 #pragma once
 
-#include <vector>
+#include <type_traits>
+#include <variant>
 
 #include "scene/scene.h"
 
 namespace candela {
 
-// The textures that a material looks up; valid as long as the material is.
-std::vector<const Texture*> textures_of(const Material& material);
+// Calls visit(value) for each value of a model, constant or not, that a texture may give.
+template <class Model, class Visit>
+void for_each_value(Model& m, const Visit& visit) {
+    using Type = std::remove_const_t<Model>;
+    if constexpr (std::is_same_v<Type, DiffuseMaterial> || std::is_same_v<Type, MirrorMaterial>) {
+        visit(m.reflectance);
+    } else if constexpr (std::is_same_v<Type, PhongMaterial>) {
+        visit(m.diffuse), visit(m.specular), visit(m.exponent);
+    } else if constexpr (std::is_same_v<Type, ConductorMaterial>) {
+        visit(m.reflectance), visit(m.alpha);
+    } else if constexpr (std::is_same_v<Type, DiffuseTransmissionMaterial>) {
+        visit(m.reflectance), visit(m.transmittance);
+    } else {
+        static_assert(std::is_same_v<Type, DielectricMaterial>);
+    }
+}
 
-// The sets of texture coordinates that a surface with these textures must have, a bit each.
-uint32_t uv_sets_of(const std::vector<const Texture*>& textures);
+// Calls visit(texture) for each texture that a material, constant or not, looks up.
+template <class SomeMaterial, class Visit>
+void for_each_texture(SomeMaterial& material, const Visit& visit) {
+    const auto texture_of = [&](auto& value) {
+        if (value.texture) visit(*value.texture);
+    };
+    std::visit([&](auto& model) { for_each_value(model, texture_of); }, material.model);
+    texture_of(material.opacity.value);
+    if (material.normal_map) visit(material.normal_map->texture);
+}
 
 }  // namespace candela

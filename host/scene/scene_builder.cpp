@@ -32,10 +32,11 @@ bool fits(const TriangleMesh& mesh, const Transform& transform) {
 void complete_attributes(const Scene& scene, const std::string& place, const Appearance& appearance,
                          TriangleMesh& mesh) {
     const Material& material = scene.materials[appearance.material];
-    std::vector<const Texture*> textures = textures_of(material);
+    uint32_t sets = 0;
+    const auto note = [&](const Texture& texture) { sets |= 1u << texture.uv_set; };
+    for_each_texture(material, note);
     if (appearance.emission && appearance.emission->radiance.texture)
-        textures.push_back(&*appearance.emission->radiance.texture);
-    const uint32_t sets = uv_sets_of(textures);
+        note(*appearance.emission->radiance.texture);
     for (const auto& [set, uvs] : {std::pair(0, &mesh.uv0), std::pair(1, &mesh.uv1)}) {
         if ((sets >> set & 1u) == 0) continue;
         const std::string name = set == 0 ? "texture coordinates" : "second set of texture coordinates";

@@ -121,6 +121,83 @@ TEST_F(SceneTextures, AnImageThatCannotBeReadIsNamedWithItsPlace) {
     EXPECT_NE(error.find("b.png"), std::string::npos) << error;
 }
 
+TEST_F(SceneTextures, MeshesHaveCoordinatesAndColours) {
+    const auto mesh = [](const std::string& keys) {
+        return "{" + GOOD_CAMERA + R"(, "shapes": [{"type": "mesh", "emission": 1,
+            "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]], )" +
+               keys + "}]}";
+    };
+    const TriangleMesh read =
+        folder_
+            .load(mesh(R"("uvs": [[0, 0], [1, 0], [0, 1e30]], "uvs1": [[1, 2], [3, 4], [5, 6]],
+        "colors": [[0, 0.5, 1], [1, 1, 1, 0.25], [0, 0, 0]])"))
+            .meshes.at(0);
+    EXPECT_EQ(read.uv0, (std::vector{vec2(0, 0), vec2(1, 0), vec2(0, 1e30f)}));
+    EXPECT_EQ(read.uv1, (std::vector{vec2(1, 2), vec2(3, 4), vec2(5, 6)}));
+    EXPECT_EQ(read.colors, (std::vector{vec4(0, 0.5f, 1, 1), vec4(1, 1, 1, 0.25f), vec4(0, 0, 0, 1)}));
+    folder_.expect_error(mesh(R"("uvs": @[[0, 0], [1, 0]])"),
+                         "\"uvs\": expected as many elements as positions, 3, found an array of 2");
+    folder_.expect_error(mesh(R"("uvs": [@[0, 0, 0], [1, 0], [0, 1]])"),
+                         "\"uvs\": expected two numbers [u, v], found [0, 0, 0]");
+    folder_.expect_error(mesh(R"("uvs": [@[0, 2e30], [1, 0], [0, 1]])"),
+                         "\"uvs\": expected numbers from -1e30 to 1e30, found [0, 2e+30]");
+    folder_.expect_error(mesh(R"("colors": [[0, 0, @2], [1, 0, 0], [0, 1, 0]])"),
+                         "\"colors\": expected a number from 0 to 1, found 2");
+}
+
+// A mirrored quad keeps its picture: each vertex its coordinates.
+TEST_F(SceneTextures, AMirroredQuadKeepsItsCoordinates) {
+    const Scene scene = folder_.load("{" + GOOD_CAMERA + R"(, "shapes": [{"type": "quad", "emission": 1,
+        "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "transform": [{"scale": [-1, 1, 1]}]}]})");
+    const Quad& quad = std::get<Quad>(scene.shapes.at(0).geometry);
+    for (size_t i = 0; i < 4; ++i)
+        EXPECT_EQ(quad.uvs[i], vec2(float(-quad.corners[i].x), float(quad.corners[i].y)));
+}
+
+// gAMA 1.0: samples are light. Colours are converted to sRGB; data are what the file holds.
+TEST_F(SceneTextures, OfAnotherGammaAreConvertedForColours) {
+    folder_.write("g.png", encode_png({.size = uvec2(2, 1),
+                                       .bits = 8,
+                                       .color = png_rgb_alpha,
+                                       .samples = {0, 51, 255, 51, 128, 1, 2, 3}},
+                                      png_chunk("gAMA", big_endian_bytes(100000))));
+    const Scene scene = folder_.load(
+        material(R"({"type": "phong", "specular": {"image": "g.png"}, "exponent": {"image": "g.png"}})"));
+    ASSERT_EQ(scene.images.size(), 2u);
+    const auto& phong = std::get<PhongMaterial>(scene.materials[0].model);
+    EXPECT_EQ(phong.exponent.texture->image, 0u);
+    EXPECT_EQ(phong.specular.texture->image, 1u);
+    const vec4 code = texel_codes(scene.images[1].image, 0);
+    EXPECT_EQ(scene.images[1].image.type, TexelType::unorm16);
+    EXPECT_EQ(code.x, 0.0f);
+    EXPECT_NEAR(code.y, 0.4845292f, 1e-5f);  // sRGB of 0.2.
+    EXPECT_EQ(code.z, 1.0f);
+    EXPECT_NEAR(code.w, 0.2f, 1e-5f);
+}
+
+TEST_F(SceneTextures, WarnOfANormalMapThatIsNoneAndOfOpacityWithoutAlpha) {
+    const Scene scene = folder_.load(
+        material(R"({"type": "mirror", "normal_map": {"image": "a.png"}, "opacity": {"image": "a.png"}})"));
+    ASSERT_EQ(scene.warnings.size(), 3u);  // And that the scene is empty.
+    EXPECT_NE(
+        scene.warnings[1].find("a.png, has a mean of 0.018 0.022 0.025, not about 0.5 0.5 1; is it one in "
+                               "tangent space?"),
+        std::string::npos)
+        << scene.warnings[1];
+    EXPECT_NE(scene.warnings[2].find("a.png, which has none: it is opaque; name another channel"),
+              std::string::npos)
+        << scene.warnings[2];
+    folder_.write(
+        "n.png",
+        encode_png({.size = uvec2(1), .bits = 8, .color = png_rgb_alpha, .samples = {128, 128, 255, 9}}));
+    EXPECT_EQ(
+        folder_
+            .load(material(
+                R"({"type": "mirror", "normal_map": {"image": "n.png"}, "opacity": {"image": "n.png"}})"))
+            .warnings.size(),
+        1u);
+}
+
 TEST_F(SceneTextures, AMeshUnderATextureNeedsCoordinates) {
     folder_.expect_error(
         "{" + GOOD_CAMERA + R"(, "materials": {"m": {"type": "diffuse", "reflectance": {"image": "a.png"}}},

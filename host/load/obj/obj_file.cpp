@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "base/error.h"
-#include "load/mesh_limits.h"
 #include "load/quote.h"
 #include "load/text_lines.h"
 #include "scene/polygon.h"
+#include "scene/texture.h"
 
 namespace candela {
 namespace {
@@ -134,7 +134,7 @@ class ObjReader {
                 break;
             }
             const std::optional<double> number = parse_finite(word);
-            if (!number || std::abs(*number) > MOST_UV)
+            if (!number || std::abs(*number) > MAX_UV)
                 fail("a texture coordinate needs finite numbers from -1e30 to 1e30, found " + quote(word));
             uv[i] = float(*number);
         }

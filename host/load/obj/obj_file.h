@@ -27,7 +27,7 @@ struct ObjCorner {
 struct ObjFile {
     std::vector<glm::dvec3> positions;  // Numbers that floats can hold.
     std::vector<vec3> colors;           // Empty, or linear and in [0, 1] for each position.
-    std::vector<vec2> uvs;              // Texture coordinates, v upwards, each within +-MOST_UV.
+    std::vector<vec2> uvs;              // Texture coordinates, v upwards, each within +-MAX_UV.
     std::vector<vec3> normals;          // Of any length.
     std::vector<ObjCorner> corners;     // Of all faces, one after the other.
     std::vector<uint32_t> corner_uvs;   // Empty, or for each corner an index into `uvs`, or ObjCorner::NONE.
@@ -43,7 +43,7 @@ struct ObjFile {
 // Reads the text of a file; `file` is its name in messages. Three numbers after a position are its colour,
 // white where only others have one; the w of texture coordinates and groups are ignored. Throws Error
 // `file:line: cause` for a vertex or normal without three finite numbers, a colour out of range, a texture
-// coordinate that is not finite or greater than MOST_UV, a face with fewer than 3 or more than MOST_CORNERS
+// coordinate that is not finite or greater than MAX_UV, a face with fewer than 3 or more than MOST_CORNERS
 // corners, a malformed index or one that is out of range, and Error `file: cause` if there is no face at all.
 ObjFile parse_obj(std::string_view text, const std::string& file);
 

@@ -9,8 +9,8 @@
 
 #include "base/color.h"
 #include "base/text.h"
-#include "load/mesh_limits.h"
 #include "load/quote.h"
+#include "scene/texture.h"
 
 namespace candela {
 namespace {
@@ -83,7 +83,7 @@ PlyVertexFields find_vertex_fields(const PlyElement& vertex, bool with_normals, 
 double vertex_number(const PlyProperty& property, size_t field, double number, const PlyPosition& position) {
     if (field >= PLY_RED) return color_number(property, field, number, position);
     const bool is_uv = field >= PLY_U;
-    if (std::abs(number) <= (is_uv ? MOST_UV : double(std::numeric_limits<float>::max()))) return number;
+    if (std::abs(number) <= (is_uv ? MAX_UV : double(std::numeric_limits<float>::max()))) return number;
     const std::string range =
         is_uv ? quote(property.name) + " from -1e30 to 1e30" : "a finite " + property.name;
     position.fail("needs " + range + ", found " + number_text(number, 6));
