@@ -45,6 +45,8 @@ SPP = {
     "many-lights": 512,
     "mesh-light": 256,
     "smooth-normals": 128,
+    "textured-diffuse": 256,
+    "normal-map": 256,
 }
 
 # A string, which stays, or a comment, which becomes a space.
@@ -64,7 +66,38 @@ def rgb(value):
 
 
 def colour(value):
-    return {"type": "rgb", "value": rgb(value)}
+    return bitmap(value, False) if isinstance(value, dict) else {"type": "rgb", "value": rgb(value)}
+
+
+# --- Textures --------------------------------------------------------------------------------------------------------
+
+FOLDER = [HERE]  # Of the scene's file: that of its images.
+
+
+def uv_transform(texture):
+    """From (u, v), v upwards, to where Mitsuba looks: v downwards, on either side."""
+    scale, offset = np.eye(3), np.eye(3)
+    scale[0, 0], scale[1, 1] = np.broadcast_to(texture.get("uv_scale", 1), 2)
+    offset[:2, 2] = texture.get("uv_offset", [0, 0])
+    turn = rotation(texture.get("uv_rotation", 0), [0, 0, 1])[:3, :3]
+    flip = np.array([[1, 0, 0], [0, -1, 1], [0, 0, 1]])
+    return mi.ScalarTransform3f(flip @ offset @ turn @ scale @ flip)
+
+
+def bitmap(texture, is_data):
+    """Mitsuba's texture. Its texels are multiplied by the factor here, since not all that take textures have one."""
+    texels = np.array(mi.Bitmap(str(FOLDER[0] / texture["image"])), dtype=np.float32) / 255
+    if texels.ndim == 2:
+        texels = texels[..., None]
+    encoding = texture.get("encoding", "linear" if is_data else "srgb")
+    if encoding == "srgb":
+        texels = np.where(texels > 0.04045, ((texels + 0.055) / 1.055) ** 2.4, texels / 12.92)
+    if is_data == "number":
+        texels = texels[..., [["red", "green", "blue", "alpha"].index(texture.get("channel", "red"))]]
+    texels = texels * np.array(texture.get("factor", 1), dtype=np.float32)
+    wrap = texture.get("wrap", "repeat")
+    return {"type": "bitmap", "bitmap": mi.Bitmap(texels.astype(np.float32)), "raw": True, "format": "variant",
+            "filter_type": texture.get("filter", "bilinear"), "wrap_mode": wrap, "to_uv": uv_transform(texture)}
 
 
 # --- Materials -------------------------------------------------------------------------------------------------------
@@ -93,6 +126,17 @@ def metal(material, smooth):
 def dielectric(material, smooth):
     assert material.get("fresnel") == "exact", "Mitsuba knows no approximation of Fresnel's equations"
     return {"type": "dielectric", "int_ior": float(material["ior"]), "ext_ior": float(material.get("exterior_ior", 1))}
+
+
+def detailed(bsdf, material):
+    """With the material's normal map and opacity."""
+    if "normal_map" in material:
+        inner = bsdf["bsdf"] if bsdf["type"] == "twosided" else bsdf
+        bsdf = {"type": "twosided", "bsdf": {"type": "normalmap", "normalmap": bitmap(material["normal_map"], "normal"),
+                                             "bsdf": inner}}
+    if "opacity" in material:
+        bsdf = {"type": "mask", "opacity": bitmap(material["opacity"], "number"), "bsdf": bsdf}
+    return bsdf
 
 
 BSDFS = {"diffuse": diffuse, "mirror": mirror, "phong": phong, "conductor": metal, "dielectric": dielectric}
@@ -142,9 +186,12 @@ def box(shape):
     return corners, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
 
 
-def write_ply(path, positions, triangles, normals=None):
-    columns = positions if normals is None else np.hstack([positions, normals])
-    names = ["x", "y", "z", "nx", "ny", "nz"][: columns.shape[1]]
+def write_ply(path, positions, triangles, normals=None, uvs=None):
+    columns, names = positions, ["x", "y", "z"]
+    if normals is not None:
+        columns, names = np.hstack([columns, normals]), [*names, "nx", "ny", "nz"]
+    if uvs is not None:
+        columns, names = np.hstack([columns, uvs * [1, -1] + [0, 1]]), [*names, "u", "v"]
     lines = ["ply", "format ascii 1.0", f"element vertex {len(columns)}", *(f"property float {n}" for n in names)]
     lines += [f"element face {len(triangles)}", "property list uchar int vertex_index", "end_header"]
     lines += [" ".join(repr(float(x)) for x in row) for row in columns]
@@ -168,17 +215,19 @@ def read_ply(path):
 
 def mesh_of(shape, folder, temporary):
     """A mesh of any kind but OBJ as a file that Mitsuba reads."""
-    normals = None
+    normals, uvs = None, None
     if shape["type"] == "quad":
         positions, triangles = shape["vertices"], [(0, 1, 2), (0, 2, 3)]
+        uvs = [[0, 0], [1, 0], [1, 1], [0, 1]]
     elif shape["type"] == "box":
         positions, triangles = box(shape)
     elif shape["type"] == "ply":
         positions, triangles, normals = read_ply(folder / shape["file"])
     else:
         positions, triangles, normals = shape["positions"], shape["triangles"], shape.get("normals")
+        uvs = shape.get("uvs")
     path = temporary / f"{len(list(temporary.iterdir()))}.ply"
-    write_ply(path, np.array(positions), triangles, normals)
+    write_ply(path, np.array(positions), triangles, normals, None if uvs is None else np.array(uvs))
     return {"type": "ply", "filename": str(path), "face_normals": normals is None}
 
 
@@ -210,7 +259,7 @@ def shape_of(shape, materials, folder, temporary):
     smooth = not result.get("face_normals", True)
     if "material" in shape:
         material = materials[shape["material"]]
-        result |= {"bsdf": BSDFS[material["type"]](material, smooth), **interior(material)}
+        result |= {"bsdf": detailed(BSDFS[material["type"]](material, smooth), material), **interior(material)}
     else:
         result["bsdf"] = BLACK
     if "emission" in shape:
@@ -274,6 +323,7 @@ def integrator(scene):
 
 def load(name, temporary):
     scene, folder = read_scene(name)
+    FOLDER[0] = folder
     camera = next(iter(scene["cameras"].values()))
     result = {"type": "scene", "integrator": integrator(scene), "sensor": sensor(camera)}
     if "environment" in scene:
