@@ -18,6 +18,8 @@
 namespace candela {
 namespace {
 
+constexpr uint32_t RED = 0, ALPHA = 3;
+
 // The same for all names of a file.
 std::filesystem::path identity_of(const std::filesystem::path& path) {
     std::error_code ignored;
@@ -96,8 +98,13 @@ void check_normal_map(Scene& scene, const Material& material) {
                              ", not about 0.5 0.5 1; is it one in tangent space?");
 }
 
+// Replaces ALPHA_OR_RED in the texture of an opacity.
+void choose_channel(const Scene& scene, Texture& texture) {
+    if (texture.channel != ALPHA_OR_RED) return;
+    texture.channel = scene.images[texture.image].image.channels % 2 == 0 ? ALPHA : RED;
+}
+
 void check_opacity(Scene& scene, const Material& material) {
-    constexpr uint32_t ALPHA = 3;
     const Texture& texture = *material.opacity.value.texture;
     const ImageFile& file = scene.images[texture.image];
     if (texture.channel != ALPHA || file.image.channels % 2 == 0) return;
@@ -133,9 +140,11 @@ void load_images(Scene& scene) {
             scene.warnings.push_back(scene.images[i].place + ": " + warning);
     }
     convert_gammas(scene);
-    for (const Material& material : scene.materials) {
+    for (Material& material : scene.materials) {
         if (material.normal_map) check_normal_map(scene, material);
-        if (material.opacity.value.texture) check_opacity(scene, material);
+        if (!material.opacity.value.texture) continue;
+        choose_channel(scene, *material.opacity.value.texture);
+        check_opacity(scene, material);
     }
 }
 

@@ -14,8 +14,9 @@ namespace candela {
 uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place);
 
 // Reads all images that have not been read, on all cores. An image that a PNG file says has another gamma
-// than sRGB's is converted for textures of sRGB; others take it as it is. Throws Error if one cannot be read;
-// what is odd but usable goes to scene.warnings.
+// than sRGB's is converted for textures of sRGB; others take it as it is. Chooses the channel of opacities
+// that wait for their image (ALPHA_OR_RED). Throws Error if one cannot be read; what is odd but usable goes
+// to scene.warnings.
 void load_images(Scene& scene);
 
 }  // namespace candela
