@@ -116,32 +116,53 @@ TEST_F(Mtl, EmissionIsTakenAsItIs) {
 }
 
 TEST_F(Mtl, WithoutColourIsGrey) {
-    for (const char* text : {"Ka 1 1 1", "map_Kd a.png", "map_Kd a.png\nKe 1 1 1", "Ks 0 0 0"}) {
+    for (const char* text : {"Ka 1 1 1", "Ks 0 0 0", "Ke 0", "map_d a.png"}) {
         expect_warning(text, "it has no colour (Kd); grey of 0.5 is taken");
         EXPECT_EQ(model<DiffuseMaterial>(text).reflectance, vec3(0.5f));
     }
 }
 
-TEST_F(Mtl, IgnoresTransparencyWithAWarning) {
-    const std::string warning = "transparency (d, Tr) is ignored; illum 4, 6 or 7 would make it glass";
-    for (const char* text : {"d 0.5", "Tr 0.5", "d -halo 0.5", "d 0.5\nTr 0", "d 0"})
-        expect_warning("Kd 1\n" + std::string(text), warning);
-    for (const char* text :
-         {"d 1", "Tr 0", "d 1\nTr 1", "Tr 1\nd 1.0"})  // d counts: it is in the specification.
-        EXPECT_TRUE(material("Kd 1\n" + std::string(text)).warnings.empty()) << text;
-    expect_warning("illum 3\nd 0.5", warning);
+TEST_F(Mtl, OpacityIsDOrElseWhatTrLeaves) {
+    const auto opacity = [&](const std::string& text) {
+        const Opacity read = material("Kd 1\n" + text).material.opacity;
+        EXPECT_TRUE(material("Kd 1\n" + text).warnings.empty()) << text;
+        EXPECT_FALSE(read.cutoff || read.value.texture) << text;
+        return read.value.factor;
+    };
+    EXPECT_EQ(opacity(""), 1.0f);
+    EXPECT_EQ(opacity("d 0.25"), 0.25f);
+    EXPECT_EQ(opacity("d -halo 0.25"), 0.25f);
+    EXPECT_EQ(opacity("Tr 0.25"), 0.75f);
+    EXPECT_EQ(opacity("illum 3\nd 0.25"), 0.25f);
+    EXPECT_EQ(opacity("illum 7\nd 0.25"), 1.0f);  // It is glass, which lets light through.
+    EXPECT_EQ(opacity("illum 7\nd 7"), 1.0f);
+    for (const char* text : {"d 0.5\nTr 0", "Tr 1\nd 0.5"})  // d counts: it is in the specification.
+        EXPECT_EQ(opacity(text), 0.5f);
+}
+
+TEST_F(Mtl, WarnsOfOddOpacity) {
+    expect_warning("Kd 1\nd 0", "nothing is seen of it: d is 0, or Tr is 1");
+    expect_warning("Kd 1\nTr 1", "nothing is seen of it: d is 0, or Tr is 1");
+    expect_warning("Kd 1\nd 1.5", "d 1.5 is not from 0 to 1; the material is taken to be opaque");
+    expect_warning("Kd 1\nTr -3", "Tr -3 is not from 0 to 1; the material is taken to be opaque");
+    EXPECT_EQ(material("d 1.5").material.opacity.value, 1.0f);
+    const MtlMaterial none = material("Kd 1\nTr 2");
+    EXPECT_EQ(none.material.opacity.value, 0.0f);
+    ASSERT_EQ(none.warnings.size(), 2u);
+    EXPECT_NE(none.warnings[0].find("Tr 2 is not from 0 to 1; the material is taken to be transparent"),
+              std::string::npos);
 }
 
 TEST_F(Mtl, ListsWhatIsIgnoredOnceForTheFile) {
     const MtlLibrary library = load(
-        "newmtl a\nKd 1\nmap_Kd -o 1 1 1 a.png\nbump b.png\nPr 0.5\nNi 0\nsharpness 60\nTf 0 0 0\n"
-        "newmtl b\nKd 1\nmap_Kd c.png\nnorm d.png\ndisp e.png\nrefl -type sphere f.png\ndecal g.png\n"
-        "map_Bump h.png\nPr 1\nfoo\n");
+        "newmtl a\nKd 1\nmap_Ka a.png\nbump b.png\nPc 0.5\nNi 0\nsharpness 60\nTf 0 0 0\n"
+        "newmtl b\nKd 1\nmap_Kd c.png\nbump d.png\ndisp e.png\nrefl -type sphere f.png\ndecal g.png\n"
+        "map_Bump h.png\nPc 1\nfoo\n");
     ASSERT_EQ(library.warnings.size(), 2u);
-    EXPECT_EQ(
-        folder_.without_folder(library.warnings[0]),
-        "m.mtl: ignored map_Kd, bump, norm, disp, refl, decal, map_Bump (textures are not supported yet)");
-    EXPECT_EQ(folder_.without_folder(library.warnings[1]), "m.mtl: ignored Pr, foo (unknown statements)");
+    EXPECT_EQ(folder_.without_folder(library.warnings[0]),
+              "m.mtl: ignored map_Ka, bump, disp, refl, decal, map_Bump (textures of these kinds are not "
+              "supported)");
+    EXPECT_EQ(folder_.without_folder(library.warnings[1]), "m.mtl: ignored Pc, foo (unknown statements)");
     std::string many = "newmtl a\nKd 1\n";
     for (int i = 0; i < 30; ++i)
         many += 'x' + std::to_string(i) + '\n';

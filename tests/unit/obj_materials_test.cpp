@@ -151,10 +151,19 @@ TEST_F(ObjMaterials, FacesBeforeTheFirstAreGrey) {
                     {"scene.json:3:36: m.obj: 1 face before the first usemtl; shown in grey"});
 }
 
+TEST_F(ObjMaterials, FacesBeforeTheFirstMayHaveColours) {
+    const Scene scene = load("v 0 0 1 1 0 0\nf 1 2 5\nmtllib m.mtl\nusemtl lamp\nf 1 3 4\n");
+    expect_warnings(scene, {"scene.json:3:36: m.obj: 1 face before the first usemtl; shown in the colours of "
+                            "their vertices"});
+    EXPECT_TRUE(scene.materials[scene.shapes.at(0).material].vertex_colors);
+    EXPECT_EQ(reflectance(scene, 0), vec3(1));
+    EXPECT_FALSE(scene.materials[scene.shapes.at(1).material].vertex_colors);
+}
+
 TEST_F(ObjMaterials, WarnOfWhatIsUsed) {
-    folder_.write("m.mtl", "newmtl a\nKd 2\nmap_Kd a.png\nnewmtl b\nKd 3\nnewmtl lamp\nKe 1\n");
+    folder_.write("m.mtl", "newmtl a\nKd 2\nbump a.png\nnewmtl b\nKd 3\nnewmtl lamp\nKe 1\n");
     expect_warnings(load("mtllib m.mtl\nusemtl lamp\nf 1 2 3\nusemtl a\nf 1 3 4\n"),
-                    {"scene.json:3:36: m.mtl: ignored map_Kd (textures are not supported yet)",
+                    {"scene.json:3:36: m.mtl: ignored bump (textures of these kinds are not supported)",
                      "scene.json:3:36: m.mtl:1: material \"a\": Kd is 2 in a channel; it is scaled to 1"});
 }
 

@@ -5,21 +5,29 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
+#include "load/obj/mtl_ignored.h"
 #include "load/quote.h"
 #include "load/text_lines.h"
 
 namespace candela {
 namespace {
 
-bool is_texture(std::string_view command) {
-    constexpr std::array<std::string_view, 5> OTHERS{"bump", "disp", "decal", "refl", "norm"};
-    return command.starts_with("map_") || std::find(OTHERS.begin(), OTHERS.end(), command) != OTHERS.end();
+// The textures that are read; the others are ignored.
+constexpr std::array<std::string_view, 9> READ{"map_Kd", "map_Ks", "map_Ke", "map_Ns", "map_d",
+                                               "map_Pr", "map_Pm", "norm",   "map_Kn"};
+constexpr std::array<std::string_view, 4> NOT_READ{"bump", "disp", "decal", "refl"};
+
+template <size_t N>
+bool is_one_of(const std::array<std::string_view, N>& names, std::string_view name) {
+    return std::ranges::find(names, name) != names.end();
 }
 
 class Reader {
@@ -36,20 +44,14 @@ class Reader {
         if (library_.materials.empty()) {
             throw Error(file_ + ": the file has no materials (lines \"newmtl name\"); is it an MTL file?");
         }
-        warn_of(textures_, "textures are not supported yet");
-        warn_of(unknown_, "unknown statements");
+        std::ranges::copy(ignored_.warnings(file_), std::back_inserter(library_.warnings));
         return std::move(library_);
     }
 
   private:
-    [[noreturn]] void fail(const std::string& cause) const {
-        throw Error(file_ + ':' + std::to_string(line_) + ": " + cause);
-    }
+    std::string place() const { return file_ + ':' + std::to_string(line_); }
 
-    void warn_of(const std::vector<std::string>& statements, const char* why) {
-        if (statements.empty()) return;
-        library_.warnings.push_back(file_ + ": ignored " + joined(statements) + " (" + why + ')');
-    }
+    [[noreturn]] void fail(const std::string& cause) const { throw Error(place() + ": " + cause); }
 
     void read_line(std::string_view command, std::string_view rest) {
         if (command == "newmtl") {
@@ -71,7 +73,7 @@ class Reader {
         } else if (command == "Ks") {
             s.ks = colour(command, rest);
         } else if (command == "Ke") {
-            s.ke = vec3(colour(command, rest));
+            s.ke = colour(command, rest);
         } else if (command == "Ns") {
             s.ns = number(command, rest);
             if (s.ns < 0.0) fail("Ns, an exponent, must not be negative");
@@ -84,17 +86,30 @@ class Reader {
             s.d = number(command, rest);
         } else if (command == "Tr") {
             s.tr = number(command, rest);
-        } else if (is_texture(command)) {
-            if (command == "map_Kd") s.has_texture = true;
-            note(textures_, command);
+        } else if (command == "Pr") {
+            s.pr = share(command, rest);
+        } else if (command == "Pm") {
+            s.pm = share(command, rest);
+        } else if (is_one_of(READ, command)) {
+            read_texture(s, command, rest);
+        } else if (command.starts_with("map_") || is_one_of(NOT_READ, command)) {
+            ignored_.add(command, "textures of these kinds are not supported");
         } else if (command != "Ka" && command != "Tf" && command != "sharpness") {
-            note(unknown_, command);
+            ignored_.add(command, "unknown statements");
         }
     }
 
-    static void note(std::vector<std::string>& statements, std::string_view command) {
-        if (std::find(statements.begin(), statements.end(), command) == statements.end())
-            statements.emplace_back(command);
+    void read_texture(MtlStatements& s, std::string_view command, std::string_view rest) {
+        MtlTexture texture = parse_mtl_texture(command, rest, place());
+        for (const std::string& option : texture.ignored)
+            ignored_.add(option, "options of textures that are not supported");
+        s.textures[command == "map_Kn" ? "norm" : std::string(command)] = std::move(texture);
+    }
+
+    double share(std::string_view command, std::string_view rest) const {
+        const double value = number(command, rest);
+        if (value >= 0.0 && value <= 1.0) return value;
+        fail(std::string(command) + " needs a number from 0 to 1, found " + number_text(value, 6));
     }
 
     double number(std::string_view command, std::string_view rest) const {
@@ -134,7 +149,7 @@ class Reader {
         if (!current_) return;
         const MtlStatements s = *std::exchange(current_, std::nullopt);
         if (!library_.materials.contains(s.name)) {
-            library_.materials.emplace(s.name, mtl_material(s, file_));
+            library_.materials.emplace(s.name, mtl_material(s, file_, ignored_));
         } else {
             library_.warnings.push_back(file_ + ':' + std::to_string(s.line) + ": material " + quote(s.name) +
                                         " is defined again; the first definition counts");
@@ -144,8 +159,7 @@ class Reader {
     std::string file_;
     uint64_t line_ = 0;
     std::optional<MtlStatements> current_;
-    std::vector<std::string> textures_;  // The statements that name textures, each once ...
-    std::vector<std::string> unknown_;   // ... and those of unknown meaning.
+    MtlIgnored ignored_;
     MtlLibrary library_;
 };
 

@@ -16,10 +16,10 @@ struct MtlLibrary {
     std::vector<std::string> warnings;  // `file: ...` or `file:line: ...`.
 };
 
-// Reads a library; mtl_material() says how. The first definition of a name counts. Textures and unknown
-// statements are ignored with a warning; Ka, Tf and sharpness without. Throws Error as read_file() does,
-// `file:line: cause` for a number that is malformed or out of range and for a statement before the first
-// newmtl, and `file: cause` if there is no material.
+// Reads a library; mtl_material() says how. The first definition of a name counts. Unknown statements and
+// some textures are ignored with a warning; Ka, Tf and sharpness without. Throws Error as read_file() and
+// parse_mtl_texture() do, `file:line: cause` for a number that is malformed or out of range and for a
+// statement before the first newmtl, and `file: cause` if there is no material. Does not look for images.
 MtlLibrary load_mtl(const std::filesystem::path& file);
 
 }  // namespace candela

@@ -32,9 +32,10 @@ std::vector<std::string> add_materials(const std::filesystem::path& file, const 
             builder.add_file_appearance(name_of(name, part), default_material(has_colors), std::nullopt);
             continue;
         }
-        const MtlMaterial& material = find_mtl_material(library, file, *part.material);
+        MtlMaterial material = find_mtl_material(library, file, *part.material);
         std::ranges::copy(material.warnings, std::back_inserter(warnings));
-        const bool emits = material.emission != vec3(0.0f);
+        add_images(material, builder.scene());
+        const bool emits = material.emission.factor != vec3(0.0f);
         builder.add_file_appearance(name_of(name, part), material.material,
                                     emits ? std::optional(Emission{material.emission}) : std::nullopt);
     }

@@ -1,0 +1,35 @@
+// The statements of MTL files that name textures.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/texture.h"
+
+namespace candela {
+
+// What follows a command such as map_Kd: options, and the name of a file.
+struct MtlTexture {
+    std::string file;   // Relative to the folder of the MTL file; its parts are separated by slashes.
+    std::string place;  // Of the statement, as `file:line`.
+    Texture texture{};  // Where it is looked up; image, encoding and channel are still to be set.
+    std::optional<uint32_t> channel;   // -imfchan: 0 .. 3.
+    float multiplier = 1.0f;           // -bm, of normals and heights; within +-1000.
+    std::vector<std::string> ignored;  // Options that change the picture and yet are ignored.
+};
+
+// Reads the rest of a statement:
+//   -s u [v [w]], -o u [v [w]]  the image is looked up at s * (u, v) + o; each within +-1e6;
+//   -clamp on|off               what lies beyond the image: its edge, or the image again;
+//   -imfchan r|g|b|m|l|z        which channel is a number; m is alpha, l is read as r, z is ignored;
+//   -bm x                       the multiplier;
+//   -mm, -t, -boost, -texres, -type, -blendu, -blendv, -cc   ignored.
+// The file's name is all that follows the options, with spaces; backslashes become slashes. Throws Error
+// `place: cause` for an unknown option, a value that is malformed or out of range, and a missing name.
+// Ref: Alias|Wavefront, "MTL material format" (1995).
+MtlTexture parse_mtl_texture(std::string_view command, std::string_view rest, const std::string& place);
+
+}  // namespace candela

@@ -1,0 +1,130 @@
+// OBJ files whose materials look up images, from the files to the scene.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "scene/images.h"
+#include "scene_fixture.h"
+#include "support/png_writer.h"
+
+namespace candela {
+namespace {
+
+constexpr const char* SHAPE = R"({"type": "obj", "file": "m.obj"})";
+
+class ObjTextures : public testing::Test {
+  protected:
+    ObjTextures() { write_faces("usemtl a\nf 1/1 2/2 3/3\n"); }
+
+    void write_faces(const std::string& faces) {
+        folder_.write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n" + faces);
+    }
+
+    // An image of one texel, whose channels are all 51 (0.2).
+    void write_image(const std::string& name, PngColor color) {
+        PngPicture picture{.size = {1, 1}, .bits = 8, .color = color};
+        picture.samples.assign(picture.channels(), 51);
+        folder_.write(name, encode_png(picture));
+    }
+
+    // The scene of a shape with this library.
+    Scene load(const std::string& library) {
+        folder_.write("m.mtl", library);
+        return folder_.load(scene_of(SHAPE));
+    }
+
+    static const Material& material(const Scene& scene, size_t shape = 0) {
+        return scene.materials.at(scene.shapes.at(shape).material);
+    }
+
+    SceneFolder folder_;
+};
+
+TEST_F(ObjTextures, ImagesLieBesideTheLibrary) {
+    std::filesystem::create_directories(folder_.path() / "parts/my tex");
+    write_image("parts/my tex/a.png", png_rgb);
+    folder_.write("parts/m.mtl", "newmtl a\nmap_Kd my tex\\a.png\nmap_Ke my tex/../my tex/a.png\n");
+    folder_.write("m.obj",
+                  "mtllib parts/m.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+    const Scene scene = folder_.load(scene_of(SHAPE));
+    ASSERT_EQ(scene.images.size(), 1u);  // Under two names.
+    EXPECT_EQ(scene.images[0].image.size, uvec2(1, 1));
+    EXPECT_EQ(folder_.without_folder(scene.images[0].place), "parts/m.mtl:2");
+    EXPECT_NE(std::ranges::find(scene.files, folder_.path() / "parts/my tex/a.png"), scene.files.end());
+    EXPECT_EQ(scene.shapes.at(0).emission->radiance.texture->image, 0u);
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST_F(ObjTextures, MaterialsShareImages) {
+    for (const char* name : {"a.png", "b.png", "n.png"})
+        write_image(name, png_rgb);
+    write_faces("usemtl b\nf 1/1 2/2 3/3\nusemtl a\nf 3/3 2/2 1/1\n");
+    const Scene scene = load(
+        "newmtl a\nmap_Kd a.png\nnorm n.png\nmap_Ke b.png\nnewmtl b\nmap_Kd b.png\nmap_d a.png\n"
+        "newmtl unused\nmap_Kd no.png\n");
+    ASSERT_EQ(scene.images.size(), 3u);
+    const auto name_of = [&](const Texture& texture) {
+        return scene.images.at(texture.image).path.filename().string();
+    };
+    const Material& b = material(scene, 0);
+    EXPECT_EQ(name_of(*std::get<DiffuseMaterial>(b.model).reflectance.texture), "b.png");
+    EXPECT_EQ(name_of(*b.opacity.value.texture), "a.png");
+    const Material& a = material(scene, 1);
+    EXPECT_EQ(a.name, "m.obj/a");
+    EXPECT_EQ(name_of(*std::get<DiffuseMaterial>(a.model).reflectance.texture), "a.png");
+    EXPECT_EQ(name_of(a.normal_map->texture), "n.png");
+    EXPECT_EQ(name_of(*scene.shapes.at(1).emission->radiance.texture), "b.png");
+    EXPECT_FALSE(scene.shapes.at(0).emission);
+    EXPECT_TRUE(scene.meshes.at(0).tangents.empty());
+    EXPECT_FALSE(scene.meshes.at(1).tangents.empty());
+}
+
+TEST_F(ObjTextures, OpacityIsAlphaWhereThereIsAlpha) {
+    for (const auto& [color, channel] : {std::pair(png_grey, 0u), std::pair(png_rgb, 0u),
+                                         std::pair(png_grey_alpha, 3u), std::pair(png_rgb_alpha, 3u)}) {
+        write_image("a.png", color);
+        EXPECT_EQ(material(load("newmtl a\nKd 1\nmap_d a.png\n")).opacity.value.texture->channel, channel);
+        EXPECT_EQ(material(load("newmtl a\nKd 1\nmap_d -imfchan g a.png\n")).opacity.value.texture->channel,
+                  1u);
+        EXPECT_EQ(material(load("newmtl a\nmap_Kd a.png\nmap_d a.png\n")).opacity.value.texture->channel, 3u);
+    }
+}
+
+TEST_F(ObjTextures, ImagesMustBeThere) {
+    const auto error = [&](const std::string& library) {
+        return folder_.without_folder(error_of([&] { load(library); }));
+    };
+    EXPECT_EQ(error("newmtl a\nKd 1\nmap_Kd no.png\n"),
+              "m.mtl:3: cannot read \"no.png\": the file does not exist; check the name");
+    folder_.write("a.png", "no image");
+    EXPECT_EQ(error("newmtl a\nnorm a.png\n").substr(0, 9), "m.mtl:2: ");
+    // With a material of the scene, nobody asks for them.
+    EXPECT_NO_THROW(folder_.load(scene_of(R"({"type": "obj", "file": "m.obj", "material": "white"})")));
+}
+
+TEST_F(ObjTextures, EachPartNeedsTextureCoordinates) {
+    write_image("a.png", png_rgb);
+    const std::string library = "newmtl a\nmap_Kd a.png\nnewmtl b\nKd 1\n";
+    write_faces("usemtl b\nf 1 2 3\nusemtl a\nf 1/1 2/2 3/3\nf 3 2 1\n");
+    const Scene scene = load(library);
+    EXPECT_TRUE(scene.meshes.at(0).uv0.empty());
+    EXPECT_EQ(scene.meshes.at(1).uv0.size(), 6u);
+    write_faces("usemtl b\nf 1/1 2/2 3/3\nusemtl a\nf 1 2 3\n");
+    folder_.write("m.mtl", library);
+    folder_.expect_error(scene_of(std::string("@") + SHAPE),
+                         "the material \"m.obj/a\" has textures, but the mesh has no texture coordinates; "
+                         "export it with them, or use a material without textures");
+}
+
+TEST_F(ObjTextures, AreInASceneOfItsOwn) {
+    write_image("a.png", png_rgb);
+    folder_.write("m.mtl", "newmtl a\nmap_Kd a.png\nd 0.5\n");
+    const Scene scene = load_scene(folder_.path() / "m.obj");
+    EXPECT_EQ(std::get<DiffuseMaterial>(material(scene).model).reflectance.factor, vec3(1));
+    EXPECT_EQ(material(scene).opacity.value, 0.5f);
+    EXPECT_EQ(scene.images.at(0).image.channels, 3u);
+    EXPECT_EQ(scene.meshes.at(0).uv0, (std::vector<vec2>{vec2(0, 0), vec2(1, 0), vec2(0, 1)}));
+}
+
+}  // namespace
+}  // namespace candela
