@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "scene/material_textures.h"
 #include "scene/mesh.h"
 #include "scene/tangents.h"
@@ -39,11 +40,11 @@ void complete_attributes(const Scene& scene, const std::string& place, const App
         note(*appearance.emission->radiance.texture);
     for (const auto& [set, uvs] : {std::pair(0, &mesh.uv0), std::pair(1, &mesh.uv1)}) {
         if ((sets >> set & 1u) == 0) continue;
-        const std::string name = set == 0 ? "texture coordinates" : "second set of texture coordinates";
+        const char* name = set == 0 ? "texture coordinates" : "second set of texture coordinates";
         if (uvs->empty()) {
-            throw Error(place + ": the material \"" + material.name +
-                        "\" has textures, but the mesh has no " + name +
-                        "; export it with them, or use a material without textures");
+            throw Error(concat(place, ": the material \"", material.name,
+                               "\" has textures, but the mesh has no ", name,
+                               "; export it with them, or use a material without textures"));
         }
     }
     if (material.normal_map && mesh.tangents.empty()) add_tangents(mesh, material.normal_map->texture.uv_set);

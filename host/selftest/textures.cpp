@@ -215,7 +215,8 @@ Evidence test_textures(const vk::Device& device, SceneAccess access, size_t coun
     const std::vector<TextureValue> values = run_textures(device, build_gpu_scene(scene), access, items);
     Evidence evidence;
     for (size_t i = 0; i < items.size(); ++i) {
-        const auto& [texture, uv, unused] = items[i];
+        const uint32_t texture = items[i].texture;
+        const vec2 uv = items[i].uv;
         const TextureBounds expected = reference.at(texture, uv);
         const dvec4 value(values[i].rgba);
         const bool within = glm::all(glm::greaterThanEqual(value, expected.lo)) &&
