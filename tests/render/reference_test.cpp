@@ -33,7 +33,7 @@ constexpr std::array REFERENCES{
     Reference{"environment", 512},     Reference{"small-sphere-light", 832},
     Reference{"many-lights", 2560},    Reference{"mesh-light", 2688},
     Reference{"smooth-normals", 256},  Reference{"textured-diffuse", 1024},
-    Reference{"normal-map", 64},
+    Reference{"normal-map", 256},
 };
 
 // The median over pixels of the standard error over the mean may not be larger: else the test would accept
