@@ -1,11 +1,9 @@
-// Files: read whole, written whole or not at all, with errors that say what to do; and the hash of bytes.
+// Files: read whole, written whole or not at all, with errors that say what to do.
 #include "base/file.h"
 
 #include <array>
 #include <csignal>
 #include <fstream>
-#include <span>
-#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -17,7 +15,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/hash.h"
 #include "base/temporary_file.h"
 #include "base_fixture.h"
 
@@ -44,23 +41,6 @@ class FileSizeLimit {
   private:
     void (*old_handler_)(int);
     rlimit old_limit_{};
-};
-
-// Takes away the rights of root, who may read and write everything, while it lives.
-class Unprivileged {
-  public:
-    Unprivileged() {
-        if (was_root_ && ::setresuid(NOBODY, NOBODY, 0) != 0) ADD_FAILURE() << "cannot stop being root";
-    }
-    Unprivileged(const Unprivileged&) = delete;
-    Unprivileged& operator=(const Unprivileged&) = delete;
-    ~Unprivileged() {
-        if (was_root_ && ::setresuid(0, 0, 0) != 0) ADD_FAILURE() << "cannot become root again";
-    }
-
-  private:
-    static constexpr uid_t NOBODY = 65534;
-    bool was_root_ = ::geteuid() == 0;
 };
 
 // Makes `directory` the current one while it lives.
@@ -104,16 +84,6 @@ TEST(File, OfACacheIsARegularOneOrNothing) {
     EXPECT_EQ(read_regular_file(directory / "missing"), std::nullopt);
 }
 
-TEST(File, PrivateFoldersAreForThisUserAlone) {
-    const TemporaryDirectory directory;
-    create_private_folders(directory / "a/b");
-    EXPECT_EQ(fs::status(directory / "a").permissions(), fs::perms(0700));
-    EXPECT_EQ(fs::status(directory / "a/b").permissions(), fs::perms(0700));
-    write_file_atomically(directory / "file", "");
-    create_private_folders(directory / "file/b");
-    EXPECT_EQ(directory.size(), 2);
-}
-
 TEST(File, ReadsAPipe) {
     const TemporaryDirectory directory;
     const std::string pipe = (directory / "pipe").string();
@@ -141,16 +111,6 @@ TEST(File, SaysWhyAFileCannotBeRead) {
               "cannot read \"/proc/self/mem\": Input/output error; check the file and its disk");
 }
 
-TEST(File, SaysThatPermissionIsMissingToRead) {
-    const Unprivileged unprivileged;
-    const TemporaryDirectory directory;
-    const fs::path secret = directory / "secret";
-    write_file_atomically(secret, "x");
-    fs::permissions(secret, fs::perms::none);
-    EXPECT_EQ(error_of([&] { read_file(secret); }),
-              "cannot read \"" + secret.string() + "\": Permission denied; check the permissions");
-}
-
 TEST(File, FindsAnUnwritablePlaceBeforehandAndWhenWriting) {
     const TemporaryDirectory directory;
     write_file_atomically(directory / "file", "");
@@ -173,31 +133,6 @@ TEST(File, FindsAnUnwritablePlaceBeforehandAndWhenWriting) {
         EXPECT_EQ(error_of([&] { write_file_atomically(path, "x"); }), expected);
     }
     EXPECT_EQ(directory.size(), 2);
-}
-
-TEST(File, FindsADirectoryInWhichNotEvenRootMayCreateFiles) {
-    const std::string message = error_of([&] { check_writable("/proc/out.exr"); });
-    EXPECT_TRUE(message.starts_with(
-        "cannot write \"/proc/out.exr\": no file can be created in the directory \"/proc\" ("))
-        << message;
-    EXPECT_TRUE(message.ends_with("); choose a place that you may write to")) << message;
-}
-
-TEST(File, RespectsWriteProtection) {
-    const Unprivileged unprivileged;
-    const TemporaryDirectory directory;
-    const fs::path file = directory / "file";
-    write_file_atomically(file, "old");
-    fs::permissions(file, fs::perms::owner_read);
-    EXPECT_EQ(error_of([&] { check_writable(file); }),
-              "cannot write \"" + file.string() +
-                  "\": the file exists and is write-protected (Permission denied); choose another name");
-    fs::permissions(directory.path(), fs::perms::owner_read | fs::perms::owner_exec);
-    EXPECT_EQ(error_of([&] { check_writable(directory / "new"); }),
-              "cannot write \"" + (directory / "new").string() +
-                  "\": no file can be created in the directory \"" + directory.path().string() +
-                  "\" (Permission denied); choose a place that you may write to");
-    fs::permissions(directory.path(), fs::perms::owner_all);
 }
 
 TEST(File, CheckingLeavesNothingBehindAndChangesNothing) {
@@ -281,54 +216,6 @@ TEST(File, LeavesTheTemporaryFilesOfOthersAlone) {
     EXPECT_EQ(directory.size(), 5);
 }
 
-TEST(File, GivesAReplacedFileItsPermissions) {
-    const TemporaryDirectory directory;
-    const fs::path file = directory / "out.exr";
-    for (const mode_t mode : {0600, 0640, 0666, 0755}) {
-        std::ofstream(file) << "old";
-        ASSERT_EQ(::chmod(file.c_str(), mode), 0);
-        write_file_atomically(file, "new");
-        EXPECT_EQ(fs::status(file).permissions(), fs::perms(mode));
-    }
-}
-
-// A file of root's in a folder of root's where everybody may create files and only owners may replace theirs.
-class AnothersFile : public testing::Test {
-  protected:
-    void SetUp() override {
-        if (::geteuid() != 0) GTEST_SKIP() << "only root can make a file that belongs to somebody else";
-        std::ofstream(file_) << "old";
-        ASSERT_EQ(::chmod(file_.c_str(), 0666), 0);
-        ASSERT_EQ(::chmod(directory_.path().c_str(), 01777), 0);
-    }
-
-    const TemporaryDirectory directory_;
-    const fs::path file_ = directory_ / "out.exr";
-};
-
-TEST_F(AnothersFile, IsRefusedBeforehand) {
-    const Unprivileged unprivileged;
-    EXPECT_EQ(error_of([&] { check_writable(file_); }),
-              "cannot write \"" + file_.string() +
-                  "\": the file belongs to another user, and in the directory \"" +
-                  directory_.path().string() + "\" only its owner may replace it; choose another name");
-    check_writable(directory_ / "new.exr");
-}
-
-TEST_F(AnothersFile, LetsWhatIsFinishedTakeANameBesideIt) {
-    const Unprivileged unprivileged;
-    for (const std::string name : {"out-1.exr", "out-2.exr"}) {
-        EXPECT_EQ(error_of([&] { write_file_atomically(file_, name); }),
-                  "cannot write \"" + file_.string() +
-                      "\": no file can be put in its place (Operation not permitted); what was to be written "
-                      "is in \"" +
-                      (directory_ / name).string() + '"');
-        EXPECT_EQ(read_file(directory_ / name), name);
-    }
-    EXPECT_EQ(read_file(file_), "old");
-    EXPECT_EQ(directory_.size(), 3);
-}
-
 TEST(File, WritesThroughSymbolicLinks) {
     const TemporaryDirectory directory;
     fs::create_directory(directory / "sub");
@@ -351,29 +238,6 @@ TEST(File, WritesToTheCurrentDirectoryByBareName) {
     write_file_atomically("out.exr", "image");
     EXPECT_EQ(read_file("out.exr"), "image");
     EXPECT_EQ(directory.size(), 1);
-}
-
-TEST(File, GivesNewFilesTheUsualPermissions) {
-    const TemporaryDirectory directory;
-    std::ofstream(directory / "usual") << "x";
-    write_file_atomically(directory / "ours", "x");
-    EXPECT_EQ(fs::status(directory / "ours").permissions(), fs::status(directory / "usual").permissions());
-}
-
-// Ref: test vectors of the authors, http://www.isthe.com/chongo/src/fnv/test_fnv.c
-TEST(Hash, AgreesWithThePublishedVectors) {
-    const auto hash = [](std::string_view text) { return fnv1a64(std::as_bytes(std::span(text))); };
-    EXPECT_EQ(hash(""), 0xcbf29ce484222325u);
-    EXPECT_EQ(hash("a"), 0xaf63dc4c8601ec8cu);
-    EXPECT_EQ(hash("b"), 0xaf63df4c8601f1a5u);
-    EXPECT_EQ(hash("foobar"), 0x85944171f73967e8u);
-    EXPECT_EQ(hash("chongo was here!\n"), 0x46810940eff5f915u);
-}
-
-TEST(Hash, ContinuesFromThePartBefore) {
-    const std::string_view text = "foobar";
-    const auto bytes = std::as_bytes(std::span(text));
-    EXPECT_EQ(fnv1a64(bytes.subspan(3), fnv1a64(bytes.first(3))), fnv1a64(bytes));
 }
 
 }  // namespace
