@@ -19,8 +19,8 @@
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
+#include "cli/loading.h"
 #include "cli/vulkan.h"
-#include "load/load.h"
 #include "probe/scenes.h"
 #include "version.h"
 #include "vk/device.h"
@@ -36,8 +36,6 @@ constexpr double DEFAULT_SECONDS = 3.0;
 
 // A run is limited by time unless the command line limits it by samples.
 RenderTask make_task(const BenchArguments& arguments, const std::string& name, Scene scene) {
-    for (const std::string& warning : scene.warnings)
-        print_warning(warning);
     RenderTask task{.name = name, .scene = std::move(scene)};
     task.settings = arguments.render.settings(task.scene);
     task.spp = arguments.render.spp.value_or(MAX_SPP);
@@ -49,7 +47,7 @@ RenderTask make_task(const BenchArguments& arguments, const std::string& name, S
 std::vector<RenderTask> make_tasks(const BenchArguments& arguments) {
     std::vector<RenderTask> tasks;
     for (const std::string& file : arguments.scenes)
-        tasks.push_back(make_task(arguments, file, load_scene(file)));
+        tasks.push_back(make_task(arguments, file, load_with_progress(file, arguments.render.texture_limit)));
     if (tasks.empty()) tasks.push_back(make_task(arguments, "Cornell box", cornell_box()));
     return tasks;
 }

@@ -11,8 +11,8 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/loading.h"
 #include "gpu_scene/gpu_scene.h"
-#include "load/load.h"
 #include "render/renderer.h"
 #include "scene/geometry.h"
 #include "shared/bvh_node.h"
@@ -24,6 +24,7 @@ using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
     std::string scene;
+    std::optional<uint32_t> texture_limit;
     PictureOptions picture;
     bool json = false;
 };
@@ -67,8 +68,7 @@ Json images_of(const Scene& scene) {
     return images;
 }
 
-Json describe(const InfoOptions& options, const Scene& scene) {
-    const GpuScene gpu = build_gpu_scene(scene);
+Json describe(const InfoOptions& options, const Scene& scene, const GpuScene& gpu) {
     std::vector<std::string> warnings = scene.warnings;
     std::ranges::copy(gpu.warnings, std::back_inserter(warnings));
     RenderSettings settings;
@@ -150,10 +150,11 @@ void print(const Json& info) {
 }
 
 ExitCode run(const InfoOptions& options) {
-    const Scene scene = load_scene(options.scene);
-    const Json info = describe(options, scene);
-    for (const std::string warning : info["warnings"])
+    Scene scene = load_with_progress(options.scene, options.texture_limit);
+    const GpuScene gpu = build_gpu_scene_freeing_images(scene);
+    for (const std::string& warning : gpu.warnings)
         print_warning(warning);
+    const Json info = describe(options, scene, gpu);
     if (options.json) {
         std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     } else {
@@ -171,6 +172,7 @@ Command add_info_command(CLI::App& app) {
     const auto options = std::make_shared<InfoOptions>();
     command->add_option("SCENE", options->scene, "Scene file (.json, .obj, .ply)")->required()->type_name("");
     options->picture.add_to(*command);
+    add_texture_limit(*command, options->texture_limit);
     command->add_flag("--json", options->json, "Print JSON for programs");
     return {command, [options] { return run(*options); }};
 }

@@ -11,47 +11,14 @@
 
 namespace candela {
 
-// A live line is renewed ten times per second, JSON is printed twice per second, and a plain line after both
-// a tenth of the work and ten seconds.
-static constexpr double LIVE_SECONDS = 0.1;
-static constexpr double JSON_SECONDS = 0.5;
-static constexpr double PLAIN_SECONDS = 10.0;
-static constexpr double PLAIN_SHARE = 0.1;
-
-Progress::Output Progress::choose(ProgressStyle style) {
-    switch (style) {
-        case ProgressStyle::json:
-            return Output::json;
-        case ProgressStyle::none:
-            return Output::none;
-        default:
-            return stderr_is_terminal() ? Output::live : Output::plain;
-    }
-}
-
 Progress::Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit,
                    ProgressStyle style)
     : pixels_(pixels),
       spp_(spp),
       done_before_(done),
       time_limit_(time_limit),
-      output_(choose(style)),
-      start_(std::chrono::steady_clock::now()),
-      now_{.done = done},
-      printed_{.done = done} {}
-
-Progress::~Progress() {
-    clear();
-}
-
-void Progress::clear() {
-    if (output_ == Output::live && printed_.seconds > 0.0) std::fputs("\r\x1b[K", stderr);
-    printed_.seconds = 0.0;
-}
-
-double Progress::seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
+      line_(style, done),
+      now_{.done = done} {}
 
 // Whole samples per pixel; the share may fall short of one by rounding.
 uint32_t Progress::spp_done() const {
@@ -71,14 +38,14 @@ double Progress::seconds_left() const {
 }
 
 // `12 %, 31 of 256 spp, 1.52 Msamples/s, 38.2 s left, error 0.031`
-std::string Progress::line() const {
+std::string Progress::text() const {
     return fixed(std::floor(100.0 * now_.done), 0) + " %, " + std::to_string(spp_done()) + " of " +
            std::to_string(spp_) + " spp, " + fixed(rate() / 1e6, 2) + " Msamples/s, " +
            duration_text(seconds_left()) + " left" +
            (now_.error ? ", error " + fixed(*now_.error, 4) : std::string());
 }
 
-std::string Progress::json_line(const std::string& state) const {
+std::string Progress::json_text(const std::string& state) const {
     using Json = nlohmann::ordered_json;
     return Json{{"state", state},
                 {"spp", spp_done()},
@@ -92,29 +59,11 @@ std::string Progress::json_line(const std::string& state) const {
 
 void Progress::update(double done, std::optional<double> error) {
     now_ = {.done = done, .seconds = seconds(), .error = error};
-    const double since = now_.seconds - printed_.seconds;
-    switch (output_) {
-        case Output::live:
-            if (since < LIVE_SECONDS) return;
-            // \r goes back to the start of the line, \x1b[K clears it.
-            std::fprintf(stderr, "\r\x1b[K%s", line().c_str());
-            break;
-        case Output::plain:
-            if (since < PLAIN_SECONDS || done - printed_.done < PLAIN_SHARE) return;
-            std::fprintf(stderr, "%s\n", line().c_str());
-            break;
-        case Output::json:
-            if (since < JSON_SECONDS) return;
-            std::fprintf(stderr, "%s\n", json_line("rendering").c_str());
-            break;
-        case Output::none:
-            return;
-    }
-    printed_ = now_;
+    if (line_.is_due(done)) line_.print(line_.is_json() ? json_text("rendering") : text(), done);
 }
 
 void Progress::end(const std::string& state) const {
-    if (output_ == Output::json) std::fprintf(stderr, "%s\n", json_line(state).c_str());
+    if (line_.is_json()) std::fprintf(stderr, "%s\n", json_text(state).c_str());
 }
 
 }  // namespace candela

@@ -1,13 +1,11 @@
-// The progress of a rendering on stderr: a live line on a terminal, plain lines at intervals elsewhere, or
-// lines of JSON for programs.
+// The progress of a rendering on stderr.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include "cli/render_options.h"
+#include "cli/progress_line.h"
 
 namespace candela {
 
@@ -17,21 +15,16 @@ class Progress {
     // given, ends the rendering earlier. The clock starts here.
     Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit,
              ProgressStyle style);
-    // Clears the live line, if there is one.
-    ~Progress();
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
-
     // Reports the share `done`, in [0, 1], of all samples and the estimated error of the image; prints no
     // more often than suits the output.
     void update(double done, std::optional<double> error);
     // Clears the live line, so that others can print.
-    void clear();
+    void clear() { line_.clear(); }
     // Prints the last line of JSON, whose "state" says how the rendering ended. Call it when all files are
     // written.
     void end(const std::string& state) const;
     // Wall time since the start [s].
-    double seconds() const;
+    double seconds() const { return line_.seconds(); }
 
   private:
     // The progress at an update.
@@ -43,20 +36,15 @@ class Progress {
     uint32_t spp_done() const;
     double rate() const;
     double seconds_left() const;
-    std::string line() const;
-    std::string json_line(const std::string& state) const;
-
-    enum class Output { none, plain, live, json };
-    static Output choose(ProgressStyle style);
+    std::string text() const;
+    std::string json_text(const std::string& state) const;
 
     uint64_t pixels_;
     uint32_t spp_;
     double done_before_;
     std::optional<double> time_limit_;
-    Output output_;
-    std::chrono::steady_clock::time_point start_;
-    Status now_;      // At the last update ...
-    Status printed_;  // ... and when something was printed last.
+    ProgressLine line_;
+    Status now_;  // At the last update.
 };
 
 }  // namespace candela

@@ -18,13 +18,13 @@
 #include "cli/convergence.h"
 #include "cli/interrupt.h"
 #include "cli/interval.h"
+#include "cli/loading.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "cli/vulkan.h"
 #include "film/identity.h"
 #include "gpu_scene/gpu_scene.h"
-#include "load/load.h"
 #include "render/adaptive.h"
 #include "render/make_identity.h"
 #include "render/steady_renderer.h"
@@ -262,16 +262,16 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
     check_checkpoint(options.checkpoint);
 
     const auto start = std::chrono::steady_clock::now();
-    const Scene scene = load_scene(options.scene_file);
+    const MessageOptions& messages = options.messages;
+    Scene scene = load_with_progress(options.scene_file, options.texture_limit,
+                                     messages.quiet ? ProgressStyle::none : messages.progress);
     files.read_all("the scene's file", scene.files);
     const double load_seconds = seconds_since(start);
-    for (const std::string& warning : scene.warnings)
-        print_warning(warning);
     const RenderJob job = options.job(scene);
     std::optional<Image> reference;
     if (options.reference) reference = load_reference(*options.reference, job.settings);
 
-    const GpuScene gpu_scene = build_gpu_scene(scene);
+    const GpuScene gpu_scene = build_gpu_scene_freeing_images(scene);
     for (const std::string& warning : gpu_scene.warnings)
         print_warning(warning);
     RenderRecord record{.command_line = command_line,
@@ -310,8 +310,8 @@ twice as many samples.
 --adaptive renders two halves with different seeds. Each takes its samples where the other shows that they
 remove the most noise for their time, so there is no bias. The image is their mean, and their difference gives
 the estimated error. It keeps four states in memory instead of one, and its images cannot be merged.
---progress json prints an object twice a second, and a last one, whose state is not "rendering", when all
-files are written; after an error there is none.
+--progress json prints an object twice a second, and a last one, whose state is neither "loading" nor
+"rendering", when all files are written; after an error there is none.
 --samples 0..64 on one computer, --samples 64..128 on another: candela merge joins the parts.)";
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/image_io.h"
+#include "cli/loading.h"
 #include "shared/constants.h"
 
 namespace candela {
@@ -66,6 +67,7 @@ void RenderOptions::add_to(CLI::App& app) {
 void RenderOptions::add_rendering_to(CLI::App& app) {
     app.option_defaults()->group("Picture");
     picture.add_to(app);
+    add_texture_limit(app, texture_limit);
     add_sampling_options(app);
     app.option_defaults()->group("Device");
     app.add_option("--device", device, "Index or part of the name (default: the best; see candela devices)")

@@ -81,6 +81,7 @@ struct RenderOptions {
 
     PictureOptions picture;
     std::optional<std::string> camera;
+    std::optional<uint32_t> texture_limit;  // Texels along a side of an image.
 
     std::optional<uint32_t> spp;
     std::optional<double> target_error;  // Relative error of the image.

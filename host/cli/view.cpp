@@ -13,11 +13,11 @@
 #include "cli/command_files.h"
 #include "cli/console.h"
 #include "cli/interrupt.h"
+#include "cli/loading.h"
 #include "cli/outputs.h"
 #include "cli/render_options.h"
 #include "cli/vulkan.h"
 #include "film/identity.h"
-#include "load/load.h"
 #include "render/make_identity.h"
 #include "version.h"
 #include "view/controls.h"
@@ -111,10 +111,8 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
         files.write("--screenshot", path);
     arguments.check();
     const RenderOptions& options = arguments.render;
-    Scene scene = load_scene(options.scene_file);
+    Scene scene = load_with_progress(options.scene_file, options.texture_limit);
     files.read_all("the scene's file", scene.files);
-    for (const std::string& warning : scene.warnings)
-        print_warning(warning);
     const ViewState state{.camera = options.choose_camera(scene),
                           .settings = options.settings(scene),
                           .exposure_ev = float(options.images.exposure),

@@ -63,6 +63,7 @@ class Flattener {
         if (has_normals_) flat_.normals.reserve(count);
         flat_.attributes.reserve(count * attribute_words(attributes_));
         for (const Shape& shape : scene.shapes) {
+            lets_pass_ = lets_rays_pass(scene, shape) ? 1 : 0;
             std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
         }
     }
@@ -86,9 +87,9 @@ class Flattener {
             const double error = pair_error(p[v.x], p[v.y], p[v.z], p[v.w]);
             const uint light = add_flat_light(shape, LIGHT_TRIANGLE, p[v.x], p[v.y] - p[v.x], p[v.z] - p[v.x],
                                               error, emission_uv(shape, mesh, v));
-            add_primitive(
-                {PRIMITIVE_TRIANGLES, p[v.x], p[v.y], p[v.z], p[v.w]},
-                {first_id + uvec2(first, second), shape.material, smooth, light, power_of_two_above(error)});
+            add_primitive({PRIMITIVE_TRIANGLES, p[v.x], p[v.y], p[v.z], p[v.w]},
+                          {first_id + uvec2(first, second), shape.material, smooth, light,
+                           power_of_two_above(error), lets_pass_});
             if (smooth) flat_.normals.back() = pack_normals(n[v.x], n[v.y], n[v.z], n[v.w]);
             add_attributes(corner_values(mesh.uv0, v, vec2(0.0f)), corner_values(mesh.uv1, v, vec2(0.0f)),
                            corner_values(mesh.colors, v, vec4(1.0f)),
@@ -118,18 +119,18 @@ class Flattener {
             const uint light = add_flat_light(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2, error,
                                               piece_uv(uv[0], uv[1], uv[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[3]},
-                          {uvec2(id, id + 1), shape.material, 0, light, origin_error});
+                          {uvec2(id, id + 1), shape.material, 0, light, origin_error, lets_pass_});
             add_uvs({uv[0], uv[1], uv[2], uv[3]}, vec4(along_u, handedness));
         } else {
             uint light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], e1, diagonal, error,
                                         piece_uv(uv[0], uv[1], uv[2]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[2]},
-                          {uvec2(id), shape.material, 0, light, origin_error});
+                          {uvec2(id), shape.material, 0, light, origin_error, lets_pass_});
             add_uvs({uv[0], uv[1], uv[2], uv[2]}, vec4(along_u, handedness));
             light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], diagonal, e2, error,
                                    piece_uv(uv[0], uv[2], uv[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[2], c[3], c[3]},
-                          {uvec2(id + 1), shape.material, 0, light, origin_error});
+                          {uvec2(id + 1), shape.material, 0, light, origin_error, lets_pass_});
             add_uvs({uv[0], uv[2], uv[3], uv[3]}, vec4(along_u, handedness));
         }
     }
@@ -143,8 +144,9 @@ class Flattener {
         // lights worse.
         const uint light = add_light(shape, LIGHT_SPHERE, center, radius, vec3(0.0f), area, error,
                                      piece_uv(vec2(0, 0), vec2(1, 0), vec2(0, 1)));
-        add_primitive({PRIMITIVE_SPHERE, center, radius, vec3(0.0f), vec3(0.0f)},
-                      {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error)});
+        add_primitive(
+            {PRIMITIVE_SPHERE, center, radius, vec3(0.0f), vec3(0.0f)},
+            {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error), lets_pass_});
         add_uvs({}, vec4(1, 0, 0, 1));  // All computed from the normal.
     }
 
@@ -155,8 +157,9 @@ class Flattener {
         const double error = disk_error(center, e1, e2);
         const uint light = add_flat_light(shape, LIGHT_DISK, center, e1, e2, error,
                                           piece_uv(disk.uvs[0], disk.uvs[1], disk.uvs[2]));
-        add_primitive({PRIMITIVE_DISK, center, e1, e2, vec3(0.0f)},
-                      {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error)});
+        add_primitive(
+            {PRIMITIVE_DISK, center, e1, e2, vec3(0.0f)},
+            {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error), lets_pass_});
         const bool swapped = disk.uvs[1].x < disk.uvs[2].x;
         add_uvs({disk.uvs[0], disk.uvs[1], disk.uvs[2], disk.uvs[2]}, swapped ? vec4(e2, -1) : vec4(e1, 1));
     }
@@ -251,6 +254,7 @@ class Flattener {
     const SceneFrame& frame_;
     uint attributes_;
     bool has_normals_ = false;
+    uint lets_pass_ = 0;  // Of the shape that is added.
     std::map<std::pair<uint32_t, TextureEncoding>, std::unique_ptr<ImagePyramid>>
         pyramids_;  // Of images that emit.
     FlatScene flat_;
@@ -260,6 +264,14 @@ class Flattener {
 
 FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes) {
     return Flattener(scene, frame, attributes).take();
+}
+
+bool lets_rays_pass(const Scene& scene, const Shape& shape) {
+    const Material& material = scene.materials[shape.material];
+    if (material.opacity.value.texture || material.opacity.value.factor < 1.0f) return true;
+    const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+    return instance != nullptr && material.vertex_colors &&
+           std::ranges::any_of(scene.meshes[instance->mesh].colors, [](vec4 c) { return c.w < 1.0f; });
 }
 
 void assign_probabilities(FlatScene& flat) {

@@ -36,6 +36,9 @@ struct FlatScene {
 // vertices' attributes are kept.
 FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes = 0);
 
+// Whether some rays may pass the shape: its material, or the colours of its vertices, are not opaque.
+bool lets_rays_pass(const Scene& scene, const Shape& shape);
+
 // Sets the probability of choosing each light: its share of the total power, which is not 0.
 void assign_probabilities(FlatScene& flat);
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <span>
 
@@ -86,21 +87,26 @@ uint32_t textured_bits(const MaterialTextures& t) {
     const auto bit = [](bool used, uint32_t of) { return used ? of : 0; };
     return bit(t.base != TEXTURE_NONE, TEXTURED_BASE) | bit(t.specular != TEXTURE_NONE, TEXTURED_SPECULAR) |
            bit(t.parameter != TEXTURE_NONE, TEXTURED_PARAMETER) |
-           bit(t.normal != TEXTURE_NONE, TEXTURED_NORMAL) |
-           bit(t.opacity_texture != TEXTURE_NONE || t.opacity < 1.0f, TEXTURED_OPACITY) |
+           bit(t.normal != TEXTURE_NONE, t.bump != 0 ? TEXTURED_BUMP : TEXTURED_NORMAL) |
            bit(t.vertex_colors != 0, TEXTURED_VERTEX_COLORS);
 }
 
 MaterialTextures textures_of(const Material& material, const EncodedMaterial& encoded,
-                             TextureTable& textures) {
+                             const SceneFrame& frame, TextureTable& textures) {
     constexpr float NO_CUTOFF = -1.0f;
     const auto& [opacity, cutoff] = material.opacity;
     const std::optional<NormalMap>& map = material.normal_map;
+    const std::optional<BumpMap>& bump = material.bump_map;
     return {.base = textures.add(encoded.base),
             .specular = textures.add(encoded.specular),
             .parameter = textures.add(encoded.parameter),
-            .normal = map ? textures.add(map->texture) : TEXTURE_NONE,
-            .normal_scale = map ? map->scale : 1.0f,
+            .normal = map    ? textures.add(map->texture)
+                      : bump ? textures.add(bump->texture)
+                             : TEXTURE_NONE,
+            .bump = !map && bump ? 1u : 0u,
+            .normal_scale = map    ? map->scale
+                            : bump ? frame.length(double(bump->scale))
+                                   : 1.0f,
             .opacity_texture = textures.add(opacity.texture),
             .opacity = opacity.factor,
             .cutoff = cutoff.value_or(NO_CUTOFF),
@@ -122,7 +128,7 @@ void append_materials(GpuScene& gpu, const std::vector<Material>& materials, Tex
         const EncodedMaterial encoded = encode_material(material.model, uint32_t(place - media.begin()));
         append(gpu.arrays[ARRAY_MATERIALS], pack(encoded.record));
         gpu.materials_present |= 1u << encoded.record.model;
-        const MaterialTextures used = textures_of(material, encoded, textures);
+        const MaterialTextures used = textures_of(material, encoded, gpu.frame, textures);
         append(gpu.arrays[ARRAY_MATERIAL_TEXTURES], pack(used));
         gpu.textured |= textured_bits(used);
     }
@@ -179,14 +185,15 @@ SceneFrame choose_frame(const Scene& scene) {
     return frame;
 }
 
-GpuScene build_gpu_scene(const Scene& scene) {
-    return build_gpu_scene(scene, choose_frame(scene));
-}
+namespace {
 
-GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame) {
+// `packed(i)` is called when the texels of image i have been copied.
+GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<void(size_t)>& packed) {
     GpuScene gpu;
     gpu.frame = frame;
     TextureTable textures(scene.images);
+    if (std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return lets_rays_pass(scene, shape); }))
+        gpu.textured |= TEXTURED_OPACITY;
     append_materials(gpu, scene.materials, textures);
     for (const Shape& shape : scene.shapes) {
         if (shape.emission && textures.add(shape.emission->radiance.texture) != TEXTURE_NONE)
@@ -195,8 +202,8 @@ GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame) {
     gpu.texture_traits = textures.traits();
     gpu.attributes = needed_attributes(gpu);
     gpu.arrays[ARRAY_TEXTURES] = textures.records();
-    gpu.arrays[ARRAY_TEXELS] = textures.texels();
     FlatScene flat = flatten(scene, frame, gpu.attributes);
+    gpu.arrays[ARRAY_TEXELS] = textures.texels(packed);
     gpu.primitive_count = uint32_t(flat.primitives.size());
     gpu.id_count = flat.id_count;
     gpu.has_normals = !flat.normals.empty();
@@ -269,6 +276,21 @@ GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame) {
     }
     if (gpu.light_count > 0) append(gpu.arrays[ARRAY_LIGHT_ALIAS], build_alias_table(flat.powers));
     return gpu;
+}
+
+}  // namespace
+
+GpuScene build_gpu_scene(const Scene& scene) {
+    return build_gpu_scene(scene, choose_frame(scene));
+}
+
+GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame) {
+    return build(scene, frame, [](size_t) {});
+}
+
+GpuScene build_gpu_scene_freeing_images(Scene& scene) {
+    return build(scene, choose_frame(scene),
+                 [&](size_t i) { scene.images[i].image.texels = std::vector<std::byte>(); });
 }
 
 }  // namespace candela

@@ -61,4 +61,8 @@ SceneFrame choose_frame(const Scene& scene);
 GpuScene build_gpu_scene(const Scene& scene);
 GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame);
 
+// build_gpu_scene(), for the last use of the scene's images: each loses its texels as soon as they are
+// packed, so that memory does not hold them all twice.
+GpuScene build_gpu_scene_freeing_images(Scene& scene);
+
 }  // namespace candela

@@ -5,9 +5,11 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/text.h"
 
 namespace candela {
 namespace {
@@ -109,7 +111,12 @@ uint32_t TextureTable::add(const std::optional<Texture>& texture) {
     if (!texture) return TEXTURE_NONE;
     const auto known = std::ranges::find(textures_, *texture);
     if (known != textures_.end()) return uint32_t(known - textures_.begin());
-    const TexelImage& image = images_[texture->image].image;
+    const auto& [path, real_path, place, image] = images_[texture->image];
+    if (std::max(image.size.x, image.size.y) > MAX_IMAGE_SIDE) {
+        throw Error(concat(place, ": the image ", path.string(), " has ", image.size.x, 'x', image.size.y,
+                           " pixels, but a texture at most ", MAX_IMAGE_SIDE,
+                           " along a side; make it smaller (--texture-limit)"));
+    }
     std::optional<uint32_t>& first = firsts_[texture->image];
     if (!first) {
         first = uint32_t(words_);
@@ -141,11 +148,19 @@ std::vector<uvec4> TextureTable::records() const {
     return words;
 }
 
-std::vector<uvec4> TextureTable::texels() const {
-    std::vector<uvec4> words(words_);
+// Grows step by step, because memory that has not been written to takes none.
+std::vector<uvec4> TextureTable::texels(const std::function<void(size_t)>& packed) const {
+    std::vector<std::pair<uint32_t, size_t>> in_order;
     for (size_t i = 0; i < images_.size(); ++i) {
-        if (!firsts_[i]) continue;
-        pack_texels(images_[i].image, std::span(words).subspan(*firsts_[i], texel_words(images_[i].image)));
+        if (firsts_[i]) in_order.emplace_back(*firsts_[i], i);
+    }
+    std::ranges::sort(in_order);
+    std::vector<uvec4> words;
+    words.reserve(words_);
+    for (const auto& [first, i] : in_order) {
+        words.resize(first + texel_words(images_[i].image));
+        pack_texels(images_[i].image, std::span(words).subspan(first));
+        packed(i);
     }
     return words;
 }

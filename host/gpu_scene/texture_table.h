@@ -1,7 +1,9 @@
 // Textures and their images -> records and texels.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,15 +19,17 @@ class TextureTable {
     // The scene's images must outlive the table.
     explicit TextureTable(const std::vector<ImageFile>& images) : images_(images), firsts_(images.size()) {}
 
-    // The index of a texture's record, or TEXTURE_NONE for none. Throws Error if there are too many texels.
+    // The index of a texture's record, or TEXTURE_NONE for none. Throws Error if its image is too large, or
+    // if there are too many texels.
     uint32_t add(const std::optional<Texture>& texture);
 
     // OR of the traits of all textures.
     uint32_t traits() const { return traits_; }
 
     std::vector<uvec4> records() const;
-    // Of all images that some texture looks up, tile by tile.
-    std::vector<uvec4> texels() const;
+    // Of all images that some texture looks up, tile by tile. Calls packed(i) as soon as image i is not
+    // needed any more.
+    std::vector<uvec4> texels(const std::function<void(size_t)>& packed = [](size_t) {}) const;
 
   private:
     const std::vector<ImageFile>& images_;

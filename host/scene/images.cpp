@@ -5,20 +5,20 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "base/color.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/shrink_image.h"
 #include "base/texel_io.h"
 #include "base/text.h"
 #include "scene/material_textures.h"
 
 namespace candela {
 namespace {
-
-constexpr uint32_t RED = 0, ALPHA = 3;
 
 // The same for all names of a file.
 std::filesystem::path identity_of(const std::filesystem::path& path) {
@@ -64,11 +64,24 @@ TexelImage in_srgb(const TexelImage& image) {
     return result;
 }
 
+// Calls visit(texture) for each texture of sRGB.
+template <class Visit>
+void for_each_srgb_texture(Scene& scene, const Visit& visit) {
+    const auto visit_srgb = [&](Texture& texture) {
+        if (texture.encoding == TextureEncoding::srgb) visit(texture);
+    };
+    for (Material& material : scene.materials)
+        for_each_texture(material, visit_srgb);
+    for (Shape& shape : scene.shapes) {
+        if (shape.emission && shape.emission->radiance.texture) visit_srgb(*shape.emission->radiance.texture);
+    }
+}
+
 // Lets textures that take an image with a gamma of its own for sRGB look up a converted copy.
 void convert_gammas(Scene& scene) {
     std::map<uint32_t, uint32_t> copies;
-    const auto convert = [&](Texture& texture) {
-        if (texture.encoding != TextureEncoding::srgb || !scene.images[texture.image].image.gamma) return;
+    for_each_srgb_texture(scene, [&](Texture& texture) {
+        if (!scene.images[texture.image].image.gamma) return;
         const auto [copy, is_new] = copies.emplace(texture.image, uint32_t(scene.images.size()));
         if (is_new) {
             ImageFile file = scene.images[texture.image];
@@ -77,25 +90,46 @@ void convert_gammas(Scene& scene) {
             scene.images.push_back(std::move(file));
         }
         texture.image = copy->second;
-    };
-    for (Material& material : scene.materials)
-        for_each_texture(material, convert);
-    for (Shape& shape : scene.shapes) {
-        if (shape.emission && shape.emission->radiance.texture) convert(*shape.emission->radiance.texture);
-    }
+    });
+}
+
+// Of the normals of any bumpy surface, the mean points away from it.
+bool points_up(vec4 mean) {
+    constexpr float FAR = 0.2f;
+    return mean.z > 0.6f && std::abs(mean.x - 0.5f) < FAR && std::abs(mean.y - 0.5f) < FAR;
 }
 
 void check_normal_map(Scene& scene, const Material& material) {
     const ImageFile& file = scene.images[material.normal_map->texture.image];
     const vec4 mean = mean_codes(file.image);
-    // Of any bumpy surface, the mean points away from it.
-    constexpr float FAR = 0.2f;
-    const bool points_up = mean.z > 0.6f && std::abs(mean.x - 0.5f) < FAR && std::abs(mean.y - 0.5f) < FAR;
-    if (points_up) return;
+    if (points_up(mean)) return;
     scene.warnings.push_back(file.place + ": the normal map of the material \"" + material.name + "\", " +
                              file.path.string() + ", has a mean of " + number_text(double(mean.x), 2) + ' ' +
                              number_text(double(mean.y), 2) + ' ' + number_text(double(mean.z), 2) +
                              ", not about 0.5 0.5 1; is it one in tangent space?");
+}
+
+// Whether an image of that mean is blue as a normal map in tangent space is.
+bool is_blue(vec4 mean) {
+    constexpr float LEAST = 0.15f;  // That of a map whose slopes are all of 70 degrees.
+    return points_up(mean) && mean.z - std::max(mean.x, mean.y) > LEAST;
+}
+
+// Many files name normal maps as bump maps.
+void check_bump_map(Scene& scene, Material& material) {
+    const BumpMap bump = *material.bump_map;
+    const ImageFile& file = scene.images[bump.texture.image];
+    const vec4 mean = mean_codes(file.image);
+    if (!is_blue(mean)) return;
+    const std::string what = concat(file.place, ": the bump map of the material \"", material.name, "\", ",
+                                    file.path.string(), ", has the colours of a normal map");
+    if (!bump.multiplier) {
+        scene.warnings.push_back(what + "; if it is one, name it as normal_map");
+        return;
+    }
+    material.normal_map = {bump.texture, *bump.multiplier};
+    material.bump_map.reset();
+    scene.warnings.push_back(what + " and is read as one; to say so, name it as norm");
 }
 
 // Replaces ALPHA_OR_RED in the texture of an opacity.
@@ -124,16 +158,22 @@ uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::s
     return uint32_t(scene.images.size() - 1);
 }
 
-void load_images(Scene& scene) {
+void load_images(Scene& scene, const ImageOptions& options) {
     std::vector<std::vector<std::string>> warnings(scene.images.size());
+    std::vector<TexelCodes> codes(scene.images.size(), TexelCodes::linear);
+    for_each_srgb_texture(scene, [&](const Texture& texture) { codes[texture.image] = TexelCodes::encoded; });
+    std::mutex mutex;
+    size_t done = 0;
     parallel_for(scene.images.size(), [&](size_t i) {
         ImageFile& file = scene.images[i];
         if (!file.image.texels.empty()) return;
         try {
-            file.image = read_texels(file.path, warnings[i]);
+            file.image = shrink(read_texels(file.path, warnings[i]), options.texture_limit, codes[i]);
         } catch (const Error& error) {
             throw Error(file.place + ": " + error.what(), error.code());
         }
+        const std::lock_guard lock(mutex);
+        options.progress(++done, scene.images.size());
     });
     for (size_t i = 0; i < scene.images.size(); ++i) {
         for (const std::string& warning : warnings[i])
@@ -142,6 +182,7 @@ void load_images(Scene& scene) {
     convert_gammas(scene);
     for (Material& material : scene.materials) {
         if (material.normal_map) check_normal_map(scene, material);
+        if (material.bump_map) check_bump_map(scene, material);
         if (!material.opacity.value.texture) continue;
         choose_channel(scene, *material.opacity.value.texture);
         check_opacity(scene, material);

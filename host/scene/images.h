@@ -1,8 +1,10 @@
 // The image files that a scene's textures look up.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "scene/scene.h"
@@ -13,10 +15,17 @@ namespace candela {
 // `place` is what messages about it begin with.
 uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place);
 
+struct ImageOptions {
+    // Images with more texels along a side are made smaller.
+    uint32_t texture_limit = UINT32_MAX;
+    // Called after each image, by one thread at a time.
+    std::function<void(size_t done, size_t of)> progress = [](size_t, size_t) {};
+};
+
 // Reads all images that have not been read, on all cores. An image that a PNG file says has another gamma
 // than sRGB's is converted for textures of sRGB; others take it as it is. Chooses the channel of opacities
-// that wait for their image (ALPHA_OR_RED). Throws Error if one cannot be read; what is odd but usable goes
-// to scene.warnings.
-void load_images(Scene& scene);
+// that wait for their image (ALPHA_OR_RED), and turns bump maps of mesh files into normal maps where they are
+// some. Throws Error if one cannot be read; what is odd but usable goes to scene.warnings.
+void load_images(Scene& scene, const ImageOptions& options = {});
 
 }  // namespace candela

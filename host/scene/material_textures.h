@@ -34,6 +34,7 @@ void for_each_texture(SomeMaterial& material, const Visit& visit) {
     std::visit([&](auto& model) { for_each_value(model, texture_of); }, material.model);
     texture_of(material.opacity.value);
     if (material.normal_map) visit(material.normal_map->texture);
+    if (material.bump_map) visit(material.bump_map->texture);
 }
 
 }  // namespace candela

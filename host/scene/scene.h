@@ -113,6 +113,15 @@ struct NormalMap {
     float scale = 1.0f;  // Factor of red and green.
 };
 
+// Heights above a surface, for the normals that it would have if it were displaced by them.
+struct BumpMap {
+    Texture texture{};   // Its channel counts.
+    float scale = 1.0f;  // The height for a value of 1 [m].
+    // What a mesh's own file states: the height for a value of 1 in units of the mesh, or, if the image turns
+    // out to hold normals, the scale of the normal map.
+    std::optional<float> multiplier{};
+};
+
 // Some rays pass a surface as if it were not there.
 struct Opacity {
     Textured<float> value = 1.0f;  // The probability that a ray does not, in [0, 1].
@@ -126,6 +135,7 @@ struct Material {
                  DiffuseTransmissionMaterial>
         model;
     std::optional<NormalMap> normal_map{};
+    std::optional<BumpMap> bump_map{};  // Not beside a normal map.
     Opacity opacity{};
     bool vertex_colors =
         false;  // The colours of vertices are factors of the model's first colour and of opacity.

@@ -47,7 +47,11 @@ void complete_attributes(const Scene& scene, const std::string& place, const App
                                "; export it with them, or use a material without textures"));
         }
     }
-    if (material.normal_map && mesh.tangents.empty()) add_tangents(mesh, material.normal_map->texture.uv_set);
+    if (!mesh.tangents.empty()) return;
+    if (material.normal_map) add_tangents(mesh, material.normal_map->texture.uv_set);
+    // Its image, which has not been read, may hold normals.
+    if (material.bump_map && material.bump_map->multiplier)
+        add_tangents(mesh, material.bump_map->texture.uv_set);
 }
 
 }  // namespace
@@ -73,6 +77,7 @@ void SceneBuilder::add_mesh(const std::string& place, const Transform& transform
         if (!fits(part.mesh, transform)) throw Error(place + ": " + TOO_FAR);
         complete_normals(part.mesh);
         complete_attributes(scene_, place, part.appearance, part.mesh);
+        part.appearance.material = material_at_scale(part.appearance.material, transform.mean_scale());
         add(part.appearance, MeshInstance{uint32_t(scene_.meshes.size()), transform});
         scene_.meshes.push_back(std::move(part.mesh));
     }
@@ -92,13 +97,30 @@ const Appearance* SceneBuilder::find_file_appearance(const std::string& name) co
 
 void SceneBuilder::add_file_appearance(const std::string& name, Material material,
                                        const std::optional<Emission>& emission) {
-    std::vector<Material>& materials = scene_.materials;
     material.name = name;
+    file_appearances_[name] = {add_material(std::move(material)), emission};
+}
+
+uint32_t SceneBuilder::add_material(Material material) {
+    std::vector<Material>& materials = scene_.materials;
+    const std::string name = material.name;
     const auto is_taken = [&](const Material& other) { return other.name == material.name; };
     for (int i = 2; std::any_of(materials.begin(), materials.end(), is_taken); ++i)
-        material.name = name + " (" + std::to_string(i) + ')';
-    file_appearances_[name] = {uint32_t(materials.size()), emission};
+        material.name = concat(name, " (", i, ')');
     materials.push_back(std::move(material));
+    return uint32_t(materials.size() - 1);
+}
+
+uint32_t SceneBuilder::material_at_scale(uint32_t material, double scale) {
+    const std::optional<BumpMap>& bump = scene_.materials[material].bump_map;
+    if (!bump || !bump->multiplier) return material;
+    std::map<double, uint32_t>& known = at_scale_[material];
+    if (const auto found = known.find(scale); found != known.end()) return found->second;
+    const uint32_t scaled = known.empty() ? material : add_material(scene_.materials[material]);
+    BumpMap& map = *scene_.materials[scaled].bump_map;
+    map.scale = float(scale * double(*map.multiplier));
+    known[scale] = scaled;
+    return scaled;
 }
 
 uint32_t SceneBuilder::black() {

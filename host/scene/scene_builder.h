@@ -69,8 +69,15 @@ class SceneBuilder {
     uint32_t black();
 
   private:
+    // Adds a material under its name, or a similar one if that is taken.
+    uint32_t add_material(Material material);
+    // The material whose heights are right for a mesh that is placed at that scale. (The first is
+    // `material`.)
+    uint32_t material_at_scale(uint32_t material, double scale);
+
     Scene& scene_;
     std::map<std::string, Appearance, std::less<>> file_appearances_;
+    std::map<uint32_t, std::map<double, uint32_t>> at_scale_;  // By material and scale.
     std::optional<uint32_t> black_;
 };
 

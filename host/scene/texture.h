@@ -31,7 +31,10 @@ enum class TextureFilter { nearest, bilinear };
 // What the numbers of the colour channels are. Alpha is always linear, as are half floats.
 enum class TextureEncoding { linear, srgb };
 
-// In place of the channel of an opacity: alpha if the image has it, otherwise red. load_images() replaces it.
+// Channels of an image. The last one stands for alpha if the image has it, otherwise for red, in an opacity
+// whose image load_images() has not read.
+inline constexpr uint32_t RED = 0;
+inline constexpr uint32_t ALPHA = 3;
 inline constexpr uint32_t ALPHA_OR_RED = 4;
 
 // An image as a function of the coordinates (u, v) of a surface, v upwards: (0, 0) is the lower left corner

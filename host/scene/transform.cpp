@@ -41,4 +41,8 @@ std::optional<double> Transform::uniform_scale() const {
     return std::sqrt(square);
 }
 
+double Transform::mean_scale() const {
+    return uniform_scale().value_or(std::cbrt(std::abs(determinant(glm::dmat3(matrix_)))));
+}
+
 }  // namespace candela

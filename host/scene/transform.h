@@ -27,6 +27,8 @@ class Transform {
     // The factor of a transform that only moves, turns, mirrors and scales evenly, so that spheres stay
     // spheres within 2e-5 of their radius; none for any other.
     std::optional<double> uniform_scale() const;
+    // The same, or of an uneven transform the edge of a cube with the volume that it gives a cube of edge 1.
+    double mean_scale() const;
 
   private:
     glm::dmat4 matrix_{1.0};

@@ -88,7 +88,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 182> words;
+    std::array<uint, 184> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -137,7 +137,8 @@ Records filled(Fields& fields) {
                  .material = fields.keep(0x2AAAA5u),
                  .has_normals = fields.keep(1u),
                  .light = fields.u(),
-                 .error = std::bit_cast<float>(fields.keep(floatBitsToUint(0x1p-21f)))};
+                 .error = std::bit_cast<float>(fields.keep(floatBitsToUint(0x1p-21f))),
+                 .lets_pass = fields.keep(1u)};
     r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), vec3(0, -1, 0));
     for (const int i : {0, 1, 2, 3})
         fields.keep(r.normals[0][i]);
@@ -165,7 +166,8 @@ Records filled(Fields& fields) {
     r.material_textures = {.base = fields.keep(0x2BCDEF01u),
                            .specular = fields.u(),
                            .parameter = fields.u(),
-                           .normal = fields.u(),
+                           .normal = fields.keep(0x4D3C2B1Au),
+                           .bump = fields.keep(1u),
                            .normal_scale = fields.f(),
                            .opacity_texture = fields.u(),
                            .opacity = fields.f(),

@@ -1,40 +1,60 @@
-// Shading with a normal from a normal map.
+// Shading with a normal from a normal map or a bump map.
 //
-// The hemisphere around such a normal reaches below the surface, and the viewer may be outside of it. Light that would
-// be lost there is kept: a direction on the wrong side of the surface is mirrored at the surface, as if by another
-// facet that stands at a right angle to the first one's slope; and a viewer below the shading normal's horizon sees the
-// facet as one above it by the same angle does. So a surface that reflects all light does so under any map, and no
-// facet is black. Reciprocity is given up.
-// Ref: Schuessler, Heitz, Hanika and Dachsbacher 2017, Microfacet-based Normal Mapping for Robust Monte Carlo Path
-// Tracing, of which this keeps the idea of a second facet that is a mirror.
+// The viewer may be below the horizon of such a normal, and the hemisphere around it reaches below the surface. So the
+// normal is turned towards the viewer until its mirror direction is above the surface: facets that slope away are seen
+// less. And a direction on the wrong side of the surface is mirrored at the surface, as if by another facet that stands
+// at a right angle to the first one's slope. A surface that reflects all light does so under any map, and no facet is
+// black. Reciprocity is given up, by either: both depend on which of the two directions is the viewer's.
+// Ref: Keller et al. 2017, The Iray Light Transport Simulation and Rendering System, on consistent normals; Schuessler,
+// Heitz, Hanika and Dachsbacher 2017, Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing, of which
+// this keeps the idea of a second facet that is a mirror.
 #ifndef INTEGRATOR_BENT_NORMAL_GLSL
 #define INTEGRATOR_BENT_NORMAL_GLSL
 
 #include "bsdf/bsdf.glsl"
+#include "scene/bump.glsl"
 #include "scene/interaction.glsl"
 #include "scene/material.glsl"
 
 const bool HAS_NORMAL_MAPS = (TEXTURED & TEXTURED_NORMAL) != 0u;
+const bool HAS_BUMP_MAPS = (TEXTURED & TEXTURED_BUMP) != 0u;
 
-// Bends the shading normal if the material has a normal map; returns whether it has one.
-bool bend_normal(inout Interaction s) {
-    if (!HAS_NORMAL_MAPS) return false;
-    MaterialTextures textures = scene_material_textures(s.material);
-    if (textures.normal == TEXTURE_NONE) return false;
+// The shading normal on the front side that a normal map gives.
+vec3 mapped_normal(MaterialTextures textures, Interaction s) {
     vec3 m = 2.0 * texture_color(textures.normal, s.attributes) - 1.0;
     m.xy *= textures.normal_scale;
-    // The map is that of the front.
     vec3 ns = s.front ? s.ns : -s.ns;
     vec3 t = s.attributes.tangent.xyz;
     vec3 n = m.x * t + m.y * s.attributes.tangent.w * cross(ns, t) + m.z * ns;
     float length_squared = dot(n, n);
-    if (length_squared > 0.0) s.ns = (s.front ? 1.0 : -1.0) * inversesqrt(length_squared) * n;
+    return length_squared > 0.0 ? inversesqrt(length_squared) * n : ns;
+}
+
+// Bends the shading normal if the material has a normal or bump map; returns whether it has one.
+bool bend_normal(inout Interaction s, Hit hit) {
+    if (!HAS_NORMAL_MAPS && !HAS_BUMP_MAPS) return false;
+    MaterialTextures textures = scene_material_textures(s.material);
+    if (textures.normal == TEXTURE_NONE) return false;
+    vec3 n;
+    if (HAS_BUMP_MAPS && (!HAS_NORMAL_MAPS || textures.bump != 0u)) {
+        n = bumped_normal(scene_texture(textures.normal), textures.normal_scale, hit, s);
+    } else {
+        n = mapped_normal(textures, s);
+    }
+    s.ns = s.front ? n : -n;
     return true;
 }
 
-// wo, in the frame of a bent normal, as the facet is seen.
-vec3 bent_wo(vec3 wo) {
-    return vec3(wo.xy, max(abs(wo.z), 1e-6));
+// The bent normal ns, turned so that it mirrors wo to above the surface with the normal n. wo is not below the surface.
+vec3 consistent_normal(vec3 wo, vec3 n, vec3 ns) {
+    const float LEAST = 0.01;  // Of the sine of the mirror direction's elevation; rounding is far less.
+    vec3 mirror = 2.0 * dot(wo, ns) * ns - wo;
+    float up = dot(mirror, n);
+    if (up >= LEAST) return dot(wo, ns) < 0.0 ? -ns : ns;
+    vec3 along = mirror - up * n;
+    float length_squared = dot(along, along);
+    if (length_squared == 0.0) return n;
+    return normalize(wo + sqrt((1.0 - LEAST * LEAST) / length_squared) * along + LEAST * n);
 }
 
 // w mirrored at the plane with the unit normal n.

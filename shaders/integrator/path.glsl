@@ -115,7 +115,7 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
 struct Shading {
     Frame frame;  // Around the shading normal.
     vec3 wo;      // Towards the viewer, in that frame.
-    bool bent;    // The shading normal is that of a normal map.
+    bool bent;    // The shading normal is that of a normal or bump map.
 };
 
 // The shadow ray from s towards a point on a light, and what it adds to L if it is not blocked: beta f cos Li / pdf,
@@ -180,9 +180,9 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         return false;
     }
     Interaction s = interaction_at(path.ray, hit);
-    MaterialRecord material = material_at(s.material, s.attributes);
+    MaterialRecord material = material_at(s.material, s.attributes, path.ray);
     Bsdf bsdf = bsdf_at(material, s.front);
-    bool bent = bend_normal(s);
+    bool bent = bend_normal(s, hit);
     if (path.depth == 0u) {
         estimate.visible = true;
         estimate.albedo = bsdf_albedo(bsdf);
@@ -200,9 +200,9 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         estimate.cut = path.depth == DEPTH_SAFETY_LIMIT;
         return false;
     }
+    if (bent) s.ns = consistent_normal(s.wo, s.n, s.ns);
     Frame frame = frame_from_z(s.ns);
     Shading shading = Shading(frame, frame_to_local(frame, s.wo), bent);
-    if (bent) shading.wo = bent_wo(shading.wo);
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
     uvec2 choice = sampler_pair(random, pair + PAIR_CHOICE);
 

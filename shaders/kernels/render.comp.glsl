@@ -170,6 +170,16 @@ struct Met {
     Hit hit;        // Of the path's ray, if it goes on.
 };
 
+// Advances the traversal; once that of a shadow ray has ended, begins that of the path's next ray, if there is one.
+void sample_advance(Sample s, inout Traversal traversal, inout bool lit) {
+    bvh_advance(traversal);
+    if (traversal.any_hit && bvh_ended(traversal)) {
+        lit = !is_hit(traversal.hit);
+        if (HAS_OPACITY) traversal.any_hit = false;
+        if (s.alive) traversal = bvh_begin(s.path.ray, FLOAT_MAX, false);
+    }
+}
+
 // Traces the shadow ray of a vertex and the path's next ray, one after the other, without waiting for neighbouring
 // lanes in between.
 Met sample_trace(Sample s) {
@@ -179,14 +189,22 @@ Met sample_trace(Sample s) {
     Traversal traversal = bvh_begin(first, shadowed ? s.shadow.t_max : FLOAT_MAX, shadowed);
     if (!shadowed && !s.alive) bvh_end(traversal);
     bool lit = false;
-    while (!bvh_ended(traversal)) {
-        bvh_advance(traversal);
-        if (traversal.any_hit && bvh_ended(traversal)) {
-            lit = !is_hit(traversal.hit);
-            if (s.alive) traversal = bvh_begin(s.path.ray, FLOAT_MAX, false);
-        }
+    if (HAS_OPACITY) {
+        // On software Vulkan, code in a branch takes its time even if no lane takes the branch. So what decides about
+        // opacity stands in an outer loop, at whose end lanes wait for each other once more.
+        bool more;
+        do {
+            while (!bvh_waits(traversal) && (traversal.any_hit || !bvh_ended(traversal))) {
+                sample_advance(s, traversal, lit);
+            }
+            bvh_decide(traversal);
+            more = traversal.any_hit || !bvh_ended(traversal);
+        } while (more);
+    } else {
+        while (!bvh_ended(traversal)) sample_advance(s, traversal, lit);
     }
-    return Met(bvh_ended(traversal), lit, traversal.hit);
+    bool turned = !(HAS_OPACITY && traversal.any_hit);  // To the path's ray, if there is one.
+    return Met(turned && bvh_ended(traversal), lit, traversal.hit);
 }
 
 // Takes the path past the hit of its ray, or past its miss.

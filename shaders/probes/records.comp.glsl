@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 182u
+#define RESULT_WORDS 184u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -53,6 +53,7 @@ void put_surface(Surface s) {
     put(s.has_normals);
     put(s.light);
     put(s.error);
+    put(s.lets_pass);
 }
 
 void put_material(MaterialRecord m) {
@@ -94,6 +95,7 @@ void put_material_textures(MaterialTextures t) {
     put(t.specular);
     put(t.parameter);
     put(t.normal);
+    put(t.bump);
     put(t.normal_scale);
     put(t.opacity_texture);
     put(t.opacity);

@@ -13,5 +13,5 @@ void main() {
     vec4 value = texture_at(t, item_floats(0u).yz);
     put(value.rgb);
     put(value.a);
-    put(texture_number(t, value));
+    put(texture_number(t, item_floats(0u).yz));
 }

@@ -11,7 +11,11 @@
 Hit brute_force(Ray ray) {
     RayShear shear = ray_shear(ray.d, reciprocals(ray.d));
     Hit hit = hit_none(FLOAT_MAX);
-    for (uint i = 0u; i < primitive_count; ++i) primitive_intersect(ray, shear, scene_primitive(i), i, hit);
+    Candidate candidate = candidate_none();
+    for (uint i = 0u; i < primitive_count; ++i) {
+        meet(i, primitive_hit(ray, shear, scene_primitive(i), i), hit, candidate);
+        for (int k = 0; k < 2; ++k) decide(ray, shear, hit, candidate);
+    }
     return hit;
 }
 

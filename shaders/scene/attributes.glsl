@@ -8,14 +8,14 @@
 
 // What a surface has at a point besides its geometry; 0, or white, where the scene has none.
 struct Attributes {
-    vec2 uv0;    // Texture coordinates, v upwards.
+    vec2 uv0;      // Texture coordinates, v upwards.
     vec2 uv1;
     vec4 color;    // Linear red, green, blue, and alpha.
     vec4 tangent;  // x, y, z: where u grows, about unit length; w: 1, or -1 if v grows along -cross(n, tangent).
 };
 
 // Where attributes are asked for: the triangle a b c or a c d (second) of the primitive at a position in leaf order, at
-// surface coordinates b; on a sphere, n is the unit normal of its front there.
+// surface coordinates b; on a sphere, n points from its centre to the point, at any length.
 struct AttributePlace {
     uint primitive;
     bool second;

@@ -28,20 +28,42 @@ bool is_stopped(Ray ray, Primitive p, Hit hit, bool first) {
     return opacity_random(ray, hit_second(hit) ? surface.id.y : surface.id.x, first) < opacity;
 }
 
-// Replaces `hit` with the nearest hit of the primitive at that position in leaf order if that is nearer.
-void primitive_intersect(Ray ray, RayShear shear, Primitive p, uint position, inout Hit hit) {
-    Hit found = primitive_hit(ray, shear, p, position);
-    if (!HAS_OPACITY) {
-        if (is_nearer(found, hit)) hit = found;
+// A hit that is nearer than any known to stop the ray, and may stop it, too.
+struct Candidate {
+    Hit hit;     // No hit: there is none.
+    bool first;  // It is the first hit of its primitive.
+};
+
+Candidate candidate_none() {
+    return Candidate(hit_none(0.0), true);
+}
+
+// The primitive at that position in leaf order has its first hit there: replaces the ray's nearest hit, or, if some rays
+// pass the primitive, the candidate, if it is nearer than the nearest hit.
+void meet(uint position, Hit found, inout Hit hit, inout Candidate candidate) {
+    if (!is_nearer(found, hit)) return;
+    if (HAS_OPACITY && scene_surface(position).lets_pass != 0u) {
+        candidate = Candidate(found, true);
+    } else {
+        hit = found;
+    }
+}
+
+// Makes the candidate the nearest hit if it stops the ray; otherwise the second hit of its primitive is the next
+// candidate, if it may stop the ray.
+void decide(Ray ray, RayShear shear, inout Hit hit, inout Candidate candidate) {
+    if (!HAS_OPACITY || !is_hit(candidate.hit)) return;
+    Hit found = candidate.hit;
+    Primitive p = scene_primitive(hit_primitive(found));
+    if (is_stopped(ray, p, found, candidate.first)) {
+        hit = found;
+        candidate = candidate_none();
         return;
     }
-    for (int i = 0; i < 2 && is_nearer(found, hit); ++i) {
-        if (is_stopped(ray, p, found, i == 0)) {
-            hit = found;
-            return;
-        }
-        found = primitive_second_hit(ray, shear, p, found);
-    }
+    Hit second = primitive_second_hit(ray, shear, p, found);
+    bool goes_on = candidate.first && is_nearer(second, hit);
+    candidate = candidate_none();
+    if (goes_on) candidate = Candidate(second, false);
 }
 
 #endif

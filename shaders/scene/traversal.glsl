@@ -27,13 +27,15 @@ struct Traversal {
     uint pending;     // then its siblings; those further up are on the stack.
     uint leaves;      // To be tested before `node`; bit i: the primitive i places after
     uint first_leaf;  // this position in leaf order.
+    Candidate candidate;  // For bvh_decide.
 };
 
 // A traversal at the root that looks for hits with t in (0, t_max). bvh_prepare comes first.
 Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack[0] = PENDING_NONE;
     vec3 inv_d = reciprocals(ray.d);
-    return Traversal(ray, inv_d, ray_shear(ray.d, inv_d), any_hit, hit_none(t_max), 0u, PENDING_NONE, 0u, 0u);
+    return Traversal(ray, inv_d, ray_shear(ray.d, inv_d), any_hit, hit_none(t_max), 0u, PENDING_NONE, 0u, 0u,
+                     candidate_none());
 }
 
 // Ends a traversal: no node is left to visit, no leaf to test.
@@ -42,11 +44,24 @@ void bvh_end(inout Traversal t) {
     t.leaves = 0u;
 }
 
-bool bvh_ended(Traversal t) {
-    return t.node == NODE_NONE && t.leaves == 0u;
+// The traversal waits for bvh_decide.
+bool bvh_waits(Traversal t) {
+    return HAS_OPACITY && is_hit(t.candidate.hit);
 }
 
-// Traverses to the next leaves and tests them; not for a traversal that has ended.
+bool bvh_ended(Traversal t) {
+    return t.node == NODE_NONE && t.leaves == 0u && !bvh_waits(t);
+}
+
+// Decides whether the hit for which the traversal waits, if it does, stops the ray.
+void bvh_decide(inout Traversal t) {
+    if (!bvh_waits(t)) return;
+    decide(t.ray, t.shear, t.hit, t.candidate);
+    if (t.any_hit && is_hit(t.hit)) bvh_end(t);
+}
+
+// Traverses to the next leaves and tests them, up to a hit that must wait for bvh_decide. Does nothing if the traversal
+// has ended.
 //
 // Leaves are tested as soon as their boxes are hit, and never wait on the stack, so that one word per level is enough.
 // On software Vulkan, neighbouring lanes wait for each other at the end of either loop.
@@ -76,19 +91,27 @@ void bvh_advance(inout Traversal t) {
     }
 
     // Test the leaves.
-    while (t.leaves != 0u) {
+    while (t.leaves != 0u && !bvh_waits(t)) {
         uint position = t.first_leaf + uint(findLSB(t.leaves));
         t.leaves &= t.leaves - 1u;
-        primitive_intersect(t.ray, t.shear, scene_primitive(position), position, t.hit);
+        meet(position, primitive_hit(t.ray, t.shear, scene_primitive(position), position), t.hit, t.candidate);
     }
     if (t.any_hit && is_hit(t.hit)) bvh_end(t);
+}
+
+// Advances a traversal until it has ended.
+void bvh_finish(inout Traversal t) {
+    while (!bvh_ended(t)) {
+        bvh_advance(t);
+        bvh_decide(t);
+    }
 }
 
 // The closest hit with t > 0, if there is any.
 Hit bvh_intersect(Ray ray) {
     bvh_prepare();
     Traversal t = bvh_begin(ray, FLOAT_MAX, false);
-    while (!bvh_ended(t)) bvh_advance(t);
+    bvh_finish(t);
     return t.hit;
 }
 
@@ -96,7 +119,7 @@ Hit bvh_intersect(Ray ray) {
 bool bvh_occluded(Ray ray, float t_max) {
     bvh_prepare();
     Traversal t = bvh_begin(ray, t_max, true);
-    while (!bvh_ended(t)) bvh_advance(t);
+    bvh_finish(t);
     return is_hit(t.hit);
 }
 

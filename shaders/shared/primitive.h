@@ -5,7 +5,8 @@
 //   Primitive, 3 words of uvec4   Surface, 1 word                   Normals, 1 word
 //     0: a.xyz, d.x or tag          0: id, id of the second           0: at a, b, c, d
 //     1: b.xyz, d.y                    triangle, material |              (octahedral, 2 x 16 bits)
-//     2: c.xyz, d.z                    error | smooth << 31,
+//     2: c.xyz, d.z                    lets_pass << 22 |
+//                                      error | smooth << 31,
 //                                      light
 #ifndef SHARED_PRIMITIVE_H
 #define SHARED_PRIMITIVE_H
@@ -35,7 +36,8 @@ const uint PRIMITIVE_TAG = 0x7FC00000u;
 
 const uint SURFACE_SMOOTH_BIT = 0x80000000u;
 const uint SURFACE_ERROR_BITS = 0x7F800000u;  // The exponent of a float.
-const uint MAX_MATERIALS = 0x00800000u;
+const uint SURFACE_OPACITY_BIT = 0x00400000u;
+const uint MAX_MATERIALS = 0x00400000u;
 
 struct Primitive {
     uint kind;  // PRIMITIVE_*
@@ -51,6 +53,7 @@ struct Surface {
     uint has_normals;  // 1: has shading normals.
     uint light;        // Index of a light record, or NO_LIGHT.
     float error;       // How far from a point of it rays must begin, along its normal: 0 or a power of two.
+    uint lets_pass;    // 1: some rays may pass it, by scene/opacity.glsl.
 };
 
 #ifdef __cplusplus
@@ -61,8 +64,8 @@ inline std::array<uvec4, PRIMITIVE_WORDS> pack(const Primitive& p) {
 }
 
 inline std::array<uvec4, SURFACE_WORDS> pack(const Surface& s) {
-    return {uvec4(s.id.x, s.id.y, s.material | floatBitsToUint(s.error) | s.has_normals * SURFACE_SMOOTH_BIT,
-                  s.light)};
+    const uint bits = s.has_normals * SURFACE_SMOOTH_BIT | s.lets_pass * SURFACE_OPACITY_BIT;
+    return {uvec4(s.id.x, s.id.y, s.material | floatBitsToUint(s.error) | bits, s.light)};
 }
 
 // Octahedral map of a unit vector to 2 x 16 signed bits. Ref: Cigolle et al. 2014, A Survey of Efficient
@@ -103,6 +106,7 @@ Surface surface_unpack(uvec4 u) {
     s.material = u.z & MAX_MATERIALS - 1u;
     s.error = uintBitsToFloat(u.z & SURFACE_ERROR_BITS);
     s.has_normals = u.z / SURFACE_SMOOTH_BIT;
+    s.lets_pass = u.z / SURFACE_OPACITY_BIT & 1u;
     s.light = u.w;
     return s;
 }

@@ -3,8 +3,9 @@
 //
 //   Texture                     MaterialTextures                    LightTextures
 //     0: first, size, traits      0: base | vertex_colors << 31,      0: primitive, emission, material
-//     1: row_u.xyz                   specular, parameter, normal
-//     2: row_v.xyz                1: opacity_texture, opacity,
+//     1: row_u.xyz                   specular, parameter,
+//     2: row_v.xyz                   normal | bump << 31
+//                                 1: opacity_texture, opacity,
 //                                    cutoff, normal_scale
 //
 // Texels lie in tiles of 4 x 4, row by row from the top; so do the texels of a tile. Tiles at the right and
@@ -72,7 +73,8 @@ struct MaterialTextures {
     uint specular;
     uint parameter;
     uint normal;  // Tangent space: x along the tangent, y along the bitangent, z along the normal; in [0, 1].
-    float normal_scale;    // Factor of its x and y.
+    uint bump;    // 1: the channel of `normal` is a height instead,
+    float normal_scale;    // Factor of its x and y, or the height for 1, in the frame of the scene.
     uint opacity_texture;  // Its channel is a factor of
     float opacity;         // the probability that a ray does not pass the surface as if it were not there.
     float cutoff;          // If it is not negative: whether that is at least this decides instead.
@@ -95,9 +97,9 @@ const uint TEXTURED_VERTEX_COLORS = 1u << 3u;
 const uint TEXTURED_NORMAL = 1u << 4u;
 const uint TEXTURED_OPACITY = 1u << 5u;  // Or opacity is less than 1 everywhere.
 const uint TEXTURED_EMISSION = 1u << 6u;
+const uint TEXTURED_BUMP = 1u << 7u;
 const uint TEXTURED_MATERIALS =
     TEXTURED_BASE | TEXTURED_SPECULAR | TEXTURED_PARAMETER | TEXTURED_VERTEX_COLORS;
-const uint TEXTURED_ALL = 127u;
 
 // Attributes of the corners a, b, c, d of primitives, a bit each: the specialization constant ATTRIBUTES. A
 // primitive has the words of each that is there, in this order.
@@ -118,7 +120,7 @@ inline std::array<uvec4, TEXTURE_WORDS> pack(const TextureRecord& t) {
 }
 
 inline std::array<uvec4, MATERIAL_TEXTURES_WORDS> pack(const MaterialTextures& t) {
-    return {uvec4(t.base | t.vertex_colors << 31u, t.specular, t.parameter, t.normal),
+    return {uvec4(t.base | t.vertex_colors << 31u, t.specular, t.parameter, t.normal | t.bump << 31u),
             uvec4(t.opacity_texture, floatBitsToUint(t.opacity), floatBitsToUint(t.cutoff),
                   floatBitsToUint(t.normal_scale))};
 }
@@ -158,7 +160,8 @@ MaterialTextures material_textures_unpack(uvec4 a, uvec4 b) {
     t.vertex_colors = a.x >> 31u;
     t.specular = a.y;
     t.parameter = a.z;
-    t.normal = a.w;
+    t.normal = a.w & MAX_TEXTURES;
+    t.bump = a.w >> 31u;
     t.opacity_texture = b.x;
     t.opacity = uintBitsToFloat(b.y);
     t.cutoff = uintBitsToFloat(b.z);

@@ -71,6 +71,22 @@ TEST_F(Info, TellsTheSizeOfTheSky) {
     EXPECT_CONTAINS(candela({"info", CORNELL_BOX}).out, "environment   none");
 }
 
+TEST_F(Info, TellsWhatTexturesTakeAndMakesThemSmaller) {
+    const std::string scene = CANDELA_SCENES "/../tests/references/textured-diffuse.json";
+    const auto whole = nlohmann::json::parse(candela({"info", scene, "--json"}).out);
+    const auto small = nlohmann::json::parse(candela({"info", scene, "--json", "--texture-limit", "4"}).out);
+    for (const auto& image : small["images"]) {
+        EXPECT_LE(image["width"], 4);
+        EXPECT_LE(image["height"], 4);
+    }
+    EXPECT_GT(whole["images"][0]["width"], 4);
+    EXPECT_LT(small["device_bytes_by_part"]["texels"], whole["device_bytes_by_part"]["texels"]);
+    EXPECT_CONTAINS(candela({"info", scene}).out, "images        ");
+    const ProcessResult wrong = candela({"info", scene, "--texture-limit", "0"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_CONTAINS(wrong.err, "--texture-limit: cannot use \"0\"; expected a whole number from 1 to 65535");
+}
+
 TEST_F(Info, WarningsGoToStderrAndIntoTheJson) {
     const std::string scene = write("empty.json", R"({
         "cameras": { "main": { "position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40 } }, "shapes": [] })");

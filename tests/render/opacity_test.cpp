@@ -62,6 +62,18 @@ TEST_F(OpacityTest, EveryKindOfShapeHasItsLayers) {
     expect_share(mesh, Estimator::mis, std::pow(1.0 - double(A), 2));
 }
 
+// The colours of vertices have an opacity, too.
+TEST_F(OpacityTest, VerticesLetRaysPass) {
+    Scene scene = sky_seen();
+    const uint32_t painted = add_diffuse(scene, vec3(0));
+    scene.materials[painted].vertex_colors = true;
+    TriangleMesh mesh;
+    add_triangle(mesh, vec3(-2, -2, 0), vec3(2, -2, 0), vec3(0, 3, 0));
+    mesh.colors = {vec4(1, 1, 1, 0.25f), vec4(1, 1, 1, 0.25f), vec4(1, 1, 1, 0.25f)};
+    add_shape(scene, mesh, painted);
+    expect_share(scene, Estimator::mis, 0.75);
+}
+
 // Shadow rays pass, too: a lamp through n panes.
 TEST_F(OpacityTest, ALampShinesThroughTheNthPower) {
     constexpr float A = 0.3f;

@@ -26,14 +26,24 @@ void PrintTo(const Reference& reference, std::ostream* os) {
 }
 
 constexpr std::array REFERENCES{
-    Reference{"cornell-box", 1280},    Reference{"colour-bleeding", 832},
-    Reference{"mirror", 1760},         Reference{"glass", 896},
-    Reference{"absorbing-glass", 512}, Reference{"rough-metal", 1536},
-    Reference{"phong", 1600},          Reference{"depth-of-field", 1024},
-    Reference{"environment", 512},     Reference{"small-sphere-light", 832},
-    Reference{"many-lights", 2560},    Reference{"mesh-light", 2688},
-    Reference{"smooth-normals", 256},  Reference{"textured-diffuse", 1024},
+    Reference{"cornell-box", 1280},
+    Reference{"colour-bleeding", 832},
+    Reference{"mirror", 1760},
+    Reference{"glass", 896},
+    Reference{"absorbing-glass", 512},
+    Reference{"rough-metal", 1536},
+    Reference{"phong", 1600},
+    Reference{"depth-of-field", 1024},
+    Reference{"environment", 512},
+    Reference{"small-sphere-light", 832},
+    Reference{"many-lights", 2560},
+    Reference{"mesh-light", 2688},
+    Reference{"smooth-normals", 256},
+    Reference{"textured-diffuse", 1024},
     Reference{"normal-map", 256},
+    Reference{"textured-roughness", 256},
+    Reference{"textured-emitter", 1152},
+    Reference{"mask", 768},
 };
 
 // The median over pixels of the standard error over the mean may not be larger: else the test would accept

@@ -18,6 +18,7 @@ Shape shape(const decltype(Shape::geometry)& geometry, uint32_t material,
 
 FlatScene flatten_shapes(const std::vector<Shape>& shapes) {
     Scene scene;
+    scene.materials.resize(8);
     scene.shapes = shapes;
     return flatten(scene, SceneFrame{});
 }
@@ -86,10 +87,33 @@ TEST(Flatten, IdsFollowTheOrderOfTheSceneAcrossKinds) {
     EXPECT_TRUE(flat.normals.empty());
 }
 
+// Only where an opacity or the colours of vertices say so do rays ask whether they pass.
+TEST(Flatten, SurfacesSayWhetherRaysMayPass) {
+    Scene scene;
+    scene.materials.resize(4);
+    scene.materials[1].opacity.value = 0.5f;
+    scene.materials[2].opacity.value = {1.0f, Texture{}};
+    scene.materials[3].vertex_colors = true;
+    for (const uint32_t material : {0u, 1u, 2u, 3u})
+        add_shape(scene, BALL, material);
+    TriangleMesh mesh;
+    add_triangle(mesh, vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
+    mesh.colors = {vec4(1), vec4(1), vec4(1)};
+    add_shape(scene, mesh, 3);
+    mesh.colors[2].w = 0.5f;
+    add_shape(scene, mesh, 3);
+    add_shape(scene, mesh, 0);
+    std::vector<uint32_t> found;
+    for (const Surface& surface : flatten(scene, SceneFrame{}).surfaces)
+        found.push_back(surface.lets_pass);
+    EXPECT_EQ(found, (std::vector<uint32_t>{0, 1, 1, 0, 0, 1, 0}));
+}
+
 TEST(Flatten, EveryPrimitiveHasARecordOfNormalsIfOneIsSmooth) {
     TriangleMesh smooth = sphere_mesh(4, 6);
     smooth.normals = smooth.positions;
     Scene scene;
+    scene.materials.resize(1);
     add_shape(scene, BALL, 0);
     add_shape(scene, smooth, 0);
     add_shape(scene, ELLIPSE, 0);

@@ -1,8 +1,11 @@
-// The hash of large arrays: it must notice every small change, above all those that are typical of floats.
+// The hash of bytes, and that of large arrays: the latter must notice every small change, above all those
+// that are typical of floats.
 #include "base/hash.h"
 
 #include <array>
 #include <set>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -49,6 +52,22 @@ TEST(HashWords, BytesBeyondTheLastWholeWordMatter) {
     for (size_t count = 0; count <= bytes.size(); ++count)
         hashes.insert(hash_words(std::as_bytes(std::span(bytes).first(count))));
     EXPECT_EQ(hashes.size(), 12u);
+}
+
+// Ref: test vectors of the authors, http://www.isthe.com/chongo/src/fnv/test_fnv.c
+TEST(Hash, AgreesWithThePublishedVectors) {
+    const auto hash = [](std::string_view text) { return fnv1a64(std::as_bytes(std::span(text))); };
+    EXPECT_EQ(hash(""), 0xcbf29ce484222325u);
+    EXPECT_EQ(hash("a"), 0xaf63dc4c8601ec8cu);
+    EXPECT_EQ(hash("b"), 0xaf63df4c8601f1a5u);
+    EXPECT_EQ(hash("foobar"), 0x85944171f73967e8u);
+    EXPECT_EQ(hash("chongo was here!\n"), 0x46810940eff5f915u);
+}
+
+TEST(Hash, ContinuesFromThePartBefore) {
+    const std::string_view text = "foobar";
+    const auto bytes = std::as_bytes(std::span(text));
+    EXPECT_EQ(fnv1a64(bytes.subspan(3), fnv1a64(bytes.first(3))), fnv1a64(bytes));
 }
 
 }  // namespace

@@ -154,7 +154,36 @@ TEST_F(MtlTextures, NormalsComeFromImages) {
         const MtlMaterial scaled = material(std::string(command) + " -bm -0.5 a.png");
         EXPECT_EQ(scaled.material.normal_map->scale, -0.5f);
     }
-    EXPECT_FALSE(material("Kd 1\nbump a.png").material.normal_map);
+}
+
+TEST_F(MtlTextures, HeightsComeFromImages) {
+    EXPECT_FALSE(material("Kd 1\nnorm a.png").material.bump_map);
+    for (const std::string command : {"bump", "map_bump", "map_Bump"}) {
+        const MtlMaterial plain = material("Kd 1\n" + command + " a.png");
+        EXPECT_FALSE(plain.material.normal_map);
+        ASSERT_TRUE(plain.material.bump_map);
+        EXPECT_EQ(plain.material.bump_map->texture, (Texture{.encoding = LINEAR}));
+        EXPECT_EQ(plain.material.bump_map->multiplier, 1.0f);
+        EXPECT_EQ(folder_.without_folder(plain.images.at(0).place), "m.mtl:3");
+        const auto placed = material(command + " -bm -0.5 -imfchan b -s 2 -o 3 4 -clamp on a.png").material;
+        EXPECT_EQ(placed.bump_map->multiplier, -0.5f);
+        Texture expected{.encoding = LINEAR, .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .channel = 2};
+        expected.rows[0] = vec3(2, 0, 3);
+        expected.rows[1] = vec3(0, 1, 4);
+        EXPECT_EQ(placed.bump_map->texture, expected);
+        expect_ignored("Kd 1\n" + command + " a.png", {});
+        expect_error(command + " -bm x a.png",
+                     "m.mtl:2: the option -bm of " + command + " needs a finite number, found \"x\"");
+    }
+    // Many files state it under two names.
+    EXPECT_EQ(file("map_bump a.png\nbump b.png"), "b.png");
+    EXPECT_FALSE(material("Kd 1\nbump -bm 0 a.png").material.bump_map);
+    expect_ignored("Kd 1\nbump -bm 0 a.png", {"bump" + UNUSED});
+    const MtlMaterial both = material("Kd 1\nbump a.png\nnorm b.png");
+    EXPECT_TRUE(both.material.normal_map);
+    EXPECT_FALSE(both.material.bump_map);
+    EXPECT_EQ(both.images.size(), 1u);
+    expect_ignored("Kd 1\nbump a.png\nnorm b.png", {"bump (their materials have normal maps)"});
 }
 
 TEST_F(MtlTextures, MetalsAreConductors) {

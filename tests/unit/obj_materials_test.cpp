@@ -114,7 +114,7 @@ TEST_F(ObjMaterials, MayEmitOnBothSides) {
 }
 
 TEST_F(ObjMaterials, AreAddedOnceForAllShapesOfAFile) {
-    folder_.write("m.mtl", "newmtl red\nKd 2 0 0\nbump b.png\n");
+    folder_.write("m.mtl", "newmtl red\nKd 2 0 0\ndisp b.png\n");
     const Scene scene =
         load("mtllib m.mtl\nusemtl red\nf 1 2 3\n",
              std::string(OBJ_SHAPE) + ", " + OBJ_SHAPE + R"(, {"type": "obj", "file": "./m.obj"})");
@@ -161,9 +161,9 @@ TEST_F(ObjMaterials, FacesBeforeTheFirstMayHaveColours) {
 }
 
 TEST_F(ObjMaterials, WarnOfWhatIsUsed) {
-    folder_.write("m.mtl", "newmtl a\nKd 2\nbump a.png\nnewmtl b\nKd 3\nnewmtl lamp\nKe 1\n");
+    folder_.write("m.mtl", "newmtl a\nKd 2\ndisp a.png\nnewmtl b\nKd 3\nnewmtl lamp\nKe 1\n");
     expect_warnings(load("mtllib m.mtl\nusemtl lamp\nf 1 2 3\nusemtl a\nf 1 3 4\n"),
-                    {"scene.json:3:36: m.mtl: ignored bump (textures of these kinds are not supported)",
+                    {"scene.json:3:36: m.mtl: ignored disp (textures of these kinds are not supported)",
                      "scene.json:3:36: m.mtl:1: material \"a\": Kd is 2 in a channel; it is scaled to 1"});
 }
 

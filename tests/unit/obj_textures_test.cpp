@@ -90,6 +90,46 @@ TEST_F(ObjTextures, OpacityIsAlphaWhereThereIsAlpha) {
     }
 }
 
+// Heights are in the units of the mesh.
+TEST_F(ObjTextures, HeightsGrowWithTheMesh) {
+    write_image("a.png", png_grey);
+    folder_.write("m.mtl", "newmtl a\nKd 1\nbump -bm 3 a.png\n");
+    const auto shape = [](const std::string& transform) {
+        return R"({"type": "obj", "file": "m.obj", "transform": [)" + transform + "]}";
+    };
+    const Scene scene = folder_.load(scene_of(shape(R"({"scale": 0.25})") + ',' + shape(R"({"scale": -4})") +
+                                              ',' + shape(R"({"scale": 0.25}, {"translate": [1, 2, 3]})") +
+                                              ',' + shape(R"({"scale": [1, 2, 4]})")));
+    const auto scale = [&](size_t i) { return material(scene, i).bump_map->scale; };
+    EXPECT_EQ(scale(0), 0.75f);
+    EXPECT_EQ(scale(1), 12.0f);
+    EXPECT_EQ(scale(2), 0.75f);
+    EXPECT_EQ(scale(3), 6.0f);
+    EXPECT_EQ(scene.shapes[0].material, scene.shapes[2].material);
+    EXPECT_EQ(material(scene, 0).name, "m.obj/a");
+    EXPECT_EQ(material(scene, 1).name, "m.obj/a (2)");
+    EXPECT_EQ(scene.warnings.size(), 1u);  // There is no light.
+}
+
+// Blender writes normal maps as map_Bump, and -bm is then their strength, whatever the scale.
+TEST_F(ObjTextures, ABlueBumpMapIsANormalMap) {
+    folder_.write("n.png",
+                  encode_png({.size = uvec2(1), .bits = 8, .color = png_rgb, .samples = {128, 128, 255}}));
+    folder_.write("m.mtl", "newmtl a\nKd 1\nmap_Bump -bm 0.5 -imfchan b n.png\n");
+    const Scene scene =
+        folder_.load(scene_of(R"({"type": "obj", "file": "m.obj", "transform": [{"scale": 100}]})"));
+    EXPECT_FALSE(material(scene).bump_map);
+    ASSERT_TRUE(material(scene).normal_map);
+    EXPECT_EQ(material(scene).normal_map->scale, 0.5f);
+    EXPECT_EQ(material(scene).normal_map->texture.image, 0u);
+    EXPECT_FALSE(scene.meshes.at(0).tangents.empty());
+    ASSERT_EQ(scene.warnings.size(), 2u);  // The other: there is no light.
+    EXPECT_EQ(
+        folder_.without_folder(scene.warnings[1]),
+        "m.mtl:3: the bump map of the material \"m.obj/a\", n.png, has the colours of a normal map and is "
+        "read as one; to say so, name it as norm");
+}
+
 TEST_F(ObjTextures, ImagesMustBeThere) {
     const auto error = [&](const std::string& library) {
         return folder_.without_folder(error_of([&] { load(library); }));

@@ -67,8 +67,12 @@ inline std::vector<Triangle> triangles(const GpuScene& gpu) {
     for (uint32_t i = 0; i < gpu.primitive_count; ++i) {
         const uvec4* w = &gpu.arrays[ARRAY_PRIMITIVES][i * PRIMITIVE_WORDS];
         const uvec4 s = gpu.arrays[ARRAY_SURFACES][i];
-        const Surface surface{uvec2(s.x, s.y), s.z & (MAX_MATERIALS - 1), s.z >> 31, s.w,
-                              std::bit_cast<float>(s.z & SURFACE_ERROR_BITS)};
+        const Surface surface{uvec2(s.x, s.y),
+                              s.z & (MAX_MATERIALS - 1),
+                              s.z >> 31,
+                              s.w,
+                              std::bit_cast<float>(s.z & SURFACE_ERROR_BITS),
+                              s.z >> 22 & 1};
         const vec3 d = std::bit_cast<vec3>(uvec3(w[0].w, w[1].w, w[2].w));
         const uvec4 n = gpu.has_normals ? gpu.arrays[ARRAY_NORMALS][i] : uvec4(0);
         EXPECT_TRUE(

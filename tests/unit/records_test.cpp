@@ -51,7 +51,7 @@ TEST(Records, TheFourthVertexOrTheKindFillsTheLastWords) {
 }
 
 TEST(Records, SmoothErrorAndMaterialShareAWord) {
-    const Surface surface{uvec2(1, 2), MAX_MATERIALS - 2, 1u, 3u, 0x1p-20f};
+    const Surface surface{uvec2(1, 2), MAX_MATERIALS - 2, 1u, 3u, 0x1p-20f, 1u};
     EXPECT_EQ(pack(surface)[0], uvec4(1u, 2u, 0x80000000u | (127u - 20u) << 23 | 0x7FFFFEu, 3u));
 }
 

@@ -31,9 +31,9 @@ class SceneFolder {
         std::ofstream(folder_ / name, std::ios::binary) << text;
     }
 
-    Scene load(const std::string& text) {
+    Scene load(const std::string& text, const ImageOptions& images = {}) {
         write("scene.json", text);
-        return load_scene(folder_ / "scene.json");
+        return load_scene(folder_ / "scene.json", images);
     }
 
     // Loads a scene that has an error at its '@', and checks the message after `scene.json:line:column: `.

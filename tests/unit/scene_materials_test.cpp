@@ -41,7 +41,7 @@ TEST(SceneMaterials, HaveAKnownType) {
     folder.expect_error(material(R"(@{"reflectance": 1})"), "the key \"type\" is missing here; add it");
     folder.expect_error(
         material(R"({"type": "mirror", @"alpha": 0.1})"),
-        "unknown key \"alpha\" (known: type, reflectance, normal_map, opacity, vertex_colors)");
+        "unknown key \"alpha\" (known: type, reflectance, normal_map, bump_map, opacity, vertex_colors)");
 }
 
 TEST(SceneMaterials, ReadDiffuse) {

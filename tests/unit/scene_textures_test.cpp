@@ -1,6 +1,12 @@
 // Textures of a scene file: what their keys say, and what is refused.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
+#include "base/color.h"
 #include "scene_fixture.h"
 #include "support/png_writer.h"
 
@@ -83,6 +89,43 @@ TEST_F(SceneTextures, StandWhereverAColourOrNumberDoes) {
     EXPECT_TRUE(scene.shapes.at(0).emission->radiance.texture);
 }
 
+TEST_F(SceneTextures, HeightsAreInMetres) {
+    const auto map = [&](const std::string& keys) {
+        return load(R"({"type": "mirror", "bump_map": {"image": "a.png")" + keys + "}}").bump_map.value();
+    };
+    EXPECT_EQ(map(R"(, "scale": 0.125)").scale, 0.125f);
+    EXPECT_EQ(map(R"(, "scale": -3)").scale, -3.0f);
+    EXPECT_EQ(map(R"(, "scale": 1)").texture, (Texture{.encoding = TextureEncoding::linear}));
+    EXPECT_EQ(map(R"(, "scale": 1, "channel": "green", "encoding": "srgb")").texture,
+              (Texture{.encoding = TextureEncoding::srgb, .channel = 1}));
+    EXPECT_FALSE(map(R"(, "scale": 1)").multiplier);
+    folder_.expect_error(material(R"({"type": "mirror", "bump_map": @{"image": "a.png"}})"),
+                         "the key \"scale\" is missing here; add it");
+    folder_.expect_error(material(R"({"type": "mirror", "bump_map": {"image": "a.png", "scale": @"1"}})"),
+                         "\"scale\": expected a number, found \"1\"");
+    folder_.expect_error(
+        material(
+            R"({"type": "mirror", "normal_map": {"image": "a.png"}, "bump_map": @{"image": "a.png", "scale": 1}})"),
+        "a material has a normal_map or a bump_map, not both; bake the heights into the normals");
+}
+
+TEST_F(SceneTextures, WarnOfABumpMapThatLooksLikeNormals) {
+    const std::vector<uint32_t> blue{110, 140, 240}, grey{200, 200, 200}, pale{150, 150, 180};
+    for (const auto& [texel, warnings] : {std::pair(blue, 2u), std::pair(grey, 1u), std::pair(pale, 1u)}) {
+        folder_.write("n.png", encode_png({.size = uvec2(1), .bits = 8, .color = png_rgb, .samples = texel}));
+        const Scene scene =
+            folder_.load(material(R"({"type": "mirror", "bump_map": {"image": "n.png", "scale": 1}})"));
+        EXPECT_TRUE(scene.materials.at(0).bump_map);
+        ASSERT_EQ(scene.warnings.size(), warnings);  // One says that the scene is empty.
+        if (warnings == 1u) continue;
+        EXPECT_NE(scene.warnings[1].find(": the bump map of the material \"m\", "), std::string::npos);
+        EXPECT_NE(scene.warnings[1].find(
+                      "n.png, has the colours of a normal map; if it is one, name it as normal_map"),
+                  std::string::npos)
+            << scene.warnings[1];
+    }
+}
+
 TEST_F(SceneTextures, OfOneFileShareItsImage) {
     write_image("b.png");
     const Scene scene = folder_.load(settings(GOOD_CAMERA + R"(, "materials": {
@@ -108,7 +151,8 @@ TEST_F(SceneTextures, RefuseWhatIsWrong) {
                          "\"uv_set\": expected a whole number from 0 to 1, found 2");
     folder_.expect_error(
         material(R"({"type": "phong", "specular": @{"image": "a.png"}, "diffuse": 0.5, "exponent": 1})"),
-        "diffuse + specular is 1.5 in red; lower one of the two until the sum is at most 1");
+        "diffuse + specular is 1.5 in red where an image is white; lower a \"factor\" until the sum is at "
+        "most 1");
 }
 
 TEST_F(SceneTextures, AnImageThatCannotBeReadIsNamedWithItsPlace) {
@@ -145,6 +189,33 @@ TEST_F(SceneTextures, MeshesHaveCoordinatesAndColours) {
                          "\"colors\": expected a number from 0 to 1, found 2");
 }
 
+// Seen from outside: up is +Y on four sides, -Z on the top, +Z at the bottom.
+TEST_F(SceneTextures, StandUprightOnBoxes) {
+    const Scene scene =
+        folder_.load(scene_of(R"({"type": "box", "min": [0, 0, 0], "max": [1, 2, 3], "material": "white"})"));
+    ASSERT_EQ(scene.shapes.size(), 6u);
+    dvec3 sum(0.0);
+    for (const Shape& shape : scene.shapes) {
+        const Quad& quad = std::get<Quad>(shape.geometry);
+        const auto corner = [&](const vec2& uv) {
+            const auto* found = std::find(std::begin(quad.uvs), std::end(quad.uvs), uv);
+            EXPECT_NE(found, std::end(quad.uvs));
+            return quad.corners[size_t(found - quad.uvs) % 4];
+        };
+        const dvec3 origin = corner(vec2(0));
+        const dvec3 right = glm::normalize(corner(vec2(1, 0)) - origin);
+        const dvec3 up = glm::normalize(corner(vec2(0, 1)) - origin);
+        EXPECT_EQ(corner(vec2(1)), corner(vec2(1, 0)) + corner(vec2(0, 1)) - origin);
+        const dvec3 outward =
+            glm::cross(quad.corners[1] - quad.corners[0], quad.corners[2] - quad.corners[1]);
+        const dvec3 n = glm::normalize(outward);
+        EXPECT_EQ(up, n.y == 0.0 ? dvec3(0, 1, 0) : dvec3(0, 0, -n.y));
+        EXPECT_EQ(glm::cross(right, up), n);
+        sum += glm::abs(n);
+    }
+    EXPECT_EQ(sum, dvec3(2.0));
+}
+
 // A mirrored quad keeps its picture: each vertex its coordinates.
 TEST_F(SceneTextures, AMirroredQuadKeepsItsCoordinates) {
     const Scene scene = folder_.load("{" + GOOD_CAMERA + R"(, "shapes": [{"type": "quad", "emission": 1,
@@ -154,13 +225,13 @@ TEST_F(SceneTextures, AMirroredQuadKeepsItsCoordinates) {
         EXPECT_EQ(quad.uvs[i], vec2(float(-quad.corners[i].x), float(quad.corners[i].y)));
 }
 
-// gAMA 1.0: samples are light. Colours are converted to sRGB; data are what the file holds.
+// gAMA 0.5: samples are roots of light. Colours are converted to sRGB; data are what the file holds.
 TEST_F(SceneTextures, OfAnotherGammaAreConvertedForColours) {
     folder_.write("g.png", encode_png({.size = uvec2(2, 1),
                                        .bits = 8,
                                        .color = png_rgb_alpha,
                                        .samples = {0, 51, 255, 51, 128, 1, 2, 3}},
-                                      png_chunk("gAMA", big_endian_bytes(100000))));
+                                      png_chunk("gAMA", big_endian_bytes(50000))));
     const Scene scene = folder_.load(
         material(R"({"type": "phong", "specular": {"image": "g.png"}, "exponent": {"image": "g.png"}})"));
     ASSERT_EQ(scene.images.size(), 2u);
@@ -170,9 +241,31 @@ TEST_F(SceneTextures, OfAnotherGammaAreConvertedForColours) {
     const vec4 code = texel_codes(scene.images[1].image, 0);
     EXPECT_EQ(scene.images[1].image.type, TexelType::unorm16);
     EXPECT_EQ(code.x, 0.0f);
-    EXPECT_NEAR(code.y, 0.4845292f, 1e-5f);  // sRGB of 0.2.
+    EXPECT_NEAR(code.y, 0.2209164f, 1e-5f);  // sRGB of 0.04.
     EXPECT_EQ(code.z, 1.0f);
     EXPECT_NEAR(code.w, 0.2f, 1e-5f);
+}
+
+// An sRGB texture and one of data share no light: the first says how the image is made smaller.
+TEST_F(SceneTextures, AreMadeSmallerOnDemand) {
+    folder_.write("b.png",
+                  encode_png({.size = uvec2(2, 1), .bits = 8, .color = png_grey, .samples = {0, 255}}));
+    std::vector<std::pair<size_t, size_t>> progress;
+    const ImageOptions options{.texture_limit = 1,
+                               .progress = [&](size_t done, size_t of) { progress.emplace_back(done, of); }};
+    const auto code_of = [&](const std::string& reflectance, const std::string& exponent) {
+        const Scene scene = folder_.load(material(R"({"type": "phong", "specular": )" + reflectance +
+                                                  R"(, "exponent": )" + exponent + "}"),
+                                         options);
+        EXPECT_EQ(scene.images[0].image.size, uvec2(1));
+        return std::lround(255.0f * texel_codes(scene.images[0].image, 0).x);
+    };
+    const std::string image = R"({"image": "b.png"})";
+    EXPECT_EQ(code_of(image, image), std::lround(255.0f * srgb_encode(0.5f)));
+    EXPECT_EQ(code_of("0.5", image), 128);
+    EXPECT_EQ(code_of(image, R"({"image": "a.png"})"), std::lround(255.0f * srgb_encode(0.5f)));
+    const std::vector<std::pair<size_t, size_t>> expected{{1, 1}, {1, 1}, {1, 2}, {2, 2}};
+    EXPECT_EQ(progress, expected);
 }
 
 TEST_F(SceneTextures, WarnOfANormalMapThatIsNoneAndOfOpacityWithoutAlpha) {

@@ -59,7 +59,12 @@ GOOD = {
             "normal_map": {"image": "bumps.png", "scale": 2},
             "opacity": {"image": "wood.png", "channel": "alpha", "cutoff": 0.5},
         },
-        "gold": {"type": "conductor", "reflectance": [1, 0.8, 0.3], "alpha": 0.001},
+        "gold": {
+            "type": "conductor",
+            "reflectance": [1, 0.8, 0.3],
+            "alpha": 0.001,
+            "bump_map": {"image": "dents.png", "scale": -0.002, "channel": "green"},
+        },
         "glass": {
             "type": "dielectric",
             "ior": 1.5,
@@ -96,6 +101,9 @@ BAD = [
     (["materials", "wood", "opacity"], 1.5),
     (["materials", "wood", "normal_map"], 1),
     (["materials", "wood", "normal_map", "scale"], "2"),
+    (["materials", "wood", "bump_map"], {"image": "dents.png", "scale": 1}),
+    (["materials", "gold", "bump_map", "scale"], REMOVE),
+    (["materials", "gold", "bump_map", "factor"], 1),
     (["materials", "gold", "alpha"], {"image": "a.png", "factor": -1}),
     (["cameras"], REMOVE),
     (["cameras"], {}),

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "gpu_scene/flatten.h"
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/texture_mean.h"
@@ -66,6 +67,35 @@ TEST(TextureTable, HoldsEveryTextureAndImageOnce) {
     EXPECT_EQ(table.traits(), TEXEL_RGBA8 | TEXTURE_LINEAR | TEXTURE_SRGB | TEXTURE_BILINEAR |
                                   TEXTURE_REPEAT | TEXTURE_CLAMP | TEXTURE_REPEAT << TEXTURE_WRAP_V |
                                   TEXTURE_UV0);
+}
+
+TEST(TextureTable, RefusesAnImageThatIsTooWide) {
+    const std::vector<ImageFile> images{
+        {.path = "wide.png", .place = "a.json:1:2", .image = counting({65536, 1}, 1, TexelType::unorm8)}};
+    TextureTable table(images);
+    try {
+        table.add(Texture{.image = 0});
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_STREQ(
+            error.what(),
+            "a.json:1:2: the image wide.png has 65536x1 pixels, but a texture at most 65535 along a side; "
+            "make it smaller (--texture-limit)");
+    }
+}
+
+TEST(TextureTable, TheLastUseOfImagesFreesThem) {
+    Scene scene = scene_of_mesh(sphere_mesh(4, 4));
+    for (const float grey : {0.25f, 0.75f})
+        add_texture(scene, {5, 6}, [&](uint32_t, uint32_t) { return vec4(vec3(grey), 1); });
+    // The second image comes first.
+    scene.materials[0].model =
+        PhongMaterial{{vec3(1), Texture{.image = 1}}, {vec3(1), Texture{.image = 0}}, 1.0f};
+    const auto texels = build_gpu_scene(scene).arrays[ARRAY_TEXELS];
+    EXPECT_EQ(texels.size(), texel_words(scene.images[0].image) + texel_words(scene.images[1].image));
+    EXPECT_EQ(build_gpu_scene_freeing_images(scene).arrays[ARRAY_TEXELS], texels);
+    for (const ImageFile& file : scene.images)
+        EXPECT_EQ(file.image.texels.capacity(), 0u);
 }
 
 TEST(TextureTable, AttributesAreThoseThatAreLookedUp) {

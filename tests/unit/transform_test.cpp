@@ -107,6 +107,13 @@ TEST(Transform, KeepsSpheresUnderRoundedRotations) {
     }
 }
 
+TEST(Transform, HasAMeanScale) {
+    const auto scale = [](const std::string& text) { return parse_transform(text).mean_scale(); };
+    EXPECT_EQ(scale("[]"), 1.0);
+    EXPECT_EQ(scale(R"([{"translate": [1e6, 0, 3]}, {"scale": -0.25}])"), 0.25);
+    EXPECT_NEAR(scale(R"([{"scale": [-1, 2, 4]}, {"rotate": 30, "axis": [1, 2, 3]}])"), 2.0, 1e-15);
+}
+
 TEST(Transform, RefusesSingularOnes) {
     const std::string singular =
         "the transform is singular: up to this step it flattens the shape; use factors other than 0";

@@ -1,6 +1,7 @@
 // Materials: one reader for each model, in a table by the name of its type.
 #include <array>
 
+#include "base/text.h"
 #include "load/json/loader_parts.h"
 #include "scene/names.h"
 
@@ -10,7 +11,7 @@ namespace {
 using Model = decltype(Material::model);
 
 // The keys that every material may have besides those of its model.
-constexpr std::array<std::string_view, 3> MATERIAL_KEYS{"normal_map", "opacity", "vertex_colors"};
+constexpr std::array<std::string_view, 4> MATERIAL_KEYS{"normal_map", "bump_map", "opacity", "vertex_colors"};
 
 Textured<vec3> as_floats(const Textured<dvec3>& color) {
     Textured<vec3> result(vec3(color.factor));
@@ -28,8 +29,10 @@ Model read_diffuse(const Node& node, const ImageFolder& images) {
 }
 
 // Throws Error at `place`, that of b, if a channel would send out more light than it receives; `names` names
-// the sum of a and b.
-void check_sum(const Node& place, std::string_view names, dvec3 a, dvec3 b) {
+// the sum of a and b. Images count as white: which of their pixels meet on a surface is not known here.
+void check_sum(const Node& place, std::string_view names, const Textured<dvec3>& a,
+               const Textured<dvec3>& b) {
+    const bool textured = a.texture || b.texture;
     constexpr std::array<const char*, 3> CHANNELS{"red", "green", "blue"};
     // Decimals that add up to 1, such as 0.7 and 0.3, do so as doubles within 2e-16. An excess above 1e-14 is
     // deliberate, and shows in 15 digits. As floats, the greater is off by at most 2^-25 and the lesser by
@@ -37,10 +40,11 @@ void check_sum(const Node& place, std::string_view names, dvec3 a, dvec3 b) {
     constexpr double SLACK = 1e-14;
     constexpr int DIGITS = 15;
     for (glm::length_t i = 0; i < 3; ++i) {
-        const double sum = a[i] + b[i];
+        const double sum = a.factor[i] + b.factor[i];
         if (sum <= 1.0 + SLACK) continue;
-        place.fail(std::string(names) + " is " + number_text(sum, DIGITS) + " in " + CHANNELS[size_t(i)] +
-                   "; lower one of the two until the sum is at most 1");
+        place.fail(concat(names, " is ", number_text(sum, DIGITS), " in ", CHANNELS[size_t(i)],
+                          textured ? " where an image is white; lower a \"factor\" until the sum is at most 1"
+                                   : "; lower one of the two until the sum is at most 1"));
     }
 }
 
@@ -50,7 +54,7 @@ Model read_phong(const Node& node, const ImageFolder& images) {
     const Node specular = node.require("specular");
     const Textured<dvec3> kd = diffuse ? read_reflectance(*diffuse, images) : dvec3(0.0);
     const Textured<dvec3> ks = read_reflectance(specular, images);
-    check_sum(specular, "diffuse + specular", kd.factor, ks.factor);
+    check_sum(specular, "diffuse + specular", kd, ks);
     return PhongMaterial{as_floats(kd), as_floats(ks),
                          read_number(node.require("exponent"), images, 0.0f, MAX_PHONG_EXPONENT)};
 }
@@ -94,7 +98,7 @@ Model read_diffuse_transmission(const Node& node, const ImageFolder& images) {
     const Textured<dvec3> reflectance = read_reflectance(node.require("reflectance"), images);
     const Node place = node.require("transmittance");
     const Textured<dvec3> transmittance = read_reflectance(place, images);
-    check_sum(place, "reflectance + transmittance", reflectance.factor, transmittance.factor);
+    check_sum(place, "reflectance + transmittance", reflectance, transmittance);
     DiffuseTransmissionMaterial material{as_floats(reflectance), as_floats(transmittance), {}};
     if (const auto absorption = node.find("absorption"))
         material.inside = Medium{read_absorption(*absorption)};
@@ -129,6 +133,13 @@ Material read_material(const Node& node, const ImageFolder& images) {
          {"diffuse_transmission", &read_diffuse_transmission}}};
     Material material{std::string(node.key()), node.require("type").choice(READERS)(node, images)};
     if (const auto map = node.find("normal_map")) material.normal_map = read_normal_map(*map, images);
+    if (const auto map = node.find("bump_map")) {
+        if (material.normal_map) {
+            map->fail(
+                "a material has a normal_map or a bump_map, not both; bake the heights into the normals");
+        }
+        material.bump_map = read_bump_map(*map, images);
+    }
     if (const auto opacity = node.find("opacity")) material.opacity = read_opacity(*opacity, images);
     if (const auto colors = node.find("vertex_colors")) material.vertex_colors = colors->boolean();
     return material;

@@ -55,6 +55,8 @@ void read_box(const Node& node, ShapeList& shapes) {
     // Bits 0, 1 and 2 of a corner choose between min and max along x, y and z.
     constexpr uint8_t SIDES[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                      {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    // Which of a side's corners is at the lower left of an image that stands upright, seen from outside.
+    constexpr uint8_t LOWER_LEFT[6] = {0, 3, 0, 1, 3, 0};
     node.allow_only({"min", "max"}, SHAPE_KEYS);
     const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
@@ -63,13 +65,14 @@ void read_box(const Node& node, ShapeList& shapes) {
     if (!glm::all(glm::lessThan(lo, hi))) {
         node.require("max").fail("each number of max must be above that of min");
     }
-    for (const auto& side : SIDES) {
+    for (size_t side = 0; side < 6; ++side) {
         Quad quad;
         for (size_t i = 0; i < 4; ++i) {
-            const size_t corner = side[transform.mirrors() ? 3 - i : i];
+            const size_t at = transform.mirrors() ? 3 - i : i;
+            const size_t corner = SIDES[side][at];
             const dvec3 p(corner & 1u ? hi.x : lo.x, corner & 2u ? hi.y : lo.y, corner & 4u ? hi.z : lo.z);
             quad.corners[i] = within_reach(node, transform.point(p));
-            if (transform.mirrors()) quad.uvs[i] = Quad{}.uvs[3 - i];
+            quad.uvs[i] = Quad{}.uvs[(at + 4 - LOWER_LEFT[side]) % 4];
         }
         check_quad(node, quad);
         shapes.add(appearance, quad);

@@ -12,6 +12,8 @@ namespace {
 constexpr std::array<std::string_view, 9> TEXTURE_KEYS{
     "image", "encoding", "wrap", "filter", "channel", "uv_set", "uv_rotation", "uv_offset", "uv_scale"};
 
+constexpr std::array<std::string_view, 1> FACTOR{"factor"};
+
 // Two numbers that floats can hold.
 glm::dvec2 pair_of(const Node& node) {
     const std::vector<Node> elements = node.elements();
@@ -71,8 +73,6 @@ Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncodin
     return texture;
 }
 
-static constexpr std::array<std::string_view, 1> FACTOR{"factor"};
-
 Textured<vec3> read_radiance(const Node& node, const ImageFolder& folder) {
     if (!node.is_object()) return vec3(node.rgb());
     const auto factor = node.find("factor");
@@ -88,9 +88,15 @@ NormalMap read_normal_map(const Node& node, const ImageFolder& folder) {
     return map;
 }
 
+BumpMap read_bump_map(const Node& node, const ImageFolder& folder) {
+    constexpr std::array<std::string_view, 1> SCALE{"scale"};
+    BumpMap map{.texture = read_texture(node, folder, TextureEncoding::linear, SCALE)};
+    map.scale = float(node.require("scale").number());
+    return map;
+}
+
 Opacity read_opacity(const Node& node, const ImageFolder& folder) {
     constexpr std::array<std::string_view, 2> MORE{"factor", "cutoff"};
-    constexpr uint32_t ALPHA = 3;
     Opacity opacity;
     if (!node.is_object()) {
         opacity.value = node.number(0.0f, 1.0f);

@@ -22,13 +22,15 @@ Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncodin
 // A colour, each channel in [0, 1], or a texture with such a factor (1 if it has none).
 Textured<dvec3> read_reflectance(const Node& node, const ImageFolder& folder);
 
-// A number in [lo, hi], or a texture with such a factor (1 if it has none); `default_factor` otherwise.
+// A number in [lo, hi], or a texture with such a factor (1 if it has none).
 Textured<float> read_number(const Node& node, const ImageFolder& folder, float lo, float hi);
 
 // A colour, no channel below 0, or a texture with such a factor.
 Textured<vec3> read_radiance(const Node& node, const ImageFolder& folder);
 
 NormalMap read_normal_map(const Node& node, const ImageFolder& folder);
+
+BumpMap read_bump_map(const Node& node, const ImageFolder& folder);
 
 // A number in [0, 1], or a texture with such a factor and perhaps a cutoff.
 Opacity read_opacity(const Node& node, const ImageFolder& folder);

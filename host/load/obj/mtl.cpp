@@ -21,9 +21,10 @@ namespace candela {
 namespace {
 
 // The textures that are read; the others are ignored.
-constexpr std::array<std::string_view, 9> READ{"map_Kd", "map_Ks", "map_Ke", "map_Ns", "map_d",
-                                               "map_Pr", "map_Pm", "norm",   "map_Kn"};
-constexpr std::array<std::string_view, 4> NOT_READ{"bump", "disp", "decal", "refl"};
+constexpr std::array<std::string_view, 12> READ{"map_Kd", "map_Ks", "map_Ke",   "map_Ns",
+                                                "map_d",  "map_Pr", "map_Pm",   "norm",
+                                                "map_Kn", "bump",   "map_bump", "map_Bump"};
+constexpr std::array<std::string_view, 3> NOT_READ{"disp", "decal", "refl"};
 
 template <size_t N>
 bool is_one_of(const std::array<std::string_view, N>& names, std::string_view name) {
@@ -103,7 +104,9 @@ class Reader {
         MtlTexture texture = parse_mtl_texture(command, rest, place());
         for (const std::string& option : texture.ignored)
             ignored_.add(option, "options of textures that are not supported");
-        s.textures[command == "map_Kn" ? "norm" : std::string(command)] = std::move(texture);
+        if (command == "map_Kn") command = "norm";
+        if (command == "map_bump" || command == "map_Bump") command = "bump";
+        s.textures[std::string(command)] = std::move(texture);
     }
 
     double share(std::string_view command, std::string_view rest) const {

@@ -31,6 +31,7 @@ class Converter {
         result_.material = {.name = s_.name, .model = find_model()};
         result_.material.opacity.value = opacity();
         result_.material.normal_map = normal_map();
+        result_.material.bump_map = bump_map();
         result_.emission = colour_of(ke_, "map_Ke");
         note_ignored();
         return std::move(result_);
@@ -173,7 +174,6 @@ class Converter {
         if (d == 0.0) warn("nothing is seen of it: d is 0, or Tr is 1");
         Textured<float> result = number_of(float(d), "map_d");
         if (result.texture && !find("map_d")->channel) {
-            constexpr uint32_t ALPHA = 3;
             // The name of the colours, once more, means their alpha, and no hole where they are red.
             const MtlTexture* colours = find("map_Kd");
             const bool is_alpha = colours && colours->file == find("map_d")->file;
@@ -185,6 +185,17 @@ class Converter {
     std::optional<NormalMap> normal_map() {
         if (!find("norm")) return std::nullopt;
         return NormalMap{use("norm", TextureEncoding::linear), find("norm")->multiplier};
+    }
+
+    std::optional<BumpMap> bump_map() {
+        if (!find("bump") || find("bump")->multiplier == 0.0f) return std::nullopt;
+        if (find("norm")) {
+            ignored_.add("bump", "their materials have normal maps");
+            used_.insert("bump");
+            return std::nullopt;
+        }
+        const float multiplier = find("bump")->multiplier;
+        return BumpMap{use("bump", TextureEncoding::linear), multiplier, multiplier};
     }
 
     void note_ignored() {

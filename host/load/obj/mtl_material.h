@@ -29,7 +29,7 @@ struct MtlStatements {
     std::optional<double> tr;
     std::optional<double> pr;  // Roughness, in [0, 1].
     std::optional<double> pm;  // How much of a metal it is, in [0, 1].
-    // map_Kd, map_Ks, map_Ke, map_Ns, map_d, map_Pr, map_Pm and norm.
+    // map_Kd, map_Ks, map_Ke, map_Ns, map_d, map_Pr, map_Pm, norm and bump.
     std::map<std::string, MtlTexture, std::less<>> textures;
 };
 
