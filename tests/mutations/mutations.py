@@ -23,6 +23,7 @@ FILTER = "shaders/texture/filter.glsl"
 ATTRIBUTES = "shaders/scene/attributes.glsl"
 MATERIAL = "shaders/scene/material.glsl"
 OPACITY = "shaders/scene/opacity.glsl"
+BUMP = "shaders/scene/bump.glsl"
 BENT_NORMAL = "shaders/integrator/bent_normal.glsl"
 CAMERA = "shaders/scene/camera.glsl"
 RENDER = "shaders/kernels/render.comp.glsl"
@@ -40,7 +41,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
-TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Opacity*")
+TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
@@ -158,10 +159,15 @@ GROUPS = [
         ("sRGB codes taken for light", TEXTURE, "code.rgb = srgb_decode(code.rgb);", ""),
         ("textures upside down", "host/gpu_scene/texture_table.cpp", "vec3(-row_v.x, -row_v.y, 1.0f - row_v.z)", "row_v"),
         ("no texel across the seam", FILTER, "repeats ? 0 : last", "last"),
-        ("mirrored textures repeated", FILTER, "at > 1.0 ? 2.0 - at : at", "at > 1.0 ? at - 1.0 : at"),
-        ("weights of the two axes swapped", TEXTURE, "lerp(lerp(a, b, u.weight), lerp(c, d, u.weight), v.weight)",
-         "lerp(lerp(a, b, v.weight), lerp(c, d, v.weight), u.weight)"),
-        ("alpha for blue where a number is asked for", TEXTURE, "(channel & 1u) == 0u ? pair.x", "channel == 0u ? pair.x"),
+        ("mirrored textures repeated", FILTER, "at = turned ? 2.0 - at : at;", "at = turned ? at - 1.0 : at;"),
+        ("weights of the two axes swapped", TEXTURE, "vec4 texels[4];", """vec4 texels[4];
+    float weight = at.u.weight;
+    at.u.weight = at.v.weight;
+    at.v.weight = weight;"""),
+        ("a colour always the first of the four texels", TEXTURE, "random.x < at.u.weight ? at.u.second : at.u.first",
+         "at.u.first"),
+        ("green for blue where a number is asked for", TEXTURE, "texel.x >> 8u * channel & 255u",
+         "texel.x >> 8u * min(channel, 1u) & 255u"),
         ("the second triangle's coordinates for the first", ATTRIBUTES, "uintBitsToFloat(second ? cd.xy : ab.zw)",
          "uintBitsToFloat(cd.xy)"),
         ("lights sampled without their textures", LIGHT_SAMPLER, "s.Li *= light_texture(i, at);", ""),
@@ -170,12 +176,21 @@ GROUPS = [
          "s.Li *= material_opacity(scene_light_textures(i).material, at)", "s.Li *= 1.0"),
         ("both triangles of a lamp for the first", LIGHT_SAMPLER, "place.second = b.y > b.x;", "place.second = false;"),
         ("the same rays pass all surfaces", OPACITY, "floatBitsToUint(ray.d), id)", "floatBitsToUint(ray.d), 0u)"),
-        ("the other triangle of a pair not tested", OPACITY, "found = primitive_second_hit(ray, shear, p, found);",
-         "return;"),
+        ("the other triangle of a pair not tested", OPACITY, "bool goes_on = candidate.first && is_nearer(second, hit);",
+         "bool goes_on = false;"),
+        ("nothing behind a hole casts a shadow", TRAVERSAL,
+         "decide(t.ray, t.shear, t.hit, t.candidate);\n    if (t.any_hit && is_hit(t.hit)) bvh_end(t);",
+         "decide(t.ray, t.shear, t.hit, t.candidate);\n    if (t.any_hit) bvh_end(t);"),
         ("opaque below the cutoff", MATERIAL, "opacity >= textures.cutoff ? 1.0 : 0.0",
          "opacity >= textures.cutoff ? 0.0 : 1.0"),
         ("light below the surface of a bent normal lost", BENT_NORMAL,
          "scattered.wi = mirrored(scattered.wi, n);", "scattered.pdf = 0.0;"),
+        ("the first triangle's heights on the second", BUMP,
+         "if (hit_second(hit)) return UvEdges(p.c - p.a, p.d - p.a, c - a, uintBitsToFloat(cd.zw) - a);", ""),
+        ("heights that a mirrored image turns not turned", FILTER, "turned ? -float(n) : float(n)", "float(n)"),
+        ("the frame's unit forgotten for heights", "host/gpu_scene/gpu_scene.cpp", "frame.length(double(bump->scale))",
+         "frame.length(frame.unit * double(bump->scale))"),
+        ("a facet seen from behind", BENT_NORMAL, "if (up >= LEAST) return dot(wo, ns) < 0.0 ? -ns : ns;", "return ns;"),
         ("the density of one of two directions", BENT_NORMAL, "sum.pdf += value.pdf;", "sum.pdf = value.pdf;"),
     ]),
     (DEVICES, [

@@ -8,7 +8,7 @@ candela with them. Requirements, in a virtual environment of their own (candela 
     python3 -m venv venv && venv/bin/pip install mitsuba==3.9.1 numpy && venv/bin/python make_references.py
 
 Mitsuba compiles its kernels with LLVM 16 or newer (Debian: libllvm19); where there are several, the variable
-DRJIT_LIBLLVM_PATH names the library. All references together take about seven minutes on two cores.
+DRJIT_LIBLLVM_PATH names the library. All references together take about ten minutes on two cores.
 """
 
 import json
@@ -23,7 +23,9 @@ import numpy as np
 mi.set_variant("llvm_ad_rgb")
 mi.set_log_level(mi.LogLevel.Error)
 
-import reflection_models  # noqa: E402 (needs the variant)
+from meshes import box, read_ply, write_ply
+import light_texture  # noqa: E402, F401 (registers a plugin; both need the variant)
+import reflection_models  # noqa: E402
 
 HERE = Path(__file__).parent
 SCENES = HERE.parent.parent / "scenes"
@@ -46,6 +48,9 @@ SPP = {
     "mesh-light": 256,
     "smooth-normals": 128,
     "textured-diffuse": 256,
+    "textured-roughness": 128,
+    "textured-emitter": 256,
+    "mask": 256,
     "normal-map": 256,
 }
 
@@ -94,6 +99,8 @@ def bitmap(texture, is_data):
         texels = np.where(texels > 0.04045, ((texels + 0.055) / 1.055) ** 2.4, texels / 12.92)
     if is_data == "number":
         texels = texels[..., [["red", "green", "blue", "alpha"].index(texture.get("channel", "red"))]]
+    else:
+        texels = texels[..., :3]
     texels = texels * np.array(texture.get("factor", 1), dtype=np.float32)
     wrap = texture.get("wrap", "repeat")
     return {"type": "bitmap", "bitmap": mi.Bitmap(texels.astype(np.float32)), "raw": True, "format": "variant",
@@ -120,7 +127,9 @@ def phong(material, smooth):
 
 
 def metal(material, smooth):
-    return {"type": "candela_metal", "reflectance": rgb(material["reflectance"]), "alpha": float(material["alpha"])}
+    alpha = material["alpha"]
+    alpha = bitmap(alpha, "number") if isinstance(alpha, dict) else float(alpha)
+    return {"type": "candela_metal", "reflectance": rgb(material["reflectance"]), "alpha": alpha}
 
 
 def dielectric(material, smooth):
@@ -135,7 +144,7 @@ def detailed(bsdf, material):
         bsdf = {"type": "twosided", "bsdf": {"type": "normalmap", "normalmap": bitmap(material["normal_map"], "normal"),
                                              "bsdf": inner}}
     if "opacity" in material:
-        bsdf = {"type": "mask", "opacity": bitmap(material["opacity"], "number"), "bsdf": bsdf}
+        bsdf = {"type": "mask", "opacity": bitmap({"channel": "alpha", **material["opacity"]}, "number"), "bsdf": bsdf}
     return bsdf
 
 
@@ -176,41 +185,6 @@ def transform(shape):
             matrix = np.reshape(step["matrix"], (4, 4))
         total = matrix @ total
     return total
-
-
-def box(shape):
-    """Corners and triangles; the front is outside."""
-    low, high = np.array(shape["min"]), np.array(shape["max"])
-    corners = [np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)]
-    quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
-    return corners, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
-
-
-def write_ply(path, positions, triangles, normals=None, uvs=None):
-    columns, names = positions, ["x", "y", "z"]
-    if normals is not None:
-        columns, names = np.hstack([columns, normals]), [*names, "nx", "ny", "nz"]
-    if uvs is not None:
-        columns, names = np.hstack([columns, uvs * [1, -1] + [0, 1]]), [*names, "u", "v"]
-    lines = ["ply", "format ascii 1.0", f"element vertex {len(columns)}", *(f"property float {n}" for n in names)]
-    lines += [f"element face {len(triangles)}", "property list uchar int vertex_index", "end_header"]
-    lines += [" ".join(repr(float(x)) for x in row) for row in columns]
-    lines += [f"3 {a} {b} {c}" for a, b, c in triangles]
-    path.write_text("\n".join(lines) + "\n")
-
-
-def read_ply(path):
-    """Positions, triangles and normals of a mesh as make_mesh.py writes it, which Mitsuba does not read: little-endian,
-    positions and normals as floats, faces of three or four 16-bit indices."""
-    header, _, data = path.read_bytes().partition(b"end_header\n")
-    vertices, faces = (int(n) for n in re.findall(rb"element \w+ (\d+)", header))
-    columns = np.frombuffer(data, "<f4", 6 * vertices).reshape(-1, 6)
-    at, triangles = columns.nbytes, []
-    for _ in range(faces):
-        corners = np.frombuffer(data, "<u2", data[at], at + 1)
-        triangles += [(corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)]
-        at += 1 + corners.nbytes
-    return columns[:, :3], triangles, columns[:, 3:]
 
 
 def mesh_of(shape, folder, temporary):
@@ -263,7 +237,10 @@ def shape_of(shape, materials, folder, temporary):
     else:
         result["bsdf"] = BLACK
     if "emission" in shape:
-        result["emitter"] = {"type": "area", "radiance": colour(shape["emission"])}
+        radiance = colour(shape["emission"])
+        if radiance["type"] == "bitmap":
+            radiance = {"type": "candela_light_texture", "texture": radiance}
+        result["emitter"] = {"type": "area", "radiance": radiance}
     return result
 
 

@@ -35,10 +35,18 @@ def hills(x, y):
     return [round(127.5 + 127.5 * c / length) for c in n]
 
 
+def leaf(x, y):
+    """Green, and opaque where two disks overlap, but half transparent at the rim."""
+    within = min(7.0 - math.hypot(x, y - 7), 7.5 - math.hypot(x - 7, y))
+    return [20 * x, 120 + 15 * y, 40, round(255 * min(max(within, 0.0), 1.0))]
+
+
 def main():
     # Red grows to the right, green downwards; blue tells even texels from odd ones.
     write_png("patches.png", texels(8, 6, lambda x, y: [36 * x, 50 * y, 220 if (x + y) % 2 else 30]))
     write_png("hills.png", texels(16, 16, hills))
+    write_png("grain.png", texels(8, 8, lambda x, y: [64 + 27 * ((3 * x + 5 * y) % 8)]))
+    write_png("leaf.png", texels(8, 8, leaf))
 
 
 if __name__ == "__main__":

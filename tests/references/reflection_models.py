@@ -10,7 +10,7 @@ import numpy as np
 
 
 class Reflection(mi.BSDF):
-    """Two-sided reflection; a model adds value, pdf and direction, all of them on the side of +z."""
+    """Two-sided reflection; a model adds value, density and direction at the point si, all on the side of +z."""
 
     def __init__(self, props):
         super().__init__(props)
@@ -22,7 +22,7 @@ class Reflection(mi.BSDF):
         side = dr.sign(si.wi.z)
         wi, wo = mi.Vector3f(si.wi.x, si.wi.y, si.wi.z * side), mi.Vector3f(wo.x, wo.y, wo.z * side)
         active = mi.Bool(active) & (wi.z > 0) & (wo.z > 0)
-        return self.value(wi, wo) * wo.z & active, dr.select(active, self.density(wi, wo), 0)
+        return self.value(si, wi, wo) * wo.z & active, dr.select(active, self.density(si, wi, wo), 0)
 
     def eval(self, context, si, wo, active=True):
         return self.eval_pdf(context, si, wo, active)[0]
@@ -33,7 +33,7 @@ class Reflection(mi.BSDF):
     def sample(self, context, si, sample1, sample2, active=True):
         side = dr.sign(si.wi.z)
         wi = mi.Vector3f(si.wi.x, si.wi.y, si.wi.z * side)
-        wo = self.direction(wi, sample1, sample2)
+        wo = self.direction(si, wi, sample1, sample2)
         wo.z *= side
         value, pdf = self.eval_pdf(context, si, wo, active)
         active = mi.Bool(active) & (pdf > 0)
@@ -62,13 +62,13 @@ class Phong(Reflection):
         cos_alpha = wi.z * wo.z - wi.x * wo.x - wi.y * wo.y
         return dr.select(cos_alpha > 0, cos_alpha**self.n, 0)
 
-    def value(self, wi, wo):
+    def value(self, si, wi, wo):
         return self.kd / dr.pi + self.ks * ((self.n + 2) / (2 * dr.pi) * self.lobe(wi, wo))
 
-    def density(self, wi, wo):
+    def density(self, si, wi, wo):
         return 0.5 * (wo.z / dr.pi + (self.n + 1) / (2 * dr.pi) * self.lobe(wi, wo))
 
-    def direction(self, wi, sample1, sample2):
+    def direction(self, si, wi, sample1, sample2):
         cos_alpha = sample2.x ** (1 / (self.n + 1))
         sin_alpha = dr.safe_sqrt(1 - cos_alpha * cos_alpha)
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * sample2.y)
@@ -88,21 +88,25 @@ class Metal(Reflection):
     def __init__(self, props):
         super().__init__(props)
         self.reflectance = mi.Color3f(props["reflectance"])
-        self.facets = mi.MicrofacetDistribution(mi.MicrofacetType.GGX, props["alpha"])
+        self.alpha = props.get_texture("alpha")
 
-    def value(self, wi, wo):
+    def facets(self, si):
+        return mi.MicrofacetDistribution(mi.MicrofacetType.GGX, self.alpha.eval_1(si))
+
+    def value(self, si, wi, wo):
         h = dr.normalize(wi + wo)
+        facets = self.facets(si)
         # Lambda = 1 / G1 - 1 and G = 1 / (1 + Lambda(wi) + Lambda(wo)).
-        g = 1 / (1 / self.facets.smith_g1(wi, h) + 1 / self.facets.smith_g1(wo, h) - 1)
+        g = 1 / (1 / facets.smith_g1(wi, h) + 1 / facets.smith_g1(wo, h) - 1)
         fresnel = self.reflectance + (1 - self.reflectance) * (1 - dr.dot(wi, h)) ** 5
-        return fresnel * (self.facets.eval(h) * g / (4 * wi.z * wo.z))
+        return fresnel * (facets.eval(h) * g / (4 * wi.z * wo.z))
 
-    def density(self, wi, wo):
+    def density(self, si, wi, wo):
         h = dr.normalize(wi + wo)
-        return self.facets.pdf(wi, h) / (4 * dr.dot(wi, h))
+        return self.facets(si).pdf(wi, h) / (4 * dr.dot(wi, h))
 
-    def direction(self, wi, sample1, sample2):
-        h, _ = self.facets.sample(wi, sample2)
+    def direction(self, si, wi, sample1, sample2):
+        h, _ = self.facets(si).sample(wi, sample2)
         return mi.reflect(wi, h)
 
 
@@ -135,13 +139,14 @@ def quadrature_albedo(value, wi, points=1000):
     return np.pi * np.mean(weights @ value(wi, wo).reshape(points, points)) / 2
 
 
-def sampled_albedo(bsdf, wi, count=1 << 22):
-    """Mean weight of the BSDF's samples, and its standard error."""
+def sampled_albedo(bsdf, wi, u, count=1 << 22):
+    """Mean weight of the BSDF's samples at texture coordinate u, and its standard error."""
     si = dr.zeros(mi.SurfaceInteraction3f, count)
     si.wi = mi.Vector3f(*wi.tolist())
+    si.uv = mi.Point2f(u, 0.5)
     random = mi.PCG32(size=count)
-    u = [random.next_float32() for _ in range(3)]
-    _, weight = bsdf.sample(mi.BSDFContext(), si, u[0], mi.Point2f(u[1], u[2]))
+    numbers = [random.next_float32() for _ in range(3)]
+    _, weight = bsdf.sample(mi.BSDFContext(), si, numbers[0], mi.Point2f(numbers[1], numbers[2]))
     weight = np.array(weight.x, dtype=float)
     return weight.mean(), weight.std() / np.sqrt(count)
 
@@ -153,8 +158,12 @@ def check_albedos():
         (dict(diffuse=[0.3] * 3, specular=[0.6] * 3, exponent=n), lambda wi, wo, n=n: phong_value(wi, wo, 0.3, 0.6, n))
         for n in (0.0, 10.0, 500.0)
     ]
+    # The last is a texture, of which the right half is looked up.
+    halves = mi.Bitmap(np.array([[[0.1], [0.4]]], dtype=np.float32))
+    texture = {"type": "bitmap", "bitmap": halves, "raw": True, "filter_type": "nearest"}
     metal = [
-        (dict(reflectance=[0.6] * 3, alpha=a), lambda wi, wo, a=a: metal_value(wi, wo, 0.6, a)) for a in (0.1, 0.3, 0.8)
+        (dict(reflectance=[0.6] * 3, alpha=given), lambda wi, wo, a=a: metal_value(wi, wo, 0.6, a))
+        for a, given in ((0.1, 0.1), (0.3, 0.3), (0.8, 0.8), (0.4, texture))
     ]
     for kind, cases in (("candela_phong", phong), ("candela_metal", metal)):
         for parameters, value in cases:
@@ -162,7 +171,7 @@ def check_albedos():
             for cosine in (1.0, 0.6, 0.15):
                 wi = np.array([np.sqrt(1 - cosine**2), 0.0, cosine])
                 expected = quadrature_albedo(value, wi)
-                mean, error = sampled_albedo(bsdf, wi)
+                mean, error = sampled_albedo(bsdf, wi, 0.75)
                 what = f"{parameters} at cosine {cosine}: albedo {mean:.5f} +- {error:.5f}, not {expected:.5f}"
                 assert abs(mean - expected) <= 5 * error + 1e-4, f"{kind} {what}"
 
