@@ -42,6 +42,15 @@ def grey(width, height, value):
     return width, height, [array.array("f", values) for _ in "RGB"]
 
 
+def ply(rows):
+    """A binary file of one triangle, whose vertices have six floats each, or eight with texture coordinates."""
+    names = ("x", "y", "z", "nx", "ny", "nz", "u", "v")[: len(rows[0])]
+    header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
+    header += "".join(f"property float {name}\n" for name in names)
+    header += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    return header.encode() + struct.pack(f"<{3 * len(names)}f", *sum(rows, ())) + struct.pack("<B3i", 3, 0, 1, 2)
+
+
 class Pictures(unittest.TestCase):
     def test_exr_files_are_read_as_candela_reads_them(self):
         # The last block of 37 rows is a short one; `compare` prints six digits of its own error measure.
@@ -76,8 +85,8 @@ class Scenes(unittest.TestCase):
         """Bounds and number of triangles must be those that candela finds."""
         told = json.loads(candela("info", path, "--json"))
         meshes = [scene_file.mesh(shape, path.parent) for shape in scene_file.read_scene(path)["shapes"]]
-        self.assertEqual(sum(len(triangles) for _, _, triangles in meshes), told["primitives"])
-        points = [positions[i] for positions, _, triangles in meshes for triangle in triangles for i in triangle]
+        self.assertEqual(sum(len(mesh.triangles) for mesh in meshes), told["primitives"])
+        points = [mesh.positions[i] for mesh in meshes for triangle in mesh.triangles for i in triangle]
         for axis in range(3):
             self.assertAlmostEqual(min(p[axis] for p in points), told["bounds"][0][axis], places=5)
             self.assertAlmostEqual(max(p[axis] for p in points), told["bounds"][1][axis], places=5)
@@ -86,11 +95,11 @@ class Scenes(unittest.TestCase):
         self.check(ROOT / "scenes/cornell-box.json")
 
     def test_a_box_is_closed_and_has_the_area_and_the_volume_of_a_box(self):
-        corners, _, triangles = scene_file.mesh({"type": "box", "min": [-1, 2, 5], "max": [1, 5, 9]}, None)
-        edges = [(t[i - 1], t[i]) for t in triangles for i in range(3)]
+        box = scene_file.mesh({"type": "box", "min": [-1, 2, 5], "max": [1, 5, 9]}, None)
+        edges = [(t[i - 1], t[i]) for t in box.triangles for i in range(3)]
         self.assertEqual(sorted(edges), sorted({(b, a) for a, b in edges}))  # Each once, and once in reverse.
         area = volume = 0
-        for a, b, c in (map(corners.__getitem__, triangle) for triangle in triangles):
+        for a, b, c in (map(box.positions.__getitem__, triangle) for triangle in box.triangles):
             (x, y, z), (u, v, w) = ([q - p for p, q in zip(a, end)] for end in (b, c))
             normal = (y * w - z * v, z * u - x * w, x * v - y * u)
             area += sum(n * n for n in normal) ** 0.5 / 2
@@ -108,16 +117,24 @@ class Scenes(unittest.TestCase):
                 {"type": "ply", "file": "m.ply", "material": "clay", "transform": turn},
             ],
         }
-        header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
-        header += "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
-        header += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
         corners = ((0, 0, 0), (4, 0, 1), (0, 3, 2))
-        data = b"".join(struct.pack("<6f", *corner, 0, 0, 1) for corner in corners) + struct.pack("<B3i", 3, 0, 1, 2)
         with tempfile.TemporaryDirectory() as folder:
-            Path(folder, "m.ply").write_bytes(header.encode() + data)
+            Path(folder, "m.ply").write_bytes(ply([(*corner, 0, 0, 1) for corner in corners]))
             path = Path(folder, "scene.json")
             path.write_text("// A comment.\n" + json.dumps(scene), encoding="utf-8")
             self.check(path)
+
+    def test_texture_coordinates_are_read_where_a_file_has_them(self):
+        rows = [(0, 0, 0, 0, 0, 1, 0.25, 0.5), (4, 0, 1, 0, 1, 0, 2, -1), (0, 3, 2, 1, 0, 0, 0, 7)]
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "m.ply")
+            for columns, uvs in ((6, None), (8, [(0.25, 0.5), (2, -1), (0, 7)])):
+                path.write_bytes(ply([row[:columns] for row in rows]))
+                mesh = scene_file.mesh({"type": "ply", "file": "m.ply"}, path.parent)
+                self.assertEqual(mesh.positions, [(0, 0, 0), (4, 0, 1), (0, 3, 2)])
+                self.assertEqual(mesh.normals, [(0, 0, 1), (0, 1, 0), (1, 0, 0)])
+                self.assertEqual(mesh.triangles, [(0, 1, 2)])
+                self.assertEqual(mesh.uvs, uvs)
 
 
 class Runs(unittest.TestCase):
@@ -147,7 +164,7 @@ class Runs(unittest.TestCase):
         self.assertTrue(1 < figures["rays"] < 3, figures)  # A camera ray; where there are walls, two more.
 
     def test_what_is_unknown_or_missing_is_told_with_its_remedy(self):
-        known = "cornell-box, suzannes, many-lights, sky"
+        known = "cornell-box, suzannes, many-lights, sky, textured"
         self.assertIn(f"unknown scene teapot (known: {known})", compare(CANDELA, "teapot"))
         self.assertIn("cannot run /no/candela: build it, or give", compare("/no/candela"))
         self.assertIn("cannot run /no/blender: install Blender", compare(CANDELA, "--blender", "/no/blender"))

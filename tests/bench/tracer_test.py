@@ -106,6 +106,18 @@ class Tracer(unittest.TestCase):
         water = {"clay": {"type": "dielectric", "ior": 1.3}}
         box = shape(type="box", min=[0, 0, 0], max=[1, 1, 1])
         self.assertIn('no material like "clay"' + remedy, self.refused_scene(materials=water, **box))
+        clay = {"type": "diffuse", "reflectance": 0.5}
+        image = {"image": str(ROOT / "scenes" / "cornell-box.png")}
+        for entry, what in (
+            ({"reflectance": image}, "textures"),
+            ({"normal_map": image}, "normal maps"),
+            ({"opacity": 0.5}, "opacity below 1"),
+            ({"opacity": image}, "textures"),
+            ({"vertex_colors": True}, "colours of vertices"),
+        ):
+            self.assertIn(f"no {what}" + remedy, self.refused_scene(materials={"clay": clay | entry}, **box))
+        lamp = shape(type="quad", vertices=[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], emission=image)
+        self.assertIn("no textures" + remedy, self.refused_scene(**lamp))
         hidden = {"radiance": [1, 1, 1], "visible": False}
         self.assertIn("no hidden environment" + remedy, self.refused_scene(environment=hidden))
         camera = ALL_KINDS["cameras"]["main"] | {"lens": {"radius": 0.1, "focal_distance": 1}}

@@ -30,7 +30,9 @@ SCENES = {
     "suzannes": (SCENES_FOLDER / "suzannes.json", 8),
     "many-lights": (SCENES_FOLDER / "made" / "many-lights.json", 5),
     "sky": (SCENES_FOLDER / "sky.json", 5),
+    "textured": (SCENES_FOLDER / "made" / "textured.json", 5),
 }
+BEYOND_THE_TRACER = {"textured"}  # It knows no textures.
 CALIBRATION_SPP = 8
 REFERENCE_SEED = 1000  # The measured runs have the seeds 0, 1, ...
 
@@ -66,9 +68,10 @@ def make_scenes(blender):
     """Makes what the scenes need and the repository does not have."""
     if not (SCENES_FOLDER / "made" / "many-lights.json").exists():
         run([sys.executable, SCENES_FOLDER / "make_many_lights.py"])
-    if not (SCENES_FOLDER / "made" / "suzanne.ply").exists():
-        program = find(blender, "install Blender 3.4, or name it by --blender: it makes Suzanne")
-        run([program, *BLENDER_SCRIPT, SCENES_FOLDER / "make_suzanne.py"])
+    for made, script in (("suzanne.ply", "make_suzanne.py"), ("textured.json", "make_textured.py")):
+        if not (SCENES_FOLDER / "made" / made).exists():
+            program = find(blender, f"install Blender 3.4, or name it by --blender: it makes {made}")
+            run([program, *BLENDER_SCRIPT, SCENES_FOLDER / script])
 
 
 def renderers(options):
@@ -123,6 +126,8 @@ def measure(renderer, job, pace, seed, reference, options):
 def measure_scene(name, chosen, options):
     """Runs, means and differences of the converged pictures, by renderer."""
     path, depth = SCENES[name]
+    if name in BEYOND_THE_TRACER:
+        chosen = [renderer for renderer in chosen if not isinstance(renderer, Tracer)]
     job = Job(path, depth, options.size, options.threads)
     paces = [seconds_per_sample(renderer, job, options.work) for renderer in chosen]
     reference_seconds = options.reference * options.seconds
@@ -167,6 +172,8 @@ def print_scene(name, scene, options):
         row += [f"{median(result, 'wall_speed'):.2f}", f"{rays:.2f}" if rays else ""]
         row += [spread(result, "relmse", 5), ratio(ours, result, "relmse")]
         print("| " + " | ".join(row) + " |")
+    if name in BEYOND_THE_TRACER:
+        print("\nThe tracer knows no textures.")
     print("\nConverged, the pictures have these means R, G, B, and differ from candela's by so much of the mean, and")
     print(f"of blocks of {pictures.BLOCK}x{pictures.BLOCK} pixels (root mean square):")
     for renderer, result in results.items():

@@ -19,6 +19,7 @@ from mathutils import Matrix, Vector
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import scene_file  # noqa: E402 (needs the path)
+from cycles_materials import emitting, reflecting  # noqa: E402
 
 
 class ToBlender:
@@ -33,100 +34,26 @@ class ToBlender:
         return self.turn @ Vector(v)
 
 
-# --- Materials -------------------------------------------------------------------------------------------------------
-
-
-def node_material(name, build):
-    """A material whose surface is the output of the node that build(nodes, links) returns."""
-    material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    nodes.clear()
-    output = nodes.new("ShaderNodeOutputMaterial")
-    links.new(build(nodes, links).outputs[0], output.inputs["Surface"])
-    return material
-
-
-def diffuse(material):
-    def build(nodes, links):
-        node = nodes.new("ShaderNodeBsdfDiffuse")
-        node.inputs["Color"].default_value = (*material["reflectance"], 1)
-        return node
-
-    return build
-
-
-def dielectric(material):
-    assert material["fresnel"] == "exact", "Cycles knows Fresnel's equations alone"
-
-    def build(nodes, links):
-        node = nodes.new("ShaderNodeBsdfGlass")
-        node.distribution = "SHARP"
-        node.inputs["Color"].default_value = (1, 1, 1, 1)
-        node.inputs["IOR"].default_value = material["ior"]
-        return node
-
-    return build
-
-
-def conductor(material):
-    """GGX with Schlick's Fresnel term, but at the angle to the shading normal instead of to the facet's: Cycles' node
-    has none of its own. Cycles multiplies the shadowing of both directions, as if they were independent."""
-
-    def build(nodes, links):
-        node = nodes.new("ShaderNodeBsdfGlossy")
-        node.distribution = "GGX"
-        node.inputs["Roughness"].default_value = math.sqrt(material["alpha"])
-        facing = nodes.new("ShaderNodeLayerWeight")  # 1 - cosine, where "blend" is a half.
-        facing.inputs["Blend"].default_value = 0.5
-        power = nodes.new("ShaderNodeMath")
-        power.operation = "POWER"
-        power.inputs[1].default_value = 5
-        mix = nodes.new("ShaderNodeMixRGB")
-        mix.inputs["Color1"].default_value = (*material["reflectance"], 1)
-        mix.inputs["Color2"].default_value = (1, 1, 1, 1)
-        links.new(facing.outputs["Facing"], power.inputs[0])
-        links.new(power.outputs[0], mix.inputs["Fac"])
-        links.new(mix.outputs[0], node.inputs["Color"])
-        return node
-
-    return build
-
-
-def emission(radiance):
-    """Light from the front side alone."""
-
-    def build(nodes, links):
-        node = nodes.new("ShaderNodeEmission")
-        node.inputs["Color"].default_value = (*radiance, 1)
-        geometry = nodes.new("ShaderNodeNewGeometry")
-        front = nodes.new("ShaderNodeMath")
-        front.operation = "SUBTRACT"
-        front.inputs[0].default_value = 1
-        links.new(geometry.outputs["Backfacing"], front.inputs[1])
-        links.new(front.outputs[0], node.inputs["Strength"])
-        return node
-
-    return build
-
-
-MODELS = {"diffuse": diffuse, "dielectric": dielectric, "conductor": conductor}
-
-
-# --- Scene -----------------------------------------------------------------------------------------------------------
+def blender_mesh(name, made, to_blender):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata([to_blender(p) for p in made.positions], [], made.triangles)
+    mesh.polygons.foreach_set("use_smooth", [made.normals is not None] * len(made.triangles))
+    if made.uvs:
+        coordinates = [c for triangle in made.triangles for i in triangle for c in made.uvs[i]]
+        mesh.uv_layers.new().data.foreach_set("uv", coordinates)
+        # Blender's own averages would show a crease where coordinates break off, for there each point has two vertices.
+        mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
+        mesh.normals_split_custom_set_from_vertices([to_blender(n) for n in made.normals])
+    return mesh
 
 
 def add_shapes(scene, folder, to_blender):
-    materials = {name: node_material(name, MODELS[m["type"]](m)) for name, m in scene["materials"].items()}
+    materials = {name: reflecting(name, m, folder) for name, m in scene["materials"].items()}
     for i, shape in enumerate(scene["shapes"]):
-        positions, normals, triangles = scene_file.mesh(shape, folder)
-        mesh = bpy.data.meshes.new(f"shape {i}")
-        mesh.from_pydata([to_blender(p) for p in positions], [], triangles)
-        # Blender averages the normals itself, as it did for the meshes' files.
-        mesh.polygons.foreach_set("use_smooth", [normals is not None] * len(triangles))
+        mesh = blender_mesh(f"shape {i}", scene_file.mesh(shape, folder), to_blender)
         if "emission" in shape:
             assert "material" not in shape, "Cycles' emission node does not reflect"
-            mesh.materials.append(node_material(f"emission {i}", emission(shape["emission"])))
+            mesh.materials.append(emitting(f"emission {i}", shape["emission"]))
         else:
             mesh.materials.append(materials[shape["material"]])
         bpy.context.scene.collection.objects.link(bpy.data.objects.new(f"shape {i}", mesh))
@@ -177,7 +104,9 @@ def set_up(width, depth, seed, threads):
     cycles.use_denoising = cycles.use_adaptive_sampling = cycles.use_auto_tile = False
     # Cycles counts the segments between surfaces. Its roulette begins where candela's does with --rr-depth 1.
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = depth - 1
-    cycles.min_light_bounces = cycles.min_transparent_bounces = 0
+    cycles.min_light_bounces = 0
+    # Candela's holes are neither bounces nor places of roulette. 1024 is the most that Cycles allows.
+    cycles.transparent_max_bounces = cycles.min_transparent_bounces = 1024
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.light_sampling_threshold = cycles.blur_glossy = 0
     cycles.caustics_reflective = cycles.caustics_refractive = True

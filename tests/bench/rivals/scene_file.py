@@ -6,10 +6,18 @@ import re
 import struct
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 # A string, which stays, or a comment, which becomes a space.
 STRING_OR_COMMENT = re.compile(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
 BOX_SIDES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
+
+
+class Mesh(NamedTuple):
+    positions: list
+    normals: list | None  # None: flat.
+    triangles: list
+    uvs: list | None = None  # Texture coordinates.
 
 
 def read_scene(path):
@@ -30,12 +38,16 @@ def two_triangles(a, b, c, d):
 
 
 def read_ply(path):
-    """Positions, normals and triangles of a mesh as make_suzanne.py writes it."""
+    """A mesh as make_suzanne.py and make_textured.py write it: floats for positions and normals, and perhaps texture
+    coordinates."""
     header, _, data = path.read_bytes().partition(b"end_header\n")
     vertices, faces = (int(n) for n in re.findall(rb"element \w+ (\d+)", header))
-    rows = list(struct.iter_unpack("<6f", data[: 24 * vertices]))
-    triangles = [row[1:] for row in struct.iter_unpack("<B3i", data[24 * vertices : 24 * vertices + 13 * faces])]
-    return [row[:3] for row in rows], [row[3:] for row in rows], triangles
+    floats = len(re.findall(rb"property float", header))
+    end = 4 * floats * vertices
+    rows = list(struct.iter_unpack(f"<{floats}f", data[:end]))
+    triangles = [row[1:] for row in struct.iter_unpack("<B3i", data[end : end + 13 * faces])]
+    uvs = [row[6:] for row in rows] if floats == 8 else None
+    return Mesh([row[:3] for row in rows], [row[3:6] for row in rows], triangles, uvs)
 
 
 def turned(point, degrees):
@@ -46,26 +58,32 @@ def turned(point, degrees):
 
 
 def mesh(shape, folder):
-    """Positions, normals (None: flat) and triangles of a shape; `folder` is the scene file's."""
-    kind, normals = shape["type"], None
+    """The mesh of a shape; `folder` is the scene file's."""
+    kind = shape["type"]
     if kind == "quad":
-        positions, triangles = shape["vertices"], two_triangles(0, 1, 2, 3)
+        made = Mesh(shape["vertices"], None, two_triangles(0, 1, 2, 3))
     elif kind == "box":
         ends = list(zip(shape["min"], shape["max"]))
-        positions = [[end[i >> axis & 1] for axis, end in enumerate(ends)] for i in range(8)]
-        triangles = [triangle for side in BOX_SIDES for triangle in two_triangles(*side)]
+        corners = [[end[i >> axis & 1] for axis, end in enumerate(ends)] for i in range(8)]
+        made = Mesh(corners, None, [triangle for side in BOX_SIDES for triangle in two_triangles(*side)])
     elif kind == "mesh":
-        positions, normals, triangles = shape["positions"], shape.get("normals"), shape["triangles"]
+        made = Mesh(shape["positions"], shape.get("normals"), shape["triangles"])
     elif kind == "ply":
-        positions, normals, triangles = read_ply(folder / shape["file"])
+        made = read_ply(folder / shape["file"])
     else:
         sys.exit(f'scene_file.py knows no shape "{kind}" (known: quad, box, mesh, ply)')
     for step in shape.get("transform", []):
-        if "rotate" in step and step["axis"] == [0, 1, 0]:
-            positions = [turned(p, step["rotate"]) for p in positions]
-            normals = normals and [turned(n, step["rotate"]) for n in normals]
-        elif "translate" in step:
-            positions = [[a + b for a, b in zip(p, step["translate"])] for p in positions]
-        else:
-            sys.exit(f"scene_file.py knows no transform {step} (known: rotate about [0, 1, 0], translate)")
-    return positions, normals, triangles
+        made = moved(made, step)
+    return made
+
+
+def moved(mesh, step):
+    """The mesh after a step of a transform."""
+    positions, normals = mesh.positions, mesh.normals
+    if "rotate" in step and step["axis"] == [0, 1, 0]:
+        degrees = step["rotate"]
+        normals = normals and [turned(n, degrees) for n in normals]
+        return mesh._replace(positions=[turned(p, degrees) for p in positions], normals=normals)
+    if "translate" in step:
+        return mesh._replace(positions=[[a + b for a, b in zip(p, step["translate"])] for p in positions])
+    sys.exit(f"scene_file.py knows no transform {step} (known: rotate about [0, 1, 0], translate)")

@@ -21,11 +21,21 @@ namespace {
                 "and exact dielectric materials, with one-sided lamps and a visible environment");
 }
 
+template <class Value>
+Value constant(const Textured<Value>& value) {
+    if (value.texture) refuse("textures");
+    return value.factor;
+}
+
 Surface surface(const Material& material) {
-    if (const auto* m = std::get_if<DiffuseMaterial>(&material.model))
-        return {Model::diffuse, m->reflectance};
+    if (material.normal_map) refuse("normal maps");
+    if (constant(material.opacity.value) < 1.0f) refuse("opacity below 1");
+    if (material.vertex_colors) refuse("colours of vertices");
+    if (const auto* m = std::get_if<DiffuseMaterial>(&material.model)) {
+        return {Model::diffuse, constant(m->reflectance)};
+    }
     if (const auto* m = std::get_if<ConductorMaterial>(&material.model)) {
-        return {Model::metal, m->reflectance, m->alpha};
+        return {Model::metal, constant(m->reflectance), constant(m->alpha)};
     }
     const auto* m = std::get_if<DielectricMaterial>(&material.model);
     if (m == nullptr || m->fresnel != Fresnel::exact || m->inside.absorption != vec3(0)) {
@@ -92,7 +102,8 @@ uint32_t TracerScene::add_lamp(const Shape& shape, vec3 p, vec3 e1, vec3 e2, boo
     if (!shape.emission) return NO_LAMP;
     const vec3 normal = cross(e1, e2);
     const double area = length(normal) * (is_triangle ? 0.5 : 1.0);
-    lamps.push_back({p, e1, e2, is_triangle, normalize(normal), shape.emission->radiance, area, 0.0f});
+    lamps.push_back(
+        {p, e1, e2, is_triangle, normalize(normal), constant(shape.emission->radiance), area, 0.0f});
     return uint32_t(lamps.size() - 1);
 }
 

@@ -1,0 +1,136 @@
+"""Candela's materials as nodes of Cycles."""
+
+import math
+
+import bpy
+
+# How Blender calls candela's encodings.
+COLOR_SPACES = {"srgb": "sRGB", "linear": "Non-Color"}
+TEXTURE_KEYS = {"image", "factor", "encoding", "cutoff"}
+
+
+class Graph:
+    """The nodes of one material."""
+
+    def __init__(self, name, folder):
+        self.material = bpy.data.materials.new(name)
+        self.material.use_nodes = True
+        self.tree = self.material.node_tree
+        self.tree.nodes.clear()
+        self.folder = folder  # Of the scene's file.
+        self.images = {}  # Nodes by file: each is looked up once.
+
+    def node(self, kind, *values, **settings):
+        """A new node, its first inputs being `values`: sockets, constants, or None for the default."""
+        node = self.tree.nodes.new("ShaderNode" + kind)
+        for name, setting in settings.items():
+            setattr(node, name, setting)
+        for entry, value in zip(node.inputs, values):
+            if isinstance(value, bpy.types.NodeSocket):
+                self.tree.links.new(value, entry)
+            elif value is not None:
+                entry.default_value = value
+        return node
+
+    def math(self, operation, a, b):
+        return self.node("Math", a, b, operation=operation).outputs[0]
+
+    def image(self, texture, encoding):
+        """The node of a texture's image."""
+        unknown = set(texture) - TEXTURE_KEYS
+        assert not unknown, f"cycles_materials.py knows no {unknown} of textures"
+        path = str((self.folder / texture["image"]).resolve())
+        if path not in self.images:
+            image = bpy.data.images.load(path, check_existing=True)
+            image.colorspace_settings.name = COLOR_SPACES[texture.get("encoding", encoding)]
+            image.alpha_mode = "CHANNEL_PACKED"  # Colours are not multiplied by alpha.
+            self.images[path] = self.node("TexImage", image=image, interpolation="Linear", extension="REPEAT")
+        return self.images[path]
+
+    def color(self, value):
+        if not isinstance(value, dict):
+            return (*rgb(value), 1)
+        image = self.image(value, "srgb").outputs["Color"]
+        if "factor" not in value:
+            return image
+        return self.node("MixRGB", 1, image, (*rgb(value["factor"]), 1), blend_type="MULTIPLY").outputs[0]
+
+    def number(self, value):
+        if not isinstance(value, dict):
+            return value
+        red = self.node("SeparateColor", self.image(value, "linear").outputs["Color"]).outputs[0]
+        return self.math("MULTIPLY", red, value["factor"]) if "factor" in value else red
+
+    def normal(self, material):
+        """The normal in world space, or None where it is the surface's."""
+        if "normal_map" not in material:
+            return None
+        image = self.image(material["normal_map"], "linear")
+        return self.node("NormalMap", 1, image.outputs["Color"], space="TANGENT").outputs[0]
+
+    def cut(self, material, surface):
+        """The surface where it is opaque."""
+        if "opacity" not in material:
+            return surface
+        opacity = material["opacity"]
+        assert "cutoff" in opacity and "factor" not in opacity, "opacity must be cut off"
+        absent = self.math("LESS_THAN", self.image(opacity, "srgb").outputs["Alpha"], opacity["cutoff"])
+        return self.node("MixShader", absent, surface, self.node("BsdfTransparent").outputs[0]).outputs[0]
+
+    def finish(self, surface):
+        self.node("OutputMaterial", surface)
+        return self.material
+
+
+def rgb(value):
+    return value if isinstance(value, list) else [value] * 3
+
+
+def diffuse(graph, material):
+    return graph.node("BsdfDiffuse", graph.color(material["reflectance"]), 0, graph.normal(material)).outputs[0]
+
+
+def diffuse_transmission(graph, material):
+    assert "absorption" not in material, "Cycles' translucent node has no inside"
+    normal = graph.normal(material)
+    front = graph.node("BsdfDiffuse", graph.color(material["reflectance"]), 0, normal)
+    back = graph.node("BsdfTranslucent", graph.color(material["transmittance"]), normal)
+    return graph.node("AddShader", front.outputs[0], back.outputs[0]).outputs[0]
+
+
+def dielectric(graph, material):
+    assert material["fresnel"] == "exact", "Cycles knows Fresnel's equations alone"
+    return graph.node("BsdfGlass", (1, 1, 1, 1), 0, material["ior"], distribution="SHARP").outputs[0]
+
+
+def conductor(graph, material):
+    """GGX with Schlick's Fresnel term, but at the angle to the shading normal instead of to the facet's: Cycles' node
+    has none of its own. Cycles multiplies the shadowing of both directions, as if they were independent."""
+    normal = graph.normal(material)
+    facing = graph.node("LayerWeight", 0.5, normal).outputs["Facing"]  # 1 - cosine, where "blend" is a half.
+    schlick = graph.math("POWER", facing, 5)
+    color = graph.node("MixRGB", schlick, graph.color(material["reflectance"]), (1, 1, 1, 1)).outputs[0]
+    alpha = graph.number(material["alpha"])
+    roughness = graph.math("SQRT", alpha, None) if isinstance(material["alpha"], dict) else math.sqrt(alpha)
+    return graph.node("BsdfGlossy", color, roughness, normal, distribution="GGX").outputs[0]
+
+
+def reflecting(name, material, folder):
+    """A material of a scene."""
+    graph = Graph(name, folder)
+    return graph.finish(graph.cut(material, MODELS[material["type"]](graph, material)))
+
+
+def emitting(name, radiance):
+    """Light from the front side alone."""
+    graph = Graph(name, None)
+    back = graph.node("NewGeometry").outputs["Backfacing"]
+    return graph.finish(graph.node("Emission", (*radiance, 1), graph.math("SUBTRACT", 1, back)).outputs[0])
+
+
+MODELS = {
+    "diffuse": diffuse,
+    "diffuse_transmission": diffuse_transmission,
+    "dielectric": dielectric,
+    "conductor": conductor,
+}
