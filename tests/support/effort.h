@@ -11,7 +11,7 @@ namespace candela {
 // "quick" or, unless the variable is set, "full". The first call says on stdout which.
 Effort test_effort();
 
-// The samples per pixel to take in place of `full`: at least a few, so that they have a variance.
+// The samples per pixel, or rays, to take in place of `full`: at least a few, so that they have a variance.
 inline uint32_t samples(uint32_t full) {
     return std::max(sized(test_effort(), full), std::min(full, 8u));
 }
