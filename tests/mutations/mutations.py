@@ -41,7 +41,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
-TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*")
+TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*:*Reference*/textured*:*Reference*/mask")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
