@@ -16,6 +16,7 @@
 #include "gpu_scene/environment_map.h"
 #include "gpu_scene/flatten.h"
 #include "gpu_scene/material_record.h"
+#include "gpu_scene/nesting.h"
 #include "gpu_scene/texture_table.h"
 #include "scene/geometry.h"
 #include "scene/mesh.h"
@@ -113,28 +114,42 @@ MaterialTextures textures_of(const Material& material, const EncodedMaterial& en
             .vertex_colors = material.vertex_colors ? 1u : 0u};
 }
 
+// What materials know a medium by; appends it to the media if it is new. (The first of them, outside of
+// everything, is none that a surface encloses.)
+uint32_t add_medium(std::vector<Interior>& media, const Interior& medium) {
+    auto place = std::find(media.begin() + 1, media.end(), medium);
+    if (place == media.end()) place = media.insert(place, medium);
+    if (media.size() > MAX_MEDIA) {
+        throw Error("the materials have more than " + std::to_string(MAX_MEDIA - 1) +
+                    " different media inside; use fewer");
+    }
+    static_assert(MAX_PRIORITY << MEDIUM_INDEX_BITS < 1u << MEDIUM_BITS);
+    return medium.priority << MEDIUM_INDEX_BITS | uint32_t(place - media.begin());
+}
+
 // Appends the records of materials, and of the media behind them, each once.
 void append_materials(GpuScene& gpu, const std::vector<Material>& materials, TextureTable& textures) {
     if (materials.size() > MAX_MATERIALS) {
         throw Error("the scene has " + std::to_string(materials.size()) + " materials, but at most " +
                     std::to_string(MAX_MATERIALS) + " fit into the records; use fewer");
     }
-    std::vector<Medium> media(1);
+    std::vector<Interior> media(1);
     static_assert(MEDIUM_NONE == 0);
     for (const Material& material : materials) {
-        const Medium medium = medium_behind(material.model).value_or(Medium{});
-        auto place = std::ranges::find(media, medium);
-        if (place == media.end()) place = media.insert(place, medium);
-        const EncodedMaterial encoded = encode_material(material.model, uint32_t(place - media.begin()));
+        const std::optional<Interior> inside = interior(material.model);
+        const uint32_t medium = inside ? add_medium(media, *inside) : MEDIUM_NONE;
+        const EncodedMaterial encoded = encode_material(material.model, medium);
         append(gpu.arrays[ARRAY_MATERIALS], pack(encoded.record));
         gpu.materials_present |= 1u << encoded.record.model;
         const MaterialTextures used = textures_of(material, encoded, gpu.frame, textures);
         append(gpu.arrays[ARRAY_MATERIAL_TEXTURES], pack(used));
         gpu.textured |= textured_bits(used);
     }
-    for (const Medium& medium : media)
-        append(gpu.arrays[ARRAY_MEDIA], pack(MediumRecord{vec3(gpu.frame.unit * dvec3(medium.absorption))}));
-    gpu.has_media = media.size() > 1;
+    for (const Interior& m : media) {
+        append(gpu.arrays[ARRAY_MEDIA],
+               pack(MediumRecord{vec3(gpu.frame.unit * dvec3(m.medium.absorption)), m.ior}));
+        gpu.has_media |= m.medium != Medium{};
+    }
     if (gpu.textured == 0) gpu.arrays[ARRAY_MATERIAL_TEXTURES].clear();
 }
 
@@ -195,6 +210,9 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<
     if (std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return lets_rays_pass(scene, shape); }))
         gpu.textured |= TEXTURED_OPACITY;
     append_materials(gpu, scene.materials, textures);
+    Nesting nesting = find_nesting(scene);
+    gpu.nested_media = nesting.nested;
+    gpu.warnings = std::move(nesting.warnings);
     for (const Shape& shape : scene.shapes) {
         if (shape.emission && textures.add(shape.emission->radiance.texture) != TEXTURE_NONE)
             gpu.textured |= TEXTURED_EMISSION;

@@ -28,7 +28,8 @@ struct GpuScene {
 
     // What the kernels must know: see shared/kernel_constants.inc.
     bool has_normals = false;
-    bool has_media = false;
+    bool has_media = false;     // Some medium absorbs light.
+    bool nested_media = false;  // Media may lie within each other.
     uint32_t environment = ENVIRONMENT_NONE;
     bool even_sky = false;
     uint32_t materials_present = 0;                 // Bit i: a material of model i.

@@ -37,8 +37,9 @@ EncodedMaterial encode(const ConductorMaterial& m) {
 
 EncodedMaterial encode(const DielectricMaterial& m) {
     const bool exact = m.fresnel == Fresnel::exact;
-    return encoded(exact ? MATERIAL_DIELECTRIC_EXACT : MATERIAL_DIELECTRIC_SCHLICK, NO_COLOR, NO_COLOR,
-                   m.ior / m.exterior_ior);
+    const Textured<vec3> own_eta = vec3(m.exterior_ior ? 1.0f : 0.0f, 0.0f, 0.0f);
+    return encoded(exact ? MATERIAL_DIELECTRIC_EXACT : MATERIAL_DIELECTRIC_SCHLICK, NO_COLOR, own_eta,
+                   m.ior / m.exterior_ior.value_or(1.0f));
 }
 
 EncodedMaterial encode(const DiffuseTransmissionMaterial& m) {
@@ -46,27 +47,28 @@ EncodedMaterial encode(const DiffuseTransmissionMaterial& m) {
 }
 
 template <class OpaqueMaterial>
-std::optional<Medium> behind(const OpaqueMaterial&) {
+std::optional<Interior> behind(const OpaqueMaterial&) {
     return std::nullopt;
 }
 
-std::optional<Medium> behind(const DielectricMaterial& m) {
-    return m.inside;
+std::optional<Interior> behind(const DielectricMaterial& m) {
+    return Interior{m.inside, m.ior, m.priority};
 }
 
-std::optional<Medium> behind(const DiffuseTransmissionMaterial& m) {
-    return m.inside;
+std::optional<Interior> behind(const DiffuseTransmissionMaterial& m) {
+    if (!m.inside) return std::nullopt;
+    return Interior{*m.inside};
 }
 
 }  // namespace
 
 EncodedMaterial encode_material(const decltype(Material::model)& model, uint32_t medium) {
     EncodedMaterial result = std::visit([](const auto& m) { return encode(m); }, model);
-    if (medium_behind(model)) result.record.medium = medium;
+    if (interior(model)) result.record.medium = medium;
     return result;
 }
 
-std::optional<Medium> medium_behind(const decltype(Material::model)& model) {
+std::optional<Interior> interior(const decltype(Material::model)& model) {
     return std::visit([](const auto& m) { return behind(m); }, model);
 }
 

@@ -12,11 +12,19 @@ struct EncodedMaterial {
     std::optional<Texture> base{}, specular{}, parameter{};  // As in MaterialTextures.
 };
 
-// `medium` is the index of medium_behind() among the records of media; it does not matter for an opaque
-// material.
+// What a surface encloses.
+struct Interior {
+    Medium medium{};
+    float ior = 1.0f;
+    uint32_t priority = 0;  // At most MAX_PRIORITY.
+
+    bool operator==(const Interior&) const = default;
+};
+
+// `medium` is what shared/medium.h knows interior() by; it does not matter for an opaque material.
 EncodedMaterial encode_material(const decltype(Material::model)& model, uint32_t medium = MEDIUM_NONE);
 
-// The medium behind a surface; none if it is the same as in front, or if the material is opaque.
-std::optional<Medium> medium_behind(const decltype(Material::model)& model);
+// What is behind a surface; none if it is the same as in front, or if the material is opaque.
+std::optional<Interior> interior(const decltype(Material::model)& model);
 
 }  // namespace candela

@@ -2,6 +2,7 @@
 // device.
 #include <algorithm>
 
+#include "gpu_scene/media_at.h"
 #include "render/renderer.h"
 #include "shared/primitive.h"
 
@@ -67,6 +68,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
     constants[CONSTANT_LIGHTS] = scene.lights_present;
     constants[CONSTANT_HAS_MEDIA] = scene.has_media;
+    constants[CONSTANT_NESTED_MEDIA] = scene.nested_media || media_at(scene, camera.position) != uvec2(0);
     constants[CONSTANT_ATTRIBUTES] = scene.attributes;
     constants[CONSTANT_TEXTURED] = scene.textured;
     constants[CONSTANT_TEXTURE_TRAITS] = scene.texture_traits;

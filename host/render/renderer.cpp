@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "gpu_scene/media_at.h"
 #include "render/kernels.h"
 #include "vk/transfer.h"
 
@@ -85,7 +86,8 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .lens_y = lens_radius * (cos_lens * up - sin_lens * right),
             .focal_distance = frame.length(double(lens.focal_distance)),
             .blades = lens.blades,
-            .first_sample = settings.first_sample};
+            .first_sample = settings.first_sample,
+            .camera_media = media_at(scene, camera.position)};
 }
 
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants) {

@@ -52,11 +52,16 @@ uint64_t triangles_of(const Scene&, const Disk&) {
 
 }  // namespace
 
+DoubleBox bounds(const Scene& scene, const Shape& shape) {
+    DoubleBox box;
+    std::visit([&](const auto& geometry) { extend(box, scene, geometry); }, shape.geometry);
+    return box;
+}
+
 DoubleBox bounds(const Scene& scene) {
     DoubleBox box;
-    for (const Shape& shape : scene.shapes) {
-        std::visit([&](const auto& geometry) { extend(box, scene, geometry); }, shape.geometry);
-    }
+    for (const Shape& shape : scene.shapes)
+        box.extend(bounds(scene, shape));
     return box;
 }
 

@@ -9,6 +9,8 @@ namespace candela {
 // The least box around all shapes; empty for a scene without shapes.
 DoubleBox bounds(const Scene& scene);
 
+DoubleBox bounds(const Scene& scene, const Shape& shape);
+
 // How many triangles the shapes have; a quad counts as two, a sphere or disk as none.
 uint64_t triangle_count(const Scene& scene);
 

@@ -98,13 +98,16 @@ struct DiffuseTransmissionMaterial {
 enum class Fresnel { schlick, exact };
 
 // A smooth boundary between two transparent media: glass, water. Its front side is outside. Solids of it must
-// be closed and must not overlap each other.
+// be closed; they may lie within each other and overlap.
 struct DielectricMaterial {
-    float ior = 1.5f;           // Index of refraction behind the surface; above 0 ...
-    float exterior_ior = 1.0f;  // ... and in front of it.
+    float ior = 1.5f;  // Index of refraction behind the surface; above 0.
+    std::optional<float>
+        exterior_ior{};  // In front of it; none: that of the medium there, which is 1 outside of everything.
     Fresnel fresnel = Fresnel::schlick;
-    Medium inside{};  // Behind the surface.
+    Medium inside{};        // Behind the surface.
+    uint32_t priority = 0;  // Where media overlap, the highest fills the space.
 };
+inline constexpr uint32_t MAX_PRIORITY = 15;
 
 // A normal for shading at every point: in the image's red, green and blue, from -1 to 1 (0 to 1 in the file),
 // along the tangent, the bitangent and the normal of the surface.

@@ -88,7 +88,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 184> words;
+    std::array<uint, 187> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -112,7 +112,8 @@ Records filled(Fields& fields) {
                     .lens_y = fields.f3(),
                     .focal_distance = fields.f(),
                     .blades = fields.u(),
-                    .first_sample = fields.u()};
+                    .first_sample = fields.u(),
+                    .camera_media = fields.u2()};
     r.node.origin = fields.f3();
     r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);
     for (const int axis : {0, 1, 2})
@@ -147,7 +148,7 @@ Records filled(Fields& fields) {
                   .base = fields.f3(),
                   .specular = fields.f3(),
                   .parameter = fields.f()};
-    r.medium = {.absorption = fields.f3()};
+    r.medium = {.absorption = fields.f3(), .ior = fields.f()};
     r.light = {.kind = fields.u(),
                .p = fields.f3(),
                .e1 = fields.f3(),

@@ -39,7 +39,7 @@ struct Path {
     bool delta;       // Light samples could not have found `ray`: the camera sent it, or scattering was ideal.
     vec3 p;           // The last vertex, where `ray` begins but for an offset: see path_lit_point,
     vec3 ns;          // and its shading normal.
-    uint medium;      // Around `ray`: index of a medium.
+    uvec2 media;      // Around `ray`: see medium/medium.glsl.
     uint depth;       // Scattering vertices so far.
 };
 
@@ -59,9 +59,9 @@ struct ShadowRay {
     vec3 Ld;      // What L gains if the ray is not blocked.
 };
 
-// A path that begins with a camera ray, and an estimate that holds nothing yet.
-Path path_begin(Ray ray) {
-    return Path(ray, vec3(1.0), 1.0, 0.0, true, ray.o, vec3(0.0), MEDIUM_NONE, 0u);
+// A path that begins with a camera ray within these media, and an estimate that holds nothing yet.
+Path path_begin(Ray ray, uvec2 media) {
+    return Path(ray, vec3(1.0), 1.0, 0.0, true, ray.o, vec3(0.0), NESTED_MEDIA ? media : MEDIA_NONE, 0u);
 }
 
 Estimate estimate_begin() {
@@ -119,18 +119,18 @@ struct Shading {
 };
 
 // The shadow ray from s towards a point on a light, and what it adds to L if it is not blocked: beta f cos Li / pdf,
-// weighted and attenuated. `behind` is the medium behind the surface.
-ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uint behind, uvec2 u, uint fill) {
+// weighted and attenuated. `beyond` are the media on the side of the surface that is not the viewer's.
+ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uvec2 beyond, uvec2 u, uint fill) {
     LitPoint lit = lit_point(s);
     LightSample light = light_sample_li(lit, u, fill);
     Ray ray = Ray(lit.p, light.shadow);
-    uint medium = path.medium;
+    uvec2 media = path.media;
     bool viewers_side = true;
     if (LIT_FROM_BEHIND) {
         viewers_side = dot(light.wi, s.n) > 0.0;
         ray.o = interaction_spawn_origin(s, viewers_side);
         if (light.t_max < FLOAT_MAX) ray.d += lit.p - ray.o;
-        if (!viewers_side) medium = medium_beyond(path.medium, behind, s.front);
+        if (!viewers_side) media = beyond;
     }
     vec3 wi = frame_to_local(shading.frame, light.wi);
     BsdfValue value;
@@ -142,7 +142,7 @@ ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uin
         value = bsdf_evaluate(bsdf, shading.wo, wi);
         Ld = path.beta * value.f * abs(wi.z) * light.Li;
     }
-    Ld *= medium_transmittance(medium, light.t_max * length(ray.d));
+    Ld *= media_transmittance(media, light.t_max * length(ray.d));
     // A light is not seen if the geometric and the shading normal disagree about its side.
     bool sides_differ = LIT_FROM_BEHIND ? !shading.bent && (wi.z > 0.0) != viewers_side : dot(light.wi, s.n) <= 0.0;
     bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
@@ -151,10 +151,9 @@ ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uin
     return ShadowRay(ray, dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
 }
 
-// Continues the path from s in the direction that its BSDF sampled; returns whether the path goes on. `behind` is the
-// medium behind the surface. A direction carries nothing if the geometric and the shading normal disagree about its
-// side.
-bool path_scatter(inout Path path, Interaction s, Shading shading, uint behind, BsdfSample scattered) {
+// Continues the path from s in the direction that its BSDF sampled; returns whether the path goes on. `beyond` as
+// for direct_light(). A direction carries nothing if the geometric and the shading normal disagree about its side.
+bool path_scatter(inout Path path, Interaction s, Shading shading, uvec2 beyond, BsdfSample scattered) {
     vec3 wi = frame_to_world(shading.frame, scattered.wi);
     path.beta *= scattered.weight;
     bool viewers_side = shading.bent ? dot(wi, s.n) > 0.0 : scattered.wi.z > 0.0;
@@ -165,7 +164,7 @@ bool path_scatter(inout Path path, Interaction s, Shading shading, uint behind, 
     path.delta = scattered.delta;
     path.p = s.p;
     path.ns = s.ns;
-    if (!viewers_side) path.medium = medium_beyond(path.medium, behind, s.front);
+    if (!viewers_side) path.media = beyond;
     path.ray = Ray(interaction_spawn_origin(s, viewers_side), wi);
     return true;
 }
@@ -183,6 +182,10 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     MaterialRecord material = material_at(s.material, s.attributes, path.ray);
     Bsdf bsdf = bsdf_at(material, s.front);
     bool bent = bend_normal(s, hit);
+    uvec2 beyond = media_beyond(path.media, material.medium, s.front);
+    if (NESTED_MEDIA && is_model(bsdf, MATERIALS_DIELECTRIC)) {
+        bsdf.parameter = media_eta(path.media, beyond, material.specular.x != 0.0, bsdf.parameter);
+    }
     if (path.depth == 0u) {
         estimate.visible = true;
         estimate.albedo = bsdf_albedo(bsdf);
@@ -190,7 +193,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     }
 
     // Attenuate by the medium on the way.
-    path.beta *= medium_transmittance(path.medium, hit.t);
+    path.beta *= media_transmittance(path.media, hit.t);
 
     // Add what the surface emits; light samples of the previous vertex may already account for a part.
     if (s.light != NO_LIGHT) add_emission(path, estimate, s, hit.t);
@@ -199,6 +202,11 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     if (path.depth == parameters.max_depth) {
         estimate.cut = path.depth == DEPTH_SAFETY_LIMIT;
         return false;
+    }
+    // Whatever the shading normal is, rays pass where nothing changes.
+    if (NESTED_MEDIA && is_model(bsdf, MATERIALS_DIELECTRIC) && bsdf.parameter == 1.0) {
+        s.ns = s.n;
+        bent = false;
     }
     if (bent) s.ns = consistent_normal(s.wo, s.n, s.ns);
     Frame frame = frame_from_z(s.ns);
@@ -209,14 +217,14 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     // Add direct light.
     if (ESTIMATOR != ESTIMATOR_BSDF) {
         uvec2 bits = sampler_pair(random, pair + PAIR_LIGHT);
-        shadow = direct_light(path, s, shading, bsdf, material.medium, bits, choice.x);
+        shadow = direct_light(path, s, shading, bsdf, beyond, bits, choice.x);
     }
 
     // Scatter.
     vec2 u = unit_float(sampler_pair(random, pair + PAIR_BSDF));
     BsdfSample scattered = bsdf_sample_f(bsdf, shading.wo, unit_float(choice.y), u);
     if (bent) bend_sample(scattered, bsdf, shading.wo, frame_to_local(frame, s.n));
-    if (!path_scatter(path, s, shading, material.medium, scattered)) return false;
+    if (!path_scatter(path, s, shading, beyond, scattered)) return false;
 
     // Russian roulette: paths with a low throughput end early, and the survivors are weighted up. The square root lets
     // them end a vertex or two later, which reduces the noise by more than its rays cost. After ideal scattering the

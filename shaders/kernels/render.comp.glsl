@@ -159,7 +159,8 @@ Sample sample_none() {
 void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index) {
     s.random = sampler_make(pixel, index, parameters.seed);
     vec2 film = vec2(pixel) + unit_float(sampler_pair(s.random, PAIR_PIXEL));
-    s.path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(s.random, PAIR_LENS))));
+    s.path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(s.random, PAIR_LENS))),
+                        parameters.camera_media);
     s.alive = true;
 }
 

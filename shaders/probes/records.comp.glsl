@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 184u
+#define RESULT_WORDS 187u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -26,6 +26,7 @@ void put_parameters(Parameters p) {
     put(p.focal_distance);
     put(p.blades);
     put(p.first_sample);
+    put(p.camera_media);
 }
 
 void put_node(uint i) {
@@ -66,6 +67,7 @@ void put_material(MaterialRecord m) {
 
 void put_medium(MediumRecord m) {
     put(m.absorption);
+    put(m.ior);
 }
 
 void put_light(Light l) {

@@ -97,7 +97,7 @@ MaterialRecord scene_material(uint i) {
 
 MediumRecord scene_medium(uint i) {
     uvec4 a;
-    READ_1(MEDIA, i * MEDIUM_WORDS, a);
+    READ_1(MEDIA, (i & MAX_MEDIA - 1u) * MEDIUM_WORDS, a);
     return medium_unpack(a);
 }
 

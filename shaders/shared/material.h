@@ -5,7 +5,7 @@
 //   Phong                    MATERIAL_PHONG, kd                          ks               exponent n
 //   mirror                   MATERIAL_MIRROR, reflectance                0                0
 //   conductor                MATERIAL_CONDUCTOR, reflectance             0                alpha
-//   dielectric               MATERIAL_DIELECTRIC_*, 0                    0                eta
+//   dielectric               MATERIAL_DIELECTRIC_*, 0                    own_eta, 0, 0    eta
 //   diffuse transmission     MATERIAL_DIFFUSE_TRANSMISSION, reflectance  transmittance    0
 #ifndef SHARED_MATERIAL_H
 #define SHARED_MATERIAL_H
@@ -34,9 +34,10 @@ const float GREATEST_EXPONENT = 1e5f;
 
 struct MaterialRecord {
     uint model;       // MATERIAL_*
-    uint medium;      // Behind the surface: index of a medium record, or MEDIUM_SAME; 24 bits.
+    uint medium;      // Behind the surface; 24 bits.
     vec3 base;        // Reflectance, each in [0, 1].
-    vec3 specular;    // Phong's ks, or transmittance; each in [0, 1].
+    vec3 specular;    // Phong's ks, or transmittance; each in [0, 1]. own_eta: 1 if eta holds whatever is in
+                      // front.
     float parameter;  // Phong's exponent; alpha; or eta, the index behind the surface over that in front.
 };
 

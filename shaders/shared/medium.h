@@ -1,6 +1,6 @@
 // Record of a medium, 1 word of uvec4: what lies between surfaces.
 //
-//   0: absorption.rgb, 0
+//   0: absorption.rgb, ior
 #ifndef SHARED_MEDIUM_H
 #define SHARED_MEDIUM_H
 
@@ -13,17 +13,25 @@ namespace candela {
 
 const uint MEDIUM_WORDS = 1u;
 
-const uint MEDIUM_NONE = 0u;         // Index of the medium that absorbs nothing, where camera rays begin.
+// Materials and paths know a medium by its index and, in the bits above, its priority.
+const uint MEDIUM_NONE = 0u;  // Around everything; it absorbs nothing and has priority 0.
+const uint MEDIUM_INDEX_BITS = 12u;
+const uint MEDIUM_BITS = 16u;
 const uint MEDIUM_SAME = 0xFFFFFFu;  // Behind a surface: the same medium as in front of it.
+const uint MAX_MEDIA = 1u << MEDIUM_INDEX_BITS;
+
+// Media in which one point can lie at once.
+const uint MEDIA_AT_ONCE = 4u;
 
 struct MediumRecord {
     vec3 absorption;  // For each unit of the frame, >= 0.
+    float ior;        // Index of refraction, above 0.
 };
 
 #ifdef __cplusplus
 
 inline std::array<uvec4, MEDIUM_WORDS> pack(const MediumRecord& m) {
-    return {word(m.absorption, 0u)};
+    return {word(m.absorption, floatBitsToUint(m.ior))};
 }
 
 }  // namespace candela
@@ -32,6 +40,7 @@ inline std::array<uvec4, MEDIUM_WORDS> pack(const MediumRecord& m) {
 MediumRecord medium_unpack(uvec4 a) {
     MediumRecord m;
     m.absorption = uintBitsToFloat(a.xyz);
+    m.ior = uintBitsToFloat(a.w);
     return m;
 }
 

@@ -4,7 +4,7 @@
 //   0: position.xyz, seed         5: lens_x.xyz, focal_distance
 //   1: right.xyz, max_depth       6: lens_y.xyz, blades
 //   2: up.xyz, rr_depth           7: environment_size.xy, environment_turn.xy
-//   3: forward.xyz, light_count   8: first_sample, environment_light, 0, 0
+//   3: forward.xyz, light_count   8: first_sample, environment_light, camera_media.xy
 //   4: full_size.xy, crop.xy
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
@@ -39,6 +39,7 @@ struct Parameters {
     float focal_distance;  // Along `forward`.
     uint blades;           // Corners of a polygonal aperture.
     uint first_sample;     // Index of the first sample of every pixel.
+    uvec2 camera_media;    // Around the camera: see medium/medium.glsl.
 };
 
 // One dispatch: a rectangle of the accumulation image whose pixels are brought to `target_samples` samples
@@ -63,7 +64,7 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         word(p.lens_y, p.blades),
         uvec4(p.environment_size.x, p.environment_size.y, floatBitsToUint(p.environment_turn.x),
               floatBitsToUint(p.environment_turn.y)),
-        uvec4(p.first_sample, p.environment_light, 0u, 0u),
+        uvec4(p.first_sample, p.environment_light, p.camera_media.x, p.camera_media.y),
     };
 }
 
@@ -90,6 +91,7 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     p.environment_turn = uintBitsToFloat(w[7].zw);
     p.first_sample = w[8].x;
     p.environment_light = w[8].y;
+    p.camera_media = w[8].zw;
     return p;
 }
 

@@ -42,6 +42,7 @@ SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Referen
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
 TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*:*Reference*/textured*:*Reference*/mask")
+MEDIA = ("Records*", "NestedMedia*:*Reference*/nested_glass")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
@@ -60,11 +61,11 @@ GROUPS = [
          "unit_float(choice.y) >= survival"),
         ("the same dimensions at every bounce", PATH, "path.depth * PAIRS_PER_BOUNCE", "0u"),
         ("one bounce too many", PATH, "path.depth == parameters.max_depth", "path.depth > parameters.max_depth"),
-        ("absorption also outside of the solid", MEDIUM, "return front ? behind : MEDIUM_NONE;", "return behind;"),
+        ("absorption also outside of the solid", MEDIUM, "uvec2(front ? behind : MEDIUM_NONE, 0u)", "uvec2(behind, 0u)"),
         ("a thin sheet bounds the medium around it", MEDIUM, "if (behind == MEDIUM_SAME) return here;",
-         "if (behind == MEDIUM_SAME) return MEDIUM_NONE;"),
+         "if (behind == MEDIUM_SAME) return MEDIA_NONE;"),
         ("light through a sheet absorbed by the medium before it", PATH,
-         "if (!viewers_side) medium = medium_beyond(path.medium, behind, s.front);", ""),
+         "if (!viewers_side) media = beyond;", ""),
         ("light through a sheet looked for from the viewer's side", PATH,
          "ray.o = interaction_spawn_origin(s, viewers_side);", "ray.o = interaction_spawn_origin(s, true);"),
     ]),
@@ -143,7 +144,7 @@ GROUPS = [
          "frame_.vector(sphere.center)"),
         ("the frame's unit forgotten for radii", FLATTEN, "frame_.length(sphere.radius)", "float(sphere.radius)"),
         ("the frame's unit forgotten for media", "host/gpu_scene/gpu_scene.cpp",
-         "vec3(gpu.frame.unit * dvec3(medium.absorption))", "vec3(0.0 * gpu.frame.unit + dvec3(medium.absorption))"),
+         "vec3(gpu.frame.unit * dvec3(m.medium.absorption))", "vec3(0.0 * gpu.frame.unit + dvec3(m.medium.absorption))"),
         ("the camera rounded before it is in the frame", RENDERER, "frame.point(camera.position)",
          "frame.point(dvec3(vec3(camera.position)))"),
         ("depths left in the frame", RENDERER, "values[i + 3] *= float(frame_.unit);", ""),
@@ -192,6 +193,19 @@ GROUPS = [
          "frame.length(frame.unit * double(bump->scale))"),
         ("a facet seen from behind", BENT_NORMAL, "if (up >= LEAST) return dot(wo, ns) < 0.0 ? -ns : ns;", "return ns;"),
         ("the density of one of two directions", BENT_NORMAL, "sum.pdf += value.pdf;", "sum.pdf = value.pdf;"),
+    ]),
+    (MEDIA, [
+        ("a medium of a higher priority hidden by a lower one", MEDIUM, "lessThanEqual(m >> MEDIUM_INDEX_BITS",
+         "greaterThan(m >> MEDIUM_INDEX_BITS"),
+        ("all media left with one", MEDIUM, "return front ? media_entered(here, behind) : media_left(here, behind);",
+         "return front ? media_entered(here, behind) : MEDIA_NONE;"),
+        ("the second of the media lost when the first is left", MEDIUM, "uvec4(here.x ? m.y : m.x", "uvec4(here.x ? m.z : m.x"),
+        ("nothing around the camera", PATH, "NESTED_MEDIA ? media : MEDIA_NONE", "MEDIA_NONE"),
+        ("indices of refraction against the air", PATH, "if (NESTED_MEDIA && is_model(bsdf, MATERIALS_DIELECTRIC)) {",
+         "if (false) {"),
+        ("a stated exterior index ignored", MEDIUM, "return own_eta ? eta :", "return"),
+        ("the exterior nearest to the camera's medium first", "host/gpu_scene/media_at.cpp",
+         "p.second.nearest_exit);", "-p.second.nearest_exit);"),
     ]),
     (DEVICES, [
         ("a work group's counts in the place of those before", RENDER, "if (n > 0u) atomicAdd(counters[i], n);",

@@ -39,6 +39,7 @@ SPP = {
     "mirror": 256,
     "glass": 128,
     "absorbing-glass": 64,
+    "nested-glass": 64,
     "rough-metal": 128,
     "phong": 256,
     "depth-of-field": 256,
@@ -137,6 +138,16 @@ def dielectric(material, smooth):
     return {"type": "dielectric", "int_ior": float(material["ior"]), "ext_ior": float(material.get("exterior_ior", 1))}
 
 
+def around(shape, scene):
+    """The material of the least sphere around a sphere; of other shapes, none."""
+    spheres = [other for other in scene["shapes"] if other["type"] == "sphere"]
+    if shape not in spheres:
+        return None
+    outer = [other for other in spheres if other["radius"] - shape["radius"]
+             > np.linalg.norm(np.subtract(other["center"], shape["center"]))]
+    return scene["materials"][min(outer, key=lambda other: other["radius"])["material"]] if outer else None
+
+
 def detailed(bsdf, material):
     """With the material's normal map and opacity."""
     if "normal_map" in material:
@@ -152,15 +163,14 @@ BSDFS = {"diffuse": diffuse, "mirror": mirror, "phong": phong, "conductor": meta
 BLACK = {"type": "diffuse", "reflectance": 0.0}
 
 
-def interior(material):
-    """The absorbing medium inside a dielectric, if it absorbs."""
+def medium(material):
+    """The absorbing medium inside a dielectric; none if it absorbs nothing."""
     absorption = material.get("absorption")
     if not absorption:
-        return {}
+        return None
     sigma_t = -np.log(rgb(absorption["transmittance"])) / absorption["distance"]
     scale = float(max(sigma_t))  # Mitsuba treats it as a colour, in [0, 1].
-    medium = {"type": "homogeneous", "albedo": 0.0, "sigma_t": colour((sigma_t / scale).tolist()), "scale": scale}
-    return {"interior": medium}
+    return {"type": "homogeneous", "albedo": 0.0, "sigma_t": colour((sigma_t / scale).tolist()), "scale": scale}
 
 
 # --- Shapes ----------------------------------------------------------------------------------------------------------
@@ -227,13 +237,18 @@ def geometry(shape, folder, temporary):
     return {**result, "to_world": mi.ScalarTransform4f(to_world)}
 
 
-def shape_of(shape, materials, folder, temporary):
+def shape_of(shape, scene, folder, temporary):
     assert not shape.get("two_sided"), "Mitsuba's lights are one-sided"
     result = geometry(shape, folder, temporary)
     smooth = not result.get("face_normals", True)
     if "material" in shape:
-        material = materials[shape["material"]]
-        result |= {"bsdf": detailed(BSDFS[material["type"]](material, smooth), material), **interior(material)}
+        material = scene["materials"][shape["material"]]
+        outer = around(shape, scene) if material["type"] == "dielectric" else None
+        if outer:
+            material = {"exterior_ior": outer["ior"], **material}
+        result["bsdf"] = detailed(BSDFS[material["type"]](material, smooth), material)
+        media = {"interior": medium(material), "exterior": medium(outer) if outer else None}
+        result |= {side: inside for side, inside in media.items() if inside}
     else:
         result["bsdf"] = BLACK
     if "emission" in shape:
@@ -306,7 +321,7 @@ def load(name, temporary):
     if "environment" in scene:
         result["environment"] = environment_of(scene["environment"], folder)
     for i, shape in enumerate(scene["shapes"]):
-        result[f"shape{i}"] = shape_of(shape, scene["materials"], folder, temporary)
+        result[f"shape{i}"] = shape_of(shape, scene, folder, temporary)
     return mi.load_dict(result)
 
 

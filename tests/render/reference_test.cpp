@@ -31,6 +31,7 @@ constexpr std::array REFERENCES{
     Reference{"mirror", 1760},
     Reference{"glass", 896},
     Reference{"absorbing-glass", 512},
+    Reference{"nested-glass", 512},
     Reference{"rough-metal", 1536},
     Reference{"phong", 1600},
     Reference{"depth-of-field", 1024},

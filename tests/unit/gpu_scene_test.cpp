@@ -248,19 +248,21 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
         {"", MirrorMaterial{vec3(0.7f)}},
         {"", ConductorMaterial{.reflectance = vec3(0.8f), .alpha = 0.25f}},
         {"", DielectricMaterial{.ior = 1.5f, .exterior_ior = 1.2f, .inside = {vec3(1, 2, 3)}}},
-        {"", DielectricMaterial{.fresnel = Fresnel::exact}},
+        {"", DielectricMaterial{.fresnel = Fresnel::exact, .priority = 15}},
         {"", DiffuseTransmissionMaterial{vec3(0.2f), vec3(0.3f)}},
         {"", DiffuseTransmissionMaterial{vec3(0.2f), vec3(0.3f), Medium{vec3(1, 2, 3)}}},
+        {"", DielectricMaterial{.ior = 1.5f, .inside = {vec3(1, 2, 3)}}},
     };
     const std::vector<MaterialRecord> expected{
         {MATERIAL_DIFFUSE, MEDIUM_SAME, vec3(0.1f, 0.2f, 0.3f), vec3(0), 0.0f},
         {MATERIAL_PHONG, MEDIUM_SAME, vec3(0.1f), vec3(0.4f, 0.5f, 0.6f), 20.0f},
         {MATERIAL_MIRROR, MEDIUM_SAME, vec3(0.7f), vec3(0), 0.0f},
         {MATERIAL_CONDUCTOR, MEDIUM_SAME, vec3(0.8f), vec3(0), 0.25f},
-        {MATERIAL_DIELECTRIC_SCHLICK, 1, vec3(0), vec3(0), 1.25f},
-        {MATERIAL_DIELECTRIC_EXACT, MEDIUM_NONE, vec3(0), vec3(0), 1.5f},
+        {MATERIAL_DIELECTRIC_SCHLICK, 1, vec3(0), vec3(1, 0, 0), 1.25f},
+        {MATERIAL_DIELECTRIC_EXACT, 0xF002, vec3(0), vec3(0), 1.5f},
         {MATERIAL_DIFFUSE_TRANSMISSION, MEDIUM_SAME, vec3(0.2f), vec3(0.3f), 0.0f},
-        {MATERIAL_DIFFUSE_TRANSMISSION, 1, vec3(0.2f), vec3(0.3f), 0.0f},
+        {MATERIAL_DIFFUSE_TRANSMISSION, 3, vec3(0.2f), vec3(0.3f), 0.0f},
+        {MATERIAL_DIELECTRIC_SCHLICK, 1, vec3(0), vec3(0), 1.5f},
     };
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     for (uint32_t i = 0; i < expected.size(); ++i) {
@@ -269,7 +271,9 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
         EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i + 1], words[1]) << i;
     }
     EXPECT_EQ(gpu.materials_present, (1u << MATERIAL_COUNT) - 1);
-    EXPECT_EQ(gpu.arrays[ARRAY_MEDIA], (std::vector<uvec4>{uvec4(0), pack(MediumRecord{vec3(1, 2, 3)})[0]}));
+    const auto medium = [](vec3 absorption, float ior) { return pack(MediumRecord{absorption, ior})[0]; };
+    EXPECT_EQ(gpu.arrays[ARRAY_MEDIA], (std::vector<uvec4>{medium(vec3(0), 1), medium(vec3(1, 2, 3), 1.5f),
+                                                           medium(vec3(0), 1.5f), medium(vec3(1, 2, 3), 1)}));
     EXPECT_TRUE(gpu.has_media);
     EXPECT_FALSE(build_gpu_scene(scene_of({})).has_media);
     EXPECT_EQ(build_gpu_scene(scene_of({})).materials_present, 1u << MATERIAL_DIFFUSE);

@@ -96,7 +96,7 @@ TEST_F(Mtl, IlluminationMakesMirrorsAndGlass) {
         const std::string text = "Kd 1 1 1\nKs 1 1 1\nd 0.1\nTf 1 1 1" + std::string(illum);
         EXPECT_EQ(model<DielectricMaterial>(text).ior, 1.5f);
         EXPECT_EQ(model<DielectricMaterial>(text + "\nNi 1.33").ior, 1.33f);
-        EXPECT_EQ(model<DielectricMaterial>(text).exterior_ior, 1.0f);
+        EXPECT_FALSE(model<DielectricMaterial>(text).exterior_ior);
         EXPECT_TRUE(material(text).warnings.empty());
     }
     for (const char* illum : {"8", "9", "10"}) {

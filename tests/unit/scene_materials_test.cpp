@@ -171,7 +171,8 @@ TEST(SceneMaterials, ReadDiffuseTransmission) {
 TEST(SceneMaterials, ReadDielectrics) {
     const auto glass = load<DielectricMaterial>(R"({"type": "dielectric", "ior": 1.52})");
     EXPECT_EQ(glass.ior, 1.52f);
-    EXPECT_EQ(glass.exterior_ior, 1.0f);
+    EXPECT_FALSE(glass.exterior_ior);
+    EXPECT_EQ(glass.priority, 0u);
     EXPECT_EQ(glass.fresnel, Fresnel::schlick);
     EXPECT_EQ(glass.inside.absorption, vec3(0));
     const auto bubble = load<DielectricMaterial>(
@@ -183,6 +184,7 @@ TEST(SceneMaterials, ReadDielectrics) {
     EXPECT_EQ(bubble.inside.absorption, vec3(6.9314718056f, 0.0f, 13.8629436112f));
     const auto same = load<DielectricMaterial>(R"({"type": "dielectric", "ior": 1.5, "exterior_ior": 1.5})");
     EXPECT_EQ(same.ior, same.exterior_ior);
+    EXPECT_EQ(load<DielectricMaterial>(R"({"type": "dielectric", "ior": 2, "priority": 15})").priority, 15u);
     EXPECT_EQ(load<DielectricMaterial>(R"({"type": "dielectric", "ior": 2, "fresnel": "schlick"})").fresnel,
               Fresnel::schlick);
 }
@@ -196,6 +198,8 @@ TEST(SceneMaterials, CheckDielectrics) {
     folder.expect_error(dielectric("\"ior\": @-1.5"), "\"ior\": expected a number above 0, found -1.5");
     folder.expect_error(dielectric("\"ior\": 1.5, \"exterior_ior\": @0"),
                         "\"exterior_ior\": expected a number above 0, found 0");
+    folder.expect_error(dielectric("\"ior\": 1.5, \"priority\": @16"),
+                        "\"priority\": expected a whole number from 0 to 15, found 16");
     const std::string contrast =
         "ior and exterior_ior differ by a factor above a million; give both as those of real media";
     folder.expect_error(dielectric("\"ior\": @1000001"), contrast);

@@ -107,17 +107,18 @@ Model read_diffuse_transmission(const Node& node, const ImageFolder& images) {
 
 Model read_dielectric(const Node& node, const ImageFolder&) {
     constexpr double MOST_CONTRAST = 1e6;  // Its square, which scales radiance, fits into floats.
-    node.allow_only({"type", "ior", "exterior_ior", "fresnel", "absorption"}, MATERIAL_KEYS);
+    node.allow_only({"type", "ior", "exterior_ior", "fresnel", "absorption", "priority"}, MATERIAL_KEYS);
     DielectricMaterial material;
     const Node ior = node.require("ior");
     material.ior = float(ior.positive());
     if (const auto exterior = node.find("exterior_ior")) material.exterior_ior = float(exterior->positive());
-    const double contrast = double(material.ior) / material.exterior_ior;
+    const double contrast = double(material.ior) / material.exterior_ior.value_or(1.0f);
     if (contrast > MOST_CONTRAST || contrast < 1.0 / MOST_CONTRAST) {
         ior.fail("ior and exterior_ior differ by a factor above a million; give both as those of real media");
     }
     if (const auto fresnel = node.find("fresnel")) material.fresnel = fresnel->choice(FRESNEL_NAMES);
     if (const auto absorption = node.find("absorption")) material.inside = {read_absorption(*absorption)};
+    if (const auto priority = node.find("priority")) material.priority = priority->integer(0, MAX_PRIORITY);
     return material;
 }
 
