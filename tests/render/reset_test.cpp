@@ -60,5 +60,22 @@ TEST_F(ResetTest, GivesThePictureOfAFreshRendererAndCompilesOnlyForOtherConstant
     EXPECT_NE(renderer.pipeline_seconds(), compiled);
 }
 
+// Into a ball of tinted glass, as a viewer may go.
+TEST_F(ResetTest, TheMediaAroundTheCameraAreThoseOfItsPlace) {
+    scene_.environment = constant_environment(vec3(1));
+    add_shape(scene_, Sphere{dvec3(10, 10, 10), 2.0},
+              add_material(scene_, DielectricMaterial{.inside = {vec3(1, 2, 3)}}));
+    gpu_scene_ = build_gpu_scene(scene_);
+    ASSERT_FALSE(gpu_scene_.nested_media);
+    Camera camera = scene_.cameras.at(0);
+    const RenderSettings settings = settings_for(24, 16);
+    Renderer renderer(device(), gpu_scene_, camera, settings);
+    ASSERT_TRUE(renderer.render(2, go_on));
+    for (const dvec3 place : {dvec3(10, 11, 10), dvec3(10, 13, 10), dvec3(9, 10, 10)}) {
+        camera.position = place;
+        expect_as_fresh(renderer, camera, settings);
+    }
+}
+
 }  // namespace
 }  // namespace candela
