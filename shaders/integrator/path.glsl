@@ -119,8 +119,8 @@ struct Shading {
 };
 
 // The shadow ray from s towards a point on a light, and what it adds to L if it is not blocked: beta f cos Li / pdf,
-// weighted and attenuated. `beyond` are the media on the side of the surface that is not the viewer's.
-ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uvec2 beyond, uvec2 u, uint fill) {
+// weighted and attenuated. `behind` is the medium behind the surface.
+ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uint behind, uvec2 u, uint fill) {
     LitPoint lit = lit_point(s);
     LightSample light = light_sample_li(lit, u, fill);
     Ray ray = Ray(lit.p, light.shadow);
@@ -130,7 +130,7 @@ ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uve
         viewers_side = dot(light.wi, s.n) > 0.0;
         ray.o = interaction_spawn_origin(s, viewers_side);
         if (light.t_max < FLOAT_MAX) ray.d += lit.p - ray.o;
-        if (!viewers_side) media = beyond;
+        if (!viewers_side) media = media_beyond(path.media, behind, s.front);
     }
     vec3 wi = frame_to_local(shading.frame, light.wi);
     BsdfValue value;
@@ -151,9 +151,10 @@ ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uve
     return ShadowRay(ray, dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
 }
 
-// Continues the path from s in the direction that its BSDF sampled; returns whether the path goes on. `beyond` as
-// for direct_light(). A direction carries nothing if the geometric and the shading normal disagree about its side.
-bool path_scatter(inout Path path, Interaction s, Shading shading, uvec2 beyond, BsdfSample scattered) {
+// Continues the path from s in the direction that its BSDF sampled; returns whether the path goes on. `behind` is the
+// medium behind the surface. A direction carries nothing if the geometric and the shading normal disagree about its
+// side.
+bool path_scatter(inout Path path, Interaction s, Shading shading, uint behind, BsdfSample scattered) {
     vec3 wi = frame_to_world(shading.frame, scattered.wi);
     path.beta *= scattered.weight;
     bool viewers_side = shading.bent ? dot(wi, s.n) > 0.0 : scattered.wi.z > 0.0;
@@ -164,7 +165,7 @@ bool path_scatter(inout Path path, Interaction s, Shading shading, uvec2 beyond,
     path.delta = scattered.delta;
     path.p = s.p;
     path.ns = s.ns;
-    if (!viewers_side) path.media = beyond;
+    if (!viewers_side) path.media = media_beyond(path.media, behind, s.front);
     path.ray = Ray(interaction_spawn_origin(s, viewers_side), wi);
     return true;
 }
@@ -182,8 +183,8 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     MaterialRecord material = material_at(s.material, s.attributes, path.ray);
     Bsdf bsdf = bsdf_at(material, s.front);
     bool bent = bend_normal(s, hit);
-    uvec2 beyond = media_beyond(path.media, material.medium, s.front);
     if (NESTED_MEDIA && is_model(bsdf, MATERIALS_DIELECTRIC)) {
+        uvec2 beyond = media_beyond(path.media, material.medium, s.front);
         bsdf.parameter = media_eta(path.media, beyond, material.specular.x != 0.0, bsdf.parameter);
     }
     if (path.depth == 0u) {
@@ -217,14 +218,14 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     // Add direct light.
     if (ESTIMATOR != ESTIMATOR_BSDF) {
         uvec2 bits = sampler_pair(random, pair + PAIR_LIGHT);
-        shadow = direct_light(path, s, shading, bsdf, beyond, bits, choice.x);
+        shadow = direct_light(path, s, shading, bsdf, material.medium, bits, choice.x);
     }
 
     // Scatter.
     vec2 u = unit_float(sampler_pair(random, pair + PAIR_BSDF));
     BsdfSample scattered = bsdf_sample_f(bsdf, shading.wo, unit_float(choice.y), u);
     if (bent) bend_sample(scattered, bsdf, shading.wo, frame_to_local(frame, s.n));
-    if (!path_scatter(path, s, shading, beyond, scattered)) return false;
+    if (!path_scatter(path, s, shading, material.medium, scattered)) return false;
 
     // Russian roulette: paths with a low throughput end early, and the survivors are weighted up. The square root lets
     // them end a vertex or two later, which reduces the noise by more than its rays cost. After ideal scattering the

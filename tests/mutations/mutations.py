@@ -65,7 +65,7 @@ GROUPS = [
         ("a thin sheet bounds the medium around it", MEDIUM, "if (behind == MEDIUM_SAME) return here;",
          "if (behind == MEDIUM_SAME) return MEDIA_NONE;"),
         ("light through a sheet absorbed by the medium before it", PATH,
-         "if (!viewers_side) media = beyond;", ""),
+         "if (!viewers_side) media = media_beyond(path.media, behind, s.front);", ""),
         ("light through a sheet looked for from the viewer's side", PATH,
          "ray.o = interaction_spawn_origin(s, viewers_side);", "ray.o = interaction_spawn_origin(s, true);"),
     ]),
