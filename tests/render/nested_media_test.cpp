@@ -143,8 +143,8 @@ TEST_F(NestedMediaTest, AStatedExteriorIndex) {
     add_slab(scene, tint(ABSORPTION), -1, 1);
     DielectricMaterial inner = glass(1.9f);
     inner.exterior_ior = 1.9f;
-    add_slab(scene, inner, -0.5f, 0.5f);
-    expect_share(scene, 8, left_after(ABSORPTION, 1.0));
+    add_slab(scene, inner, 0.0f, 0.5f);
+    expect_share(scene, 8, left_after(ABSORPTION, 1.5));
 }
 
 TEST_F(NestedMediaTest, ACameraInTwoMedia) {
