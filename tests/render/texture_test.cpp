@@ -43,6 +43,29 @@ TEST_F(TexturedTest, ALampOfTwoColoursIsTwoLamps) {
     }
 }
 
+// Coordinates that turn back at the diagonal stay in the red half of the image; those of the first triangle,
+// continued over the second, reach the blue one.
+TEST_F(TexturedTest, EachTriangleOfALampHasItsCoordinates) {
+    const vec3 red(5, 1, 0.5f), blue(0.25f, 2, 6);
+    const auto room = [&](bool textured) {
+        Scene scene = open_room();
+        Emission emission{red, false};
+        if (textured) {
+            Texture texture = add_texture(scene, {2, 1},
+                                          [&](uint32_t x, uint32_t) { return vec4(x == 0 ? red : blue, 1); });
+            texture.filter = TextureFilter::nearest;
+            emission.radiance = {vec3(1), texture};
+        }
+        Quad lamp = parallelogram(vec3(-0.5f, 1.5f, -0.2f), vec3(1, 0, 0), vec3(0, 0, 0.4f));
+        for (const size_t corner : {0u, 1u, 2u, 3u})
+            lamp.uvs[corner] = vec2(corner % 2 == 0 ? 0.45f : 0.1f, 0.5f);
+        add_shape(scene, lamp, add_diffuse(scene, vec3(0)), emission);
+        return scene;
+    };
+    expect_same_expectation(image(room(true), settings(Estimator::light, 1), 640),
+                            image(room(false), settings(Estimator::light, 2), 640));
+}
+
 // Colours of vertices and of textures with one texel are those of plain materials, bit for bit where they are
 // powers of two.
 TEST_F(TexturedTest, ATextureOfOneColourIsThatColour) {
