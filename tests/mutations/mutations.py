@@ -192,7 +192,6 @@ GROUPS = [
         ("the frame's unit forgotten for heights", "host/gpu_scene/gpu_scene.cpp", "frame.length(double(bump->scale))",
          "frame.length(frame.unit * double(bump->scale))"),
         ("a facet seen from behind", BENT_NORMAL, "if (up >= LEAST) return dot(wo, ns) < 0.0 ? -ns : ns;", "return ns;"),
-        ("the density of one of two directions", BENT_NORMAL, "sum.pdf += value.pdf;", "sum.pdf = value.pdf;"),
     ]),
     (MEDIA, [
         ("a medium of a higher priority hidden by a lower one", MEDIUM, "lessThanEqual(m >> MEDIUM_INDEX_BITS",
