@@ -26,6 +26,7 @@ mi.set_log_level(mi.LogLevel.Error)
 from meshes import box, read_ply, write_ply
 import light_texture  # noqa: E402, F401 (registers a plugin; both need the variant)
 import reflection_models  # noqa: E402
+from surroundings import around  # noqa: E402
 
 HERE = Path(__file__).parent
 SCENES = HERE.parent.parent / "scenes"
@@ -136,16 +137,6 @@ def metal(material, smooth):
 def dielectric(material, smooth):
     assert material.get("fresnel") == "exact", "Mitsuba knows no approximation of Fresnel's equations"
     return {"type": "dielectric", "int_ior": float(material["ior"]), "ext_ior": float(material.get("exterior_ior", 1))}
-
-
-def around(shape, scene):
-    """The material of the least sphere around a sphere; of other shapes, none."""
-    spheres = [other for other in scene["shapes"] if other["type"] == "sphere"]
-    if shape not in spheres:
-        return None
-    outer = [other for other in spheres if other["radius"] - shape["radius"]
-             > np.linalg.norm(np.subtract(other["center"], shape["center"]))]
-    return scene["materials"][min(outer, key=lambda other: other["radius"])["material"]] if outer else None
 
 
 def detailed(bsdf, material):
