@@ -17,8 +17,8 @@ namespace {
 struct Solid {
     DoubleBox box;
     Interior inside;
-    size_t shape;                    // The first, of several.
-    bool is_open_to_others = false;  // Quads and disks, to which others of the same medium may be added.
+    size_t shape;        // The first, of several.
+    bool walls = false;  // Quads and disks: all those of one medium.
 };
 
 std::vector<Solid> find_solids(const Scene& scene) {
@@ -31,8 +31,8 @@ std::vector<Solid> find_solids(const Scene& scene) {
             std::holds_alternative<Quad>(shape.geometry) || std::holds_alternative<Disk>(shape.geometry);
         auto place = solids.end();
         if (wall) {
-            place = std::ranges::find_if(
-                solids, [&](const Solid& s) { return s.is_open_to_others && s.inside == *inside; });
+            place =
+                std::ranges::find_if(solids, [&](const Solid& s) { return s.walls && s.inside == *inside; });
         }
         if (place == solids.end()) place = solids.insert(place, {{}, *inside, i, wall});
         place->box.extend(bounds(scene, shape));
