@@ -20,6 +20,12 @@ void for_each_value(Model& m, const Visit& visit) {
         visit(m.reflectance), visit(m.alpha);
     } else if constexpr (std::is_same_v<Type, DiffuseTransmissionMaterial>) {
         visit(m.reflectance), visit(m.transmittance);
+    } else if constexpr (std::is_same_v<Type, PrincipledMaterial>) {
+        visit(m.base_color), visit(m.metalness), visit(m.roughness), visit(m.diffuse_roughness);
+        visit(m.specular), visit(m.specular_color), visit(m.anisotropy), visit(m.transmission);
+        visit(m.diffuse_transmission), visit(m.diffuse_transmission_color);
+        visit(m.coat), visit(m.coat_roughness), visit(m.sheen_color), visit(m.sheen_roughness);
+        visit(m.iridescence), visit(m.iridescence_thickness), visit(m.emission);
     } else {
         static_assert(std::is_same_v<Type, DielectricMaterial>);
     }
@@ -32,6 +38,10 @@ void for_each_texture(SomeMaterial& material, const Visit& visit) {
         if (value.texture) visit(*value.texture);
     };
     std::visit([&](auto& model) { for_each_value(model, texture_of); }, material.model);
+    if (auto* principled = std::get_if<PrincipledMaterial>(&material.model)) {
+        if (principled->anisotropy_map) visit(*principled->anisotropy_map);
+        if (principled->coat_normal_map) visit(principled->coat_normal_map->texture);
+    }
     texture_of(material.opacity.value);
     if (material.normal_map) visit(material.normal_map->texture);
     if (material.bump_map) visit(material.bump_map->texture);
