@@ -17,6 +17,7 @@
 #include "gpu_scene/flatten.h"
 #include "gpu_scene/material_record.h"
 #include "gpu_scene/nesting.h"
+#include "gpu_scene/principled_record.h"
 #include "gpu_scene/texture_table.h"
 #include "scene/geometry.h"
 #include "scene/mesh.h"
@@ -127,23 +128,53 @@ uint32_t add_medium(std::vector<Interior>& media, const Interior& medium) {
     return medium.priority << MEDIUM_INDEX_BITS | uint32_t(place - media.begin());
 }
 
+// Appends the record of a principled material and its images to `words`; returns its first word there.
+uint32_t append_principled(std::vector<uvec4>& words, EncodedPrincipled encoded, TextureTable& textures) {
+    const auto first = uint32_t(words.size());
+    const auto images = principled_images(encoded.textures);
+    encoded.record.images = uint32_t(images.size());
+    encoded.record.coat_normal = textures.add(encoded.coat_normal);
+    append(words, pack(encoded.record));
+    for (const auto& [texture, image] : images) {
+        PrincipledImage record = image;
+        record.texture = textures.add(texture);
+        words.push_back(pack(record));
+    }
+    return first;
+}
+
 // Appends the records of materials, and of the media behind them, each once.
 void append_materials(GpuScene& gpu, const std::vector<Material>& materials, TextureTable& textures) {
     if (materials.size() > MAX_MATERIALS) {
         throw Error("the scene has " + std::to_string(materials.size()) + " materials, but at most " +
                     std::to_string(MAX_MATERIALS) + " fit into the records; use fewer");
     }
+    gpu.material_count = uint32_t(materials.size());
     std::vector<Interior> media(1);
     static_assert(MEDIUM_NONE == 0);
+    std::vector<std::pair<size_t, EncodedPrincipled>> principled;  // And the words of their materials.
     for (const Material& material : materials) {
         const std::optional<Interior> inside = interior(material.model);
         const uint32_t medium = inside ? add_medium(media, *inside) : MEDIUM_NONE;
         const EncodedMaterial encoded = encode_material(material.model, medium);
+        if (encoded.principled) {
+            principled.emplace_back(gpu.arrays[ARRAY_MATERIALS].size(), *encoded.principled);
+            gpu.principled |= encoded.principled->parts;
+            // Its coat has a normal of its own if the base has one.
+            const bool bent = material.normal_map || material.bump_map;
+            if (bent && (encoded.principled->parts & PRINCIPLED_HAS_COAT) != 0)
+                gpu.principled |= PRINCIPLED_HAS_COAT_NORMAL;
+        }
         append(gpu.arrays[ARRAY_MATERIALS], pack(encoded.record));
         gpu.materials_present |= 1u << encoded.record.model;
         const MaterialTextures used = textures_of(material, encoded, gpu.frame, textures);
         append(gpu.arrays[ARRAY_MATERIAL_TEXTURES], pack(used));
         gpu.textured |= textured_bits(used);
+    }
+    for (const auto& [word, encoded] : principled) {
+        std::vector<uvec4>& words = gpu.arrays[ARRAY_MATERIALS];
+        const uint32_t first = append_principled(words, encoded, textures);
+        words[word + 1].x = first;
     }
     for (const Interior& m : media) {
         append(gpu.arrays[ARRAY_MEDIA],
@@ -159,7 +190,9 @@ uint32_t needed_attributes(const GpuScene& gpu) {
     return bit((gpu.texture_traits & TEXTURE_UV0) != 0, ATTRIBUTE_UV0) |
            bit((gpu.texture_traits & TEXTURE_UV1) != 0, ATTRIBUTE_UV1) |
            bit((gpu.textured & TEXTURED_VERTEX_COLORS) != 0, ATTRIBUTE_COLOR) |
-           bit((gpu.textured & TEXTURED_NORMAL) != 0, ATTRIBUTE_TANGENT);
+           bit((gpu.textured & TEXTURED_NORMAL) != 0 ||
+                   (gpu.principled & (PRINCIPLED_HAS_ANISOTROPY | PRINCIPLED_HAS_COAT_NORMAL)) != 0,
+               ATTRIBUTE_TANGENT);
 }
 
 // Appends the textures of lights, for their surfaces' places in leaf order, if a kernel reads them.
@@ -212,6 +245,9 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<
     append_materials(gpu, scene.materials, textures);
     Nesting nesting = find_nesting(scene);
     gpu.nested_media = nesting.nested;
+    // Of the boundaries within one medium: see path_step().
+    if ((gpu.principled & PRINCIPLED_HAS_VOLUME) != 0)
+        gpu.materials_present |= 1u << MATERIAL_DIELECTRIC_EXACT;
     gpu.warnings = std::move(nesting.warnings);
     for (const Shape& shape : scene.shapes) {
         if (shape.emission && textures.add(shape.emission->radiance.texture) != TEXTURE_NONE)

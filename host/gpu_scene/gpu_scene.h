@@ -22,6 +22,7 @@ struct GpuScene {
     uint32_t primitive_count = 0;  // Two triangles may be one: see shared/primitive.h.
     uint32_t id_count = 0;         // Triangles, spheres and disks.
     uint32_t light_count = 0;
+    uint32_t material_count = 0;
     uint32_t environment_light = 0;     // Index of the environment among the lights; 0 if it is not one.
     uvec2 environment_size{0};          // Texels.
     float environment_rotation = 0.0f;  // [rad]
@@ -33,6 +34,7 @@ struct GpuScene {
     uint32_t environment = ENVIRONMENT_NONE;
     bool even_sky = false;
     uint32_t materials_present = 0;                 // Bit i: a material of model i.
+    uint32_t principled = 0;                        // Bits PRINCIPLED_HAS_*: of all principled materials.
     uint32_t primitives_present = 0;                // Bit i: a primitive of kind i.
     uint32_t lights_present = 0;                    // Bit i: a light of kind i.
     uint32_t attributes = 0;                        // Bits ATTRIBUTE_*.

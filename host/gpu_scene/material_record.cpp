@@ -1,6 +1,8 @@
 // One overload per model.
 #include "gpu_scene/material_record.h"
 
+#include "gpu_scene/principled_record.h"
+
 namespace candela {
 namespace {
 
@@ -16,7 +18,8 @@ EncodedMaterial encoded(uint model, const Textured<vec3>& base, const Textured<v
              .parameter = parameter.factor},
             base.texture,
             specular.texture,
-            parameter.texture};
+            parameter.texture,
+            {}};
 }
 
 EncodedMaterial encode(const DiffuseMaterial& m) {
@@ -46,6 +49,13 @@ EncodedMaterial encode(const DiffuseTransmissionMaterial& m) {
     return encoded(MATERIAL_DIFFUSE_TRANSMISSION, m.reflectance, m.transmittance);
 }
 
+EncodedMaterial encode(const PrincipledMaterial& m) {
+    if (m.unlit) return encoded(MATERIAL_UNLIT, m.base_color);
+    EncodedMaterial result = encoded(MATERIAL_PRINCIPLED, m.base_color.factor, NO_COLOR, principled_ior(m));
+    result.principled = encode_principled(m);
+    return result;
+}
+
 template <class OpaqueMaterial>
 std::optional<Interior> behind(const OpaqueMaterial&) {
     return std::nullopt;
@@ -58,6 +68,12 @@ std::optional<Interior> behind(const DielectricMaterial& m) {
 std::optional<Interior> behind(const DiffuseTransmissionMaterial& m) {
     if (!m.inside) return std::nullopt;
     return Interior{*m.inside};
+}
+
+std::optional<Interior> behind(const PrincipledMaterial& m) {
+    const bool lets_light_in = m.transmission.factor > 0.0f || m.diffuse_transmission.factor > 0.0f;
+    if (!m.inside || m.unlit || !lets_light_in) return std::nullopt;
+    return Interior{*m.inside, principled_ior(m), m.priority};
 }
 
 }  // namespace

@@ -1,15 +1,33 @@
 // Materials and media -> records.
 #pragma once
 
+#include <vector>
+
 #include "scene/scene.h"
 #include "shared/material.h"
+#include "shared/principled.h"
 
 namespace candela {
+
+// A value of a principled material (PRINCIPLED_*) that an image gives.
+struct PrincipledTexture {
+    uint32_t value = 0;
+    Texture texture{};
+};
+
+// What a principled material has besides its MaterialRecord.
+struct EncodedPrincipled {
+    PrincipledRecord record{};  // Neither `images` nor `coat_normal` is set.
+    uint32_t parts = 0;         // Bits PRINCIPLED_HAS_*.
+    std::vector<PrincipledTexture> textures{};
+    std::optional<Texture> coat_normal{};
+};
 
 // What a material's record holds, and the textures by which some of that is multiplied.
 struct EncodedMaterial {
     MaterialRecord record{};
     std::optional<Texture> base{}, specular{}, parameter{};  // As in MaterialTextures.
+    std::optional<EncodedPrincipled> principled{};             // Of a model that is MATERIAL_PRINCIPLED.
 };
 
 // What a surface encloses.

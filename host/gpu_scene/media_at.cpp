@@ -68,9 +68,8 @@ uvec2 media_at(const GpuScene& scene, dvec3 point) {
     const auto medium_of = [&](uint32_t material) {
         return scene.arrays[ARRAY_MATERIALS][size_t{material} * MATERIAL_WORDS].x >> 8;
     };
-    const auto material_count = uint32_t(scene.arrays[ARRAY_MATERIALS].size() / MATERIAL_WORDS);
     bool any = false;
-    for (uint32_t i = 0; i < material_count; ++i)
+    for (uint32_t i = 0; i < scene.material_count; ++i)
         any |= medium_of(i) != MEDIUM_SAME;
     if (!any) return uvec2(0);
 

@@ -64,11 +64,15 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_ENVIRONMENT] = scene.environment;
     constants[CONSTANT_EVEN_SKY] = scene.even_sky;
     constants[CONSTANT_MATERIALS] = scene.materials_present;
+    constants[CONSTANT_PRINCIPLED] = scene.principled;
     constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
     constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
     constants[CONSTANT_LIGHTS] = scene.lights_present;
     constants[CONSTANT_HAS_MEDIA] = scene.has_media;
     constants[CONSTANT_NESTED_MEDIA] = scene.nested_media || media_at(scene, camera.position) != uvec2(0);
+    // What boundaries within one medium are: see path_step().
+    if (constants[CONSTANT_NESTED_MEDIA] != 0 && (scene.principled & PRINCIPLED_HAS_VOLUME) != 0)
+        constants[CONSTANT_MATERIALS] |= 1u << MATERIAL_DIELECTRIC_EXACT;
     constants[CONSTANT_ATTRIBUTES] = scene.attributes;
     constants[CONSTANT_TEXTURED] = scene.textured;
     constants[CONSTANT_TEXTURE_TRAITS] = scene.texture_traits;

@@ -2,9 +2,11 @@
 #ifndef BASE_COLOR_GLSL
 #define BASE_COLOR_GLSL
 
-// Luminance of a linear Rec.709 colour.
+// Shares of a linear Rec.709 colour in its luminance.
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
+
 float luminance(vec3 rgb) {
-    return dot(rgb, vec3(0.2126, 0.7152, 0.0722));
+    return dot(rgb, LUMINANCE);
 }
 
 #endif

@@ -58,8 +58,8 @@ float warp_cone_pdf(float h_max) {
 }
 
 // Normal of a GGX microfacet that w sees, with the density G1(w) max(0, w.h) D(h) / w.z [1/sr], from u in [0,1)^2; w.z
-// > 0, alpha in (0, 1]. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, section 3.
-vec3 warp_ggx_visible_normal(vec2 u, float alpha, vec3 w) {
+// > 0, alpha along x and y in (0, 1]. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, section 3.
+vec3 warp_ggx_visible_normal(vec2 u, vec2 alpha, vec3 w) {
     // In stretched space the facets form a hemisphere. Its visible part projects to a disk, less a piece behind the
     // horizon.
     vec3 v = normalize(vec3(alpha * w.xy, w.z));
@@ -70,6 +70,10 @@ vec3 warp_ggx_visible_normal(vec2 u, float alpha, vec3 w) {
     d.y = mix(sqrt(max(0.0, 1.0 - d.x * d.x)), d.y, 0.5 * (1.0 + v.z));
     vec3 h = d.x * t1 + d.y * t2 + sqrt(max(0.0, 1.0 - dot(d, d))) * v;
     return normalize(vec3(alpha * h.xy, max(1e-7, h.z)));
+}
+
+vec3 warp_ggx_visible_normal(vec2 u, float alpha, vec3 w) {
+    return warp_ggx_visible_normal(u, vec2(alpha), w);
 }
 
 // Uniform barycentric coordinates (b1, b2) on a triangle from u in [0,1)^2; density 1/area [1/m^2]. Continuous,

@@ -8,13 +8,19 @@
 #include "bsdf/diffuse_transmission.glsl"
 #include "bsdf/mirror.glsl"
 #include "bsdf/phong.glsl"
+#include "bsdf/principled.glsl"
 #include "shared/kernel_constants.h"
 #include "shared/material.h"
 
 const uint MATERIALS_DIELECTRIC = 1u << MATERIAL_DIELECTRIC_SCHLICK | 1u << MATERIAL_DIELECTRIC_EXACT;
 
+const bool HAS_PRINCIPLED = (MATERIALS & 1u << MATERIAL_PRINCIPLED) != 0u;
+
 // True if some surface scatters light that comes from behind it, so that light samples there count.
-const bool LIT_FROM_BEHIND = (MATERIALS & 1u << MATERIAL_DIFFUSE_TRANSMISSION) != 0u;
+const bool PRINCIPLED_LIT_FROM_BEHIND =
+    HAS_PRINCIPLED && ((PRINCIPLED & PRINCIPLED_HAS_DIFFUSE_TRANSMISSION) != 0u ||
+                       (PRINCIPLED_TRANSMITS && (PRINCIPLED & PRINCIPLED_HAS_ROUGH) != 0u));
+const bool LIT_FROM_BEHIND = (MATERIALS & 1u << MATERIAL_DIFFUSE_TRANSMISSION) != 0u || PRINCIPLED_LIT_FROM_BEHIND;
 
 // A material at one point of a surface, seen from one side.
 struct Bsdf {
@@ -22,6 +28,7 @@ struct Bsdf {
     vec3 base;   // As in MaterialRecord, as is `specular`.
     vec3 specular;
     float parameter;  // As in MaterialRecord, except eta: the index on the other side over that on the viewer's.
+    Principled principled;
 };
 
 // True if the model is one of `models` (bits). Models that the scene does not have leave no code in the kernel, and a
@@ -32,11 +39,30 @@ bool is_model(Bsdf b, const uint models) {
     return (1u << b.model & models) != 0u;
 }
 
+// True if light that passes the surface is refracted.
+bool bsdf_refracts(MaterialRecord m) {
+    Bsdf b;
+    b.model = m.model;
+    return is_model(b, MATERIALS_DIELECTRIC) || (is_model(b, 1u << MATERIAL_PRINCIPLED) && m.medium != MEDIUM_SAME);
+}
+
 // The material seen from its front, or from its back, where the two media of a dielectric are swapped.
+// What a principled material has besides is added by bsdf_add_principled().
 Bsdf bsdf_at(MaterialRecord m, bool front) {
-    Bsdf b = Bsdf(m.model, m.base, m.specular, m.parameter);
-    if (is_model(b, MATERIALS_DIELECTRIC) && !front) b.parameter = 1.0 / b.parameter;
+    Bsdf b;
+    b.model = m.model;
+    b.base = m.base;
+    b.specular = m.specular;
+    b.parameter = m.parameter;
+    if (bsdf_refracts(m) && !front) b.parameter = 1.0 / b.parameter;
     return b;
+}
+
+// Adds the lobes of a principled material seen from wo. `surface.eta` is b.parameter.
+void bsdf_add_principled(inout Bsdf b, PrincipledSurface surface, vec3 wo) {
+    surface.eta = b.parameter;
+    surface.base_color = b.base;
+    b.principled = principled_lobes(surface, wo);
 }
 
 // Value and density; zero where scattering is ideal.
@@ -45,6 +71,7 @@ BsdfValue bsdf_evaluate(Bsdf b, vec3 wo, vec3 wi) {
     if (is_model(b, 1u << MATERIAL_PHONG)) return phong_evaluate(b.base, b.specular, b.parameter, wo, wi);
     if (is_model(b, 1u << MATERIAL_CONDUCTOR)) return conductor_evaluate(b.base, b.parameter, wo, wi);
     if (is_model(b, 1u << MATERIAL_DIFFUSE_TRANSMISSION)) return diffuse_transmission_evaluate(b.base, b.specular, wi);
+    if (is_model(b, 1u << MATERIAL_PRINCIPLED)) return principled_evaluate(b.principled, wo, wi);
     return bsdf_zero();
 }
 
@@ -60,6 +87,7 @@ BsdfSample bsdf_sample_f(Bsdf b, vec3 wo, float uc, vec2 u) {
     if (is_model(b, 1u << MATERIAL_DIFFUSE_TRANSMISSION)) {
         return diffuse_transmission_sample_f(b.base, b.specular, uc, u);
     }
+    if (is_model(b, 1u << MATERIAL_PRINCIPLED)) return principled_sample_f(b.principled, wo, uc, u);
     return bsdf_sample_failed();
 }
 

@@ -19,10 +19,10 @@
 const bool HAS_NORMAL_MAPS = (TEXTURED & TEXTURED_NORMAL) != 0u;
 const bool HAS_BUMP_MAPS = (TEXTURED & TEXTURED_BUMP) != 0u;
 
-// The shading normal on the front side that a normal map gives.
-vec3 mapped_normal(MaterialTextures textures, Interaction s) {
-    vec3 m = 2.0 * texture_color(textures.normal, s.attributes) - 1.0;
-    m.xy *= textures.normal_scale;
+// The shading normal on the front side that the normal map in that texture gives, with a factor for its x and y.
+vec3 mapped_normal(uint texture_index, float scale, Interaction s) {
+    vec3 m = 2.0 * texture_color(texture_index, s.attributes) - 1.0;
+    m.xy *= scale;
     vec3 ns = s.front ? s.ns : -s.ns;
     vec3 t = s.attributes.tangent.xyz;
     vec3 n = m.x * t + m.y * s.attributes.tangent.w * cross(ns, t) + m.z * ns;
@@ -39,7 +39,7 @@ bool bend_normal(inout Interaction s, Hit hit) {
     if (HAS_BUMP_MAPS && (!HAS_NORMAL_MAPS || textures.bump != 0u)) {
         n = bumped_normal(scene_texture(textures.normal), textures.normal_scale, hit, s);
     } else {
-        n = mapped_normal(textures, s);
+        n = mapped_normal(textures.normal, textures.normal_scale, s);
     }
     s.ns = s.front ? n : -n;
     return true;

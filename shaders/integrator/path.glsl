@@ -22,6 +22,7 @@
 #include "base/sampler.glsl"
 #include "bsdf/bsdf.glsl"
 #include "integrator/bent_normal.glsl"
+#include "integrator/layers.glsl"
 #include "light/light_sampler.glsl"
 #include "medium/medium.glsl"
 #include "scene/interaction.glsl"
@@ -181,11 +182,18 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     }
     Interaction s = interaction_at(path.ray, hit);
     MaterialRecord material = material_at(s.material, s.attributes, path.ray);
+    PrincipledSurface principled;
+    if (is_principled(material)) principled = principled_surface(material, s, path.beta);
     Bsdf bsdf = bsdf_at(material, s.front);
     bool bent = bend_normal(s, hit);
-    if (NESTED_MEDIA && is_model(bsdf, MATERIALS_DIELECTRIC)) {
+    if (NESTED_MEDIA && bsdf_refracts(material)) {
         uvec2 beyond = media_beyond(path.media, material.medium, s.front);
-        bsdf.parameter = media_eta(path.media, beyond, material.specular.x != 0.0, bsdf.parameter);
+        bool own_eta = !is_principled(material) && material.specular.x != 0.0;
+        bsdf.parameter = media_eta(path.media, beyond, own_eta, bsdf.parameter);
+        // A boundary within one medium is glass between equal indices, whatever it is made of.
+        if (is_principled(material) && media_first(path.media) == media_first(beyond)) {
+            material.model = bsdf.model = MATERIAL_DIELECTRIC_EXACT;
+        }
     }
     if (path.depth == 0u) {
         estimate.visible = true;
@@ -199,6 +207,11 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     // Add what the surface emits; light samples of the previous vertex may already account for a part.
     if (s.light != NO_LIGHT) add_emission(path, estimate, s, hit.t);
 
+    if (is_model(bsdf, 1u << MATERIAL_UNLIT)) {
+        estimate.L += path.beta * bsdf.base;
+        return false;
+    }
+
     // End at the last scattering vertex.
     if (path.depth == parameters.max_depth) {
         estimate.cut = path.depth == DEPTH_SAFETY_LIMIT;
@@ -209,9 +222,15 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         s.ns = s.n;
         bent = false;
     }
+    if (HAS_COAT_NORMALS && is_principled(material)) bent = bent || principled.record.coat_normal != TEXTURE_NONE;
     if (bent) s.ns = consistent_normal(s.wo, s.n, s.ns);
     Frame frame = frame_from_z(s.ns);
+    if (HAS_ANISOTROPY && is_principled(material)) frame = principled_frame(principled.record, s);
     Shading shading = Shading(frame, frame_to_local(frame, s.wo), bent);
+    if (is_principled(material)) {
+        if (HAS_COAT_NORMALS) principled.coat_n = coat_normal(principled, s, frame);
+        bsdf_add_principled(bsdf, principled, shading.wo);
+    }
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
     uvec2 choice = sampler_pair(random, pair + PAIR_CHOICE);
 

@@ -1,17 +1,32 @@
-// For selftest/bsdfs.h: one material, given by its record. Samples it with u and evaluates it, both for the sampled
+// For selftest/bsdfs.h: one material, given by its record; if it is principled, by two. Samples it with u and evaluates it, both for the sampled
 // direction and for a given wi.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#define ITEM_WORDS 5u
+#define ITEM_WORDS 13u
 #define RESULT_WORDS 17u
 #include "bsdf/bsdf.glsl"
 #include "probes/items.glsl"
 
 void main() {
     if (past_end()) return;
-    Bsdf bsdf = bsdf_at(material_unpack(item(0u), item(1u)), item(4u).w == 0u);
+    MaterialRecord material = material_unpack(item(0u), item(1u));
+    bool front = item(4u).w == 0u;
+    Bsdf bsdf = bsdf_at(material, front);
     vec3 wo = item_floats(2u).xyz;
+    if (material.model == MATERIAL_PRINCIPLED) {
+        uvec4 words[PRINCIPLED_WORDS];
+        for (uint i = 0u; i < PRINCIPLED_WORDS; ++i) words[i] = item(5u + i);
+        PrincipledSurface surface;
+        surface.record = principled_unpack(words);
+        surface.encloses = material.medium != MEDIUM_SAME;
+        surface.inside = surface.encloses && !front;
+        surface.coat_n = vec3(0.0, 0.0, 1.0);
+        surface.hue = vec3(1.0 / 3.0);
+        surface.spread = dispersion_spread(material.parameter, surface.record.dispersion);
+        if (surface.inside) surface.spread = 1.0 / surface.spread;
+        bsdf_add_principled(bsdf, surface, wo);
+    }
     vec3 wi = item_floats(3u).xyz;
     BsdfSample s = bsdf_sample_f(bsdf, wo, item_floats(4u).z, item_floats(4u).xy);
     put(s.wi);

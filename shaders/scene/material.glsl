@@ -63,6 +63,73 @@ MaterialRecord material_at(uint i, Attributes at, Ray ray) {
     return m;
 }
 
+bool principled_gives(uint values, const uint value) {
+    return (values & 1u << value) != 0u;
+}
+
+// What an image says of a number: its channel, or 1.
+float principled_number(vec4 texel, PrincipledImage image, const uint value) {
+    if (!principled_gives(image.values, value)) return 1.0;
+    uint channel = (value < 16u ? image.channels.x >> 2u * value : image.channels.y >> 2u * (value - 16u)) & 3u;
+    return channel < 2u ? (channel == 0u ? texel.r : texel.g) : (channel == 2u ? texel.b : texel.a);
+}
+
+// Multiplies the values of a principled material, and its base colour, by those of an image.
+void principled_apply(inout PrincipledRecord p, inout vec3 base_color, PrincipledImage image, Attributes at) {
+    TextureRecord t = scene_texture(image.texture);
+    vec4 texel = texture_at(t, texture_uv(t, at));
+    uint values = image.values;
+    if (principled_gives(values, PRINCIPLED_BASE_COLOR)) base_color *= texel.rgb;
+    if (principled_gives(values, PRINCIPLED_SPECULAR_COLOR)) p.specular_color *= texel.rgb;
+    if (principled_gives(values, PRINCIPLED_DIFFUSE_TRANSMISSION_COLOR)) p.diffuse_transmission_color *= texel.rgb;
+    if (principled_gives(values, PRINCIPLED_SHEEN_COLOR)) p.sheen_color *= texel.rgb;
+    if (principled_gives(values, PRINCIPLED_ANISOTROPY_MAP)) {
+        vec2 d = 2.0 * texel.rg - 1.0;
+        float length_squared = dot(d, d);
+        if (length_squared > 0.0) d *= inversesqrt(length_squared);
+        p.rotation = vec2(d.x * p.rotation.x - d.y * p.rotation.y, d.x * p.rotation.y + d.y * p.rotation.x);
+        p.anisotropy *= texel.b;
+    }
+    p.metalness *= principled_number(texel, image, PRINCIPLED_METALNESS);
+    p.roughness *= principled_number(texel, image, PRINCIPLED_ROUGHNESS);
+    p.diffuse_roughness *= principled_number(texel, image, PRINCIPLED_DIFFUSE_ROUGHNESS);
+    p.specular *= principled_number(texel, image, PRINCIPLED_SPECULAR);
+    p.transmission *= principled_number(texel, image, PRINCIPLED_TRANSMISSION);
+    p.diffuse_transmission *= principled_number(texel, image, PRINCIPLED_DIFFUSE_TRANSMISSION);
+    p.coat *= principled_number(texel, image, PRINCIPLED_COAT);
+    p.coat_roughness *= principled_number(texel, image, PRINCIPLED_COAT_ROUGHNESS);
+    p.sheen_roughness *= principled_number(texel, image, PRINCIPLED_SHEEN_ROUGHNESS);
+    p.iridescence *= principled_number(texel, image, PRINCIPLED_IRIDESCENCE);
+    p.thickness_range *= principled_number(texel, image, PRINCIPLED_IRIDESCENCE_THICKNESS);
+    p.anisotropy *= principled_number(texel, image, PRINCIPLED_ANISOTROPY);
+}
+
+// Colours and weights of half-float images may exceed 1.
+void principled_clamp(inout PrincipledRecord p) {
+    p.specular_color = min(p.specular_color, 1.0);
+    p.diffuse_transmission_color = min(p.diffuse_transmission_color, 1.0);
+    p.sheen_color = min(p.sheen_color, 1.0);
+    vec4 a = min(vec4(p.metalness, p.roughness, p.diffuse_roughness, p.specular), 1.0);
+    p.metalness = a.x, p.roughness = a.y, p.diffuse_roughness = a.z, p.specular = a.w;
+    a = min(vec4(p.transmission, p.diffuse_transmission, p.coat, p.coat_roughness), 1.0);
+    p.transmission = a.x, p.diffuse_transmission = a.y, p.coat = a.z, p.coat_roughness = a.w;
+    a = min(vec4(p.sheen_roughness, p.iridescence, p.anisotropy, 1.0), 1.0);
+    p.sheen_roughness = a.x, p.iridescence = a.y, p.anisotropy = a.z;
+}
+
+// The values of the principled material m at a point; its base colour is multiplied by images, too.
+PrincipledRecord principled_at(inout MaterialRecord m, Attributes at) {
+    uint first = floatBitsToUint(m.specular.x);
+    PrincipledRecord p = scene_principled(first);
+    if ((PRINCIPLED & PRINCIPLED_HAS_IMAGES) == 0u) return p;
+    for (uint i = 0u; i < p.images; ++i) {
+        principled_apply(p, m.base, scene_principled_image(first + PRINCIPLED_WORDS + i), at);
+    }
+    m.base = min(m.base, 1.0);
+    principled_clamp(p);
+    return p;
+}
+
 // The probability that a ray does not pass the surface.
 float material_opacity(uint i, Attributes at) {
     MaterialTextures textures = scene_material_textures(i);

@@ -95,6 +95,21 @@ MaterialRecord scene_material(uint i) {
     return material_unpack(a, b);
 }
 
+// The principled material whose record begins at that word of the materials.
+PrincipledRecord scene_principled(uint first) {
+    uvec4 w[PRINCIPLED_WORDS];
+    READ_4(MATERIALS, first, w[0], w[1], w[2], w[3]);
+    READ_4(MATERIALS, first + 4u, w[4], w[5], w[6], w[7]);
+    return principled_unpack(w);
+}
+
+// The image at that word of the materials.
+PrincipledImage scene_principled_image(uint word) {
+    uvec4 a;
+    READ_1(MATERIALS, word, a);
+    return principled_image_unpack(a);
+}
+
 MediumRecord scene_medium(uint i) {
     uvec4 a;
     READ_1(MEDIA, (i & MAX_MEDIA - 1u) * MEDIUM_WORDS, a);

@@ -7,6 +7,8 @@
 //   conductor                MATERIAL_CONDUCTOR, reflectance             0                alpha
 //   dielectric               MATERIAL_DIELECTRIC_*, 0                    own_eta, 0, 0    eta
 //   diffuse transmission     MATERIAL_DIFFUSE_TRANSMISSION, reflectance  transmittance    0
+//   principled               MATERIAL_PRINCIPLED, base colour            record, 0, 0     ior
+//   unlit                    MATERIAL_UNLIT, radiance                    0                0
 #ifndef SHARED_MATERIAL_H
 #define SHARED_MATERIAL_H
 
@@ -26,7 +28,9 @@ const uint MATERIAL_CONDUCTOR = 3u;
 const uint MATERIAL_DIELECTRIC_SCHLICK = 4u;
 const uint MATERIAL_DIELECTRIC_EXACT = 5u;
 const uint MATERIAL_DIFFUSE_TRANSMISSION = 6u;
-const uint MATERIAL_COUNT = 7u;
+const uint MATERIAL_PRINCIPLED = 7u;  // See shared/principled.h.
+const uint MATERIAL_UNLIT = 8u;       // Shows its colour in any light, and scatters none.
+const uint MATERIAL_COUNT = 9u;
 
 // Limits of `parameter`.
 const float LEAST_ALPHA = 1e-3f;
@@ -37,7 +41,7 @@ struct MaterialRecord {
     uint medium;      // Behind the surface; 24 bits.
     vec3 base;        // Reflectance, each in [0, 1].
     vec3 specular;    // Phong's ks, or transmittance; each in [0, 1]. own_eta: 1 if eta holds whatever is in
-                      // front.
+                      // front. record: the bits of the first word of a PrincipledRecord.
     float parameter;  // Phong's exponent; alpha; or eta, the index behind the surface over that in front.
 };
 

@@ -10,6 +10,7 @@
 #include "shared/light.h"
 #include "shared/material.h"
 #include "shared/primitive.h"
+#include "shared/principled.h"
 #include "shared/texture.h"
 
 #ifdef __cplusplus

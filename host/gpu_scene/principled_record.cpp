@@ -1,0 +1,143 @@
+// See principled_record.h.
+#include "gpu_scene/principled_record.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace candela {
+namespace {
+
+constexpr float ALL_REFLECTING_IOR = 1e6f;
+
+bool is_white(const Textured<vec3>& color) {
+    return !color.texture && color.factor == vec3(1.0f);
+}
+
+bool is_one(const Textured<float>& number) {
+    return !number.texture && number.factor >= 1.0f;
+}
+
+uint32_t parts_of(const PrincipledMaterial& m) {
+    uint32_t parts = 0;
+    const auto has = [&](bool there, uint32_t part) { parts |= there ? part : 0u; };
+    const bool transmits = m.transmission.factor > 0.0f;
+    const bool coated = m.coat.factor > 0.0f;
+    const float roughness = std::max(m.roughness.factor, m.anisotropy.factor);
+    has(m.metalness.factor > 0.0f, PRINCIPLED_HAS_METAL);
+    has(roughness * roughness >= LEAST_ALPHA, PRINCIPLED_HAS_ROUGH);
+    has(m.anisotropy.factor > 0.0f, PRINCIPLED_HAS_ANISOTROPY);
+    if (!is_one(m.metalness) && !is_one(m.transmission)) {
+        has(!is_one(m.diffuse_transmission), PRINCIPLED_HAS_DIFFUSE);
+        has(m.diffuse_roughness.factor > 0.0f, PRINCIPLED_HAS_DIFFUSE_ROUGHNESS);
+        has(m.diffuse_transmission.factor > 0.0f, PRINCIPLED_HAS_DIFFUSE_TRANSMISSION);
+    }
+    has(transmits, m.inside ? PRINCIPLED_HAS_VOLUME : PRINCIPLED_HAS_THIN);
+    // A medium behind a diffuse sheet has an index, too.
+    has(m.inside && m.diffuse_transmission.factor > 0.0f, PRINCIPLED_HAS_VOLUME);
+    has(!is_one(m.specular) || !is_white(m.specular_color), PRINCIPLED_HAS_SPECULAR);
+    has(transmits && m.inside && m.dispersion > 0.0f, PRINCIPLED_HAS_DISPERSION);
+    has(coated, PRINCIPLED_HAS_COAT);
+    has(coated && m.coat_darkening > 0.0f, PRINCIPLED_HAS_COAT_DARKENING);
+    has(coated && m.coat_normal_map, PRINCIPLED_HAS_COAT_NORMAL);
+    has(m.sheen_color.factor != vec3(0.0f), PRINCIPLED_HAS_SHEEN);
+    has(m.iridescence.factor > 0.0f, PRINCIPLED_HAS_IRIDESCENCE);
+    return parts;
+}
+
+std::vector<PrincipledTexture> textures_of(const PrincipledMaterial& m) {
+    std::vector<PrincipledTexture> result;
+    const auto add = [&](uint32_t value, const auto& from) {
+        if (from.texture) result.push_back({value, *from.texture});
+    };
+    add(PRINCIPLED_BASE_COLOR, m.base_color);
+    add(PRINCIPLED_SPECULAR_COLOR, m.specular_color);
+    add(PRINCIPLED_DIFFUSE_TRANSMISSION_COLOR, m.diffuse_transmission_color);
+    add(PRINCIPLED_SHEEN_COLOR, m.sheen_color);
+    if (m.anisotropy_map) result.push_back({PRINCIPLED_ANISOTROPY_MAP, *m.anisotropy_map});
+    add(PRINCIPLED_METALNESS, m.metalness);
+    add(PRINCIPLED_ROUGHNESS, m.roughness);
+    add(PRINCIPLED_DIFFUSE_ROUGHNESS, m.diffuse_roughness);
+    add(PRINCIPLED_SPECULAR, m.specular);
+    add(PRINCIPLED_TRANSMISSION, m.transmission);
+    add(PRINCIPLED_DIFFUSE_TRANSMISSION, m.diffuse_transmission);
+    add(PRINCIPLED_COAT, m.coat);
+    add(PRINCIPLED_COAT_ROUGHNESS, m.coat_roughness);
+    add(PRINCIPLED_SHEEN_ROUGHNESS, m.sheen_roughness);
+    add(PRINCIPLED_IRIDESCENCE, m.iridescence);
+    add(PRINCIPLED_IRIDESCENCE_THICKNESS, m.iridescence_thickness);
+    add(PRINCIPLED_ANISOTROPY, m.anisotropy);
+    return result;
+}
+
+}  // namespace
+
+float principled_ior(const PrincipledMaterial& m) {
+    return m.ior == 0.0f ? ALL_REFLECTING_IOR : m.ior;
+}
+
+double internal_reflectance(double n) {
+    if (n == 1.0) return 0.0;
+    const double n2 = n * n, n4 = n2 * n2, below = (n2 + 1.0) * (n4 - 1.0);
+    const double outer =
+        0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0)) +
+        n2 * (n2 - 1.0) * (n2 - 1.0) / std::pow(n2 + 1.0, 3) * std::log((n - 1.0) / (n + 1.0)) -
+        2.0 * n2 * n * (n2 + 2.0 * n - 1.0) / below +
+        8.0 * n4 * (n4 + 1.0) / (below * (n4 - 1.0)) * std::log(n);
+    return 1.0 - (1.0 - outer) / n2;
+}
+
+EncodedPrincipled encode_principled(const PrincipledMaterial& m) {
+    EncodedPrincipled result;
+    result.record = {.metalness = m.metalness.factor,
+                     .roughness = m.roughness.factor,
+                     .diffuse_roughness = m.diffuse_roughness.factor,
+                     .specular = m.specular.factor,
+                     .specular_color = m.specular_color.factor,
+                     .transmission = m.transmission.factor,
+                     .diffuse_transmission_color = m.diffuse_transmission_color.factor,
+                     .diffuse_transmission = m.diffuse_transmission.factor,
+                     .coat = m.coat.factor,
+                     .coat_roughness = m.coat_roughness.factor,
+                     .coat_ior = m.coat_ior,
+                     .coat_darkening = m.coat_darkening,
+                     .sheen_color = m.sheen_color.factor,
+                     .sheen_roughness = m.sheen_roughness.factor,
+                     .iridescence = m.iridescence.factor,
+                     .iridescence_ior = m.iridescence_ior,
+                     .thickness = m.iridescence_thickness_min,
+                     .thickness_range = m.iridescence_thickness.factor - m.iridescence_thickness_min,
+                     .anisotropy = m.anisotropy.factor,
+                     .rotation = vec2(std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation)),
+                     .dispersion = m.dispersion,
+                     .coat_normal = TEXTURE_NONE,
+                     .coat_normal_scale = m.coat_normal_map ? m.coat_normal_map->scale : 1.0f,
+                     .images = 0,
+                     .coat_internal = float(internal_reflectance(double(m.coat_ior)))};
+    // Without a texture the film has its greatest thickness.
+    if (!m.iridescence_thickness.texture) {
+        result.record.thickness = m.iridescence_thickness.factor;
+        result.record.thickness_range = 0.0f;
+    }
+    result.parts = parts_of(m);
+    result.textures = textures_of(m);
+    if (!result.textures.empty()) result.parts |= PRINCIPLED_HAS_IMAGES;
+    if (m.coat_normal_map && m.coat.factor > 0.0f) result.coat_normal = m.coat_normal_map->texture;
+    return result;
+}
+
+std::vector<std::pair<Texture, PrincipledImage>> principled_images(
+    const std::vector<PrincipledTexture>& textures) {
+    std::vector<std::pair<Texture, PrincipledImage>> result;
+    for (const auto& [value, texture] : textures) {
+        Texture image = texture;
+        image.channel = RED;
+        auto place = std::ranges::find(result, image, &std::pair<Texture, PrincipledImage>::first);
+        if (place == result.end()) place = result.insert(result.end(), {image, PrincipledImage{}});
+        PrincipledImage& record = place->second;
+        record.values |= 1u << value;
+        (value < 16 ? record.channels.x : record.channels.y) |= texture.channel << 2u * (value % 16);
+    }
+    return result;
+}
+
+}  // namespace candela

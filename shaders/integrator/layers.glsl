@@ -1,0 +1,58 @@
+// What a principled material needs to know about the place where it is hit.
+#ifndef INTEGRATOR_LAYERS_GLSL
+#define INTEGRATOR_LAYERS_GLSL
+
+#include "bsdf/bsdf.glsl"
+#include "integrator/bent_normal.glsl"
+#include "scene/interaction.glsl"
+#include "scene/material.glsl"
+
+const bool HAS_ANISOTROPY = HAS_PRINCIPLED && (PRINCIPLED & PRINCIPLED_HAS_ANISOTROPY) != 0u;
+const bool HAS_COAT_NORMALS = HAS_PRINCIPLED && (PRINCIPLED & PRINCIPLED_HAS_COAT_NORMAL) != 0u;
+
+bool is_principled(MaterialRecord m) {
+    if ((MATERIALS & ~(1u << MATERIAL_PRINCIPLED)) == 0u) return HAS_PRINCIPLED;
+    return HAS_PRINCIPLED && m.model == MATERIAL_PRINCIPLED;
+}
+
+// The material m at s, before normal maps bend the normal; m gets its base colour there. Where prisms part colours, a
+// path's directions are chosen for those that it still carries; a path that carries one chooses no other.
+PrincipledSurface principled_surface(inout MaterialRecord m, Interaction s, vec3 beta) {
+    PrincipledSurface p;
+    p.record = principled_at(m, s.attributes);
+    p.encloses = m.medium != MEDIUM_SAME;
+    p.inside = p.encloses && !s.front;
+    p.coat_n = s.ns;
+    p.hue = LUMINANCE;
+    p.spread = vec3(1.0);
+    if ((PRINCIPLED & PRINCIPLED_HAS_DISPERSION) != 0u) {
+        p.hue = beta / (beta.x + beta.y + beta.z);
+        p.spread = dispersion_spread(m.parameter, p.record.dispersion);
+        if (p.inside) p.spread = 1.0 / p.spread;
+    }
+    return p;
+}
+
+// The frame around the shading normal whose x is the direction of the greatest roughness.
+Frame principled_frame(PrincipledRecord p, Interaction s) {
+    vec3 t = s.attributes.tangent.xyz;
+    vec3 b = s.attributes.tangent.w * cross(s.front ? s.ns : -s.ns, t);
+    vec3 x = p.rotation.x * t + p.rotation.y * b;
+    x -= dot(x, s.ns) * s.ns;
+    float length_squared = dot(x, x);
+    if (length_squared == 0.0) return frame_from_z(s.ns);
+    x *= inversesqrt(length_squared);
+    return Frame(x, cross(s.ns, x), s.ns);
+}
+
+// The coat's normal in `frame`; coat_n is that of the shape.
+vec3 coat_normal(PrincipledSurface p, Interaction s, Frame frame) {
+    s.ns = p.coat_n;
+    if (p.record.coat_normal != TEXTURE_NONE) {
+        vec3 n = mapped_normal(p.record.coat_normal, p.record.coat_normal_scale, s);
+        s.ns = s.front ? n : -n;
+    }
+    return frame_to_local(frame, consistent_normal(s.wo, s.n, s.ns));
+}
+
+#endif
