@@ -99,14 +99,15 @@ bool points_up(vec4 mean) {
     return mean.z > 0.6f && std::abs(mean.x - 0.5f) < FAR && std::abs(mean.y - 0.5f) < FAR;
 }
 
-void check_normal_map(Scene& scene, const Material& material) {
-    const ImageFile& file = scene.images[material.normal_map->texture.image];
+// `what` is what the messages call the map.
+void check_normal_map(Scene& scene, const Material& material, const NormalMap& map, const char* what) {
+    const ImageFile& file = scene.images[map.texture.image];
     const vec4 mean = mean_codes(file.image);
     if (points_up(mean)) return;
-    scene.warnings.push_back(file.place + ": the normal map of the material \"" + material.name + "\", " +
-                             file.path.string() + ", has a mean of " + number_text(double(mean.x), 2) + ' ' +
-                             number_text(double(mean.y), 2) + ' ' + number_text(double(mean.z), 2) +
-                             ", not about 0.5 0.5 1; is it one in tangent space?");
+    scene.warnings.push_back(concat(file.place, ": the ", what, " of the material \"", material.name, "\", ",
+                                    file.path.string(), ", has a mean of ", number_text(double(mean.x), 2),
+                                    ' ', number_text(double(mean.y), 2), ' ', number_text(double(mean.z), 2),
+                                    ", not about 0.5 0.5 1; is it one in tangent space?"));
 }
 
 // Whether an image of that mean is blue as a normal map in tangent space is.
@@ -181,7 +182,10 @@ void load_images(Scene& scene, const ImageOptions& options) {
     }
     convert_gammas(scene);
     for (Material& material : scene.materials) {
-        if (material.normal_map) check_normal_map(scene, material);
+        if (material.normal_map) check_normal_map(scene, material, *material.normal_map, "normal map");
+        const auto* principled = std::get_if<PrincipledMaterial>(&material.model);
+        if (principled != nullptr && principled->coat_normal_map)
+            check_normal_map(scene, material, *principled->coat_normal_map, "coat's normal map");
         if (material.bump_map) check_bump_map(scene, material);
         if (!material.opacity.value.texture) continue;
         choose_channel(scene, *material.opacity.value.texture);

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "scene/material_textures.h"
+#include "scene/materials.h"
 #include "scene/mesh.h"
 #include "scene/tangents.h"
 
@@ -28,8 +29,8 @@ bool fits(const TriangleMesh& mesh, const Transform& transform) {
     return true;
 }
 
-// Throws Error if a mesh lacks the attributes that its material and emission look up; adds tangents for a
-// normal map.
+// Throws Error if a mesh lacks the attributes that its material and emission look up; adds the tangents that
+// its material needs.
 void complete_attributes(const Scene& scene, const std::string& place, const Appearance& appearance,
                          TriangleMesh& mesh) {
     const Material& material = scene.materials[appearance.material];
@@ -48,7 +49,16 @@ void complete_attributes(const Scene& scene, const std::string& place, const App
         }
     }
     if (!mesh.tangents.empty()) return;
-    if (material.normal_map) add_tangents(mesh, material.normal_map->texture.uv_set);
+    if (needs_tangents(material)) {
+        const uint32_t set = tangent_uv_set(material);
+        if ((set == 0 ? mesh.uv0 : mesh.uv1).empty()) {
+            throw Error(
+                concat(place, ": the material \"", material.name,
+                       "\" is anisotropic, but the mesh has no texture coordinates to say along which "
+                       "direction; export it with them, or use a material without anisotropy"));
+        }
+        add_tangents(mesh, set);
+    }
     // Its image, which has not been read, may hold normals.
     if (material.bump_map && material.bump_map->multiplier)
         add_tangents(mesh, material.bump_map->texture.uv_set);

@@ -51,7 +51,7 @@ class SceneBuilder {
         scene_.shapes.push_back({std::forward<Geometry>(geometry), appearance.material, appearance.emission});
     }
     // Adds the parts of a mesh, each as a mesh with one instance. Completes their normals, and leaves out
-    // flat triangles with a warning; adds tangents where a normal map needs them. Throws Error if there are
+    // flat triangles with a warning; adds tangents where the material needs them. Throws Error if there are
     // no others, if the mesh reaches too far, or if it lacks texture coordinates that its appearance needs.
     void add_mesh(const std::string& place, const Transform& transform, std::vector<MeshPart> parts);
     // Adds a mesh of one part.

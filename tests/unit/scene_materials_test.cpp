@@ -37,7 +37,8 @@ TEST(SceneMaterials, HaveAKnownType) {
     SceneFolder folder;
     folder.expect_error(material(R"({"type": @"difuse", "reflectance": 1})"),
                         "unknown type \"difuse\" (did you mean \"diffuse\"? known: diffuse, phong, mirror, "
-                        "conductor, dielectric, diffuse_transmission)");
+                        "conductor, dielectric, diffuse_transmission, principled, rough_conductor, "
+                        "rough_dielectric)");
     folder.expect_error(material(R"(@{"reflectance": 1})"), "the key \"type\" is missing here; add it");
     folder.expect_error(
         material(R"({"type": "mirror", @"alpha": 0.1})"),

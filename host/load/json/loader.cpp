@@ -1,6 +1,8 @@
 // The scene file as a whole, and its small parts.
 #include "load/json/loader.h"
 
+#include <algorithm>
+
 #include "base/file.h"
 #include "load/json/loader_parts.h"
 #include "scene/geometry.h"
@@ -37,6 +39,14 @@ IntegratorSettings read_integrator(const Node& node) {
     return settings;
 }
 
+// Whether a shape shows a colour without any light.
+bool has_unlit_shape(const Scene& scene) {
+    return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
+        const auto* m = std::get_if<PrincipledMaterial>(&scene.materials[shape.material].model);
+        return m != nullptr && m->unlit;
+    });
+}
+
 }  // namespace
 
 Scene load_json_scene(const std::filesystem::path& path) {
@@ -67,7 +77,8 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
 
     if (scene.shapes.empty() && !scene.environment) {
         scene.warnings.push_back(shapes.place() + ": the scene has no shapes");
-    } else if (emitter_count(scene) == 0 && !(scene.environment && gives_light(*scene.environment))) {
+    } else if (emitter_count(scene) == 0 && !(scene.environment && gives_light(*scene.environment)) &&
+               !has_unlit_shape(scene)) {
         scene.warnings.push_back(shapes.place() + ": the scene has no light: the image will be black");
     }
     return scene;

@@ -8,24 +8,9 @@
 namespace candela {
 namespace {
 
-using Model = decltype(Material::model);
-
-// The keys that every material may have besides those of its model.
-constexpr std::array<std::string_view, 4> MATERIAL_KEYS{"normal_map", "bump_map", "opacity", "vertex_colors"};
-
-Textured<vec3> as_floats(const Textured<dvec3>& color) {
-    Textured<vec3> result(vec3(color.factor));
-    result.texture = color.texture;
-    return result;
-}
-
-Textured<vec3> reflectance_of(const Node& node, const ImageFolder& images) {
-    return as_floats(read_reflectance(node, images));
-}
-
-Model read_diffuse(const Node& node, const ImageFolder& images) {
+MaterialModel read_diffuse(const Node& node, const ImageFolder& images) {
     node.allow_only({"type", "reflectance"}, MATERIAL_KEYS);
-    return DiffuseMaterial{reflectance_of(node.require("reflectance"), images)};
+    return DiffuseMaterial{read_color(node.require("reflectance"), images)};
 }
 
 // Throws Error at `place`, that of b, if a channel would send out more light than it receives; `names` names
@@ -48,7 +33,7 @@ void check_sum(const Node& place, std::string_view names, const Textured<dvec3>&
     }
 }
 
-Model read_phong(const Node& node, const ImageFolder& images) {
+MaterialModel read_phong(const Node& node, const ImageFolder& images) {
     node.allow_only({"type", "diffuse", "specular", "exponent"}, MATERIAL_KEYS);
     const auto diffuse = node.find("diffuse");
     const Node specular = node.require("specular");
@@ -59,17 +44,17 @@ Model read_phong(const Node& node, const ImageFolder& images) {
                          read_number(node.require("exponent"), images, 0.0f, MAX_PHONG_EXPONENT)};
 }
 
-Model read_mirror(const Node& node, const ImageFolder& images) {
+MaterialModel read_mirror(const Node& node, const ImageFolder& images) {
     node.allow_only({"type", "reflectance"}, MATERIAL_KEYS);
     MirrorMaterial material;
     if (const auto reflectance = node.find("reflectance"))
-        material.reflectance = reflectance_of(*reflectance, images);
+        material.reflectance = read_color(*reflectance, images);
     return material;
 }
 
-Model read_conductor(const Node& node, const ImageFolder& images) {
+MaterialModel read_conductor(const Node& node, const ImageFolder& images) {
     node.allow_only({"type", "reflectance", "alpha"}, MATERIAL_KEYS);
-    const Textured<vec3> reflectance = reflectance_of(node.require("reflectance"), images);
+    const Textured<vec3> reflectance = read_color(node.require("reflectance"), images);
     const Node alpha = node.require("alpha");
     if (alpha.is_number() && alpha.number() == 0.0) {
         alpha.fail(R"(a metal without any roughness is no "conductor"; use the type "mirror")");
@@ -77,35 +62,18 @@ Model read_conductor(const Node& node, const ImageFolder& images) {
     return ConductorMaterial{reflectance, read_number(alpha, images, MIN_ALPHA, 1.0f)};
 }
 
-// Absorption [1/m] from the fraction of light that is left after a distance.
-vec3 read_absorption(const Node& node) {
-    node.allow_only({"transmittance", "distance"});
-    const Node transmittance = node.require("transmittance");
-    const dvec3 share = transmittance.reflectance();
-    if (glm::any(glm::equal(share, dvec3(0.0)))) {
-        transmittance.fail_expected("numbers above 0 and up to 1");
-    }
-    const Node distance = node.require("distance");
-    const dvec3 absorption = abs(log(share)) / distance.positive();
-    if (glm::any(glm::greaterThan(absorption, dvec3(FLOAT_MAX)))) {
-        distance.fail("the absorption exceeds the range of 32-bit floats; use a longer distance");
-    }
-    return vec3(absorption);
-}
-
-Model read_diffuse_transmission(const Node& node, const ImageFolder& images) {
+MaterialModel read_diffuse_transmission(const Node& node, const ImageFolder& images) {
     node.allow_only({"type", "reflectance", "transmittance", "absorption"}, MATERIAL_KEYS);
     const Textured<dvec3> reflectance = read_reflectance(node.require("reflectance"), images);
     const Node place = node.require("transmittance");
     const Textured<dvec3> transmittance = read_reflectance(place, images);
     check_sum(place, "reflectance + transmittance", reflectance, transmittance);
     DiffuseTransmissionMaterial material{as_floats(reflectance), as_floats(transmittance), {}};
-    if (const auto absorption = node.find("absorption"))
-        material.inside = Medium{read_absorption(*absorption)};
+    if (const auto absorption = node.find("absorption")) material.inside = read_absorption(*absorption);
     return material;
 }
 
-Model read_dielectric(const Node& node, const ImageFolder&) {
+MaterialModel read_dielectric(const Node& node, const ImageFolder&) {
     constexpr double MOST_CONTRAST = 1e6;  // Its square, which scales radiance, fits into floats.
     node.allow_only({"type", "ior", "exterior_ior", "fresnel", "absorption", "priority"}, MATERIAL_KEYS);
     DielectricMaterial material;
@@ -117,21 +85,40 @@ Model read_dielectric(const Node& node, const ImageFolder&) {
         ior.fail("ior and exterior_ior differ by a factor above a million; give both as those of real media");
     }
     if (const auto fresnel = node.find("fresnel")) material.fresnel = fresnel->choice(FRESNEL_NAMES);
-    if (const auto absorption = node.find("absorption")) material.inside = {read_absorption(*absorption)};
+    if (const auto absorption = node.find("absorption")) material.inside = read_absorption(*absorption);
     if (const auto priority = node.find("priority")) material.priority = priority->integer(0, MAX_PRIORITY);
     return material;
 }
 
 }  // namespace
 
+// By Beer and Lambert, from the share of light that is left after a distance.
+Medium read_absorption(const Node& node) {
+    node.allow_only({"transmittance", "distance"});
+    const Node transmittance = node.require("transmittance");
+    const dvec3 share = transmittance.reflectance();
+    if (glm::any(glm::equal(share, dvec3(0.0)))) {
+        transmittance.fail_expected("numbers above 0 and up to 1");
+    }
+    const Node distance = node.require("distance");
+    const dvec3 absorption = abs(log(share)) / distance.positive();
+    if (glm::any(glm::greaterThan(absorption, dvec3(FLOAT_MAX)))) {
+        distance.fail("the absorption exceeds the range of 32-bit floats; use a longer distance");
+    }
+    return {vec3(absorption)};
+}
+
 Material read_material(const Node& node, const ImageFolder& images) {
-    constexpr std::array<std::pair<std::string_view, Model (*)(const Node&, const ImageFolder&)>, 6> READERS{
-        {{"diffuse", &read_diffuse},
-         {"phong", &read_phong},
-         {"mirror", &read_mirror},
-         {"conductor", &read_conductor},
-         {"dielectric", &read_dielectric},
-         {"diffuse_transmission", &read_diffuse_transmission}}};
+    constexpr std::array<std::pair<std::string_view, MaterialModel (*)(const Node&, const ImageFolder&)>, 9>
+        READERS{{{"diffuse", &read_diffuse},
+                 {"phong", &read_phong},
+                 {"mirror", &read_mirror},
+                 {"conductor", &read_conductor},
+                 {"dielectric", &read_dielectric},
+                 {"diffuse_transmission", &read_diffuse_transmission},
+                 {"principled", &read_principled},
+                 {"rough_conductor", &read_rough_conductor},
+                 {"rough_dielectric", &read_rough_dielectric}}};
     Material material{std::string(node.key()), node.require("type").choice(READERS)(node, images)};
     if (const auto map = node.find("normal_map")) material.normal_map = read_normal_map(*map, images);
     if (const auto map = node.find("bump_map")) {

@@ -117,6 +117,16 @@ Textured<dvec3> read_reflectance(const Node& node, const ImageFolder& folder) {
             read_texture(node, folder, TextureEncoding::srgb, FACTOR)};
 }
 
+Textured<vec3> as_floats(const Textured<dvec3>& color) {
+    Textured<vec3> result(vec3(color.factor));
+    result.texture = color.texture;
+    return result;
+}
+
+Textured<vec3> read_color(const Node& node, const ImageFolder& folder) {
+    return as_floats(read_reflectance(node, folder));
+}
+
 Textured<float> read_number(const Node& node, const ImageFolder& folder, float lo, float hi) {
     if (!node.is_object()) return node.number(lo, hi);
     const auto factor = node.find("factor");

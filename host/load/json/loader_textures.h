@@ -22,6 +22,11 @@ Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncodin
 // A colour, each channel in [0, 1], or a texture with such a factor (1 if it has none).
 Textured<dvec3> read_reflectance(const Node& node, const ImageFolder& folder);
 
+Textured<vec3> as_floats(const Textured<dvec3>& color);
+
+// A reflectance as floats.
+Textured<vec3> read_color(const Node& node, const ImageFolder& folder);
+
 // A number in [lo, hi], or a texture with such a factor (1 if it has none).
 Textured<float> read_number(const Node& node, const ImageFolder& folder, float lo, float hi);
 

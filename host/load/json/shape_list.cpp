@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "scene/materials.h"
+
 namespace candela {
 
 dvec3 within_reach(const Node& node, dvec3 p) {
@@ -21,8 +23,11 @@ Appearance ShapeList::appearance_of(const Node& node) {
     if (!material && !node.find("emission")) {
         node.fail("the shape has neither material nor emission; add one of them");
     }
-    const std::optional<Emission> emission = emission_of(node);
-    return {material ? index_of(*material) : black(), emission};
+    Appearance appearance{0, emission_of(node)};
+    appearance.material = material ? index_of(*material) : black();
+    if (!node.find("emission"))
+        appearance.emission = material_emission(scene().materials[appearance.material]);
+    return appearance;
 }
 
 std::optional<Emission> ShapeList::emission_of(const Node& node) {

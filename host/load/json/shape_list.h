@@ -31,7 +31,8 @@ class ShapeList : public SceneBuilder {
     std::filesystem::path path_of(const std::string& file) const { return folder_ / file; }
 
     // The material and emission that a shape's node names. An emitter without a material gets a black one,
-    // and zero emission is none. Throws Error if the node has neither, or names an unknown material.
+    // zero emission is none, and what states none takes its material's. Throws Error if the node has neither,
+    // or names an unknown material.
     Appearance appearance_of(const Node& node);
     // The emission of a shape's node; none if it is absent or zero. Throws Error for two_sided without it.
     std::optional<Emission> emission_of(const Node& node);

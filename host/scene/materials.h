@@ -1,0 +1,21 @@
+// Questions about a material.
+#pragma once
+
+#include <optional>
+
+#include "scene/scene.h"
+
+namespace candela {
+
+// What shapes of this material emit that state no emission of their own.
+std::optional<Emission> material_emission(const Material& material);
+
+// Whether the light of a surface depends on its tangents: under normal maps, and where reflection is not the
+// same in all directions.
+bool needs_tangents(const Material& material);
+
+// The set of texture coordinates, 0 or 1, along which the tangents of a mesh run: that of the first of its
+// normal map, the coat's, and what makes reflection anisotropic. Only if needs_tangents().
+uint32_t tangent_uv_set(const Material& material);
+
+}  // namespace candela
