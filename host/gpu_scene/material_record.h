@@ -27,7 +27,7 @@ struct EncodedPrincipled {
 struct EncodedMaterial {
     MaterialRecord record{};
     std::optional<Texture> base{}, specular{}, parameter{};  // As in MaterialTextures.
-    std::optional<EncodedPrincipled> principled{};             // Of a model that is MATERIAL_PRINCIPLED.
+    std::optional<EncodedPrincipled> principled{};           // Of a model that is MATERIAL_PRINCIPLED.
 };
 
 // What a surface encloses.

@@ -41,6 +41,11 @@ uint32_t parts_of(const PrincipledMaterial& m) {
     has(coated && m.coat_normal_map, PRINCIPLED_HAS_COAT_NORMAL);
     has(m.sheen_color.factor != vec3(0.0f), PRINCIPLED_HAS_SHEEN);
     has(m.iridescence.factor > 0.0f, PRINCIPLED_HAS_IRIDESCENCE);
+    const uint32_t scatters_through = transmits && (parts & PRINCIPLED_HAS_ROUGH) != 0
+                                          ? parts & (PRINCIPLED_HAS_THIN | PRINCIPLED_HAS_VOLUME)
+                                          : 0;
+    has(scatters_through != 0 || (parts & PRINCIPLED_HAS_DIFFUSE_TRANSMISSION) != 0,
+        PRINCIPLED_IS_LIT_FROM_BEHIND);
     return parts;
 }
 

@@ -17,10 +17,8 @@ const uint MATERIALS_DIELECTRIC = 1u << MATERIAL_DIELECTRIC_SCHLICK | 1u << MATE
 const bool HAS_PRINCIPLED = (MATERIALS & 1u << MATERIAL_PRINCIPLED) != 0u;
 
 // True if some surface scatters light that comes from behind it, so that light samples there count.
-const bool PRINCIPLED_LIT_FROM_BEHIND =
-    HAS_PRINCIPLED && ((PRINCIPLED & PRINCIPLED_HAS_DIFFUSE_TRANSMISSION) != 0u ||
-                       (PRINCIPLED_TRANSMITS && (PRINCIPLED & PRINCIPLED_HAS_ROUGH) != 0u));
-const bool LIT_FROM_BEHIND = (MATERIALS & 1u << MATERIAL_DIFFUSE_TRANSMISSION) != 0u || PRINCIPLED_LIT_FROM_BEHIND;
+const bool LIT_FROM_BEHIND =
+    (MATERIALS & 1u << MATERIAL_DIFFUSE_TRANSMISSION | PRINCIPLED & PRINCIPLED_IS_LIT_FROM_BEHIND) != 0u;
 
 // A material at one point of a surface, seen from one side.
 struct Bsdf {

@@ -7,8 +7,8 @@
 #include "scene/interaction.glsl"
 #include "scene/material.glsl"
 
-const bool HAS_ANISOTROPY = HAS_PRINCIPLED && (PRINCIPLED & PRINCIPLED_HAS_ANISOTROPY) != 0u;
-const bool HAS_COAT_NORMALS = HAS_PRINCIPLED && (PRINCIPLED & PRINCIPLED_HAS_COAT_NORMAL) != 0u;
+const bool HAS_ANISOTROPY = (PRINCIPLED & PRINCIPLED_HAS_ANISOTROPY) != 0u;
+const bool HAS_COAT_NORMALS = (PRINCIPLED & PRINCIPLED_HAS_COAT_NORMAL) != 0u;
 
 bool is_principled(MaterialRecord m) {
     if ((MATERIALS & ~(1u << MATERIAL_PRINCIPLED)) == 0u) return HAS_PRINCIPLED;

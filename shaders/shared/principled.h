@@ -59,6 +59,9 @@ const uint PRINCIPLED_HAS_IRIDESCENCE = 1u << 14u;
 const uint PRINCIPLED_HAS_IMAGES = 1u << 15u;
 const uint PRINCIPLED_HAS_COATED_EMISSION = 1u << 16u;  // Some light lies under a coat or a sheen.
 
+// Light samples count that lie behind some surface.
+const uint PRINCIPLED_IS_LIT_FROM_BEHIND = 1u << 30u;
+
 struct PrincipledRecord {
     float metalness;  // Weights and colours are in [0, 1].
     float roughness;
