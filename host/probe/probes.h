@@ -7,6 +7,7 @@
 
 #include "base/math.h"
 #include "shared/material.h"
+#include "shared/principled.h"
 
 namespace candela::kernels {
 
@@ -26,9 +27,10 @@ struct BsdfItem {
     float unused1 = 0.0f;
     vec2 u{0};
     float uc = 0.0f;
-    uint32_t back = 0;  // 1: wo is on the back side of the surface.
+    uint32_t back = 0;                                 // 1: wo is on the back side of the surface.
+    std::array<uvec4, PRINCIPLED_WORDS> principled{};  // The packed PrincipledRecord of MATERIAL_PRINCIPLED.
 };
-static_assert(sizeof(BsdfItem) == 80);
+static_assert(sizeof(BsdfItem) == 80 + 16 * PRINCIPLED_WORDS);
 
 // `f` and `pdf_of_wi` are those at BsdfItem::wi, the rest belongs to the sample that u and uc choose.
 struct BsdfResult {

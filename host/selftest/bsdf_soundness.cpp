@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "gpu_scene/material_record.h"
 #include "probe/probe.h"
 #include "probe/random.h"
 #include "selftest/bsdfs.h"
@@ -21,7 +22,7 @@ class Adversary {
     explicit Adversary(uint32_t seed) : random_(seed) {}
 
     BsdfItem item(uint32_t model) {
-        BsdfItem item{.material = pack(material(model)), .wo = direction(), .wi = direction()};
+        BsdfItem item = bsdf_item(material(model), direction(), direction());
         const vec3 mirrored(-item.wo.x, -item.wo.y, item.wo.z);
         const uint32_t choice = random_.bits() % 8;
         if (choice == 0) item.wi = mirrored;
@@ -52,7 +53,7 @@ class Adversary {
     // In [0, 1), often one of the ends.
     float number() { return std::min(share(), LAST); }
 
-    MaterialRecord material(uint32_t model) {
+    ProbedMaterial material(uint32_t model) {
         switch (model) {
             case MATERIAL_DIFFUSE:
                 return diffuse(shares());
@@ -72,10 +73,39 @@ class Adversary {
                 const vec3 reflectance = shares();
                 return diffuse_transmission(reflectance, (vec3(1.0f) - reflectance) * shares());
             }
+            case MATERIAL_PRINCIPLED:
+                return principled(layers());
+            case MATERIAL_UNLIT:
+                return encode_material(PrincipledMaterial{.base_color = shares(), .unlit = true}).record;
             default:
                 assert(false);
                 return {};
         }
+    }
+    PrincipledMaterial layers() {
+        PrincipledMaterial m{.base_color = shares(),
+                             .metalness = share(),
+                             .roughness = share(),
+                             .diffuse_roughness = share(),
+                             .ior = random_.bits() % 8 == 0 ? 0.0f : of_any_size(1.0f, 10.0f),
+                             .specular = share(),
+                             .specular_color = shares(),
+                             .anisotropy = share(),
+                             .transmission = share(),
+                             .dispersion = share(),
+                             .diffuse_transmission = share(),
+                             .diffuse_transmission_color = shares(),
+                             .coat = share(),
+                             .coat_roughness = share(),
+                             .coat_ior = of_any_size(1.0f, 3.0f),
+                             .coat_darkening = share(),
+                             .sheen_color = shares(),
+                             .sheen_roughness = share(),
+                             .iridescence = share(),
+                             .iridescence_ior = of_any_size(1.0f, 3.0f),
+                             .iridescence_thickness = of_any_size(1.0f, 2000.0f)};
+        if (random_.bits() % 2 == 0) m.inside = Medium{};
+        return m;
     }
     // Anywhere on the sphere; in the surface, or just above or below it; along an axis.
     vec3 direction() {
@@ -116,8 +146,9 @@ Evidence test_soundness(const vk::Device& device, uint32_t model, size_t count, 
         items.push_back(adversary.item(model));
     const std::vector<BsdfResult> results = probe<BsdfResult>(device, kernels::bsdf, items);
     Evidence evidence;
-    evidence.expect(std::ranges::any_of(results, [](const BsdfResult& s) { return s.pdf > 0.0f; }),
-                    [&] { return concat("model ", model, ": no sample succeeds"); });
+    const bool scatters = std::ranges::any_of(results, [](const BsdfResult& s) { return s.pdf > 0.0f; });
+    evidence.expect(scatters == (model != MATERIAL_UNLIT),
+                    [&] { return concat("model ", model, scatters ? " scatters" : ": no sample succeeds"); });
     for (size_t i = 0; i < count; ++i) {
         const BsdfItem& it = items[i];
         const BsdfResult& s = results[i];

@@ -21,17 +21,35 @@ MaterialRecord conductor(vec3 reflectance, float alpha);
 MaterialRecord dielectric(uint32_t model, float eta);
 MaterialRecord diffuse_transmission(vec3 reflectance, vec3 transmittance);
 
+// The records of a material.
+struct ProbedMaterial {
+    MaterialRecord record{};
+    PrincipledRecord principled{};
+
+    ProbedMaterial() = default;
+    ProbedMaterial(const MaterialRecord& r) : record(r) {}  // Not explicit: most materials have but this one.
+    ProbedMaterial(const MaterialRecord& r, const PrincipledRecord& p) : record(r), principled(p) {}
+};
+// With a medium behind the surface if the material has one.
+ProbedMaterial principled(const PrincipledMaterial& m);
+
+// An item that asks about that material; 1: wo is on the back side of the surface.
+BsdfItem bsdf_item(const ProbedMaterial& material, vec3 wo, vec3 wi = vec3(0, 0, 1), uint32_t back = 0);
+
 // Head-on, oblique and grazing.
 inline const std::vector<vec3> VIEWS{vec3(0, 0, 1), normalize(vec3(1, 0.5, 1)), normalize(vec3(-1, 2, 0.01))};
 
 // A material whose BSDF is not a delta distribution, seen from wo, and a chart that resolves its samples.
 struct BsdfCase {
     std::string name;
-    MaterialRecord material;
+    ProbedMaterial material;
     vec3 wo;
     std::variant<SphereChart, LobeChart, FacetChart> chart;
+    uint32_t back = 0;  // 1: wo is on the back side of the surface.
 };
 std::vector<BsdfCase> bsdf_cases();
+// Those of the principled material: each of its lobes, and mixtures.
+std::vector<BsdfCase> principled_cases();
 
 // BSDF_CASE_SAMPLES random samples of a case. The items' wi are the points of its chart, row by row.
 std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& c, uint32_t seed);

@@ -32,7 +32,10 @@ Evidence test_all_samplers(const vk::Device& device) {
 Evidence test_bsdfs(const vk::Device& device) {
     Evidence evidence;
     uint32_t seed = 700;
-    for (const BsdfCase& c : bsdf_cases()) {
+    std::vector<BsdfCase> cases = bsdf_cases();
+    for (BsdfCase& c : principled_cases())
+        cases.push_back(std::move(c));
+    for (const BsdfCase& c : cases) {
         const std::vector<BsdfResult> results = run_bsdf_case(device, c, seed++);
         test_density(c, results, evidence);
         test_values(c, results, evidence);

@@ -63,7 +63,7 @@ struct Principled {
     vec3 r_0;
     vec3 r_edge;
     vec3 r_schlick;
-    vec3 r_total;    // Instead of these, where reflection is total.
+    vec3 r_total;    // Instead of these, where reflection is total: the transmitting share loses nothing.
     vec3 transmit;
     float t_0;
     float t_edge;
@@ -86,6 +86,9 @@ struct Principled {
     vec4 pmf;  // Of choosing: coat, base facets, diffuse reflection and sheen, diffuse transmission. All 0: black.
 };
 
+// Beyond this relative index, boundaries reflect almost all light, and floats cannot hold the rest.
+const float GREATEST_ETA = 100.0;
+
 // Factors of an index of refraction for red, green and blue; dispersion is 20 / Abbe number. No index falls below 1.
 // Ref: KHR_materials_dispersion.
 vec3 dispersion_spread(float ior, float dispersion) {
@@ -96,6 +99,7 @@ vec3 dispersion_spread(float ior, float dispersion) {
 // (F - F(1)) / (1 - F(1)), F being Fresnel's reflectance of a dielectric at a cosine, F(1) that at normal incidence: in
 // [0, 1], and 1 if reflection is total.
 float fresnel_edge(float eta, float cos_o) {
+    if (eta > GREATEST_ETA) return schlick_weight(cos_o);
     float cos_t = refracted_cosine(1.0 - square(cos_o), eta);
     float f0 = square((eta - 1.0) / (eta + 1.0));
     return clamp((fresnel_dielectric_exact(cos_o, cos_t, eta) - f0) / (1.0 - f0), 0.0, 1.0);
@@ -184,12 +188,15 @@ void principled_darken(inout Principled p, PrincipledSurface s, vec3 wo, vec3 up
 // The sheen's lobe under a coat that leaves `above`; returns what sheen and coat leave.
 float principled_sheen(inout Principled p, PrincipledSurface s, vec3 wo, float above) {
     p.sheen = vec3(0.0);
+    p.sheen_alpha = 1.0;
     if (!principled_has(PRINCIPLED_HAS_SHEEN) || s.inside) return above;
     p.sheen_alpha = sheen_alpha(s.record.sheen_roughness);
+    // Charlie's lobe gains light at grazing angles if it is narrow: there it is scaled down to an albedo of 1.
     float albedo = sheen_albedo(p.sheen_alpha, wo.z);
-    p.sheen = above * s.record.sheen_color;
-    p.pmf.z = dot(s.hue, p.sheen) * albedo;
-    return above * max(1.0 - max_component(s.record.sheen_color) * albedo, 0.0);
+    p.sheen = above / max(albedo, 1.0) * s.record.sheen_color;
+    albedo = min(albedo, 1.0);
+    p.pmf.z = dot(s.hue, s.record.sheen_color) * (above * albedo);
+    return above * (1.0 - max_component(s.record.sheen_color) * albedo);
 }
 
 // Albedo of clear glass whose reflection has a weight and a colour, of which `most` is the greatest part.
@@ -246,13 +253,17 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     vec3 m_0 = s.base_color, m_edge = 1.0 - s.base_color;
     if (principled_has(PRINCIPLED_HAS_IRIDESCENCE) && !s.inside && r.iridescence > 0.0) {
         float thickness = r.thickness + r.thickness_range;
-        d_0 = mix(d_0, fresnel_film(wo.z, r.iridescence_ior, thickness, d_0), r.iridescence);
+        vec3 film = fresnel_film(wo.z, r.iridescence_ior, thickness, d_0);
+        d_0 = mix(d_0, film, r.iridescence);
         d_edge *= 1.0 - r.iridescence;
         if (principled_has(PRINCIPLED_HAS_METAL)) {
             m_0 = mix(m_0, fresnel_film(wo.z, r.iridescence_ior, thickness, m_0), r.iridescence);
             m_edge *= 1.0 - r.iridescence;
         }
-        if (p.refracts && !p.ideal) glass = max(whole, glass_albedo_clear(effective, wo.z, s.eta));
+        if (p.refracts && !p.ideal) {
+            float clear = glass_albedo_clear(effective, wo.z, s.eta);
+            glass = mix(glass, mix(clear, whole, max_component(film)), r.iridescence);
+        }
     }
     float k_transmit = 1.0 / glass;
     vec3 k_dielectric = 1.0 + d_0 * lost;
@@ -264,7 +275,7 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     p.r_0 = d_0 * k_reflect;
     p.r_edge = d_edge * k_reflect;
     p.r_schlick = vec3(0.0);
-    p.r_total = k_reflect;
+    p.r_total = dielectric * mix(k_dielectric * (d_0 + d_edge), vec3(k_transmit), transmission);
     if (principled_has(PRINCIPLED_HAS_METAL)) {
         vec3 k_metal = above * metalness * (1.0 + m_0 * lost);
         p.r_0 += m_0 * k_metal;
@@ -410,12 +421,13 @@ BsdfSample principled_sample_facets(Principled p, vec3 wo, float uc, vec2 u) {
     float share = PRINCIPLED_TRANSMITS ? principled_transmitted_share(p, reflected, transmitted) : 0.0;
     if (!PRINCIPLED_TRANSMITS || uc >= share) {
         vec3 wi = p.ideal ? mirror_direction(wo) : normalize(2.0 * cos_o * h - wo);
+        if (wi.z <= 0.0) return bsdf_sample_failed();
         return principled_ideal(wi, reflected, p.pmf.y * (1.0 - share), 1.0);
     }
     if (!p.refracts) {
-        vec3 wi = p.ideal ? wo : normalize(2.0 * cos_o * h - wo);
-        if (wi.z < 0.0) return bsdf_sample_failed();
-        return principled_ideal(p.ideal ? -wo : vec3(wi.xy, -wi.z), transmitted, p.pmf.y * share, 1.0);
+        vec3 wi = p.ideal ? mirror_direction(wo) : normalize(2.0 * cos_o * h - wo);
+        if (wi.z <= 0.0) return bsdf_sample_failed();
+        return principled_ideal(vec3(wi.xy, -wi.z), transmitted, p.pmf.y * share, 1.0);
     }
     // One colour decides where the light goes, and takes those along that go there too.
     float eta = p.eta.y;
@@ -429,6 +441,7 @@ BsdfSample principled_sample_facets(Principled p, vec3 wo, float uc, vec2 u) {
     }
     float cos_t = refracted_cosine(1.0 - square(cos_o), eta);
     vec3 wi = normalize((cos_o / eta - cos_t) * h - wo / eta);
+    if (wi.z >= 0.0) return bsdf_sample_failed();
     if (p.ideal) transmitted /= square(eta);
     return principled_ideal(wi, transmitted, p.pmf.y * chosen, eta);
 }

@@ -18,10 +18,10 @@ class BsdfTest : public DeviceTest {
     std::vector<BsdfResult> run(const std::vector<BsdfItem>& items) const {
         return map<BsdfResult>(kernels::bsdf, items);
     }
-    std::vector<BsdfResult> samples(const MaterialRecord& material, vec3 wo, uint32_t count,
+    std::vector<BsdfResult> samples(const ProbedMaterial& material, vec3 wo, uint32_t count,
                                     uint32_t seed) const {
         Random random(seed);
-        std::vector<BsdfItem> items(count, {.material = pack(material), .wo = wo});
+        std::vector<BsdfItem> items(count, bsdf_item(material, wo));
         for (BsdfItem& item : items) {
             item.u = random.square();
             item.uc = random.unit();

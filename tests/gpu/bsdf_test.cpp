@@ -7,19 +7,28 @@ namespace {
 
 // All cases, each with a seed of its own.
 template <class Judge>
-Evidence evidence_of_cases(const vk::Device& device, uint32_t first_seed, const Judge& judge) {
+Evidence evidence_of_cases(const vk::Device& device, const std::vector<BsdfCase>& cases, uint32_t first_seed,
+                           const Judge& judge) {
     Evidence evidence;
-    for (const BsdfCase& c : bsdf_cases())
+    for (const BsdfCase& c : cases)
         judge(c, run_bsdf_case(device, c, first_seed++), evidence);
     return evidence;
 }
 
 TEST_F(BsdfTest, SamplesFollowTheDensity) {
-    expect_holds(evidence_of_cases(device(), 700, test_density));
+    expect_holds(evidence_of_cases(device(), bsdf_cases(), 700, test_density));
+}
+
+TEST_F(BsdfTest, SamplesOfPrincipledMaterialsFollowTheDensity) {
+    expect_holds(evidence_of_cases(device(), principled_cases(), 1700, test_density));
 }
 
 TEST_F(BsdfTest, SampleAndEvaluationAgree) {
-    expect_holds(evidence_of_cases(device(), 800, test_values));
+    expect_holds(evidence_of_cases(device(), bsdf_cases(), 800, test_values));
+}
+
+TEST_F(BsdfTest, SampleAndEvaluationOfPrincipledMaterialsAgree) {
+    expect_holds(evidence_of_cases(device(), principled_cases(), 1800, test_values));
 }
 
 TEST_F(BsdfTest, DiffuseWeightsAreTheReflectanceToTheBit) {

@@ -1,0 +1,102 @@
+// The principled material: each of its lobes alone, and mixtures of them.
+#include "base/text.h"
+#include "gpu_scene/material_record.h"
+#include "selftest/bsdfs.h"
+
+namespace candela {
+namespace {
+
+// What has a name, and the roughness along x that a chart must resolve; 0: the whole sphere does.
+struct NamedMaterial {
+    const char* name;
+    PrincipledMaterial material;
+    double alpha = 0.0;
+};
+
+constexpr Medium CLEAR{};
+
+std::vector<NamedMaterial> single_lobes() {
+    const vec3 orange(0.9f, 0.6f, 0.3f);
+    return {
+        {"metal", {.base_color = orange, .metalness = 1.0f, .roughness = 0.0317f}, 1e-3},
+        {"metal", {.base_color = orange, .metalness = 1.0f, .roughness = 0.3f}, 0.09},
+        {"metal", {.base_color = vec3(1.0f), .metalness = 1.0f, .roughness = 1.0f}, 1.0},
+        {"brushed metal",
+         {.base_color = orange, .metalness = 1.0f, .roughness = 0.5f, .anisotropy = 0.6f},
+         0.4},
+        {"dielectric alone", {.base_color = vec3(0.0f), .roughness = 0.3f}, 0.09},
+        {"diffuse base", {.base_color = orange, .roughness = 0.8f, .specular = 0.0f}},
+        {"rough diffuse base", {.base_color = orange, .diffuse_roughness = 0.7f, .specular = 0.0f}},
+        {"thin glass", {.base_color = orange, .roughness = 0.6f, .transmission = 1.0f}},
+        {"rough glass", {.base_color = vec3(1.0f), .roughness = 0.6f, .transmission = 1.0f, .inside = CLEAR}},
+        {"rougher glass",
+         {.base_color = vec3(1.0f), .roughness = 1.0f, .transmission = 1.0f, .inside = CLEAR}},
+        {"brushed glass", {.roughness = 0.55f, .anisotropy = 0.7f, .transmission = 1.0f, .inside = CLEAR}},
+        {"prism", {.roughness = 0.7f, .transmission = 1.0f, .inside = CLEAR, .dispersion = 4.0f}},
+        {"leaf",
+         {.base_color = orange,
+          .roughness = 0.7f,
+          .diffuse_transmission = 0.6f,
+          .diffuse_transmission_color = vec3(0.2f, 0.9f, 0.4f)}},
+        {"sheen",
+         {.base_color = vec3(0.0f), .specular = 0.0f, .sheen_color = orange, .sheen_roughness = 0.5f}},
+        {"coat", {.base_color = vec3(0.0f), .specular = 0.0f, .coat = 1.0f, .coat_roughness = 0.4f}, 0.16},
+        {"film", {.base_color = vec3(0.0f), .roughness = 0.5f, .iridescence = 1.0f}, 0.25},
+    };
+}
+
+std::vector<NamedMaterial> mixtures() {
+    const vec3 orange(0.9f, 0.6f, 0.3f);
+    return {
+        {"plastic", {.base_color = orange, .roughness = 0.8f}},
+        {"half a metal", {.base_color = orange, .metalness = 0.5f, .roughness = 0.6f, .specular = 0.5f}},
+        {"half a glass", {.base_color = orange, .roughness = 0.6f, .transmission = 0.5f, .inside = CLEAR}},
+        {"all layers",
+         {.base_color = orange,
+          .metalness = 0.3f,
+          .roughness = 0.7f,
+          .diffuse_roughness = 0.5f,
+          .specular = 0.8f,
+          .specular_color = vec3(0.4f, 0.9f, 1.0f),
+          .anisotropy = 0.4f,
+          .transmission = 0.4f,
+          .inside = CLEAR,
+          .dispersion = 1.0f,
+          .diffuse_transmission = 0.3f,
+          .coat = 0.7f,
+          .coat_roughness = 0.6f,
+          .coat_darkening = 0.5f,
+          .sheen_color = vec3(0.5f, 0.2f, 0.1f),
+          .sheen_roughness = 0.6f,
+          .iridescence = 0.5f}},
+    };
+}
+
+}  // namespace
+
+ProbedMaterial principled(const PrincipledMaterial& m) {
+    const EncodedMaterial encoded = encode_material(m);
+    return {encoded.record, encoded.principled.value().record};
+}
+
+std::vector<BsdfCase> principled_cases() {
+    std::vector<BsdfCase> cases;
+    std::vector<NamedMaterial> materials = single_lobes();
+    for (NamedMaterial& m : mixtures())
+        materials.push_back(std::move(m));
+    for (const auto& [name, material, alpha] : materials) {
+        for (const vec3 wo : VIEWS) {
+            for (const uint32_t back : {0u, 1u}) {
+                if (back == 1 && !material.inside) continue;
+                BsdfCase c{concat("principled: ", name, ' ', material.roughness.factor,
+                                  back == 1 ? " from inside" : "", ", cosine ", wo.z),
+                           principled(material), wo, SphereChart(), back};
+                if (alpha > 0.0) c.chart = FacetChart(glm::dvec3(wo), alpha);
+                cases.push_back(std::move(c));
+            }
+        }
+    }
+    return cases;
+}
+
+}  // namespace candela
