@@ -1,0 +1,311 @@
+// The reference of the principled material is consistent in itself: what loses no light reflects all of it,
+// quadratures meet closed forms, single lobes are reciprocal.
+#include "support/principled_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/layer_reference.h"
+
+namespace candela {
+namespace {
+
+// Quadratures meet 2e-5; an albedo is a quotient of a few of them.
+constexpr double TOLERANCE = 2e-4;
+
+dvec3 view(double cosine, double azimuth = 0.7) {
+    const double sine = std::sqrt(1 - cosine * cosine);
+    return dvec3(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
+}
+
+dvec3 random_above(std::mt19937& random) {
+    std::uniform_real_distribution<double> unit(0.02, 1.0);
+    return view(unit(random), 6.28 * unit(random));
+}
+
+void expect_all(dvec3 albedo, double expected, double tolerance, const std::string& what) {
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(albedo[k], expected, tolerance) << what;
+}
+
+const std::vector<double> COSINES{0.03, 0.4, 1.0};
+const std::vector<double> ROUGHNESSES{0.0, 0.04, 0.3, 1.0};
+
+// The material at each roughness and angle.
+template <class Check>
+void for_views(PrincipledParameters material, const Check& check) {
+    for (const double roughness : ROUGHNESSES) {
+        for (const double cosine : COSINES) {
+            material.roughness = roughness;
+            check(PrincipledReference(material, view(cosine)),
+                  "roughness " + std::to_string(roughness) + ", cosine " + std::to_string(cosine));
+        }
+    }
+}
+
+void expect_lossless(const PrincipledParameters& material) {
+    for_views(material, [](const PrincipledReference& reference, const std::string& what) {
+        expect_all(reference.albedo(), 1, TOLERANCE, what);
+    });
+}
+
+TEST(PrincipledReference, WhiteMetalReflectsAllLight) {
+    expect_lossless({.base_color = dvec3(1), .metalness = 1, .anisotropy = 0.6});
+}
+
+TEST(PrincipledReference, ClearGlassLosesNoLightFromEitherSide) {
+    PrincipledParameters glass{.base_color = dvec3(1), .transmission = 1, .thin = false};
+    expect_lossless(glass);
+    glass.inside = true;
+    expect_lossless(glass);
+}
+
+TEST(PrincipledReference, GlassLosesNoLightWhereItsReflectionIsScaled) {
+    PrincipledParameters glass{.base_color = dvec3(1),
+                               .specular = 0.4,
+                               .specular_color = dvec3(0.7),
+                               .transmission = 1,
+                               .thin = false};
+    expect_lossless(glass);
+    glass.inside = true;
+    expect_lossless(glass);
+}
+
+// Where indices are equal, facets refract all light straight on.
+TEST(PrincipledReference, VolumeOfTheAirsIndexIsNotThere) {
+    for_views({.base_color = dvec3(1), .ior = 1, .transmission = 1, .thin = false},
+              [](const PrincipledReference& reference, const std::string& what) {
+                  expect_all(reference.ideal().transmission, 1, TOLERANCE, what);
+                  expect_all(reference.albedo(), 1, TOLERANCE, what);
+              });
+}
+
+TEST(PrincipledReference, ThinGlassLosesNoLight) {
+    expect_lossless({.base_color = dvec3(1), .specular = 0.8, .transmission = 1, .thin = true});
+}
+
+// A white diffuse base takes what reflection leaves, as long as all channels reflect alike.
+TEST(PrincipledReference, WhiteDiffuseBaseTakesWhatReflectionLeaves) {
+    expect_lossless({.base_color = dvec3(1), .diffuse_roughness = 0.8, .diffuse_transmission = 0.3});
+}
+
+TEST(PrincipledReference, LayersGainNoLight) {
+    const PrincipledParameters layered{.base_color = dvec3(1),
+                                       .metalness = 0.2,
+                                       .diffuse_roughness = 0.5,
+                                       .anisotropy = 0.3,
+                                       .transmission = 0.4,
+                                       .diffuse_transmission = 0.3,
+                                       .coat = 0.8,
+                                       .coat_roughness = 0.3,
+                                       .coat_darkening = 0.7,
+                                       .sheen_color = dvec3(0.9, 0.5, 1),
+                                       .sheen_roughness = 0.4};
+    PrincipledParameters volume = layered, film = layered;
+    volume.thin = false;
+    volume.dispersion = 1;
+    film.iridescence = 0.7;
+    for (const PrincipledParameters& material : {layered, volume, film}) {
+        for_views(material, [](const PrincipledReference& reference, const std::string& what) {
+            const dvec3 albedo = reference.albedo();
+            for (int k = 0; k < 3; ++k)
+                EXPECT_LE(albedo[k], 1 + TOLERANCE) << what;
+        });
+    }
+}
+
+// A smooth coat over white: what it does not reflect, the base does, and nothing is lost to darkening, since
+// nothing is absorbed.
+TEST(PrincipledReference, SmoothCoatOverWhiteMetalLosesNoLight) {
+    expect_lossless({.base_color = dvec3(1), .metalness = 1, .coat = 1, .coat_darkening = 1});
+}
+
+TEST(PrincipledReference, CoatLosesAndDarkensWhatTheFormulaOfOpenPbrSays) {
+    const PrincipledParameters grey{
+        .base_color = dvec3(0.5), .roughness = 1, .specular = 0, .coat = 1, .coat_darkening = 1};
+    const double f = fresnel_exact(0.6, 1.5), k = 1 - (1 - fresnel_average(1.5)) / 2.25;
+    const PrincipledReference reference(grey, view(0.6));
+    expect_all(reference.albedo(), f + (1 - f) * 0.5 * (1 - k) / (1 - 0.5 * k), 1e-6, "grey under a coat");
+}
+
+// Walsh's closed form. Ref: Duntley 1942, "The optical properties of diffusing materials", eq. 33.
+TEST(PrincipledReference, AverageOfFresnelIsWalshs) {
+    for (const double n : {1.2, 1.5, 2.4}) {
+        const double n2 = n * n, n4 = n2 * n2;
+        const double walsh = 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
+                             n2 * (n2 - 1) * (n2 - 1) / std::pow(n2 + 1, 3) * std::log((n - 1) / (n + 1)) -
+                             2 * n * n2 * (n2 + 2 * n - 1) / ((n2 + 1) * (n4 - 1)) +
+                             8 * n4 * (n4 + 1) / ((n2 + 1) * (n4 - 1) * (n4 - 1)) * std::log(n);
+        EXPECT_NEAR(fresnel_average(n), walsh, 1e-8);
+        EXPECT_NEAR(1 - (1 - fresnel_average(n)) / n2, fresnel_average(1 / n), 1e-8);
+    }
+}
+
+// At normal incidence and alpha = 1, D = 1/pi and the integral of G2 is elementary: 1 - ln 2.
+TEST(PrincipledReference, AlbedoOfTheRoughestFacetsHasAClosedForm) {
+    EXPECT_NEAR(ggx_albedo(1, 1, dvec3(0, 0, 1)), 1 - std::log(2.0), 2e-5);
+}
+
+// Facets tilt by alpha, and their tails by more: what is lost goes down as alpha itself.
+TEST(PrincipledReference, SmoothFacetsHaveFresnelsAlbedos) {
+    constexpr double ALPHA = 1e-3;
+    for (const double cosine : {0.3, 0.6, 1.0}) {
+        const dvec3 wo = view(cosine);
+        EXPECT_NEAR(ggx_albedo(ALPHA, ALPHA, wo), 1, 1e-4);
+        EXPECT_NEAR(ggx_edge_albedo(ALPHA, ALPHA, wo, 1.5), fresnel_edge(cosine, 1.5), 1e-3);
+        EXPECT_NEAR(glass_albedo(ALPHA, ALPHA, wo, 1.5), 1, 1e-4);
+        EXPECT_NEAR(glass_albedo_clear(ALPHA, ALPHA, wo, 1 / 1.5), 1, 1e-4);
+    }
+    EXPECT_NEAR(fresnel_exact(1, 1.5), 0.04, 1e-12);
+    EXPECT_NEAR(fresnel_exact(std::cos(std::atan(1.5)), 1.5), 0.5 * std::pow((1.25 / 3.25), 2), 1e-12);
+    EXPECT_EQ(fresnel_exact(0.5, 1 / 1.5), 1);
+}
+
+// By the value of the lobes, which has D, G and Walter's Jacobian; E has none of them.
+TEST(PrincipledReference, LobesOfGlassIntegrateToItsAlbedo) {
+    for (const bool inside : {false, true}) {
+        for (const double cosine : {0.1, 0.5, 0.9}) {
+            const PrincipledReference glass({.base_color = dvec3(1),
+                                             .roughness = 0.6,
+                                             .anisotropy = 0.5,
+                                             .transmission = 1,
+                                             .thin = false,
+                                             .inside = inside},
+                                            view(cosine));
+            const dvec3 sum = glass.albedos().sum() / glass.shares().k_transmissive;
+            expect_all(sum, glass.shares().e, 5e-5, "cosine " + std::to_string(cosine));
+        }
+    }
+}
+
+// Apart from compensation, which depends on the viewer alone.
+TEST(PrincipledReference, ReflectionIsReciprocal) {
+    std::mt19937 random(1);
+    const PrincipledParameters metal{
+        .base_color = dvec3(0.9, 0.6, 0.2), .metalness = 1, .roughness = 0.5, .anisotropy = 0.7};
+    for (int i = 0; i < 8; ++i) {
+        const dvec3 wo = random_above(random), wi = random_above(random);
+        const PrincipledReference there(metal, wo), back(metal, wi);
+        const dvec3 a = there.reflection(wi) / there.shares().k_metal;
+        const dvec3 b = back.reflection(wo) / back.shares().k_metal;
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(a[k], b[k], 1e-10 * a[k]);
+    }
+}
+
+TEST(PrincipledReference, SheenAndDiffuseReflectionAreReciprocal) {
+    std::mt19937 random(2);
+    for (int i = 0; i < 200; ++i) {
+        const dvec3 wo = random_above(random), wi = random_above(random);
+        const double sheen = sheen_f(0.1, wo, wi);
+        EXPECT_NEAR(sheen, sheen_f(0.1, wi, wo), 1e-12 * sheen);
+        EXPECT_NEAR(eon_f(dvec3(0.5), 0.7, wo, wi).x, eon_f(dvec3(0.5), 0.7, wi, wo).x, 1e-14);
+    }
+}
+
+// For radiance, eta^2 f is the value that light on its way back meets, from the other side of the surface: z
+// is turned about.
+TEST(PrincipledReference, TransmissionIsReciprocalForEnergy) {
+    std::mt19937 random(3);
+    PrincipledParameters outside{.base_color = dvec3(1), .roughness = 0.7, .transmission = 1, .thin = false};
+    PrincipledParameters inside = outside;
+    inside.inside = true;
+    int lit = 0;
+    for (int i = 0; i < 8; ++i) {
+        // Near to where light goes straight on.
+        const dvec3 wo = random_above(random);
+        const dvec3 below = normalize(dvec3(-wo.x, -wo.y, wo.z) + 0.6 * random_above(random));
+        const PrincipledReference there(outside, wo), back(inside, below);
+        const dvec3 wi(below.x, below.y, -below.z), seen_from_below(wo.x, wo.y, -wo.z);
+        const double a = there.transmission(wi).x / there.shares().k_transmissive * 1.5 * 1.5;
+        const double b = back.transmission(seen_from_below).x / back.shares().k_transmissive;
+        EXPECT_NEAR(a, b, 1e-9 * a);
+        lit += a > 0 ? 1 : 0;
+    }
+    EXPECT_GE(lit, 4);
+}
+
+TEST(PrincipledReference, ThinWallsTransmitTheMirroredReflection) {
+    const PrincipledReference wall(
+        {.base_color = dvec3(1), .roughness = 0.4, .specular = 0, .transmission = 1, .thin = true},
+        view(0.5));
+    const PrincipledReference mirror({.base_color = dvec3(1), .metalness = 1, .roughness = 0.4}, view(0.5));
+    std::mt19937 random(4);
+    for (int i = 0; i < 20; ++i) {
+        const dvec3 wi = random_above(random);
+        EXPECT_NEAR(wall.f(dvec3(wi.x, wi.y, -wi.z)).x, mirror.f(wi).x, 1e-12 * mirror.f(wi).x);
+        EXPECT_EQ(wall.f(wi), dvec3(0));
+    }
+}
+
+TEST(PrincipledReference, DiffuseReflectionWithoutRoughnessIsLamberts) {
+    const dvec3 color(0.8, 0.3, 0.1);
+    EXPECT_EQ(eon_f(color, 0, view(0.3), view(0.9, 3)), color / std::numbers::pi);
+}
+
+TEST(PrincipledReference, RoughDiffuseReflectionOfWhiteLosesNoLight) {
+    for (const double sigma : {0.2, 1.0}) {
+        for (const double cosine : {0.05, 0.5, 0.95}) {
+            const dvec3 wo = view(cosine);
+            expect_all(integrate_over_cosine(wo, [&](dvec3 wi) { return eon_f(dvec3(1), sigma, wo, wi); }), 1,
+                       1e-6, "sigma " + std::to_string(sigma));
+        }
+    }
+}
+
+// At normal incidence: at others, the extension's outer interface reflects by Schlick's curve, whatever its
+// index. The amplitude of interference is at least sqrt(1e-5), its sensitivity at most 1.5.
+TEST(PrincipledReference, FilmOfAirIsNoneAtNormalIncidence) {
+    const dvec3 f0(0.04, 0.5, 0.9);
+    for (const double thickness : {0.0, 150.0, 400.0}) {
+        const dvec3 film = iridescent_fresnel(1, f0, thickness, 1);
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(film[k], f0[k], 2 * 1.5 * 2 * std::sqrt(1e-5) + 1e-4);
+    }
+}
+
+// A very thick film does not interfere: both reflections and all orders between them add up.
+TEST(PrincipledReference, ThickFilmAddsReflectionsUp) {
+    const double r12 = std::pow(0.3 / 2.3, 2), base_ior = (1 + std::sqrt(0.2501)) / (1 - std::sqrt(0.2501));
+    const double r23 = std::pow((base_ior - 1.3) / (base_ior + 1.3), 2);
+    const double sum = r12 + (1 - r12) * (1 - r12) * r23 / (1 - r12 * r23);
+    expect_all(iridescent_fresnel(1.3, dvec3(0.25), 1e6, 1), sum, 1e-12, "1 mm");
+}
+
+// From a roughness of 0.25 on: below it, the model reflects more than all light at grazing angles, up to
+// three times as much.
+TEST(PrincipledReference, SheenReflectsAtMostAllLight) {
+    for (const double roughness : {0.25, 0.5, 1.0}) {
+        for (const double cosine : {0.001, 0.03, 0.3, 1.0}) {
+            const double albedo = sheen_albedo(roughness * roughness, cosine);
+            EXPECT_GE(albedo, 0);
+            EXPECT_LE(albedo, 1) << roughness << " " << cosine;
+        }
+    }
+}
+
+// So the sheen as a layer is scaled, and the base below it never negative.
+TEST(PrincipledReference, SmoothSheenHidesTheBaseAtGrazingAngles) {
+    const PrincipledReference cloth({.base_color = dvec3(1), .metalness = 1, .sheen_color = dvec3(1)},
+                                    view(0.03));
+    EXPECT_GT(cloth.shares().es, 1);
+    expect_all(cloth.albedos().sheen, 1, TOLERANCE, "sheen");
+    expect_all(cloth.albedo(), 1, TOLERANCE, "all");
+}
+
+TEST(PrincipledReference, DispersionSpreadsTheIndicesAboutGreens) {
+    const dvec3 ior = dispersed_ior(1.5, 2);
+    EXPECT_NEAR(ior.x, 1.475, 1e-12);
+    EXPECT_NEAR(ior.y, 1.5, 1e-12);
+    EXPECT_NEAR(ior.z, 1.525, 1e-12);
+    EXPECT_EQ(dispersed_ior(1.5, 100).x, 1);
+}
+
+}  // namespace
+}  // namespace candela
