@@ -18,7 +18,7 @@ constexpr Medium CLEAR{};
 std::vector<NamedMaterial> single_lobes() {
     const vec3 orange(0.9f, 0.6f, 0.3f);
     return {
-        {"metal", {.base_color = orange, .metalness = 1.0f, .roughness = 0.0317f}, 1e-3},
+        {"metal", {.base_color = orange, .metalness = 1.0f, .roughness = 0.04f}, 1.6e-3},
         {"metal", {.base_color = orange, .metalness = 1.0f, .roughness = 0.3f}, 0.09},
         {"metal", {.base_color = vec3(1.0f), .metalness = 1.0f, .roughness = 1.0f}, 1.0},
         {"brushed metal",

@@ -248,8 +248,9 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     vec3 d_0 = vec3(f0), d_edge = vec3(1.0 - f0);
     if (principled_has(PRINCIPLED_HAS_SPECULAR)) {
         d_0 = r.specular * min(f0 * r.specular_color, 1.0);
-        d_edge = r.specular - d_0;
+        d_edge = max(r.specular - d_0, 0.0);
     }
+    float smooth_share = max_component(d_0 + d_edge * fresnel_edge(s.eta, wo.z));
     vec3 m_0 = s.base_color, m_edge = 1.0 - s.base_color;
     if (principled_has(PRINCIPLED_HAS_IRIDESCENCE) && !s.inside && r.iridescence > 0.0) {
         float thickness = r.thickness + r.thickness_range;
@@ -295,7 +296,6 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     if (principled_has(PRINCIPLED_HAS_COAT_DARKENING)) {
         // What the metal and the dielectric send up at normal incidence.
         vec3 up = mix(d_0 + (p.t_0 * (1.0 - transmission) * (1.0 - diffuse_transmission)) * s.base_color, m_0, metalness);
-        float smooth_share = max_component(d_0 + d_edge * fresnel_edge(s.eta, wo.z));
         float roughness = mix(mix(mix(1.0, r.roughness, transmission), r.roughness, smooth_share), r.roughness, metalness);
         principled_darken(p, s, wo, up, roughness);
     }

@@ -120,7 +120,8 @@ void PrincipledReference::find_shares() {
     const double f0 = fresnel_normal(eta_), f0_max = max_channel(f0_);
     const double g = (1 - f0_max) / (1 - f0), sg = p_.specular * g;
     const double albedo = sg * s.e + (1 - sg) * s.e0 - p_.specular * (f0 * g - f0_max) * (s.a - s.e0);
-    s.k_transmissive = 1 / (film_ > 0 ? std::max(s.a, albedo) : albedo);
+    // A film reflects the same share everywhere, its greatest channel here.
+    s.k_transmissive = 1 / std::lerp(albedo, std::lerp(s.e0, s.a, max_channel(film_dielectric_)), film_);
 }
 
 // Sheen (KHR_materials_sheen, "Albedo-scaling technique", of wo alone) and coat (KHR_materials_clearcoat, by
@@ -172,7 +173,6 @@ bool PrincipledReference::is_unrefracting() const {
 
 // F_d, with Fresnel's own curve between normal incidence and the edge; KHR_materials_specular.
 dvec3 PrincipledReference::dielectric_fresnel(double cosine) const {
-    if (refracted_cosine_squared(cosine, eta_) <= 0) return dvec3(1);
     return p_.specular * (f0_ + (dvec3(1) - f0_) * fresnel_edge(cosine, eta_));
 }
 
@@ -184,13 +184,17 @@ dvec3 PrincipledReference::film_or_dielectric_fresnel(double cosine) const {
 dvec3 PrincipledReference::specular_fresnel(double cosine) const {
     const dvec3 schlick = p_.base_color + (dvec3(1) - p_.base_color) * std::pow(1 - cosine, 5);
     const dvec3 metal = mix(schlick, film_metal_, film_) * shares_.k_metal;
-    const dvec3 dielectric = film_or_dielectric_fresnel(cosine) *
-                             mix(shares_.k_dielectric, dvec3(shares_.k_transmissive), p_.transmission);
+    // Where no light is transmitted, the transmitting share of the surface reflects all of it.
+    const bool total = !p_.thin && refracted_cosine_squared(cosine, eta_) <= 0;
+    const dvec3 reflected = film_or_dielectric_fresnel(cosine);
+    const dvec3 dielectric = mix(reflected * shares_.k_dielectric,
+                                 (total ? dvec3(1) : reflected) * shares_.k_transmissive, p_.transmission);
     return mix(dielectric, metal, p_.metalness);
 }
 
 // The same for specular transmission; KHR_materials_transmission.
 dvec3 PrincipledReference::transmittance(double cosine) const {
+    if (!p_.thin && refracted_cosine_squared(cosine, eta_) <= 0) return dvec3(0);
     return (1 - p_.metalness) * p_.transmission * p_.base_color *
            (1 - max_channel(film_or_dielectric_fresnel(cosine))) * shares_.k_transmissive;
 }
@@ -222,7 +226,9 @@ dvec3 PrincipledReference::transmission_value(dvec3 wi) const {
 double PrincipledReference::coat_value(dvec3 wi) const {
     if (!has_coat_ || coat_ideal_ || wi.z <= 0) return 0;
     const dvec3 o = to_coat(wo_), i = to_coat(wi);
-    return p_.coat * coat_fresnel(dot(o, normalize(o + i))) * facet_reflection(coat_facets_, o, i);
+    // Light falls on the coat under its own cosine.
+    return p_.coat * coat_fresnel(dot(o, normalize(o + i))) * facet_reflection(coat_facets_, o, i) * i.z /
+           wi.z;
 }
 
 dvec3 PrincipledReference::to_coat(dvec3 w) const {
