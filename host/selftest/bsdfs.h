@@ -44,7 +44,7 @@ struct BsdfCase {
     std::string name;
     ProbedMaterial material;
     vec3 wo;
-    std::variant<SphereChart, LobeChart, FacetChart> chart;
+    std::variant<SphereChart, LobeChart, FacetChart, RefractionChart> chart;
     uint32_t back = 0;  // 1: wo is on the back side of the surface.
 };
 std::vector<BsdfCase> bsdf_cases();

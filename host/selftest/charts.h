@@ -73,22 +73,54 @@ class FacetChart {
   public:
     FacetChart(glm::dvec3 wo, double alpha) : wo_(wo), alpha_(alpha) {}
     ChartPoint at(double s, double b) const {
-        const double t = 1.0 - s, a = 1.0 - t * t;
-        const double r = alpha_ * std::sqrt(a) / t, phi = 2.0 * M_PI * (b - 0.5);
-        const glm::dvec3 h = normalize(glm::dvec3(r * std::cos(phi), r * std::sin(phi), 1.0));
-        // d(slopes) = pi alpha^2 / (1 - a)^2 da db; d(h) = h.z^3 d(slopes); d(wi) = 4 |wo.h| d(h).
-        const double facets = M_PI * alpha_ * alpha_ / (t * t * t * t) * 2.0 * t * h.z * h.z * h.z;
+        const auto [h, facets] = facet_at(s, b, alpha_);
+        // d(wi) = 4 |wo.h| d(h).
         return {2.0 * dot(wo_, h) * h - wo_, 4.0 * std::abs(dot(wo_, h)) * facets};
     }
-    std::optional<glm::dvec2> find(glm::dvec3 w) const {
-        const glm::dvec3 h = normalize(wo_ + w);
-        const double r = std::hypot(h.x, h.y) / (alpha_ * h.z);
-        return glm::dvec2(1.0 - 1.0 / std::sqrt(1.0 + r * r), turn_of(h.y, h.x));
+    std::optional<glm::dvec2> find(glm::dvec3 w) const { return place_of(normalize(wo_ + w), alpha_); }
+
+    // A facet's normal, and the solid angle of normals per area of the chart.
+    static ChartPoint facet_at(double s, double b, double alpha) {
+        const double t = 1.0 - s, a = 1.0 - t * t;
+        const double r = alpha * std::sqrt(a) / t, phi = 2.0 * M_PI * (b - 0.5);
+        const glm::dvec3 h = normalize(glm::dvec3(r * std::cos(phi), r * std::sin(phi), 1.0));
+        // d(slopes) = pi alpha^2 / (1 - a)^2 da db; d(h) = h.z^3 d(slopes).
+        return {h, M_PI * alpha * alpha / (t * t * t * t) * 2.0 * t * h.z * h.z * h.z};
+    }
+    static glm::dvec2 place_of(glm::dvec3 h, double alpha) {
+        const double r = std::hypot(h.x, h.y) / (alpha * h.z);
+        return {1.0 - 1.0 / std::sqrt(1.0 + r * r), turn_of(h.y, h.x)};
     }
 
   private:
     glm::dvec3 wo_;
     double alpha_;
+};
+
+// The same of what facets refract; eta is the index on the other side over that on wo's.
+class RefractionChart {
+  public:
+    RefractionChart(glm::dvec3 wo, double alpha, double eta) : wo_(wo), alpha_(alpha), eta_(eta) {}
+    ChartPoint at(double s, double b) const {
+        const auto [h, facets] = FacetChart::facet_at(s, b, alpha_);
+        const double cos_o = dot(wo_, h);
+        const double cos2 = 1.0 - (1.0 - cos_o * cos_o) / (eta_ * eta_);
+        if (cos_o <= 0.0 || cos2 <= 0.0) return {wo_, 0.0};  // Seen from behind, or total reflection.
+        const double cos_i = std::sqrt(cos2), sum = cos_o - eta_ * cos_i;
+        // Ref: Walter et al. 2007, Microfacet Models for Refraction through Rough Surfaces, equation 17.
+        return {(cos_o / eta_ - cos_i) * h - wo_ / eta_, facets * sum * sum / (eta_ * eta_ * cos_i)};
+    }
+    // None for reflected directions.
+    std::optional<glm::dvec2> find(glm::dvec3 w) const {
+        if (w.z >= 0.0) return std::nullopt;
+        const glm::dvec3 sum = wo_ + eta_ * w;
+        return FacetChart::place_of(normalize(sum.z < 0.0 ? -sum : sum), alpha_);
+    }
+
+  private:
+    glm::dvec3 wo_;
+    double alpha_;
+    double eta_;
 };
 
 }  // namespace candela

@@ -175,8 +175,9 @@ void principled_darken(inout Principled p, PrincipledSurface s, vec3 wo, vec3 up
     if (p.coat == 0.0) return;
     float cos_o = principled_has(PRINCIPLED_HAS_COAT_NORMAL) ? max(dot(wo, s.coat_n), 0.0) : wo.z;
     float ideal = mix(fresnel_edge(p.coat_ior, cos_o), 1.0, p.coat_f0);
-    float down = mix(ideal, s.record.coat_internal, roughness);
-    vec3 factor = mix(vec3(1.0), (1.0 - down) / (1.0 - up * down), p.coat * s.record.coat_darkening);
+    float down = min(mix(ideal, s.record.coat_internal, roughness), 0.9999);
+    vec3 factor = (1.0 - down) / (1.0 - min(up, 1.0) * down);
+    factor = mix(vec3(1.0), factor, p.coat * s.record.coat_darkening);
     p.r_0 *= factor;
     p.r_edge *= factor;
     p.r_schlick *= factor;
@@ -206,7 +207,8 @@ float principled_glass_albedo(float alpha, vec3 wo, float eta, float whole, floa
     float f0 = square((eta - 1.0) / (eta + 1.0));
     float g = weight * (1.0 - f0 * most) / (1.0 - f0);
     float clear = glass_albedo_clear(alpha, wo.z, eta);
-    return g * glass + (1.0 - g) * clear - f0 * (g - weight * most) * (whole - clear);
+    float sum = g * glass + (1.0 - g) * clear - f0 * (g - weight * most) * (whole - clear);
+    return clamp(sum, min(whole, min(glass, clear)), 1.0);  // Floats cannot hold it where f0 is nearly 1.
 }
 
 // The lobes of the base under layers that leave `above`.
@@ -466,6 +468,7 @@ BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
     } else if (uc < to_facets) {
         ideal = p.ideal;
         s = principled_sample_facets(p, wo, min((uc - p.pmf.x) / p.pmf.y, 0.99999994), u);
+        if (s.pdf == 0.0) return s;
     } else if (p.pmf.z + p.pmf.w > 0.0) {
         s.wi = warp_cosine_hemisphere(u);
         if (uc >= to_facets + p.pmf.z) s.wi.z = -s.wi.z;

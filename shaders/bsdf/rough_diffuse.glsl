@@ -25,7 +25,7 @@ vec3 rough_diffuse_f(vec3 reflectance, float roughness, vec3 wo, vec3 wi) {
     vec3 again = reflectance * reflectance * (mean / (vec3(1.0) - reflectance * (1.0 - mean)));
     float lost_o = max(0.0, 1.0 - fon_albedo(roughness, wo.z));
     float lost_i = max(0.0, 1.0 - fon_albedo(roughness, wi.z));
-    vec3 f = reflectance * (scale * (1.0 + roughness * facets));
+    vec3 f = reflectance * (scale * max(1.0 + roughness * facets, 0.0));
     if (mean < 1.0) f += again * (lost_o * lost_i / (1.0 - mean));
     return f * INV_PI;
 }
