@@ -22,9 +22,9 @@ namespace candela {
 struct BsdfItem {
     std::array<uvec4, MATERIAL_WORDS> material;  // Its record, packed.
     vec3 wo{0, 0, 1};
-    float unused0 = 0.0f;
+    uint32_t random = 0;  // Chooses the facets that a principled material measures.
     vec3 wi{0, 0, 1};
-    float unused1 = 0.0f;
+    float unused = 0.0f;
     vec2 u{0};
     float uc = 0.0f;
     uint32_t back = 0;                                 // 1: wo is on the back side of the surface.

@@ -103,13 +103,15 @@ std::vector<BsdfCase> bsdf_cases() {
     return cases;
 }
 
-std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& c, uint32_t seed) {
+std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& c, uint32_t seed,
+                                      bool any_facets) {
     Random random(seed);
     std::vector<BsdfItem> items(BSDF_CASE_SAMPLES, bsdf_item(c.material, c.wo, {}, c.back));
     for (size_t i = 0; i < items.size(); ++i) {
         items[i].wi = vec3(point_of(c, i).w);
         items[i].u = random.square();
         items[i].uc = random.unit();
+        items[i].random = any_facets ? uint32_t(i) : seed;
     }
     return probe<BsdfResult>(device, kernels::bsdf, items);
 }

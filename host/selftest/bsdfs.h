@@ -51,8 +51,11 @@ std::vector<BsdfCase> bsdf_cases();
 // Those of the principled material: each of its lobes, and mixtures.
 std::vector<BsdfCase> principled_cases();
 
-// BSDF_CASE_SAMPLES random samples of a case. The items' wi are the points of its chart, row by row.
-std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& c, uint32_t seed);
+// BSDF_CASE_SAMPLES random samples of a case. The items' wi are the points of its chart, row by row. A
+// principled material has the same facets in all of them, and one density, or, if `any_facets`, others in
+// each, and its albedo on average.
+std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& c, uint32_t seed,
+                                      bool any_facets = false);
 inline constexpr size_t BSDF_CASE_SAMPLES = size_t{320} * 320;
 
 // Pearson's test of the samples against their density. `results` as run_bsdf_case() returns them.

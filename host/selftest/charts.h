@@ -105,16 +105,20 @@ class RefractionChart {
         const auto [h, facets] = FacetChart::facet_at(s, b, alpha_);
         const double cos_o = dot(wo_, h);
         const double cos2 = 1.0 - (1.0 - cos_o * cos_o) / (eta_ * eta_);
-        if (cos_o <= 0.0 || cos2 <= 0.0) return {wo_, 0.0};  // Seen from behind, or total reflection.
+        // Seen from behind, or total reflection: a direction that no light takes.
+        const ChartPoint none{{1.0, 0.0, 0.0}, 0.0};
+        if (cos_o <= 0.0 || cos2 <= 0.0) return none;
         const double cos_i = std::sqrt(cos2), sum = cos_o - eta_ * cos_i;
         // Ref: Walter et al. 2007, Microfacet Models for Refraction through Rough Surfaces, equation 17.
-        return {(cos_o / eta_ - cos_i) * h - wo_ / eta_, facets * sum * sum / (eta_ * eta_ * cos_i)};
+        const glm::dvec3 w = (cos_o / eta_ - cos_i) * h - wo_ / eta_;
+        return w.z < 0.0 ? ChartPoint{w, facets * sum * sum / (eta_ * eta_ * cos_i)} : none;
     }
-    // None for reflected directions.
+    // None for directions to which no facet refracts.
     std::optional<glm::dvec2> find(glm::dvec3 w) const {
-        if (w.z >= 0.0) return std::nullopt;
         const glm::dvec3 sum = wo_ + eta_ * w;
-        return FacetChart::place_of(normalize(sum.z < 0.0 ? -sum : sum), alpha_);
+        const glm::dvec3 h = normalize(sum.z < 0.0 ? -sum : sum);
+        if (w.z >= 0.0 || dot(wo_, h) <= 0.0 || dot(w, h) >= 0.0) return std::nullopt;
+        return FacetChart::place_of(h, alpha_);
     }
 
   private:

@@ -32,13 +32,20 @@ Evidence test_all_samplers(const vk::Device& device) {
 Evidence test_bsdfs(const vk::Device& device) {
     Evidence evidence;
     uint32_t seed = 700;
-    std::vector<BsdfCase> cases = bsdf_cases();
-    for (BsdfCase& c : principled_cases())
-        cases.push_back(std::move(c));
-    for (const BsdfCase& c : cases) {
+    for (const BsdfCase& c : bsdf_cases()) {
         const std::vector<BsdfResult> results = run_bsdf_case(device, c, seed++);
         test_density(c, results, evidence);
         test_values(c, results, evidence);
+    }
+    return evidence;
+}
+
+Evidence test_layers(const vk::Device& device) {
+    Evidence evidence;
+    uint32_t seed = 1700;
+    for (const BsdfCase& c : principled_cases()) {
+        test_density(c, run_bsdf_case(device, c, seed++), evidence);
+        test_values(c, run_bsdf_case(device, c, seed++, true), evidence);
     }
     return evidence;
 }
@@ -92,6 +99,7 @@ std::vector<Row> rows() {
          {always<test_basic_warps>, always<test_power_cosines>, always<test_sphere_and_cones>,
           always<test_polygons>, always<test_visible_normals>}},
         {"BSDFs", "samples", {always<test_bsdfs>}},
+        {"layered BSDFs", "samples", {always<test_layers>}},
         {"BSDFs at extremes", "samples", {always<test_extreme_bsdfs>}},
         {"flat lights",
          "samples",

@@ -1,19 +1,25 @@
 // The principled material: a dielectric or metallic base under sheen and coat, as glTF 2.0 layers them. Reading order:
 //
-//     coat (its own normal)           coat Fc D G                                  1 - coat Rc
-//       over sheen                    sheen_color Charlie                          1 - max(sheen_color) Es
+//     coat (its own normal)           coat Fc D G                                      1 - <coat Fc s>
+//       over sheen                    sheen_color Charlie                              1 - max(sheen_color) Es
 //         over mix(by metalness)
-//           metal                     Fm D G Km
-//           dielectric                Fd D G Kd
+//           metal                     Fm D G
+//           dielectric                Fd D G
 //             over mix(by transmission)
-//               refraction            base_color (1 - max Fd) D G Kt
-//               diffuse               base_color, diffuse_transmission_color       1 - R
+//               refraction            base_color (1 - max Fd) D G
+//               diffuse               base_color, diffuse_transmission_color           1 - <max Fd>
 //
-// What a layer leaves to those below is the last column, a function of wo alone: the albedo that it has at that angle.
-// (By facets, as glTF's own sample code has it, light would be gained at grazing angles.) Km, Kd and Kt make up for light
-// that is scattered among facets more than once. Both make the whole not reciprocal; single lobes are.
-// Ref: glTF 2.0, appendix B, and its extensions KHR_materials_*; OpenPBR 1.1; Turquin 2019, Practical Multiple Scattering
-// Compensation for Microfacet Models.
+// What a layer leaves to those below is the last column, a function of wo alone: what it does not scatter itself. (By
+// facets, as glTF's own sample code has it, light would be gained at grazing angles.) Light that is scattered more than
+// once among facets is what they lose to shadowing, <1 - s>; it leaves the surface as from a diffuse one.
+//
+// <x> is the mean of x over the facets that wo sees. A lattice of FACETS of them at random places measures it, without
+// bias, since all that is measured counts linearly: there are no tables of albedos, and no fits. So a surface has other
+// lobes at each vertex, and the right ones on average. Nothing is gained or lost, whatever the roughness, the indices and
+// the film. The whole is not reciprocal; its lobes are, one by one.
+// Ref: glTF 2.0, appendix B, and its extensions KHR_materials_*; OpenPBR 1.1; Kulla and Conty 2017, Revisiting Physically
+// Based Shading at Imageworks, on lost light; Cranley and Patterson 1976, Randomization of Number Theoretic Methods for
+// Multiple Integration, on such lattices.
 //
 // Local frame, z on the viewer's side, x along the direction that anisotropy makes rougher.
 #ifndef BSDF_PRINCIPLED_GLSL
@@ -22,13 +28,13 @@
 #include "base/color.glsl"
 #include "base/frame.glsl"
 #include "base/warp.glsl"
-#include "bsdf/albedo.glsl"
 #include "bsdf/ggx.glsl"
 #include "bsdf/iridescence.glsl"
 #include "bsdf/mirror.glsl"
 #include "bsdf/rough_diffuse.glsl"
 #include "bsdf/sample.glsl"
 #include "bsdf/sheen.glsl"
+#include "bsdf/sheen_albedo.glsl"
 #include "shared/kernel_constants.h"
 #include "shared/material.h"
 #include "shared/principled.h"
@@ -49,6 +55,7 @@ struct PrincipledSurface {
     bool inside;     // The viewer is in that medium.
     vec3 coat_n;     // Normal of the coat, in the local frame.
     vec3 hue;        // Shares of the colours in the choice of a direction; they add up to 1.
+    vec4 random;     // Uniform in [0, 1), for two lattices.
 };
 
 // The lobes of such a point, seen from wo.
@@ -71,7 +78,8 @@ struct Principled {
     vec3 base_color;  // Of the diffuse base,
     float roughness;
     vec3 diffuse;     // and its weight.
-    vec3 through;     // Diffuse transmission.
+    vec3 again;       // Reflectance of Lambert's lobe for light that facets scatter more than once,
+    vec3 through;     // and transmittance: of that, and of the diffuse base.
     vec3 sheen;
     float sheen_alpha;
 
@@ -88,6 +96,9 @@ struct Principled {
 
 // Beyond this relative index, boundaries reflect almost all light, and floats cannot hold the rest.
 const float GREATEST_ETA = 100.0;
+
+// Facets that are measured: a power of two of at most 4, see lattice_point().
+const uint FACETS = 4u;
 
 // Factors of an index of refraction for red, green and blue; dispersion is 20 / Abbe number. No index falls below 1.
 // Ref: KHR_materials_dispersion.
@@ -145,6 +156,23 @@ bool is_ideal(float alpha) {
     return alpha < LEAST_ALPHA;
 }
 
+// Point i of a lattice of FACETS points in the unit square, moved by `shift` in [0, 1)^2.
+vec2 lattice_point(uint i, vec2 shift) {
+    return fract(vec2(float(i), float(i >> 1u | (i & 1u) << 1u)) / float(FACETS) + shift);
+}
+
+// Share of light that a facet reflects to wi and that does not get there: it is shadowed, or wi is below the surface.
+// Given that wo sees the facet: 1 - G2 / G1.
+float facet_shadowed(vec2 alpha, vec3 wo, vec3 wi, float reach_o) {
+    if (wi.z <= 0.0) return 1.0;
+    float both = wi.z * reach_o + wo.z * ggx_reach(alpha, wi);
+    return max(1.0 - wi.z * (wo.z + reach_o) / both, 0.0);
+}
+
+float coat_fresnel(Principled p, float cos_o) {
+    return mix(fresnel_edge(p.coat_ior, cos_o), 1.0, p.coat_f0);
+}
+
 // The coat's lobes; returns what it leaves to the layers below.
 float principled_coat(inout Principled p, PrincipledSurface s, vec3 wo) {
     p.coat = 0.0;
@@ -158,14 +186,24 @@ float principled_coat(inout Principled p, PrincipledSurface s, vec3 wo) {
     p.coat_ideal = is_ideal(alpha);
     p.coat_alpha = max(alpha, LEAST_ALPHA);
     p.coat = s.record.coat;
-    float edge = fresnel_edge(p.coat_ior, cos_o);
-    float whole = 1.0;
+    float reflected = coat_fresnel(p, cos_o);
+    p.pmf.x = p.coat * reflected;
     if (!p.coat_ideal) {
-        whole = ggx_albedo(p.coat_alpha, cos_o);
-        edge = ggx_albedo_edge(p.coat_alpha, cos_o, p.coat_ior);
+        vec2 alpha = vec2(p.coat_alpha);
+        vec3 o = to_coat(p, wo);
+        float reach_o = ggx_reach(alpha, o);
+        float scattered = 0.0;
+        reflected = 0.0;
+        for (uint i = 0u; i < FACETS; ++i) {
+            vec3 h = warp_ggx_visible_normal(lattice_point(i, s.random.zw), alpha, o);
+            float fresnel = coat_fresnel(p, dot(o, h));
+            scattered += fresnel;
+            reflected += fresnel * (1.0 - facet_shadowed(alpha, o, 2.0 * dot(o, h) * h - o, reach_o));
+        }
+        reflected /= float(FACETS);
+        p.pmf.x = p.coat * scattered / float(FACETS);
     }
-    p.pmf.x = p.coat * (p.coat_f0 * whole + (1.0 - p.coat_f0) * edge);
-    return max(1.0 - p.pmf.x, 0.0);
+    return max(1.0 - p.coat * reflected, 0.0);
 }
 
 // Darkens what the layers under the coat send up: the coat reflects a part of it down again, and what reflects little
@@ -174,7 +212,7 @@ float principled_coat(inout Principled p, PrincipledSurface s, vec3 wo) {
 void principled_darken(inout Principled p, PrincipledSurface s, vec3 wo, vec3 up, float roughness) {
     if (p.coat == 0.0) return;
     float cos_o = principled_has(PRINCIPLED_HAS_COAT_NORMAL) ? max(dot(wo, s.coat_n), 0.0) : wo.z;
-    float ideal = mix(fresnel_edge(p.coat_ior, cos_o), 1.0, p.coat_f0);
+    float ideal = coat_fresnel(p, cos_o);
     float down = min(mix(ideal, s.record.coat_internal, roughness), 0.9999);
     vec3 factor = (1.0 - down) / (1.0 - min(up, 1.0) * down);
     factor = mix(vec3(1.0), factor, p.coat * s.record.coat_darkening);
@@ -183,6 +221,7 @@ void principled_darken(inout Principled p, PrincipledSurface s, vec3 wo, vec3 up
     p.r_schlick *= factor;
     p.r_total *= factor;
     p.diffuse *= factor;
+    p.again *= factor;
     p.sheen *= factor;
 }
 
@@ -200,15 +239,71 @@ float principled_sheen(inout Principled p, PrincipledSurface s, vec3 wo, float a
     return above * (1.0 - max_component(s.record.sheen_color) * albedo);
 }
 
-// Albedo of clear glass whose reflection has a weight and a colour, of which `most` is the greatest part.
-float principled_glass_albedo(float alpha, vec3 wo, float eta, float whole, float weight, float most) {
-    float glass = glass_albedo(alpha, wo.z, eta);
-    if (!principled_has(PRINCIPLED_HAS_SPECULAR)) return glass;
+// Means over the facets that wo sees.
+struct FacetMeans {
+    vec3 edge;        // t,
+    float schlick;    // and S: see Principled.
+    float most;       // The greatest channel of what the dielectric reflects,
+    float most_lost;  // and of that, what is shadowed.
+    float lost;       // What is shadowed where all is reflected,
+    vec3 glass_lost;  // and where the dielectric reflects and transmits, per colour.
+};
+
+// Share of the light that a dielectric facet with the normal h loses, for one relative index: neither its reflection,
+// of which `shadowed` is lost, nor its refraction. F = d_0 + d_edge t is what it reflects.
+float glass_lost(Principled p, float eta, float d_0, float d_edge, float shadowed, vec3 wo, vec3 h) {
+    float cos_o = dot(wo, h);
+    float reflected = min(d_0 + d_edge * fresnel_edge(eta, cos_o), 1.0);
+    if (!p.refracts) return shadowed;
+    float cos_t = refracted_cosine(1.0 - square(cos_o), eta);
+    if (cos_t == 0.0) return shadowed;
+    vec3 wi = (cos_o / eta - cos_t) * h - wo / eta;
+    float hidden = wi.z < 0.0 ? max(1.0 + 2.0 * wi.z / (ggx_reach(p.alpha, wi) - wi.z), 0.0) : 1.0;
+    return mix(hidden, shadowed, reflected);
+}
+
+// Of facets whose dielectric reflects d_0 + d_edge t.
+FacetMeans principled_measure(Principled p, float d_0, float d_edge, vec3 wo, vec2 shift) {
+    FacetMeans sum = FacetMeans(vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0));
+    float reach_o = ggx_reach(p.alpha, wo);
+    for (uint i = 0u; i < FACETS; ++i) {
+        vec3 h = warp_ggx_visible_normal(lattice_point(i, shift), p.alpha, wo);
+        float cos_o = dot(wo, h);
+        float shadowed = facet_shadowed(p.alpha, wo, 2.0 * cos_o * h - wo, reach_o);
+        vec3 edge = principled_edge(p, cos_o);
+        float most = min(d_0 + d_edge * edge.y, 1.0);
+        sum.edge += edge;
+        sum.schlick += schlick_weight(cos_o);
+        sum.most += most;
+        sum.most_lost += most * shadowed;
+        sum.lost += shadowed;
+        if (!PRINCIPLED_TRANSMITS) continue;
+        float green = glass_lost(p, p.eta.y, d_0, d_edge, shadowed, wo, h);
+        sum.glass_lost += green;
+        if (!principled_has(PRINCIPLED_HAS_DISPERSION)) continue;
+        sum.glass_lost.x += glass_lost(p, p.eta.x, d_0, d_edge, shadowed, wo, h) - green;
+        sum.glass_lost.z += glass_lost(p, p.eta.z, d_0, d_edge, shadowed, wo, h) - green;
+    }
+    const float EACH = 1.0 / float(FACETS);
+    return FacetMeans(EACH * sum.edge, EACH * sum.schlick, EACH * sum.most, EACH * sum.most_lost, EACH * sum.lost,
+                      EACH * sum.glass_lost);
+}
+
+// Colour of light that metal facets scatter more than once, m_0 + m_edge S each time.
+// Ref: Kulla and Conty 2017. The mean of S is 1/21. How much light is lost on average over all angles is a fit, within
+// 2 %: the colour depends on it, the energy does not.
+vec3 metal_again(vec3 m_0, vec3 m_edge, vec2 alpha) {
+    float a = sqrt(alpha.x * alpha.y);
+    float lost = square(a) / (0.26 + a * (0.92 + 0.51 * a));
+    vec3 mean = m_0 + m_edge / 21.0;
+    return mean * mean * ((1.0 - lost) / (1.0 - mean * lost));
+}
+
+// Share of light from all sides that a dielectric boundary reflects: what a facet scatters again goes to that side.
+float diffuse_reflectance(float eta) {
     float f0 = square((eta - 1.0) / (eta + 1.0));
-    float g = weight * (1.0 - f0 * most) / (1.0 - f0);
-    float clear = glass_albedo_clear(alpha, wo.z, eta);
-    float sum = g * glass + (1.0 - g) * clear - f0 * (g - weight * most) * (whole - clear);
-    return clamp(sum, min(whole, min(glass, clear)), 1.0);  // Floats cannot hold it where f0 is nearly 1.
+    float outside = mix(f0, 1.0, 1.0 / 21.0);
+    return eta >= 1.0 ? outside : 1.0 - (1.0 - outside) * square(eta);
 }
 
 // The lobes of the base under layers that leave `above`.
@@ -230,23 +325,8 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     p.eta = vec3(s.eta);
     if (principled_has(PRINCIPLED_HAS_DISPERSION) && p.refracts) p.eta *= s.spread;
 
-    // Albedos of facets that reflect all light, and that reflect t of it.
-    float effective = p.alpha.y;
-    float whole = 1.0;
-    float edge = fresnel_edge(s.eta, wo.z);
-    float glass = 1.0;
-    float f0 = square((s.eta - 1.0) / (s.eta + 1.0));
-    float most = max_component(r.specular_color);
-    if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal) {
-        if (principled_has(PRINCIPLED_HAS_ANISOTROPY)) effective = ggx_effective_alpha(p.alpha, wo);
-        whole = ggx_albedo(effective, wo.z);
-        edge = min(ggx_albedo_edge(effective, wo.z, s.eta), whole);
-        glass = whole;
-        if (p.refracts) glass = principled_glass_albedo(effective, wo, s.eta, whole, r.specular, most);
-    }
-    float lost = (1.0 - whole) / whole;
-
     // The reflectance of facets: d_0 + d_edge t of the dielectric, m_0 + m_edge S of the metal.
+    float f0 = square((s.eta - 1.0) / (s.eta + 1.0));
     vec3 d_0 = vec3(f0), d_edge = vec3(1.0 - f0);
     if (principled_has(PRINCIPLED_HAS_SPECULAR)) {
         d_0 = r.specular * min(f0 * r.specular_color, 1.0);
@@ -263,38 +343,45 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
             m_0 = mix(m_0, fresnel_film(wo.z, r.iridescence_ior, thickness, m_0), r.iridescence);
             m_edge *= 1.0 - r.iridescence;
         }
-        if (p.refracts && !p.ideal) {
-            float clear = glass_albedo_clear(effective, wo.z, s.eta);
-            glass = mix(glass, mix(clear, whole, max_component(film)), r.iridescence);
-        }
     }
-    float k_transmit = 1.0 / glass;
-    vec3 k_dielectric = 1.0 + d_0 * lost;
-    vec3 r_dielectric = (d_0 * whole + d_edge * edge) * k_dielectric;
+    float most_0 = max_component(d_0), most_edge = max_component(d_edge);
+
+    FacetMeans mean = FacetMeans(principled_edge(p, wo.z), schlick_weight(wo.z), 0.0, 0.0, 0.0, vec3(0.0));
+    mean.most = min(most_0 + most_edge * mean.edge.y, 1.0);
+    if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal) {
+        mean = principled_measure(p, most_0, most_edge, wo, s.random.xy);
+    }
 
     // Weights.
     float dielectric = above * (1.0 - metalness);
-    vec3 k_reflect = dielectric * mix(k_dielectric, vec3(k_transmit), transmission);
-    p.r_0 = d_0 * k_reflect;
-    p.r_edge = d_edge * k_reflect;
+    float opaque = dielectric * (1.0 - transmission);
+    p.r_0 = dielectric * d_0;
+    p.r_edge = dielectric * d_edge;
     p.r_schlick = vec3(0.0);
-    p.r_total = dielectric * mix(k_dielectric * (d_0 + d_edge), vec3(k_transmit), transmission);
+    p.r_total = opaque * (d_0 + d_edge) + dielectric * transmission;
+    p.again = opaque * mean.most_lost * d_0;
     if (principled_has(PRINCIPLED_HAS_METAL)) {
-        vec3 k_metal = above * metalness * (1.0 + m_0 * lost);
-        p.r_0 += m_0 * k_metal;
-        p.r_schlick = m_edge * k_metal;
-        p.r_total += k_metal;
+        float metal = above * metalness;
+        p.r_0 += metal * m_0;
+        p.r_schlick = metal * m_edge;
+        p.r_total += metal * m_0;
+        p.again += metal * mean.lost * metal_again(m_0, m_edge, p.alpha);
     }
-    p.transmit = dielectric * transmission * k_transmit * s.base_color;
-    p.t_0 = 1.0 - max_component(d_0);
-    p.t_edge = max_component(d_edge);
-    float below = dielectric * (1.0 - transmission) * max(1.0 - max_component(r_dielectric), 0.0);
+    float below = opaque * max(1.0 - mean.most + mean.most_lost * (1.0 - most_0), 0.0);
     float diffuse_transmission = principled_has(PRINCIPLED_HAS_DIFFUSE_TRANSMISSION) ? r.diffuse_transmission : 0.0;
     p.base_color = s.base_color;
     p.roughness = r.diffuse_roughness;
     p.diffuse = vec3(below * (1.0 - diffuse_transmission));
     p.through = below * diffuse_transmission * r.diffuse_transmission_color;
-
+    p.t_0 = 1.0 - most_0;
+    p.t_edge = most_edge;
+    p.transmit = dielectric * transmission * s.base_color;
+    if (PRINCIPLED_TRANSMITS) {
+        vec3 lost = dielectric * transmission * mean.glass_lost;
+        float back = diffuse_reflectance(s.eta);
+        p.again += back * lost;
+        p.through += (1.0 - back) * lost * s.base_color;
+    }
     if (principled_has(PRINCIPLED_HAS_COAT_DARKENING)) {
         // What the metal and the dielectric send up at normal incidence.
         vec3 up = mix(d_0 + (p.t_0 * (1.0 - transmission) * (1.0 - diffuse_transmission)) * s.base_color, m_0, metalness);
@@ -302,11 +389,13 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
         principled_darken(p, s, wo, up, roughness);
     }
 
-    // Choices: about the albedo of each.
-    vec3 facets = p.r_0 * whole + p.r_edge * edge + p.r_schlick * (schlick_weight(wo.z) * whole);
-    if (PRINCIPLED_TRANSMITS) facets += p.transmit * max(p.t_0 - p.t_edge * edge, 0.0) * glass;
+    // Choices: about the albedo of each. What facets scatter is not 0 where none of those measured does.
+    const float UNMEASURED = 1e-3;
+    vec3 edge = mean.edge + UNMEASURED;
+    vec3 facets = p.r_0 + p.r_edge * edge + p.r_schlick * (mean.schlick + UNMEASURED);
+    if (PRINCIPLED_TRANSMITS) facets += p.transmit * max(p.t_0 - p.t_edge * mean.edge, UNMEASURED);
     p.pmf.y = dot(p.hue, facets);
-    p.pmf.z += dot(p.hue, p.diffuse * s.base_color);
+    p.pmf.z += dot(p.hue, p.diffuse * s.base_color + p.again);
     p.pmf.w = dot(p.hue, p.through);
 }
 
@@ -371,6 +460,7 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
     if (wo.z <= LEAST_COSINE || abs(wi.z) <= LEAST_COSINE) return value;
     bool above = wi.z > 0.0;
     float cosine_pdf = warp_cosine_hemisphere_pdf(abs(wi.z));
+    if (above) value.f += p.again * INV_PI;
     if (above && principled_has(PRINCIPLED_HAS_DIFFUSE)) {
         if (principled_has(PRINCIPLED_HAS_DIFFUSE_ROUGHNESS)) {
             value.f += p.diffuse * rough_diffuse_f(p.base_color, p.roughness, wo, wi);
@@ -380,7 +470,8 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
     }
     if (above && principled_has(PRINCIPLED_HAS_SHEEN)) value.f += p.sheen * sheen_f(p.sheen_alpha, wo, wi);
     value.pdf = (above ? p.pmf.z : p.pmf.w) * cosine_pdf;
-    if (!above && principled_has(PRINCIPLED_HAS_DIFFUSE_TRANSMISSION)) value.f += p.through * INV_PI;
+    // Radiance is divided by eta^2, however light gets through.
+    if (!above) value.f += p.through * INV_PI / (p.refracts ? p.eta * p.eta : vec3(1.0));
     if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal && p.pmf.y > 0.0) {
         BsdfValue facets = bsdf_zero();
         bool through = PRINCIPLED_TRANSMITS && !above;
@@ -399,7 +490,7 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
             float d = ggx_d(vec2(p.coat_alpha), normalize(sum));
             float reach_o = ggx_reach(vec2(p.coat_alpha), o);
             float visibility = ggx_visibility(o.z, i.z, reach_o, ggx_reach(vec2(p.coat_alpha), i));
-            float fresnel = mix(fresnel_edge(p.coat_ior, 0.5 * length(sum)), 1.0, p.coat_f0);
+            float fresnel = coat_fresnel(p, 0.5 * length(sum));
             // The value times the cosine is that in the coat's frame.
             value.f += p.coat * fresnel * d * visibility * (i.z / wi.z);
             value.pdf += p.pmf.x * ggx_reflected_pdf(d, o.z, reach_o);
@@ -462,7 +553,7 @@ BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
             vec3 h = warp_ggx_visible_normal(u, vec2(p.coat_alpha), o);
             i = normalize(2.0 * dot(o, h) * h - o);
         }
-        float fresnel = mix(fresnel_edge(p.coat_ior, o.z), 1.0, p.coat_f0);
+        float fresnel = coat_fresnel(p, o.z);
         s = principled_ideal(normalize(from_coat(p, i)), vec3(p.coat * fresnel), p.pmf.x, 1.0);
         if (i.z <= LEAST_COSINE || s.wi.z <= LEAST_COSINE) return bsdf_sample_failed();
     } else if (uc < to_facets) {
@@ -476,7 +567,8 @@ BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
     if (ideal) return s;
     BsdfValue value = principled_evaluate(p, wo, s.wi);
     if (value.pdf == 0.0) return bsdf_sample_failed();
-    return BsdfSample(s.wi, value.f * (abs(s.wi.z) / value.pdf), value.pdf, false, s.eta);
+    float eta = p.refracts && s.wi.z < 0.0 ? p.eta.y : 1.0;
+    return BsdfSample(s.wi, value.f * (abs(s.wi.z) / value.pdf), value.pdf, false, eta);
 }
 
 #endif

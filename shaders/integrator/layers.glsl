@@ -2,6 +2,8 @@
 #ifndef INTEGRATOR_LAYERS_GLSL
 #define INTEGRATOR_LAYERS_GLSL
 
+#include "base/hash.glsl"
+#include "base/sampler.glsl"
 #include "bsdf/bsdf.glsl"
 #include "integrator/bent_normal.glsl"
 #include "scene/interaction.glsl"
@@ -17,12 +19,14 @@ bool is_principled(MaterialRecord m) {
 
 // The material m at s, before normal maps bend the normal; m gets its base colour there. Where prisms part colours, a
 // path's directions are chosen for those that it still carries; a path that carries one chooses no other.
-PrincipledSurface principled_surface(inout MaterialRecord m, Interaction s, vec3 beta) {
+PrincipledSurface principled_surface(inout MaterialRecord m, Interaction s, Ray ray, vec3 beta) {
     PrincipledSurface p;
     p.record = principled_at(m, s.attributes);
     p.encloses = m.medium != MEDIUM_SAME;
     p.inside = p.encloses && !s.front;
     p.coat_n = s.ns;
+    uvec4 bits = hash_pcg4d(hit_random(ray));
+    p.random = vec4(unit_float(bits.xy), unit_float(bits.zw));
     p.hue = LUMINANCE;
     p.spread = vec3(1.0);
     if ((PRINCIPLED & PRINCIPLED_HAS_DISPERSION) != 0u) {

@@ -183,7 +183,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     Interaction s = interaction_at(path.ray, hit);
     MaterialRecord material = material_at(s.material, s.attributes, path.ray);
     PrincipledSurface principled;
-    if (is_principled(material)) principled = principled_surface(material, s, path.beta);
+    if (is_principled(material)) principled = principled_surface(material, s, path.ray, path.beta);
     Bsdf bsdf = bsdf_at(material, s.front);
     bool bent = bend_normal(s, hit);
     if (NESTED_MEDIA && bsdf_refracts(material)) {

@@ -5,6 +5,8 @@
 
 #define ITEM_WORDS 13u
 #define RESULT_WORDS 17u
+#include "base/hash.glsl"
+#include "base/sampler.glsl"
 #include "bsdf/bsdf.glsl"
 #include "probes/items.glsl"
 
@@ -23,6 +25,8 @@ void main() {
         surface.inside = surface.encloses && !front;
         surface.coat_n = vec3(0.0, 0.0, 1.0);
         surface.hue = vec3(1.0 / 3.0);
+        uvec4 bits = hash_pcg4d(uvec4(item(2u).w, 1u, 2u, 3u));
+        surface.random = vec4(unit_float(bits.xy), unit_float(bits.zw));
         surface.spread = dispersion_spread(material.parameter, surface.record.dispersion);
         if (surface.inside) surface.spread = 1.0 / surface.spread;
         bsdf_add_principled(bsdf, surface, wo);

@@ -34,11 +34,11 @@ float texture_number(uint i, Attributes at) {
     return texture_number(t, texture_uv(t, at));
 }
 
-// Two random numbers in [0, 1) for the hit of a ray: a hash of its bits, so that scenes with textures take the same
-// numbers from the sampler as those without.
-vec2 texture_random(Ray ray) {
+// Random bits for the hit of a ray: a hash of its bits, so that scenes with textures take the same numbers from the
+// sampler as those without.
+uvec4 hit_random(Ray ray) {
     uvec4 v = hash_pcg4d(uvec4(floatBitsToUint(ray.d), floatBitsToUint(ray.o.x)));
-    return unit_float(hash_pcg4d(v ^ uvec4(floatBitsToUint(ray.o.y), floatBitsToUint(ray.o.z), 0u, 0u)).xy);
+    return hash_pcg4d(v ^ uvec4(floatBitsToUint(ray.o.y), floatBitsToUint(ray.o.z), 0u, 0u));
 }
 
 // The material of index i, seen by that ray. The radiance of all models is linear in their colours: these may be one
@@ -48,7 +48,7 @@ MaterialRecord material_at(uint i, Attributes at, Ray ray) {
     if ((TEXTURED & TEXTURED_MATERIALS) == 0u) return m;
     MaterialTextures textures = scene_material_textures(i);
     vec2 random = vec2(0.0);
-    if ((TEXTURED & (TEXTURED_BASE | TEXTURED_SPECULAR)) != 0u) random = texture_random(ray);
+    if ((TEXTURED & (TEXTURED_BASE | TEXTURED_SPECULAR)) != 0u) random = unit_float(hit_random(ray).xy);
     if ((TEXTURED & TEXTURED_BASE) != 0u) m.base *= texture_color_tap(textures.base, at, random);
     if ((TEXTURED & TEXTURED_VERTEX_COLORS) != 0u && textures.vertex_colors != 0u) m.base *= at.color.rgb;
     m.base = min(m.base, 1.0);
