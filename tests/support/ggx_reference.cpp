@@ -77,22 +77,6 @@ dvec3 integrate_adaptively(double a, double b, dvec3 whole, double tolerance, in
            integrate_adaptively(middle, b, right, 0.5 * tolerance, depth - 1, estimate);
 }
 
-// Masking and shadowing of light reflected, over the masking of wo: Smith's, correlated by height. Ref: Heitz
-// 2014, "Understanding the masking-shadowing function", eq. 99.
-double reflected_share(const Facets& facets, dvec3 wo, dvec3 h) {
-    const dvec3 wi = reflect(wo, h);
-    if (wi.z <= 0) return 0;
-    const double lambda = smith_lambda(facets, wo);
-    return (1 + lambda) / (1 + lambda + smith_lambda(facets, wi));
-}
-
-// The same of light refracted: uncorrelated, G1(wo) G1(wi). Ref: Walter et al. 2007, eq. 23.
-double refracted_share(const Facets& facets, dvec3 wo, dvec3 h, double eta) {
-    if (refracted_cosine_squared(dot(wo, h), eta) < 0) return 0;
-    const dvec3 wi = refract(wo, h, eta);
-    return wi.z < 0 ? smith_g1(facets, wi) : 0;
-}
-
 }  // namespace
 
 // Ref: Burley 2012, "Physically based shading at Disney", eq. 13; KHR_materials_anisotropy.
@@ -205,6 +189,22 @@ dvec3 mean_over_visible_normals(const Facets& facets, dvec3 wo, double eta,
     return sum * (2 / (PI_D * (1 + v.z)));
 }
 
+// Masking and shadowing of light reflected, over the masking of wo: Smith's, correlated by height. Ref: Heitz
+// 2014, "Understanding the masking-shadowing function", eq. 99.
+double reflected_share(const Facets& facets, dvec3 wo, dvec3 h) {
+    const dvec3 wi = reflect(wo, h);
+    if (wi.z <= 0) return 0;
+    const double lambda = smith_lambda(facets, wo);
+    return (1 + lambda) / (1 + lambda + smith_lambda(facets, wi));
+}
+
+// The same of light refracted: uncorrelated, G1(wo) G1(wi). Ref: Walter et al. 2007, eq. 23.
+double refracted_share(const Facets& facets, dvec3 wo, dvec3 h, double eta) {
+    if (refracted_cosine_squared(dot(wo, h), eta) < 0) return 0;
+    const dvec3 wi = refract(wo, h, eta);
+    return wi.z < 0 ? smith_g1(facets, wi) : 0;
+}
+
 double ggx_albedo(double alpha_x, double alpha_y, dvec3 wo) {
     const Facets facets{alpha_x, alpha_y};
     return mean_over_visible_normals(facets, wo, 1,
@@ -212,35 +212,8 @@ double ggx_albedo(double alpha_x, double alpha_y, dvec3 wo) {
         .x;
 }
 
-double ggx_edge_albedo(double alpha_x, double alpha_y, dvec3 wo, double eta) {
-    const Facets facets{alpha_x, alpha_y};
-    return mean_over_visible_normals(
-               facets, wo, eta,
-               [&](dvec3 h) { return dvec3(fresnel_edge(dot(wo, h), eta) * reflected_share(facets, wo, h)); })
-        .x;
-}
-
-double glass_albedo(double alpha_x, double alpha_y, dvec3 wo, double eta) {
-    const Facets facets{alpha_x, alpha_y};
-    return mean_over_visible_normals(facets, wo, eta,
-                                     [&](dvec3 h) {
-                                         const double f0 = fresnel_normal(eta);
-                                         const double fresnel = f0 + (1 - f0) * fresnel_edge(dot(wo, h), eta);
-                                         return dvec3(fresnel * reflected_share(facets, wo, h) +
-                                                      (1 - fresnel) * refracted_share(facets, wo, h, eta));
-                                     })
-        .x;
-}
-
-double glass_albedo_clear(double alpha_x, double alpha_y, dvec3 wo, double eta) {
-    const Facets facets{alpha_x, alpha_y};
-    return mean_over_visible_normals(
-               facets, wo, eta,
-               [&](dvec3 h) {
-                   const bool all = refracted_cosine_squared(dot(wo, h), eta) < 0;
-                   return dvec3(all ? reflected_share(facets, wo, h) : refracted_share(facets, wo, h, eta));
-               })
-        .x;
+double ggx_average_loss(double alpha) {
+    return square(alpha) / (0.26 + alpha * (0.92 + 0.51 * alpha));
 }
 
 }  // namespace candela

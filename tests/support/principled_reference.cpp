@@ -12,8 +12,9 @@ namespace candela {
 namespace {
 
 constexpr double PI_D = std::numbers::pi;
-constexpr double LEAST_ALPHA = 1e-3;            // Below it, reflection is ideal.
-constexpr double LEAST_SHEEN_ROUGHNESS = 0.07;  // The model has no value at 0.
+constexpr double LEAST_ALPHA = 1e-3;              // Below it, reflection is ideal.
+constexpr double LEAST_STEP_OF_THE_INDEX = 1e-3;  // The same, in a volume.
+constexpr double LEAST_SHEEN_ROUGHNESS = 0.07;    // The model has no value at 0.
 constexpr double ETA_OF_A_PERFECT_REFLECTOR = 1e6;
 
 double square(double x) {
@@ -26,6 +27,21 @@ double max_channel(dvec3 v) {
 
 dvec3 mirrored(dvec3 w) {
     return dvec3(w.x, w.y, -w.z);
+}
+
+// The lobes of three materials, one for each channel.
+template <class Material>
+PrincipledLobes by_channel(const Material& lobes_of) {
+    PrincipledLobes l;
+    for (int k = 0; k < 3; ++k) {
+        const PrincipledLobes c = lobes_of(size_t(k));
+        for (const auto lobe : {&PrincipledLobes::coat, &PrincipledLobes::sheen, &PrincipledLobes::reflection,
+                                &PrincipledLobes::transmission, &PrincipledLobes::diffuse_reflection,
+                                &PrincipledLobes::diffuse_transmission, &PrincipledLobes::again_up,
+                                &PrincipledLobes::again_down})
+            (l.*lobe)[k] = (c.*lobe)[k];
+    }
+    return l;
 }
 
 // Reflection by facets that reflect everything. Ref: Walter et al. 2007, "Microfacet models for refraction
@@ -61,6 +77,7 @@ PrincipledReference::PrincipledReference(const PrincipledParameters& parameters,
     assert(wo.z > 0 && !(p_.thin && p_.inside));
     find_optics();
     find_shares();
+    find_diffuse_parts();
     find_layers();
     if (p_.thin || p_.transmission == 0 || p_.dispersion == 0 || p_.ior == 0) return;
     for (int k = 0; k < 3; ++k) {
@@ -74,13 +91,17 @@ PrincipledReference::PrincipledReference(const PrincipledParameters& parameters,
 // Roughness (KHR_materials_anisotropy), indices (KHR_materials_ior) and reflectance at normal incidence
 // (KHR_materials_specular, _iridescence).
 void PrincipledReference::find_optics() {
-    const double alpha = square(p_.roughness);
-    facets_ = {std::lerp(alpha, 1.0, square(p_.anisotropy)), alpha};
-    ideal_ = std::max(facets_.alpha_x, facets_.alpha_y) < LEAST_ALPHA;
-    facets_ = {std::max(facets_.alpha_x, LEAST_ALPHA), std::max(facets_.alpha_y, LEAST_ALPHA)};
-
     const double ior = p_.ior == 0 ? ETA_OF_A_PERFECT_REFLECTOR : p_.ior;
     eta_ = p_.inside ? 1 / ior : ior;
+    // Facets between equal indices turn no light, however rough they are.
+    const bool is_unrefracting =
+        !p_.thin && p_.transmission > 0 && std::abs(eta_ - 1) < LEAST_STEP_OF_THE_INDEX;
+
+    const double alpha = square(p_.roughness);
+    facets_ = {std::lerp(alpha, 1.0, square(p_.anisotropy)), alpha};
+    ideal_ = is_unrefracting || std::max(facets_.alpha_x, facets_.alpha_y) < LEAST_ALPHA;
+    facets_ = {std::max(facets_.alpha_x, LEAST_ALPHA), std::max(facets_.alpha_y, LEAST_ALPHA)};
+
     f0_ = min(fresnel_normal(eta_) * p_.specular_color, dvec3(1));
 
     film_ = p_.inside ? 0 : p_.iridescence;
@@ -95,33 +116,52 @@ void PrincipledReference::find_optics() {
     dielectric_f0_ = mix(p_.specular * f0_, film_dielectric_, film_);
 }
 
-// Albedos and the compensation of multiple scattering. Ref: Turquin 2019, "Practical multiple scattering
-// compensation for microfacet models", eq. 16.
+// Means over the facets that wo sees.
 void PrincipledReference::find_shares() {
-    Shares& s = shares_;
-    const double ax = facets_.alpha_x, ay = facets_.alpha_y;
-    s.a = ideal_ ? 1 : ggx_albedo(ax, ay, wo_);
-    s.b = ideal_ ? fresnel_edge(wo_.z, eta_) : ggx_edge_albedo(ax, ay, wo_, eta_);
-    s.k_metal = dvec3(1) + metal_f0_ * (1 - s.a) / s.a;
-    s.k_dielectric = dvec3(1) + dielectric_f0_ * (1 - s.a) / s.a;
-
-    const dvec3 without_film = p_.specular * (f0_ * s.a + (dvec3(1) - f0_) * s.b);
-    s.r = max_channel(mix(without_film, film_dielectric_ * s.a, film_) * s.k_dielectric);
-
+    const auto mean = [&](const std::function<dvec3(dvec3)>& g) {
+        return ideal_ ? g(dvec3(0, 0, 1)) : mean_over_visible_normals(facets_, wo_, p_.thin ? 1 : eta_, g);
+    };
+    const auto reflection_lost = [&](dvec3 h) { return ideal_ ? 0 : 1 - reflected_share(facets_, wo_, h); };
+    const auto transmission_lost = [&](dvec3 h) {
+        // What a thin wall transmits is shadowed as if reflected.
+        return ideal_ || p_.thin ? reflection_lost(h) : 1 - refracted_share(facets_, wo_, h, eta_);
+    };
+    const dvec3 reflected = mean([&](dvec3 h) {
+        const double fresnel = max_channel(film_or_dielectric_fresnel(dot(wo_, h)));
+        return dvec3(reflection_lost(h), fresnel, fresnel * reflection_lost(h));
+    });
+    shares_.metal_lost = reflected[0];
+    shares_.dielectric_reflected = reflected[1];
+    shares_.dielectric_lost = reflected[2];
     if (p_.transmission == 0) return;
-    if (p_.thin) {
-        s.k_transmissive = 1 / s.a;
-        return;
-    }
-    // The albedo of facets that reflect the greatest channel and refract the rest: Fresnel's reflectance F,
-    // scaled to s g F - s (f0 g - f0_max), where there is no total internal reflection.
-    s.e = ideal_ ? 1 : glass_albedo(ax, ay, wo_, eta_);
-    s.e0 = ideal_ ? 1 : glass_albedo_clear(ax, ay, wo_, eta_);
-    const double f0 = fresnel_normal(eta_), f0_max = max_channel(f0_);
-    const double g = (1 - f0_max) / (1 - f0), sg = p_.specular * g;
-    const double albedo = sg * s.e + (1 - sg) * s.e0 - p_.specular * (f0 * g - f0_max) * (s.a - s.e0);
-    // A film reflects the same share everywhere, its greatest channel here.
-    s.k_transmissive = 1 / std::lerp(albedo, std::lerp(s.e0, s.a, max_channel(film_dielectric_)), film_);
+    const dvec3 transmitted = mean([&](dvec3 h) {
+        const double fresnel = max_channel(transmitting_fresnel(dot(wo_, h)));
+        return dvec3(std::lerp(transmission_lost(h), reflection_lost(h), fresnel));
+    });
+    shares_.glass_lost = transmitted[0];
+}
+
+// What facets lose goes out diffusely, as much as metal reflects and on those sides to which glass sends
+// diffuse light. After Kulla and Conty 2017, "Revisiting physically based shading at Imageworks", but as a
+// function of wo alone.
+void PrincipledReference::find_diffuse_parts() {
+    const dvec3 metal = metal_f0_ + (1 - film_) / 21 * (dvec3(1) - p_.base_color);
+    const double loss = ggx_average_loss(std::sqrt(facets_.alpha_x * facets_.alpha_y));
+    const dvec3 metal_again = metal * metal * (1 - loss) / (dvec3(1) - metal * loss);
+
+    // Schlick's reflectance of an even sky. From inside, the share eta^2 of it is not totally reflected, and
+    // of that, as much is transmitted as from outside.
+    const double f0 = fresnel_normal(eta_), outside = f0 + (1 - f0) / 21;
+    const double up = p_.thin || eta_ >= 1 ? outside : 1 - (1 - outside) * square(eta_);
+
+    // What the dielectric over an opaque base does not reflect again joins the light that reaches the base.
+    const double dielectric = (1 - p_.metalness) * (1 - p_.transmission);
+    const double glass = (1 - p_.metalness) * p_.transmission;
+    again_up_ = p_.metalness * shares_.metal_lost * metal_again + glass * shares_.glass_lost * up +
+                dielectric * shares_.dielectric_lost * dielectric_f0_;
+    again_down_ = glass * shares_.glass_lost * (1 - up) * p_.base_color;
+    diffuse_ = dielectric * (1 - shares_.dielectric_reflected +
+                             shares_.dielectric_lost * (1 - max_channel(dielectric_f0_)));
 }
 
 // Sheen (KHR_materials_sheen, "Albedo-scaling technique", of wo alone) and coat (KHR_materials_clearcoat, by
@@ -145,13 +185,12 @@ void PrincipledReference::find_layers() {
     const double alpha = square(p_.coat_roughness);
     coat_ideal_ = alpha < LEAST_ALPHA;
     coat_facets_ = {std::max(alpha, LEAST_ALPHA), std::max(alpha, LEAST_ALPHA)};
-    const double f0 = fresnel_normal(p_.coat_ior);
     const dvec3 wo = to_coat(wo_);
-    const double a = coat_ideal_ ? 1 : ggx_albedo(coat_facets_.alpha_x, coat_facets_.alpha_y, wo);
-    const double b = coat_ideal_
-                         ? fresnel_edge(cosine, p_.coat_ior)
-                         : ggx_edge_albedo(coat_facets_.alpha_x, coat_facets_.alpha_y, wo, p_.coat_ior);
-    shares_.rc = f0 * a + (1 - f0) * b;
+    shares_.rc = coat_ideal_
+                     ? coat_fresnel(cosine)
+                     : mean_over_visible_normals(coat_facets_, wo, 1, [&](dvec3 h) {
+                           return dvec3(coat_fresnel(dot(wo, h)) * reflected_share(coat_facets_, wo, h));
+                       }).x;
     coat_transmittance_ = 1 - p_.coat * shares_.rc;
 
     // Estimates of the base's roughness and reflectance. Where it transmits, no diffuse base lies below it.
@@ -166,11 +205,6 @@ void PrincipledReference::find_layers() {
         mix(dvec3(1), coat_darkening(p_.coat_ior, cosine, albedo, roughness), p_.coat * p_.coat_darkening);
 }
 
-// Facets between equal indices turn no light, however rough they are: all goes straight on.
-bool PrincipledReference::is_unrefracting() const {
-    return !p_.thin && p_.transmission > 0 && eta_ == 1;
-}
-
 // F_d, with Fresnel's own curve between normal incidence and the edge; KHR_materials_specular.
 dvec3 PrincipledReference::dielectric_fresnel(double cosine) const {
     return p_.specular * (f0_ + (dvec3(1) - f0_) * fresnel_edge(cosine, eta_));
@@ -180,23 +214,24 @@ dvec3 PrincipledReference::film_or_dielectric_fresnel(double cosine) const {
     return mix(dielectric_fresnel(cosine), film_dielectric_, film_);
 }
 
+// That of the share of the surface that transmits: where no light gets through, it reflects all of it.
+dvec3 PrincipledReference::transmitting_fresnel(double cosine) const {
+    const bool total = !p_.thin && refracted_cosine_squared(cosine, eta_) <= 0;
+    return total ? dvec3(1) : film_or_dielectric_fresnel(cosine);
+}
+
 // What all kinds of specular reflection together multiply facets' reflection by.
 dvec3 PrincipledReference::specular_fresnel(double cosine) const {
     const dvec3 schlick = p_.base_color + (dvec3(1) - p_.base_color) * std::pow(1 - cosine, 5);
-    const dvec3 metal = mix(schlick, film_metal_, film_) * shares_.k_metal;
-    // Where no light is transmitted, the transmitting share of the surface reflects all of it.
-    const bool total = !p_.thin && refracted_cosine_squared(cosine, eta_) <= 0;
-    const dvec3 reflected = film_or_dielectric_fresnel(cosine);
-    const dvec3 dielectric = mix(reflected * shares_.k_dielectric,
-                                 (total ? dvec3(1) : reflected) * shares_.k_transmissive, p_.transmission);
-    return mix(dielectric, metal, p_.metalness);
+    const dvec3 dielectric =
+        mix(film_or_dielectric_fresnel(cosine), transmitting_fresnel(cosine), p_.transmission);
+    return mix(dielectric, mix(schlick, film_metal_, film_), p_.metalness);
 }
 
 // The same for specular transmission; KHR_materials_transmission.
 dvec3 PrincipledReference::transmittance(double cosine) const {
-    if (!p_.thin && refracted_cosine_squared(cosine, eta_) <= 0) return dvec3(0);
-    return (1 - p_.metalness) * p_.transmission * p_.base_color *
-           (1 - max_channel(film_or_dielectric_fresnel(cosine))) * shares_.k_transmissive;
+    return (1 - p_.metalness) * p_.transmission * (1 - max_channel(transmitting_fresnel(cosine))) *
+           p_.base_color;
 }
 
 double PrincipledReference::coat_fresnel(double cosine) const {
@@ -217,7 +252,6 @@ dvec3 PrincipledReference::transmission_value(dvec3 wi) const {
         const dvec3 other = mirrored(wi);
         return facet_reflection(facets_, wo_, other) * transmittance(dot(wo_, normalize(wo_ + other)));
     }
-    if (is_unrefracting()) return dvec3(0);
     const double value = facet_refraction(facets_, wo_, wi, eta_);
     return value > 0 ? value * transmittance(dot(wo_, refracting_normal(wo_, wi, eta_))) : dvec3(0);
 }
@@ -240,20 +274,9 @@ dvec3 PrincipledReference::from_coat(dvec3 w) const {
 }
 
 PrincipledLobes PrincipledReference::lobes(dvec3 wi) const {
+    if (!channels_.empty()) return by_channel([&](size_t k) { return channels_[k].lobes(wi); });
     PrincipledLobes l;
     if (wi.z == 0) return l;
-    if (!channels_.empty()) {
-        for (int k = 0; k < 3; ++k) {
-            const PrincipledLobes c = channels_[size_t(k)].lobes(wi);
-            for (const auto lobe :
-                 {&PrincipledLobes::coat, &PrincipledLobes::sheen, &PrincipledLobes::reflection,
-                  &PrincipledLobes::transmission, &PrincipledLobes::diffuse_reflection,
-                  &PrincipledLobes::diffuse_transmission})
-                (l.*lobe)[k] = (c.*lobe)[k];
-        }
-        return l;
-    }
-    const double diffuse = (1 - p_.metalness) * (1 - p_.transmission) * (1 - shares_.r);
     const double under_layers = coat_transmittance_ * sheen_transmittance_;
     if (wi.z > 0) {
         l.coat = dvec3(coat_value(wi));
@@ -261,31 +284,24 @@ PrincipledLobes PrincipledReference::lobes(dvec3 wi) const {
             l.sheen =
                 coat_transmittance_ * darkening_ * p_.sheen_color * sheen_scale_ * sheen_f(alpha_g_, wo_, wi);
         l.reflection = under_layers * darkening_ * reflection_value(wi);
-        l.diffuse_reflection = under_layers * darkening_ * diffuse * (1 - p_.diffuse_transmission) *
+        l.diffuse_reflection = under_layers * darkening_ * diffuse_ * (1 - p_.diffuse_transmission) *
                                eon_f(p_.base_color, p_.diffuse_roughness, wo_, wi);
+        l.again_up = under_layers * darkening_ / PI_D * again_up_;
     } else {
         l.transmission = under_layers * transmission_value(wi);
         l.diffuse_transmission =
-            under_layers * diffuse * p_.diffuse_transmission / PI_D * p_.diffuse_transmission_color;
+            under_layers * diffuse_ * p_.diffuse_transmission / PI_D * p_.diffuse_transmission_color;
+        l.again_down = under_layers / PI_D * again_down_;
     }
     return l;
 }
 
 PrincipledLobes PrincipledReference::ideal() const {
+    if (!channels_.empty()) return by_channel([&](size_t k) { return channels_[k].ideal(); });
     PrincipledLobes l;
-    if (!channels_.empty()) {
-        for (int k = 0; k < 3; ++k) {
-            const PrincipledLobes c = channels_[size_t(k)].ideal();
-            for (const auto lobe :
-                 {&PrincipledLobes::coat, &PrincipledLobes::reflection, &PrincipledLobes::transmission})
-                (l.*lobe)[k] = (c.*lobe)[k];
-        }
-        return l;
-    }
     if (has_coat_ && coat_ideal_ && reflect(wo_, p_.coat_normal).z > 0)
         l.coat = dvec3(p_.coat * coat_fresnel(dot(wo_, p_.coat_normal)));
     const double under_layers = coat_transmittance_ * sheen_transmittance_;
-    if (!ideal_ && is_unrefracting()) l.transmission = under_layers * shares_.e0 * transmittance(wo_.z);
     if (!ideal_) return l;
     l.reflection = under_layers * darkening_ * specular_fresnel(wo_.z);
     l.transmission = under_layers * transmittance(wo_.z);
@@ -293,19 +309,8 @@ PrincipledLobes PrincipledReference::ideal() const {
 }
 
 PrincipledLobes PrincipledReference::albedos() const {
-    PrincipledLobes l;
-    if (!channels_.empty()) {
-        for (int k = 0; k < 3; ++k) {
-            const PrincipledLobes c = channels_[size_t(k)].albedos();
-            for (const auto lobe :
-                 {&PrincipledLobes::coat, &PrincipledLobes::sheen, &PrincipledLobes::reflection,
-                  &PrincipledLobes::transmission, &PrincipledLobes::diffuse_reflection,
-                  &PrincipledLobes::diffuse_transmission})
-                (l.*lobe)[k] = (c.*lobe)[k];
-        }
-        return l;
-    }
-    l = ideal();
+    if (!channels_.empty()) return by_channel([&](size_t k) { return channels_[k].albedos(); });
+    PrincipledLobes l = ideal();
     // f cos / pdf, where light that wo sees by reflection at h has the density D_wo(h) / (4 o.h).
     if (!ideal_) {
         const auto mean = [&](const std::function<dvec3(dvec3)>& g) {
@@ -322,7 +327,7 @@ PrincipledLobes PrincipledReference::albedos() const {
                 return wi.z > 0 ? lobes(mirrored(wi)).transmission * wi.z * weight(h) : dvec3(0);
             });
         // Refraction: D_wo(h) eta^2 |i.h| / (o.h + eta i.h)^2, of which eta^2 is taken up by energy.
-        if (p_.transmission > 0 && !p_.thin && !is_unrefracting())
+        if (p_.transmission > 0 && !p_.thin)
             l.transmission = mean([&](dvec3 h) {
                 if (refracted_cosine_squared(dot(wo_, h), eta_) <= 0) return dvec3(0);
                 const dvec3 wi = refract(wo_, h, eta_);
@@ -342,8 +347,11 @@ PrincipledLobes PrincipledReference::albedos() const {
     }
     if (has_sheen_) l.sheen = integrate_over_cosine(wo_, [&](dvec3 wi) { return lobes(wi).sheen; });
     l.diffuse_reflection = integrate_over_cosine(wo_, [&](dvec3 wi) { return lobes(wi).diffuse_reflection; });
-    l.diffuse_transmission =
-        integrate_over_cosine(wo_, [&](dvec3 wi) { return lobes(mirrored(wi)).diffuse_transmission; });
+    // The others are Lambert's.
+    const dvec3 above(0, 0, 1), below(0, 0, -1);
+    l.again_up = PI_D * lobes(above).again_up;
+    l.again_down = PI_D * lobes(below).again_down;
+    l.diffuse_transmission = PI_D * lobes(below).diffuse_transmission;
     return l;
 }
 

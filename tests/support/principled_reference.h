@@ -1,6 +1,6 @@
 // The principled material in double precision, from its definition and not from the shaders: a metal or a
-// dielectric over a diffuse or transmissive base, under sheen and a coat. Shares of light are found by
-// quadrature, not by fits.
+// dielectric over a diffuse or transmissive base, under sheen and a coat. What facets lose by shadowing each
+// other is given back diffusely. Shares of light are found by quadrature, not by fits.
 //
 // Local frame: z is the shading normal on the viewer's side, x the (rotated) tangent. wo, the viewer, has z >
 // 0; wi, the light, may lie on either side.
@@ -41,11 +41,14 @@ struct PrincipledParameters {
     double iridescence_thickness = 400;  // [nm]
 };
 
-// A value for each lobe: of the BSDF [1/sr], or a share of light. They add up to the whole.
+// A value for each lobe: of the BSDF [1/sr], or a share of light. They add up to the whole. The last two are
+// the light that facets scatter more than once, on the viewer's side and on the other.
 struct PrincipledLobes {
     dvec3 coat{0}, sheen{0}, reflection{0}, transmission{0}, diffuse_reflection{0}, diffuse_transmission{0};
+    dvec3 again_up{0}, again_down{0};
     dvec3 sum() const {
-        return coat + sheen + reflection + transmission + diffuse_reflection + diffuse_transmission;
+        return coat + sheen + reflection + transmission + diffuse_reflection + diffuse_transmission +
+               again_up + again_down;
     }
 };
 
@@ -63,9 +66,10 @@ class PrincipledReference {
     dvec3 transmission(dvec3 wi) const { return lobes(wi).transmission; }
     dvec3 diffuse_reflection(dvec3 wi) const { return lobes(wi).diffuse_reflection; }
     dvec3 diffuse_transmission(dvec3 wi) const { return lobes(wi).diffuse_transmission; }
+    dvec3 again_up(dvec3 wi) const { return lobes(wi).again_up; }
+    dvec3 again_down(dvec3 wi) const { return lobes(wi).again_down; }
 
-    // Share of energy that ideal parts send into their one direction; 0 where a lobe is rough. (Between equal
-    // indices, transmission is ideal at any roughness.)
+    // Share of energy that ideal parts send into their one direction; 0 where a lobe is rough.
     PrincipledLobes ideal() const;
     // By quadrature of the value: share of the energy of an even sky, of all lobes and ideal parts.
     PrincipledLobes albedos() const;
@@ -74,31 +78,31 @@ class PrincipledReference {
     // What sheen and coat leave of light that the surface emits towards wo.
     double emission_factor() const { return coat_transmittance_ * sheen_transmittance_; }
 
-    // Whether specular reflection and transmission, and the coat's reflection, are ideal.
+    // Whether specular reflection and transmission, and the coat's reflection, are ideal. (Those of a volume
+    // whose index is the air's are, at any roughness.)
     bool is_ideal() const { return ideal_; }
     bool is_coat_ideal() const { return coat_ideal_; }
 
-    // The quadratures and what follows from them, of the green index if there is dispersion. Those that the
-    // parameters have no use for are 0: of glass without volume or transmission, of sheen or coat without
-    // any.
+    // The quadratures, of the green index if there is dispersion. Those that the parameters have no use for
+    // are 0: of glass without transmission, of sheen or coat without any.
     struct Shares {
-        double a = 0, b = 0;    // ggx_albedo, ggx_edge_albedo.
-        double e = 0, e0 = 0;   // glass_albedo, glass_albedo_clear.
-        double es = 0, rc = 0;  // Of the sheen; of the coat, at weight 1.
-        double r = 0;           // Of the dielectric's reflection, by which the base under it is dimmed.
-        dvec3 k_metal{1}, k_dielectric{1};  // Compensation of multiple scattering.
-        double k_transmissive = 1;
+        double metal_lost = 0;            // By facets that reflect everything, to shadowing.
+        double glass_lost = 0;            // By clear glass, of the dielectric's reflectance.
+        double dielectric_lost = 0;       // By the dielectric's reflection, over an opaque base.
+        double dielectric_reflected = 0;  // By its facets, with what is lost: it does not reach the base.
+        double es = 0, rc = 0;            // Reflected by the sheen; by the coat, at weight 1.
     };
     const Shares& shares() const { return shares_; }
 
   private:
     void find_optics();
     void find_shares();
+    void find_diffuse_parts();
     void find_layers();
 
-    bool is_unrefracting() const;
     dvec3 dielectric_fresnel(double cosine) const;
     dvec3 film_or_dielectric_fresnel(double cosine) const;
+    dvec3 transmitting_fresnel(double cosine) const;
     dvec3 specular_fresnel(double cosine) const;
     dvec3 transmittance(double cosine) const;
     double coat_fresnel(double cosine) const;
@@ -116,8 +120,10 @@ class PrincipledReference {
     double eta_ = 1, alpha_g_ = 1;
     dvec3 f0_{0};                               // Of the dielectric at normal incidence, before `specular`.
     dvec3 film_metal_{0}, film_dielectric_{0};  // Reflectance of the film on either.
-    dvec3 metal_f0_{0}, dielectric_f0_{0};      // What compensation takes for reflectance.
+    dvec3 metal_f0_{0}, dielectric_f0_{0};      // With the film.
     Shares shares_{};
+    dvec3 again_up_{0}, again_down_{0};  // Shares of light, before the layers.
+    double diffuse_ = 0;                 // What reaches the opaque base.
     double coat_transmittance_ = 1, sheen_transmittance_ = 1, sheen_scale_ = 1;
     dvec3 darkening_{1};
     dvec3 coat_x_{1, 0, 0}, coat_y_{0, 1, 0};
