@@ -33,8 +33,8 @@ size_t cell_of(const BsdfCase& c, const Histogram& cells, vec3 w) {
 }
 
 // One-sided: the probability of a mean at least this far above 1, beyond rounding, if the expectation is 1.
-double p_value_of_gain(double mean, double variance) {
-    const double excess = mean - 1.0 - 0x1p-20;
+double p_value_of_gain(double mean, double variance, double rounding) {
+    const double excess = mean - 1.0 - rounding;
     if (excess <= 0.0) return 1.0;
     return variance > 0.0 ? 0.5 * normal_p_value(excess / std::sqrt(variance)) : 0.0;
 }
@@ -182,12 +182,14 @@ void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evid
                           ", eta ", s.eta);
         });
     }
-    // No more light leaves than arrives.
+    // No more light leaves than arrives. Of the principled material, lobes and what facets lose add up to 1:
+    // some dozens of roundings, which are as coarse as Vulkan allows.
+    const double rounding = model == MATERIAL_PRINCIPLED ? 0x1p-16 : 0x1p-20;
     const auto count = double(results.size());
     for (const int i : {0, 1, 2}) {
         const double mean = albedo[i] / count;
         const double variance = (squares[i] / count - mean * mean) / count;
-        evidence.add_p_value(concat(c.name, ": albedo ", mean), p_value_of_gain(mean, variance));
+        evidence.add_p_value(concat(c.name, ": albedo ", mean), p_value_of_gain(mean, variance, rounding));
     }
 }
 

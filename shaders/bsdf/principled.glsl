@@ -291,9 +291,9 @@ FacetMeans principled_measure(Principled p, float d_0, float d_edge, vec3 wo, ve
 
 // Colour of light that metal facets scatter more than once, m_0 + m_edge S each time.
 // Ref: Kulla and Conty 2017. The mean of S is 1/21. How much light is lost on average over all angles is a fit, within
-// 2 %: the colour depends on it, the energy does not.
+// 0.01: the colour depends on it, the energy does not.
 vec3 metal_again(vec3 m_0, vec3 m_edge, vec2 alpha) {
-    float a = sqrt(alpha.x * alpha.y);
+    float a = sqrt(0.5 * dot(alpha, alpha));
     float lost = square(a) / (0.26 + a * (0.92 + 0.51 * a));
     vec3 mean = m_0 + m_edge / 21.0;
     return mean * mean * ((1.0 - lost) / (1.0 - mean * lost));

@@ -146,7 +146,7 @@ void PrincipledReference::find_shares() {
 // function of wo alone.
 void PrincipledReference::find_diffuse_parts() {
     const dvec3 metal = metal_f0_ + (1 - film_) / 21 * (dvec3(1) - p_.base_color);
-    const double loss = ggx_average_loss(std::sqrt(facets_.alpha_x * facets_.alpha_y));
+    const double loss = ggx_average_loss(std::hypot(facets_.alpha_x, facets_.alpha_y) / std::numbers::sqrt2);
     const dvec3 metal_again = metal * metal * (1 - loss) / (dvec3(1) - metal * loss);
 
     // Schlick's reflectance of an even sky. From inside, the share eta^2 of it is not totally reflected, and
@@ -289,9 +289,10 @@ PrincipledLobes PrincipledReference::lobes(dvec3 wi) const {
         l.again_up = under_layers * darkening_ / PI_D * again_up_;
     } else {
         l.transmission = under_layers * transmission_value(wi);
-        l.diffuse_transmission =
-            under_layers * diffuse_ * p_.diffuse_transmission / PI_D * p_.diffuse_transmission_color;
-        l.again_down = under_layers / PI_D * again_down_;
+        // Radiance is divided by eta^2, however light gets through.
+        const double through = under_layers / (PI_D * square(p_.thin ? 1 : eta_));
+        l.diffuse_transmission = through * diffuse_ * p_.diffuse_transmission * p_.diffuse_transmission_color;
+        l.again_down = through * again_down_;
     }
     return l;
 }
@@ -350,8 +351,9 @@ PrincipledLobes PrincipledReference::albedos() const {
     // The others are Lambert's.
     const dvec3 above(0, 0, 1), below(0, 0, -1);
     l.again_up = PI_D * lobes(above).again_up;
-    l.again_down = PI_D * lobes(below).again_down;
-    l.diffuse_transmission = PI_D * lobes(below).diffuse_transmission;
+    const double energy = PI_D * square(p_.thin ? 1 : eta_);
+    l.again_down = energy * lobes(below).again_down;
+    l.diffuse_transmission = energy * lobes(below).diffuse_transmission;
     return l;
 }
 

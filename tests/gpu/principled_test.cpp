@@ -1,0 +1,148 @@
+// The principled material on the device against its reference in double precision, which is written apart
+// from the shaders and integrates where they measure.
+#include "shared/principled.h"
+
+#include <utility>
+
+#include "gpu/bsdf_fixture.h"
+#include "support/principled_reference.h"
+
+namespace candela {
+namespace {
+
+// Floats and their roundings: some forty operations; where alpha is small, D has the eighth power of them.
+// Beyond that, pairs of directions far from a narrow lobe do not count.
+constexpr double ROUNDING = 1e-4;
+
+PrincipledParameters parameters_of(const PrincipledMaterial& m, bool inside) {
+    return {.base_color = dvec3(m.base_color.factor),
+            .metalness = double(m.metalness.factor),
+            .roughness = double(m.roughness.factor),
+            .diffuse_roughness = double(m.diffuse_roughness.factor),
+            .ior = double(m.ior),
+            .specular = double(m.specular.factor),
+            .specular_color = dvec3(m.specular_color.factor),
+            .anisotropy = double(m.anisotropy.factor),
+            .transmission = double(m.transmission.factor),
+            .thin = !m.inside,
+            .inside = inside,
+            .dispersion = double(m.dispersion),
+            .diffuse_transmission = double(m.diffuse_transmission.factor),
+            .diffuse_transmission_color = dvec3(m.diffuse_transmission_color.factor),
+            .coat = double(m.coat.factor),
+            .coat_roughness = double(m.coat_roughness.factor),
+            .coat_ior = double(m.coat_ior),
+            .coat_darkening = double(m.coat_darkening),
+            .sheen_color = dvec3(m.sheen_color.factor),
+            .sheen_roughness = double(m.sheen_roughness.factor),
+            .iridescence = double(m.iridescence.factor),
+            .iridescence_ior = double(m.iridescence_ior),
+            .iridescence_thickness = double(m.iridescence_thickness.factor)};
+}
+
+// A pair of directions, and the mean of the value over the facets that are measured there.
+struct Mean {
+    dvec3 value{0};
+    dvec3 error{0};  // Standard error.
+};
+
+class PrincipledTest : public BsdfTest {
+  protected:
+    // Each of `pairs` seen by as many choices of facets.
+    std::vector<Mean> means(const PrincipledMaterial& m, const std::vector<std::pair<vec3, vec3>>& pairs,
+                            bool inside, uint32_t choices) const {
+        std::vector<BsdfItem> items;
+        for (const auto& [wo, wi] : pairs) {
+            for (uint32_t i = 0; i < choices; ++i) {
+                items.push_back(bsdf_item(principled(m), wo, wi, inside ? 1 : 0));
+                items.back().random = i;
+            }
+        }
+        const std::vector<BsdfResult> results = run(items);
+        std::vector<Mean> means;
+        for (size_t p = 0; p < pairs.size(); ++p) {
+            dvec3 sum(0), squares(0);
+            for (uint32_t i = 0; i < choices; ++i) {
+                const dvec3 f(results[p * choices + i].f);
+                sum += f, squares += f * f;
+            }
+            const double n = choices;
+            const dvec3 variance = max((squares / n - sum * sum / (n * n)) / (n - 1.0), dvec3(0));
+            means.push_back({sum / n, sqrt(variance)});
+        }
+        return means;
+    }
+    // Random pairs over the sphere, and near the mirrored and the straight direction.
+    static std::vector<std::pair<vec3, vec3>> pairs(Random& random, size_t count) {
+        std::vector<std::pair<vec3, vec3>> result;
+        while (result.size() < count) {
+            vec3 wo = random.direction(), wi = random.direction();
+            wo.z = std::abs(wo.z);
+            const vec3 lobe = result.size() % 3 == 0 ? vec3(-wo.x, -wo.y, wo.z) : -wo;
+            if (result.size() % 3 != 2) wi = normalize(lobe + 0.5f * wi);
+            if (wo.z > 0.02f && std::abs(wi.z) > 0.02f) result.emplace_back(wo, wi);
+        }
+        return result;
+    }
+    // The device's values must be those of the reference, within rounding and the noise of facets.
+    void expect_reference(const std::string& name, const PrincipledMaterial& m, bool inside,
+                          uint32_t seed) const {
+        Random random(seed);
+        const auto at = pairs(random, 60);
+        const std::vector<Mean> found = means(m, at, inside, 256);
+        const PrincipledParameters parameters = parameters_of(m, inside);
+        for (size_t i = 0; i < at.size(); ++i) {
+            const auto& [wo, wi] = at[i];
+            const dvec3 expected =
+                PrincipledReference(parameters, normalize(dvec3(wo))).f(normalize(dvec3(wi)));
+            for (int c = 0; c < 3; ++c) {
+                // Six standard errors of each of some 10^4 numbers.
+                const double tolerance = ROUNDING * (expected[c] + 0.01) + 6.0 * found[i].error[c];
+                ASSERT_NEAR(found[i].value[c], expected[c], tolerance)
+                    << name << ", channel " << c << ", wo " << wo.x << ' ' << wo.y << ' ' << wo.z << ", wi "
+                    << wi.x << ' ' << wi.y << ' ' << wi.z;
+            }
+        }
+    }
+};
+
+// Random materials of all layers: the seed decides which of them there are.
+PrincipledMaterial random_material(Random& random) {
+    const auto share = [&]() { return random.bits() % 3 == 0 ? 0.0f : random.unit(); };
+    const auto color = [&]() { return vec3(random.unit(), random.unit(), random.unit()); };
+    PrincipledMaterial m{.base_color = color(),
+                         .metalness = share(),
+                         .roughness = 0.15f + 0.85f * random.unit(),
+                         .diffuse_roughness = share(),
+                         .ior = 1.1f + random.unit(),
+                         .specular = 1.0f - share(),
+                         .specular_color = vec3(1.0f) - share() * color(),
+                         .anisotropy = share(),
+                         .transmission = share(),
+                         .dispersion = random.bits() % 4 == 0 ? random.unit() : 0.0f,
+                         .diffuse_transmission = share(),
+                         .diffuse_transmission_color = color(),
+                         .coat = share(),
+                         .coat_roughness = 0.15f + 0.85f * random.unit(),
+                         .coat_ior = 1.2f + random.unit(),
+                         .coat_darkening = share(),
+                         .sheen_color = share() * color(),
+                         .sheen_roughness = 0.3f + 0.7f * random.unit(),
+                         .iridescence = share(),
+                         .iridescence_ior = 1.1f + random.unit(),
+                         .iridescence_thickness = 100.0f + 900.0f * random.unit()};
+    if (random.bits() % 2 == 0) m.inside = Medium{};
+    return m;
+}
+
+TEST_F(PrincipledTest, ValuesOfRandomMaterialsAreThoseOfTheReference) {
+    Random random(31);
+    for (uint32_t i = 0; i < 60; ++i) {
+        const PrincipledMaterial m = random_material(random);
+        expect_reference("material " + std::to_string(i), m, false, 100 + i);
+        if (m.inside) expect_reference("material " + std::to_string(i) + " from inside", m, true, 200 + i);
+    }
+}
+
+}  // namespace
+}  // namespace candela
