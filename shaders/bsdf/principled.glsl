@@ -72,8 +72,8 @@ struct Principled {
     vec3 r_schlick;
     vec3 r_total;    // Instead of these, where reflection is total: the transmitting share loses nothing.
     vec3 transmit;
-    float t_0;
-    float t_edge;
+    vec3 t_0;
+    vec3 t_edge;
 
     vec3 base_color;  // Of the diffuse base,
     float roughness;
@@ -262,8 +262,8 @@ float glass_lost(Principled p, float eta, float d_0, float d_edge, float shadowe
     return mix(hidden, shadowed, reflected);
 }
 
-// Of facets whose dielectric reflects d_0 + d_edge t.
-FacetMeans principled_measure(Principled p, float d_0, float d_edge, vec3 wo, vec2 shift) {
+// Of facets whose dielectric reflects d_0 + d_edge t, for the index of refraction of red, of green and of blue light.
+FacetMeans principled_measure(Principled p, vec3 d_0, vec3 d_edge, vec3 wo, vec2 shift) {
     FacetMeans sum = FacetMeans(vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0));
     float reach_o = ggx_reach(p.alpha, wo);
     for (uint i = 0u; i < FACETS; ++i) {
@@ -271,18 +271,20 @@ FacetMeans principled_measure(Principled p, float d_0, float d_edge, vec3 wo, ve
         float cos_o = dot(wo, h);
         float shadowed = facet_shadowed(p.alpha, wo, 2.0 * cos_o * h - wo, reach_o);
         vec3 edge = principled_edge(p, cos_o);
-        float most = min(d_0 + d_edge * edge.y, 1.0);
+        float most = min(d_0.y + d_edge.y * edge.y, 1.0);
         sum.edge += edge;
         sum.schlick += schlick_weight(cos_o);
         sum.most += most;
         sum.most_lost += most * shadowed;
         sum.lost += shadowed;
         if (!PRINCIPLED_TRANSMITS) continue;
-        float green = glass_lost(p, p.eta.y, d_0, d_edge, shadowed, wo, h);
-        sum.glass_lost += green;
-        if (!principled_has(PRINCIPLED_HAS_DISPERSION)) continue;
-        sum.glass_lost.x += glass_lost(p, p.eta.x, d_0, d_edge, shadowed, wo, h) - green;
-        sum.glass_lost.z += glass_lost(p, p.eta.z, d_0, d_edge, shadowed, wo, h) - green;
+        float green = glass_lost(p, p.eta.y, d_0.y, d_edge.y, shadowed, wo, h);
+        vec3 lost = vec3(green);
+        if (principled_has(PRINCIPLED_HAS_DISPERSION)) {
+            lost.x = glass_lost(p, p.eta.x, d_0.x, d_edge.x, shadowed, wo, h);
+            lost.z = glass_lost(p, p.eta.z, d_0.z, d_edge.z, shadowed, wo, h);
+        }
+        sum.glass_lost += lost;
     }
     const float EACH = 1.0 / float(FACETS);
     return FacetMeans(EACH * sum.edge, EACH * sum.schlick, EACH * sum.most, EACH * sum.most_lost, EACH * sum.lost,
@@ -326,28 +328,32 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     if (principled_has(PRINCIPLED_HAS_DISPERSION) && p.refracts) p.eta *= s.spread;
 
     // The reflectance of facets: d_0 + d_edge t of the dielectric, m_0 + m_edge S of the metal.
-    float f0 = square((s.eta - 1.0) / (s.eta + 1.0));
-    vec3 d_0 = vec3(f0), d_edge = vec3(1.0 - f0);
+    vec3 root = (p.eta - 1.0) / (p.eta + 1.0);
+    vec3 f0 = root * root;
+    vec3 d_0 = f0, d_edge = 1.0 - f0;
+    vec3 most_0 = f0;  // The greatest channel, if the index were that of red, of green and of blue light.
     if (principled_has(PRINCIPLED_HAS_SPECULAR)) {
         d_0 = r.specular * min(f0 * r.specular_color, 1.0);
         d_edge = max(r.specular - d_0, 0.0);
+        most_0 = r.specular * min(f0 * max_component(r.specular_color), 1.0);
     }
+    vec3 most_edge = (principled_has(PRINCIPLED_HAS_SPECULAR) ? r.specular : 1.0) - most_0;
     float smooth_share = max_component(d_0 + d_edge * fresnel_edge(s.eta, wo.z));
     vec3 m_0 = s.base_color, m_edge = 1.0 - s.base_color;
     if (principled_has(PRINCIPLED_HAS_IRIDESCENCE) && !s.inside && r.iridescence > 0.0) {
         float thickness = r.thickness + r.thickness_range;
         vec3 film = fresnel_film(wo.z, r.iridescence_ior, thickness, d_0);
         d_0 = mix(d_0, film, r.iridescence);
+        most_0 = mix(most_0, vec3(max_component(film)), r.iridescence);
+        most_edge *= 1.0 - r.iridescence;
         d_edge *= 1.0 - r.iridescence;
         if (principled_has(PRINCIPLED_HAS_METAL)) {
             m_0 = mix(m_0, fresnel_film(wo.z, r.iridescence_ior, thickness, m_0), r.iridescence);
             m_edge *= 1.0 - r.iridescence;
         }
     }
-    float most_0 = max_component(d_0), most_edge = max_component(d_edge);
-
     FacetMeans mean = FacetMeans(principled_edge(p, wo.z), schlick_weight(wo.z), 0.0, 0.0, 0.0, vec3(0.0));
-    mean.most = min(most_0 + most_edge * mean.edge.y, 1.0);
+    mean.most = min(most_0.y + most_edge.y * mean.edge.y, 1.0);
     if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal) {
         mean = principled_measure(p, most_0, most_edge, wo, s.random.xy);
     }
@@ -367,7 +373,7 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
         p.r_total += metal * m_0;
         p.again += metal * mean.lost * metal_again(m_0, m_edge, p.alpha);
     }
-    float below = opaque * max(1.0 - mean.most + mean.most_lost * (1.0 - most_0), 0.0);
+    float below = opaque * max(1.0 - mean.most + mean.most_lost * (1.0 - max_component(d_0)), 0.0);
     float diffuse_transmission = principled_has(PRINCIPLED_HAS_DIFFUSE_TRANSMISSION) ? r.diffuse_transmission : 0.0;
     p.base_color = s.base_color;
     p.roughness = r.diffuse_roughness;

@@ -14,6 +14,9 @@ namespace {
 // Beyond that, pairs of directions far from a narrow lobe do not count.
 constexpr double ROUNDING = 1e-4;
 
+// What sheen leaves to the layers below is a fit: bsdf/sheen_albedo.glsl.
+constexpr double SHEEN_FIT = 0.01;
+
 PrincipledParameters parameters_of(const PrincipledMaterial& m, bool inside) {
     return {.base_color = dvec3(m.base_color.factor),
             .metalness = double(m.metalness.factor),
@@ -110,38 +113,124 @@ class PrincipledTest : public BsdfTest {
 PrincipledMaterial random_material(Random& random) {
     const auto share = [&]() { return random.bits() % 3 == 0 ? 0.0f : random.unit(); };
     const auto color = [&]() { return vec3(random.unit(), random.unit(), random.unit()); };
-    PrincipledMaterial m{.base_color = color(),
-                         .metalness = share(),
-                         .roughness = 0.15f + 0.85f * random.unit(),
-                         .diffuse_roughness = share(),
-                         .ior = 1.1f + random.unit(),
-                         .specular = 1.0f - share(),
-                         .specular_color = vec3(1.0f) - share() * color(),
-                         .anisotropy = share(),
-                         .transmission = share(),
-                         .dispersion = random.bits() % 4 == 0 ? random.unit() : 0.0f,
-                         .diffuse_transmission = share(),
-                         .diffuse_transmission_color = color(),
-                         .coat = share(),
-                         .coat_roughness = 0.15f + 0.85f * random.unit(),
-                         .coat_ior = 1.2f + random.unit(),
-                         .coat_darkening = share(),
-                         .sheen_color = share() * color(),
-                         .sheen_roughness = 0.3f + 0.7f * random.unit(),
-                         .iridescence = share(),
-                         .iridescence_ior = 1.1f + random.unit(),
-                         .iridescence_thickness = 100.0f + 900.0f * random.unit()};
+    const bool prism = random.bits() % 4 == 0;
+    PrincipledMaterial m{
+        .base_color = color(),
+        .metalness = share(),
+        .roughness = 0.15f + 0.85f * random.unit(),
+        .diffuse_roughness = share(),
+        .ior = 1.1f + random.unit(),
+        .specular = 1.0f - share(),
+        .specular_color = vec3(1.0f) - share() * color(),
+        .anisotropy = share(),
+        // On the device, what lies under a dielectric that parts colours takes green's share.
+        .transmission = prism ? 1.0f : share(),
+        .dispersion = prism ? random.unit() : 0.0f,
+        .diffuse_transmission = share(),
+        .diffuse_transmission_color = color(),
+        .coat = share(),
+        .coat_roughness = 0.15f + 0.85f * random.unit(),
+        .coat_ior = 1.2f + random.unit(),
+        .coat_darkening = share(),
+        .sheen_color = share() * color(),
+        .sheen_roughness = 0.3f + 0.7f * random.unit(),
+        .iridescence = share(),
+        .iridescence_ior = 1.1f + random.unit(),
+        .iridescence_thickness = 100.0f + 900.0f * random.unit()};
     if (random.bits() % 2 == 0) m.inside = Medium{};
     return m;
 }
 
+struct NamedMaterial {
+    const char* name;
+    PrincipledMaterial material;
+};
+
+// One part of the material each.
+std::vector<NamedMaterial> plain_materials() {
+    const vec3 orange(0.7f, 0.5f, 0.2f);
+    std::vector<NamedMaterial> list;
+    const auto add = [&](const char* name, const auto& change) {
+        PrincipledMaterial m{.base_color = orange, .roughness = 0.6f};
+        change(m);
+        list.push_back({name, m});
+    };
+    const auto glass = [](PrincipledMaterial& m) { m.transmission = 1.0f, m.inside = Medium{}; };
+    add("plastic", [](auto&) {});
+    add("tinted specular", [](auto& m) { m.specular = 0.5f, m.specular_color = vec3(0.9f, 0.5f, 0.1f); });
+    add("metal", [](auto& m) { m.metalness = 1.0f; });
+    add("brushed metal", [](auto& m) { m.metalness = 1.0f, m.anisotropy = 0.7f; });
+    add("rough diffuse", [](auto& m) { m.diffuse_roughness = 0.8f; });
+    add("thin", [](auto& m) { m.transmission = 1.0f; });
+    add("glass", [&](auto& m) { glass(m); });
+    add("half a glass", [&](auto& m) { glass(m), m.transmission = 0.5f; });
+    add("glass with less specular", [&](auto& m) { glass(m), m.transmission = 0.5f, m.specular = 0.5f; });
+    add("glass under a film", [&](auto& m) { glass(m), m.iridescence = 0.5f; });
+    add("prism", [&](auto& m) { glass(m), m.dispersion = 0.5f; });
+    add("film", [](auto& m) { m.iridescence = 0.5f; });
+    add("metal under a film", [](auto& m) { m.metalness = 1.0f, m.iridescence = 0.5f; });
+    add("leaf", [](auto& m) { m.diffuse_transmission = 0.5f; });
+    add("wax", [](auto& m) { m.diffuse_transmission = 0.5f, m.inside = Medium{}; });
+    add("coat", [](auto& m) { m.coat = 0.5f, m.coat_roughness = 0.4f; });
+    add("ideal coat", [](auto& m) { m.coat = 0.5f; });
+    add("coat that darkens",
+        [](auto& m) { m.coat = 0.5f, m.coat_roughness = 0.4f, m.coat_darkening = 1.0f; });
+    add("sheen", [](auto& m) { m.sheen_color = vec3(0.9f, 0.5f, 0.2f), m.sheen_roughness = 0.5f; });
+    add("all reflecting", [](auto& m) { m.ior = 0.0f, m.specular_color = vec3(0.9f, 0.5f, 0.2f); });
+    return list;
+}
+
+TEST_F(PrincipledTest, ValuesOfEachPartAreThoseOfTheReference) {
+    for (const auto& [name, material] : plain_materials()) {
+        expect_reference(name, material, false, 5);
+        if (material.inside) expect_reference(std::string(name) + " from inside", material, true, 6);
+    }
+}
+
 TEST_F(PrincipledTest, ValuesOfRandomMaterialsAreThoseOfTheReference) {
     Random random(31);
-    for (uint32_t i = 0; i < 60; ++i) {
+    for (uint32_t i = 0; i < 40; ++i) {
         const PrincipledMaterial m = random_material(random);
         expect_reference("material " + std::to_string(i), m, false, 100 + i);
         if (m.inside) expect_reference("material " + std::to_string(i) + " from inside", m, true, 200 + i);
     }
+}
+
+// Lossless metal and glass return the light of an even sky, at every roughness and angle: within four
+// standard errors, each of which is at most 0.4 %; that of all together is 0.03 %.
+TEST_F(PrincipledTest, NothingIsLostAtAnyRoughnessAndAngle) {
+    const uint32_t count = candela::samples(1u << 16u);
+    double sum = 0.0, variance = 0.0, runs = 0.0;
+    const auto measure = [&](const PrincipledMaterial& m, float cosine, uint32_t back) {
+        Random random(77);
+        const vec3 wo(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
+        std::vector<BsdfItem> items(count, bsdf_item(principled(m), wo, wo, back));
+        for (uint32_t i = 0; i < count; ++i) {
+            items[i].u = random.square();
+            items[i].uc = random.unit();
+            items[i].random = i;
+        }
+        RunningMoments energy;
+        for (const BsdfResult& s : run(items))
+            energy.add(s.pdf > 0.0f ? double(s.weight.x) * double(s.eta) * double(s.eta) : 0.0);
+        const double squared_error = energy.variance() / double(count);
+        EXPECT_LE(squared_error, 1.0 / double(count));
+        EXPECT_NEAR(energy.mean(), 1.0, 4.0 * std::sqrt(squared_error) + 0x1p-16)
+            << "roughness " << m.roughness.factor << ", cosine " << cosine << ", metal " << m.metalness.factor
+            << ", volume " << m.inside.has_value() << ", back " << back;
+        sum += energy.mean(), variance += squared_error, ++runs;
+    };
+    for (const float roughness : {0.0f, 0.1f, 0.5f, 1.0f}) {
+        for (const float cosine : {0.01f, 0.3f, 1.0f}) {
+            measure({.base_color = vec3(1.0f), .metalness = 1.0f, .roughness = roughness}, cosine, 0);
+            PrincipledMaterial glass{.base_color = vec3(1.0f), .roughness = roughness, .transmission = 1.0f};
+            measure(glass, cosine, 0);
+            glass.inside = Medium{};
+            measure(glass, cosine, 0);
+            measure(glass, cosine, 1);
+        }
+    }
+    EXPECT_NEAR(sum / runs, 1.0, 4.0 * std::sqrt(variance) / runs + 0x1p-16);
 }
 
 }  // namespace
