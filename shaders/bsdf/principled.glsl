@@ -126,14 +126,14 @@ vec3 principled_edge(Principled p, float cos_o) {
 void principled_facet(Principled p, float cos_o, out vec3 reflected, out vec3 transmitted) {
     vec3 edge = principled_edge(p, cos_o);
     reflected = p.r_0 + p.r_edge * edge;
-    if (principled_has(PRINCIPLED_HAS_METAL)) reflected += p.r_schlick * schlick_weight(cos_o);
     transmitted = vec3(0.0);
-    if (!PRINCIPLED_TRANSMITS) return;
-    transmitted = p.transmit * max(p.t_0 - p.t_edge * edge, 0.0);
-    if (!p.refracts) return;
-    bvec3 total = lessThanEqual(vec3(square(cos_o)), 1.0 - p.eta * p.eta);
-    transmitted = mix(transmitted, vec3(0.0), total);
-    if (principled_has(PRINCIPLED_HAS_SPECULAR)) reflected = mix(reflected, p.r_total, total);
+    if (PRINCIPLED_TRANSMITS) {
+        bvec3 total = bvec3(false);
+        if (p.refracts) total = lessThanEqual(vec3(square(cos_o)), 1.0 - p.eta * p.eta);
+        transmitted = mix(p.transmit * max(p.t_0 - p.t_edge * edge, 0.0), vec3(0.0), total);
+        if (principled_has(PRINCIPLED_HAS_SPECULAR)) reflected = mix(reflected, p.r_total, total);
+    }
+    if (principled_has(PRINCIPLED_HAS_METAL)) reflected += p.r_schlick * schlick_weight(cos_o);
 }
 
 // The probability that facets which reflect and transmit as much are chosen to transmit.
