@@ -384,7 +384,10 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     p.transmit = dielectric * transmission * s.base_color;
     if (PRINCIPLED_TRANSMITS) {
         vec3 lost = dielectric * transmission * mean.glass_lost;
-        float back = diffuse_reflectance(s.eta);
+        vec3 back = vec3(diffuse_reflectance(p.eta.y));
+        if (principled_has(PRINCIPLED_HAS_DISPERSION)) {
+            back.xz = vec2(diffuse_reflectance(p.eta.x), diffuse_reflectance(p.eta.z));
+        }
         p.again += back * lost;
         p.through += (1.0 - back) * lost * s.base_color;
     }

@@ -127,7 +127,7 @@ void PrincipledReference::find_shares() {
         return ideal_ || p_.thin ? reflection_lost(h) : 1 - refracted_share(facets_, wo_, h, eta_);
     };
     const dvec3 reflected = mean([&](dvec3 h) {
-        const double fresnel = max_channel(film_or_dielectric_fresnel(dot(wo_, h)));
+        const double fresnel = greatest_fresnel(dot(wo_, h));
         return dvec3(reflection_lost(h), fresnel, fresnel * reflection_lost(h));
     });
     shares_.metal_lost = reflected[0];
@@ -135,7 +135,7 @@ void PrincipledReference::find_shares() {
     shares_.dielectric_lost = reflected[2];
     if (p_.transmission == 0) return;
     const dvec3 transmitted = mean([&](dvec3 h) {
-        const double fresnel = max_channel(transmitting_fresnel(dot(wo_, h)));
+        const double fresnel = greatest_transmitting_fresnel(dot(wo_, h));
         return dvec3(std::lerp(transmission_lost(h), reflection_lost(h), fresnel));
     });
     shares_.glass_lost = transmitted[0];
@@ -220,6 +220,17 @@ dvec3 PrincipledReference::transmitting_fresnel(double cosine) const {
     return total ? dvec3(1) : film_or_dielectric_fresnel(cosine);
 }
 
+// What layers below do without: the greatest channel of the dielectric's and of the film's reflectance, each
+// for itself.
+double PrincipledReference::greatest_fresnel(double cosine) const {
+    return std::lerp(max_channel(dielectric_fresnel(cosine)), max_channel(film_dielectric_), film_);
+}
+
+double PrincipledReference::greatest_transmitting_fresnel(double cosine) const {
+    const bool total = !p_.thin && refracted_cosine_squared(cosine, eta_) <= 0;
+    return total ? 1 : greatest_fresnel(cosine);
+}
+
 // What all kinds of specular reflection together multiply facets' reflection by.
 dvec3 PrincipledReference::specular_fresnel(double cosine) const {
     const dvec3 schlick = p_.base_color + (dvec3(1) - p_.base_color) * std::pow(1 - cosine, 5);
@@ -230,8 +241,7 @@ dvec3 PrincipledReference::specular_fresnel(double cosine) const {
 
 // The same for specular transmission; KHR_materials_transmission.
 dvec3 PrincipledReference::transmittance(double cosine) const {
-    return (1 - p_.metalness) * p_.transmission * (1 - max_channel(transmitting_fresnel(cosine))) *
-           p_.base_color;
+    return (1 - p_.metalness) * p_.transmission * (1 - greatest_transmitting_fresnel(cosine)) * p_.base_color;
 }
 
 double PrincipledReference::coat_fresnel(double cosine) const {

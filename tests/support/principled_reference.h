@@ -104,6 +104,8 @@ class PrincipledReference {
     dvec3 film_or_dielectric_fresnel(double cosine) const;
     dvec3 transmitting_fresnel(double cosine) const;
     dvec3 specular_fresnel(double cosine) const;
+    double greatest_fresnel(double cosine) const;
+    double greatest_transmitting_fresnel(double cosine) const;
     dvec3 transmittance(double cosine) const;
     double coat_fresnel(double cosine) const;
     dvec3 reflection_value(dvec3 wi) const;
