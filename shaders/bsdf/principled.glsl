@@ -70,7 +70,7 @@ struct Principled {
     vec3 r_0;
     vec3 r_edge;
     vec3 r_schlick;
-    vec3 r_total;    // Instead of these, where reflection is total: the transmitting share loses nothing.
+    float r_total;   // What is added where reflection is total: the transmitting share loses nothing.
     vec3 transmit;
     vec3 t_0;
     vec3 t_edge;
@@ -131,7 +131,7 @@ void principled_facet(Principled p, float cos_o, out vec3 reflected, out vec3 tr
         bvec3 total = bvec3(false);
         if (p.refracts) total = lessThanEqual(vec3(square(cos_o)), 1.0 - p.eta * p.eta);
         transmitted = mix(p.transmit * max(p.t_0 - p.t_edge * edge, 0.0), vec3(0.0), total);
-        if (principled_has(PRINCIPLED_HAS_SPECULAR)) reflected = mix(reflected, p.r_total, total);
+        if (principled_has(PRINCIPLED_HAS_SPECULAR)) reflected += p.r_total * vec3(total);
     }
     if (principled_has(PRINCIPLED_HAS_METAL)) reflected += p.r_schlick * schlick_weight(cos_o);
 }
@@ -219,7 +219,6 @@ void principled_darken(inout Principled p, PrincipledSurface s, vec3 wo, vec3 up
     p.r_0 *= factor;
     p.r_edge *= factor;
     p.r_schlick *= factor;
-    p.r_total *= factor;
     p.diffuse *= factor;
     p.again *= factor;
     p.sheen *= factor;
@@ -364,13 +363,13 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     p.r_0 = dielectric * d_0;
     p.r_edge = dielectric * d_edge;
     p.r_schlick = vec3(0.0);
-    p.r_total = opaque * (d_0 + d_edge) + dielectric * transmission;
+    p.r_total = 0.0;
+    if (principled_has(PRINCIPLED_HAS_SPECULAR)) p.r_total = dielectric * transmission * (1.0 - r.specular);
     p.again = opaque * mean.most_lost * d_0;
     if (principled_has(PRINCIPLED_HAS_METAL)) {
         float metal = above * metalness;
         p.r_0 += metal * m_0;
         p.r_schlick = metal * m_edge;
-        p.r_total += metal * m_0;
         p.again += metal * mean.lost * metal_again(m_0, m_edge, p.alpha);
     }
     float below = opaque * max(1.0 - mean.most + mean.most_lost * (1.0 - max_component(d_0)), 0.0);

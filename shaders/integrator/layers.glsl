@@ -17,14 +17,14 @@ bool is_principled(MaterialRecord m) {
     return HAS_PRINCIPLED && m.model == MATERIAL_PRINCIPLED;
 }
 
-// The material m at s, before normal maps bend the normal; m gets its base colour there. Where prisms part colours, a
+// The material m at s; m gets its base colour there. Where prisms part colours, a
 // path's directions are chosen for those that it still carries; a path that carries one chooses no other.
 PrincipledSurface principled_surface(inout MaterialRecord m, Interaction s, Ray ray, vec3 beta) {
     PrincipledSurface p;
     p.record = principled_at(m, s.attributes);
     p.encloses = m.medium != MEDIUM_SAME;
     p.inside = p.encloses && !s.front;
-    p.coat_n = s.ns;
+    p.coat_n = vec3(0.0, 0.0, 1.0);
     uvec4 bits = hash_pcg4d(hit_random(ray));
     p.random = vec4(unit_float(bits.xy), unit_float(bits.zw));
     p.hue = LUMINANCE;
@@ -49,11 +49,16 @@ Frame principled_frame(PrincipledRecord p, Interaction s) {
     return Frame(x, cross(s.ns, x), s.ns);
 }
 
-// The coat's normal in `frame`; coat_n is that of the shape.
-vec3 coat_normal(PrincipledSurface p, Interaction s, Frame frame) {
-    s.ns = p.coat_n;
-    if (p.record.coat_normal != TEXTURE_NONE) {
-        vec3 n = mapped_normal(p.record.coat_normal, p.record.coat_normal_scale, s);
+// The texture of the normals of the material's coat, or TEXTURE_NONE.
+uint principled_coat_map(MaterialRecord m) {
+    return scene_principled(floatBitsToUint(m.specular.x)).coat_normal;
+}
+
+// The coat's normal in `frame`; `unbent` is the shading normal of the shape.
+vec3 coat_normal(PrincipledRecord p, Interaction s, vec3 unbent, Frame frame) {
+    s.ns = unbent;
+    if (p.coat_normal != TEXTURE_NONE) {
+        vec3 n = mapped_normal(p.coat_normal, p.coat_normal_scale, s);
         s.ns = s.front ? n : -n;
     }
     return frame_to_local(frame, consistent_normal(s.wo, s.n, s.ns));

@@ -119,11 +119,10 @@ struct Shading {
     bool bent;    // The shading normal is that of a normal or bump map.
 };
 
-// The shadow ray from s towards a point on a light, and what it adds to L if it is not blocked: beta f cos Li / pdf,
+// The shadow ray from s, as lit, towards the sample of a light, and what it adds to L if it is not blocked: beta f cos Li / pdf,
 // weighted and attenuated. `behind` is the medium behind the surface.
-ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uint behind, uvec2 u, uint fill) {
-    LitPoint lit = lit_point(s);
-    LightSample light = light_sample_li(lit, u, fill);
+ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uint behind, LitPoint lit,
+                       LightSample light) {
     Ray ray = Ray(lit.p, light.shadow);
     uvec2 media = path.media;
     bool viewers_side = true;
@@ -182,9 +181,8 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     }
     Interaction s = interaction_at(path.ray, hit);
     MaterialRecord material = material_at(s.material, s.attributes, path.ray);
-    PrincipledSurface principled;
-    if (is_principled(material)) principled = principled_surface(material, s, path.ray, path.beta);
     Bsdf bsdf = bsdf_at(material, s.front);
+    vec3 unbent = s.ns;
     bool bent = bend_normal(s, hit);
     if (NESTED_MEDIA && bsdf_refracts(material)) {
         uvec2 beyond = media_beyond(path.media, material.medium, s.front);
@@ -222,23 +220,30 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         s.ns = s.n;
         bent = false;
     }
-    if (HAS_COAT_NORMALS && is_principled(material)) bent = bent || principled.record.coat_normal != TEXTURE_NONE;
+    uint coat_map = TEXTURE_NONE;
+    if (HAS_COAT_NORMALS && is_principled(material)) coat_map = principled_coat_map(material);
+    bent = bent || coat_map != TEXTURE_NONE;
     if (bent) s.ns = consistent_normal(s.wo, s.n, s.ns);
     Frame frame = frame_from_z(s.ns);
-    if (HAS_ANISOTROPY && is_principled(material)) frame = principled_frame(principled.record, s);
-    Shading shading = Shading(frame, frame_to_local(frame, s.wo), bent);
-    if (is_principled(material)) {
-        if (HAS_COAT_NORMALS) principled.coat_n = coat_normal(principled, s, frame);
-        bsdf_add_principled(bsdf, principled, shading.wo);
-    }
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
     uvec2 choice = sampler_pair(random, pair + PAIR_CHOICE);
 
-    // Add direct light.
-    if (ESTIMATOR != ESTIMATOR_BSDF) {
-        uvec2 bits = sampler_pair(random, pair + PAIR_LIGHT);
-        shadow = direct_light(path, s, shading, bsdf, material.medium, bits, choice.x);
+    // Choose a point on a light, before the lobes of a principled material take room.
+    LitPoint lit = lit_point(s);
+    LightSample light;
+    if (ESTIMATOR != ESTIMATOR_BSDF) light = light_sample_li(lit, sampler_pair(random, pair + PAIR_LIGHT), choice.x);
+    if (is_principled(material)) {
+        PrincipledSurface surface = principled_surface(material, s, path.ray, path.beta);
+        bsdf.base = material.base;
+        if (HAS_ANISOTROPY) frame = principled_frame(surface.record, s);
+        if (HAS_COAT_NORMALS) surface.coat_n = coat_normal(surface.record, s, unbent, frame);
+        bsdf_add_principled(bsdf, surface, frame_to_local(frame, s.wo));
+        if (path.depth == 0u) estimate.albedo = bsdf_albedo(bsdf);
     }
+    Shading shading = Shading(frame, frame_to_local(frame, s.wo), bent);
+
+    // Add direct light.
+    if (ESTIMATOR != ESTIMATOR_BSDF) shadow = direct_light(path, s, shading, bsdf, material.medium, lit, light);
 
     // Scatter.
     vec2 u = unit_float(sampler_pair(random, pair + PAIR_BSDF));
