@@ -14,6 +14,7 @@
 #include "gpu_scene/ray_error.h"
 #include "gpu_scene/texture_mean.h"
 #include "gpu_scene/triangle_pairs.h"
+#include "scene/materials.h"
 #include "scene/mesh.h"
 
 namespace candela {
@@ -268,6 +269,7 @@ FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes) 
 
 bool lets_rays_pass(const Scene& scene, const Shape& shape) {
     const Material& material = scene.materials[shape.material];
+    if (is_culled(material)) return true;
     if (material.opacity.value.texture || material.opacity.value.factor < 1.0f) return true;
     const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
     return instance != nullptr && material.vertex_colors &&

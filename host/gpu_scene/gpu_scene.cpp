@@ -20,6 +20,7 @@
 #include "gpu_scene/principled_record.h"
 #include "gpu_scene/texture_table.h"
 #include "scene/geometry.h"
+#include "scene/materials.h"
 #include "scene/mesh.h"
 #include "shared/bvh_node.h"
 #include "shared/material.h"
@@ -112,7 +113,14 @@ MaterialTextures textures_of(const Material& material, const EncodedMaterial& en
             .opacity_texture = textures.add(opacity.texture),
             .opacity = opacity.factor,
             .cutoff = cutoff.value_or(NO_CUTOFF),
-            .vertex_colors = material.vertex_colors ? 1u : 0u};
+            .vertex_colors = material.vertex_colors ? 1u : 0u,
+            .culled = is_culled(material) ? 1u : 0u};
+}
+
+// Whether what a surface emits passes a coat or sheen.
+bool has_layers(const Material& material) {
+    const auto* m = std::get_if<PrincipledMaterial>(&material.model);
+    return m != nullptr && !m->unlit && (m->coat.factor > 0.0f || m->sheen_color.factor != vec3(0.0f));
 }
 
 // What materials know a medium by; appends it to the media if it is new. (The first of them, outside of
@@ -170,6 +178,7 @@ void append_materials(GpuScene& gpu, const std::vector<Material>& materials, Tex
         const MaterialTextures used = textures_of(material, encoded, gpu.frame, textures);
         append(gpu.arrays[ARRAY_MATERIAL_TEXTURES], pack(used));
         gpu.textured |= textured_bits(used);
+        if (used.culled != 0) gpu.principled |= PRINCIPLED_HAS_CULLED;
     }
     for (const auto& [word, encoded] : principled) {
         std::vector<uvec4>& words = gpu.arrays[ARRAY_MATERIALS];
@@ -198,7 +207,9 @@ uint32_t needed_attributes(const GpuScene& gpu) {
 // Appends the textures of lights, for their surfaces' places in leaf order, if a kernel reads them.
 void append_light_textures(GpuScene& gpu, const FlatScene& flat, std::span<const uint32_t> order,
                            TextureTable& textures) {
-    if ((gpu.textured & (TEXTURED_EMISSION | TEXTURED_OPACITY)) == 0) return;
+    if ((gpu.textured & (TEXTURED_EMISSION | TEXTURED_OPACITY)) == 0 &&
+        (gpu.principled & PRINCIPLED_HAS_COATED_EMISSION) == 0)
+        return;
     std::vector<uint32_t> places(order.size());
     for (uint32_t i = 0; i < order.size(); ++i)
         places[order[i]] = i;
@@ -250,6 +261,8 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<
         gpu.materials_present |= 1u << MATERIAL_DIELECTRIC_EXACT;
     gpu.warnings = std::move(nesting.warnings);
     for (const Shape& shape : scene.shapes) {
+        if (shape.emission && has_layers(scene.materials[shape.material]))
+            gpu.principled |= PRINCIPLED_HAS_COATED_EMISSION;
         if (shape.emission && textures.add(shape.emission->radiance.texture) != TEXTURE_NONE)
             gpu.textured |= TEXTURED_EMISSION;
     }

@@ -15,6 +15,7 @@
 #include "shared/light.h"
 #include "shared/material.h"
 #include "shared/primitive.h"
+#include "shared/principled.h"
 #include "shared/texture.h"
 
 namespace candela {
@@ -80,6 +81,8 @@ struct Records {
     TextureRecord texture;
     uvec4 texels;
     std::array<uvec4, 7> attributes;  // Of all kinds: attribute_words(ATTRIBUTES_ALL).
+    PrincipledRecord principled;
+    PrincipledImage principled_image;
 };
 
 struct Item {
@@ -88,7 +91,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 187> words;
+    std::array<uint, 224> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -165,7 +168,7 @@ Records filled(Fields& fields) {
     r.texel_even = entry();
     r.texel_odd = entry();
     r.material_textures = {.base = fields.keep(0x2BCDEF01u),
-                           .specular = fields.u(),
+                           .specular = fields.keep(0x3C4D5E6Fu),
                            .parameter = fields.u(),
                            .normal = fields.keep(0x4D3C2B1Au),
                            .bump = fields.keep(1u),
@@ -173,7 +176,8 @@ Records filled(Fields& fields) {
                            .opacity_texture = fields.u(),
                            .opacity = fields.f(),
                            .cutoff = fields.f(),
-                           .vertex_colors = fields.keep(1u)};
+                           .vertex_colors = fields.keep(1u),
+                           .culled = fields.keep(1u)};
     r.light_textures = {.primitive = fields.u(), .emission = fields.u(), .material = fields.u()};
     r.texture = {.first = fields.u(),
                  .size = {fields.keep(0xABCDu), fields.keep(0xFEDCu)},
@@ -183,6 +187,32 @@ Records filled(Fields& fields) {
     r.texels = fields.u4();
     for (uvec4& word : r.attributes)
         word = fields.u4();
+    r.principled = {.metalness = fields.f(),
+                    .roughness = fields.f(),
+                    .diffuse_roughness = fields.f(),
+                    .specular = fields.f(),
+                    .specular_color = fields.f3(),
+                    .transmission = fields.f(),
+                    .diffuse_transmission_color = fields.f3(),
+                    .diffuse_transmission = fields.f(),
+                    .coat = fields.f(),
+                    .coat_roughness = fields.f(),
+                    .coat_ior = fields.f(),
+                    .coat_darkening = fields.f(),
+                    .sheen_color = fields.f3(),
+                    .sheen_roughness = fields.f(),
+                    .iridescence = fields.f(),
+                    .iridescence_ior = fields.f(),
+                    .thickness = fields.f(),
+                    .thickness_range = fields.f(),
+                    .anisotropy = fields.f(),
+                    .rotation = fields.f2(),
+                    .dispersion = fields.f(),
+                    .coat_normal = fields.u(),
+                    .coat_normal_scale = fields.f(),
+                    .images = fields.u(),
+                    .coat_internal = fields.f()};
+    r.principled_image = {.texture = fields.u(), .values = fields.u(), .channels = fields.u2()};
     return r;
 }
 
@@ -203,6 +233,8 @@ GpuScene packed(const Records& r) {
     append_second(array(ARRAY_SURFACES), pack(r.surface));
     append_second(array(ARRAY_NORMALS), r.normals);
     append_second(array(ARRAY_MATERIALS), pack(r.material));
+    append_second(array(ARRAY_MATERIALS), pack(r.principled));
+    array(ARRAY_MATERIALS).push_back(pack(r.principled_image));
     append_second(array(ARRAY_MEDIA), pack(r.medium));
     append_second(array(ARRAY_LIGHTS), pack(r.light));
     append_second(array(ARRAY_LIGHT_ALIAS), pack(r.light_even, r.light_odd));

@@ -407,6 +407,12 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     p.pmf.w = dot(p.hue, p.through);
 }
 
+// What coat and sheen leave to what lies under them.
+float principled_layers(PrincipledSurface s, vec3 wo) {
+    Principled p;
+    return principled_sheen(p, s, wo, principled_coat(p, s, wo));
+}
+
 // The lobes of a surface that is seen from wo, which is above it.
 Principled principled_lobes(PrincipledSurface s, vec3 wo) {
     Principled p;

@@ -6,6 +6,7 @@
 #include "base/sampler.glsl"
 #include "bsdf/bsdf.glsl"
 #include "integrator/bent_normal.glsl"
+#include "light/light_sampler.glsl"
 #include "scene/interaction.glsl"
 #include "scene/material.glsl"
 
@@ -47,6 +48,30 @@ Frame principled_frame(PrincipledRecord p, Interaction s) {
     if (length_squared == 0.0) return frame_from_z(s.ns);
     x *= inversesqrt(length_squared);
     return Frame(x, cross(s.ns, x), s.ns);
+}
+
+const bool HAS_COATED_EMISSION = (PRINCIPLED & PRINCIPLED_HAS_COATED_EMISSION) != 0u;
+
+// What coat and sheen leave of the light that a surface of material i emits at that cosine to its normal, measured as in
+// bsdf/principled.glsl: right on average over `random`, uniform in [0, 1)^2.
+float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
+    MaterialRecord m = scene_material(i);
+    if (!is_principled(m)) return 1.0;
+    PrincipledSurface s;
+    s.record = principled_at(m, at);
+    s.inside = false;
+    s.coat_n = vec3(0.0, 0.0, 1.0);
+    s.hue = LUMINANCE;
+    s.random = random.xyxy;
+    return principled_layers(s, vec3(sqrt(max(1.0 - square(cosine), 0.0)), 0.0, cosine));
+}
+
+// The same of a sample of a light.
+float emitted_share(LightSample light, LitPoint lit) {
+    if (is_light(light_at(light.light), LIGHT_ENVIRONMENT)) return 1.0;
+    uvec4 bits = hash_pcg4d(uvec4(floatBitsToUint(light.wi), floatBitsToUint(lit.p.x)));
+    return emitted_share(scene_light_textures(light.light).material, light_sample_attributes(light, lit),
+                         light_sample_cosine(light, lit), unit_float(bits.xy));
 }
 
 // The texture of the normals of the material's coat, or TEXTURE_NONE.

@@ -108,7 +108,11 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     LitPoint lit = path_lit_point(path);
     float distance_squared = LIT_FROM_BEHIND ? dot(s.p - lit.p, s.p - lit.p) : square(t);
     float pdf_light = light_pdf_li(s.light, lit, distance_squared, dot(s.wo, s.n));
-    estimate.L += emission_weight(path, pdf_light) * path.beta *
+    float share = 1.0;
+    if (HAS_COATED_EMISSION) {
+        share = emitted_share(s.material, s.attributes, dot(s.wo, s.n), unit_float(hit_random(path.ray).xy));
+    }
+    estimate.L += emission_weight(path, pdf_light) * share * path.beta *
                   area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
 }
 
@@ -232,6 +236,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     LitPoint lit = lit_point(s);
     LightSample light;
     if (ESTIMATOR != ESTIMATOR_BSDF) light = light_sample_li(lit, sampler_pair(random, pair + PAIR_LIGHT), choice.x);
+    if (HAS_COATED_EMISSION && ESTIMATOR != ESTIMATOR_BSDF) light.Li *= emitted_share(light, lit);
     if (is_principled(material)) {
         PrincipledSurface surface = principled_surface(material, s, path.ray, path.beta);
         bsdf.base = material.base;

@@ -38,12 +38,26 @@ Attributes light_attributes(uint i, Light l, vec2 b, vec3 n) {
     return attributes_at(place);
 }
 
-// Multiplies a sample of light i by what its surface says there.
-void light_apply_textures(inout LightSample s, uint i, Light l, LitPoint lit, vec2 u) {
+// The attributes of the light's surface at a sample for that point; not of the environment.
+Attributes light_sample_attributes(LightSample s, LitPoint lit) {
+    Light l = light_at(s.light);
     vec3 n = (lit.p + s.shadow - l.p) / l.e1.x;
-    Attributes at = light_attributes(i, l, area_light_coordinates(l, u), n);
-    s.Li *= light_texture(i, at);
-    if ((TEXTURED & TEXTURED_OPACITY) != 0u) s.Li *= material_opacity(scene_light_textures(i).material, at);
+    return light_attributes(s.light, l, area_light_coordinates(l, s.u), n);
+}
+
+// Cosine between the ray to the sample and the normal of the light's surface there, on the side that is seen; not of the
+// environment.
+float light_sample_cosine(LightSample s, LitPoint lit) {
+    Light l = light_at(s.light);
+    vec3 n = is_light(l, LIGHT_SPHERE) ? lit.p + s.shadow - l.p : cross(l.e1, l.e2);
+    return abs(dot(s.wi, normalize(n)));
+}
+
+// Multiplies a sample by what its surface says there.
+void light_apply_textures(inout LightSample s, LitPoint lit) {
+    Attributes at = light_sample_attributes(s, lit);
+    s.Li *= light_texture(s.light, at);
+    if ((TEXTURED & TEXTURED_OPACITY) != 0u) s.Li *= material_opacity(scene_light_textures(s.light).material, at);
 }
 
 // A sample of a point on one of the lights, from 2 x 32 random bits. If there are several lights, the first word also
@@ -69,8 +83,10 @@ LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
         s = area_light_sample_li(l, lit.p, unit_float(u));
     }
     s.pdf *= light_pmf(i, lit);
+    s.light = i;
+    s.u = unit_float(u);
     if ((TEXTURED & (TEXTURED_EMISSION | TEXTURED_OPACITY)) != 0u && !is_light(l, LIGHT_ENVIRONMENT)) {
-        light_apply_textures(s, i, l, lit, unit_float(u));
+        light_apply_textures(s, lit);
     }
     return s;
 }

@@ -36,6 +36,8 @@ struct LightSample {
     bool delta;   // No other sampling could find it: pdf is the probability of choosing the light.
     vec3 shadow;  // The light is hidden if a ray from the lit point in this direction, of any length,
     float t_max;  // hits something with t in (0, t_max).
+    uint light;   // Its place in the table of lights.
+    vec2 u;       // Chose the point on it.
 };
 
 #endif

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 187u
+#define RESULT_WORDS 224u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -103,6 +103,35 @@ void put_material_textures(MaterialTextures t) {
     put(t.opacity);
     put(t.cutoff);
     put(t.vertex_colors);
+    put(t.culled);
+}
+
+void put_principled(PrincipledRecord p) {
+    put(p.metalness);
+    put(p.roughness);
+    put(p.diffuse_roughness);
+    put(p.specular);
+    put(p.specular_color);
+    put(p.transmission);
+    put(p.diffuse_transmission_color);
+    put(p.diffuse_transmission);
+    put(p.coat);
+    put(p.coat_roughness);
+    put(p.coat_ior);
+    put(p.coat_darkening);
+    put(p.sheen_color);
+    put(p.sheen_roughness);
+    put(p.iridescence);
+    put(p.iridescence_ior);
+    put(p.thickness);
+    put(p.thickness_range);
+    put(p.anisotropy);
+    put(p.rotation);
+    put(p.dispersion);
+    put(p.coat_normal);
+    put(p.coat_normal_scale);
+    put(p.images);
+    put(p.coat_internal);
 }
 
 void put_texture(TextureRecord t) {
@@ -145,4 +174,11 @@ void main() {
     put_attributes(1u, UV1_WORD);
     put_attributes(1u, COLOR_WORD);
     put(scene_tangents(1u));
+    // Behind two records of materials, the second record and its image.
+    const uint first = 2u * MATERIAL_WORDS + PRINCIPLED_WORDS;
+    put_principled(scene_principled(first));
+    PrincipledImage image = scene_principled_image(first + PRINCIPLED_WORDS);
+    put(image.texture);
+    put(image.values);
+    put(image.channels);
 }

@@ -17,10 +17,21 @@ float opacity_random(Ray ray, uint id, bool first) {
     return unit_float(hash_pcg4d(v ^ uvec4(floatBitsToUint(ray.o), uint(first))).x);
 }
 
+// Whether the ray hits the primitive from behind; `n` points from a sphere's centre to the hit.
+bool is_hit_from_behind(Ray ray, Primitive p, Hit hit, vec3 n) {
+    if (is_kind(p.kind, PRIMITIVE_DISK)) n = cross(p.b, p.c);
+    if (is_kind(p.kind, PRIMITIVE_TRIANGLES)) n = hit_second(hit) ? cross(p.c - p.a, p.d - p.a) : cross(p.b - p.a, p.c - p.a);
+    return dot(n, ray.d) > 0.0;
+}
+
 // Whether the ray ends at a hit of that primitive, the first one there or not.
 bool is_stopped(Ray ray, Primitive p, Hit hit, bool first) {
     Surface surface = scene_surface(hit_primitive(hit));
     vec3 n = ray.o + hit.t * ray.d - p.a;
+    if ((PRINCIPLED & PRINCIPLED_HAS_CULLED) != 0u && scene_material_textures(surface.material).culled != 0u &&
+        is_hit_from_behind(ray, p, hit, n)) {
+        return false;
+    }
     AttributePlace place = AttributePlace(hit_primitive(hit), hit_second(hit), hit_coordinates(ray, p, hit),
                                           is_kind(p.kind, PRIMITIVE_SPHERE), n);
     float opacity = material_opacity(surface.material, attributes_at(place));

@@ -59,6 +59,7 @@ const uint PRINCIPLED_HAS_IRIDESCENCE = 1u << 14u;
 const uint PRINCIPLED_HAS_IMAGES = 1u << 15u;
 const uint PRINCIPLED_HAS_COATED_EMISSION = 1u << 16u;  // Some light lies under a coat or a sheen.
 
+const uint PRINCIPLED_HAS_CULLED = 1u << 17u;  // Rays pass some surface from behind.
 // Light samples count that lie behind some surface.
 const uint PRINCIPLED_IS_LIT_FROM_BEHIND = 1u << 30u;
 

@@ -3,7 +3,7 @@
 //
 //   Texture                     MaterialTextures                    LightTextures
 //     0: first, size, traits      0: base | vertex_colors << 31,      0: primitive, emission, material
-//     1: row_u.xyz                   specular, parameter,
+//     1: row_u.xyz                   specular | culled << 31, parameter,
 //     2: row_v.xyz                   normal | bump << 31
 //                                 1: opacity_texture, opacity,
 //                                    cutoff, normal_scale
@@ -79,6 +79,7 @@ struct MaterialTextures {
     float opacity;         // the probability that a ray does not pass the surface as if it were not there.
     float cutoff;          // If it is not negative: whether that is at least this decides instead.
     uint vertex_colors;    // 1: `base` and opacity are multiplied by the colours of vertices.
+    uint culled;           // 1: rays pass the surface from behind.
 };
 
 // The surface of a light, and what its radiance is multiplied by.
@@ -120,7 +121,8 @@ inline std::array<uvec4, TEXTURE_WORDS> pack(const TextureRecord& t) {
 }
 
 inline std::array<uvec4, MATERIAL_TEXTURES_WORDS> pack(const MaterialTextures& t) {
-    return {uvec4(t.base | t.vertex_colors << 31u, t.specular, t.parameter, t.normal | t.bump << 31u),
+    return {uvec4(t.base | t.vertex_colors << 31u, t.specular | t.culled << 31u, t.parameter,
+                  t.normal | t.bump << 31u),
             uvec4(t.opacity_texture, floatBitsToUint(t.opacity), floatBitsToUint(t.cutoff),
                   floatBitsToUint(t.normal_scale))};
 }
@@ -158,7 +160,8 @@ MaterialTextures material_textures_unpack(uvec4 a, uvec4 b) {
     MaterialTextures t;
     t.base = a.x & MAX_TEXTURES;
     t.vertex_colors = a.x >> 31u;
-    t.specular = a.y;
+    t.specular = a.y & MAX_TEXTURES;
+    t.culled = a.y >> 31u;
     t.parameter = a.z;
     t.normal = a.w & MAX_TEXTURES;
     t.bump = a.w >> 31u;

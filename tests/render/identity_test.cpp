@@ -249,9 +249,10 @@ TEST_P(IdentityTest, AnotherSeedIsAnotherImage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, IdentityTest,
-                         testing::Values(cornell_box, scene_of_everything, textured_scene),
+                         testing::Values(cornell_box, scene_of_everything, textured_scene, layered_scene),
                          [](const testing::TestParamInfo<Scene (*)()>& scene) -> std::string {
                              return scene.param == cornell_box      ? "CornellBox"
+                                    : scene.param == layered_scene  ? "Layered"
                                     : scene.param == textured_scene ? "Textured"
                                                                     : "Everything";
                          });

@@ -96,4 +96,60 @@ Scene textured_scene() {
     return scene;
 }
 
+Scene layered_scene() {
+    Scene scene = open_room();
+    const Texture waves = add_texture(scene, {8, 4}, [](uint32_t x, uint32_t y) {
+        const vec3 n = normalize(vec3(std::sin(float(x)), std::cos(float(y)), 1.0f));
+        return vec4(0.5f * n + 0.5f, 0.25f + 0.5f * float(x % 2));
+    });
+    const auto channel = [&](uint32_t c) {
+        Texture texture = waves;
+        texture.channel = c;
+        return Textured<float>(1.0f, texture);
+    };
+    const vec3 orange(0.9f, 0.6f, 0.3f);
+    const auto add = [&](const PrincipledMaterial& m) { return add_material(scene, m); };
+    const uint32_t metal = add({.base_color = {orange, waves},
+                                .metalness = channel(0),
+                                .roughness = channel(3),
+                                .anisotropy = 0.7f,
+                                .anisotropy_rotation = 0.5f,
+                                .anisotropy_map = waves});
+    const uint32_t coated = add({.base_color = vec3(0.2f, 0.4f, 0.8f),
+                                 .roughness = 0.6f,
+                                 .diffuse_roughness = 0.6f,
+                                 .coat = 0.8f,
+                                 .coat_roughness = 0.3f,
+                                 .coat_darkening = 0.5f,
+                                 .coat_normal_map = NormalMap{waves, 0.4f},
+                                 .iridescence = 0.5f});
+    const uint32_t cloth = add({.base_color = orange,
+                                .roughness = 0.9f,
+                                .sheen_color = vec3(0.8f, 0.5f, 0.6f),
+                                .sheen_roughness = channel(1)});
+    const uint32_t glass = add({.base_color = vec3(0.9f, 1.0f, 0.9f),
+                                .roughness = 0.5f,
+                                .specular = 0.7f,
+                                .transmission = 0.8f,
+                                .inside = Medium{vec3(1, 0.5f, 2)},
+                                .dispersion = 1.0f,
+                                .diffuse_transmission = 0.5f});
+    const uint32_t wall = add({.roughness = 0.4f,
+                               .transmission = 0.5f,
+                               .diffuse_transmission = 0.5f,
+                               .diffuse_transmission_color = orange});
+    const uint32_t lamp = add({.base_color = orange, .coat = 1.0f, .coat_roughness = 0.5f});
+    const uint32_t velvet_lamp = add({.sheen_color = vec3(0.9f, 0.2f, 0.5f), .sheen_roughness = 0.5f});
+
+    add_shape(scene, Sphere{dvec3(-0.5, 0.35, 0.2), 0.3}, metal);
+    add_shape(scene, Sphere{dvec3(0.45, 0.3, 0.3), 0.25}, glass);
+    add_shape(scene, Sphere{dvec3(0.1, 0.8, -0.3), 0.25}, coated);
+    add_shape(scene, Sphere{dvec3(0.6, 0.9, -0.4), 0.25}, cloth);
+    add_shape(scene, Disk{dvec3(-0.3, 0.5, 0.65), dvec3(0.3, 0, 0.1), dvec3(0, 0.3, 0)}, wall);
+    add_shape(scene, parallelogram(vec3(-0.4f, 1.9f, -0.4f), vec3(0.8f, 0, 0), vec3(0, 0, 0.8f)), lamp,
+              Emission{vec3(6), true});
+    add_shape(scene, Sphere{dvec3(-0.7, 1.4, 0.5), 0.2}, velvet_lamp, Emission{vec3(5), false});
+    return scene;
+}
+
 }  // namespace candela

@@ -1,0 +1,147 @@
+// The principled material in whole pictures: estimators agree, white bodies are invisible, without roughness
+// it is the mirror and the glass that there were before, emission lies under its layers, culled sides are not
+// there.
+#include "estimator_fixture.h"
+
+namespace candela {
+namespace {
+
+constexpr Medium CLEAR{};
+
+class PrincipledPictureTest : public EstimatorTest {
+  protected:
+    // A unit sphere before an even white sky.
+    static Scene sphere_of(const PrincipledMaterial& m) {
+        Scene scene = scene_with_camera(dvec3(1, 2, 4.5), dvec3(0), 0.4f);
+        scene.environment = constant_environment(vec3(1));
+        add_shape(scene, Sphere{}, add_material(scene, m));
+        return scene;
+    }
+    // The mean of the picture must be 1, within its noise.
+    void expect_invisible(const Scene& scene, Estimator estimator, uint32_t spp) const {
+        RenderSettings s = independent_settings(32, estimator, 9);
+        s.rr_depth = 64;
+        expect_mean(image_of(render(scene, s, samples(spp))), glm::dvec3(1.0), 0x1p-15);
+    }
+};
+
+TEST_F(PrincipledPictureTest, EstimatorsAgree) {
+    expect_estimators_agree(layered_scene(), 3072, 2048);
+}
+
+TEST_F(PrincipledPictureTest, WhiteBodiesAreInvisible) {
+    const vec3 white(1);
+    const std::vector<PrincipledMaterial> bodies{
+        {.base_color = white, .metalness = 1.0f, .roughness = 0.8f},
+        {.base_color = white, .metalness = 1.0f, .roughness = 0.6f, .anisotropy = 0.8f},
+        {.base_color = white, .roughness = 1.0f},
+        {.base_color = white, .roughness = 0.7f, .transmission = 1.0f},
+        {.base_color = white, .roughness = 0.7f, .transmission = 1.0f, .inside = CLEAR},
+        {.base_color = white, .roughness = 0.0f, .transmission = 1.0f, .inside = CLEAR, .dispersion = 2.0f},
+        {.base_color = white,
+         .roughness = 0.6f,
+         .transmission = 0.5f,
+         .inside = CLEAR,
+         .diffuse_transmission = 0.5f},
+        {.base_color = white, .metalness = 0.5f, .coat = 1.0f, .coat_roughness = 0.6f},
+    };
+    for (size_t i = 0; i < bodies.size(); ++i) {
+        SCOPED_TRACE(i);
+        expect_invisible(sphere_of(bodies[i]), Estimator::bsdf, 512);
+    }
+}
+
+// Rough glass around rough glass around a white ball, with sheen and film where they reflect all light.
+TEST_F(PrincipledPictureTest, NestedWhiteBodiesAreInvisible) {
+    Scene scene = sphere_of(
+        {.base_color = vec3(1), .roughness = 0.5f, .ior = 1.6f, .transmission = 1.0f, .inside = CLEAR});
+    add_shape(scene, Sphere{dvec3(0.1, 0, 0), 0.7},
+              add_material(scene, PrincipledMaterial{.base_color = vec3(1),
+                                                     .roughness = 0.7f,
+                                                     .ior = 1.2f,
+                                                     .transmission = 1.0f,
+                                                     .inside = Medium{vec3(0)},
+                                                     .priority = 1}));
+    add_shape(scene, Sphere{dvec3(0.2, 0.1, 0), 0.4}, add_diffuse(scene, vec3(1)));
+    expect_invisible(scene, Estimator::bsdf, 1024);
+}
+
+// The same expectation, whichever name a scene uses.
+TEST_F(PrincipledPictureTest, WithoutRoughnessItIsTheMirrorAndTheGlass) {
+    const auto room = [](const auto& model) {
+        Scene scene = open_room();
+        add_shape(scene, Sphere{dvec3(0, 0.5, 0), 0.5}, add_material(scene, model));
+        add_shape(scene, parallelogram(vec3(-0.5f, 1.5f, -0.2f), vec3(1, 0, 0), vec3(0, 0, 0.4f)),
+                  add_diffuse(scene, vec3(0)), Emission{vec3(5), false});
+        return scene;
+    };
+    const auto expect_same = [&](const auto& model, const PrincipledMaterial& m) {
+        expect_same_expectation(image(room(model), settings(Estimator::mis, 1), 1024),
+                                image(room(m), settings(Estimator::mis, 2), 1024));
+    };
+    expect_same(
+        MirrorMaterial{vec3(0.9f, 0.8f, 0.7f)},
+        PrincipledMaterial{
+            .base_color = vec3(0.9f, 0.8f, 0.7f), .metalness = 1.0f, .roughness = 0.0f, .iridescence = 0.0f});
+    const Medium green{vec3(2, 0.2f, 1)};
+    expect_same(
+        DielectricMaterial{.ior = 1.5f, .fresnel = Fresnel::exact, .inside = green},
+        PrincipledMaterial{.base_color = vec3(1), .roughness = 0.0f, .transmission = 1.0f, .inside = green});
+}
+
+// A lamp seen head-on through an ideal coat of index n: 1 - ((n - 1) / (n + 1))^2 of its light.
+TEST_F(PrincipledPictureTest, EmissionLiesUnderTheCoat) {
+    Scene scene = scene_with_camera(dvec3(0, 0, 100), dvec3(0), 0.002f);
+    const uint32_t coated = add_material(
+        scene, PrincipledMaterial{.base_color = vec3(0), .specular = 0.0f, .coat = 0.5f, .coat_ior = 2.0f});
+    add_shape(scene, parallelogram(vec3(-1, -1, 0), vec3(2, 0, 0), vec3(0, 2, 0)), coated,
+              Emission{vec3(3), false});
+    const Image seen = image_of(render(scene, independent_settings(8, Estimator::mis, 1), 4));
+    for (const float value : plane(seen, "", 0))
+        ASSERT_NEAR(value, 3.0 * (1.0 - 0.5 / 9.0), 1e-4);
+}
+
+TEST_F(PrincipledPictureTest, RaysPassCulledSides) {
+    // A white floor under a lamp, and between them a screen that is culled from one side.
+    const auto floor_under = [](bool front_up, bool double_sided) {
+        Scene scene = floor_seen_closely(vec3(0.5f));
+        PrincipledMaterial m{.base_color = vec3(0)};
+        m.double_sided = double_sided;
+        const uint32_t screen = add_material(scene, m);
+        const vec3 along = front_up ? vec3(0, 0, -4) : vec3(0, 0, 4);
+        add_shape(scene, parallelogram(vec3(-2, 2, front_up ? 2.0f : -2.0f), vec3(4, 0, 0), along), screen);
+        add_shape(scene, parallelogram(vec3(-1, 3, -1), vec3(2, 0, 0), vec3(0, 0, 2)), 1,
+                  Emission{vec3(4), false});
+        return scene;
+    };
+    for (const Estimator estimator : {Estimator::light, Estimator::bsdf}) {
+        RenderSettings s = independent_settings(16, estimator, 3);
+        s.max_depth = 1;  // No light comes around the screen.
+        const auto light = [&](const Scene& scene) {
+            return image_mean(image_of(render(scene, s, samples(256))), 0).mean;
+        };
+        // Rays from the floor meet the side that is turned down first.
+        EXPECT_EQ(light(floor_under(true, true)), 0.0);
+        EXPECT_EQ(light(floor_under(false, true)), 0.0);
+        EXPECT_EQ(light(floor_under(false, false)), 0.0);
+        EXPECT_GT(light(floor_under(true, false)), 0.1);
+    }
+}
+
+TEST_F(PrincipledPictureTest, UnlitSurfacesShowTheirColour) {
+    Scene scene = scene_with_camera(dvec3(0, 0, 100), dvec3(0), 0.002f);
+    PrincipledMaterial m{.base_color = vec3(0.25f, 0.5f, 0.75f)};
+    m.unlit = true;
+    add_shape(scene, parallelogram(vec3(-1, -1, 0), vec3(2, 0, 0), vec3(0, 2, 0)), add_material(scene, m));
+    for (const bool lit : {false, true}) {
+        if (lit) scene.environment = constant_environment(vec3(7));
+        const Image seen = image_of(render(scene, independent_settings(8, Estimator::mis, 1), 4));
+        for (size_t c = 0; c < 3; ++c) {
+            for (const float value : plane(seen, "", c))
+                ASSERT_EQ(value, 0.25f * float(c + 1));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace candela
