@@ -41,11 +41,13 @@ Evidence test_bsdfs(const vk::Device& device) {
 }
 
 Evidence test_layers(const vk::Device& device) {
+    constexpr size_t EVERY = 5;  // The tests in tests/gpu take all.
     Evidence evidence;
     uint32_t seed = 1700;
-    for (const BsdfCase& c : principled_cases()) {
-        test_density(c, run_bsdf_case(device, c, seed++), evidence);
-        test_values(c, run_bsdf_case(device, c, seed++, true), evidence);
+    const std::vector<BsdfCase> cases = principled_cases();
+    for (size_t i = 0; i < cases.size(); i += EVERY) {
+        test_density(cases[i], run_bsdf_case(device, cases[i], seed++), evidence);
+        test_values(cases[i], run_bsdf_case(device, cases[i], seed++, true), evidence);
     }
     return evidence;
 }

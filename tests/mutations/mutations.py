@@ -10,6 +10,11 @@ PHONG = "shaders/bsdf/phong.glsl"
 MEDIUM = "shaders/medium/medium.glsl"
 CONDUCTOR = "shaders/bsdf/conductor.glsl"
 DIELECTRIC = "shaders/bsdf/dielectric.glsl"
+PRINCIPLED = "shaders/bsdf/principled.glsl"
+SHEEN = "shaders/bsdf/sheen.glsl"
+ROUGH_DIFFUSE = "shaders/bsdf/rough_diffuse.glsl"
+FILM = "shaders/bsdf/iridescence.glsl"
+LAYERS = "shaders/integrator/layers.glsl"
 FRESNEL = "shaders/bsdf/fresnel.glsl"
 WARP = "shaders/base/warp.glsl"
 SAMPLER = "shaders/base/sampler.glsl"
@@ -43,6 +48,7 @@ GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyF
 FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
 TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*:*Reference*/textured*:*Reference*/mask")
 MEDIA = ("Records*", "NestedMedia*:*Reference*/nested_glass")
+LAYERED = ("PrincipledTest*:Records*", "PrincipledPicture*")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
@@ -171,10 +177,10 @@ GROUPS = [
          "texel.x >> 8u * min(channel, 1u) & 255u"),
         ("the second triangle's coordinates for the first", ATTRIBUTES, "uintBitsToFloat(second ? cd.xy : ab.zw)",
          "uintBitsToFloat(cd.xy)"),
-        ("lights sampled without their textures", LIGHT_SAMPLER, "s.Li *= light_texture(i, at);", ""),
+        ("lights sampled without their textures", LIGHT_SAMPLER, "s.Li *= light_texture(s.light, at);", ""),
         ("lights hit without their textures", PATH, "* light_texture(s.light, s.attributes)", ""),
         ("a lamp sampled where it is transparent", LIGHT_SAMPLER,
-         "s.Li *= material_opacity(scene_light_textures(i).material, at)", "s.Li *= 1.0"),
+         "s.Li *= material_opacity(scene_light_textures(s.light).material, at)", "s.Li *= 1.0"),
         ("both triangles of a lamp for the first", LIGHT_SAMPLER, "place.second = b.y > b.x;", "place.second = false;"),
         ("the same rays pass all surfaces", OPACITY, "floatBitsToUint(ray.d), id)", "floatBitsToUint(ray.d), 0u)"),
         ("the other triangle of a pair not tested", OPACITY, "bool goes_on = candidate.first && is_nearer(second, hit);",
@@ -200,11 +206,52 @@ GROUPS = [
          "return front ? media_entered(here, behind) : MEDIA_NONE;"),
         ("the second of the media lost when the first is left", MEDIUM, "uvec4(here.x ? m.y : m.x", "uvec4(here.x ? m.z : m.x"),
         ("nothing around the camera", PATH, "NESTED_MEDIA ? media : MEDIA_NONE", "MEDIA_NONE"),
-        ("indices of refraction against the air", PATH, "if (NESTED_MEDIA && is_model(bsdf, MATERIALS_DIELECTRIC)) {",
+        ("indices of refraction against the air", PATH, "if (NESTED_MEDIA && bsdf_refracts(material)) {",
          "if (false) {"),
         ("a stated exterior index ignored", MEDIUM, "return own_eta ? eta :", "return"),
         ("the exterior nearest to the camera's medium first", "host/gpu_scene/media_at.cpp",
          "p.second.nearest_exit);", "-p.second.nearest_exit);"),
+    ]),
+    (LAYERED, [
+        ("a coat that takes nothing from what lies below", PRINCIPLED, "return max(1.0 - p.coat * reflected, 0.0);",
+         "return 1.0;"),
+        ("sheen that takes nothing from what lies below", PRINCIPLED,
+         "return above * (1.0 - max_component(s.record.sheen_color) * albedo);", "return above;"),
+        ("light that metal facets throw at each other lost", PRINCIPLED, "p.again += metal * mean.lost *",
+         "p.again += 0.0 * metal * mean.lost *"),
+        ("light that glass facets throw at each other on both sides in full", PRINCIPLED,
+         "p.through += (1.0 - back) * lost", "p.through += lost"),
+        ("the same facets measured at every vertex", PRINCIPLED, "/ float(FACETS) + shift)", "/ float(FACETS))"),
+        ("light that facets send below the surface not lost", PRINCIPLED, "if (wi.z <= 0.0) return 1.0;",
+         "if (wi.z <= 0.0) return 0.0;"),
+        ("radiance of diffuse transmission not divided by eta squared", PRINCIPLED,
+         "p.through * INV_PI / (p.refracts ? p.eta * p.eta : vec3(1.0))", "p.through * INV_PI"),
+        ("radiance of ideal refraction not divided by eta squared", PRINCIPLED,
+         "if (p.ideal) transmitted /= square(eta);", ""),
+        ("the density of refraction without eta squared", PRINCIPLED, "jacobian * square(eta) / (wo.z + reach_o)",
+         "jacobian / (wo.z + reach_o)"),
+        ("the density of reflection as if nothing were transmitted", PRINCIPLED, "(through ? share : 1.0 - share)",
+         "(through ? share : 1.0)"),
+        ("anisotropy not squared", PRINCIPLED, "mix(alpha, 1.0, square(r.anisotropy))", "mix(alpha, 1.0, r.anisotropy)"),
+        ("roughness taken for alpha", PRINCIPLED, "float alpha = square(r.roughness);", "float alpha = r.roughness;"),
+        ("metal as bright at grazing angles as elsewhere", PRINCIPLED,
+         "reflected += p.r_schlick * schlick_weight(cos_o);", ""),
+        ("the weight of the dielectric's reflection ignored", PRINCIPLED, "d_0 = r.specular * min(", "d_0 = min("),
+        ("total reflection not total where the reflection has a weight", PRINCIPLED,
+         "reflected += p.r_total * vec3(total);", ""),
+        ("the film seen under the outer angle", FILM, "thickness * cos_film", "thickness * cos_o"),
+        ("the film's phase turned at the wrong base", FILM, "mix(vec3(PI), vec3(2.0 * PI)", "mix(vec3(2.0 * PI), vec3(PI)"),
+        ("rough diffuse light lost on one side only", ROUGH_DIFFUSE, "lost_o * lost_i / (1.0 - mean)", "lost_o"),
+        ("sheen shadowed at steep angles as at flat ones", SHEEN,
+         "x < 0.5 ? sheen_log_lambda(x, alpha)", "true ? sheen_log_lambda(x, alpha)"),
+        ("red bent more than blue", PRINCIPLED, "vec3(max(ior - h, 1.0), ior, ior + h)", "vec3(ior + h, ior, max(ior - h, 1.0))"),
+        ("all colours go where one is bent", PRINCIPLED, "transmitted *= along;", ""),
+        ("the coat's darkening forgotten for the diffuse base", PRINCIPLED, "p.diffuse *= factor;", ""),
+        ("lights sampled above their coat", PATH, "light.Li *= emitted_share(light, lit);", "light.Li *= 1.0;"),
+        ("lights hit above their coat", PATH, "emission_weight(path, pdf_light) * share *", "emission_weight(path, pdf_light) *"),
+        ("the front culled", OPACITY, "return dot(n, ray.d) > 0.0;", "return dot(n, ray.d) < 0.0;"),
+        ("every number from an image's red", MATERIAL, "channel == 0u ? texel.r : texel.g", "texel.r"),
+        ("the tangent turned the wrong way", LAYERS, "p.rotation.x * t + p.rotation.y * b", "p.rotation.x * t - p.rotation.y * b"),
     ]),
     (DEVICES, [
         ("a work group's counts in the place of those before", RENDER, "if (n > 0u) atomicAdd(counters[i], n);",

@@ -128,6 +128,71 @@ TEST_F(PrincipledPictureTest, RaysPassCulledSides) {
     }
 }
 
+// A material takes the same light whether its values are numbers or come from an image, each from its
+// channel; the direction of anisotropy, too.
+TEST_F(PrincipledPictureTest, ValuesOfImagesAreThoseOfNumbers) {
+    const auto picture = [](bool from_image) {
+        Scene scene = scene_with_camera(dvec3(1, 2, 4.5), dvec3(0), 0.5f);
+        scene.environment = one_bright_texel({8, 4}, {2, 1}, vec3(6, 5, 4));
+        PrincipledMaterial m{.base_color = vec3(0.25f, 0.5f, 0.75f),
+                             .metalness = 0.25f,
+                             .roughness = 0.5f,
+                             .specular = 0.75f,
+                             .anisotropy = 0.75f,
+                             .anisotropy_rotation = 1.25f,
+                             .coat = 0.25f,
+                             .coat_roughness = 0.5f};
+        if (from_image) {
+            const Texture image =
+                add_texture(scene, {1, 1}, [](uint32_t, uint32_t) { return vec4(0.25f, 0.5f, 0.75f, 1.0f); });
+            const auto channel = [&](uint32_t c) {
+                Texture texture = image;
+                texture.channel = c;
+                return Textured<float>(1.0f, texture);
+            };
+            m.base_color = {vec3(1), image};
+            m.metalness = m.coat = channel(0);
+            m.roughness = m.coat_roughness = channel(1);
+            m.specular = channel(2);
+            // (0.25, 0.5) stands for the opposite of the tangent, blue for 0.75 of the strength.
+            m.anisotropy = 1.0f;
+            m.anisotropy_rotation += float(M_PI);
+            m.anisotropy_map = image;
+        }
+        add_shape(scene, Sphere{}, add_material(scene, m));
+        return scene;
+    };
+    RenderSettings s = independent_settings(32, Estimator::mis, 5);
+    const Image by_numbers = image_of(render(picture(false), s, 64)),
+                by_image = image_of(render(picture(true), s, 64));
+    for (size_t c = 0; c < 3; ++c) {
+        const double mean = image_mean(by_numbers, c).mean;
+        EXPECT_NEAR(image_mean(by_image, c).mean, mean, 1e-4 * mean);
+    }
+}
+
+// Brushed metal under a small lamp has its highlight across the direction of its grooves: the tangent of a
+// quad runs along u, and is turned towards v.
+TEST_F(PrincipledPictureTest, HighlightsStretchAlongTheTurnedTangent) {
+    const auto brightness = [&](float rotation, dvec3 lamp) {
+        Scene scene = scene_with_camera(dvec3(0, 0, 100), dvec3(0), 0.001f);
+        const uint32_t metal = add_material(scene, PrincipledMaterial{.base_color = vec3(1),
+                                                                      .metalness = 1.0f,
+                                                                      .roughness = 0.2f,
+                                                                      .anisotropy = 0.8f,
+                                                                      .anisotropy_rotation = rotation});
+        add_shape(scene, parallelogram(vec3(-1, -1, 0), vec3(2, 0, 0), vec3(0, 2, 0)), metal);
+        add_shape(scene, Sphere{lamp, 1.0}, add_diffuse(scene, vec3(0)), Emission{vec3(100), false});
+        return image_mean(image_of(render(scene, independent_settings(8, Estimator::mis, 1), samples(64))), 0)
+            .mean;
+    };
+    const double diagonal = std::sqrt(0.5) * 20;
+    const dvec3 along_u(20, 0, 20), along_v(0, 20, 20), up(diagonal, diagonal, 20),
+        down(diagonal, -diagonal, 20);
+    EXPECT_GT(brightness(0.0f, along_u), 10 * brightness(0.0f, along_v));
+    EXPECT_GT(brightness(float(M_PI / 4), up), 10 * brightness(float(M_PI / 4), down));
+}
+
 TEST_F(PrincipledPictureTest, UnlitSurfacesShowTheirColour) {
     Scene scene = scene_with_camera(dvec3(0, 0, 100), dvec3(0), 0.002f);
     PrincipledMaterial m{.base_color = vec3(0.25f, 0.5f, 0.75f)};
