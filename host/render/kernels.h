@@ -7,6 +7,7 @@
 namespace candela::kernels {
 
 extern const std::span<const uint32_t> render, position;
-extern const std::span<const uint32_t> display;  // Reads no scene.
+extern const std::span<const uint32_t> render_layered;  // For scenes with principled materials.
+extern const std::span<const uint32_t> display;         // Reads no scene.
 
 }  // namespace candela::kernels

@@ -95,7 +95,8 @@ vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const Kerne
     std::vector<vk::Binding> bindings = SceneBuffers::bindings(constants);
     bindings.push_back({BINDING_IMAGE, vk::BindingType::storage_image});
     if (render) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
-    const auto spirv = render ? kernels::render : kernels::position;
+    const bool layered = (constants[CONSTANT_MATERIALS] & 1u << MATERIAL_PRINCIPLED) != 0;
+    const auto spirv = !render ? kernels::position : layered ? kernels::render_layered : kernels::render;
     return {device, spirv, bindings, sizeof(Tile), constants.values, render ? "render" : "position"};
 }
 
@@ -181,7 +182,7 @@ void Renderer::record(const vk::Kernel& kernel, Tile tile) {
 }
 
 // Dispatches a tile until all its pixels hold their samples. Once is enough, unless the driver ends long
-// loops, as lavapipe does: see render.comp.glsl.
+// loops, as lavapipe does: see kernels/render.glsl.
 Renderer::Work Renderer::complete(const Tile& tile) {
     Work work;
     while (true) {

@@ -1,4 +1,7 @@
 // The BSDF of a material: one line per model. Local frame; see bsdf/sample.glsl for the conventions.
+//
+// Before it includes this, a kernel defines LAYERED: 1 if it has the code of principled materials, else 0. (That is no
+// specialization constant, since drivers read all of the code before they know of those.)
 #ifndef BSDF_BSDF_GLSL
 #define BSDF_BSDF_GLSL
 
@@ -8,13 +11,16 @@
 #include "bsdf/diffuse_transmission.glsl"
 #include "bsdf/mirror.glsl"
 #include "bsdf/phong.glsl"
+#if LAYERED
 #include "bsdf/principled.glsl"
+#else
+#include "bsdf/no_layers.glsl"
+#endif
 #include "shared/kernel_constants.h"
 #include "shared/material.h"
 
 const uint MATERIALS_DIELECTRIC = 1u << MATERIAL_DIELECTRIC_SCHLICK | 1u << MATERIAL_DIELECTRIC_EXACT;
 
-const bool HAS_PRINCIPLED = (MATERIALS & 1u << MATERIAL_PRINCIPLED) != 0u;
 
 // True if some surface scatters light that comes from behind it, so that light samples there count.
 const bool LIT_FROM_BEHIND =
@@ -41,11 +47,12 @@ bool is_model(Bsdf b, const uint models) {
 bool bsdf_refracts(MaterialRecord m) {
     Bsdf b;
     b.model = m.model;
-    return is_model(b, MATERIALS_DIELECTRIC) || (is_model(b, 1u << MATERIAL_PRINCIPLED) && m.medium != MEDIUM_SAME);
+    if (is_model(b, 1u << MATERIAL_PRINCIPLED)) return m.medium != MEDIUM_SAME;
+    return is_model(b, MATERIALS_DIELECTRIC);
 }
 
 // The material seen from its front, or from its back, where the two media of a dielectric are swapped.
-// What a principled material has besides is added by bsdf_add_principled().
+// The lobes of a principled material are added later: see integrator/layers.glsl.
 Bsdf bsdf_at(MaterialRecord m, bool front) {
     Bsdf b;
     b.model = m.model;
@@ -54,13 +61,6 @@ Bsdf bsdf_at(MaterialRecord m, bool front) {
     b.parameter = m.parameter;
     if (bsdf_refracts(m) && !front) b.parameter = 1.0 / b.parameter;
     return b;
-}
-
-// Adds the lobes of a principled material seen from wo. `surface.eta` is b.parameter.
-void bsdf_add_principled(inout Bsdf b, PrincipledSurface surface, vec3 wo) {
-    surface.eta = b.parameter;
-    surface.base_color = b.base;
-    b.principled = principled_lobes(surface, wo);
 }
 
 // Value and density; zero where scattering is ideal.

@@ -1,4 +1,5 @@
-// What a principled material needs to know about the place where it is hit.
+// What a principled material needs to know about the place where it is hit. Kernels without such materials (LAYERED is
+// 0) have nothing of it.
 #ifndef INTEGRATOR_LAYERS_GLSL
 #define INTEGRATOR_LAYERS_GLSL
 
@@ -10,12 +11,16 @@
 #include "scene/interaction.glsl"
 #include "scene/material.glsl"
 
+const bool HAS_COATED_EMISSION = (PRINCIPLED & PRINCIPLED_HAS_COATED_EMISSION) != 0u;
+
+#if LAYERED
+
 const bool HAS_ANISOTROPY = (PRINCIPLED & PRINCIPLED_HAS_ANISOTROPY) != 0u;
 const bool HAS_COAT_NORMALS = (PRINCIPLED & PRINCIPLED_HAS_COAT_NORMAL) != 0u;
 
 bool is_principled(MaterialRecord m) {
-    if ((MATERIALS & ~(1u << MATERIAL_PRINCIPLED)) == 0u) return HAS_PRINCIPLED;
-    return HAS_PRINCIPLED && m.model == MATERIAL_PRINCIPLED;
+    if ((MATERIALS & 1u << MATERIAL_PRINCIPLED) == 0u) return false;
+    return (MATERIALS & ~(1u << MATERIAL_PRINCIPLED)) == 0u || m.model == MATERIAL_PRINCIPLED;
 }
 
 // The material m at s; m gets its base colour there. Where prisms part colours, a
@@ -50,8 +55,6 @@ Frame principled_frame(PrincipledRecord p, Interaction s) {
     return Frame(x, cross(s.ns, x), s.ns);
 }
 
-const bool HAS_COATED_EMISSION = (PRINCIPLED & PRINCIPLED_HAS_COATED_EMISSION) != 0u;
-
 // What coat and sheen leave of the light that a surface of material i emits at that cosine to its normal, measured as in
 // bsdf/principled.glsl: right on average over `random`, uniform in [0, 1)^2.
 float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
@@ -74,9 +77,10 @@ float emitted_share(LightSample light, LitPoint lit) {
                          light_sample_cosine(light, lit), unit_float(bits.xy));
 }
 
-// The texture of the normals of the material's coat, or TEXTURE_NONE.
-uint principled_coat_map(MaterialRecord m) {
-    return scene_principled(floatBitsToUint(m.specular.x)).coat_normal;
+// Whether the material's coat has a normal map of its own.
+bool has_coat_map(MaterialRecord m) {
+    if (!HAS_COAT_NORMALS || !is_principled(m)) return false;
+    return scene_principled(floatBitsToUint(m.specular.x)).coat_normal != TEXTURE_NONE;
 }
 
 // The coat's normal in `frame`; `unbent` is the shading normal of the shape.
@@ -88,5 +92,41 @@ vec3 coat_normal(PrincipledRecord p, Interaction s, vec3 unbent, Frame frame) {
     }
     return frame_to_local(frame, consistent_normal(s.wo, s.n, s.ns));
 }
+
+// Adds the lobes of the material m, if it is principled, at s, which the path's ray hit; m gets its base colour there,
+// and x of the frame the direction of the greatest roughness. `unbent` is the shading normal of the shape.
+void add_layers(inout Bsdf bsdf, inout MaterialRecord m, inout Frame frame, Interaction s, vec3 unbent, Ray ray,
+                vec3 beta) {
+    if (!is_principled(m)) return;
+    PrincipledSurface surface = principled_surface(m, s, ray, beta);
+    if (HAS_ANISOTROPY) frame = principled_frame(surface.record, s);
+    if (HAS_COAT_NORMALS) surface.coat_n = coat_normal(surface.record, s, unbent, frame);
+    bsdf.base = surface.base_color = m.base;
+    surface.eta = bsdf.parameter;
+    bsdf.principled = principled_lobes(surface, frame_to_local(frame, s.wo));
+}
+
+#else
+
+bool is_principled(MaterialRecord m) {
+    return false;
+}
+
+bool has_coat_map(MaterialRecord m) {
+    return false;
+}
+
+float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
+    return 1.0;
+}
+
+float emitted_share(LightSample light, LitPoint lit) {
+    return 1.0;
+}
+
+void add_layers(inout Bsdf bsdf, inout MaterialRecord m, inout Frame frame, Interaction s, vec3 unbent, Ray ray,
+                vec3 beta) {}
+
+#endif
 
 #endif

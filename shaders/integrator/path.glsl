@@ -224,9 +224,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         s.ns = s.n;
         bent = false;
     }
-    uint coat_map = TEXTURE_NONE;
-    if (HAS_COAT_NORMALS && is_principled(material)) coat_map = principled_coat_map(material);
-    bent = bent || coat_map != TEXTURE_NONE;
+    bent = bent || has_coat_map(material);
     if (bent) s.ns = consistent_normal(s.wo, s.n, s.ns);
     Frame frame = frame_from_z(s.ns);
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
@@ -237,14 +235,8 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     LightSample light;
     if (ESTIMATOR != ESTIMATOR_BSDF) light = light_sample_li(lit, sampler_pair(random, pair + PAIR_LIGHT), choice.x);
     if (HAS_COATED_EMISSION && ESTIMATOR != ESTIMATOR_BSDF) light.Li *= emitted_share(light, lit);
-    if (is_principled(material)) {
-        PrincipledSurface surface = principled_surface(material, s, path.ray, path.beta);
-        bsdf.base = material.base;
-        if (HAS_ANISOTROPY) frame = principled_frame(surface.record, s);
-        if (HAS_COAT_NORMALS) surface.coat_n = coat_normal(surface.record, s, unbent, frame);
-        bsdf_add_principled(bsdf, surface, frame_to_local(frame, s.wo));
-        if (path.depth == 0u) estimate.albedo = bsdf_albedo(bsdf);
-    }
+    add_layers(bsdf, material, frame, s, unbent, path.ray, path.beta);
+    if (is_principled(material) && path.depth == 0u) estimate.albedo = bsdf_albedo(bsdf);
     Shading shading = Shading(frame, frame_to_local(frame, s.wo), bent);
 
     // Add direct light.

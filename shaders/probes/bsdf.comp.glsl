@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#define LAYERED 1
 #define ITEM_WORDS 13u
 #define RESULT_WORDS 17u
 #include "base/hash.glsl"
@@ -29,7 +30,9 @@ void main() {
         surface.random = vec4(unit_float(bits.xy), unit_float(bits.zw));
         surface.spread = dispersion_spread(material.parameter, surface.record.dispersion);
         if (surface.inside) surface.spread = 1.0 / surface.spread;
-        bsdf_add_principled(bsdf, surface, wo);
+        surface.eta = bsdf.parameter;
+        surface.base_color = bsdf.base;
+        bsdf.principled = principled_lobes(surface, wo);
     }
     vec3 wi = item_floats(3u).xyz;
     BsdfSample s = bsdf_sample_f(bsdf, wo, item_floats(4u).z, item_floats(4u).xy);

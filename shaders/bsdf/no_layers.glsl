@@ -1,0 +1,20 @@
+// In the place of bsdf/principled.glsl, for kernels that have no principled materials.
+#ifndef BSDF_NO_LAYERS_GLSL
+#define BSDF_NO_LAYERS_GLSL
+
+#include "bsdf/sample.glsl"
+#include "shared/principled.h"
+
+struct Principled {
+    bool unused;
+};
+
+BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
+    return bsdf_zero();
+}
+
+BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
+    return bsdf_sample_failed();
+}
+
+#endif
