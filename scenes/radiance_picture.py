@@ -1,4 +1,4 @@
-"""Radiance pictures (.hdr), as make_sky.py and make_dusk.py write them: rows in the newer run-length encoding."""
+"""Radiance pictures (.hdr), as the scripts that make skies write them: rows in the newer run-length encoding."""
 
 import math
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-SKIES = {"sky.hdr": "make_sky", "dusk.hdr": "make_dusk"}
+SKIES = {"sky.hdr": "make_sky", "dusk.hdr": "make_dusk", "materials/studio.hdr": "make_materials"}
 CHECKED_ROWS = 16
 
 
