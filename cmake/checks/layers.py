@@ -42,9 +42,10 @@ MAY_INCLUDE = {
     "shaders/probes": ["shaders"],
 }
 
-# Where kernels are, and the only other files that declare buffers or images.
+# Where kernels are, what several of them share, and the only other files that declare buffers or images.
 KERNEL_FOLDERS = ("shaders/kernels", "shaders/probes")
-DECLARE_BUFFERS = ("shaders/scene/scene_data.glsl", "shaders/probes/items.glsl")
+KERNEL_BODIES = ("shaders/kernels/render.glsl",)
+DECLARE_BUFFERS = ("shaders/scene/scene_data.glsl", "shaders/probes/items.glsl", *KERNEL_BODIES)
 
 # Library -> what its includes look like, and the folders that may see it, directly or through other files.
 LIBRARIES = {
@@ -147,7 +148,8 @@ class Checker:
         if name.endswith(".inc"):  # A list that is read more than once.
             return
         is_kernel = name.endswith(".comp.glsl")
-        if is_kernel and folder not in KERNEL_FOLDERS or not is_kernel and folder == "shaders/kernels":
+        stray = not is_kernel and folder == "shaders/kernels" and name not in KERNEL_BODIES
+        if is_kernel and folder not in KERNEL_FOLDERS or stray:
             self.report(name, 1, "kernels, and they alone, are *.comp.glsl in shaders/kernels/; probes are in shaders/probes/")
         if is_kernel != bool(MAIN.search(text)):
             self.report(name, 1, "kernels, and they alone, define main()")

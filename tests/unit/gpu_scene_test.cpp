@@ -2,6 +2,7 @@
 #include "gpu_scene/gpu_scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <set>
 
@@ -9,6 +10,7 @@
 
 #include "shared/bvh_node.h"
 #include "shared/material.h"
+#include "shared/principled.h"
 #include "unit/packed_scene.h"
 
 namespace candela {
@@ -252,6 +254,7 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
         {"", DiffuseTransmissionMaterial{vec3(0.2f), vec3(0.3f)}},
         {"", DiffuseTransmissionMaterial{vec3(0.2f), vec3(0.3f), Medium{vec3(1, 2, 3)}}},
         {"", DielectricMaterial{.ior = 1.5f, .inside = {vec3(1, 2, 3)}}},
+        {"", PrincipledMaterial{.base_color = vec3(0.2f), .unlit = true}},
     };
     const std::vector<MaterialRecord> expected{
         {MATERIAL_DIFFUSE, MEDIUM_SAME, vec3(0.1f, 0.2f, 0.3f), vec3(0), 0.0f},
@@ -263,6 +266,7 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
         {MATERIAL_DIFFUSE_TRANSMISSION, MEDIUM_SAME, vec3(0.2f), vec3(0.3f), 0.0f},
         {MATERIAL_DIFFUSE_TRANSMISSION, 3, vec3(0.2f), vec3(0.3f), 0.0f},
         {MATERIAL_DIELECTRIC_SCHLICK, 1, vec3(0), vec3(0), 1.5f},
+        {MATERIAL_UNLIT, MEDIUM_SAME, vec3(0.2f), vec3(0), 0.0f},
     };
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     for (uint32_t i = 0; i < expected.size(); ++i) {
@@ -270,13 +274,39 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
         EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i], words[0]) << i;
         EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i + 1], words[1]) << i;
     }
-    EXPECT_EQ(gpu.materials_present, (1u << MATERIAL_COUNT) - 1);
+    EXPECT_EQ(gpu.materials_present, ((1u << MATERIAL_COUNT) - 1) & ~(1u << MATERIAL_PRINCIPLED));
     const auto medium = [](vec3 absorption, float ior) { return pack(MediumRecord{absorption, ior})[0]; };
     EXPECT_EQ(gpu.arrays[ARRAY_MEDIA], (std::vector<uvec4>{medium(vec3(0), 1), medium(vec3(1, 2, 3), 1.5f),
                                                            medium(vec3(0), 1.5f), medium(vec3(1, 2, 3), 1)}));
     EXPECT_TRUE(gpu.has_media);
     EXPECT_FALSE(build_gpu_scene(scene_of({})).has_media);
     EXPECT_EQ(build_gpu_scene(scene_of({})).materials_present, 1u << MATERIAL_DIFFUSE);
+}
+
+// Behind the records of all materials, those of principled ones, each with the images that it takes values
+// from: textures that differ in nothing but the channel are one.
+TEST(GpuScene, PrincipledMaterialsHaveRecordsBehindTheOthers) {
+    Scene scene;
+    scene.images.emplace_back().image = {
+        .size = {1, 1}, .channels = 4, .texels = std::vector<std::byte>(4), .gamma = {}};
+    Texture red, green;
+    green.channel = 1;
+    scene.materials = {
+        {"", PrincipledMaterial{.metalness = {0.5f, red}, .roughness = {0.25f, green}, .ior = 1.4f}},
+        {"", DiffuseMaterial{}},
+        {"", PrincipledMaterial{.roughness = 0.0f, .transmission = 1.0f, .inside = Medium{vec3(1)}}}};
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
+    const std::vector<uvec4>& words = gpu.arrays[ARRAY_MATERIALS];
+    ASSERT_EQ(words.size(), 3 * MATERIAL_WORDS + PRINCIPLED_WORDS + 1 + PRINCIPLED_WORDS);
+    const uint32_t first = 3 * MATERIAL_WORDS;
+    EXPECT_EQ(words[1], uvec4(first, 0, 0, std::bit_cast<uint32_t>(1.4f)));
+    EXPECT_EQ(words[5].x, first + PRINCIPLED_WORDS + 1);
+    EXPECT_EQ(std::bit_cast<vec4>(words[first]), vec4(0.5f, 0.25f, 0, 1));
+    EXPECT_EQ(words[first + 7].z, 1u);
+    const uint32_t values = 1u << PRINCIPLED_METALNESS | 1u << PRINCIPLED_ROUGHNESS;
+    EXPECT_EQ(words[first + PRINCIPLED_WORDS], uvec4(0, values, 1u << 2 * PRINCIPLED_ROUGHNESS, 0));
+    EXPECT_EQ(gpu.principled, PRINCIPLED_HAS_METAL | PRINCIPLED_HAS_ROUGH | PRINCIPLED_HAS_DIFFUSE |
+                                  PRINCIPLED_HAS_IMAGES | PRINCIPLED_HAS_VOLUME);
 }
 
 TEST(GpuScene, KindsOfPrimitivesArePresentOnlyIfTheyAre) {
