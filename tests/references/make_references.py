@@ -8,7 +8,7 @@ candela with them. Requirements, in a virtual environment of their own (candela 
     python3 -m venv venv && venv/bin/pip install mitsuba==3.9.1 numpy && venv/bin/python make_references.py
 
 Mitsuba compiles its kernels with LLVM 16 or newer (Debian: libllvm19); where there are several, the variable
-DRJIT_LIBLLVM_PATH names the library. All references together take about ten minutes on two cores.
+DRJIT_LIBLLVM_PATH names the library. All references together take about twenty minutes on two cores.
 """
 
 import json
@@ -25,6 +25,7 @@ mi.set_log_level(mi.LogLevel.Error)
 
 from meshes import box, read_ply, write_ply
 import light_texture  # noqa: E402, F401 (registers a plugin; both need the variant)
+import principled_model  # noqa: E402
 import reflection_models  # noqa: E402
 from surroundings import around  # noqa: E402
 
@@ -54,6 +55,10 @@ SPP = {
     "textured-emitter": 256,
     "mask": 256,
     "normal-map": 256,
+    "brushed-metal": 128,
+    "frosted-glass": 64,
+    "thin-glass": 256,
+    "coated-plastic": 256,
 }
 
 # A string, which stays, or a comment, which becomes a space.
@@ -150,7 +155,31 @@ def detailed(bsdf, material):
     return bsdf
 
 
-BSDFS = {"diffuse": diffuse, "mirror": mirror, "phong": phong, "conductor": metal, "dielectric": dielectric}
+PRINCIPLED_NUMBERS = ["metalness", "roughness", "ior", "specular", "anisotropy", "anisotropy_rotation", "transmission",
+                      "diffuse_transmission", "coat", "coat_roughness", "coat_ior"]
+PRINCIPLED_COLOURS = ["base_color", "specular_color", "diffuse_transmission_color"]
+
+
+def principled(material, smooth):
+    keys = {"type", "thin_walled", "absorption", "priority", *PRINCIPLED_NUMBERS, *PRINCIPLED_COLOURS}
+    assert not set(material) - keys, "principled_model.py does not know all keys"
+    result = {"type": "candela_principled", "base_color": mi.ScalarColor3f(0.8)}
+    result |= {key: float(material[key]) for key in PRINCIPLED_NUMBERS if key in material}
+    result |= {key: mi.ScalarColor3f(rgb(material[key])) for key in PRINCIPLED_COLOURS if key in material}
+    return {**result, "thin_walled": material.get("thin_walled", "absorption" not in material)}
+
+
+def rough_conductor(material, smooth):
+    rest = {key: value for key, value in material.items() if key not in ("type", "reflectance")}
+    return principled({**rest, "base_color": material["reflectance"], "metalness": 1}, smooth)
+
+
+def rough_dielectric(material, smooth):
+    return principled({"thin_walled": False, **material, "base_color": 1, "transmission": 1}, smooth)
+
+
+BSDFS = {"diffuse": diffuse, "mirror": mirror, "phong": phong, "conductor": metal, "dielectric": dielectric,
+         "principled": principled, "rough_conductor": rough_conductor, "rough_dielectric": rough_dielectric}
 BLACK = {"type": "diffuse", "reflectance": 0.0}
 
 
@@ -212,7 +241,8 @@ def geometry(shape, folder, temporary):
     if shape["type"] == "sphere":
         local = mi.ScalarTransform4f().translate(shape.get("center", [0, 0, 0])).scale(shape.get("radius", 1))
         result = {"type": "sphere"}
-        to_world = to_world @ np.array(local.matrix)
+        # Mitsuba's tangent goes around its +Z, candela's around +Y.
+        to_world = to_world @ np.array(local.matrix) @ rotation(-90, [1, 0, 0])
     elif shape["type"] == "disk":
         # Mitsuba's disk looks along its +Z.
         center, normal = np.array(shape.get("center", [0, 0, 0])), np.array(shape["normal"])
@@ -338,6 +368,7 @@ def main(names):
     if unknown:
         sys.exit(f"unknown scene {', '.join(sorted(unknown))} (known: {', '.join(SPP)})")
     reflection_models.check_albedos()
+    principled_model.check_energy()
     for name in names or SPP:
         mean, variance = render(name)
         write(name, mean, variance)

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 struct Reference {
     const char* name;
-    uint32_t spp;  // Samples per pixel, for largest_pixel_error().
+    uint32_t spp;                 // Samples per pixel, for largest_pixel_error().
+    const char* image = nullptr;  // Of the scene that has the same picture, if it has none of its own.
 };
 
 void PrintTo(const Reference& reference, std::ostream* os) {
@@ -45,6 +46,11 @@ constexpr std::array REFERENCES{
     Reference{"textured-roughness", 256},
     Reference{"textured-emitter", 1152},
     Reference{"mask", 768},
+    Reference{"brushed-metal", 512},
+    Reference{"frosted-glass", 512},
+    Reference{"thin-glass", 768},
+    Reference{"coated-plastic", 256},
+    Reference{"principled-nested-glass", 512, "nested-glass"},
 };
 
 // The median over pixels of the standard error over the mean may not be larger: else the test would accept
@@ -138,8 +144,9 @@ testing::AssertionResult agree(const Image& image, const Image& reference, const
 class ReferenceTest : public RenderTest, public testing::WithParamInterface<Reference> {};
 
 TEST_P(ReferenceTest, AnIndependentRendererMakesTheSamePicture) {
-    const auto [name, spp] = GetParam();
-    const Image reference = read_exr(fs::path(CANDELA_REFERENCES) / (std::string(name) + ".exr"));
+    const auto [name, spp, same] = GetParam();
+    const Image reference =
+        read_exr(fs::path(CANDELA_REFERENCES) / (std::string(same ? same : name) + ".exr"));
     const Scene scene = load_scene(scene_file(name));
     RenderSettings settings = independent_settings(reference.full.x, Estimator::mis, 1);
     settings.max_depth = scene.integrator.max_depth.value_or(DEPTH_SAFETY_LIMIT);
