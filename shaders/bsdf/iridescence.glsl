@@ -1,6 +1,6 @@
 // Reflectance of a thin film on a base: light that the two boundaries reflect interferes.
-// Ref: Belcour and Barla 2017, A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence, in the
-// approximation of KHR_materials_iridescence, which has these numbers.
+// Ref: Belcour and Barla 2017, A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence, in
+// the approximation of KHR_materials_iridescence, which has these numbers.
 #ifndef BSDF_IRIDESCENCE_GLSL
 #define BSDF_IRIDESCENCE_GLSL
 

@@ -11,6 +11,8 @@ MEDIUM = "shaders/medium/medium.glsl"
 CONDUCTOR = "shaders/bsdf/conductor.glsl"
 DIELECTRIC = "shaders/bsdf/dielectric.glsl"
 PRINCIPLED = "shaders/bsdf/principled.glsl"
+PRINCIPLED_FACETS = "shaders/bsdf/principled_facets.glsl"
+PRINCIPLED_LOBES = "shaders/bsdf/principled_lobes.glsl"
 SHEEN = "shaders/bsdf/sheen.glsl"
 ROUGH_DIFFUSE = "shaders/bsdf/rough_diffuse.glsl"
 FILM = "shaders/bsdf/iridescence.glsl"
@@ -213,16 +215,16 @@ GROUPS = [
          "p.second.nearest_exit);", "-p.second.nearest_exit);"),
     ]),
     (LAYERED, [
-        ("a coat that takes nothing from what lies below", PRINCIPLED, "return max(1.0 - p.coat * reflected, 0.0);",
+        ("a coat that takes nothing from what lies below", PRINCIPLED_LOBES, "return max(1.0 - p.coat * reflected, 0.0);",
          "return 1.0;"),
-        ("sheen that takes nothing from what lies below", PRINCIPLED,
+        ("sheen that takes nothing from what lies below", PRINCIPLED_LOBES,
          "return above * (1.0 - max_component(s.record.sheen_color) * albedo);", "return above;"),
-        ("light that metal facets throw at each other lost", PRINCIPLED, "p.again += metal * mean.lost *",
+        ("light that metal facets throw at each other lost", PRINCIPLED_LOBES, "p.again += metal * mean.lost *",
          "p.again += 0.0 * metal * mean.lost *"),
-        ("light that glass facets throw at each other on both sides in full", PRINCIPLED,
+        ("light that glass facets throw at each other on both sides in full", PRINCIPLED_LOBES,
          "p.through += (1.0 - back) * lost", "p.through += lost"),
-        ("the same facets measured at every vertex", PRINCIPLED, "/ float(FACETS) + shift)", "/ float(FACETS))"),
-        ("light that facets send below the surface not lost", PRINCIPLED, "if (wi.z <= 0.0) return 1.0;",
+        ("the same facets measured at every vertex", PRINCIPLED_FACETS, "/ float(FACETS) + shift)", "/ float(FACETS))"),
+        ("light that facets send below the surface not lost", PRINCIPLED_FACETS, "if (wi.z <= 0.0) return 1.0;",
          "if (wi.z <= 0.0) return 0.0;"),
         ("radiance of diffuse transmission not divided by eta squared", PRINCIPLED,
          "p.through * INV_PI / (p.refracts ? p.eta * p.eta : vec3(1.0))", "p.through * INV_PI"),
@@ -232,21 +234,21 @@ GROUPS = [
          "jacobian / (wo.z + reach_o)"),
         ("the density of reflection as if nothing were transmitted", PRINCIPLED, "(through ? share : 1.0 - share)",
          "(through ? share : 1.0)"),
-        ("anisotropy not squared", PRINCIPLED, "mix(alpha, 1.0, square(r.anisotropy))", "mix(alpha, 1.0, r.anisotropy)"),
-        ("roughness taken for alpha", PRINCIPLED, "float alpha = square(r.roughness);", "float alpha = r.roughness;"),
-        ("metal as bright at grazing angles as elsewhere", PRINCIPLED,
+        ("anisotropy not squared", PRINCIPLED_LOBES, "mix(alpha, 1.0, square(r.anisotropy))", "mix(alpha, 1.0, r.anisotropy)"),
+        ("roughness taken for alpha", PRINCIPLED_LOBES, "float alpha = square(r.roughness);", "float alpha = r.roughness;"),
+        ("metal as bright at grazing angles as elsewhere", PRINCIPLED_FACETS,
          "reflected += p.r_schlick * schlick_weight(cos_o);", ""),
-        ("the weight of the dielectric's reflection ignored", PRINCIPLED, "d_0 = r.specular * min(", "d_0 = min("),
-        ("total reflection not total where the reflection has a weight", PRINCIPLED,
+        ("the weight of the dielectric's reflection ignored", PRINCIPLED_LOBES, "d_0 = r.specular * min(", "d_0 = min("),
+        ("total reflection not total where the reflection has a weight", PRINCIPLED_FACETS,
          "reflected += p.r_total * vec3(total);", ""),
         ("the film seen under the outer angle", FILM, "thickness * cos_film", "thickness * cos_o"),
         ("the film's phase turned at the wrong base", FILM, "mix(vec3(PI), vec3(2.0 * PI)", "mix(vec3(2.0 * PI), vec3(PI)"),
         ("rough diffuse light lost on one side only", ROUGH_DIFFUSE, "lost_o * lost_i / (1.0 - mean)", "lost_o"),
         ("sheen shadowed at steep angles as at flat ones", SHEEN,
          "x < 0.5 ? sheen_log_lambda(x, alpha)", "true ? sheen_log_lambda(x, alpha)"),
-        ("red bent more than blue", PRINCIPLED, "vec3(max(ior - h, 1.0), ior, ior + h)", "vec3(ior + h, ior, max(ior - h, 1.0))"),
+        ("red bent more than blue", PRINCIPLED_FACETS, "vec3(max(ior - h, 1.0), ior, ior + h)", "vec3(ior + h, ior, max(ior - h, 1.0))"),
         ("all colours go where one is bent", PRINCIPLED, "transmitted *= along;", ""),
-        ("the coat's darkening forgotten for the diffuse base", PRINCIPLED, "p.diffuse *= factor;", ""),
+        ("the coat's darkening forgotten for the diffuse base", PRINCIPLED_LOBES, "p.diffuse *= factor;", ""),
         ("lights sampled above their coat", PATH, "light.Li *= emitted_share(light, lit);", "light.Li *= 1.0;"),
         ("lights hit above their coat", PATH, "emission_weight(path, pdf_light) * share *", "emission_weight(path, pdf_light) *"),
         ("the front culled", OPACITY, "return dot(n, ray.d) > 0.0;", "return dot(n, ray.d) < 0.0;"),

@@ -1,0 +1,209 @@
+// The lobes of a principled material seen from one direction: coat, sheen and base, from above, each under what the one
+// before leaves. bsdf/principled.glsl has the whole on one page.
+#ifndef BSDF_PRINCIPLED_LOBES_GLSL
+#define BSDF_PRINCIPLED_LOBES_GLSL
+
+#include "base/frame.glsl"
+#include "bsdf/iridescence.glsl"
+#include "bsdf/principled_facets.glsl"
+#include "bsdf/sheen.glsl"
+#include "bsdf/sheen_albedo.glsl"
+
+// Between the frame and that of the coat.
+vec3 to_coat(Principled p, vec3 w) {
+    return principled_has(PRINCIPLED_HAS_COAT_NORMAL) ? frame_to_local(frame_from_z(p.coat_n), w) : w;
+}
+
+vec3 from_coat(Principled p, vec3 w) {
+    return principled_has(PRINCIPLED_HAS_COAT_NORMAL) ? frame_to_world(frame_from_z(p.coat_n), w) : w;
+}
+
+float coat_fresnel(Principled p, float cos_o) {
+    return mix(fresnel_edge(p.coat_ior, cos_o), 1.0, p.coat_f0);
+}
+
+// The coat's lobes; returns what it leaves to the layers below.
+float principled_coat(inout Principled p, PrincipledSurface s, vec3 wo) {
+    p.coat = 0.0;
+    p.coat_ideal = true;
+    if (!principled_has(PRINCIPLED_HAS_COAT) || s.inside) return 1.0;
+    float cos_o = principled_has(PRINCIPLED_HAS_COAT_NORMAL) ? max(dot(wo, s.coat_n), 0.0) : wo.z;
+    p.coat_n = s.coat_n;
+    p.coat_ior = s.record.coat_ior;
+    p.coat_f0 = square((p.coat_ior - 1.0) / (p.coat_ior + 1.0));
+    float alpha = square(s.record.coat_roughness);
+    p.coat_ideal = is_ideal(alpha);
+    p.coat_alpha = max(alpha, LEAST_ALPHA);
+    p.coat = s.record.coat;
+    float reflected = coat_fresnel(p, cos_o);
+    p.pmf.x = p.coat * reflected;
+    if (!p.coat_ideal) {
+        vec2 alpha = vec2(p.coat_alpha);
+        vec3 o = to_coat(p, wo);
+        float reach_o = ggx_reach(alpha, o);
+        float scattered = 0.0;
+        reflected = 0.0;
+        for (uint i = 0u; i < FACETS; ++i) {
+            vec3 h = warp_ggx_visible_normal(lattice_point(i, s.random.zw), alpha, o);
+            float fresnel = coat_fresnel(p, dot(o, h));
+            scattered += fresnel;
+            reflected += fresnel * (1.0 - facet_shadowed(alpha, o, 2.0 * dot(o, h) * h - o, reach_o));
+        }
+        reflected /= float(FACETS);
+        p.pmf.x = p.coat * scattered / float(FACETS);
+    }
+    return max(1.0 - p.coat * reflected, 0.0);
+}
+
+// Darkens what the layers under the coat send up: the coat reflects a part of it down again, and what reflects little
+// takes that away. `up` is the share that they send up, `roughness` how diffuse that is.
+// Ref: OpenPBR 1.1, section on coat darkening.
+void principled_darken(inout Principled p, PrincipledSurface s, vec3 wo, vec3 up, float roughness) {
+    if (p.coat == 0.0) return;
+    float cos_o = principled_has(PRINCIPLED_HAS_COAT_NORMAL) ? max(dot(wo, s.coat_n), 0.0) : wo.z;
+    float ideal = coat_fresnel(p, cos_o);
+    float down = min(mix(ideal, s.record.coat_internal, roughness), 0.9999);
+    vec3 factor = (1.0 - down) / (1.0 - min(up, 1.0) * down);
+    factor = mix(vec3(1.0), factor, p.coat * s.record.coat_darkening);
+    p.r_0 *= factor;
+    p.r_edge *= factor;
+    p.r_schlick *= factor;
+    p.diffuse *= factor;
+    p.again *= factor;
+    p.sheen *= factor;
+}
+
+// The sheen's lobe under a coat that leaves `above`; returns what sheen and coat leave.
+float principled_sheen(inout Principled p, PrincipledSurface s, vec3 wo, float above) {
+    p.sheen = vec3(0.0);
+    p.sheen_alpha = 1.0;
+    if (!principled_has(PRINCIPLED_HAS_SHEEN) || s.inside) return above;
+    p.sheen_alpha = sheen_alpha(s.record.sheen_roughness);
+    // Charlie's lobe gains light at grazing angles if it is narrow: there it is scaled down to an albedo of 1.
+    float albedo = sheen_albedo(p.sheen_alpha, wo.z);
+    p.sheen = above / max(albedo, 1.0) * s.record.sheen_color;
+    albedo = min(albedo, 1.0);
+    p.pmf.z = dot(s.hue, s.record.sheen_color) * (above * albedo);
+    return above * (1.0 - max_component(s.record.sheen_color) * albedo);
+}
+
+// The lobes of the base under layers that leave `above`.
+void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float above) {
+    PrincipledRecord r = s.record;
+    float metalness = principled_has(PRINCIPLED_HAS_METAL) ? r.metalness : 0.0;
+    float transmission = PRINCIPLED_TRANSMITS ? r.transmission : 0.0;
+
+    // Facets.
+    float alpha = square(r.roughness);
+    p.alpha = vec2(alpha);
+    if (principled_has(PRINCIPLED_HAS_ANISOTROPY)) p.alpha.x = mix(alpha, 1.0, square(r.anisotropy));
+    p.refracts = principled_has(PRINCIPLED_HAS_VOLUME) && s.encloses;
+    // Facets between nearly equal indices turn light by less than LEAST_ALPHA, too.
+    bool matched = p.refracts && transmission > 0.0 && abs(s.eta - 1.0) < LEAST_ALPHA;
+    p.ideal = is_ideal(p.alpha.x) || matched;
+    if (!principled_has(PRINCIPLED_HAS_ROUGH)) p.ideal = true;
+    p.alpha = max(p.alpha, LEAST_ALPHA);
+    p.eta = vec3(s.eta);
+    if (principled_has(PRINCIPLED_HAS_DISPERSION) && p.refracts) p.eta *= s.spread;
+
+    // The reflectance of facets: d_0 + d_edge t of the dielectric, m_0 + m_edge S of the metal.
+    vec3 root = (p.eta - 1.0) / (p.eta + 1.0);
+    vec3 f0 = root * root;
+    vec3 d_0 = f0, d_edge = 1.0 - f0;
+    vec3 most_0 = f0;  // The greatest channel, if the index were that of red, of green and of blue light.
+    if (principled_has(PRINCIPLED_HAS_SPECULAR)) {
+        d_0 = r.specular * min(f0 * r.specular_color, 1.0);
+        d_edge = max(r.specular - d_0, 0.0);
+        most_0 = r.specular * min(f0 * max_component(r.specular_color), 1.0);
+    }
+    vec3 most_edge = (principled_has(PRINCIPLED_HAS_SPECULAR) ? r.specular : 1.0) - most_0;
+    float smooth_share = max_component(d_0 + d_edge * fresnel_edge(s.eta, wo.z));
+    vec3 m_0 = s.base_color, m_edge = 1.0 - s.base_color;
+    if (principled_has(PRINCIPLED_HAS_IRIDESCENCE) && !s.inside && r.iridescence > 0.0) {
+        float thickness = r.thickness + r.thickness_range;
+        vec3 film = fresnel_film(wo.z, r.iridescence_ior, thickness, d_0);
+        d_0 = mix(d_0, film, r.iridescence);
+        most_0 = mix(most_0, vec3(max_component(film)), r.iridescence);
+        most_edge *= 1.0 - r.iridescence;
+        d_edge *= 1.0 - r.iridescence;
+        if (principled_has(PRINCIPLED_HAS_METAL)) {
+            m_0 = mix(m_0, fresnel_film(wo.z, r.iridescence_ior, thickness, m_0), r.iridescence);
+            m_edge *= 1.0 - r.iridescence;
+        }
+    }
+    FacetMeans mean = FacetMeans(principled_edge(p, wo.z), schlick_weight(wo.z), 0.0, 0.0, 0.0, vec3(0.0));
+    mean.most = min(most_0.y + most_edge.y * mean.edge.y, 1.0);
+    if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal) {
+        mean = principled_measure(p, most_0, most_edge, wo, s.random.xy);
+    }
+
+    // Weights.
+    float dielectric = above * (1.0 - metalness);
+    float opaque = dielectric * (1.0 - transmission);
+    p.r_0 = dielectric * d_0;
+    p.r_edge = dielectric * d_edge;
+    p.r_schlick = vec3(0.0);
+    p.r_total = 0.0;
+    if (principled_has(PRINCIPLED_HAS_SPECULAR)) p.r_total = dielectric * transmission * (1.0 - r.specular);
+    p.again = opaque * mean.most_lost * d_0;
+    if (principled_has(PRINCIPLED_HAS_METAL)) {
+        float metal = above * metalness;
+        p.r_0 += metal * m_0;
+        p.r_schlick = metal * m_edge;
+        p.again += metal * mean.lost * metal_again(m_0, m_edge, p.alpha);
+    }
+    float below = opaque * max(1.0 - mean.most + mean.most_lost * (1.0 - max_component(d_0)), 0.0);
+    float diffuse_transmission = principled_has(PRINCIPLED_HAS_DIFFUSE_TRANSMISSION) ? r.diffuse_transmission : 0.0;
+    p.base_color = s.base_color;
+    p.roughness = r.diffuse_roughness;
+    p.diffuse = vec3(below * (1.0 - diffuse_transmission));
+    p.through = below * diffuse_transmission * r.diffuse_transmission_color;
+    p.t_0 = 1.0 - most_0;
+    p.t_edge = most_edge;
+    p.transmit = dielectric * transmission * s.base_color;
+    if (PRINCIPLED_TRANSMITS) {
+        vec3 lost = dielectric * transmission * mean.glass_lost;
+        vec3 back = vec3(diffuse_reflectance(p.eta.y));
+        if (principled_has(PRINCIPLED_HAS_DISPERSION)) {
+            back.xz = vec2(diffuse_reflectance(p.eta.x), diffuse_reflectance(p.eta.z));
+        }
+        p.again += back * lost;
+        p.through += (1.0 - back) * lost * s.base_color;
+    }
+    if (principled_has(PRINCIPLED_HAS_COAT_DARKENING)) {
+        // What the metal and the dielectric send up at normal incidence.
+        vec3 base = p.t_0 * ((1.0 - transmission) * (1.0 - diffuse_transmission)) * s.base_color;
+        float roughness = mix(mix(1.0, r.roughness, transmission), r.roughness, smooth_share);
+        principled_darken(p, s, wo, mix(d_0 + base, m_0, metalness), mix(roughness, r.roughness, metalness));
+    }
+
+    // Choices: about the albedo of each. What facets scatter is not 0 where none of those measured does.
+    const float UNMEASURED = 1e-3;
+    vec3 edge = mean.edge + UNMEASURED;
+    vec3 facets = p.r_0 + p.r_edge * edge + p.r_schlick * (mean.schlick + UNMEASURED);
+    if (PRINCIPLED_TRANSMITS) facets += p.transmit * max(p.t_0 - p.t_edge * mean.edge, UNMEASURED);
+    p.pmf.y = dot(p.hue, facets);
+    p.pmf.z += dot(p.hue, p.diffuse * s.base_color + p.again);
+    p.pmf.w = dot(p.hue, p.through);
+}
+
+// What coat and sheen leave to what lies under them.
+float principled_layers(PrincipledSurface s, vec3 wo) {
+    Principled p;
+    return principled_sheen(p, s, wo, principled_coat(p, s, wo));
+}
+
+// The lobes of a surface that is seen from wo, which is above it.
+Principled principled_lobes(PrincipledSurface s, vec3 wo) {
+    Principled p;
+    p.pmf = vec4(0.0);
+    p.hue = s.hue;
+    float below_coat = principled_coat(p, s, wo);
+    float below_sheen = principled_sheen(p, s, wo, below_coat);
+    principled_base(p, s, wo, below_sheen);
+    float sum = p.pmf.x + p.pmf.y + p.pmf.z + p.pmf.w;
+    p.pmf = wo.z > LEAST_COSINE && sum > 0.0 ? p.pmf / sum : vec4(0.0);
+    return p;
+}
+
+#endif
