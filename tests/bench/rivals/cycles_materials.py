@@ -139,7 +139,7 @@ def principled(graph, material):
     values = {
         "Base Color": graph.color(material.get("base_color", 0.8)),
         "Metallic": metalness,
-        "Specular": ((ior - 1) / (ior + 1)) ** 2 / 0.08,
+        "Specular": graph.beyond(((ior - 1) / (ior + 1)) ** 2 / 0.08),
         "IOR": ior,
         "Transmission": transmission,
         "Normal": graph.normal(material),
