@@ -164,7 +164,7 @@ class Runs(unittest.TestCase):
         self.assertTrue(1 < figures["rays"] < 3, figures)  # A camera ray; where there are walls, two more.
 
     def test_what_is_unknown_or_missing_is_told_with_its_remedy(self):
-        known = "cornell-box, suzannes, many-lights, sky, textured"
+        known = "cornell-box, suzannes, many-lights, sky, textured, principled"
         self.assertIn(f"unknown scene teapot (known: {known})", compare(CANDELA, "teapot"))
         self.assertIn("cannot run /no/candela: build it, or give", compare("/no/candela"))
         self.assertIn("cannot run /no/blender: install Blender", compare(CANDELA, "--blender", "/no/blender"))

@@ -31,8 +31,17 @@ SCENES = {
     "many-lights": (SCENES_FOLDER / "made" / "many-lights.json", 5),
     "sky": (SCENES_FOLDER / "sky.json", 5),
     "textured": (SCENES_FOLDER / "made" / "textured.json", 5),
+    "principled": (SCENES_FOLDER / "made" / "principled.json", 8),
 }
-BEYOND_THE_TRACER = {"textured"}  # It knows no textures.
+# What the tracer does not know.
+BEYOND_THE_TRACER = {"textured": "textures", "principled": "principled materials"}
+# Scenes that Cycles renders a second time, with microfacets that lose light: its default, and less work than candela's.
+LOSSY_TOO = {"principled"}
+MADE_BY_BLENDER = {
+    "suzanne.ply": "make_suzanne.py",
+    "textured.json": "make_textured.py",
+    "principled.json": "make_principled.py",
+}
 CALIBRATION_SPP = 8
 REFERENCE_SEED = 1000  # The measured runs have the seeds 0, 1, ...
 
@@ -68,7 +77,7 @@ def make_scenes(blender):
     """Makes what the scenes need and the repository does not have."""
     if not (SCENES_FOLDER / "made" / "many-lights.json").exists():
         run([sys.executable, SCENES_FOLDER / "make_many_lights.py"])
-    for made, script in (("suzanne.ply", "make_suzanne.py"), ("textured.json", "make_textured.py")):
+    for made, script in MADE_BY_BLENDER.items():
         if not (SCENES_FOLDER / "made" / made).exists():
             program = find(blender, f"install Blender 3.4, or name it by --blender: it makes {made}")
             run([program, *BLENDER_SCRIPT, SCENES_FOLDER / script])
@@ -128,6 +137,8 @@ def measure_scene(name, chosen, options):
     path, depth = SCENES[name]
     if name in BEYOND_THE_TRACER:
         chosen = [renderer for renderer in chosen if not isinstance(renderer, Tracer)]
+    if name in LOSSY_TOO:
+        chosen = chosen + [Cycles(r.blender, "GGX") for r in chosen if isinstance(r, Cycles)]
     job = Job(path, depth, options.size, options.threads)
     paces = [seconds_per_sample(renderer, job, options.work) for renderer in chosen]
     reference_seconds = options.reference * options.seconds
@@ -173,7 +184,7 @@ def print_scene(name, scene, options):
         row += [spread(result, "relmse", 5), ratio(ours, result, "relmse")]
         print("| " + " | ".join(row) + " |")
     if name in BEYOND_THE_TRACER:
-        print("\nThe tracer knows no textures.")
+        print(f"\nThe tracer knows no {BEYOND_THE_TRACER[name]}.")
     print("\nConverged, the pictures have these means R, G, B, and differ from candela's by so much of the mean, and")
     print(f"of blocks of {pictures.BLOCK}x{pictures.BLOCK} pixels (root mean square):")
     for renderer, result in results.items():

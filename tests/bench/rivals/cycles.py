@@ -1,6 +1,6 @@
 """Renders a candela scene with Cycles, Blender 3.4's path tracer:
 
-    blender -b --factory-startup -P cycles.py -- SCENE OUT.exr WIDTH SPP MAX_DEPTH SEED THREADS
+    blender -b --factory-startup -P cycles.py -- SCENE OUT.exr WIDTH SPP MAX_DEPTH SEED THREADS DISTRIBUTION
 
 Renders with one sample per pixel, twice, and then with SPP, and writes the last picture. Its last line is JSON: CPU
 time and wall time [s] of the second rendering and of the last, each with preparing the scene.
@@ -47,8 +47,8 @@ def blender_mesh(name, made, to_blender):
     return mesh
 
 
-def add_shapes(scene, folder, to_blender):
-    materials = {name: reflecting(name, m, folder) for name, m in scene["materials"].items()}
+def add_shapes(scene, folder, to_blender, distribution):
+    materials = {name: reflecting(name, m, folder, distribution) for name, m in scene["materials"].items()}
     for i, shape in enumerate(scene["shapes"]):
         mesh = blender_mesh(f"shape {i}", scene_file.mesh(shape, folder), to_blender)
         if "emission" in shape:
@@ -125,12 +125,12 @@ def render(spp):
     return {"cpu": usage.ru_utime + usage.ru_stime - cpu, "wall": time.perf_counter() - wall}
 
 
-def main(path, output, width, spp, depth, seed, threads):
+def main(path, output, width, spp, depth, seed, threads, distribution):
     scene, folder = scene_file.read_scene(path), Path(path).resolve().parent
     environment = scene.get("environment", {})
     to_blender = ToBlender(environment.get("rotation", 0))
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    add_shapes(scene, folder, to_blender)
+    add_shapes(scene, folder, to_blender, distribution)
     add_camera(next(iter(scene["cameras"].values())), to_blender)
     add_environment(environment, folder)
     set_up(int(width), int(depth), int(seed), int(threads))

@@ -7,6 +7,9 @@ import bpy
 # How Blender calls candela's encodings.
 COLOR_SPACES = {"srgb": "sRGB", "linear": "Non-Color"}
 TEXTURE_KEYS = {"image", "factor", "encoding", "cutoff"}
+# Of principled materials. Sheen has another model in Blender, without a roughness.
+PRINCIPLED_KEYS = {"type", "base_color", "metalness", "roughness", "ior", "anisotropy", "transmission", "thin_walled"}
+PRINCIPLED_KEYS |= {"coat", "coat_roughness", "sheen_color", "sheen_roughness", "normal_map", "opacity"}
 
 
 class Graph:
@@ -26,11 +29,21 @@ class Graph:
         for name, setting in settings.items():
             setattr(node, name, setting)
         for entry, value in zip(node.inputs, values):
-            if isinstance(value, bpy.types.NodeSocket):
-                self.tree.links.new(value, entry)
-            elif value is not None:
-                entry.default_value = value
+            self.set(entry, value)
         return node
+
+    def set(self, entry, value):
+        """Gives an input a socket, a constant, or, for None, nothing."""
+        if isinstance(value, bpy.types.NodeSocket):
+            self.tree.links.new(value, entry)
+        elif value is not None:
+            entry.default_value = value
+
+    def beyond(self, value):
+        """A constant that may exceed the range of the input that it is for."""
+        node = self.node("Value")
+        node.outputs[0].default_value = value
+        return node.outputs[0]
 
     def math(self, operation, a, b):
         return self.node("Math", a, b, operation=operation).outputs[0]
@@ -115,9 +128,44 @@ def conductor(graph, material):
     return graph.node("BsdfGlossy", color, roughness, normal, distribution="GGX").outputs[0]
 
 
-def reflecting(name, material, folder):
-    """A material of a scene."""
+def principled(graph, material):
+    """Blender's Principled BSDF. It says how much of the light the dielectric reflects by "Specular", how it refracts
+    by "IOR"; its roughness is the geometric mean of those along and across; its coat has a quarter of the weight."""
+    unknown = set(material) - PRINCIPLED_KEYS
+    assert not unknown, f"cycles_materials.py knows no {unknown} of principled materials"
+    metalness, transmission = material.get("metalness", 0), material.get("transmission", 0)
+    assert transmission == 0 or not material.get("thin_walled", True), "Blender's transmission bounds solids"
+    ior, roughness = material.get("ior", 1.5), graph.number(material.get("roughness", 0.5))
+    values = {
+        "Base Color": graph.color(material.get("base_color", 0.8)),
+        "Metallic": metalness,
+        "Specular": graph.beyond(((ior - 1) / (ior + 1)) ** 2 / 0.08),
+        "IOR": ior,
+        "Transmission": transmission,
+        "Normal": graph.normal(material),
+    }
+    if "anisotropy" in material:
+        across = roughness**2
+        along = across + (1 - across) * material["anisotropy"] ** 2
+        assert across >= 0.1 * along, "more anisotropy than Blender's"
+        values["Anisotropic"] = (1 - across / along) / 0.9
+        roughness = (across * along) ** 0.25
+    values["Roughness"] = roughness
+    if "coat" in material:
+        values |= {"Clearcoat": graph.beyond(4 * material["coat"]), "Clearcoat Roughness": material["coat_roughness"]}
+    if "sheen_color" in material:
+        values |= {"Sheen": material["sheen_color"][0], "Sheen Tint": 0}
+    node = graph.node("BsdfPrincipled", distribution=graph.distribution)
+    for name, value in values.items():
+        graph.set(node.inputs[name], value)
+    return node.outputs[0]
+
+
+def reflecting(name, material, folder, distribution):
+    """A material of a scene; `distribution` is that of principled ones: "MULTI_GGX", or "GGX", which loses the light
+    that microfacets throw at each other."""
     graph = Graph(name, folder)
+    graph.distribution = distribution
     return graph.finish(graph.cut(material, MODELS[material["type"]](graph, material)))
 
 
@@ -133,4 +181,5 @@ MODELS = {
     "diffuse_transmission": diffuse_transmission,
     "dielectric": dielectric,
     "conductor": conductor,
+    "principled": principled,
 }

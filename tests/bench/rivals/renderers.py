@@ -81,14 +81,14 @@ class Tracer:
 
 
 class Cycles:
-    name = "Cycles"
-
-    def __init__(self, blender):
+    def __init__(self, blender, distribution="MULTI_GGX"):
+        self.distribution = distribution  # Of principled materials' microfacets, as Blender calls it.
+        self.name = "Cycles" if distribution == "MULTI_GGX" else f"Cycles-{distribution}"
         self.blender = find(blender, "install Blender 3.4, name it by --blender, or use --without Cycles")
         self.version = "Cycles of " + run([self.blender, "--version"]).splitlines()[0]
 
     def render(self, job, spp, seed, output):
-        settings = [job.width, spp, job.depth, seed, job.threads]
+        settings = [job.width, spp, job.depth, seed, job.threads, self.distribution]
         words = [*BLENDER_SCRIPT, HERE / "cycles.py", "--", job.scene, output, *settings]
         figures = last_json(run([self.blender, *words]))
         return without_start(figures["one"], figures["all"], spp) | {"rays": None}
