@@ -69,7 +69,7 @@ struct Principled {
 const float GREATEST_ETA = 100.0;
 
 // Facets that are measured: a power of two of at most 4, see lattice_point().
-const int FACETS = 4;
+const uint FACETS = 4u;
 
 // Factors of an index of refraction for red, green and blue; dispersion is 20 / Abbe number. No index falls below 1.
 // Ref: KHR_materials_dispersion.
@@ -119,8 +119,8 @@ bool is_ideal(float alpha) {
 }
 
 // Point i of a lattice of FACETS points in the unit square, moved by `shift` in [0, 1)^2.
-vec2 lattice_point(int i, vec2 shift) {
-    return fract(vec2(float(i), float(i >> 1 | (i & 1) << 1)) / float(FACETS) + shift);
+vec2 lattice_point(uint i, vec2 shift) {
+    return fract(vec2(float(i), float(i >> 1u | (i & 1u) << 1u)) / float(FACETS) + shift);
 }
 
 // Share of light that a facet reflects to wi and that does not get there: it is shadowed, or wi is below the surface.
@@ -158,7 +158,7 @@ float glass_lost(Principled p, float eta, float d_0, float d_edge, float shadowe
 FacetMeans principled_measure(Principled p, vec3 d_0, vec3 d_edge, vec3 wo, vec2 shift) {
     FacetMeans sum = FacetMeans(vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0));
     float reach_o = ggx_reach(p.alpha, wo);
-    for (int i = 0; i < FACETS; ++i) {
+    for (uint i = 0u; i < FACETS; ++i) {
         vec3 h = warp_ggx_visible_normal(lattice_point(i, shift), p.alpha, wo);
         float cos_o = dot(wo, h);
         float shadowed = facet_shadowed(p.alpha, wo, 2.0 * cos_o * h - wo, reach_o);

@@ -43,7 +43,7 @@ float principled_coat(inout Principled p, PrincipledSurface s, vec3 wo) {
         float reach_o = ggx_reach(alpha, o);
         float scattered = 0.0;
         reflected = 0.0;
-        for (int i = 0; i < FACETS; ++i) {
+        for (uint i = 0u; i < FACETS; ++i) {
             vec3 h = warp_ggx_visible_normal(lattice_point(i, s.random.zw), alpha, o);
             float fresnel = coat_fresnel(p, dot(o, h));
             scattered += fresnel;
