@@ -100,8 +100,8 @@ ProbedMaterial principled(const PrincipledMaterial& m) {
 std::vector<BsdfCase> principled_cases() {
     std::vector<BsdfCase> cases;
     std::vector<NamedMaterial> materials = single_lobes();
-    for (NamedMaterial& m : mixtures())
-        materials.push_back(std::move(m));
+    for (const NamedMaterial& m : mixtures())
+        materials.push_back(m);
     for (const auto& [name, material, lobe] : materials) {
         for (const vec3 wo : VIEWS) {
             for (const uint32_t back : {0u, 1u}) {
