@@ -139,6 +139,8 @@ uint32_t add_medium(std::vector<Interior>& media, const Interior& medium) {
 // Appends the record of a principled material and its images to `words`; returns its first word there.
 uint32_t append_principled(std::vector<uvec4>& words, EncodedPrincipled encoded, TextureTable& textures) {
     const auto first = uint32_t(words.size());
+    if (first >= PRINCIPLED_PLACES)
+        throw Error("the principled materials are too many for their records; use fewer");
     const auto images = principled_images(encoded.textures);
     encoded.record.images = uint32_t(images.size());
     encoded.record.coat_normal = textures.add(encoded.coat_normal);
@@ -183,7 +185,7 @@ void append_materials(GpuScene& gpu, const std::vector<Material>& materials, Tex
     for (const auto& [word, encoded] : principled) {
         std::vector<uvec4>& words = gpu.arrays[ARRAY_MATERIALS];
         const uint32_t first = append_principled(words, encoded, textures);
-        words[word + 1].x = first;
+        words[word + 1].x = std::bit_cast<uint32_t>(principled_place(first));
     }
     for (const Interior& m : media) {
         append(gpu.arrays[ARRAY_MEDIA],
@@ -256,9 +258,6 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<
     append_materials(gpu, scene.materials, textures);
     Nesting nesting = find_nesting(scene);
     gpu.nested_media = nesting.nested;
-    // Of the boundaries within one medium: see path_step().
-    if ((gpu.principled & PRINCIPLED_HAS_VOLUME) != 0)
-        gpu.materials_present |= 1u << MATERIAL_DIELECTRIC_EXACT;
     gpu.warnings = std::move(nesting.warnings);
     for (const Shape& shape : scene.shapes) {
         if (shape.emission && has_layers(scene.materials[shape.material]))

@@ -80,7 +80,7 @@ float emitted_share(LightSample light, LitPoint lit) {
 // Whether the material's coat has a normal map of its own.
 bool has_coat_map(MaterialRecord m) {
     if (!HAS_COAT_NORMALS || !is_principled(m)) return false;
-    return scene_principled(floatBitsToUint(m.specular.x)).coat_normal != TEXTURE_NONE;
+    return scene_principled(principled_first(m.specular.x)).coat_normal != TEXTURE_NONE;
 }
 
 // The coat's normal in `frame`; `unbent` is the shading normal of the shape.

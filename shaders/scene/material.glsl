@@ -119,7 +119,7 @@ void principled_clamp(inout PrincipledRecord p) {
 
 // The values of the principled material m at a point; its base colour is multiplied by images, too.
 PrincipledRecord principled_at(inout MaterialRecord m, Attributes at) {
-    uint first = floatBitsToUint(m.specular.x);
+    uint first = principled_first(m.specular.x);
     PrincipledRecord p = scene_principled(first);
     if ((PRINCIPLED & PRINCIPLED_HAS_IMAGES) == 0u) return p;
     for (uint i = 0u; i < p.images; ++i) {

@@ -41,7 +41,7 @@ struct MaterialRecord {
     uint medium;      // Behind the surface; 24 bits.
     vec3 base;        // Reflectance, each in [0, 1].
     vec3 specular;    // Phong's ks, or transmittance; each in [0, 1]. own_eta: 1 if eta holds whatever is in
-                      // front. record: the bits of the first word of a PrincipledRecord.
+                      // front. record: see shared/principled.h.
     float parameter;  // Phong's exponent; alpha; or eta, the index behind the surface over that in front.
 };
 

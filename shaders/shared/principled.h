@@ -1,6 +1,7 @@
 // Record of a principled material, PRINCIPLED_WORDS words of uvec4 and one more for each image that it takes
-// values from. They follow the records of all materials in their array; MaterialRecord::specular.x holds the
-// first word.
+// values from. They follow the records of all materials in their array. MaterialRecord::specular.x says
+// where, as a share of PRINCIPLED_PLACES: such a float is exact, and stays so in products with 1 and below a
+// limit of 1.
 //
 //   0: metalness, roughness, diffuse_roughness, specular     4: sheen_color.rgb, sheen_roughness
 //   1: specular_color.rgb, transmission                      5: iridescence, iridescence_ior, thickness,
@@ -18,6 +19,7 @@ namespace candela {
 #endif
 
 const uint PRINCIPLED_WORDS = 8u;
+const uint PRINCIPLED_PLACES = 0x1000000u;
 
 // Values that images give, a bit each in PrincipledImage::values.
 const uint PRINCIPLED_BASE_COLOR = 0u;  // Four colours,
@@ -115,6 +117,11 @@ inline std::array<uvec4, PRINCIPLED_WORDS> pack(const PrincipledRecord& p) {
                   floatBitsToUint(p.coat_internal))};
 }
 
+// What MaterialRecord::specular.x holds.
+inline float principled_place(uint first) {
+    return float(first) / float(PRINCIPLED_PLACES);
+}
+
 inline uvec4 pack(const PrincipledImage& i) {
     return {i.texture, i.values, i.channels.x, i.channels.y};
 }
@@ -157,6 +164,11 @@ PrincipledRecord principled_unpack(uvec4 words[PRINCIPLED_WORDS]) {
     p.images = words[7].z;
     p.coat_internal = uintBitsToFloat(words[7].w);
     return p;
+}
+
+// The first word of the record at that place.
+uint principled_first(float place) {
+    return uint(place * float(PRINCIPLED_PLACES));
 }
 
 PrincipledImage principled_image_unpack(uvec4 a) {

@@ -160,6 +160,12 @@ TEST_F(PrincipledPictureTest, ValuesOfImagesAreThoseOfNumbers) {
             m.anisotropy_map = image;
         }
         add_shape(scene, Sphere{}, add_material(scene, m));
+        // The colour of another model, from an image, leaves the place of this material's record alone.
+        if (from_image) {
+            PhongMaterial other{vec3(0), vec3(0.5f), 10.0f};
+            other.specular.texture = add_texture(scene, {1, 1}, [](uint32_t, uint32_t) { return vec4(1); });
+            add_material(scene, other);
+        }
         return scene;
     };
     RenderSettings s = independent_settings(32, Estimator::mis, 5);

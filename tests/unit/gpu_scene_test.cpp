@@ -299,8 +299,9 @@ TEST(GpuScene, PrincipledMaterialsHaveRecordsBehindTheOthers) {
     const std::vector<uvec4>& words = gpu.arrays[ARRAY_MATERIALS];
     ASSERT_EQ(words.size(), 3 * MATERIAL_WORDS + PRINCIPLED_WORDS + 1 + PRINCIPLED_WORDS);
     const uint32_t first = 3 * MATERIAL_WORDS;
-    EXPECT_EQ(words[1], uvec4(first, 0, 0, std::bit_cast<uint32_t>(1.4f)));
-    EXPECT_EQ(words[5].x, first + PRINCIPLED_WORDS + 1);
+    EXPECT_EQ(words[1],
+              uvec4(std::bit_cast<uint32_t>(float(first) * 0x1p-24f), 0, 0, std::bit_cast<uint32_t>(1.4f)));
+    EXPECT_EQ(std::bit_cast<float>(words[5].x), float(first + PRINCIPLED_WORDS + 1) * 0x1p-24f);
     EXPECT_EQ(std::bit_cast<vec4>(words[first]), vec4(0.5f, 0.25f, 0, 1));
     EXPECT_EQ(words[first + 7].z, 1u);
     const uint32_t values = 1u << PRINCIPLED_METALNESS | 1u << PRINCIPLED_ROUGHNESS;
