@@ -79,7 +79,7 @@ bool add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box
     if (!flat.powers.empty()) {
         power = std::min(power, std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0));
     }
-    Light sky{};
+    LightRecord sky{};
     sky.kind = LIGHT_ENVIRONMENT;
     flat.lights.push_back(sky);
     flat.powers.push_back(power);
@@ -336,7 +336,7 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<
         append(gpu.arrays[ARRAY_ATTRIBUTES],
                std::span(flat.attributes).subspan(i * attribute_count, attribute_count));
     }
-    for (const Light& light : flat.lights) {
+    for (const LightRecord& light : flat.lights) {
         append(gpu.arrays[ARRAY_LIGHTS], pack(light));
         gpu.lights_present |= 1u << light.kind;
     }

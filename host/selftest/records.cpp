@@ -72,7 +72,7 @@ struct Records {
     std::array<uvec4, NORMALS_WORDS> normals;
     MaterialRecord material;
     MediumRecord medium;
-    Light light;
+    LightRecord light;
     AliasEntry light_even, light_odd;
     EnvironmentTexel texel;
     AliasEntry texel_even, texel_odd;

@@ -8,18 +8,18 @@
 #include "shared/light.h"
 
 // Radiance that leaves a light on its front or back side.
-vec3 area_light_le(Light l, bool front) {
+vec3 area_light_le(LightRecord l, bool front) {
     return front || l.two_sided != 0u ? l.radiance : vec3(0.0);
 }
 
 // Density [1/sr] with which area_light_sample_li finds the point at that squared distance [m^2] whose normal has the
 // cosine cos_light to the ray.
-float area_light_pdf_li(Light l, float distance_squared, float cos_light) {
+float area_light_pdf_li(LightRecord l, float distance_squared, float cos_light) {
     return cos_light != 0.0 ? l.pdf_area * distance_squared / abs(cos_light) : 0.0;
 }
 
 // The sample that is the point p of a light, chosen uniformly by area; n is the unit normal of the front there.
-LightSample area_light_sample_at(Light l, vec3 p_lit, vec3 p, vec3 n) {
+LightSample area_light_sample_at(LightRecord l, vec3 p_lit, vec3 p, vec3 n) {
     LightSample s;
     s.delta = false;
     vec3 to_light = p - p_lit;
@@ -36,14 +36,14 @@ LightSample area_light_sample_at(Light l, vec3 p_lit, vec3 p, vec3 n) {
 }
 
 // Surface coordinates of the point on the light that u in [0,1)^2 chooses.
-vec2 area_light_coordinates(Light l, vec2 u) {
+vec2 area_light_coordinates(LightRecord l, vec2 u) {
     if (is_light(l, LIGHT_TRIANGLE)) return warp_triangle(u);
     if (is_light(l, LIGHT_DISK)) return warp_disk(u);
     return u;
 }
 
 // A point on the light from u in [0,1)^2.
-LightSample area_light_sample_li(Light l, vec3 p_lit, vec2 u) {
+LightSample area_light_sample_li(LightRecord l, vec3 p_lit, vec2 u) {
     vec2 b = area_light_coordinates(l, u);
     return area_light_sample_at(l, p_lit, l.p + b.x * l.e1 + b.y * l.e2, normalize(cross(l.e1, l.e2)));
 }

@@ -9,7 +9,7 @@
 #include "scene/material.glsl"
 
 // The light of a scene that has only one; an invocation reads it once.
-Light only_light;
+LightRecord only_light;
 
 // Must run before an invocation's first light sample.
 void light_prepare() {
@@ -17,7 +17,7 @@ void light_prepare() {
 }
 
 // The light at that place in the table of lights.
-Light light_at(uint i) {
+LightRecord light_at(uint i) {
     if (ONE_LIGHT) return only_light;
     return scene_light(i);
 }
@@ -28,7 +28,7 @@ float light_pmf(uint i, LitPoint lit) {
 }
 
 // The attributes of light i at surface coordinates b; on a sphere, at the unit normal n.
-Attributes light_attributes(uint i, Light l, vec2 b, vec3 n) {
+Attributes light_attributes(uint i, LightRecord l, vec2 b, vec3 n) {
     AttributePlace place = AttributePlace(scene_light_textures(i).primitive, false, b, is_light(l, LIGHT_SPHERE), n);
     if (is_light(l, LIGHT_PARALLELOGRAM)) {
         // Its triangles are a b c and a c d.
@@ -40,7 +40,7 @@ Attributes light_attributes(uint i, Light l, vec2 b, vec3 n) {
 
 // The attributes of the light's surface at a sample for that point; not of the environment.
 Attributes light_sample_attributes(LightSample s, LitPoint lit) {
-    Light l = light_at(s.light);
+    LightRecord l = light_at(s.light);
     vec3 n = (lit.p + s.shadow - l.p) / l.e1.x;
     return light_attributes(s.light, l, area_light_coordinates(l, s.u), n);
 }
@@ -48,7 +48,7 @@ Attributes light_sample_attributes(LightSample s, LitPoint lit) {
 // Cosine between the ray to the sample and the normal of the light's surface there, on the side that is seen; not of the
 // environment.
 float light_sample_cosine(LightSample s, LitPoint lit) {
-    Light l = light_at(s.light);
+    LightRecord l = light_at(s.light);
     vec3 n = is_light(l, LIGHT_SPHERE) ? lit.p + s.shadow - l.p : cross(l.e1, l.e2);
     return abs(dot(s.wi, normalize(n)));
 }
@@ -73,7 +73,7 @@ LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
         i = choice.i;
         u.x = uint(choice.rest * 16777216.0) << 8u | (fill & 255u);
     }
-    Light l = light_at(i);
+    LightRecord l = light_at(i);
     LightSample s;
     if (is_light(l, LIGHT_ENVIRONMENT)) {
         s = environment_light_sample_li(u);
@@ -94,7 +94,7 @@ LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
 // Density [1/sr] with which light_sample_li finds, for a lit point, the point of light i at that squared distance [m^2]
 // whose normal has the cosine cos_light to the ray; not for the environment.
 float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light) {
-    Light l = light_at(i);
+    LightRecord l = light_at(i);
     float pdf = is_light(l, LIGHT_SPHERE) ? sphere_light_pdf_li(l, lit.p, distance_squared, cos_light)
                                           : area_light_pdf_li(l, distance_squared, cos_light);
     return light_pmf(i, lit) * pdf;

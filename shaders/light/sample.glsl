@@ -7,7 +7,7 @@
 
 // True if the light is of that kind. Kinds that the scene does not have leave no code in the kernel, and a scene of one
 // kind needs no branch.
-bool is_light(Light l, const uint kind) {
+bool is_light(LightRecord l, const uint kind) {
     if ((LIGHTS & 1u << kind) == 0u) return false;
     return (LIGHTS & ~(1u << kind)) == 0u || l.kind == kind;
 }

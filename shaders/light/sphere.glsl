@@ -14,7 +14,7 @@ float sphere_light_cap(float radius, float distance_squared) {
 }
 
 // A point on the light from u in [0,1)^2.
-LightSample sphere_light_sample_li(Light l, vec3 p_lit, vec2 u) {
+LightSample sphere_light_sample_li(LightRecord l, vec3 p_lit, vec2 u) {
     float radius = l.e1.x;
     vec3 to_center = l.p - p_lit;
     float distance_squared = dot(to_center, to_center);
@@ -43,7 +43,7 @@ LightSample sphere_light_sample_li(Light l, vec3 p_lit, vec2 u) {
 
 // Density [1/sr] with which sphere_light_sample_li finds, from p_lit, the point at that squared distance [m^2] whose
 // normal has the cosine cos_light to the ray.
-float sphere_light_pdf_li(Light l, vec3 p_lit, float distance_squared, float cos_light) {
+float sphere_light_pdf_li(LightRecord l, vec3 p_lit, float distance_squared, float cos_light) {
     vec3 to_center = l.p - p_lit;
     float radius = l.e1.x;
     float center_squared = dot(to_center, to_center);

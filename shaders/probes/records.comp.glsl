@@ -70,7 +70,7 @@ void put_medium(MediumRecord m) {
     put(m.ior);
 }
 
-void put_light(Light l) {
+void put_light(LightRecord l) {
     put(l.kind);
     put(l.p);
     put(l.e1);

@@ -116,7 +116,7 @@ MediumRecord scene_medium(uint i) {
     return medium_unpack(a);
 }
 
-Light scene_light(uint i) {
+LightRecord scene_light(uint i) {
     uvec4 a, b, c, d;
     READ_4(LIGHTS, i * LIGHT_WORDS, a, b, c, d);
     return light_unpack(a, b, c, d);

@@ -1,7 +1,7 @@
 // Records of a light (4 words of uvec4), of a texel of the environment (1 word), and of the entries of alias
 // tables (two to a word).
 //
-//   Light                         EnvironmentTexel                 AliasEntry
+//   LightRecord                   EnvironmentTexel                 AliasEntry
 //     0: p.xyz, kind                0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
 //     1: e1.xyz, error |                                                entry 2i + 1: threshold, alias
 //     2: e2.xyz, pmf
@@ -28,7 +28,7 @@ const uint LIGHT_ENVIRONMENT = 4u;  // All around, infinitely far away; its texe
 
 // An emitter. The front of a flat one is the side that cross(e1, e2) points to, that of a sphere is outside.
 // In the frame of the scene.
-struct Light {
+struct LightRecord {
     uint kind;  // LIGHT_*
     vec3 p;
     vec3 e1;
@@ -56,7 +56,7 @@ struct AliasEntry {
 
 #ifdef __cplusplus
 
-inline std::array<uvec4, LIGHT_WORDS> pack(const Light& l) {
+inline std::array<uvec4, LIGHT_WORDS> pack(const LightRecord& l) {
     return {word(l.p, l.kind), word(l.e1, floatBitsToUint(l.error) | l.two_sided << 31),
             word(l.e2, floatBitsToUint(l.pmf)), word(l.radiance, floatBitsToUint(l.pdf_area))};
 }
@@ -72,8 +72,8 @@ inline std::array<uvec4, ALIAS_WORDS> pack(const AliasEntry& even, const AliasEn
 }  // namespace candela
 #else
 
-Light light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
-    Light l;
+LightRecord light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
+    LightRecord l;
     l.p = uintBitsToFloat(a.xyz);
     l.kind = a.w;
     l.e1 = uintBitsToFloat(b.xyz);

@@ -22,7 +22,7 @@ TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
         const GpuScene gpu = build_gpu_scene(scene_of({emitter(quad, vec3(2))}), SceneFrame{});
         ASSERT_EQ(gpu.light_count, 1u);
         ASSERT_EQ(gpu.primitive_count, 1u);
-        const Light l = light(gpu, 0);
+        const LightRecord l = light(gpu, 0);
         EXPECT_EQ(l.kind, LIGHT_PARALLELOGRAM);
         EXPECT_EQ(l.p, vec3(quad.corners[0]));
         EXPECT_EQ(l.e1, vec3(quad.corners[1] - quad.corners[0]));
@@ -42,7 +42,7 @@ TEST(GpuScene, AnyOtherQuadIsTwoLightsThatCoverIt) {
     ASSERT_EQ(gpu.light_count, 2u);
     double covered = 0.0, probability = 0.0;
     for (const uint32_t i : {0u, 1u}) {
-        const Light l = light(gpu, i);
+        const LightRecord l = light(gpu, i);
         EXPECT_EQ(l.kind, LIGHT_TRIANGLE);
         EXPECT_GT(cross(l.e1, l.e2).z, 0.0f) << "the light faces another way than the quad";
         covered += area(l);
@@ -54,7 +54,7 @@ TEST(GpuScene, AnyOtherQuadIsTwoLightsThatCoverIt) {
     EXPECT_NEAR(probability, 1.0, 1e-6);
     std::set<uint32_t> lights;
     for (const Triangle& t : triangles(gpu)) {
-        const Light l = light(gpu, t.surface.light);
+        const LightRecord l = light(gpu, t.surface.light);
         EXPECT_EQ(l.p, t.a);
         EXPECT_EQ(l.p + l.e1, t.b);
         EXPECT_EQ(l.p + l.e2, t.c);
@@ -79,7 +79,7 @@ TEST(GpuScene, LightsAreChosenByAreaLuminanceAndSides) {
     for (const double power : powers)
         total += power;
     for (uint32_t i = 0; i < gpu.light_count; ++i) {
-        const Light l = light(gpu, i);
+        const LightRecord l = light(gpu, i);
         EXPECT_NEAR(chosen[i], powers[i] / total, 1e-6) << i;
         EXPECT_NEAR(double(l.pmf), chosen[i], 1e-6) << i;
         EXPECT_NEAR(double(l.pdf_area) * area(l), 1.0, 1e-6) << i;

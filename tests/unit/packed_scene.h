@@ -18,7 +18,7 @@ inline vec3 floats(uvec4 word) {
     return std::bit_cast<vec3>(uvec3(word));
 }
 
-inline Light light(const GpuScene& gpu, uint32_t i) {
+inline LightRecord light(const GpuScene& gpu, uint32_t i) {
     const uvec4* w = &gpu.arrays[ARRAY_LIGHTS][i * LIGHT_WORDS];
     return {.kind = w[0].w,
             .p = floats(w[0]),
@@ -50,7 +50,7 @@ inline std::vector<double> light_probabilities(const GpuScene& gpu) {
     return probability;
 }
 
-inline double area(const Light& l) {
+inline double area(const LightRecord& l) {
     return double(length(cross(l.e1, l.e2))) * (l.kind == LIGHT_TRIANGLE ? 0.5 : 1.0);
 }
 
