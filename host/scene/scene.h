@@ -25,13 +25,16 @@ struct Lens {
 };
 inline constexpr uint32_t MAX_BLADES = 64;
 
-// A perspective camera. Right is cross(forward, up); pixels are square.
+// A perspective or orthographic camera. Right is cross(forward, up); pixels are square.
 struct Camera {
     std::string name;
     dvec3 position{0};
     dvec3 look_at{0, 0, -1};
     vec3 up{0, 1, 0};
     float vertical_fov = 0.0f;  // Full angle [rad], in (0, pi).
+    // Full height of the view [m], above 0. If there is one, all rays are parallel and leave the plane through
+    // the position; the camera has no field of view and no lens.
+    std::optional<double> ortho_height{};
     Lens lens;
 
     bool operator==(const Camera&) const = default;
@@ -247,6 +250,34 @@ struct Environment {
     bool visible = true;                  // To camera rays; light and reflections come from it in any case.
 };
 
+// Light from a point, equal in all directions. No surface shows it, nor the two below: only light samples find
+// them.
+struct PointLight {
+    dvec3 position{0};
+    vec3 intensity{1};  // [W/sr], each >= 0 and finite.
+};
+
+// Light from a point into a cone. Between the angles it falls off as glTF's KHR_lights_punctual recommends: with
+// the square of a number that is linear in the cosine.
+struct SpotLight {
+    dvec3 position{0};
+    dvec3 direction{0, 0, -1};      // Of the axis, of any length above 0.
+    vec3 intensity{1};              // Up to the inner angle [W/sr], each >= 0 and finite.
+    float inner_angle = 0.0f;       // From the axis [rad]; 0 <= inner_angle < outer_angle <= pi / 2.
+    float outer_angle = PI / 4.0f;  // Beyond it, the light is dark.
+};
+
+// Light from infinitely far away in a single direction.
+struct DirectionalLight {
+    dvec3 direction{0, 0, -1};  // In which it travels, of any length above 0.
+    vec3 irradiance{1};         // On a surface perpendicular to it [W/m^2], each >= 0 and finite.
+};
+
+struct Light {
+    std::string name;
+    std::variant<PointLight, SpotLight, DirectionalLight> model;
+};
+
 struct Scene {
     std::vector<Camera> cameras;  // At least one; the first is the default.
     Film film;
@@ -255,6 +286,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<TriangleMesh> meshes;
     std::vector<Shape> shapes;
+    std::vector<Light> lights;                 // Besides shapes that emit and the environment.
     std::optional<Environment> environment;    // None: black.
     std::vector<std::filesystem::path> files;  // Read besides a JSON scene file: meshes, materials, images.
     std::vector<std::string> warnings;         // What the loader found odd but usable, each with its place.
