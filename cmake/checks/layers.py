@@ -57,7 +57,7 @@ LIBRARIES = {
     "libpng": (r"png\.h", ["host/base"]),
     "libjpeg": (r"jpeglib\.h|jerror\.h", ["host/base"]),
     "libwebp": (r"webp/", ["host/base"]),
-    "nlohmann-json": (r"nlohmann/", ["host/load", "host/load/json", "host/cli"]),
+    "nlohmann-json": (r"nlohmann/", ["host/load", "host/cli"]),
     "tinyobjloader": (r"tiny_obj_loader", []),
     "CLI11": (r"CLI/", ["host/cli"]),
     "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/probe", "host/selftest", "host/bench", "host/view",

@@ -1,6 +1,6 @@
 // The JSON document with places: what it accepts, where it says that values are, and what it says of bad
 // text.
-#include "load/json/json.h"
+#include "load/json.h"
 
 #include <gtest/gtest.h>
 
@@ -109,6 +109,15 @@ TEST(Json, LimitsNesting) {
     EXPECT_NO_THROW(json::parse(open + std::string(256, ']'), "x.json"));
     expect_error(open + "@" + std::string(100000, '['),
                  "arrays and objects are nested deeper than 256; nest them less");
+}
+
+TEST(Json, TellsPlacesByLinesOrPointers) {
+    json::Document document{"x.json", json::parse("{\"a/b\": [1,\n {\"~\": true}]}", "x.json")};
+    const json::Value& inner = std::get<json::Array>(member(document.root, "a/b").data)[1];
+    EXPECT_EQ(json::place_of(document, member(inner, "~")), "x.json:2:8");
+    document.places = json::Document::Places::pointers;
+    EXPECT_EQ(json::place_of(document, member(inner, "~")), "x.json#/a~1b/1/~0");
+    EXPECT_EQ(json::place_of(document, document.root), "x.json#");
 }
 
 TEST(Json, DescribesValuesForMessages) {

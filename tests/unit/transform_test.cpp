@@ -11,9 +11,8 @@ namespace candela {
 namespace {
 
 Transform parse_transform(const std::string& text) {
-    const std::string file = "t.json";
-    const json::Value value = json::parse(text, file);
-    return read_transform(Node(file, "transform", value));
+    const json::Document document{"t.json", json::parse(text, "t.json")};
+    return read_transform(Node(document, "transform", document.root));
 }
 
 void expect_transform_error(std::string text, const std::string& message) {

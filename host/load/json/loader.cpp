@@ -54,8 +54,8 @@ Scene load_json_scene(const std::filesystem::path& path) {
 }
 
 Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder) {
-    const json::Value document = json::parse(text, file);
-    const Node root(file, "", document);
+    const json::Document document{file, json::parse(text, file)};
+    const Node root(document);
     root.allow_only({"$schema", "cameras", "film", "integrator", "materials", "shapes", "environment"});
 
     Scene scene;

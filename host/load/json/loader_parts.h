@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "load/json/loader_textures.h"
-#include "load/json/node.h"
 #include "load/json/shape_list.h"
+#include "load/node.h"
 #include "scene/scene.h"
 
 namespace candela {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "load/json/node.h"
+#include "load/node.h"
 #include "scene/scene.h"
 
 namespace candela {

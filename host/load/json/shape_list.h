@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "load/json/loader_textures.h"
-#include "load/json/node.h"
 #include "load/json/transforms.h"
+#include "load/node.h"
 #include "scene/scene_builder.h"
 
 namespace candela {

@@ -1,7 +1,7 @@
 // The transforms of shapes in a scene file.
 #pragma once
 
-#include "load/json/node.h"
+#include "load/node.h"
 #include "scene/transform.h"
 
 namespace candela {

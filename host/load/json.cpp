@@ -1,6 +1,6 @@
 // nlohmann-json parses and validates, but its events carry no positions. So a cursor walks over the same
 // text, one token per event; it may be simple, since it only ever passes tokens that the parser has accepted.
-#include "load/json/json.h"
+#include "load/json.h"
 
 #include <algorithm>
 #include <array>
@@ -207,6 +207,38 @@ void check_encoding(std::string_view text, const std::string& file) {
     fail(file, cursor.place(), "found a byte of value 0: this is not text; a scene is JSON in UTF-8");
 }
 
+std::string line_text(const std::string& file, Place place) {
+    return file + ':' + std::to_string(place.line) + ':' + std::to_string(place.column);
+}
+
+// Appends the JSON pointer from `root` to `value`, which is compared by its address. Returns false, and
+// appends nothing, if it is not in there.
+bool append_pointer(const Value& root, const Value& value, std::string& pointer) {
+    if (&root == &value) return true;
+    const size_t length = pointer.size();
+    if (const auto* array = std::get_if<Array>(&root.data)) {
+        for (size_t i = 0; i < array->size(); ++i) {
+            pointer += '/' + std::to_string(i);
+            if (append_pointer((*array)[i], value, pointer)) return true;
+            pointer.resize(length);
+        }
+    } else if (const auto* object = std::get_if<Object>(&root.data)) {
+        for (const Member& member : *object) {
+            pointer += '/';
+            for (const char c : member.key) {
+                if (c == '~' || c == '/') {
+                    pointer += c == '~' ? "~0" : "~1";
+                } else {
+                    pointer += c;
+                }
+            }
+            if (append_pointer(member.value, value, pointer)) return true;
+            pointer.resize(length);
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 Value parse(std::string_view text, const std::string& file) {
@@ -220,8 +252,14 @@ Value parse(std::string_view text, const std::string& file) {
 }
 
 void fail(const std::string& file, Place place, const std::string& message) {
-    throw Error(file + ':' + std::to_string(place.line) + ':' + std::to_string(place.column) + ": " +
-                message);
+    throw Error(line_text(file, place) + ": " + message);
+}
+
+std::string place_of(const Document& document, const Value& value) {
+    if (document.places == Document::Places::lines) return line_text(document.file, value.place);
+    std::string pointer = document.file + '#';
+    append_pointer(document.root, value, pointer);
+    return pointer;
 }
 
 std::string describe(const Value& value) {

@@ -1,5 +1,5 @@
-// Typed access to a located JSON value. Every complaint throws Error `file:line:column: ...` at the value's
-// place and says what was expected and what was found.
+// Typed access to a value of a JSON document. Every complaint throws Error `place: ...` at the value's place,
+// such as `file:line:column`, and says what was expected and what was found.
 #pragma once
 
 #include <array>
@@ -13,19 +13,20 @@
 
 #include "base/math.h"
 #include "base/text.h"
-#include "load/json/json.h"
+#include "load/json.h"
 
 namespace candela {
 
-// A view: the file name, the key and the value must outlive it.
+// A view: the document and the key must outlive it.
 class Node {
   public:
     // `key` names the value in messages: its key, or that of the array that it is in.
-    Node(const std::string& file, std::string_view key, const json::Value& value)
-        : file_(&file), key_(key), value_(&value) {}
+    Node(const json::Document& document, std::string_view key, const json::Value& value)
+        : document_(&document), key_(key), value_(&value) {}
+    explicit Node(const json::Document& document) : Node(document, "", document.root) {}
 
     std::string_view key() const { return key_; }
-    // `file:line:column`.
+    // As json::place_of().
     std::string place() const;
     // Throws Error `place: message`.
     [[noreturn]] void fail(const std::string& message) const;
@@ -45,8 +46,10 @@ class Node {
     Node require(std::string_view key) const;
     std::vector<Node> members() const;
 
-    // Arrays.
+    // Arrays. `i` is below size().
     std::vector<Node> elements() const;
+    size_t size() const;
+    Node operator[](size_t i) const;
 
     bool is_object() const { return std::holds_alternative<json::Object>(value_->data); }
     bool is_array() const { return std::holds_alternative<json::Array>(value_->data); }
@@ -68,6 +71,8 @@ class Node {
     double angle() const;
     // A whole number in [lo, hi].
     uint32_t integer(uint32_t lo, uint32_t hi) const;
+    // As many numbers, which floats can hold.
+    std::vector<double> numbers(size_t count) const;
     // Three numbers that floats can hold.
     glm::dvec3 vector() const;
     // One grey number or three, none below 0.
@@ -87,9 +92,10 @@ class Node {
 
   private:
     const json::Object& object() const;
-    Node child(std::string_view key, const json::Value& value) const { return {*file_, key, value}; }
+    const json::Array& array() const;
+    Node child(std::string_view key, const json::Value& value) const { return {*document_, key, value}; }
 
-    const std::string* file_;
+    const json::Document* document_;
     std::string_view key_;
     const json::Value* value_;
 };

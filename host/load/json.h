@@ -1,5 +1,5 @@
 // A JSON document in which every value knows where it stands in the file, so that any later complaint about
-// it can say `file:line:column`. Comments (// and /* */) are allowed.
+// it can say `file:line:column`, or name it by its JSON pointer. Comments (// and /* */) are allowed.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +31,19 @@ struct Member {
     Place place;  // Of the key.
     Value value;
 };
+
+// A value of a file, and how messages tell where the file's values are.
+struct Document {
+    enum class Places { lines, pointers };
+
+    std::string file;  // Its name in messages.
+    Value root;
+    Places places = Places::lines;
+};
+
+// Where a value of the document is, as messages begin: `file:line:column`, or `file#/key/0` with its JSON
+// pointer (RFC 6901), which takes a walk over the document.
+std::string place_of(const Document& document, const Value& value);
 
 // Parses `text`; `file` is its name in messages. Throws Error `file:line:column: cause` for text that is not
 // one JSON value in UTF-8, a duplicate key, a number that a double cannot hold, or nesting deeper than 256.

@@ -1,11 +1,12 @@
 // Complaints, and the conversions that may lead to them.
-#include "load/json/node.h"
+#include "load/node.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numeric>
 
+#include "base/error.h"
 #include "load/quote.h"
 
 namespace candela {
@@ -47,11 +48,11 @@ const std::string* nearest(std::string_view name, std::span<const std::string> k
 }  // namespace
 
 std::string Node::place() const {
-    return *file_ + ':' + std::to_string(value_->place.line) + ':' + std::to_string(value_->place.column);
+    return json::place_of(*document_, *value_);
 }
 
 void Node::fail(const std::string& message) const {
-    json::fail(*file_, value_->place, message);
+    throw Error(place() + ": " + message);
 }
 
 void Node::fail_expected(const std::string& what) const {
@@ -108,14 +109,26 @@ std::vector<Node> Node::members() const {
     return nodes;
 }
 
-std::vector<Node> Node::elements() const {
+const json::Array& Node::array() const {
     const auto* array = std::get_if<json::Array>(&value_->data);
     if (array == nullptr) fail_expected("an array [ ... ]");
+    return *array;
+}
+
+std::vector<Node> Node::elements() const {
     std::vector<Node> nodes;
-    nodes.reserve(array->size());
-    for (const json::Value& element : *array)
+    nodes.reserve(array().size());
+    for (const json::Value& element : array())
         nodes.push_back(child(key_, element));
     return nodes;
+}
+
+size_t Node::size() const {
+    return array().size();
+}
+
+Node Node::operator[](size_t i) const {
+    return child(key_, array()[i]);
 }
 
 bool Node::boolean() const {
@@ -177,11 +190,22 @@ uint32_t Node::integer(uint32_t lo, uint32_t hi) const {
     return uint32_t(*value);
 }
 
-glm::dvec3 Node::vector() const {
+std::vector<double> Node::numbers(size_t count) const {
+    constexpr std::array<const char*, 5> WORDS{"no", "one", "two", "three", "four"};
     const auto* array = std::get_if<json::Array>(&value_->data);
-    if (array == nullptr || array->size() != 3) fail_expected("three numbers");
-    const auto component = [&](size_t i) { return child(key_, (*array)[i]).number(); };
-    return {component(0), component(1), component(2)};
+    if (array == nullptr || array->size() != count)
+        fail_expected((count < WORDS.size() ? WORDS[count] : std::to_string(count)) +
+                      std::string(" numbers"));
+    std::vector<double> values;
+    values.reserve(count);
+    for (const json::Value& element : *array)
+        values.push_back(child(key_, element).number());
+    return values;
+}
+
+glm::dvec3 Node::vector() const {
+    const std::vector<double> v = numbers(3);
+    return {v[0], v[1], v[2]};
 }
 
 glm::dvec3 Node::rgb() const {
