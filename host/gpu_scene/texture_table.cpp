@@ -111,10 +111,11 @@ uint32_t TextureTable::add(const std::optional<Texture>& texture) {
     if (!texture) return TEXTURE_NONE;
     const auto known = std::ranges::find(textures_, *texture);
     if (known != textures_.end()) return uint32_t(known - textures_.begin());
-    const auto& [path, real_path, place, image] = images_[texture->image];
+    const ImageFile& file = images_[texture->image];
+    const TexelImage& image = file.image;
     if (std::max(image.size.x, image.size.y) > MAX_IMAGE_SIDE) {
-        throw Error(concat(place, ": the image ", path.string(), " has ", image.size.x, 'x', image.size.y,
-                           " pixels, but a texture at most ", MAX_IMAGE_SIDE,
+        throw Error(concat(file.place, ": the image ", file.path.string(), " has ", image.size.x, 'x',
+                           image.size.y, " pixels, but a texture at most ", MAX_IMAGE_SIDE,
                            " along a side; make it smaller (--texture-limit)"));
     }
     std::optional<uint32_t>& first = firsts_[texture->image];

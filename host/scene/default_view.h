@@ -5,8 +5,12 @@
 
 namespace candela {
 
-// Adds what a file without cameras or lights lacks: a camera, named "default", that looks at all shapes from
-// the front, slightly from the right and from above; and, where nothing emits, a constant sky of radiance 1.
+// Adds a camera, named "default", that looks at all shapes from the front, slightly from the right and from
+// above: the sphere around their bounds touches the picture's upper and lower edge.
+void add_default_camera(Scene& scene);
+
+// Adds what a file without cameras or lights lacks: that camera and, where nothing emits, a constant sky of
+// radiance 1.
 void add_default_view(Scene& scene);
 
 }  // namespace candela

@@ -79,6 +79,13 @@ size_t emitter_count(const Scene& scene) {
                                 [](const Shape& shape) { return shape.emission.has_value(); }));
 }
 
+bool has_unlit_shape(const Scene& scene) {
+    return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
+        const auto* m = std::get_if<PrincipledMaterial>(&scene.materials[shape.material].model);
+        return m != nullptr && m->unlit;
+    });
+}
+
 bool gives_light(const Environment& environment) {
     return std::any_of(environment.radiance.begin(), environment.radiance.end(),
                        [](vec3 radiance) { return radiance != vec3(0.0f); });

@@ -17,6 +17,9 @@ uint64_t triangle_count(const Scene& scene);
 // How many shapes emit light; the environment is not one of them.
 size_t emitter_count(const Scene& scene);
 
+// Whether a shape shows a colour without any light.
+bool has_unlit_shape(const Scene& scene);
+
 // Whether an environment is brighter than 0 anywhere.
 bool gives_light(const Environment& environment);
 

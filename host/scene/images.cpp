@@ -64,6 +64,16 @@ TexelImage in_srgb(const TexelImage& image) {
     return result;
 }
 
+// Of an image whose alpha, times `factor`, is glossiness: one channel, 1 - that.
+TexelImage roughness_of(const TexelImage& image, float factor) {
+    TexelImage result{
+        .size = image.size, .channels = 1, .type = TexelType::unorm8, .texels = {}, .gamma = {}};
+    result.texels.resize(size_t(image.size.x) * image.size.y);
+    for (size_t i = 0; i < result.texels.size(); ++i)
+        result.texels[i] = std::byte(std::lround(255.0f * (1.0f - factor * texel_codes(image, i).w)));
+    return result;
+}
+
 // Calls visit(texture) for each texture of sRGB.
 template <class Visit>
 void for_each_srgb_texture(Scene& scene, const Visit& visit) {
@@ -159,6 +169,15 @@ uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::s
     return uint32_t(scene.images.size() - 1);
 }
 
+uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view bytes,
+                         const std::string& place) {
+    const auto known = std::ranges::find(scene.images, std::filesystem::path(name), &ImageFile::real_path);
+    if (known != scene.images.end()) return uint32_t(known - scene.images.begin());
+    scene.images.push_back(
+        {.path = name, .real_path = name, .bytes = std::string(bytes), .place = place, .image = {}});
+    return uint32_t(scene.images.size() - 1);
+}
+
 void load_images(Scene& scene, const ImageOptions& options) {
     std::vector<std::vector<std::string>> warnings(scene.images.size());
     std::vector<TexelCodes> codes(scene.images.size(), TexelCodes::linear);
@@ -169,7 +188,12 @@ void load_images(Scene& scene, const ImageOptions& options) {
         ImageFile& file = scene.images[i];
         if (!file.image.texels.empty()) return;
         try {
-            file.image = shrink(read_texels(file.path, warnings[i]), options.texture_limit, codes[i]);
+            TexelImage image = file.bytes.empty() ? read_texels(file.path, warnings[i])
+                                                  : decode_texels(file.bytes, file.path, warnings[i]);
+            file.bytes = {};
+            if (!file.has_gamma) image.gamma.reset();
+            if (file.glossiness) image = roughness_of(image, *file.glossiness);
+            file.image = shrink(std::move(image), options.texture_limit, codes[i]);
         } catch (const Error& error) {
             throw Error(file.place + ": " + error.what(), error.code());
         }

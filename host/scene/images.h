@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "scene/scene.h"
 
@@ -14,6 +15,11 @@ namespace candela {
 // The index of an image file in scene.images, which it joins if it is not there yet; load_images() reads it.
 // `place` is what messages about it begin with.
 uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place);
+
+// The same for an image file that is within another one: these are its bytes, and messages call it `name`,
+// which no other has.
+uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view bytes,
+                         const std::string& place);
 
 struct ImageOptions {
     // Images with more texels along a side are made smaller.

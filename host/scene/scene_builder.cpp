@@ -100,6 +100,14 @@ void SceneBuilder::add_mesh(const std::string& place, const Appearance& appearan
     add_mesh(place, transform, std::move(parts));
 }
 
+void SceneBuilder::add_instance(const std::string& place, size_t shape, const Transform& transform) {
+    Shape copy = scene_.shapes[shape];
+    auto& instance = std::get<MeshInstance>(copy.geometry);
+    instance.transform = transform;
+    if (!fits(scene_.meshes[instance.mesh], transform)) throw Error(place + ": " + TOO_FAR);
+    scene_.shapes.push_back(std::move(copy));
+}
+
 const Appearance* SceneBuilder::find_file_appearance(const std::string& name) const {
     const auto found = file_appearances_.find(name);
     return found == file_appearances_.end() ? nullptr : &found->second;

@@ -57,6 +57,11 @@ class SceneBuilder {
     // Adds a mesh of one part.
     void add_mesh(const std::string& place, const Appearance& appearance, const Transform& transform,
                   TriangleMesh mesh);
+    // Adds another instance of the mesh of scene().shapes[shape], with the same appearance.
+    void add_instance(const std::string& place, size_t shape, const Transform& transform);
+
+    // Adds a material under its name, or a similar one if that is taken; returns its index.
+    uint32_t add_material(Material material);
 
     // Materials that come from files: `name` joins those of file and material, as in `pot.obj/clay`. The
     // scene's material gets this name, or a similar one if it is taken. `find` returns null for a name that
@@ -69,8 +74,6 @@ class SceneBuilder {
     uint32_t black();
 
   private:
-    // Adds a material under its name, or a similar one if that is taken.
-    uint32_t add_material(Material material);
     // The material whose heights are right for a mesh that is placed at that scale. (The first is
     // `material`.)
     uint32_t material_at_scale(uint32_t material, double scale);

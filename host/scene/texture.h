@@ -14,11 +14,15 @@ namespace candela {
 // No texture coordinate is further from 0, so that no transform of one leaves the range of floats.
 inline constexpr double MAX_UV = 1e30;
 
-// An image file that textures look up.
+// An image file that textures look up, or one within a scene file.
 struct ImageFile {
     std::filesystem::path path;
     std::filesystem::path real_path{};  // The same for all names of the file.
-    std::string place{};                // Where the scene names it first, for messages.
+    std::string bytes{};                // The file, if it is within another one.
+    // The image is to be one of roughness: 1 - this times the alpha of the file.
+    std::optional<float> glossiness{};
+    bool has_gamma = true;  // If the file states one, it counts.
+    std::string place{};    // Where the scene names it first, for messages.
     TexelImage image{};
 };
 
