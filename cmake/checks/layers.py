@@ -12,6 +12,7 @@ MAY_INCLUDE = {
     "host/base": [],
     "host/scene": ["host/base"],
     "host/load": ["host/base", "host/scene"],
+    "host/load/gltf": ["host/base", "host/scene", "host/load/json.h", "host/load/node.h", "host/load/quote.h"],
     "host/load/json": ["host/base", "host/scene", "host/load"],
     "host/load/obj": ["host/base", "host/scene", "host/load/quote.h", "host/load/text_lines.h"],
     "host/load/ply": ["host/base", "host/scene", "host/load/quote.h", "host/load/text_lines.h"],
@@ -49,8 +50,8 @@ DECLARE_BUFFERS = ("shaders/scene/scene_data.glsl", "shaders/probes/items.glsl",
 
 # Library -> what its includes look like, and the folders that may see it, directly or through other files.
 LIBRARIES = {
-    "GLM": (r"glm/", ["host/base", "host/scene", "host/load", "host/load/json", "host/load/obj", "host/load/ply",
-                      "host/bvh", "host/gpu_scene", "host/film", "host/render", "host/probe", "host/selftest",
+    "GLM": (r"glm/", ["host/base", "host/scene", "host/load", "host/load/gltf", "host/load/json", "host/load/obj",
+                      "host/load/ply", "host/bvh", "host/gpu_scene", "host/film", "host/render", "host/probe", "host/selftest",
                       "host/bench", "host/view", "host/cli", "host"]),
     "stb": (r"stb_", ["host/base"]),
     "OpenEXR": (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex|openexr|half\.h)", ["host/base"]),

@@ -47,7 +47,7 @@ RenderTask make_task(const BenchArguments& arguments, const std::string& name, S
 std::vector<RenderTask> make_tasks(const BenchArguments& arguments) {
     std::vector<RenderTask> tasks;
     for (const std::string& file : arguments.scenes)
-        tasks.push_back(make_task(arguments, file, load_with_progress(file, arguments.render.texture_limit)));
+        tasks.push_back(make_task(arguments, file, load_with_progress(file, arguments.render.loading)));
     if (tasks.empty()) tasks.push_back(make_task(arguments, "Cornell box", cornell_box()));
     return tasks;
 }

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
     std::string scene;
-    std::optional<uint32_t> texture_limit;
+    LoadingOptions loading;
     PictureOptions picture;
     bool json = false;
 };
@@ -72,7 +72,8 @@ Json describe(const InfoOptions& options, const Scene& scene, const GpuScene& gp
     std::vector<std::string> warnings = scene.warnings;
     std::ranges::copy(gpu.warnings, std::back_inserter(warnings));
     RenderSettings settings;
-    settings.size = options.picture.size.value_or(scene.film.size);
+    const uvec2 proposed = scene.cameras.front().film_size.value_or(scene.film.size);
+    settings.size = options.picture.size.value_or(proposed);
     settings.crop = options.picture.crop_within(settings.size);
     settings.aovs = true;
     std::vector<std::string> cameras;
@@ -150,7 +151,7 @@ void print(const Json& info) {
 }
 
 ExitCode run(const InfoOptions& options) {
-    Scene scene = load_with_progress(options.scene, options.texture_limit);
+    Scene scene = load_with_progress(options.scene, options.loading);
     const GpuScene gpu = build_gpu_scene_freeing_images(scene);
     for (const std::string& warning : gpu.warnings)
         print_warning(warning);
@@ -170,10 +171,10 @@ Command add_info_command(CLI::App& app) {
     CLI::App* const command =
         app.add_subcommand("info", "Describe a scene and the memory that it needs; uses no device");
     const auto options = std::make_shared<InfoOptions>();
-    command->add_option("SCENE", options->scene, "Scene file (.json, .obj, .ply)")->required()->type_name("");
+    command->add_option("SCENE", options->scene, SCENE_FILES)->required()->type_name("");
     options->picture.add_to(*command);
-    add_texture_limit(*command, options->texture_limit);
     command->add_flag("--json", options->json, "Print JSON for programs");
+    options->loading.add_to(*command);
     return {command, [options] { return run(*options); }};
 }
 

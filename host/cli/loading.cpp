@@ -8,29 +8,42 @@
 #include "cli/console.h"
 #include "cli/progress_line.h"
 #include "load/load.h"
+#include "scene/names.h"
 #include "shared/texture.h"
 
 namespace candela {
 
-void add_texture_limit(CLI::App& app, std::optional<uint32_t>& limit) {
+void LoadingOptions::add_to(CLI::App& app) {
     const auto parse = [](const std::string& text) { return parse_uint(text, 1, MAX_IMAGE_SIDE); };
-    add_value(app, "--texture-limit", limit, parse, concat("a whole number from 1 to ", MAX_IMAGE_SIDE),
+    add_value(app, "--texture-limit", texture_limit, parse,
+              concat("a whole number from 1 to ", MAX_IMAGE_SIDE),
               "Shrink images on surfaces to so many pixels along the longer side (default: never)")
         ->type_name("SIZE");
+    app.option_defaults()->group("glTF files");
+    app.add_option("--scene", gltf.scene, "Scene by name or index (default: the file's)")->type_name("NAME");
+    add_value(app, "--time", gltf.time, parse_number, "a number of seconds, such as 1.5",
+              "Pose nodes, skins and morphs at this time of the animation (default: as they stand)")
+        ->type_name("SECONDS");
+    app.add_option("--animation", gltf.animation, "Animation by name or index, or all (default: the first)")
+        ->type_name("NAME")
+        ->needs("--time");
+    app.add_option("--variant", gltf.variant, "Variant of the materials by name or index")->type_name("NAME");
+    add_choice(app, "--light-units", gltf.light_units, LIGHT_UNITS_NAMES,
+               "What the numbers of lights mean (default: blender for files that Blender wrote, else spec)");
 }
 
-Scene load_with_progress(const std::string& file, std::optional<uint32_t> texture_limit,
-                         ProgressStyle style) {
+Scene load_with_progress(const std::string& file, const LoadingOptions& given, ProgressStyle style) {
     Scene scene;
     {
         ProgressLine line(style, 0.0);
-        ImageOptions options{.progress = [&line](size_t done, size_t of) {
+        LoadOptions options{.gltf = given.gltf};
+        options.images = {.progress = [&line](size_t done, size_t of) {
             const double share = double(done) / double(of);
             if (!line.is_due(share)) return;
             const nlohmann::ordered_json json{{"state", "loading"}, {"images", done}, {"of_images", of}};
             line.print(line.is_json() ? json.dump() : concat("images: ", done, " of ", of), share);
         }};
-        if (texture_limit) options.texture_limit = *texture_limit;
+        if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
         scene = load_scene(file, options);
     }
     for (const std::string& warning : scene.warnings)

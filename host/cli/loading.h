@@ -1,23 +1,15 @@
 // Scenes as commands load them: with progress and warnings on stderr.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
-
-#include <CLI/CLI.hpp>
 
 #include "cli/render_options.h"
 #include "scene/scene.h"
 
 namespace candela {
 
-// Adds --texture-limit.
-void add_texture_limit(CLI::App& app, std::optional<uint32_t>& limit);
-
-// load_scene(), with images of at most `texture_limit` texels along a side. Prints how many images are
-// decoded, and the scene's warnings.
-Scene load_with_progress(const std::string& file, std::optional<uint32_t> texture_limit,
+// load_scene(). Prints how many images are decoded, and the scene's warnings.
+Scene load_with_progress(const std::string& file, const LoadingOptions& options,
                          ProgressStyle style = ProgressStyle::automatic);
 
 }  // namespace candela

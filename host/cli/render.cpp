@@ -263,7 +263,7 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
 
     const auto start = std::chrono::steady_clock::now();
     const MessageOptions& messages = options.messages;
-    Scene scene = load_with_progress(options.scene_file, options.texture_limit,
+    Scene scene = load_with_progress(options.scene_file, options.loading,
                                      messages.quiet ? ProgressStyle::none : messages.progress);
     files.read_all("the scene's file", scene.files);
     const double load_seconds = seconds_since(start);

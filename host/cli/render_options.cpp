@@ -43,7 +43,7 @@ static constexpr const char* SAMPLING_GROUP = "Sampling (defaults: the scene's)"
 
 void RenderOptions::add_to(CLI::App& app) {
     app.option_defaults()->take_last();  // Later options override a script's.
-    app.add_option("SCENE", scene_file, "Scene file (.json, .obj, .ply)")->required()->type_name("");
+    app.add_option("SCENE", scene_file, SCENE_FILES)->required()->type_name("");
     add_output_options(app);
     add_rendering_to(app);
     add_camera_to(app);
@@ -67,7 +67,7 @@ void RenderOptions::add_to(CLI::App& app) {
 void RenderOptions::add_rendering_to(CLI::App& app) {
     app.option_defaults()->group("Picture");
     picture.add_to(app);
-    add_texture_limit(app, texture_limit);
+    loading.add_to(app);
     add_sampling_options(app);
     app.option_defaults()->group("Device");
     app.add_option("--device", device, "Index or part of the name (default: the best; see candela devices)")
@@ -196,7 +196,7 @@ RenderJob RenderOptions::job(const Scene& scene) const {
 
 RenderSettings RenderOptions::settings(const Scene& scene) const {
     const IntegratorSettings& proposed = scene.integrator;
-    const uvec2 size = picture.size.value_or(scene.film.size);
+    const uvec2 size = picture.size.value_or(choose_camera(scene).film_size.value_or(scene.film.size));
     const uint32_t depth = max_depth.value_or(proposed.max_depth.value_or(DEPTH_SAFETY_LIMIT));
     return {.size = size,
             .crop = picture.crop_within(size),

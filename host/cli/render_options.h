@@ -13,6 +13,7 @@
 #include "cli/arguments.h"
 #include "film/accumulation.h"
 #include "film/sample_range.h"
+#include "load/gltf/gltf.h"
 #include "render/renderer.h"
 #include "scene/names.h"
 #include "scene/scene.h"
@@ -71,6 +72,18 @@ struct RenderJob {
     MessageOptions messages;
 };
 
+// What the argument SCENE of a command may name.
+inline constexpr const char* SCENE_FILES = "Scene file (.json, .gltf, .glb, .obj, .ply)";
+
+// How scene files are read.
+struct LoadingOptions {
+    std::optional<uint32_t> texture_limit;  // Texels along a side of an image.
+    GltfOptions gltf;
+
+    // Declares them on `app`; this object must not move.
+    void add_to(CLI::App& app);
+};
+
 // The options of the command line; an empty optional leaves the choice to the scene file.
 struct RenderOptions {
     std::string scene_file;
@@ -81,7 +94,7 @@ struct RenderOptions {
 
     PictureOptions picture;
     std::optional<std::string> camera;
-    std::optional<uint32_t> texture_limit;  // Texels along a side of an image.
+    LoadingOptions loading;
 
     std::optional<uint32_t> spp;
     std::optional<double> target_error;  // Relative error of the image.

@@ -42,7 +42,7 @@ struct ViewArguments {
 
 void ViewArguments::add_to(CLI::App& app) {
     app.option_defaults()->take_last();
-    app.add_option("SCENE", render.scene_file, "Scene file (.json, .obj, .ply)")->required()->type_name("");
+    app.add_option("SCENE", render.scene_file, SCENE_FILES)->required()->type_name("");
     add_value(
         app, "--frames", frames, [](const std::string& text) { return parse_uint(text, 1, MAX_SPP); },
         "a whole number from 1 to " + std::to_string(MAX_SPP),
@@ -111,7 +111,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
         files.write("--screenshot", path);
     arguments.check();
     const RenderOptions& options = arguments.render;
-    Scene scene = load_with_progress(options.scene_file, options.texture_limit);
+    Scene scene = load_with_progress(options.scene_file, options.loading);
     files.read_all("the scene's file", scene.files);
     const ViewState state{.camera = options.choose_camera(scene),
                           .settings = options.settings(scene),

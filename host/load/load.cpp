@@ -7,22 +7,37 @@
 #include <string_view>
 #include <utility>
 
+#include "base/error.h"
+#include "base/image_io_parts.h"
 #include "load/json/loader.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
 
 namespace candela {
+namespace {
 
-Scene load_scene(const std::filesystem::path& path, const ImageOptions& images) {
-    using Loader = Scene (*)(const std::filesystem::path&);
-    constexpr std::array<std::pair<std::string_view, Loader>, 2> LOADERS{
-        {{".obj", &load_obj_scene}, {".ply", &load_ply_scene}}};
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    const auto loader = std::ranges::find(LOADERS, extension, [](const auto& known) { return known.first; });
-    Scene scene = loader == LOADERS.end() ? load_json_scene(path) : loader->second(path);
-    load_images(scene, images);
+// Throws Error for options that a file has no use for.
+void refuse(const std::filesystem::path& file, const GltfOptions& options) {
+    if (options == GltfOptions{}) return;
+    throw Error(file.string() + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) {
+    using Loader = Scene (*)(const std::filesystem::path&, const GltfOptions&);
+    constexpr std::array<std::pair<std::string_view, Loader>, 4> LOADERS{
+        {{".glb", &load_gltf_scene},
+         {".gltf", &load_gltf_scene},
+         {".obj",
+          [](const auto& file, const auto& gltf) { return refuse(file, gltf), load_obj_scene(file); }},
+         {".ply",
+          [](const auto& file, const auto& gltf) { return refuse(file, gltf), load_ply_scene(file); }}}};
+    const auto loader =
+        std::ranges::find(LOADERS, extension_of(path), [](const auto& known) { return known.first; });
+    Scene scene =
+        loader == LOADERS.end() ? load_json_scene(path, options.gltf) : loader->second(path, options.gltf);
+    load_images(scene, options.images);
     return scene;
 }
 

@@ -3,14 +3,21 @@
 
 #include <filesystem>
 
+#include "load/gltf/gltf.h"
 #include "scene/images.h"
 #include "scene/scene.h"
 
 namespace candela {
 
-// Reads a scene and the files that it names. The extension, in upper or lower case, chooses the format: OBJ
-// or PLY; otherwise JSON. Throws Error, beginning with the place, for whatever the format or the meaning of a
-// value forbids. What is odd but usable goes to Scene::warnings.
-Scene load_scene(const std::filesystem::path& path, const ImageOptions& images = {});
+struct LoadOptions {
+    ImageOptions images{};
+    GltfOptions gltf{};  // Also for a glTF file that a JSON scene names.
+};
+
+// Reads a scene and the files that it names. The extension, in upper or lower case, chooses the format: glTF,
+// OBJ or PLY; otherwise JSON. Throws Error, beginning with the place, for whatever the format or the meaning
+// of a value forbids, and Error (usage) for options of glTF if no such file is read. What is odd but usable
+// goes to Scene::warnings.
+Scene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace candela

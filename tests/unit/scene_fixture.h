@@ -33,7 +33,7 @@ class SceneFolder {
 
     Scene load(const std::string& text, const ImageOptions& images = {}) {
         write("scene.json", text);
-        return load_scene(folder_ / "scene.json", images);
+        return load_scene(folder_ / "scene.json", {.images = images});
     }
 
     // Loads a scene that has an error at its '@', and checks the message after `scene.json:line:column: `.

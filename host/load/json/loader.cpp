@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "load/json/loader_parts.h"
 #include "scene/geometry.h"
@@ -39,47 +40,63 @@ IntegratorSettings read_integrator(const Node& node) {
     return settings;
 }
 
-// Whether a shape shows a colour without any light.
-bool has_unlit_shape(const Scene& scene) {
-    return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
-        const auto* m = std::get_if<PrincipledMaterial>(&scene.materials[shape.material].model);
-        return m != nullptr && m->unlit;
-    });
+// Reads the glTF file that the scene adds to.
+void read_base(const Node& node, const std::filesystem::path& folder, const GltfOptions& gltf, Scene& scene) {
+    const std::filesystem::path path = folder / node.file_name();
+    if (!is_gltf(path)) node.fail_expected("the name of a glTF file, .gltf or .glb");
+    try {
+        add_gltf_scene(path, gltf, scene);
+    } catch (const Error& error) {
+        throw Error(node.place() + ": " + error.what(), error.code());
+    }
 }
 
 }  // namespace
 
-Scene load_json_scene(const std::filesystem::path& path) {
-    return parse_scene(read_file(path), path.string(), path.parent_path());
+Scene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf) {
+    return parse_scene(read_file(path), path.string(), path.parent_path(), gltf);
 }
 
-Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder) {
+Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder,
+                  const GltfOptions& gltf) {
     const json::Document document{file, json::parse(text, file)};
     const Node root(document);
-    root.allow_only({"$schema", "cameras", "film", "integrator", "materials", "shapes", "environment"});
+    root.allow_only(
+        {"$schema", "scene", "cameras", "film", "integrator", "materials", "shapes", "environment"});
 
     Scene scene;
+    const auto base = root.find("scene");
+    if (!base && gltf != GltfOptions{}) throw Error(file + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
+    if (base) scene.film.size = GLTF_FILM_SIZE;
     if (const auto film = root.find("film")) scene.film = read_film(*film);
-    const Node cameras = root.require("cameras");
-    for (const Node& camera : cameras.members())
-        scene.cameras.push_back(read_camera(camera, scene.film));
-    if (scene.cameras.empty()) cameras.fail("the scene has no camera; add one");
+    if (const auto cameras = base ? root.find("cameras") : root.require("cameras")) {
+        for (const Node& camera : cameras->members())
+            scene.cameras.push_back(read_camera(camera, scene.film));
+        if (scene.cameras.empty() && !base) cameras->fail("the scene has no camera; add one");
+    }
     if (const auto integrator = root.find("integrator")) scene.integrator = read_integrator(*integrator);
     if (const auto materials = root.find("materials")) {
         for (const Node& material : materials->members())
             scene.materials.push_back(read_material(material, {folder, scene}));
     }
-    const Node shapes = root.require("shapes");
-    read_shapes(shapes, folder, scene);
+    if (base) read_base(*base, folder, gltf, scene);
+    if (root.find("film")) {
+        for (Camera& camera : scene.cameras)
+            camera.film_size.reset();
+    }
+    const auto shapes = base ? root.find("shapes") : root.require("shapes");
+    if (shapes) read_shapes(*shapes, folder, scene);
     if (const auto environment = root.find("environment")) {
         scene.environment = read_environment(*environment, folder, scene);
     }
 
-    if (scene.shapes.empty() && !scene.environment) {
-        scene.warnings.push_back(shapes.place() + ": the scene has no shapes");
+    if (base) {
+        complete_gltf_scene(base->place(), scene);
+    } else if (scene.shapes.empty() && !scene.environment) {
+        scene.warnings.push_back(shapes->place() + ": the scene has no shapes");
     } else if (emitter_count(scene) == 0 && !(scene.environment && gives_light(*scene.environment)) &&
                !has_unlit_shape(scene)) {
-        scene.warnings.push_back(shapes.place() + ": the scene has no light: the image will be black");
+        scene.warnings.push_back(shapes->place() + ": the scene has no light: the image will be black");
     }
     return scene;
 }

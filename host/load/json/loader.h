@@ -5,17 +5,20 @@
 #include <string>
 #include <string_view>
 
+#include "load/gltf/gltf.h"
 #include "scene/scene.h"
 
 namespace candela {
 
 // Reads a scene and the files that it names, relative to its folder. Throws Error, beginning with
 // `file:line:column:` unless the scene file itself cannot be read, for everything that the schema or the
-// meaning of a value forbids. What is odd but usable goes to Scene::warnings.
-Scene load_json_scene(const std::filesystem::path& path);
+// meaning of a value forbids. What is odd but usable goes to Scene::warnings. `gltf` is for the glTF file
+// that it may name.
+Scene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf = {});
 
 // The same for the text of a scene file: `file` is its name in messages, and the files that it names are
 // relative to `folder`.
-Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder);
+Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder,
+                  const GltfOptions& gltf = {});
 
 }  // namespace candela

@@ -1,0 +1,216 @@
+// Ref: Khronos, "glTF 2.0 Specification", section 3.6.2.
+#include "load/gltf/accessor.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "base/text.h"
+#include "load/quote.h"
+
+namespace candela::gltf {
+namespace {
+
+// Elements of an accessor without bytes, which cost a file nothing.
+constexpr uint32_t MOST_ZEROS = 1u << 24;
+
+constexpr std::array<std::pair<std::string_view, uint32_t>, 5> WIDTHS{
+    {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}}};
+
+// Calls visit(T()) with the C++ type of a component.
+template <class Visit>
+auto with_type(Component component, const Visit& visit) {
+    switch (component) {
+        case Component::int8:
+            return visit(int8_t());
+        case Component::uint8:
+            return visit(uint8_t());
+        case Component::int16:
+            return visit(int16_t());
+        case Component::uint16:
+            return visit(uint16_t());
+        case Component::uint32:
+            return visit(uint32_t());
+        case Component::float32:
+            break;
+    }
+    return visit(float());
+}
+
+size_t size_of_component(Component component) {
+    return with_type(component, [](auto zero) { return sizeof zero; });
+}
+
+Component read_component(const Node& node) {
+    const uint32_t type = node.integer(0, UINT32_MAX);
+    constexpr uint32_t NO_INT32 = 5124;
+    if (type < uint32_t(Component::int8) || type > uint32_t(Component::float32) || type == NO_INT32)
+        node.fail_expected("5120, 5121, 5122, 5123, 5125 or 5126");
+    return Component(type);
+}
+
+uint32_t read_width(const Node& node, std::initializer_list<std::string_view> types) {
+    const std::string& type = node.string();
+    const auto width =
+        std::ranges::find(WIDTHS, std::string_view(type), [](const auto& w) { return w.first; });
+    if (width == WIDTHS.end() || std::ranges::find(types, type) == types.end()) {
+        std::string expected;
+        for (const std::string_view known : types)
+            expected += (expected.empty() ? "" : " or ") + quote(known);
+        node.fail_expected(expected + " for what it is used");
+    }
+    return width->second;
+}
+
+// The bytes of `count` elements of that size from byteOffset on, checked. `stride` gets the distance between
+// two of them.
+std::span<const std::byte> element_bytes(File& file, const Node& node, uint64_t count, size_t size,
+                                         size_t& stride) {
+    const Node view = file.resolve("bufferViews", node.require("bufferView"));
+    const std::span<const std::byte> bytes = file.view_bytes(view);
+    stride = size;
+    if (const auto value = view.find("byteStride")) {
+        stride = value->integer(0, UINT32_MAX);
+        if (stride < size) value->fail_expected(concat("at least ", size, ", the size of an element"));
+    }
+    const auto value = node.find("byteOffset");
+    const uint64_t offset = value ? value->integer(0, UINT32_MAX) : 0;
+    const uint64_t end = offset + (count - 1) * stride + size;  // Below 2^65 / 2: each factor is below 2^32.
+    if (end > bytes.size()) {
+        node.fail(concat(count, " elements end at byte ", end, " of their view, which has ", bytes.size(),
+                         "; is the file damaged?"));
+    }
+    return bytes.subspan(offset);
+}
+
+template <class T>
+float as_float(T value, bool normalized) {
+    if constexpr (std::is_floating_point_v<T>) {
+        return value;
+    } else {
+        if (!normalized) return float(value);
+        // Ref: section 3.6.2.2; the most negative value, which has no positive one, counts as -1.
+        return std::max(float(double(value) / double(std::numeric_limits<T>::max())), -1.0f);
+    }
+}
+
+template <class T>
+void copy_element(const std::byte* bytes, uint32_t width, bool normalized, float* target) {
+    for (uint32_t c = 0; c < width; ++c) {
+        T value;
+        std::memcpy(&value, bytes + c * sizeof(T), sizeof(T));
+        target[c] = as_float(value, normalized);
+    }
+}
+
+}  // namespace
+
+Accessor::Accessor(File& file, const Node& reference, std::initializer_list<std::string_view> types)
+    : node_(file.resolve("accessors", reference)) {
+    component_ = read_component(node_.require("componentType"));
+    width_ = read_width(node_.require("type"), types);
+    const Node count = node_.require("count");
+    count_ = count.integer(1, UINT32_MAX);
+    if (const auto normalized = node_.find("normalized")) normalized_ = normalized->boolean();
+    if (normalized_ && (component_ == Component::float32 || component_ == Component::uint32)) {
+        file.warn(node_, "\"normalized\" says nothing of floats and of 32-bit integers, and is ignored");
+        normalized_ = false;
+    }
+    const size_t size = width_ * size_of_component(component_);
+    if (node_.find("bufferView")) {
+        bytes_ = element_bytes(file, node_, count_, size, stride_);
+    } else if (count_ > MOST_ZEROS) {
+        count.fail(concat("an accessor without a bufferView is all zeros, and has at most ", MOST_ZEROS,
+                          " elements; name the view of its bytes"));
+    }
+    if (const auto sparse = node_.find("sparse")) read_sparse(file, *sparse);
+}
+
+void Accessor::read_sparse(File& file, const Node& sparse) {
+    const uint32_t replaced = sparse.require("count").integer(1, count_);
+    const Node indices = sparse.require("indices");
+    const Component type = read_component(indices.require("componentType"));
+    size_t stride = 0;
+    const auto index_bytes = element_bytes(file, indices, replaced, size_of_component(type), stride);
+    sparse_.emplace();
+    sparse_->indices.reserve(replaced);
+    for (uint32_t i = 0; i < replaced; ++i) {
+        const double index = with_type(type, [&](auto zero) {
+            auto value = zero;
+            std::memcpy(&value, index_bytes.data() + i * stride, sizeof value);
+            return double(value);
+        });
+        if (!(index >= 0.0 && index < double(count_))) {
+            indices.fail(concat("number ", i, " replaces element ", number_text(index, 10), " of ", count_,
+                                "; is the file damaged?"));
+        }
+        sparse_->indices.push_back(uint32_t(index));
+    }
+    const size_t size = width_ * size_of_component(component_);
+    size_t value_stride = 0;
+    sparse_->values = element_bytes(file, sparse.require("values"), replaced, size, value_stride);
+}
+
+std::vector<float> Accessor::floats() const {
+    std::vector<float> result(size_t(count_) * width_, 0.0f);
+    with_type(component_, [&](auto zero) {
+        using T = decltype(zero);
+        for (size_t i = 0; !bytes_.empty() && i < count_; ++i)
+            copy_element<T>(bytes_.data() + i * stride_, width_, normalized_, &result[i * width_]);
+        if (!sparse_) return;
+        for (size_t i = 0; i < sparse_->indices.size(); ++i) {
+            copy_element<T>(sparse_->values.data() + i * width_ * sizeof(T), width_, normalized_,
+                            &result[size_t(sparse_->indices[i]) * width_]);
+        }
+    });
+    return result;
+}
+
+std::vector<float> Accessor::floats(std::span<const uint32_t> rows) const {
+    std::vector<float> result(rows.size() * width_, 0.0f);
+    if (sparse_) {
+        const std::vector<float> all = floats();
+        for (size_t i = 0; i < rows.size(); ++i)
+            std::copy_n(&all[size_t(rows[i]) * width_], width_, &result[i * width_]);
+        return result;
+    }
+    if (bytes_.empty()) return result;
+    with_type(component_, [&](auto zero) {
+        for (size_t i = 0; i < rows.size(); ++i) {
+            copy_element<decltype(zero)>(bytes_.data() + rows[i] * stride_, width_, normalized_,
+                                         &result[i * width_]);
+        }
+    });
+    return result;
+}
+
+std::vector<uint32_t> Accessor::integers() const {
+    const bool is_unsigned =
+        component_ == Component::uint8 || component_ == Component::uint16 || component_ == Component::uint32;
+    if (!is_unsigned || normalized_) {
+        node_.require("componentType").fail("unsigned integers are expected here; export the file again");
+    }
+    std::vector<uint32_t> result(size_t(count_) * width_, 0);
+    with_type(component_, [&](auto zero) {
+        using T = decltype(zero);
+        const auto copy = [&](const std::byte* bytes, size_t element) {
+            for (uint32_t c = 0; c < width_; ++c) {
+                T value;
+                std::memcpy(&value, bytes + c * sizeof(T), sizeof(T));
+                result[element * width_ + c] = uint32_t(value);
+            }
+        };
+        for (size_t i = 0; !bytes_.empty() && i < count_; ++i)
+            copy(bytes_.data() + i * stride_, i);
+        if (!sparse_) return;
+        for (size_t i = 0; i < sparse_->indices.size(); ++i)
+            copy(sparse_->values.data() + i * width_ * sizeof(T), sparse_->indices[i]);
+    });
+    return result;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,58 @@
+// Accessors: typed arrays in the buffers of a glTF file. All that they state is checked before any byte is
+// read.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "load/gltf/gltf_file.h"
+
+namespace candela::gltf {
+
+enum class Component : uint32_t { int8 = 5120, uint8, int16, uint16, uint32 = 5125, float32 };
+
+// The part of an accessor whose elements replace others.
+struct Sparse {
+    std::vector<uint32_t> indices;  // Ascending, below the count of the whole.
+    std::span<const std::byte> values;
+};
+
+class Accessor {
+  public:
+    // Reads the accessor that `reference` refers to. Throws Error unless it has one of these types ("SCALAR",
+    // "VEC3" ...), and its bytes are there.
+    Accessor(File& file, const Node& reference, std::initializer_list<std::string_view> types);
+
+    const Node& node() const { return node_; }
+    uint32_t count() const { return count_; }
+    // Numbers per element.
+    uint32_t width() const { return width_; }
+    Component component() const { return component_; }
+    bool is_normalized() const { return normalized_; }
+
+    // All elements, one after the other, as floats: integers as they are, or normalised to [0, 1] or [-1, 1].
+    std::vector<float> floats() const;
+    // The same for some elements alone; each of `rows` is below count().
+    std::vector<float> floats(std::span<const uint32_t> rows) const;
+    // Elements as whole numbers. Throws Error unless they are unsigned integers that are not normalised.
+    std::vector<uint32_t> integers() const;
+
+  private:
+    void read_sparse(File& file, const Node& sparse);
+
+    Node node_;
+    Component component_ = Component::float32;
+    uint32_t width_ = 1;
+    bool normalized_ = false;
+    uint32_t count_ = 0;
+    std::span<const std::byte> bytes_;  // From the first element on; empty: all elements are zero.
+    size_t stride_ = 0;
+    std::optional<Sparse> sparse_;
+};
+
+}  // namespace candela::gltf

@@ -1,0 +1,158 @@
+// Ref: Khronos, "glTF 2.0 Specification", section 3.11 and appendix C.
+#include "load/gltf/animation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "load/gltf/accessor.h"
+#include "load/gltf/names.h"
+#include "load/quote.h"
+
+namespace candela::gltf {
+namespace {
+
+enum class Interpolation { step, linear, cubic };
+
+// The values of a channel at its keys.
+struct Sampler {
+    std::vector<float> times;   // [s], ascending.
+    std::vector<float> values;  // `width` numbers per key; of a cubic spline, in-tangent, value, out-tangent.
+    size_t width = 0;
+    Interpolation interpolation = Interpolation::linear;
+
+    const float* value(size_t key) const {
+        return &values[interpolation == Interpolation::cubic ? (3 * key + 1) * width : key * width];
+    }
+    const float* in_tangent(size_t key) const { return &values[3 * key * width]; }
+    const float* out_tangent(size_t key) const { return &values[(3 * key + 2) * width]; }
+};
+
+Interpolation read_interpolation(const Node& sampler) {
+    constexpr std::array<std::pair<std::string_view, Interpolation>, 3> NAMES{
+        {{"LINEAR", Interpolation::linear},
+         {"STEP", Interpolation::step},
+         {"CUBICSPLINE", Interpolation::cubic}}};
+    const auto node = sampler.find("interpolation");
+    return node ? node->choice(NAMES) : Interpolation::linear;
+}
+
+// `width`: numbers per key, of a VEC3 or VEC4; 0: as many scalars per key as there are.
+Sampler read_sampler(File& file, const Node& node, size_t width) {
+    Sampler sampler;
+    sampler.interpolation = read_interpolation(node);
+    const Node input = node.require("input");
+    sampler.times = Accessor(file, input, {"SCALAR"}).floats();
+    for (size_t i = 0; i < sampler.times.size(); ++i) {
+        if (!std::isfinite(sampler.times[i]) || (i > 0 && sampler.times[i] <= sampler.times[i - 1]))
+            input.fail(concat("the times of an animation must grow, but that of key ", i, " does not"));
+    }
+    const Node output = node.require("output");
+    sampler.values = width == 0   ? Accessor(file, output, {"SCALAR"}).floats()
+                     : width == 3 ? Accessor(file, output, {"VEC3"}).floats()
+                                  : Accessor(file, output, {"VEC4"}).floats();
+    const size_t keys = sampler.times.size() * (sampler.interpolation == Interpolation::cubic ? 3 : 1);
+    sampler.width = width == 0 ? sampler.values.size() / keys : width;
+    if (sampler.width == 0 || sampler.values.size() != keys * sampler.width) {
+        output.fail(concat("there are ", sampler.values.size(), " numbers for ", sampler.times.size(),
+                           " keys; is the file damaged?"));
+    }
+    if (!std::ranges::all_of(sampler.values, [](float v) { return std::isfinite(v); }))
+        output.fail("a value of the animation is not finite; export it again");
+    return sampler;
+}
+
+// The value of a cubic Hermite spline between two keys, at t in [0, 1]; `step` is their distance [s].
+double spline(double v0, double out0, double in1, double v1, double step, double t) {
+    const double t2 = t * t, t3 = t2 * t;
+    return (2 * t3 - 3 * t2 + 1) * v0 + step * (t3 - 2 * t2 + t) * out0 + (3 * t2 - 2 * t3) * v1 +
+           step * (t3 - t2) * in1;
+}
+
+std::vector<double> sample(const Sampler& s, double time, bool is_rotation) {
+    const auto after = std::upper_bound(s.times.begin(), s.times.end(), time);
+    const auto key = size_t(after - s.times.begin());
+    const auto at = [&](size_t k) { return std::vector<double>(s.value(k), s.value(k) + s.width); };
+    if (key == 0) return at(0);
+    if (key == s.times.size() || s.interpolation == Interpolation::step) return at(key - 1);
+    const double step = double(s.times[key]) - double(s.times[key - 1]);
+    const double t = (time - double(s.times[key - 1])) / step;
+    std::vector<double> result(s.width);
+    if (s.interpolation == Interpolation::linear && is_rotation) {
+        const float* a = s.value(key - 1);
+        const float* b = s.value(key);
+        const glm::dquat q =
+            glm::slerp(glm::dquat(a[3], a[0], a[1], a[2]), glm::dquat(b[3], b[0], b[1], b[2]), t);
+        return {q.x, q.y, q.z, q.w};
+    }
+    for (size_t i = 0; i < s.width; ++i) {
+        const double v0 = s.value(key - 1)[i], v1 = s.value(key)[i];
+        result[i] = s.interpolation == Interpolation::linear
+                        ? v0 + t * (v1 - v0)
+                        : spline(v0, s.out_tangent(key - 1)[i], s.in_tangent(key)[i], v1, step, t);
+    }
+    return result;
+}
+
+void apply_channel(File& file, const Node& animation, const Node& channel, double time,
+                   std::vector<PosedNode>& nodes) {
+    const Node target = channel.require("target");
+    const auto reference = target.find("node");
+    if (!reference) return;  // Of an extension, and without effect otherwise.
+    PosedNode& node = nodes[file.index("nodes", *reference)];
+    const Node path = target.require("path");
+    const std::string& kind = path.string();
+    const size_t width = kind == "rotation" ? 4 : kind == "weights" ? 0 : 3;
+    if (width == 3 && kind != "translation" && kind != "scale") {
+        file.warn(path, "ignored the unknown path " + quote(kind));
+        return;
+    }
+    const Node samplers = animation.require("samplers");
+    const Node number = channel.require("sampler");
+    const uint32_t i = number.integer(0, UINT32_MAX);
+    if (i >= samplers.size()) number.fail(concat("the animation has only ", samplers.size(), " samplers"));
+    const std::vector<double> v = sample(read_sampler(file, samplers[i], width), time, width == 4);
+    if (node.matrix && kind != "weights") {
+        file.warn(channel, "the node has a matrix, which cannot be animated; the animation takes its place");
+        node.matrix.reset();
+    }
+    if (kind == "translation") node.trs.translation = {v[0], v[1], v[2]};
+    if (kind == "scale") node.trs.scale = {v[0], v[1], v[2]};
+    if (kind == "weights") node.weights = v;
+    if (kind == "rotation") {
+        const glm::dquat q(v[3], v[0], v[1], v[2]);
+        if (length(q) > 0.0) node.trs.rotation = normalize(q);
+    }
+}
+
+}  // namespace
+
+void animate(File& file, const std::optional<std::string>& name, double time, std::vector<PosedNode>& nodes) {
+    const size_t count = file.count("animations");
+    std::vector<size_t> chosen;
+    if (name && *name == "all") {
+        for (size_t i = 0; i < count; ++i)
+            chosen.push_back(i);
+    } else if (name) {
+        chosen.push_back(
+            find_by_name(file, file.root().find("animations"), *name, "animations", "--animation"));
+    } else if (count > 0) {
+        chosen.push_back(0);
+    }
+    if (count == 0) file.warn(file.path().string() + ": the file has no animations: --time changes nothing");
+    if (count > 1 && !name) {
+        file.warn(file.path().string() + ": posed by the first animation, " +
+                  quote(name_of(file.element("animations", 0), "0")) + ", of " + std::to_string(count) +
+                  "; choose by --animation NAME, or all");
+    }
+    for (const size_t i : chosen) {
+        const Node animation = file.element("animations", i);
+        for (const Node& channel : animation.require("channels").elements())
+            apply_channel(file, animation, channel, time, nodes);
+    }
+}
+
+}  // namespace candela::gltf

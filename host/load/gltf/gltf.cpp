@@ -1,0 +1,80 @@
+// See gltf.h: a file as a whole.
+#include "load/gltf/gltf.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "base/image_io_parts.h"
+#include "load/gltf/extensions.h"
+#include "load/gltf/gltf_file.h"
+#include "load/gltf/light.h"
+#include "load/gltf/scene_reader.h"
+#include "load/gltf/values.h"
+#include "scene/default_view.h"
+#include "scene/geometry.h"
+
+namespace candela {
+namespace {
+
+using gltf::File;
+
+// What the file says of itself goes into images.
+void read_attributes(const File& file, Scene& scene) {
+    const Node asset = file.root().require("asset");
+    for (const char* key : {"generator", "copyright", "version"}) {
+        const auto text = asset.find(key);
+        if (text && text->is_string())
+            scene.attributes.emplace_back(std::string("gltf.") + key, text->string());
+    }
+}
+
+void warn_of_units(File& file, const GltfOptions& options, const Scene& scene) {
+    if (scene.lights.empty() || options.light_units) return;
+    if (units_of(file, options) != LightUnits::blender) return;
+    file.warn(file.path().string() +
+              ": Blender wrote the file, so that its lights count as watts times 683 lm/W; where that is too "
+              "dark, give --light-units spec or raw");
+}
+
+}  // namespace
+
+bool is_gltf(const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
+    return extension == ".gltf" || extension == ".glb";
+}
+
+void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene) {
+    File file(path);
+    check_extensions(file);
+    scene.files.push_back(path);
+    gltf::SceneReader(file, scene, options).read();
+    std::ranges::copy(file.files(), std::back_inserter(scene.files));
+    read_attributes(file, scene);
+    warn_of_units(file, options, scene);
+    std::ranges::copy(file.warnings(), std::back_inserter(scene.warnings));
+}
+
+void complete_gltf_scene(const std::string& name, Scene& scene) {
+    if (scene.shapes.empty()) scene.warnings.push_back(name + ": the scene has no surfaces");
+    if (scene.cameras.empty()) {
+        add_default_camera(scene);
+        scene.warnings.push_back(
+            name +
+            ": there is no camera; the scene is seen from the front, a little from the right and above");
+    }
+    const bool has_light = emitter_count(scene) > 0 || !scene.lights.empty() || scene.environment;
+    if (has_light || has_unlit_shape(scene)) return;
+    scene.environment = gltf::studio();
+    scene.warnings.push_back(name +
+                             ": there is no light; a studio lights the scene, which the camera does not see");
+}
+
+Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options) {
+    Scene scene;
+    scene.film.size = GLTF_FILM_SIZE;
+    add_gltf_scene(path, options, scene);
+    complete_gltf_scene(path.string(), scene);
+    return scene;
+}
+
+}  // namespace candela

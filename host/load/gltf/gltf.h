@@ -1,0 +1,55 @@
+// Scenes from glTF 2.0 files, .gltf and .glb. docs/gltf.md says what of the format is read.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "scene/names.h"
+#include "scene/scene.h"
+
+namespace candela {
+
+// What the numbers of a file's lights mean.
+enum class LightUnits {
+    spec,     // Candela and lux; a candela counts as one W/sr.
+    blender,  // Those that Blender writes: watts times 683 lm/W.
+    raw,      // Watts, of point and spot lights to all directions.
+};
+inline constexpr Choices<LightUnits, 3> LIGHT_UNITS_NAMES{
+    {{"spec", LightUnits::spec}, {"blender", LightUnits::blender}, {"raw", LightUnits::raw}}};
+
+// What of a file is read. Where a name is asked for, the index of the element will do.
+struct GltfOptions {
+    std::optional<std::string> scene;       // None: the file's default.
+    std::optional<std::string> animation;   // Or "all"; none: the first, if there is a time.
+    std::optional<double> time;             // Of the animation [s]; none: nodes as they stand.
+    std::optional<std::string> variant;     // Of the materials; none: those of the file.
+    std::optional<LightUnits> light_units;  // None: those of the program that wrote the file.
+
+    bool operator==(const GltfOptions&) const = default;
+};
+
+// What messages say of these options for another file.
+inline constexpr const char* GLTF_OPTIONS_ALONE =
+    "--scene, --animation, --time, --variant and --light-units are for glTF files; leave them out";
+
+// The picture of a file whose camera says nothing of it.
+inline constexpr uvec2 GLTF_FILM_SIZE{1280, 720};
+
+// Whether a file's extension, in upper or lower case, is one of glTF.
+bool is_gltf(const std::filesystem::path& path);
+
+// Reads a scene and the buffers that it names; load_images() reads its images. A file without cameras gets
+// one, and one without light a studio. Throws Error with the JSON pointer of what is wrong. What is odd but
+// usable goes to Scene::warnings.
+Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options = {});
+
+// Adds what a file holds to a scene, as load_gltf_scene() does, but neither camera nor studio. Materials that
+// the scene has already take the place of the file's of the same name.
+void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene);
+
+// Adds the camera and the studio if they are missing; `name` is what the warnings that say so begin with.
+void complete_gltf_scene(const std::string& name, Scene& scene);
+
+}  // namespace candela

@@ -1,0 +1,166 @@
+// Ref: Khronos, "glTF 2.0 Specification", sections 3.2, 3.6.1 and 4.4.
+#include "load/gltf/gltf_file.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "load/gltf/uri.h"
+#include "load/quote.h"
+
+namespace candela::gltf {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "files are little-endian, and copied as they are");
+
+constexpr std::string_view GLB_MAGIC = "glTF";
+constexpr size_t GLB_HEADER_SIZE = 12;
+constexpr size_t CHUNK_HEADER_SIZE = 8;
+constexpr uint32_t JSON_CHUNK = 0x4E4F534A;
+constexpr uint32_t BINARY_CHUNK = 0x004E4942;
+
+uint32_t word_at(std::string_view bytes, size_t offset) {
+    uint32_t word = 0;
+    std::memcpy(&word, bytes.data() + offset, sizeof word);
+    return word;
+}
+
+std::span<const std::byte> as_span(std::string_view bytes) {
+    return std::as_bytes(std::span(bytes.data(), bytes.size()));
+}
+
+// Throws Error unless a loader of glTF 2.0 can read the file.
+void check_version(const Node& root) {
+    const Node asset = root.require("asset");
+    const auto major = [](const Node& version) {
+        const std::string& text = version.string();
+        return text.substr(0, text.find('.'));
+    };
+    const Node version = asset.require("version");
+    const auto least = asset.find("minVersion");
+    const Node& decisive = least ? *least : version;
+    if (major(decisive) != "2" || (least && least->string() != "2.0")) {
+        decisive.fail("files of version 2.0 are read, not of " + quote(decisive.string()) +
+                      "; export the scene as glTF 2.0");
+    }
+}
+
+}  // namespace
+
+File::File(const std::filesystem::path& path) : path_(path), bytes_(read_file(path)) {
+    document_.file = path.string();
+    document_.places = json::Document::Places::pointers;
+    const std::string_view text = bytes_.starts_with(GLB_MAGIC) ? split_glb() : std::string_view(bytes_);
+    document_.root = json::parse(text, document_.file);
+    if (!root().is_object()) root().fail_expected("an object { ... }, as every glTF file is");
+    check_version(root());
+    buffers_.resize(count("buffers"));
+}
+
+// Finds the chunks; returns that of the JSON document.
+std::string_view File::split_glb() {
+    const std::string name = path_.string();
+    std::string_view bytes = bytes_;
+    const auto cut_off = [&](const char* what) {
+        throw Error(name + ": the file is cut off: " + what + "; copy or export it again");
+    };
+    if (bytes.size() < GLB_HEADER_SIZE) cut_off("its header has 12 bytes");
+    if (const uint32_t version = word_at(bytes, 4); version != 2) {
+        throw Error(concat(name, ": the file is binary glTF of version ", version,
+                           "; version 2 is read: export the scene as glTF 2.0"));
+    }
+    const uint32_t length = word_at(bytes, 8);
+    if (length > bytes.size()) cut_off("it is shorter than its header says");
+    if (length < bytes.size())
+        warn(concat(name, ": ignored what follows the end that the header states, at byte ", length));
+    bytes = bytes.substr(0, std::max<size_t>(length, GLB_HEADER_SIZE));
+
+    std::optional<std::string_view> text;
+    size_t chunks = 0;
+    for (size_t offset = GLB_HEADER_SIZE; offset < bytes.size(); ++chunks) {
+        if (bytes.size() - offset < CHUNK_HEADER_SIZE) cut_off("a chunk's header has 8 bytes");
+        const size_t size = word_at(bytes, offset);
+        const uint32_t type = word_at(bytes, offset + 4);
+        offset += CHUNK_HEADER_SIZE;
+        if (size > bytes.size() - offset) cut_off("a chunk is shorter than its header says");
+        if (chunks == 0 && type == JSON_CHUNK) text = bytes.substr(offset, size);
+        if (chunks == 1 && type == BINARY_CHUNK) chunk_ = bytes.substr(offset, size);
+        offset += size;
+    }
+    if (!text) throw Error(name + ": the first chunk of the file is not its JSON document; export it again");
+    // Filled up with spaces; some programs fill with zeros.
+    return text->substr(0, text->find_last_not_of('\0') + 1);
+}
+
+size_t File::count(std::string_view array) const {
+    const auto found = root().find(array);
+    return found ? found->size() : 0;
+}
+
+Node File::element(std::string_view array, size_t i) const {
+    return root().require(array)[i];
+}
+
+uint32_t File::index(std::string_view array, const Node& reference) const {
+    const uint32_t i = reference.integer(0, UINT32_MAX);
+    const size_t of = count(array);
+    if (i < of) return i;
+    reference.fail(concat("there is no ", i, " in \"", array, "\", which ",
+                          of == 0 ? std::string("is empty or missing") : "has 0 to " + std::to_string(of - 1),
+                          "; name one that the file has"));
+}
+
+std::span<const std::byte> File::view_bytes(const Node& view) {
+    const Node buffer = view.require("buffer");
+    const std::span<const std::byte> bytes = buffer_bytes(index("buffers", buffer));
+    const auto offset_node = view.find("byteOffset");
+    const uint64_t offset = offset_node ? offset_node->integer(0, UINT32_MAX) : 0;
+    const uint64_t length = view.require("byteLength").integer(1, UINT32_MAX);
+    if (offset + length > bytes.size()) {
+        view.fail(concat("the view ends at byte ", offset + length, " of its buffer, which has ",
+                         bytes.size(), "; is a file cut off?"));
+    }
+    return bytes.subspan(offset, length);
+}
+
+std::span<const std::byte> File::buffer_bytes(uint32_t i) {
+    const Node buffer = element("buffers", i);
+    const size_t length = buffer.require("byteLength").integer(1, UINT32_MAX);
+    const auto uri = buffer.find("uri");
+    std::string_view bytes;
+    if (uri) {
+        if (!buffers_[i]) {
+            buffers_[i] = inline_data(*uri);
+            if (!buffers_[i]) {
+                const std::filesystem::path path = file_of(*uri, folder());
+                try {
+                    buffers_[i] = read_file(path);
+                } catch (const Error& error) {
+                    uri->fail(error.what());
+                }
+                files_.push_back(path);
+            }
+        }
+        bytes = *buffers_[i];
+    } else if (i == 0 && chunk_) {
+        bytes = *chunk_;
+    } else {
+        buffer.fail(
+            "the buffer has neither a uri nor, as the first of a .glb, a binary chunk; export the file "
+            "again");
+    }
+    if (bytes.size() < length) {
+        buffer.fail(concat("the buffer has ", bytes.size(), " bytes, not the ", length,
+                           " that its byteLength states; is a file cut off?"));
+    }
+    return as_span(bytes.substr(0, length));
+}
+
+void File::warn(const std::string& text) {
+    if (std::ranges::find(warnings_, text) == warnings_.end()) warnings_.push_back(text);
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,64 @@
+// A glTF file: its JSON document, its buffers, and the complaints about both.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "load/node.h"
+
+namespace candela::gltf {
+
+// Reads .gltf (JSON) and .glb (JSON and a buffer in one file), told apart by their first bytes. Places in
+// messages are JSON pointers: `room.glb#/accessors/3/count`.
+class File {
+  public:
+    // Throws Error if the file cannot be read, is cut off, or is of another version than 2.
+    explicit File(const std::filesystem::path& path);
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+
+    Node root() const { return Node(document_); }
+    const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path folder() const { return path_.parent_path(); }
+
+    // How many elements a top-level array has, such as "meshes"; 0 if it is missing.
+    size_t count(std::string_view array) const;
+    // Its element `i`, which is below count().
+    Node element(std::string_view array, size_t i) const;
+    // The index that `reference` holds into a top-level array. Throws Error if it has no such element.
+    uint32_t index(std::string_view array, const Node& reference) const;
+    // The element that `reference` refers to.
+    Node resolve(std::string_view array, const Node& reference) const {
+        return element(array, index(array, reference));
+    }
+
+    // The bytes that a bufferView stands for; valid as long as this file. Throws Error if they are not there.
+    std::span<const std::byte> view_bytes(const Node& view);
+
+    // Files besides this one that were read for buffers.
+    const std::vector<std::filesystem::path>& files() const { return files_; }
+
+    // Notes what is odd but usable, each text once.
+    void warn(const Node& place, const std::string& text) { warn(place.place() + ": " + text); }
+    void warn(const std::string& text);
+    const std::vector<std::string>& warnings() const { return warnings_; }
+
+  private:
+    std::string_view split_glb();
+    std::span<const std::byte> buffer_bytes(uint32_t index);
+
+    std::filesystem::path path_;
+    std::string bytes_;                      // Of the file.
+    std::optional<std::string_view> chunk_;  // The buffer of a .glb.
+    json::Document document_;
+    std::vector<std::optional<std::string>> buffers_;  // What was read for each.
+    std::vector<std::filesystem::path> files_;
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace candela::gltf

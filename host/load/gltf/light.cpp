@@ -1,0 +1,125 @@
+// Ref: Khronos, KHR_lights_punctual.
+#include "load/gltf/light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/text.h"
+#include "load/gltf/names.h"
+#include "load/gltf/values.h"
+
+namespace candela::gltf {
+namespace {
+
+constexpr float HALF_PI = PI / 2;
+// Blender writes watts as lumens of light with 683 lm/W.
+constexpr double LUMENS_PER_WATT = 683.0;
+
+// What an intensity [cd] stands for [W/sr].
+double intensity_factor(LightUnits units) {
+    switch (units) {
+        case LightUnits::spec:
+            return 1.0;
+        case LightUnits::blender:
+            return 1.0 / LUMENS_PER_WATT;
+        case LightUnits::raw:
+            break;  // Watts, to all directions.
+    }
+    return 1.0 / (4.0 * double(PI));
+}
+
+// What an illuminance [lx] stands for [W/m^2].
+double illuminance_factor(LightUnits units) {
+    return units == LightUnits::blender ? 1.0 / LUMENS_PER_WATT : 1.0;
+}
+
+Node lights_of(const File& file, const Node& reference) {
+    const auto extension = extension_of(file.root(), "KHR_lights_punctual");
+    const auto lights = extension ? extension->find("lights") : std::nullopt;
+    if (!lights) reference.fail("the file has no lights; export it again");
+    return *lights;
+}
+
+SpotLight read_cone(File& file, const Node& light) {
+    constexpr float LEAST_EDGE = 1e-4f;  // [rad]: between the angles, so that the edge has a width.
+    SpotLight spot;
+    const auto cone = light.find("spot");
+    const float inner = cone ? number_of(file, *cone, "innerConeAngle", 0.0f, HALF_PI, 0.0f) : 0.0f;
+    const float outer = cone ? number_of(file, *cone, "outerConeAngle", 0.0f, HALF_PI, PI / 4) : PI / 4;
+    spot.outer_angle = std::max(outer, 2.0f * LEAST_EDGE);
+    spot.inner_angle = std::min(inner, spot.outer_angle - LEAST_EDGE);
+    return spot;
+}
+
+}  // namespace
+
+LightUnits units_of(const File& file, const GltfOptions& options) {
+    if (options.light_units) return *options.light_units;
+    const auto generator = file.root().require("asset").find("generator");
+    const bool blender = generator && generator->string().find("Blender") != std::string::npos;
+    return blender ? LightUnits::blender : LightUnits::spec;
+}
+
+Light read_light(File& file, const Node& reference, const glm::dmat4& world, LightUnits units) {
+    constexpr float MOST = 1e30f;
+    const Node lights = lights_of(file, reference);
+    const uint32_t index = reference.integer(0, UINT32_MAX);
+    if (index >= lights.size()) reference.fail(concat("there is no light ", index, " among ", lights.size()));
+    const Node light = lights[index];
+    const vec3 color = color_of(file, light, "color", 1.0f, vec3(1.0f));
+    const double intensity = double(number_of(file, light, "intensity", 0.0f, MOST, 1.0f));
+    if (const auto range = light.find("range"))
+        file.warn(*range, "the range of a light is ignored: its intensity falls with the squared distance");
+    const dvec3 position(world[3]);
+    const dvec3 axis = dvec3(-world[2]);
+    const dvec3 direction = length(axis) > 0.0 ? normalize(axis) : dvec3(0, 0, -1);
+    const vec3 power(intensity_factor(units) * intensity * dvec3(color));
+
+    const Node type_node = light.require("type");
+    const std::string& type = type_node.string();
+    Light result{.name = name_of(light, concat("light ", index)), .model = PointLight{position, power}};
+    if (type == "directional") {
+        result.model =
+            DirectionalLight{direction, vec3(illuminance_factor(units) * intensity * dvec3(color))};
+    } else if (type == "spot") {
+        SpotLight spot = read_cone(file, light);
+        spot.position = position;
+        spot.direction = direction;
+        spot.intensity = power;
+        result.model = spot;
+    } else if (type != "point") {
+        type_node.fail_expected("\"point\", \"spot\" or \"directional\"");
+    }
+    return result;
+}
+
+Environment studio() {
+    constexpr uvec2 SIZE{128, 64};
+    struct Box {
+        dvec3 towards;    // Its middle.
+        double half;      // Cosine of the angle to its edge.
+        double radiance;  // [W/(m^2 sr)]
+    };
+    const Box boxes[] = {{normalize(dvec3(-0.6, 0.9, 0.6)), 0.85, 6.0},
+                         {normalize(dvec3(1.0, 0.35, 0.5)), 0.9, 2.0},
+                         {normalize(dvec3(0.2, 0.6, -1.0)), 0.93, 3.0}};
+    constexpr double SOFTNESS = 0.03;  // Of edges, in cosines.
+    Environment environment{.size = SIZE, .radiance = {}, .visible = false};
+    for (uint32_t y = 0; y < SIZE.y; ++y) {
+        const double theta = (y + 0.5) / SIZE.y * double(PI);  // From +Y.
+        for (uint32_t x = 0; x < SIZE.x; ++x) {
+            const double phi = ((x + 0.5) / SIZE.x - 0.5) * 2.0 * double(PI);  // From -Z to +X.
+            const dvec3 w(std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi));
+            double radiance =
+                w.y < 0.0 ? 0.35 + 0.15 * -w.y : 0.35 + 0.35 * w.y;  // Floor; walls and ceiling.
+            for (const Box& box : boxes)
+                radiance += box.radiance *
+                            glm::smoothstep(box.half - SOFTNESS, box.half + SOFTNESS, dot(w, box.towards));
+            environment.radiance.emplace_back(float(radiance));
+        }
+    }
+    return environment;
+}
+
+}  // namespace candela::gltf

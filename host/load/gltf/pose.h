@@ -1,0 +1,38 @@
+// The nodes of a glTF file at one moment: their transforms, and the weights of their morph targets.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "base/math.h"
+#include "load/gltf/gltf_file.h"
+
+namespace candela::gltf {
+
+// Position, rotation and size, which may be animated.
+struct Trs {
+    glm::dvec3 translation{0};
+    glm::dquat rotation{1, 0, 0, 0};
+    glm::dvec3 scale{1};
+};
+
+struct PosedNode {
+    Trs trs{};
+    std::optional<glm::dmat4> matrix{};  // In place of trs.
+    std::vector<double> weights{};       // Of morph targets; empty: those of the mesh.
+    std::vector<uint32_t> children{};
+    std::optional<uint32_t> parent{};
+    bool is_visible = true;  // KHR_node_visibility.
+    glm::dmat4 world{1.0};   // From the node's space to the scene's.
+};
+
+// The nodes as they stand in the file. Throws Error for a node with two parents or within itself.
+std::vector<PosedNode> read_nodes(File& file);
+
+// Computes PosedNode::world of all nodes.
+void place_nodes(std::vector<PosedNode>& nodes);
+
+}  // namespace candela::gltf

@@ -1,0 +1,292 @@
+// Ref: Khronos, "glTF 2.0 Specification", sections 3.7.2 and 3.7.3.
+#include "load/gltf/primitive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/text.h"
+#include "load/gltf/accessor.h"
+#include "scene/mesh.h"
+#include "scene/texture.h"
+
+namespace candela::gltf {
+namespace {
+
+enum Mode : uint32_t { TRIANGLES = 4, TRIANGLE_STRIP = 5, TRIANGLE_FAN = 6 };
+
+// The indices of all corners, or 0, 1, 2 ... if the primitive has none. Each is below `vertices`.
+std::vector<uint32_t> read_corners(File& file, const Node& primitive, uint32_t vertices) {
+    const auto reference = primitive.find("indices");
+    if (!reference) {
+        std::vector<uint32_t> corners(vertices);
+        for (uint32_t i = 0; i < vertices; ++i)
+            corners[i] = i;
+        return corners;
+    }
+    const Accessor accessor(file, *reference, {"SCALAR"});
+    std::vector<uint32_t> corners = accessor.integers();
+    const auto wrong = std::ranges::find_if(corners, [&](uint32_t i) { return i >= vertices; });
+    if (wrong != corners.end()) {
+        accessor.node().fail(concat("index ", wrong - corners.begin(), " is ", *wrong,
+                                    ", but the primitive's vertices are 0 to ", vertices - 1,
+                                    "; is the file damaged?"));
+    }
+    return corners;
+}
+
+std::vector<uvec3> triangles_of(const std::vector<uint32_t>& corners, uint32_t mode) {
+    std::vector<uvec3> triangles;
+    if (corners.size() < 3) return triangles;
+    if (mode == TRIANGLES) {
+        triangles.reserve(corners.size() / 3);
+        for (size_t i = 0; i + 3 <= corners.size(); i += 3)
+            triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
+        return triangles;
+    }
+    triangles.reserve(corners.size() - 2);
+    for (size_t i = 0; i + 3 <= corners.size(); ++i) {
+        if (mode == TRIANGLE_FAN) {
+            triangles.emplace_back(corners[i + 1], corners[i + 2], corners[0]);
+        } else {
+            triangles.emplace_back(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
+        }
+    }
+    return triangles;
+}
+
+// Renumbers the vertices of triangles to those that are used; returns the old number of each.
+std::vector<uint32_t> keep_used(std::vector<uvec3>& triangles, uint32_t vertices) {
+    constexpr uint32_t UNUSED = UINT32_MAX;
+    std::vector<uint32_t> number(vertices, UNUSED);
+    for (const uvec3 t : triangles) {
+        for (glm::length_t i = 0; i < 3; ++i)
+            number[t[i]] = 0;
+    }
+    std::vector<uint32_t> rows;
+    for (uint32_t i = 0; i < vertices; ++i) {
+        if (number[i] == UNUSED) continue;
+        number[i] = uint32_t(rows.size());
+        rows.push_back(i);
+    }
+    for (uvec3& t : triangles)
+        t = {number[t.x], number[t.y], number[t.z]};
+    return rows;
+}
+
+// Reads one primitive, attribute by attribute, for the vertices that its triangles use.
+class PrimitiveReader {
+  public:
+    PrimitiveReader(File& file, const Node& primitive, const Deformation& deformation)
+        : file_(file), attributes_(primitive.require("attributes")), deformation_(deformation) {
+        const auto targets = primitive.find("targets");
+        if (!targets || deformation.weights.empty()) return;
+        const std::vector<Node> all = targets->elements();
+        if (deformation.weights.size() != all.size()) {
+            file.warn(*targets, concat("there are ", deformation.weights.size(), " weights for ", all.size(),
+                                       " morph targets; those that are missing count as 0"));
+        }
+        for (size_t i = 0; i < std::min(all.size(), deformation.weights.size()); ++i) {
+            if (deformation.weights[i] != 0.0) targets_.emplace_back(all[i], deformation.weights[i]);
+        }
+    }
+
+    TriangleMesh read(std::vector<uvec3> triangles, uint32_t vertices) {
+        vertices_ = vertices;
+        rows_ = keep_used(triangles, vertices);
+        TriangleMesh mesh;
+        mesh.triangles = std::move(triangles);
+        std::vector<glm::dvec3> positions = vectors("POSITION", {"VEC3"});
+        check_finite("POSITION", positions);
+        std::vector<glm::dvec3> normals = vectors("NORMAL", {"VEC3"});
+        if (!normals.empty()) read_tangents(mesh);
+        if (!deformation_.joints.empty()) skin(positions, normals, mesh.tangents);
+        check_finite("POSITION", positions);
+        for (const glm::dvec3 n : normals) {
+            const double size = length(n);
+            // Of length zero: none, and that of the triangle takes its place.
+            mesh.normals.emplace_back(size > 0.0 && std::isfinite(size) ? vec3(n / size) : vec3(0.0f));
+        }
+        set_positions(mesh, std::move(positions));
+        mesh.uv0 = read_uvs("TEXCOORD_0");
+        mesh.uv1 = read_uvs("TEXCOORD_1");
+        read_colors(mesh);
+        return mesh;
+    }
+
+  private:
+    // The floats of an attribute, with its morph targets; none if the primitive lacks it.
+    std::vector<float> floats(const char* name, std::initializer_list<std::string_view> types,
+                              uint32_t& width) {
+        const auto reference = attributes_.find(name);
+        if (!reference) return {};
+        const Accessor accessor(file_, *reference, types);
+        check_count(*reference, accessor);
+        width = accessor.width();
+        std::vector<float> values = accessor.floats(rows_);
+        for (const auto& [target, weight] : targets_) {
+            const auto moved = target.find(name);
+            if (!moved) continue;
+            const Accessor offsets(file_, *moved, {"VEC2", "VEC3", "VEC4"});
+            check_count(*moved, offsets);
+            const std::vector<float> change = offsets.floats(rows_);
+            // Those of tangents have no w.
+            const uint32_t shared = std::min(width, offsets.width());
+            for (size_t i = 0; i < rows_.size(); ++i) {
+                for (uint32_t c = 0; c < shared; ++c)
+                    values[i * width + c] += float(weight) * change[i * offsets.width() + c];
+            }
+        }
+        return values;
+    }
+
+    void check_count(const Node& reference, const Accessor& accessor) const {
+        if (accessor.count() == vertices_) return;
+        reference.fail(concat("the attribute has ", accessor.count(), " elements for ", vertices_,
+                              " vertices; is the file damaged?"));
+    }
+
+    std::vector<glm::dvec3> vectors(const char* name, std::initializer_list<std::string_view> types) {
+        uint32_t width = 0;
+        const std::vector<float> values = floats(name, types, width);
+        std::vector<glm::dvec3> result;
+        result.reserve(values.size() / 3);
+        for (size_t i = 0; i + 3 <= values.size(); i += 3)
+            result.emplace_back(values[i], values[i + 1], values[i + 2]);
+        return result;
+    }
+
+    void check_finite(const char* name, const std::vector<glm::dvec3>& values) const {
+        for (size_t i = 0; i < values.size(); ++i) {
+            if (is_finite(vec3(values[i]))) continue;
+            attributes_.require(name).fail(
+                concat("the coordinates of vertex ", rows_[i], " are not finite; export the mesh again"));
+        }
+    }
+
+    void read_tangents(TriangleMesh& mesh) {
+        uint32_t width = 0;
+        const std::vector<float> values = floats("TANGENT", {"VEC4"}, width);
+        for (size_t i = 0; i + 4 <= values.size(); i += 4) {
+            const vec3 direction(values[i], values[i + 1], values[i + 2]);
+            const float size = length(direction);
+            if (!(size > 0.0f) || !std::isfinite(size)) {
+                file_.warn(attributes_.require("TANGENT"),
+                           "some tangents have no direction; all are computed from the texture coordinates");
+                mesh.tangents.clear();
+                return;
+            }
+            mesh.tangents.emplace_back(direction / size, values[i + 3] < 0.0f ? -1.0f : 1.0f);
+        }
+    }
+
+    std::vector<vec2> read_uvs(const char* name) {
+        uint32_t width = 0;
+        const std::vector<float> values = floats(name, {"VEC2"}, width);
+        std::vector<vec2> uvs;
+        uvs.reserve(values.size() / 2);
+        const auto limited = [](float v) {
+            return std::isfinite(v) ? std::clamp(v, -float(MAX_UV), float(MAX_UV)) : 0.0f;
+        };
+        for (size_t i = 0; i + 2 <= values.size(); i += 2)
+            uvs.emplace_back(limited(values[i]), 1.0f - limited(values[i + 1]));
+        return uvs;
+    }
+
+    void read_colors(TriangleMesh& mesh) {
+        uint32_t width = 0;
+        const std::vector<float> values = floats("COLOR_0", {"VEC3", "VEC4"}, width);
+        const auto limited = [](float v) { return v > 0.0f ? std::min(v, 1.0f) : 0.0f; };
+        for (size_t i = 0; width > 0 && i + width <= values.size(); i += width) {
+            mesh.colors.emplace_back(limited(values[i]), limited(values[i + 1]), limited(values[i + 2]),
+                                     width == 4 ? limited(values[i + 3]) : 1.0f);
+        }
+    }
+
+    // For each vertex, the mean of its joints' matrices.
+    std::vector<glm::dmat4> blended_joints() {
+        std::vector<glm::dmat4> blended(rows_.size(), glm::dmat4(0.0));
+        std::vector<double> sums(rows_.size(), 0.0);
+        for (int set = 0;; ++set) {
+            const auto joints = attributes_.find("JOINTS_" + std::to_string(set));
+            const auto weights = attributes_.find("WEIGHTS_" + std::to_string(set));
+            if (!joints || !weights) break;
+            const Accessor joint_accessor(file_, *joints, {"VEC4"});
+            const Accessor weight_accessor(file_, *weights, {"VEC4"});
+            check_count(*joints, joint_accessor);
+            check_count(*weights, weight_accessor);
+            const std::vector<uint32_t> joint = joint_accessor.integers();
+            const std::vector<float> weight = weight_accessor.floats();
+            for (size_t i = 0; i < rows_.size(); ++i) {
+                for (size_t k = 4 * size_t(rows_[i]); k < 4 * (size_t(rows_[i]) + 1); ++k) {
+                    if (!(weight[k] > 0.0f) || !std::isfinite(weight[k])) continue;
+                    if (joint[k] >= deformation_.joints.size()) {
+                        joints->fail(concat("vertex ", rows_[i], " follows joint ", joint[k],
+                                            " of a skin that has ", deformation_.joints.size()));
+                    }
+                    blended[i] += double(weight[k]) * deformation_.joints[joint[k]];
+                    sums[i] += double(weight[k]);
+                }
+            }
+        }
+        for (size_t i = 0; i < rows_.size(); ++i)
+            blended[i] = sums[i] > 0.0 ? blended[i] / sums[i] : deformation_.joints[0];
+        return blended;
+    }
+
+    void skin(std::vector<glm::dvec3>& positions, std::vector<glm::dvec3>& normals,
+              std::vector<vec4>& tangents) {
+        const std::vector<glm::dmat4> matrices = blended_joints();
+        for (size_t i = 0; i < positions.size(); ++i) {
+            positions[i] = glm::dvec3(matrices[i] * glm::dvec4(positions[i], 1.0));
+            const glm::dmat3 linear(matrices[i]);
+            if (!normals.empty()) {
+                // The inverse transpose, up to a factor.
+                const glm::dmat3 cofactor(cross(linear[1], linear[2]), cross(linear[2], linear[0]),
+                                          cross(linear[0], linear[1]));
+                normals[i] = cofactor * normals[i] * (determinant(linear) < 0.0 ? -1.0 : 1.0);
+            }
+            if (!tangents.empty()) {
+                const glm::dvec3 t = linear * glm::dvec3(tangents[i]);
+                if (length(t) > 0.0) tangents[i] = vec4(vec3(normalize(t)), tangents[i].w);
+            }
+        }
+    }
+
+    File& file_;
+    Node attributes_;
+    Deformation deformation_;
+    std::vector<std::pair<Node, double>> targets_;  // With weights other than 0.
+    uint32_t vertices_ = 0;
+    std::vector<uint32_t> rows_;  // The vertices that triangles use.
+};
+
+}  // namespace
+
+std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive,
+                                           const Deformation& deformation) {
+    constexpr uint32_t LAST_MODE = 6;
+    const auto mode_node = primitive.find("mode");
+    const uint32_t mode = mode_node ? mode_node->integer(0, LAST_MODE) : TRIANGLES;
+    if (mode < TRIANGLES) {
+        file.warn(primitive, "left out points or lines, which have no surface");
+        return std::nullopt;
+    }
+    const auto position = primitive.require("attributes").find("POSITION");
+    if (!position) {
+        file.warn(primitive, "left out a primitive without positions");
+        return std::nullopt;
+    }
+    const uint32_t vertices = Accessor(file, *position, {"VEC3"}).count();
+    std::vector<uvec3> triangles = triangles_of(read_corners(file, primitive, vertices), mode);
+    TriangleMesh mesh = PrimitiveReader(file, primitive, deformation).read(std::move(triangles), vertices);
+    drop_flat_triangles(mesh);
+    if (mesh.triangles.empty()) {
+        file.warn(primitive, "left out a primitive without area");
+        return std::nullopt;
+    }
+    return mesh;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,241 @@
+// Ref: Khronos, "glTF 2.0 Specification", sections 3.5, 3.7 and 3.10.
+#include "load/gltf/scene_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/text.h"
+#include "load/gltf/animation.h"
+#include "load/gltf/light.h"
+#include "load/gltf/material.h"
+#include "load/gltf/names.h"
+#include "load/gltf/primitive.h"
+#include "load/gltf/skin.h"
+#include "load/gltf/values.h"
+#include "load/gltf/variants.h"
+#include "scene/material_textures.h"
+#include "scene/materials.h"
+
+namespace candela::gltf {
+namespace {
+
+// Leaves the attributes that a material looks up, and adds those that are missing.
+void fit_attributes(File& file, const Node& primitive, const Material& material, TriangleMesh& mesh) {
+    uint32_t sets = 0;
+    for_each_texture(material, [&](const Texture& texture) { sets |= 1u << texture.uv_set; });
+    if (needs_tangents(material)) {
+        sets |= 1u << tangent_uv_set(material);
+    } else {
+        mesh.tangents.clear();
+    }
+    for (const auto& [set, uvs] : {std::pair(0u, &mesh.uv0), std::pair(1u, &mesh.uv1)}) {
+        if ((sets >> set & 1u) == 0) {
+            uvs->clear();
+        } else if (uvs->empty()) {
+            file.warn(primitive, concat("the material has textures, but the primitive has no TEXCOORD_", set,
+                                        ": they show their upper left corner everywhere"));
+            uvs->assign(mesh.positions.size(), vec2(0.0f, 1.0f));
+        }
+    }
+    const bool opaque = !material.opacity.value.texture && material.opacity.value.factor == 1.0f;
+    for (vec4& color : mesh.colors) {
+        if (opaque && !material.opacity.cutoff) color.w = 1.0f;
+    }
+}
+
+}  // namespace
+
+SceneReader::SceneReader(File& file, Scene& scene, const GltfOptions& options)
+    : file_(file),
+      scene_(scene),
+      options_(options),
+      builder_(scene),
+      units_(units_of(file, options)),
+      known_materials_(scene.materials.size()) {
+    if (options.variant) variant_ = find_variant(file, *options.variant);
+}
+
+void SceneReader::read() {
+    nodes_ = read_nodes(file_);
+    if (options_.time) animate(file_, options_.animation, *options_.time, nodes_);
+    place_nodes(nodes_);
+
+    std::vector<uint32_t> waiting = root_nodes();
+    std::ranges::reverse(waiting);
+    std::vector<bool> seen(nodes_.size(), false);
+    while (!waiting.empty()) {
+        const uint32_t i = waiting.back();
+        waiting.pop_back();
+        if (!nodes_[i].is_visible) continue;
+        if (seen[i]) file_.element("nodes", i).fail("the node is within itself, or twice in the scene");
+        seen[i] = true;
+        read_node(i);
+        const std::vector<uint32_t>& children = nodes_[i].children;
+        waiting.insert(waiting.end(), children.rbegin(), children.rend());
+    }
+}
+
+// Those of the chosen scene; without scenes, all nodes that have no parent.
+std::vector<uint32_t> SceneReader::root_nodes() const {
+    std::vector<uint32_t> roots;
+    const Node root = file_.root();
+    std::optional<size_t> scene;
+    if (options_.scene) {
+        scene = find_by_name(file_, root.find("scenes"), *options_.scene, "scenes", "--scene");
+    } else if (const auto chosen = root.find("scene")) {
+        scene = file_.index("scenes", *chosen);
+    } else if (file_.count("scenes") > 0) {
+        scene = 0;
+    }
+    if (scene) {
+        const auto nodes = file_.element("scenes", *scene).find("nodes");
+        if (!nodes) return roots;
+        for (const Node& reference : nodes->elements()) {
+            const uint32_t node = file_.index("nodes", reference);
+            if (nodes_[node].parent)
+                reference.fail(concat("node ", node, " is a child of node ", *nodes_[node].parent,
+                                      ", and so cannot be a root of the scene"));
+            roots.push_back(node);
+        }
+        return roots;
+    }
+    for (uint32_t i = 0; i < nodes_.size(); ++i) {
+        if (!nodes_[i].parent) roots.push_back(i);
+    }
+    return roots;
+}
+
+void SceneReader::read_node(uint32_t index) {
+    const Node node = file_.element("nodes", index);
+    const PosedNode& posed = nodes_[index];
+    if (const auto mesh = node.find("mesh")) read_mesh(node, posed);
+    if (const auto camera = node.find("camera")) read_camera(node, file_.resolve("cameras", *camera), posed);
+    if (const auto light = extension_of(node, "KHR_lights_punctual")) {
+        if (const auto reference = light->find("light"))
+            scene_.lights.push_back(read_light(file_, *reference, posed.world, units_));
+    }
+}
+
+void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
+    const Node reference = node.require("mesh");
+    const uint32_t index = file_.index("meshes", reference);
+    const Node mesh = file_.element("meshes", index);
+    const Node primitives = mesh.require("primitives");
+
+    std::vector<double> weights = posed.weights;
+    if (const auto own = mesh.find("weights"); own && weights.empty()) weights = own->numbers(own->size());
+    const auto skin = node.find("skin");
+    Transform transform;
+    if (!skin && !transform.append(posed.world)) {
+        file_.warn(node, "left out a mesh that its transform flattens");
+        return;
+    }
+    if (skin) {
+        const std::vector<glm::dmat4> joints = joint_matrices(file_, file_.resolve("skins", *skin), nodes_);
+        for (const Node& primitive : primitives.elements())
+            add_primitive(primitive, {weights, joints}, transform);
+        return;
+    }
+    const auto [known, is_new] = shapes_.try_emplace({index, weights});
+    if (is_new) {
+        for (const Node& primitive : primitives.elements())
+            known->second.push_back(add_primitive(primitive, {.weights = weights}, transform));
+        return;
+    }
+    for (const std::optional<size_t>& shape : known->second) {
+        if (shape) builder_.add_instance(node.place(), *shape, transform);
+    }
+}
+
+std::optional<size_t> SceneReader::add_primitive(const Node& primitive, const Deformation& deformation,
+                                                 const Transform& transform) {
+    std::optional<TriangleMesh> mesh = read_primitive(file_, primitive, deformation);
+    if (!mesh) return std::nullopt;
+    const uint32_t material = material_for({material_of(primitive), !mesh->colors.empty()});
+    fit_attributes(file_, primitive, scene_.materials[material], *mesh);
+    builder_.add_mesh(primitive.place(), {material, material_emission(scene_.materials[material])}, transform,
+                      std::move(*mesh));
+    return scene_.shapes.size() - 1;
+}
+
+std::optional<uint32_t> SceneReader::material_of(const Node& primitive) const {
+    if (variant_) {
+        if (const auto material = variant_material(primitive, *variant_))
+            return file_.index("materials", *material);
+    }
+    const auto material = primitive.find("material");
+    if (!material) return std::nullopt;
+    return file_.index("materials", *material);
+}
+
+uint32_t SceneReader::material_for(MaterialUse use) {
+    const auto [known, is_new] = materials_.try_emplace(use);
+    if (!is_new) return known->second;
+    const auto& [material, has_colors] = use;
+    if (!has_colors && material) return known->second = read_file_material(*material);
+    Material copy = material ? scene_.materials[material_for({material, false})] : default_material();
+    copy.vertex_colors = has_colors;
+    return known->second = builder_.add_material(std::move(copy));
+}
+
+uint32_t SceneReader::read_file_material(uint32_t index) {
+    const Node node = file_.element("materials", index);
+    const std::string name = name_of(node, concat("material ", index));
+    for (size_t i = 0; i < known_materials_; ++i) {
+        if (scene_.materials[i].name == name) return uint32_t(i);
+    }
+    Material material = read_material(file_, scene_, node);
+    material.name = name;
+    return builder_.add_material(std::move(material));
+}
+
+void SceneReader::read_camera(const Node& node, const Node& camera, const PosedNode& posed) {
+    constexpr uint32_t LINES = 720;
+    const Node type = camera.require("type");
+    Camera result;
+    double aspect = 0.0;  // 0: the file states none.
+    if (type.string() == "orthographic") {
+        const Node sizes = camera.require("orthographic");
+        const double half_width = std::abs(sizes.require("xmag").number());
+        const double half_height = std::abs(sizes.require("ymag").number());
+        if (half_width == 0.0 || half_height == 0.0)
+            sizes.fail("the picture has no area; xmag and ymag are not 0");
+        result.ortho_height = 2.0 * half_height;
+        aspect = half_width / half_height;
+    } else if (type.string() == "perspective") {
+        const Node view = camera.require("perspective");
+        const Node angle = view.require("yfov");
+        result.vertical_fov = float(angle.number());
+        if (!(result.vertical_fov > 0.0f && result.vertical_fov < PI))
+            angle.fail_expected("an angle between 0 and pi");
+        if (const auto ratio = view.find("aspectRatio")) aspect = ratio->positive();
+    } else {
+        type.fail_expected("\"perspective\" or \"orthographic\"");
+    }
+    if (aspect > 0.0) {
+        constexpr double MOST = 65536.0;  // Pixels along one side.
+        result.film_size = uvec2(uint32_t(std::clamp(std::round(aspect * LINES), 1.0, MOST)), LINES);
+    }
+    const dvec3 backwards(posed.world[2]);
+    const dvec3 up(posed.world[1]);
+    if (!(length(cross(backwards, up)) > 0.0)) {
+        file_.warn(node, "left out a camera that its transform flattens");
+        return;
+    }
+    result.name =
+        unique_camera_name(name_of(node, name_of(camera, concat("camera ", scene_.cameras.size()))));
+    result.position = dvec3(posed.world[3]);
+    result.look_at = result.position - normalize(backwards);
+    result.up = vec3(normalize(up));
+    scene_.cameras.push_back(result);
+}
+
+std::string SceneReader::unique_camera_name(const std::string& name) const {
+    std::string unique = name;
+    for (int i = 2; std::ranges::find(scene_.cameras, unique, &Camera::name) != scene_.cameras.end(); ++i)
+        unique = concat(name, " (", i, ')');
+    return unique;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,56 @@
+// From the nodes of a glTF file to shapes, cameras and lights.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "load/gltf/gltf.h"
+#include "load/gltf/gltf_file.h"
+#include "load/gltf/pose.h"
+#include "load/gltf/primitive.h"
+#include "scene/scene_builder.h"
+
+namespace candela::gltf {
+
+class SceneReader {
+  public:
+    // All must outlive the reader.
+    SceneReader(File& file, Scene& scene, const GltfOptions& options);
+
+    // Adds what the nodes of the chosen scene show, in the order of the file.
+    void read();
+
+  private:
+    // A material as it looks on meshes with or without colours of their own.
+    using MaterialUse = std::pair<std::optional<uint32_t>, bool>;
+
+    std::vector<uint32_t> root_nodes() const;
+    void read_node(uint32_t index);
+    void read_mesh(const Node& node, const PosedNode& posed);
+    // Adds a primitive; returns the index of its shape, or nothing if it shows nothing.
+    std::optional<size_t> add_primitive(const Node& primitive, const Deformation& deformation,
+                                        const Transform& transform);
+    // The material of a primitive, by its variant.
+    std::optional<uint32_t> material_of(const Node& primitive) const;
+    // Index into scene_.materials; reads the file's at its first use.
+    uint32_t material_for(MaterialUse use);
+    uint32_t read_file_material(uint32_t index);
+    void read_camera(const Node& node, const Node& camera, const PosedNode& posed);
+    std::string unique_camera_name(const std::string& name) const;
+
+    File& file_;
+    Scene& scene_;
+    const GltfOptions& options_;
+    SceneBuilder builder_;
+    LightUnits units_;
+    std::optional<uint32_t> variant_;
+    size_t known_materials_;  // Those of the scene before this file's.
+    std::vector<PosedNode> nodes_;
+    std::map<MaterialUse, uint32_t> materials_;  // Indices into scene_.materials.
+    // Shapes of meshes that stand still: by mesh and weights, the shape of each primitive.
+    std::map<std::pair<uint32_t, std::vector<double>>, std::vector<std::optional<size_t>>> shapes_;
+};
+
+}  // namespace candela::gltf

@@ -1,0 +1,117 @@
+// Ref: Khronos, "glTF 2.0 Specification", sections 3.8 and 3.9.7.
+#include "load/gltf/texture.h"
+
+#include <cmath>
+#include <string>
+
+#include "base/text.h"
+#include "load/gltf/uri.h"
+#include "load/gltf/values.h"
+#include "scene/images.h"
+
+namespace candela::gltf {
+namespace {
+
+// The numbers of OpenGL.
+constexpr uint32_t NEAREST = 9728;
+constexpr uint32_t CLAMP_TO_EDGE = 33071;
+constexpr uint32_t MIRRORED_REPEAT = 33648;
+constexpr uint32_t REPEAT = 10497;
+
+Wrap read_wrap_mode(const Node& sampler, std::string_view key) {
+    const auto node = sampler.find(key);
+    const uint32_t mode = node ? node->integer(0, UINT32_MAX) : REPEAT;
+    if (mode == CLAMP_TO_EDGE) return Wrap::clamp;
+    if (mode == MIRRORED_REPEAT) return Wrap::mirror;
+    if (mode != REPEAT) node->fail_expected("33071, 33648 or 10497");
+    return Wrap::repeat;
+}
+
+void read_texture_sampler(const Node& sampler, Texture& texture) {
+    const auto filter = sampler.find("magFilter");
+    if (filter && filter->integer(0, UINT32_MAX) == NEAREST) texture.filter = TextureFilter::nearest;
+    texture.wrap_u = read_wrap_mode(sampler, "wrapS");
+    texture.wrap_v = read_wrap_mode(sampler, "wrapT");
+}
+
+// The rows of KHR_texture_transform for coordinates with v upwards. The extension's v grows downwards:
+// u' = a u + b v + c, v' = d u + e v + f, where v and v' stand for 1 - v and 1 - v'.
+void read_transform_of_uvs(const Node& transform, Texture& texture) {
+    constexpr double MOST = 1e6;  // So that no coordinate leaves the range of floats.
+    dvec3 offset(0.0), scale(1.0);
+    const auto pair = [&](std::string_view key, dvec3& value) {
+        const auto node = transform.find(key);
+        if (!node) return;
+        const std::vector<double> numbers = node->numbers(2);
+        for (size_t i = 0; i < 2; ++i) {
+            if (std::abs(numbers[i]) > MOST) node->fail_expected("numbers from -1e6 to 1e6");
+            value[glm::length_t(i)] = numbers[i];
+        }
+    };
+    pair("offset", offset);
+    pair("scale", scale);
+    const auto rotation = transform.find("rotation");
+    const double angle = rotation ? rotation->number() : 0.0;
+    const double c = std::cos(angle), s = std::sin(angle);
+    const double a = c * scale.x, b = s * scale.y, d = -s * scale.x, e = c * scale.y;
+    texture.rows[0] = vec3(dvec3(a, -b, b + offset.x));
+    texture.rows[1] = vec3(dvec3(-d, e, 1.0 - e - offset.y));
+}
+
+// Where an image comes from: the index of the image; nothing if no image can be read.
+std::optional<Node> image_of(const Node& texture) {
+    if (const auto webp = extension_of(texture, "EXT_texture_webp")) {
+        if (const auto source = webp->find("source")) return source;
+    }
+    return texture.find("source");
+}
+
+}  // namespace
+
+uint32_t read_image(File& file, Scene& scene, const Node& reference) {
+    const uint32_t index = file.index("images", reference);
+    const Node image = file.element("images", index);
+    const auto uri = image.find("uri");
+    const auto view = image.find("bufferView");
+    if (uri.has_value() == view.has_value())
+        image.fail("an image has either a uri or a bufferView; export the file again");
+    const std::string name = concat(file.path().string(), "#/images/", index);
+    const auto add = [&] {
+        if (view) {
+            const std::span<const std::byte> bytes = file.view_bytes(file.resolve("bufferViews", *view));
+            const auto* begin = reinterpret_cast<const char*>(bytes.data());
+            return add_image_bytes(scene, name, {begin, bytes.size()}, image.place());
+        }
+        if (const auto data = inline_data(*uri)) return add_image_bytes(scene, name, *data, uri->place());
+        return add_image(scene, file_of(*uri, file.folder()), uri->place());
+    };
+    const uint32_t added = add();
+    scene.images[added].has_gamma = false;  // Section 3.8.3: colour profiles do not count.
+    return added;
+}
+
+std::optional<Texture> read_texture(File& file, Scene& scene, const Node& info, TextureEncoding encoding,
+                                    uint32_t channel) {
+    const Node element = file.resolve("textures", info.require("index"));
+    const auto source = image_of(element);
+    if (!source) {
+        file.warn(element, "the texture has no image in a format that is read; it counts as white");
+        return std::nullopt;
+    }
+    Texture texture{.image = read_image(file, scene, *source), .encoding = encoding, .channel = channel};
+    if (const auto sampler = element.find("sampler"))
+        read_texture_sampler(file.resolve("samplers", *sampler), texture);
+    auto set = info.find("texCoord");
+    if (const auto transform = extension_of(info, "KHR_texture_transform")) {
+        read_transform_of_uvs(*transform, texture);
+        if (const auto other = transform->find("texCoord")) set = other;
+    }
+    texture.uv_set = set ? set->integer(0, UINT32_MAX) : 0;
+    if (texture.uv_set > 1) {
+        file.warn(*set, "only TEXCOORD_0 and TEXCOORD_1 are read; TEXCOORD_0 takes its place");
+        texture.uv_set = 0;
+    }
+    return texture;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,105 @@
+// Ref: RFC 3986 (URI), RFC 2397 (data), RFC 4648 (base64).
+#include "load/gltf/uri.h"
+
+#include <array>
+#include <cstdint>
+
+#include "load/quote.h"
+
+namespace candela::gltf {
+namespace {
+
+constexpr uint8_t NO_DIGIT = 255;
+
+// The value of each character as a digit of base64.
+constexpr std::array<uint8_t, 256> BASE64_DIGITS = [] {
+    std::array<uint8_t, 256> digits{};
+    digits.fill(NO_DIGIT);
+    constexpr std::string_view ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < ALPHABET.size(); ++i)
+        digits[uint8_t(ALPHABET[i])] = uint8_t(i);
+    return digits;
+}();
+
+// Nothing for a text that is no base64. The padding (=) may be missing.
+std::optional<std::string> decode_base64(std::string_view text) {
+    for (int i = 0; i < 2 && text.ends_with('='); ++i)
+        text.remove_suffix(1);
+    if (text.size() % 4 == 1) return std::nullopt;
+    std::string bytes;
+    bytes.reserve(text.size() / 4 * 3 + 2);
+    uint32_t bits = 0;
+    int held = 0;  // Bits that are not written yet.
+    for (const char c : text) {
+        const uint8_t digit = BASE64_DIGITS[uint8_t(c)];
+        if (digit == NO_DIGIT) return std::nullopt;
+        bits = bits << 6 | digit;
+        held += 6;
+        if (held < 8) continue;
+        held -= 8;
+        bytes += char(bits >> held & 0xFFu);
+    }
+    return bytes;
+}
+
+std::optional<uint32_t> hex_digit(char c) {
+    if (c >= '0' && c <= '9') return uint32_t(c - '0');
+    if (c >= 'a' && c <= 'f') return uint32_t(c - 'a' + 10);
+    if (c >= 'A' && c <= 'F') return uint32_t(c - 'A' + 10);
+    return std::nullopt;
+}
+
+std::string decode_percents(const Node& uri) {
+    const std::string& text = uri.string();
+    std::string decoded;
+    for (size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '%') {
+            decoded += text[i];
+            continue;
+        }
+        const auto high = i + 2 < text.size() ? hex_digit(text[i + 1]) : std::nullopt;
+        const auto low = high ? hex_digit(text[i + 2]) : std::nullopt;
+        if (!low) uri.fail("a % in a URI is followed by two hexadecimal digits; write % itself as %25");
+        decoded += char(16 * *high + *low);
+        i += 2;
+    }
+    return decoded;
+}
+
+// Whether a URI begins with a scheme, such as `https:`.
+bool has_scheme(std::string_view uri) {
+    const size_t end =
+        uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
+    return end != 0 && end != std::string_view::npos && uri[end] == ':';
+}
+
+}  // namespace
+
+std::optional<std::string> inline_data(const Node& uri) {
+    const std::string_view text = uri.string();
+    if (!text.starts_with("data:")) return std::nullopt;
+    const size_t comma = text.find(',');
+    if (comma == std::string_view::npos || !text.substr(0, comma).ends_with(";base64"))
+        uri.fail("data in a URI are read as base64, data:TYPE;base64,DATA; encode them so");
+    std::optional<std::string> bytes = decode_base64(text.substr(comma + 1));
+    if (!bytes) uri.fail("the data of the URI are no base64; is the file cut off?");
+    return bytes;
+}
+
+std::filesystem::path file_of(const Node& uri, const std::filesystem::path& folder) {
+    const std::string& text = uri.file_name();
+    if (text.empty()) uri.fail("the URI is empty; name a file");
+    if (has_scheme(text) || text.starts_with('/') || text.starts_with('\\')) {
+        uri.fail("only files that are named relative to this one are read, not " + quote(text.substr(0, 60)) +
+                 "; put the file beside this one");
+    }
+    const std::string decoded = decode_percents(uri);
+    if (decoded.find('\0') != std::string::npos)
+        uri.fail("a file name cannot hold the character U+0000; remove it");
+    std::error_code ignored;
+    const bool as_written = !std::filesystem::exists(folder / decoded, ignored) &&
+                            std::filesystem::exists(folder / text, ignored);
+    return folder / (as_written ? text : decoded);
+}
+
+}  // namespace candela::gltf

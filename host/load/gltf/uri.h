@@ -1,0 +1,22 @@
+// URIs of glTF files: the names of other files, or data in line.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "load/node.h"
+
+namespace candela::gltf {
+
+// What a `data:` URI holds, decoded from base64; nothing if the URI is of another kind. Throws Error at the
+// place of `uri` if it is no base64.
+std::optional<std::string> inline_data(const Node& uri);
+
+// The file that a relative URI names, in `folder`: percent-encoded characters are decoded, unless there is a
+// file of the undecoded name alone. Throws Error at the place of `uri` for absolute paths, for URIs with a
+// scheme (`https:`), and for bad encoding.
+std::filesystem::path file_of(const Node& uri, const std::filesystem::path& folder);
+
+}  // namespace candela::gltf

@@ -1,0 +1,41 @@
+// See values.h.
+#include "load/gltf/values.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+
+namespace candela::gltf {
+namespace {
+
+float limited(File& file, const Node& node, double value, float lo, float hi) {
+    if (float(value) >= lo && float(value) <= hi) return float(value);
+    const double nearest = std::clamp(value, double(lo), double(hi));
+    file.warn(node, concat(number_text(value, 9), " is not between ", number_text(double(lo), 6), " and ",
+                           number_text(double(hi), 6), "; it counts as ", number_text(nearest, 6)));
+    return float(nearest);
+}
+
+}  // namespace
+
+float number_of(File& file, const Node& object, std::string_view key, float lo, float hi, float otherwise) {
+    const auto node = object.find(key);
+    return node ? limited(file, *node, node->number(), lo, hi) : otherwise;
+}
+
+vec3 color_of(File& file, const Node& object, std::string_view key, float hi, vec3 otherwise) {
+    const auto node = object.find(key);
+    if (!node) return otherwise;
+    const dvec3 color = node->vector();
+    vec3 result;
+    for (glm::length_t i = 0; i < 3; ++i)
+        result[i] = limited(file, *node, color[i], 0.0f, hi);
+    return result;
+}
+
+std::optional<Node> extension_of(const Node& element, std::string_view name) {
+    const auto extensions = element.find("extensions");
+    return extensions ? extensions->find(name) : std::nullopt;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,27 @@
+// See variants.h.
+#include "load/gltf/variants.h"
+
+#include "load/gltf/names.h"
+#include "load/gltf/values.h"
+
+namespace candela::gltf {
+
+uint32_t find_variant(const File& file, const std::string& name) {
+    const auto extension = extension_of(file.root(), "KHR_materials_variants");
+    const auto variants = extension ? extension->find("variants") : std::nullopt;
+    return uint32_t(find_by_name(file, variants, name, "variants", "--variant"));
+}
+
+std::optional<Node> variant_material(const Node& primitive, uint32_t variant) {
+    const auto extension = extension_of(primitive, "KHR_materials_variants");
+    const auto mappings = extension ? extension->find("mappings") : std::nullopt;
+    if (!mappings) return std::nullopt;
+    for (const Node& mapping : mappings->elements()) {
+        for (const Node& number : mapping.require("variants").elements()) {
+            if (number.integer(0, UINT32_MAX) == variant) return mapping.require("material");
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace candela::gltf
