@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -87,6 +88,8 @@ Json describe(const InfoOptions& options, const Scene& scene, const GpuScene& gp
             {"materials", scene.materials.size()},
             {"images", images_of(scene)},
             {"cameras", cameras},
+            {"attributes",
+             Json(std::map<std::string, std::string>(scene.attributes.begin(), scene.attributes.end()))},
             {"bounds", to_json(bounds(scene))},
             {"bvh_nodes", gpu.arrays[ARRAY_NODES].size() / BVH_NODE_WORDS},
             {"bvh_depth", gpu.bvh_depth},
@@ -135,6 +138,8 @@ void print(const Json& info) {
     if (!info["images"].empty())
         row("images", std::to_string(info["images"].size()) + ", " + bytes("texels"));
     row("cameras", join(info["cameras"]));
+    for (const auto& [name, text] : info["attributes"].items())
+        row((name + ' ').c_str(), text.get<std::string>());
     row("bounds", bounds_text(info["bounds"]));
     row("BVH", info["bvh_nodes"].dump() + " nodes, depth " + info["bvh_depth"].dump() + ", SAH cost " +
                    fixed(info["bvh_sah_cost"].get<double>(), 2) + ", built in " +

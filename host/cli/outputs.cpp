@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -109,6 +110,8 @@ Json make_report(const RenderRecord& record) {
     const double samples = double(record.samples);
     Json report{{"version", record.maker.version},
                 {"scene", record.scene_file},
+                {"scene_attributes", std::map<std::string, std::string>(record.scene_attributes.begin(),
+                                                                        record.scene_attributes.end())},
                 {"device", record.maker.device},
                 {"driver", record.maker.driver},
                 {"width", settings.size.x},
@@ -185,6 +188,8 @@ void add_attributes(Image& image, const RenderRecord& record) {
     if (record.adaptive) image.attributes[ADAPTIVE_ATTRIBUTE] = "yes";
     set_maker(image, record.maker);
     set_identity(image, record.identity);
+    for (const auto& [name, text] : record.scene_attributes)
+        image.attributes[name] = text;
     image.attributes["candela.commandLine"] = record.command_line;
 }
 

@@ -18,6 +18,7 @@ namespace candela {
 struct RenderRecord {
     std::string command_line;
     std::string scene_file;
+    std::vector<std::pair<std::string, std::string>> scene_attributes{};  // As Scene::attributes.
     Maker maker{};
     Identity identity{};
     bool adaptive = false;

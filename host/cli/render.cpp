@@ -276,6 +276,7 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
         print_warning(warning);
     RenderRecord record{.command_line = command_line,
                         .scene_file = options.scene_file,
+                        .scene_attributes = scene.attributes,
                         .identity = make_identity(gpu_scene, job.camera, job.settings),
                         .adaptive = job.adaptive,
                         .camera = job.camera,

@@ -262,6 +262,21 @@ std::string place_of(const Document& document, const Value& value) {
     return pointer;
 }
 
+std::string to_text(const Value& value) {
+    std::string text;
+    if (const auto* array = std::get_if<Array>(&value.data)) {
+        for (const Value& element : *array)
+            text += (text.empty() ? "" : ",") + to_text(element);
+        return '[' + text + ']';
+    }
+    if (const auto* object = std::get_if<Object>(&value.data)) {
+        for (const Member& member : *object)
+            text += (text.empty() ? "" : ",") + quote(member.key) + ':' + to_text(member.value);
+        return '{' + text + '}';
+    }
+    return describe(value);
+}
+
 std::string describe(const Value& value) {
     struct Describer {
         std::string operator()(std::nullptr_t) const { return "null"; }

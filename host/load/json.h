@@ -52,6 +52,9 @@ Value parse(std::string_view text, const std::string& file);
 // Throws Error with the message `file:line:column: message`.
 [[noreturn]] void fail(const std::string& file, Place place, const std::string& message);
 
+// A value as compact JSON.
+std::string to_text(const Value& value);
+
 // A value in a few words, for messages: scalars and short arrays of numbers as they are, else `an array of 7`
 // or `an object`.
 std::string describe(const Value& value);

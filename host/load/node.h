@@ -51,6 +51,8 @@ class Node {
     size_t size() const;
     Node operator[](size_t i) const;
 
+    // As compact JSON.
+    std::string text() const { return json::to_text(*value_); }
     bool is_object() const { return std::holds_alternative<json::Object>(value_->data); }
     bool is_array() const { return std::holds_alternative<json::Array>(value_->data); }
     bool is_number() const { return std::holds_alternative<double>(value_->data); }

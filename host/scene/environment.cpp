@@ -52,6 +52,12 @@ std::string describe_unusable(size_t count, size_t texels) {
 
 }  // namespace
 
+dvec3 latitude_longitude_direction(glm::dvec2 uv) {
+    const double theta = uv.y * double(PI);              // From +Y.
+    const double phi = (uv.x - 0.5) * 2.0 * double(PI);  // From -Z to +X.
+    return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+}
+
 Environment load_environment(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const std::string name = file.string();
     const Image image = read_image(file, {.max_pixels = MAX_TEXELS, .channels = {"R", "G", "B", "Y"}});

@@ -9,6 +9,10 @@
 
 namespace candela {
 
+// The unit direction that a place in the picture of an Environment without rotation stands for: u to the
+// right, v downwards, both in [0, 1].
+dvec3 latitude_longitude_direction(glm::dvec2 uv);
+
 // Loads a latitude-longitude map from an OpenEXR or Radiance file (.exr, .hdr, .pic): the channels R, G and B
 // as radiance [W/(m^2 sr)] in linear Rec.709, or Y for all three where they are missing; other channels are
 // ignored. Rotation and visibility stay at their defaults. A texel with a channel that is negative or not

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "base/image_io_parts.h"
+#include "base/text.h"
 #include "load/gltf/extensions.h"
 #include "load/gltf/gltf_file.h"
 #include "load/gltf/light.h"
@@ -26,6 +27,14 @@ void read_attributes(const File& file, Scene& scene) {
         if (text && text->is_string())
             scene.attributes.emplace_back(std::string("gltf.") + key, text->string());
     }
+    const auto use = gltf::extension_of(asset, "KHR_xmp_json_ld");
+    const auto extension = gltf::extension_of(file.root(), "KHR_xmp_json_ld");
+    if (!use || !extension) return;
+    const Node packets = extension->require("packets");
+    const Node number = use->require("packet");
+    const uint32_t index = number.integer(0, UINT32_MAX);
+    if (index >= packets.size()) number.fail(concat("there are only ", packets.size(), " packets"));
+    scene.attributes.emplace_back("gltf.xmp", packets[index].text());
 }
 
 void warn_of_units(File& file, const GltfOptions& options, const Scene& scene) {
@@ -50,6 +59,8 @@ void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& option
     gltf::SceneReader(file, scene, options).read();
     std::ranges::copy(file.files(), std::back_inserter(scene.files));
     read_attributes(file, scene);
+    if (!scene.lights.empty())
+        scene.attributes.emplace_back("gltf.lightUnits", name_of(units_of(file, options), LIGHT_UNITS_NAMES));
     warn_of_units(file, options, scene);
     std::ranges::copy(file.warnings(), std::back_inserter(scene.warnings));
 }

@@ -14,7 +14,7 @@ LightUnits units_of(const File& file, const GltfOptions& options);
 Light read_light(File& file, const Node& reference, const glm::dmat4& world, LightUnits units);
 
 // A studio: a large soft light above and to the left, a weaker one to the right, a strip behind, a pale floor
-// and dim walls. No camera ray sees it.
+// and dim walls. White paper in it has a radiance of up to 0.95. No camera ray sees it.
 Environment studio();
 
 }  // namespace candela::gltf

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "load/gltf/animation.h"
+#include "load/gltf/image_light.h"
 #include "load/gltf/light.h"
 #include "load/gltf/material.h"
 #include "load/gltf/names.h"
@@ -61,7 +62,11 @@ void SceneReader::read() {
     if (options_.time) animate(file_, options_.animation, *options_.time, nodes_);
     place_nodes(nodes_);
 
-    std::vector<uint32_t> waiting = root_nodes();
+    const std::optional<Node> scene = chosen_scene();
+    if (scene) {
+        if (auto light = read_image_light(file_, *scene)) scene_.environment = std::move(light);
+    }
+    std::vector<uint32_t> waiting = root_nodes(scene);
     std::ranges::reverse(waiting);
     std::vector<bool> seen(nodes_.size(), false);
     while (!waiting.empty()) {
@@ -76,20 +81,21 @@ void SceneReader::read() {
     }
 }
 
-// Those of the chosen scene; without scenes, all nodes that have no parent.
-std::vector<uint32_t> SceneReader::root_nodes() const {
-    std::vector<uint32_t> roots;
-    const Node root = file_.root();
-    std::optional<size_t> scene;
+std::optional<Node> SceneReader::chosen_scene() const {
+    const auto scenes = file_.root().find("scenes");
     if (options_.scene) {
-        scene = find_by_name(file_, root.find("scenes"), *options_.scene, "scenes", "--scene");
-    } else if (const auto chosen = root.find("scene")) {
-        scene = file_.index("scenes", *chosen);
-    } else if (file_.count("scenes") > 0) {
-        scene = 0;
+        const size_t index = find_by_name(file_, scenes, *options_.scene, "scenes", "--scene");
+        return (*scenes)[index];
     }
+    if (const auto chosen = file_.root().find("scene")) return file_.resolve("scenes", *chosen);
+    if (scenes && scenes->size() > 0) return (*scenes)[0];
+    return std::nullopt;
+}
+
+std::vector<uint32_t> SceneReader::root_nodes(const std::optional<Node>& scene) const {
+    std::vector<uint32_t> roots;
     if (scene) {
-        const auto nodes = file_.element("scenes", *scene).find("nodes");
+        const auto nodes = scene->find("nodes");
         if (!nodes) return roots;
         for (const Node& reference : nodes->elements()) {
             const uint32_t node = file_.index("nodes", reference);

@@ -26,7 +26,10 @@ class SceneReader {
     // A material as it looks on meshes with or without colours of their own.
     using MaterialUse = std::pair<std::optional<uint32_t>, bool>;
 
-    std::vector<uint32_t> root_nodes() const;
+    // The chosen scene; nothing if the file has none.
+    std::optional<Node> chosen_scene() const;
+    // Its root nodes; of a file without scenes, all nodes without a parent.
+    std::vector<uint32_t> root_nodes(const std::optional<Node>& scene) const;
     void read_node(uint32_t index);
     void read_mesh(const Node& node, const PosedNode& posed);
     // Adds a primitive; returns the index of its shape, or nothing if it shows nothing.

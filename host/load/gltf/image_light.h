@@ -1,0 +1,15 @@
+// EXT_lights_image_based: light from all around, from a cube of images.
+#pragma once
+
+#include <optional>
+
+#include "load/gltf/gltf_file.h"
+#include "scene/scene.h"
+
+namespace candela::gltf {
+
+// The environment of a scene of the file; nothing if it has none. Its sharpest images count; the smoother
+// ones and the coefficients, which say the same for renderers that do not trace rays, do not.
+std::optional<Environment> read_image_light(File& file, const Node& scene);
+
+}  // namespace candela::gltf
