@@ -39,6 +39,9 @@ PrincipledParameters parameters_of(const PrincipledMaterial& m, bool inside) {
             .coat_darkening = double(m.coat_darkening),
             .sheen_color = dvec3(m.sheen_color.factor),
             .sheen_roughness = double(m.sheen_roughness.factor),
+            .fuzz = double(m.fuzz.factor),
+            .fuzz_color = dvec3(m.fuzz_color.factor),
+            .fuzz_roughness = double(m.fuzz_roughness.factor),
             .iridescence = double(m.iridescence.factor),
             .iridescence_ior = double(m.iridescence_ior),
             .iridescence_thickness = double(m.iridescence_thickness.factor)};
@@ -140,6 +143,9 @@ PrincipledMaterial random_material(Random& random) {
         .coat_darkening = share(),
         .sheen_color = share() * color(),
         .sheen_roughness = 0.3f + 0.7f * random.unit(),
+        .fuzz = share(),
+        .fuzz_color = color(),
+        .fuzz_roughness = 0.1f + 0.9f * random.unit(),
         .iridescence = prism ? 0.0f : share(),
         .iridescence_ior = 1.1f + random.unit(),
         .iridescence_thickness = 100.0f + 900.0f * random.unit()};
@@ -182,6 +188,9 @@ std::vector<NamedMaterial> plain_materials() {
     add("coat that darkens",
         [](auto& m) { m.coat = 0.5f, m.coat_roughness = 0.4f, m.coat_darkening = 1.0f; });
     add("sheen", [](auto& m) { m.sheen_color = vec3(0.9f, 0.5f, 0.2f), m.sheen_roughness = 0.5f; });
+    add("fuzz",
+        [](auto& m) { m.fuzz = 0.8f, m.fuzz_color = vec3(0.9f, 0.5f, 0.2f), m.fuzz_roughness = 0.3f; });
+    add("fuzz on glass", [&](auto& m) { glass(m), m.fuzz = 0.8f; });
     add("all reflecting", [](auto& m) { m.ior = 0.0f, m.specular_color = vec3(0.9f, 0.5f, 0.2f); });
     return list;
 }
