@@ -117,10 +117,11 @@ MaterialTextures textures_of(const Material& material, const EncodedMaterial& en
             .culled = is_culled(material) ? 1u : 0u};
 }
 
-// Whether what a surface emits passes a coat or sheen.
+// Whether what a surface emits passes fuzz, a coat or sheen.
 bool has_layers(const Material& material) {
     const auto* m = std::get_if<PrincipledMaterial>(&material.model);
-    return m != nullptr && !m->unlit && (m->coat.factor > 0.0f || m->sheen_color.factor != vec3(0.0f));
+    return m != nullptr && !m->unlit &&
+           (m->fuzz.factor > 0.0f || m->coat.factor > 0.0f || m->sheen_color.factor != vec3(0.0f));
 }
 
 // What materials know a medium by; appends it to the media if it is new. (The first of them, outside of

@@ -40,6 +40,7 @@ uint32_t parts_of(const PrincipledMaterial& m) {
     has(coated && m.coat_darkening > 0.0f, PRINCIPLED_HAS_COAT_DARKENING);
     has(coated && m.coat_normal_map, PRINCIPLED_HAS_COAT_NORMAL);
     has(m.sheen_color.factor != vec3(0.0f), PRINCIPLED_HAS_SHEEN);
+    has(m.fuzz.factor > 0.0f, PRINCIPLED_HAS_FUZZ);
     has(m.iridescence.factor > 0.0f, PRINCIPLED_HAS_IRIDESCENCE);
     const uint32_t scatters_through = transmits && (parts & PRINCIPLED_HAS_ROUGH) != 0
                                           ? parts & (PRINCIPLED_HAS_THIN | PRINCIPLED_HAS_VOLUME)
@@ -71,6 +72,9 @@ std::vector<PrincipledTexture> textures_of(const PrincipledMaterial& m) {
     add(PRINCIPLED_IRIDESCENCE, m.iridescence);
     add(PRINCIPLED_IRIDESCENCE_THICKNESS, m.iridescence_thickness);
     add(PRINCIPLED_ANISOTROPY, m.anisotropy);
+    add(PRINCIPLED_FUZZ_COLOR, m.fuzz_color);
+    add(PRINCIPLED_FUZZ, m.fuzz);
+    add(PRINCIPLED_FUZZ_ROUGHNESS, m.fuzz_roughness);
     return result;
 }
 
@@ -117,7 +121,10 @@ EncodedPrincipled encode_principled(const PrincipledMaterial& m) {
                      .coat_normal = TEXTURE_NONE,
                      .coat_normal_scale = m.coat_normal_map ? m.coat_normal_map->scale : 1.0f,
                      .images = 0,
-                     .coat_internal = float(internal_reflectance(double(m.coat_ior)))};
+                     .coat_internal = float(internal_reflectance(double(m.coat_ior))),
+                     .fuzz_color = m.fuzz_color.factor,
+                     .fuzz_roughness = m.fuzz_roughness.factor,
+                     .fuzz = m.fuzz.factor};
     // Without a texture the film has its greatest thickness.
     if (!m.iridescence_thickness.texture) {
         result.record.thickness = m.iridescence_thickness.factor;

@@ -25,6 +25,7 @@ void for_each_value(Model& m, const Visit& visit) {
         visit(m.specular), visit(m.specular_color), visit(m.anisotropy), visit(m.transmission);
         visit(m.diffuse_transmission), visit(m.diffuse_transmission_color);
         visit(m.coat), visit(m.coat_roughness), visit(m.sheen_color), visit(m.sheen_roughness);
+        visit(m.fuzz), visit(m.fuzz_color), visit(m.fuzz_roughness);
         visit(m.iridescence), visit(m.iridescence_thickness), visit(m.emission);
     } else {
         static_assert(std::is_same_v<Type, DielectricMaterial>);

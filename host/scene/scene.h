@@ -134,13 +134,16 @@ struct PrincipledMaterial {
     std::optional<NormalMap> coat_normal_map{};  // None: the shape's own shading normal.
     Textured<vec3> sheen_color{vec3(0)};
     Textured<float> sheen_roughness = 0.0f;
+    Textured<float> fuzz = 0.0f;  // Above all other layers.
+    Textured<vec3> fuzz_color{vec3(1)};
+    Textured<float> fuzz_roughness = 0.5f;
     Textured<float> iridescence = 0.0f;
     float iridescence_ior = 1.3f;  // At least 1.
     // Of the film [nm], at least 0: where the texture is 0, and where it is 1 or there is none.
     float iridescence_thickness_min = 100.0f;
     Textured<float> iridescence_thickness = 400.0f;
-    // What shapes of this material emit that state no emission of their own [W/(m^2 sr)], under coat and
-    // sheen.
+    // What shapes of this material emit that state no emission of their own [W/(m^2 sr)], under fuzz,
+    // coat and sheen.
     Textured<vec3> emission{vec3(0)};
     bool unlit = false;        // The surface shows base_color in any light and scatters none.
     bool double_sided = true;  // Otherwise rays pass it from behind, unless it encloses a medium.

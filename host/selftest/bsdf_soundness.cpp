@@ -101,6 +101,9 @@ class Adversary {
                              .coat_darkening = share(),
                              .sheen_color = shares(),
                              .sheen_roughness = share(),
+                             .fuzz = share(),
+                             .fuzz_color = shares(),
+                             .fuzz_roughness = share(),
                              .iridescence = share(),
                              .iridescence_ior = of_any_size(1.0f, 3.0f),
                              .iridescence_thickness = of_any_size(1.0f, 2000.0f)};

@@ -54,6 +54,12 @@ std::vector<NamedMaterial> single_lobes() {
           .diffuse_transmission_color = vec3(0.2f, 0.9f, 0.4f)}},
         {"sheen",
          {.base_color = vec3(0.0f), .specular = 0.0f, .sheen_color = orange, .sheen_roughness = 0.5f}},
+        {"fuzz",
+         {.base_color = vec3(0.0f),
+          .specular = 0.0f,
+          .fuzz = 1.0f,
+          .fuzz_color = orange,
+          .fuzz_roughness = 0.3f}},
         {"coat",
          {.base_color = vec3(0.0f), .specular = 0.0f, .coat = 1.0f, .coat_roughness = 0.4f},
          Lobe::reflection},
@@ -86,6 +92,9 @@ std::vector<NamedMaterial> mixtures() {
           .coat_darkening = 0.5f,
           .sheen_color = vec3(0.5f, 0.2f, 0.1f),
           .sheen_roughness = 0.6f,
+          .fuzz = 0.4f,
+          .fuzz_color = vec3(0.3f, 0.6f, 0.9f),
+          .fuzz_roughness = 0.4f,
           .iridescence = 0.5f}},
     };
 }

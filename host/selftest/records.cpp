@@ -91,7 +91,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 224> words;
+    std::array<uint, 229> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -211,7 +211,10 @@ Records filled(Fields& fields) {
                     .coat_normal = fields.u(),
                     .coat_normal_scale = fields.f(),
                     .images = fields.u(),
-                    .coat_internal = fields.f()};
+                    .coat_internal = fields.f(),
+                    .fuzz_color = fields.f3(),
+                    .fuzz_roughness = fields.f(),
+                    .fuzz = fields.f()};
     r.principled_image = {.texture = fields.u(), .values = fields.u(), .channels = fields.u2()};
     return r;
 }

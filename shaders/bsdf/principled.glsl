@@ -1,13 +1,15 @@
-// The principled material: a dielectric or metallic base under sheen and coat, as glTF 2.0 layers them. Reading order:
+// The principled material: a dielectric or metallic base under sheen and coat, as glTF 2.0 layers them, and under
+// OpenPBR's fuzz. Reading order:
 //
-//     coat (its own normal)           coat Fc D G                                      1 - <coat Fc s>
-//       over sheen                    sheen_color Charlie                              1 - max(sheen_color) Es
-//         over mix(by metalness)
-//           metal                     Fm D G
-//           dielectric                Fd D G
-//             over mix(by transmission)
-//               refraction            base_color (1 - max Fd) D G
-//               diffuse               base_color, diffuse_transmission_color           1 - <max Fd>
+//     fuzz                            fuzz fuzz_color Ef Zeltner                       1 - fuzz Ef
+//       over coat (its own normal)    coat Fc D G                                      1 - <coat Fc s>
+//         over sheen                  sheen_color Charlie                              1 - max(sheen_color) Es
+//           over mix(by metalness)
+//             metal                   Fm D G
+//             dielectric              Fd D G
+//               over mix(by transmission)
+//                 refraction          base_color (1 - max Fd) D G
+//                 diffuse             base_color, diffuse_transmission_color           1 - <max Fd>
 //
 // What a layer leaves to those below is the last column, a function of wo alone: what it does not scatter itself. (By
 // facets, as glTF's own sample code has it, light would be gained at grazing angles.) Light that is scattered more than
@@ -16,7 +18,7 @@
 // <x> is the mean of x over the facets that wo sees. A lattice of FACETS of them at random places measures it, without
 // bias, since all that is measured counts linearly: there are no tables of albedos, and no fits. So a surface has other
 // lobes at each vertex, and the right ones on average. Nothing is gained or lost, whatever the roughness, the indices and
-// the film. The whole is not reciprocal; its lobes are, one by one.
+// the film. The whole is not reciprocal; its lobes are, one by one, except fuzz.
 // Ref: glTF 2.0, appendix B, and its extensions KHR_materials_*; OpenPBR 1.1; Kulla and Conty 2017, Revisiting Physically
 // Based Shading at Imageworks, on lost light; Cranley and Patterson 1976, Randomization of Number Theoretic Methods for
 // Multiple Integration, on such lattices.
@@ -89,6 +91,11 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
     }
     if (above && principled_has(PRINCIPLED_HAS_SHEEN)) value.f += p.sheen * sheen_f(p.sheen_alpha, wo, wi);
     value.pdf = (above ? p.pmf.z : p.pmf.w) * cosine_pdf;
+    if (principled_has(PRINCIPLED_HAS_FUZZ) && above) {
+        float f = fuzz_f(p.fuzz_shape, wo, wi);
+        value.f += p.fuzz * f;
+        value.pdf += p.fuzz_pmf * f * wi.z;
+    }
     // Radiance is divided by eta^2, however light gets through.
     if (!above) value.f += p.through * INV_PI / (p.refracts ? p.eta * p.eta : vec3(1.0));
     if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal && p.pmf.y > 0.0) {
@@ -179,6 +186,8 @@ BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
         ideal = p.ideal;
         s = principled_sample_facets(p, wo, min((uc - p.pmf.x) / p.pmf.y, 0.99999994), u);
         if (s.pdf == 0.0) return s;
+    } else if (principled_has(PRINCIPLED_HAS_FUZZ) && uc >= 1.0 - p.fuzz_pmf) {
+        s.wi = fuzz_direction(p.fuzz_shape, wo, u);
     } else if (p.pmf.z + p.pmf.w > 0.0) {
         s.wi = warp_cosine_hemisphere(u);
         if (uc >= to_facets + p.pmf.z) s.wi.z = -s.wi.z;

@@ -53,6 +53,9 @@ struct Principled {
     vec3 through;     // and transmittance: of that, and of the diffuse base.
     vec3 sheen;
     float sheen_alpha;
+    vec3 fuzz;        // What it reflects; the directions,
+    vec2 fuzz_shape;  // and the probability of choosing it.
+    float fuzz_pmf;
 
     float coat;
     float coat_f0;
@@ -62,7 +65,8 @@ struct Principled {
     vec3 coat_n;
 
     vec3 hue;
-    vec4 pmf;  // Of choosing: coat, base facets, diffuse reflection and sheen, diffuse transmission. All 0: black.
+    // Of choosing: coat, base facets, diffuse reflection and sheen, diffuse transmission. All 0, and fuzz_pmf: black.
+    vec4 pmf;
 };
 
 // Beyond this relative index, boundaries reflect almost all light, and floats cannot hold the rest.

@@ -1,9 +1,10 @@
-// The lobes of a principled material seen from one direction: coat, sheen and base, from above, each under what the one
-// before leaves. bsdf/principled.glsl has the whole on one page.
+// The lobes of a principled material seen from one direction: fuzz, coat, sheen and base, from above, each under what
+// the one before leaves. bsdf/principled.glsl has the whole on one page.
 #ifndef BSDF_PRINCIPLED_LOBES_GLSL
 #define BSDF_PRINCIPLED_LOBES_GLSL
 
 #include "base/frame.glsl"
+#include "bsdf/fuzz.glsl"
 #include "bsdf/iridescence.glsl"
 #include "bsdf/principled_facets.glsl"
 #include "bsdf/sheen.glsl"
@@ -20,6 +21,20 @@ vec3 from_coat(Principled p, vec3 w) {
 
 float coat_fresnel(Principled p, float cos_o) {
     return mix(fresnel_edge(p.coat_ior, cos_o), 1.0, p.coat_f0);
+}
+
+// The fuzz's lobe; returns what it leaves to the layers below.
+float principled_fuzz(inout Principled p, PrincipledSurface s, vec3 wo) {
+    p.fuzz = vec3(0.0);
+    p.fuzz_shape = vec2(1.0, 0.0);
+    p.fuzz_pmf = 0.0;
+    if (!principled_has(PRINCIPLED_HAS_FUZZ) || s.inside) return 1.0;
+    float roughness = max(s.record.fuzz_roughness, LEAST_FUZZ_ROUGHNESS);
+    float reflected = s.record.fuzz * fuzz_albedo(roughness, wo.z);
+    p.fuzz = reflected * s.record.fuzz_color;
+    p.fuzz_shape = fuzz_shape(roughness, wo.z);
+    p.fuzz_pmf = dot(s.hue, p.fuzz);
+    return 1.0 - reflected;
 }
 
 // The coat's lobes; returns what it leaves to the layers below.
@@ -187,10 +202,11 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     p.pmf.w = dot(p.hue, p.through);
 }
 
-// What coat and sheen leave to what lies under them.
+// What fuzz, coat and sheen leave to what lies under them.
 float principled_layers(PrincipledSurface s, vec3 wo) {
     Principled p;
-    return principled_sheen(p, s, wo, principled_coat(p, s, wo));
+    float below_fuzz = principled_fuzz(p, s, wo);
+    return principled_sheen(p, s, wo, below_fuzz * principled_coat(p, s, wo));
 }
 
 // The lobes of a surface that is seen from wo, which is above it.
@@ -198,11 +214,17 @@ Principled principled_lobes(PrincipledSurface s, vec3 wo) {
     Principled p;
     p.pmf = vec4(0.0);
     p.hue = s.hue;
-    float below_coat = principled_coat(p, s, wo);
+    float below_fuzz = principled_fuzz(p, s, wo);
+    float below_coat = below_fuzz * principled_coat(p, s, wo);
     float below_sheen = principled_sheen(p, s, wo, below_coat);
     principled_base(p, s, wo, below_sheen);
+    p.coat *= below_fuzz;
+    p.pmf.x *= below_fuzz;
     float sum = p.pmf.x + p.pmf.y + p.pmf.z + p.pmf.w;
-    p.pmf = wo.z > LEAST_COSINE && sum > 0.0 ? p.pmf / sum : vec4(0.0);
+    if (principled_has(PRINCIPLED_HAS_FUZZ)) sum += p.fuzz_pmf;
+    bool scatters = wo.z > LEAST_COSINE && sum > 0.0;
+    p.pmf = scatters ? p.pmf / sum : vec4(0.0);
+    p.fuzz_pmf = scatters ? p.fuzz_pmf / sum : 0.0;
     return p;
 }
 

@@ -55,7 +55,7 @@ Frame principled_frame(PrincipledRecord p, Interaction s) {
     return Frame(x, cross(s.ns, x), s.ns);
 }
 
-// What coat and sheen leave of the light that a surface of material i emits at that cosine to its normal, measured as in
+// What fuzz, coat and sheen leave of the light that a surface of material i emits at that cosine to its normal, measured as in
 // bsdf/principled.glsl: right on average over `random`, uniform in [0, 1)^2.
 float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
     MaterialRecord m = scene_material(i);

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define LAYERED 1
-#define ITEM_WORDS 13u
+#define ITEM_WORDS 15u
 #define RESULT_WORDS 17u
 #include "base/hash.glsl"
 #include "base/sampler.glsl"

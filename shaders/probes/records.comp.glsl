@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 224u
+#define RESULT_WORDS 229u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -132,6 +132,9 @@ void put_principled(PrincipledRecord p) {
     put(p.coat_normal_scale);
     put(p.images);
     put(p.coat_internal);
+    put(p.fuzz_color);
+    put(p.fuzz_roughness);
+    put(p.fuzz);
 }
 
 void put_texture(TextureRecord t) {

@@ -83,6 +83,7 @@ void principled_apply(inout PrincipledRecord p, inout vec3 base_color, Principle
     if (principled_gives(values, PRINCIPLED_SPECULAR_COLOR)) p.specular_color *= texel.rgb;
     if (principled_gives(values, PRINCIPLED_DIFFUSE_TRANSMISSION_COLOR)) p.diffuse_transmission_color *= texel.rgb;
     if (principled_gives(values, PRINCIPLED_SHEEN_COLOR)) p.sheen_color *= texel.rgb;
+    if (principled_gives(values, PRINCIPLED_FUZZ_COLOR)) p.fuzz_color *= texel.rgb;
     if (principled_gives(values, PRINCIPLED_ANISOTROPY_MAP)) {
         vec2 d = 2.0 * texel.rg - 1.0;
         float length_squared = dot(d, d);
@@ -102,6 +103,8 @@ void principled_apply(inout PrincipledRecord p, inout vec3 base_color, Principle
     p.iridescence *= principled_number(texel, image, PRINCIPLED_IRIDESCENCE);
     p.thickness_range *= principled_number(texel, image, PRINCIPLED_IRIDESCENCE_THICKNESS);
     p.anisotropy *= principled_number(texel, image, PRINCIPLED_ANISOTROPY);
+    p.fuzz *= principled_number(texel, image, PRINCIPLED_FUZZ);
+    p.fuzz_roughness *= principled_number(texel, image, PRINCIPLED_FUZZ_ROUGHNESS);
 }
 
 // Colours and weights of half-float images may exceed 1.
@@ -109,12 +112,14 @@ void principled_clamp(inout PrincipledRecord p) {
     p.specular_color = min(p.specular_color, 1.0);
     p.diffuse_transmission_color = min(p.diffuse_transmission_color, 1.0);
     p.sheen_color = min(p.sheen_color, 1.0);
+    p.fuzz_color = min(p.fuzz_color, 1.0);
     vec4 a = min(vec4(p.metalness, p.roughness, p.diffuse_roughness, p.specular), 1.0);
     p.metalness = a.x, p.roughness = a.y, p.diffuse_roughness = a.z, p.specular = a.w;
     a = min(vec4(p.transmission, p.diffuse_transmission, p.coat, p.coat_roughness), 1.0);
     p.transmission = a.x, p.diffuse_transmission = a.y, p.coat = a.z, p.coat_roughness = a.w;
-    a = min(vec4(p.sheen_roughness, p.iridescence, p.anisotropy, 1.0), 1.0);
-    p.sheen_roughness = a.x, p.iridescence = a.y, p.anisotropy = a.z;
+    a = min(vec4(p.sheen_roughness, p.iridescence, p.anisotropy, p.fuzz), 1.0);
+    p.sheen_roughness = a.x, p.iridescence = a.y, p.anisotropy = a.z, p.fuzz = a.w;
+    p.fuzz_roughness = min(p.fuzz_roughness, 1.0);
 }
 
 // The values of the principled material m at a point; its base colour is multiplied by images, too.

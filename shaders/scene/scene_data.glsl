@@ -100,6 +100,7 @@ PrincipledRecord scene_principled(uint first) {
     uvec4 w[PRINCIPLED_WORDS];
     READ_4(MATERIALS, first, w[0], w[1], w[2], w[3]);
     READ_4(MATERIALS, first + 4u, w[4], w[5], w[6], w[7]);
+    READ_2(MATERIALS, first + 8u, w[8], w[9]);
     return principled_unpack(w);
 }
 

@@ -3,11 +3,16 @@
 // where, as a share of PRINCIPLED_PLACES: such a float is exact, and stays so in products with 1 and below a
 // limit of 1.
 //
-//   0: metalness, roughness, diffuse_roughness, specular     4: sheen_color.rgb, sheen_roughness
-//   1: specular_color.rgb, transmission                      5: iridescence, iridescence_ior, thickness,
-//   thickness_range 2: diffuse_transmission_color.rgb, diffuse_transmission  6: anisotropy, rotation.xy,
-//   dispersion 3: coat, coat_roughness, coat_ior, coat_darkening        7: coat_normal, coat_normal_scale,
-//   images, coat_internal
+//   0: metalness, roughness, diffuse_roughness, specular
+//   1: specular_color.rgb, transmission
+//   2: diffuse_transmission_color.rgb, diffuse_transmission
+//   3: coat, coat_roughness, coat_ior, coat_darkening
+//   4: sheen_color.rgb, sheen_roughness
+//   5: iridescence, iridescence_ior, thickness, thickness_range
+//   6: anisotropy, rotation.xy, dispersion
+//   7: coat_normal, coat_normal_scale, images, coat_internal
+//   8: fuzz_color.rgb, fuzz_roughness
+//   9: fuzz, 0, 0, 0
 #ifndef SHARED_PRINCIPLED_H
 #define SHARED_PRINCIPLED_H
 
@@ -18,7 +23,7 @@
 namespace candela {
 #endif
 
-const uint PRINCIPLED_WORDS = 8u;
+const uint PRINCIPLED_WORDS = 10u;
 const uint PRINCIPLED_PLACES = 0x1000000u;
 
 // Values that images give, a bit each in PrincipledImage::values.
@@ -39,7 +44,10 @@ const uint PRINCIPLED_SHEEN_ROUGHNESS = 13u;
 const uint PRINCIPLED_IRIDESCENCE = 14u;
 const uint PRINCIPLED_IRIDESCENCE_THICKNESS = 15u;
 const uint PRINCIPLED_ANISOTROPY = 16u;
-const uint PRINCIPLED_VALUES = 17u;
+const uint PRINCIPLED_FUZZ_COLOR = 17u;  // A colour
+const uint PRINCIPLED_FUZZ = 18u;        // and two numbers more.
+const uint PRINCIPLED_FUZZ_ROUGHNESS = 19u;
+const uint PRINCIPLED_VALUES = 20u;
 
 // Parts of the material that some principled material of a scene has, a bit each: the specialization constant
 // PRINCIPLED.
@@ -59,9 +67,9 @@ const uint PRINCIPLED_HAS_COAT_NORMAL = 1u << 12u;  // Some coat has another nor
 const uint PRINCIPLED_HAS_SHEEN = 1u << 13u;
 const uint PRINCIPLED_HAS_IRIDESCENCE = 1u << 14u;
 const uint PRINCIPLED_HAS_IMAGES = 1u << 15u;
-const uint PRINCIPLED_HAS_COATED_EMISSION = 1u << 16u;  // Some light lies under a coat or a sheen.
-
-const uint PRINCIPLED_HAS_CULLED = 1u << 17u;  // Rays pass some surface from behind.
+const uint PRINCIPLED_HAS_COATED_EMISSION = 1u << 16u;  // Some light lies under one of the layers.
+const uint PRINCIPLED_HAS_CULLED = 1u << 17u;           // Rays pass some surface from behind.
+const uint PRINCIPLED_HAS_FUZZ = 1u << 18u;
 // Light samples count that lie behind some surface.
 const uint PRINCIPLED_IS_LIT_FROM_BEHIND = 1u << 30u;
 
@@ -91,6 +99,9 @@ struct PrincipledRecord {
     float coat_normal_scale;
     uint images;
     float coat_internal;  // Share of diffuse light that the coat reflects from below.
+    vec3 fuzz_color;
+    float fuzz_roughness;
+    float fuzz;
 };
 
 // What comes from an image.
@@ -114,7 +125,9 @@ inline std::array<uvec4, PRINCIPLED_WORDS> pack(const PrincipledRecord& p) {
             four(p.iridescence, p.iridescence_ior, p.thickness, p.thickness_range),
             four(p.anisotropy, p.rotation.x, p.rotation.y, p.dispersion),
             uvec4(p.coat_normal, floatBitsToUint(p.coat_normal_scale), p.images,
-                  floatBitsToUint(p.coat_internal))};
+                  floatBitsToUint(p.coat_internal)),
+            word(p.fuzz_color, floatBitsToUint(p.fuzz_roughness)),
+            four(p.fuzz, 0.0f, 0.0f, 0.0f)};
 }
 
 // What MaterialRecord::specular.x holds.
@@ -163,6 +176,10 @@ PrincipledRecord principled_unpack(uvec4 words[PRINCIPLED_WORDS]) {
     p.coat_normal_scale = uintBitsToFloat(words[7].y);
     p.images = words[7].z;
     p.coat_internal = uintBitsToFloat(words[7].w);
+    w = uintBitsToFloat(words[8]);
+    p.fuzz_color = w.xyz;
+    p.fuzz_roughness = w.w;
+    p.fuzz = uintBitsToFloat(words[9].x);
     return p;
 }
 

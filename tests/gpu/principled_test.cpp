@@ -39,6 +39,9 @@ PrincipledParameters parameters_of(const PrincipledMaterial& m, bool inside) {
             .coat_darkening = double(m.coat_darkening),
             .sheen_color = dvec3(m.sheen_color.factor),
             .sheen_roughness = double(m.sheen_roughness.factor),
+            .fuzz = double(m.fuzz.factor),
+            .fuzz_color = dvec3(m.fuzz_color.factor),
+            .fuzz_roughness = double(m.fuzz_roughness.factor),
             .iridescence = double(m.iridescence.factor),
             .iridescence_ior = double(m.iridescence_ior),
             .iridescence_thickness = double(m.iridescence_thickness.factor)};
@@ -140,6 +143,9 @@ PrincipledMaterial random_material(Random& random) {
         .coat_darkening = share(),
         .sheen_color = share() * color(),
         .sheen_roughness = 0.3f + 0.7f * random.unit(),
+        .fuzz = share(),
+        .fuzz_color = color(),
+        .fuzz_roughness = 0.1f + 0.9f * random.unit(),
         .iridescence = prism ? 0.0f : share(),
         .iridescence_ior = 1.1f + random.unit(),
         .iridescence_thickness = 100.0f + 900.0f * random.unit()};
@@ -182,8 +188,26 @@ std::vector<NamedMaterial> plain_materials() {
     add("coat that darkens",
         [](auto& m) { m.coat = 0.5f, m.coat_roughness = 0.4f, m.coat_darkening = 1.0f; });
     add("sheen", [](auto& m) { m.sheen_color = vec3(0.9f, 0.5f, 0.2f), m.sheen_roughness = 0.5f; });
+    add("fuzz",
+        [](auto& m) { m.fuzz = 0.8f, m.fuzz_color = vec3(0.9f, 0.5f, 0.2f), m.fuzz_roughness = 0.3f; });
+    add("fuzz on glass", [&](auto& m) { glass(m), m.fuzz = 0.8f; });
     add("all reflecting", [](auto& m) { m.ior = 0.0f, m.specular_color = vec3(0.9f, 0.5f, 0.2f); });
     return list;
+}
+
+// Materials of one lobe each, or of facets with what they lose. (Fuzz is not reciprocal, nor is a film, whose
+// colour depends on the viewer.)
+std::vector<NamedMaterial> single_lobes() {
+    const vec3 orange(0.7f, 0.5f, 0.2f), black(0);
+    return {
+        {"diffuse", {.base_color = orange, .specular = 0.0f}},
+        {"rough diffuse", {.base_color = orange, .diffuse_roughness = 0.8f, .specular = 0.0f}},
+        {"sheen", {.base_color = black, .specular = 0.0f, .sheen_color = orange, .sheen_roughness = 0.6f}},
+        {"coat", {.base_color = black, .specular = 0.0f, .coat = 1.0f, .coat_roughness = 0.4f}},
+        {"metal", {.base_color = orange, .metalness = 1.0f, .roughness = 0.5f}},
+        {"brushed metal", {.base_color = orange, .metalness = 1.0f, .roughness = 0.5f, .anisotropy = 0.6f}},
+        {"dielectric", {.base_color = black, .roughness = 0.5f}},
+        {"glass", {.base_color = orange, .roughness = 0.5f, .transmission = 1.0f, .inside = Medium{}}}};
 }
 
 TEST_F(PrincipledTest, ValuesOfEachPartAreThoseOfTheReference) {
@@ -199,6 +223,81 @@ TEST_F(PrincipledTest, ValuesOfRandomMaterialsAreThoseOfTheReference) {
         const PrincipledMaterial m = random_material(random);
         expect_reference("material " + std::to_string(i), m, false, 100 + i);
         if (interior(m)) expect_reference("material " + std::to_string(i) + " from inside", m, true, 200 + i);
+    }
+}
+
+// A lobe by itself is reciprocal. What facets give back of lost light is not: it depends on the viewer alone,
+// so that f(a, b) - f(b, a) is a difference of two numbers, one for a and one for b. Around a triangle, these
+// add up to 0.
+TEST_F(PrincipledTest, SingleLobesAreReciprocalButForLightThatFacetsLose) {
+    const auto expect_reciprocal = [&](const char* name, const PrincipledMaterial& m, uint32_t back) {
+        Random random(12);
+        const auto above = [&] {
+            const vec3 w = random.direction();
+            return vec3(w.x, w.y, std::abs(w.z));
+        };
+        std::vector<BsdfItem> items;
+        for (int i = 0; i < 500; ++i) {
+            const vec3 corners[] = {above(), above(), above()};
+            for (int k = 0; k < 3; ++k) {
+                const vec3 a = corners[k], b = corners[(k + 1) % 3];
+                items.push_back(bsdf_item(principled(m), a, b, back));
+                items.push_back(bsdf_item(principled(m), b, a, back));
+            }
+        }
+        const std::vector<BsdfResult> values = run(items);
+        for (size_t i = 0; i < values.size(); i += 6) {
+            double difference = 0, sum = 0;
+            for (size_t k = 0; k < 6; ++k) {
+                sum += double(values[i + k].f.x);
+                difference += (k % 2 == 0 ? 1 : -1) * double(values[i + k].f.x);
+            }
+            ASSERT_GT(sum, 0.0) << name;
+            ASSERT_NEAR(difference, 0, ROUNDING * sum) << name << ", triangle " << i / 6;
+        }
+    };
+    for (const auto& [name, material] : single_lobes()) {
+        expect_reciprocal(name, material, 0);
+        if (material.inside) expect_reciprocal(name, material, 1);
+    }
+}
+
+// Light that goes through meets the same surface on its way back, from the other side: f from outside, times
+// the square of the relative index, is f from inside. Here, too, what is lost depends on the viewer alone;
+// with two directions on each side, the differences add up to 0.
+TEST_F(PrincipledTest, TransmissionIsReciprocalButForLightThatFacetsLose) {
+    PrincipledMaterial thin{.base_color = vec3(0.9f), .roughness = 0.7f, .transmission = 1.0f};
+    PrincipledMaterial glass = thin;
+    glass.inside = Medium{};
+    for (const PrincipledMaterial& m : {thin, glass}) {
+        const double eta = m.inside ? double(m.ior) : 1.0;
+        Random random(13);
+        const auto around = [&](vec3 w) { return normalize(w + 0.4f * random.direction()); };
+        std::vector<BsdfItem> items;
+        for (int i = 0; i < 500; ++i) {
+            vec3 w = random.direction();
+            w.z = 0.5f + std::abs(w.z);
+            const vec3 outside[] = {around(w), around(w)}, inside[] = {around(w), around(w)};
+            for (const vec3 a : outside) {
+                for (const vec3 b : inside) {
+                    items.push_back(bsdf_item(principled(m), a, -b, 0));
+                    items.push_back(bsdf_item(principled(m), b, -a, 1));
+                }
+            }
+        }
+        const std::vector<BsdfResult> values = run(items);
+        double transmitted = 0;
+        for (size_t i = 0; i < values.size(); i += 8) {
+            double difference = 0, sum = 0;
+            for (size_t k = 0; k < 4; ++k) {
+                const double out = eta * eta * double(values[i + 2 * k].f.x), in = values[i + 2 * k + 1].f.x;
+                sum += out + in;
+                difference += (k == 0 || k == 3 ? 1 : -1) * (out - in);
+            }
+            ASSERT_NEAR(difference, 0, ROUNDING * sum) << m.inside.has_value() << ", directions " << i / 8;
+            transmitted += sum / double(values.size());
+        }
+        EXPECT_GT(transmitted, 0.1);
     }
 }
 

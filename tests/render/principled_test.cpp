@@ -44,6 +44,7 @@ TEST_F(PrincipledPictureTest, WhiteBodiesAreInvisible) {
          .inside = CLEAR,
          .diffuse_transmission = 0.5f},
         {.base_color = white, .metalness = 0.5f, .coat = 1.0f, .coat_roughness = 0.6f},
+        {.base_color = white, .coat = 0.5f, .fuzz = 0.9f, .fuzz_roughness = 0.6f},
     };
     for (size_t i = 0; i < bodies.size(); ++i) {
         SCOPED_TRACE(i);
@@ -141,7 +142,10 @@ TEST_F(PrincipledPictureTest, ValuesOfImagesAreThoseOfNumbers) {
                              .anisotropy = 0.75f,
                              .anisotropy_rotation = 1.25f,
                              .coat = 0.25f,
-                             .coat_roughness = 0.5f};
+                             .coat_roughness = 0.5f,
+                             .fuzz = 0.25f,
+                             .fuzz_color = vec3(0.25f, 0.5f, 0.75f),
+                             .fuzz_roughness = 0.5f};
         if (from_image) {
             const Texture image =
                 add_texture(scene, {1, 1}, [](uint32_t, uint32_t) { return vec4(0.25f, 0.5f, 0.75f, 1.0f); });
@@ -151,8 +155,9 @@ TEST_F(PrincipledPictureTest, ValuesOfImagesAreThoseOfNumbers) {
                 return Textured<float>(1.0f, texture);
             };
             m.base_color = {vec3(1), image};
-            m.metalness = m.coat = channel(0);
-            m.roughness = m.coat_roughness = channel(1);
+            m.fuzz_color = {vec3(1), image};
+            m.metalness = m.coat = m.fuzz = channel(0);
+            m.roughness = m.coat_roughness = m.fuzz_roughness = channel(1);
             m.specular = channel(2);
             // (0.25, 0.5) stands for the opposite of the tangent, blue for 0.75 of the strength.
             m.anisotropy = 1.0f;

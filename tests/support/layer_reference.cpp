@@ -41,6 +41,17 @@ double sheen_distribution(double cosine, double alpha_g) {
     return (2 + 1 / alpha_g) * std::pow(sine_squared, 0.5 / alpha_g) / (2 * PI_D);
 }
 
+// What takes the directions that fuzz scatters to those of Lambert's law, for wo in the half-plane of x > 0.
+// Ref: Zeltner, Burley and Chiang 2022, "Practical multiple-scattering sheen using linearly transformed
+// cosines", with the fits of its two numbers that MaterialX 1.39 has (mx_microfacet_sheen.glsl).
+glm::dmat3 fuzz_to_lambert(double roughness, double cosine) {
+    const double x = cosine, y = roughness;
+    const double a = (2.58126 * x + 0.813703 * y) * y / (1 + 0.310327 * x * x + 2.60994 * x * y);
+    const double b = std::sqrt(1 - x) * (y - 1) * std::pow(y, 3) /
+                     (0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y * y);
+    return {dvec3(a, 0, 0), dvec3(0, a, 0), dvec3(b, 0, 1)};  // Columns.
+}
+
 // Coefficients of Fujii's form of Oren and Nayar's model. Ref: Portsmouth, Kutz and Hill 2024, "EON: A
 // practical energy-preserving rough diffuse BRDF", section 2.
 double fon_a(double sigma) {
@@ -109,6 +120,31 @@ double sheen_f(double alpha_g, dvec3 wo, dvec3 wi) {
 double sheen_albedo(double alpha_g, double cosine) {
     const dvec3 wo(std::sqrt(std::max(0.0, 1 - cosine * cosine)), 0, cosine);
     return integrate_over_cosine(wo, [&](dvec3 wi) { return dvec3(sheen_f(alpha_g, wo, wi)); }).x;
+}
+
+// Ref: Heitz, Dupuy, Hill and Neubelt 2016, "Real-time polygonal-light shading with linearly transformed
+// cosines", equation 1, of the matrix above, whose x is the azimuth of wo; Zeltner, Burley and Chiang 2022,
+// equation 1.
+double fuzz_f(double roughness, dvec3 wo, dvec3 wi) {
+    if (wo.z <= 0 || wi.z <= 0) return 0;
+    const double azimuth = std::atan2(wi.y, wi.x) - std::atan2(wo.y, wo.x), sine = std::hypot(wi.x, wi.y);
+    const glm::dmat3 to_lambert = fuzz_to_lambert(roughness, wo.z);
+    const dvec3 original = to_lambert * dvec3(sine * std::cos(azimuth), sine * std::sin(azimuth), wi.z);
+    const double density =
+        normalize(original).z / PI_D * glm::determinant(to_lambert) / std::pow(length(original), 3);
+    return fuzz_albedo(roughness, wo.z) * density / wi.z;
+}
+
+// Ref: MaterialX 1.39, as above: a Gaussian in the cosine, on an offset, which rounds below 0.
+double fuzz_albedo(double roughness, double cosine) {
+    const double y = roughness;
+    const double width = y * (0.0206607 + 1.58491 * y) / (0.0379424 + 1.32227 * y + y * y);
+    const double mean =
+        y * (-0.193854 - 1.14885 * y + 1.7932 * y * y - 0.95943 * std::pow(y, 4)) / (0.046391 + y);
+    const double offset =
+        y * (0.000654023 - 0.0207818 * y + 0.119681 * y * y) / (1.26264 - 1.92021 * y + y * y);
+    const double gaussian = std::exp(-0.5 * square((cosine - mean) / width)) / (width * std::sqrt(2 * PI_D));
+    return std::max(gaussian + offset, 0.0);
 }
 
 // Ref: Portsmouth, Kutz and Hill 2024, section 2, the exact form.

@@ -1,5 +1,6 @@
 // What a layered material has besides its facets, in double precision and from the papers and extensions of
-// glTF themselves, not from the shaders: sheen, rough diffuse reflection, thin films, coats, dispersion.
+// glTF themselves, not from the shaders: sheen, fuzz, rough diffuse reflection, thin films, coats,
+// dispersion.
 //
 // Local frame: z is the normal on the viewer's side. Values are BRDFs, without the cosine [1/sr].
 #pragma once
@@ -17,6 +18,11 @@ dvec3 integrate_over_cosine(dvec3 wo, const std::function<dvec3(dvec3)>& f);
 double sheen_f(double alpha_g, dvec3 wo, dvec3 wi);
 // The light that they reflect ("Es").
 double sheen_albedo(double alpha_g, double cosine);
+
+// Fuzz of white fibres; 0 unless both directions are above the surface. Roughness in [0.01, 1].
+double fuzz_f(double roughness, dvec3 wo, dvec3 wi);
+// The light that it reflects, as its model states it.
+double fuzz_albedo(double roughness, double cosine);
 
 // Rough diffuse reflection; sigma = 0 is Lambert's. Both directions above the surface.
 dvec3 eon_f(dvec3 color, double sigma, dvec3 wo, dvec3 wi);

@@ -15,6 +15,7 @@ constexpr double PI_D = std::numbers::pi;
 constexpr double LEAST_ALPHA = 1e-3;              // Below it, reflection is ideal.
 constexpr double LEAST_STEP_OF_THE_INDEX = 1e-3;  // The same, in a volume.
 constexpr double LEAST_SHEEN_ROUGHNESS = 0.07;    // The model has no value at 0.
+constexpr double LEAST_FUZZ_ROUGHNESS = 0.01;     // The least that its fits are for.
 constexpr double ETA_OF_A_PERFECT_REFLECTOR = 1e6;
 
 double square(double x) {
@@ -35,10 +36,10 @@ PrincipledLobes by_channel(const Material& lobes_of) {
     PrincipledLobes l;
     for (int k = 0; k < 3; ++k) {
         const PrincipledLobes c = lobes_of(size_t(k));
-        for (const auto lobe : {&PrincipledLobes::coat, &PrincipledLobes::sheen, &PrincipledLobes::reflection,
-                                &PrincipledLobes::transmission, &PrincipledLobes::diffuse_reflection,
-                                &PrincipledLobes::diffuse_transmission, &PrincipledLobes::again_up,
-                                &PrincipledLobes::again_down})
+        for (const auto lobe : {&PrincipledLobes::fuzz, &PrincipledLobes::coat, &PrincipledLobes::sheen,
+                                &PrincipledLobes::reflection, &PrincipledLobes::transmission,
+                                &PrincipledLobes::diffuse_reflection, &PrincipledLobes::diffuse_transmission,
+                                &PrincipledLobes::again_up, &PrincipledLobes::again_down})
             (l.*lobe)[k] = (c.*lobe)[k];
     }
     return l;
@@ -164,9 +165,16 @@ void PrincipledReference::find_diffuse_parts() {
                              shares_.dielectric_lost * (1 - max_channel(dielectric_f0_)));
 }
 
-// Sheen (KHR_materials_sheen, "Albedo-scaling technique", of wo alone) and coat (KHR_materials_clearcoat, by
-// albedo; OpenPBR 1.1, "Darkening"): a viewer inside a volume sees neither.
+// Sheen (KHR_materials_sheen, "Albedo-scaling technique", of wo alone), coat (KHR_materials_clearcoat, by
+// albedo; OpenPBR 1.1, "Darkening") and fuzz (OpenPBR 1.1, whose colour is that of reflection alone): a
+// viewer inside a volume sees none.
 void PrincipledReference::find_layers() {
+    has_fuzz_ = !p_.inside && p_.fuzz > 0;
+    if (has_fuzz_) {
+        fuzz_roughness_ = std::max(p_.fuzz_roughness, LEAST_FUZZ_ROUGHNESS);
+        fuzz_transmittance_ = 1 - p_.fuzz * fuzz_albedo(fuzz_roughness_, wo_.z);
+    }
+
     has_sheen_ = !p_.inside && max_channel(p_.sheen_color) > 0;
     if (has_sheen_) {
         alpha_g_ = square(std::max(p_.sheen_roughness, LEAST_SHEEN_ROUGHNESS));
@@ -287,20 +295,20 @@ PrincipledLobes PrincipledReference::lobes(dvec3 wi) const {
     if (!channels_.empty()) return by_channel([&](size_t k) { return channels_[k].lobes(wi); });
     PrincipledLobes l;
     if (wi.z == 0) return l;
-    const double under_layers = coat_transmittance_ * sheen_transmittance_;
     if (wi.z > 0) {
-        l.coat = dvec3(coat_value(wi));
+        if (has_fuzz_) l.fuzz = p_.fuzz * fuzz_f(fuzz_roughness_, wo_, wi) * p_.fuzz_color;
+        l.coat = dvec3(fuzz_transmittance_ * coat_value(wi));
         if (has_sheen_)
-            l.sheen =
-                coat_transmittance_ * darkening_ * p_.sheen_color * sheen_scale_ * sheen_f(alpha_g_, wo_, wi);
-        l.reflection = under_layers * darkening_ * reflection_value(wi);
-        l.diffuse_reflection = under_layers * darkening_ * diffuse_ * (1 - p_.diffuse_transmission) *
+            l.sheen = fuzz_transmittance_ * coat_transmittance_ * darkening_ * p_.sheen_color * sheen_scale_ *
+                      sheen_f(alpha_g_, wo_, wi);
+        l.reflection = under_layers() * darkening_ * reflection_value(wi);
+        l.diffuse_reflection = under_layers() * darkening_ * diffuse_ * (1 - p_.diffuse_transmission) *
                                eon_f(p_.base_color, p_.diffuse_roughness, wo_, wi);
-        l.again_up = under_layers * darkening_ / PI_D * again_up_;
+        l.again_up = under_layers() * darkening_ / PI_D * again_up_;
     } else {
-        l.transmission = under_layers * transmission_value(wi);
+        l.transmission = under_layers() * transmission_value(wi);
         // Radiance is divided by eta^2, however light gets through.
-        const double through = under_layers / (PI_D * square(p_.thin ? 1 : eta_));
+        const double through = under_layers() / (PI_D * square(p_.thin ? 1 : eta_));
         l.diffuse_transmission = through * diffuse_ * p_.diffuse_transmission * p_.diffuse_transmission_color;
         l.again_down = through * again_down_;
     }
@@ -311,11 +319,10 @@ PrincipledLobes PrincipledReference::ideal() const {
     if (!channels_.empty()) return by_channel([&](size_t k) { return channels_[k].ideal(); });
     PrincipledLobes l;
     if (has_coat_ && coat_ideal_ && reflect(wo_, p_.coat_normal).z > 0)
-        l.coat = dvec3(p_.coat * coat_fresnel(dot(wo_, p_.coat_normal)));
-    const double under_layers = coat_transmittance_ * sheen_transmittance_;
+        l.coat = dvec3(fuzz_transmittance_ * p_.coat * coat_fresnel(dot(wo_, p_.coat_normal)));
     if (!ideal_) return l;
-    l.reflection = under_layers * darkening_ * specular_fresnel(wo_.z);
-    l.transmission = under_layers * transmittance(wo_.z);
+    l.reflection = under_layers() * darkening_ * specular_fresnel(wo_.z);
+    l.transmission = under_layers() * transmittance(wo_.z);
     return l;
 }
 
@@ -356,6 +363,7 @@ PrincipledLobes PrincipledReference::albedos() const {
             return lobes(wi).coat * wi.z * 4.0 * dot(o, h) / visible_normals_pdf(coat_facets_, o, h);
         });
     }
+    if (has_fuzz_) l.fuzz = integrate_over_cosine(wo_, [&](dvec3 wi) { return lobes(wi).fuzz; });
     if (has_sheen_) l.sheen = integrate_over_cosine(wo_, [&](dvec3 wi) { return lobes(wi).sheen; });
     l.diffuse_reflection = integrate_over_cosine(wo_, [&](dvec3 wi) { return lobes(wi).diffuse_reflection; });
     // The others are Lambert's.

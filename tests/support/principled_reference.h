@@ -1,6 +1,6 @@
 // The principled material in double precision, from its definition and not from the shaders: a metal or a
-// dielectric over a diffuse or transmissive base, under sheen and a coat. What facets lose by shadowing each
-// other is given back diffusely. Shares of light are found by quadrature, not by fits.
+// dielectric over a diffuse or transmissive base, under sheen, coat and fuzz. What facets lose by shadowing
+// each other is given back diffusely. Shares of light are found by quadrature, not by fits.
 //
 // Local frame: z is the shading normal on the viewer's side, x the (rotated) tangent. wo, the viewer, has z >
 // 0; wi, the light, may lie on either side.
@@ -36,6 +36,9 @@ struct PrincipledParameters {
     dvec3 coat_normal{0, 0, 1};
     dvec3 sheen_color{0};
     double sheen_roughness = 0;
+    double fuzz = 0;
+    dvec3 fuzz_color{1};
+    double fuzz_roughness = 0.5;
     double iridescence = 0;
     double iridescence_ior = 1.3;
     double iridescence_thickness = 400;  // [nm]
@@ -44,10 +47,11 @@ struct PrincipledParameters {
 // A value for each lobe: of the BSDF [1/sr], or a share of light. They add up to the whole. The last two are
 // the light that facets scatter more than once, on the viewer's side and on the other.
 struct PrincipledLobes {
-    dvec3 coat{0}, sheen{0}, reflection{0}, transmission{0}, diffuse_reflection{0}, diffuse_transmission{0};
+    dvec3 fuzz{0}, coat{0}, sheen{0}, reflection{0}, transmission{0}, diffuse_reflection{0},
+        diffuse_transmission{0};
     dvec3 again_up{0}, again_down{0};
     dvec3 sum() const {
-        return coat + sheen + reflection + transmission + diffuse_reflection + diffuse_transmission +
+        return fuzz + coat + sheen + reflection + transmission + diffuse_reflection + diffuse_transmission +
                again_up + again_down;
     }
 };
@@ -75,8 +79,8 @@ class PrincipledReference {
     PrincipledLobes albedos() const;
     dvec3 albedo() const { return albedos().sum(); }
 
-    // What sheen and coat leave of light that the surface emits towards wo.
-    double emission_factor() const { return coat_transmittance_ * sheen_transmittance_; }
+    // What the layers leave of light that the surface emits towards wo.
+    double emission_factor() const { return under_layers(); }
 
     // Whether specular reflection and transmission, and the coat's reflection, are ideal. (Those of a volume
     // whose index is the air's are, at any roughness.)
@@ -111,6 +115,7 @@ class PrincipledReference {
     dvec3 reflection_value(dvec3 wi) const;
     dvec3 transmission_value(dvec3 wi) const;
     double coat_value(dvec3 wi) const;
+    double under_layers() const { return fuzz_transmittance_ * coat_transmittance_ * sheen_transmittance_; }
     dvec3 to_coat(dvec3 w) const;
     dvec3 from_coat(dvec3 w) const;
 
@@ -118,15 +123,16 @@ class PrincipledReference {
     dvec3 wo_;
     Facets facets_{}, coat_facets_{};
     bool ideal_ = false, coat_ideal_ = false, has_coat_ = false, has_sheen_ = false;
+    bool has_fuzz_ = false;
     double film_ = 0;  // Weight of iridescence.
-    double eta_ = 1, alpha_g_ = 1;
+    double eta_ = 1, alpha_g_ = 1, fuzz_roughness_ = 1;
     dvec3 f0_{0};                               // Of the dielectric at normal incidence, before `specular`.
     dvec3 film_metal_{0}, film_dielectric_{0};  // Reflectance of the film on either.
     dvec3 metal_f0_{0}, dielectric_f0_{0};      // With the film.
     Shares shares_{};
     dvec3 again_up_{0}, again_down_{0};  // Shares of light, before the layers.
     double diffuse_ = 0;                 // What reaches the opaque base.
-    double coat_transmittance_ = 1, sheen_transmittance_ = 1, sheen_scale_ = 1;
+    double fuzz_transmittance_ = 1, coat_transmittance_ = 1, sheen_transmittance_ = 1, sheen_scale_ = 1;
     dvec3 darkening_{1};
     dvec3 coat_x_{1, 0, 0}, coat_y_{0, 1, 0};
     std::vector<PrincipledReference> channels_;  // Under dispersion: the material for each one's index.

@@ -126,7 +126,10 @@ Scene layered_scene() {
     const uint32_t cloth = add({.base_color = orange,
                                 .roughness = 0.9f,
                                 .sheen_color = vec3(0.8f, 0.5f, 0.6f),
-                                .sheen_roughness = channel(1)});
+                                .sheen_roughness = channel(1),
+                                .fuzz = 0.6f,
+                                .fuzz_color = {orange, waves},
+                                .fuzz_roughness = channel(1)});
     const uint32_t glass = add({.base_color = vec3(0.9f, 1.0f, 0.9f),
                                 .roughness = 0.5f,
                                 .specular = 0.7f,
@@ -139,7 +142,10 @@ Scene layered_scene() {
                                .diffuse_transmission = 0.5f,
                                .diffuse_transmission_color = orange});
     const uint32_t lamp = add({.base_color = orange, .coat = 1.0f, .coat_roughness = 0.5f});
-    const uint32_t velvet_lamp = add({.sheen_color = vec3(0.9f, 0.2f, 0.5f), .sheen_roughness = 0.5f});
+    const uint32_t velvet_lamp = add({.sheen_color = vec3(0.9f, 0.2f, 0.5f),
+                                      .sheen_roughness = 0.5f,
+                                      .fuzz = 0.5f,
+                                      .fuzz_roughness = 0.8f});
 
     add_shape(scene, Sphere{dvec3(-0.5, 0.35, 0.2), 0.3}, metal);
     add_shape(scene, Sphere{dvec3(0.45, 0.3, 0.3), 0.25}, glass);

@@ -23,8 +23,8 @@ Texture add_texture(Scene& scene, uvec2 size, const std::function<vec4(uint32_t,
 // opacity, a normal map, the colours of vertices.
 Scene textured_scene();
 
-// Principled materials with each of their layers, some of whose values come from textures, lamps under coat
-// and sheen among them.
+// Principled materials with each of their layers, some of whose values come from textures, lamps under coat,
+// sheen and fuzz among them.
 Scene layered_scene();
 
 }  // namespace candela

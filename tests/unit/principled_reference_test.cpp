@@ -151,7 +151,8 @@ TEST(PrincipledReference, WhiteLayersLoseNoLight) {
                                        .coat = 0.8,
                                        .coat_roughness = 0.7,
                                        .sheen_color = dvec3(0.8),
-                                       .sheen_roughness = 0.4};
+                                       .sheen_roughness = 0.4,
+                                       .fuzz = 0.7};
     PrincipledParameters volume = layered;
     volume.thin = false;
     expect_lossless(layered);
@@ -186,6 +187,9 @@ PrincipledParameters random_parameters(std::mt19937& random) {
     p.coat_normal = unit(random) < 0.3 ? view(0.8 + 0.2 * unit(random)) : dvec3(0, 0, 1);
     p.sheen_color = unit(random) < 0.3 ? color() : dvec3(0);
     p.sheen_roughness = unit(random);
+    p.fuzz = unit(random) < 0.3 ? often_one() : 0;
+    p.fuzz_color = color();
+    p.fuzz_roughness = unit(random);
     p.iridescence = sometimes(often_one());
     p.iridescence_ior = 1 + unit(random);
     p.iridescence_thickness = 800 * unit(random);
@@ -201,8 +205,8 @@ TEST(PrincipledReference, NoMaterialGainsLight) {
             PrincipledReference(material, view(0.01 + 0.99 * i / MATERIALS, 6.28 * i / 7)).albedos();
         for (int k = 0; k < 3; ++k) {
             EXPECT_LE(l.sum()[k], 1.0005) << "material " << i;
-            for (const dvec3 lobe : {l.coat, l.sheen, l.reflection, l.transmission, l.diffuse_reflection,
-                                     l.diffuse_transmission, l.again_up, l.again_down})
+            for (const dvec3 lobe : {l.fuzz, l.coat, l.sheen, l.reflection, l.transmission,
+                                     l.diffuse_reflection, l.diffuse_transmission, l.again_up, l.again_down})
                 EXPECT_GE(lobe[k], 0) << "material " << i;
         }
     }
@@ -401,6 +405,43 @@ TEST(PrincipledReference, SmoothSheenHidesTheBaseAtGrazingAngles) {
     EXPECT_GT(cloth.shares().es, 1);
     expect_all(cloth.albedos().sheen, 1, TOLERANCE, "sheen");
     expect_all(cloth.albedo(), 1, TOLERANCE, "all");
+}
+
+// Its matrix keeps the horizon, so that the density of a hemisphere stays one.
+TEST(PrincipledReference, FuzzReflectsWhatItsFitSays) {
+    for (const double roughness : {0.1, 0.3, 0.6, 1.0}) {
+        for (const double cosine : {0.01, 0.1, 0.5, 1.0}) {
+            const dvec3 wo = view(cosine);
+            const double albedo =
+                integrate_over_cosine(wo, [&](dvec3 wi) { return dvec3(fuzz_f(roughness, wo, wi)); }).x;
+            EXPECT_NEAR(albedo, fuzz_albedo(roughness, cosine), TOLERANCE) << roughness << " " << cosine;
+        }
+    }
+}
+
+TEST(PrincipledReference, FuzzIsBrightestAtGrazingAnglesAndBackwards) {
+    for (const double roughness : {0.1, 0.5, 1.0})
+        EXPECT_GT(fuzz_albedo(roughness, 0.05), fuzz_albedo(roughness, 0.5));
+    const dvec3 wo = view(0.3);
+    EXPECT_GT(fuzz_f(0.5, wo, wo), fuzz_f(0.5, wo, dvec3(-wo.x, -wo.y, wo.z)));
+    // At a roughness of 1, the end of the fits, all azimuths are alike.
+    for (const double azimuth : {0.0, 1.0, 3.0})
+        EXPECT_NEAR(fuzz_f(1, wo, view(0.4, azimuth)), fuzz_f(1, wo, view(0.4, 2)), 1e-12);
+}
+
+TEST(PrincipledReference, FuzzTakesFromLayersBelowWhateverItsColour) {
+    const PrincipledReference cloth({.base_color = dvec3(0.5),
+                                     .metalness = 1,
+                                     .roughness = 0,
+                                     .fuzz = 0.5,
+                                     .fuzz_color = dvec3(1, 0.25, 0),
+                                     .fuzz_roughness = 0.4},
+                                    view(0.2));
+    const double reflected = 0.5 * fuzz_albedo(0.4, 0.2), below = 0.5 + 0.5 * std::pow(0.8, 5);
+    const dvec3 expected = reflected * dvec3(1, 0.25, 0) + (1 - reflected) * below;
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(cloth.albedo()[k], expected[k], TOLERANCE);
+    EXPECT_NEAR(cloth.emission_factor(), 1 - reflected, 1e-12);
 }
 
 TEST(PrincipledReference, DispersionSpreadsTheIndicesAboutGreens) {

@@ -53,8 +53,10 @@ TEST_F(ScenePrincipled, IsPlasticByDefault) {
     EXPECT_EQ(m.specular_color, vec3(1));
     EXPECT_EQ(m.diffuse_transmission_color, vec3(1));
     EXPECT_EQ(m.sheen_color, vec3(0));
+    EXPECT_EQ(m.fuzz_color, vec3(1));
     EXPECT_EQ(m.emission, vec3(0));
     EXPECT_EQ(m.roughness, 0.5f);
+    EXPECT_EQ(m.fuzz_roughness, 0.5f);
     EXPECT_EQ(m.specular, 1.0f);
     EXPECT_EQ(m.ior, 1.5f);
     EXPECT_EQ(m.coat_ior, 1.5f);
@@ -63,7 +65,7 @@ TEST_F(ScenePrincipled, IsPlasticByDefault) {
     EXPECT_EQ(m.iridescence_thickness_min, 100.0f);
     for (const Textured<float>& value :
          {m.metalness, m.diffuse_roughness, m.anisotropy, m.transmission, m.diffuse_transmission, m.coat,
-          m.coat_roughness, m.sheen_roughness, m.iridescence})
+          m.coat_roughness, m.sheen_roughness, m.fuzz, m.iridescence})
         EXPECT_EQ(value, 0.0f);
     for (const float value : {m.anisotropy_rotation, m.dispersion, m.coat_darkening})
         EXPECT_EQ(value, 0.0f);
@@ -84,7 +86,8 @@ TEST_F(ScenePrincipled, ReadsAllKeys) {
            "diffuse_transmission": 0.0625, "diffuse_transmission_color": [0.5, 0.25, 0], "coat": 0.875,
            "coat_roughness": 0.03125, "coat_ior": 1.625, "coat_darkening": 0.6875,
            "coat_normal_map": {"image": "a.png", "scale": 2}, "sheen_color": [0, 1, 0.5],
-           "sheen_roughness": 0.1875, "iridescence": 0.3125, "iridescence_ior": 1.25,
+           "sheen_roughness": 0.1875, "fuzz": 0.5625, "fuzz_color": [0.5, 0, 1], "fuzz_roughness": 0.4375,
+           "iridescence": 0.3125, "iridescence_ior": 1.25,
            "iridescence_thickness": {"image": "a.png", "factor": 500}, "iridescence_thickness_min": 200,
            "emission": [1, 2, 3], "unlit": false, "double_sided": false)"));
     EXPECT_EQ(m.base_color, vec3(0.1f, 0.2f, 0.3f));
@@ -113,6 +116,9 @@ TEST_F(ScenePrincipled, ReadsAllKeys) {
     EXPECT_EQ(m.coat_normal_map->texture, Texture{});
     EXPECT_EQ(m.sheen_color, vec3(0, 1, 0.5f));
     EXPECT_EQ(m.sheen_roughness, 0.1875f);
+    EXPECT_EQ(m.fuzz, 0.5625f);
+    EXPECT_EQ(m.fuzz_color, vec3(0.5f, 0, 1));
+    EXPECT_EQ(m.fuzz_roughness, 0.4375f);
     EXPECT_EQ(m.iridescence, 0.3125f);
     EXPECT_EQ(m.iridescence_ior, 1.25f);
     EXPECT_EQ(m.iridescence_thickness.factor, 500.0f);
@@ -130,6 +136,7 @@ TEST_F(ScenePrincipled, TakesTexturesInEverySlot) {
         {"base_color", &M::base_color},
         {"specular_color", &M::specular_color},
         {"sheen_color", &M::sheen_color},
+        {"fuzz\": 1, \"fuzz_color", &M::fuzz_color},
         {"emission", &M::emission},
         {"diffuse_transmission\": 1, \"diffuse_transmission_color", &M::diffuse_transmission_color}};
     const std::pair<const char*, Number> numbers[] = {
@@ -143,6 +150,8 @@ TEST_F(ScenePrincipled, TakesTexturesInEverySlot) {
         {"coat", &M::coat},
         {"coat\": 1, \"coat_roughness", &M::coat_roughness},
         {"sheen_color\": 1, \"sheen_roughness", &M::sheen_roughness},
+        {"fuzz", &M::fuzz},
+        {"fuzz\": 1, \"fuzz_roughness", &M::fuzz_roughness},
         {"iridescence", &M::iridescence},
         {"iridescence\": 1, \"iridescence_thickness", &M::iridescence_thickness}};
     const auto with_image = [](const std::string& key) {
@@ -161,18 +170,19 @@ TEST_F(ScenePrincipled, TakesTexturesInEverySlot) {
 }
 
 TEST_F(ScenePrincipled, ChecksWeightsAndColours) {
-    for (const std::string key : {"metalness", "roughness", "diffuse_roughness", "specular", "anisotropy",
-                                  "transmission", "diffuse_transmission", "coat", "coat_roughness",
-                                  "coat_darkening", "sheen_roughness", "iridescence"}) {
-        const std::string with = R"("coat": 0, "sheen_color": 0, )";
+    for (const std::string key :
+         {"metalness", "roughness", "diffuse_roughness", "specular", "anisotropy", "transmission",
+          "diffuse_transmission", "coat", "coat_roughness", "coat_darkening", "sheen_roughness", "fuzz",
+          "fuzz_roughness", "iridescence"}) {
+        const std::string with = R"("coat": 0, "sheen_color": 0, "fuzz": 0, )";
         const std::string before = with.find('"' + key + '"') == std::string::npos ? with : "";
         const std::string expected = '"' + key + "\": expected a number from 0 to 1, found ";
         expect_error(before + '"' + key + "\": @1.5", expected + "1.5");
         expect_error(before + '"' + key + "\": @-0.5", expected + "-0.5");
     }
     for (const std::string key :
-         {"base_color", "specular_color", "sheen_color", "diffuse_transmission_color"}) {
-        expect_error("\"diffuse_transmission\": 1, \"" + key + "\": @[1, 2, 0]",
+         {"base_color", "specular_color", "sheen_color", "fuzz_color", "diffuse_transmission_color"}) {
+        expect_error("\"diffuse_transmission\": 1, \"fuzz\": 1, \"" + key + "\": @[1, 2, 0]",
                      '"' + key + "\": expected numbers from 0 to 1, found [1, 2, 0]");
     }
     expect_error("\"emission\": @-1", "\"emission\": expected numbers of at least 0, found -1");
@@ -220,6 +230,8 @@ TEST_F(ScenePrincipled, ThePartsOfALayerNeedTheLayer) {
         {"coat_darkening", "1", "coat"},
         {"coat_normal_map", R"({"image": "a.png"})", "coat"},
         {"sheen_roughness", "0.5", "sheen_color"},
+        {"fuzz_color", "0.5", "fuzz"},
+        {"fuzz_roughness", "0.5", "fuzz"},
         {"iridescence_ior", "1.4", "iridescence"},
         {"iridescence_thickness", "300", "iridescence"},
         {"iridescence_thickness_min", "300", "iridescence"}};

@@ -30,7 +30,7 @@ void set_boolean(const Node& node, std::string_view key, bool& value) {
 
 // Throws Error for a key that has no effect without another, which is absent.
 void check_companions(const Node& node) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 11> COMPANIONS{
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 13> COMPANIONS{
         {{"anisotropy_rotation", "anisotropy"},
          {"anisotropy_map", "anisotropy"},
          {"diffuse_transmission_color", "diffuse_transmission"},
@@ -39,6 +39,8 @@ void check_companions(const Node& node) {
          {"coat_darkening", "coat"},
          {"coat_normal_map", "coat"},
          {"sheen_roughness", "sheen_color"},
+         {"fuzz_color", "fuzz"},
+         {"fuzz_roughness", "fuzz"},
          {"iridescence_ior", "iridescence"},
          {"iridescence_thickness", "iridescence"},
          {"iridescence_thickness_min", "iridescence"}}};
@@ -152,6 +154,9 @@ void read_layers(const Node& node, const ImageFolder& images, PrincipledMaterial
     if (const auto map = node.find("coat_normal_map")) m.coat_normal_map = read_normal_map(*map, images);
     set_color(node, "sheen_color", images, m.sheen_color);
     set_weight(node, "sheen_roughness", images, m.sheen_roughness);
+    set_weight(node, "fuzz", images, m.fuzz);
+    set_color(node, "fuzz_color", images, m.fuzz_color);
+    set_weight(node, "fuzz_roughness", images, m.fuzz_roughness);
     set_weight(node, "iridescence", images, m.iridescence);
     set_number(node, "iridescence_ior", 1.0f, MAX_IOR, m.iridescence_ior);
     set_number(node, "iridescence_thickness_min", 0.0f, MAX_THICKNESS, m.iridescence_thickness_min);
@@ -193,6 +198,9 @@ MaterialModel read_principled(const Node& node, const ImageFolder& images) {
                      "coat_normal_map",
                      "sheen_color",
                      "sheen_roughness",
+                     "fuzz",
+                     "fuzz_color",
+                     "fuzz_roughness",
                      "iridescence",
                      "iridescence_ior",
                      "iridescence_thickness",
