@@ -1,4 +1,4 @@
-// The logical device: one compute queue, the pipeline cache, and the device's memory.
+// The logical device: one compute queue, the programs compiled for it, and the device's memory.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "vk/handle.h"
 #include "vk/instance.h"
 #include "vk/pipeline_cache.h"
+#include "vk/programs.h"
 
 namespace candela::vk {
 
@@ -57,6 +58,7 @@ class Device {
     VkDevice handle() const { return device_.get(); }
     VkQueue queue() const { return queue_; }
     VkPipelineCache pipeline_cache() const { return pipeline_cache_->handle(); }
+    Programs& programs() const { return programs_; }
 
   private:
     void set_object_name(VkObjectType type, uint64_t handle, const std::string& name) const;
@@ -67,6 +69,7 @@ class Device {
     Unique<VkDevice> device_;
     VkQueue queue_ = VK_NULL_HANDLE;
     std::optional<PipelineCache> pipeline_cache_;
+    mutable Programs programs_;
 };
 
 }  // namespace candela::vk

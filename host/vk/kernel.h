@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,24 +13,17 @@
 #include "vk/device.h"
 #include "vk/handle.h"
 #include "vk/image.h"
+#include "vk/programs.h"
 
 namespace candela::vk {
 
-enum class BindingType { texel_buffer, storage_buffer, uniform_buffer, storage_image };
-
-// What a kernel declares: layout(set = 0, binding = number), an array if there are several.
-struct Binding {
-    uint32_t number;
-    BindingType type;
-    uint32_t count = 1;
-};
-
 class Kernel {
   public:
-    // Compiles `spirv` (entry point "main"). `bindings` lists what the shader declares in set 0, at least
-    // one; `push_constant_size` is in bytes, a multiple of 4, or 0; `constants` are the values of
-    // specialization constants 0, 1, 2, … (32 bits each); `name` is for messages. Throws an Error that names
-    // the kernel and the limit if the device has too few bindings or push constants.
+    // Compiles `spirv` (entry point "main"), unless the device has compiled the same before. `bindings` lists
+    // what the shader declares in set 0, at least one; `push_constant_size` is in bytes, a multiple of 4, or
+    // 0; `constants` are the values of specialization constants 0, 1, 2, … (32 bits each); `name` is for
+    // messages. Throws an Error that names the kernel and the limit if the device has too few bindings or
+    // push constants.
     Kernel(const Device& device, std::span<const uint32_t> spirv, std::span<const Binding> bindings,
            uint32_t push_constant_size, std::span<const uint32_t> constants, const std::string& name);
 
@@ -41,13 +35,11 @@ class Kernel {
     const std::string& name() const { return name_; }
     uint32_t push_constant_size() const { return push_constant_size_; }
 
-    VkPipeline pipeline() const { return pipeline_.get(); }
-    VkPipelineLayout layout() const { return layout_.get(); }
+    VkPipeline pipeline() const { return program_->pipeline.get(); }
+    VkPipelineLayout layout() const { return program_->layout.get(); }
     VkDescriptorSet descriptor_set() const { return set_; }
 
   private:
-    void create_layouts();
-    void create_pipeline(std::span<const uint32_t> spirv, std::span<const uint32_t> constants);
     void create_descriptor_set();
     // The write that fills the binding of that number, still without its resource.
     VkWriteDescriptorSet descriptor(uint32_t number) const;
@@ -56,9 +48,7 @@ class Kernel {
     std::string name_;
     std::vector<Binding> bindings_;
     uint32_t push_constant_size_;
-    Unique<VkDescriptorSetLayout, VkDevice> set_layout_;
-    Unique<VkPipelineLayout, VkDevice> layout_;
-    Unique<VkPipeline, VkDevice> pipeline_;
+    std::shared_ptr<const Program> program_;
     Unique<VkDescriptorPool, VkDevice> pool_;
     VkDescriptorSet set_ = VK_NULL_HANDLE;  // Freed with the pool.
 };

@@ -131,6 +131,7 @@ std::vector<CompiledKernel> compile_scene_kernels(const vk::Device& device, cons
                                                   const RenderSettings& settings,
                                                   const std::vector<SceneAccess>& accesses) {
     const GpuScene gpu_scene = build_gpu_scene(scene);
+    device.programs().forget();  // Another scene may have had the same kernels.
     const auto compile_all = device.info().statistics ? describe_all : time_all;
     return compile_all(device, name, gpu_scene, camera, settings, accesses);
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstring>
 #include <numeric>
+#include <set>
 #include <vector>
 
 #include "vk/buffer.h"
@@ -185,6 +186,52 @@ TEST_F(Vk, AResourceCanBeBoundInPlaceOfAnother) {
     commands.submit_and_wait();
     EXPECT_EQ(download(other, 0, 1), test.expected(1.0f));
     EXPECT_EQ(download(test.image, 0, 1), std::vector<float>(test.texel_words.size(), 0.0f));
+}
+
+// Two kernels of the same parts are one program with resources of their own; whatever differs makes another.
+TEST_F(Vk, OnlyKernelsOfTheSamePartsShareAProgram) {
+    const Device device(instance_, info_);
+    const TestKernel first(device), second(device);
+    EXPECT_EQ(first.kernel.pipeline(), second.kernel.pipeline());
+    std::array bindings = TEST_BINDINGS;
+    const auto kernel = [&](uint32_t push_bytes, std::span<const uint32_t> constants) {
+        return Kernel(device, kernels::vk_test, bindings, push_bytes, constants, "vk_test");
+    };
+    std::vector<Kernel> all;
+    all.push_back(kernel(sizeof(TestPush), TestKernel::CONSTANTS));
+    all.push_back(kernel(2 * sizeof(TestPush), TestKernel::CONSTANTS));
+    all.push_back(kernel(sizeof(TestPush), {{3, 6}}));
+    all.push_back(kernel(sizeof(TestPush), {{3}}));
+    bindings[1].count = 2;
+    all.push_back(kernel(sizeof(TestPush), TestKernel::CONSTANTS));
+    std::vector<uint32_t> spirv(kernels::vk_test.begin(), kernels::vk_test.end());
+    spirv[2] += 1;  // The number of the tool that made it, which means nothing.
+    all.emplace_back(device, spirv, TEST_BINDINGS, sizeof(TestPush), TestKernel::CONSTANTS, "vk_test");
+    EXPECT_EQ(all[0].pipeline(), first.kernel.pipeline());
+    std::set<VkPipeline> pipelines;
+    for (const Kernel& each : all)
+        pipelines.insert(each.pipeline());
+    EXPECT_EQ(pipelines.size(), all.size());
+
+    Commands commands(device);
+    first.dispatch(commands, {.layer = 0, .gain = 1.0f});
+    second.dispatch(commands, {.layer = 0, .gain = 2.0f});
+    commands.submit_and_wait();
+    EXPECT_EQ(download(first.image, 0, 1), first.expected(1.0f));
+    EXPECT_EQ(download(second.image, 0, 1), second.expected(2.0f));
+}
+
+// The device forgets programs when there are many, but not those that are used.
+TEST_F(Vk, AProgramLivesAsLongAsItsKernel) {
+    const Device device(instance_, info_);
+    const TestKernel test(device);
+    for (uint32_t i = 0; i < 2 * MOST_PROGRAMS; ++i)
+        Kernel(device, kernels::vk_test, TEST_BINDINGS, sizeof(TestPush), {{i}}, "vk_test");
+    EXPECT_LE(device.programs().count(), MOST_PROGRAMS);
+    Commands commands(device);
+    test.dispatch(commands, {.layer = 1, .gain = 2.0f});
+    commands.submit_and_wait();
+    EXPECT_EQ(download(test.image, 1, 1), test.expected(2.0f));
 }
 
 TEST_F(Vk, WorkIsTimedByTheDeviceOrTheHost) {
