@@ -20,4 +20,7 @@ void add_texture_limit(CLI::App& app, std::optional<uint32_t>& limit);
 Scene load_with_progress(const std::string& file, std::optional<uint32_t> texture_limit,
                          ProgressStyle style = ProgressStyle::automatic);
 
+// Prints a warning if the scene has lights that the estimator cannot find.
+void warn_of_unseen_lights(const Scene& scene, Estimator estimator);
+
 }  // namespace candela

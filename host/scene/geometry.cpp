@@ -50,6 +50,16 @@ uint64_t triangles_of(const Scene&, const Disk&) {
     return 0;
 }
 
+vec3 brightness(const DirectionalLight& light) {
+    return light.irradiance;
+}
+
+// Of a point or spot light.
+template <class Model>
+vec3 brightness(const Model& light) {
+    return light.intensity;
+}
+
 }  // namespace
 
 DoubleBox bounds(const Scene& scene, const Shape& shape) {
@@ -82,6 +92,10 @@ size_t emitter_count(const Scene& scene) {
 bool gives_light(const Environment& environment) {
     return std::any_of(environment.radiance.begin(), environment.radiance.end(),
                        [](vec3 radiance) { return radiance != vec3(0.0f); });
+}
+
+bool gives_light(const Light& light) {
+    return std::visit([](const auto& model) { return brightness(model) != vec3(0.0f); }, light.model);
 }
 
 }  // namespace candela

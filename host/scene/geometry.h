@@ -20,4 +20,7 @@ size_t emitter_count(const Scene& scene);
 // Whether an environment is brighter than 0 anywhere.
 bool gives_light(const Environment& environment);
 
+// Whether a light is not black.
+bool gives_light(const Light& light);
+
 }  // namespace candela

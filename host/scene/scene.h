@@ -32,8 +32,8 @@ struct Camera {
     dvec3 look_at{0, 0, -1};
     vec3 up{0, 1, 0};
     float vertical_fov = 0.0f;  // Full angle [rad], in (0, pi).
-    // Full height of the view [m], above 0. If there is one, all rays are parallel and leave the plane through
-    // the position; the camera has no field of view and no lens.
+    // Full height of the view [m], above 0. If there is one, all rays are parallel and leave the plane
+    // through the position; the camera has no field of view and no lens.
     std::optional<double> ortho_height{};
     Lens lens;
 
@@ -250,15 +250,15 @@ struct Environment {
     bool visible = true;                  // To camera rays; light and reflections come from it in any case.
 };
 
-// Light from a point, equal in all directions. No surface shows it, nor the two below: only light samples find
-// them.
+// Light from a point, equal in all directions. No surface shows it, nor the two below: only light samples
+// find them.
 struct PointLight {
     dvec3 position{0};
     vec3 intensity{1};  // [W/sr], each >= 0 and finite.
 };
 
-// Light from a point into a cone. Between the angles it falls off as glTF's KHR_lights_punctual recommends: with
-// the square of a number that is linear in the cosine.
+// Light from a point into a cone. Between the angles it falls off as glTF's KHR_lights_punctual recommends:
+// with the square of a number that is linear in the cosine.
 struct SpotLight {
     dvec3 position{0};
     dvec3 direction{0, 0, -1};      // Of the axis, of any length above 0.

@@ -89,6 +89,7 @@ TEST_F(PictureIdentity, AnotherSceneIsAnother) {
                       if (shape.emission) shape.emission->radiance.factor *= 1.01f;
                   }
               }),
+    EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.lights = {{"", PointLight{}}}; }), another);
               another);
 }
 

@@ -133,6 +133,12 @@ GOOD = {
         "pane": {"type": "rough_dielectric", "ior": 1.5, "roughness": 0.3, "thin_walled": True},
     },
     "environment": {"file": "sky.hdr", "rotation": 90, "intensity": 2, "visible": False},
+    "lights": [
+        {"type": "point", "name": "bulb", "position": [0, 1, 0], "intensity": 3},
+        {"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "intensity": [1, 2, 3], "inner_angle": 5},
+        {"type": "spot", "position": [0, 1, 0], "look_at": [0, 0, 0], "intensity": 1, "outer_angle": 90},
+        {"type": "directional", "direction": [0, -1, 0], "irradiance": [1, 2, 3]},
+    ],
     "shapes": [
         {
             "type": "box",
@@ -166,7 +172,20 @@ BAD = [
     (["materials", "gold", "alpha"], {"image": "a.png", "factor": -1}),
     (["cameras"], REMOVE),
     (["cameras"], {}),
-    (["lights"], []),
+    (["lamps"], []),
+    (["lights"], {}),
+    (["lights", 0, "type"], "area"),
+    (["lights", 0, "position"], REMOVE),
+    (["lights", 0, "intensity"], -1),
+    (["lights", 0, "direction"], [0, -1, 0]),
+    (["lights", 0, "name"], 1),
+    (["lights", 1, "direction"], REMOVE),
+    (["lights", 1, "look_at"], [0, 0, 0]),
+    (["lights", 1, "inner_angle"], -1),
+    (["lights", 2, "outer_angle"], 91),
+    (["lights", 3, "irradiance"], REMOVE),
+    (["lights", 3, "intensity"], 1),
+    (["lights", 3, "position"], [0, 0, 0]),
     (["cameras", "main", "vertical_fov"], 180),
     (["cameras", "main", "vertical_fov"], REMOVE),
     (["cameras", "main", "focal_length"], 0.035),
@@ -295,6 +314,7 @@ ALSO_GOOD = [
 ]
 
 
+    (["lights"], []),
 def changed(path, value):
     """GOOD with one value replaced, added or removed."""
     scene = copy.deepcopy(GOOD)

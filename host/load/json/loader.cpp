@@ -47,6 +47,13 @@ bool has_unlit_shape(const Scene& scene) {
     });
 }
 
+// Whether the picture shows anything but black.
+bool has_light(const Scene& scene) {
+    const bool lit = std::ranges::any_of(scene.lights, [](const Light& light) { return gives_light(light); });
+    return lit || emitter_count(scene) > 0 || (scene.environment && gives_light(*scene.environment)) ||
+           has_unlit_shape(scene);
+}
+
 }  // namespace
 
 Scene load_json_scene(const std::filesystem::path& path) {
@@ -56,7 +63,8 @@ Scene load_json_scene(const std::filesystem::path& path) {
 Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder) {
     const json::Value document = json::parse(text, file);
     const Node root(file, "", document);
-    root.allow_only({"$schema", "cameras", "film", "integrator", "materials", "shapes", "environment"});
+    root.allow_only(
+        {"$schema", "cameras", "film", "integrator", "materials", "shapes", "lights", "environment"});
 
     Scene scene;
     if (const auto film = root.find("film")) scene.film = read_film(*film);
@@ -71,14 +79,14 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
     }
     const Node shapes = root.require("shapes");
     read_shapes(shapes, folder, scene);
+    if (const auto lights = root.find("lights")) scene.lights = read_lights(*lights, scene);
     if (const auto environment = root.find("environment")) {
         scene.environment = read_environment(*environment, folder, scene);
     }
 
     if (scene.shapes.empty() && !scene.environment) {
         scene.warnings.push_back(shapes.place() + ": the scene has no shapes");
-    } else if (emitter_count(scene) == 0 && !(scene.environment && gives_light(*scene.environment)) &&
-               !has_unlit_shape(scene)) {
+    } else if (!has_light(scene)) {
         scene.warnings.push_back(shapes.place() + ": the scene has no light: the image will be black");
     }
     return scene;
