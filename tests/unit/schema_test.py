@@ -36,6 +36,7 @@ GOOD = {
             "focal_length": 5,
             "lens": {"radius": 0},
         },
+        "map": {"position": [0, 9, 0], "look_at": [0, 0, 0], "up": [0, 0, -1], "orthographic_height": 4},
     },
     "film": {"size": [640, 480]},
     "integrator": {"spp": 1, "max_depth": 5, "estimator": "mis"},
@@ -132,13 +133,13 @@ GOOD = {
         },
         "pane": {"type": "rough_dielectric", "ior": 1.5, "roughness": 0.3, "thin_walled": True},
     },
-    "environment": {"file": "sky.hdr", "rotation": 90, "intensity": 2, "visible": False},
     "lights": [
         {"type": "point", "name": "bulb", "position": [0, 1, 0], "intensity": 3},
         {"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "intensity": [1, 2, 3], "inner_angle": 5},
         {"type": "spot", "position": [0, 1, 0], "look_at": [0, 0, 0], "intensity": 1, "outer_angle": 90},
         {"type": "directional", "direction": [0, -1, 0], "irradiance": [1, 2, 3]},
     ],
+    "environment": {"file": "sky.hdr", "rotation": 90, "intensity": 2, "visible": False},
     "shapes": [
         {
             "type": "box",
@@ -199,6 +200,10 @@ BAD = [
     (["cameras", "main", "lens", "blades"], REMOVE),
     (["cameras", "main", "lens", "fstop"], 8),
     (["cameras", "pinhole", "lens", "radius"], 0.01),
+    (["cameras", "map", "orthographic_height"], 0),
+    (["cameras", "map", "vertical_fov"], 40),
+    (["cameras", "map", "lens"], {"radius": 0}),
+    (["cameras", "main", "orthographic_height"], 4),
     (["film", "size"], [0, 480]),
     (["film", "size"], [640.5, 480]),
     (["film", "size"], [640]),
@@ -309,12 +314,12 @@ ALSO_GOOD = [
     (["materials", "plastic", "iridescence"], 0),
     (["materials", "silk", "coat"], 0),
     (["materials", "pane", "thin_walled"], REMOVE),
+    (["lights"], []),
     (["environment"], REMOVE),
     (["environment"], {"radiance": [1, 0, 0.5], "intensity": 0, "visible": True}),
 ]
 
 
-    (["lights"], []),
 def changed(path, value):
     """GOOD with one value replaced, added or removed."""
     scene = copy.deepcopy(GOOD)
