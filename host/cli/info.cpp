@@ -69,6 +69,28 @@ Json images_of(const Scene& scene) {
     return images;
 }
 
+const char* kind_of(const PointLight&) {
+    return "point";
+}
+
+const char* kind_of(const SpotLight&) {
+    return "spot";
+}
+
+const char* kind_of(const DirectionalLight&) {
+    return "directional";
+}
+
+// The lights that no surface shows.
+Json punctual_lights_of(const Scene& scene) {
+    Json lights = Json::array();
+    for (const Light& light : scene.lights) {
+        const char* kind = std::visit([](const auto& model) { return kind_of(model); }, light.model);
+        lights.push_back({{"name", light.name}, {"type", kind}});
+    }
+    return lights;
+}
+
 Json describe(const InfoOptions& options, const Scene& scene, const GpuScene& gpu) {
     std::vector<std::string> warnings = scene.warnings;
     std::ranges::copy(gpu.warnings, std::back_inserter(warnings));
@@ -84,6 +106,7 @@ Json describe(const InfoOptions& options, const Scene& scene, const GpuScene& gp
     return {{"scene", options.scene},
             {"primitives", gpu.id_count},
             {"lights", gpu.light_count},
+            {"punctual_lights", punctual_lights_of(scene)},
             {"environment", environment_of(gpu)},
             {"materials", scene.materials.size()},
             {"images", images_of(scene)},
@@ -121,6 +144,16 @@ std::string bounds_text(const Json& bounds) {
     return point(bounds[0]) + " to " + point(bounds[1]) + " m";
 }
 
+// `3: sun (directional), lamp (spot)`: how many there are, and those that no surface shows by name.
+std::string lights_text(const Json& info) {
+    std::string text = info["lights"].dump();
+    for (const Json& light : info["punctual_lights"]) {
+        text += (&light == &info["punctual_lights"].front() ? ": " : ", ") +
+                light["name"].get<std::string>() + " (" + light["type"].get<std::string>() + ')';
+    }
+    return text;
+}
+
 void print(const Json& info) {
     const auto row = [](const char* key, const std::string& value) {
         std::printf("%-14s%s\n", key, value.c_str());
@@ -130,7 +163,7 @@ void print(const Json& info) {
     };
     row("scene", info["scene"].get<std::string>());
     row("primitives", info["primitives"].dump());
-    row("lights", info["lights"].dump());
+    row("lights", lights_text(info));
     const Json& environment = info["environment"];
     row("environment",
         environment.is_null() ? "none" : environment[0].dump() + 'x' + environment[1].dump() + " texels");

@@ -1,6 +1,8 @@
 // See loading.h.
 #include "cli/loading.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
@@ -8,6 +10,7 @@
 #include "cli/console.h"
 #include "cli/progress_line.h"
 #include "load/load.h"
+#include "scene/geometry.h"
 #include "scene/names.h"
 #include "shared/texture.h"
 
@@ -49,6 +52,15 @@ Scene load_with_progress(const std::string& file, const LoadingOptions& given, P
     for (const std::string& warning : scene.warnings)
         print_warning(warning);
     return scene;
+}
+
+void warn_of_unseen_lights(const Scene& scene, Estimator estimator) {
+    const auto lit = [](const Light& light) { return gives_light(light); };
+    if (estimator != Estimator::bsdf || !std::ranges::any_of(scene.lights, lit)) return;
+    print_warning(
+        "the estimator bsdf does not find the point, spot and directional lights of this scene, which no "
+        "surface "
+        "shows; use mis or light");
 }
 
 }  // namespace candela

@@ -12,4 +12,7 @@ namespace candela {
 Scene load_with_progress(const std::string& file, const LoadingOptions& options,
                          ProgressStyle style = ProgressStyle::automatic);
 
+// Prints a warning if the scene has lights that the estimator cannot find.
+void warn_of_unseen_lights(const Scene& scene, Estimator estimator);
+
 }  // namespace candela

@@ -41,9 +41,17 @@ glm::dmat4 world_to_camera(const Camera& camera) {
 
 // From the world to OpenEXR's normalised device coordinates, after the division by w: x to the right and y
 // down, (0,0) and (1,1) the upper left and lower right corners of the display window. The standard leaves z
-// open; here it is the inverse of the depth [1/m], so that the matrix can be inverted.
+// open; here it is the inverse of the depth [1/m], so that the matrix can be inverted; of an orthographic
+// camera, whose w is 1, the depth [m].
 glm::dmat4 world_to_ndc(const Camera& camera, uvec2 size) {
     using glm::dvec4;
+    if (camera.ortho_height) {
+        const double height = *camera.ortho_height;
+        const double width = height * size.x / size.y;
+        const glm::dmat4 projection(dvec4(1.0 / width, 0, 0, 0), dvec4(0, -1.0 / height, 0, 0),
+                                    dvec4(0, 0, 1, 0), dvec4(0.5, 0.5, 0, 1));
+        return projection * world_to_camera(camera);
+    }
     const double tan_y = std::tan(0.5 * double(camera.vertical_fov));
     const double tan_x = tan_y * size.x / size.y;
     const glm::dmat4 projection(dvec4(0.5 / tan_x, 0, 0, 0), dvec4(0, -0.5 / tan_y, 0, 0),

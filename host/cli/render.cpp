@@ -271,6 +271,7 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
     std::optional<Image> reference;
     if (options.reference) reference = load_reference(*options.reference, job.settings);
 
+    warn_of_unseen_lights(scene, job.settings.estimator);
     const GpuScene gpu_scene = build_gpu_scene_freeing_images(scene);
     for (const std::string& warning : gpu_scene.warnings)
         print_warning(warning);

@@ -144,7 +144,7 @@ void RenderOptions::add_sampling_options(CLI::App& app) {
     add_value(app, "--rr-depth", rr_depth, parse_depth, depths, "Bounces before Russian roulette begins")
         ->type_name("N");
     add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
-               "How direct light is sampled; mis has the least noise");
+               "How direct light is sampled; mis has the least noise, bsdf misses lights without a surface");
     add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
 }
 

@@ -118,6 +118,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
                           .exposure_ev = float(options.images.exposure),
                           .tonemap = options.images.tonemap};
 
+    warn_of_unseen_lights(scene, state.settings.estimator);
     const std::string name = std::filesystem::path(options.scene_file).stem().string();
     Window window(state.settings.size, !arguments.frames, name);
     vk::Instance::Options instance_wishes = instance_options();

@@ -18,6 +18,7 @@
 #include "gpu_scene/material_record.h"
 #include "gpu_scene/nesting.h"
 #include "gpu_scene/principled_record.h"
+#include "gpu_scene/punctual_lights.h"
 #include "gpu_scene/texture_table.h"
 #include "scene/geometry.h"
 #include "scene/materials.h"
@@ -306,6 +307,7 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<
         gpu.arrays[ARRAY_PRIMITIVES].resize(PRIMITIVE_WORDS);  // Traversal may read it all the same.
 
     append_light_textures(gpu, flat, bvh.order, textures);
+    add_punctual_lights(flat, scene, frame, bvh.bounds);
     if (scene.environment) {
         EnvironmentMap map = build_environment_map(*scene.environment);
         const bool is_light = add_environment_light(flat, map, bvh.bounds);

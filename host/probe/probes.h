@@ -55,6 +55,7 @@ struct LightItem {
 struct LightSample {
     vec3 wi, Li;
     float pdf;
+    uint32_t delta;  // Whether pdf is the probability of the light.
     vec3 shadow;
     float t_max;
     uint32_t occluded;  // Whether the shadow ray is.

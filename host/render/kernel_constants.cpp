@@ -23,7 +23,9 @@ uint32_t estimator_constant(Estimator estimator, uint32_t light_count) {
     return ESTIMATOR_MIS;
 }
 
-uint32_t aperture_constant(const Lens& lens) {
+uint32_t aperture_constant(const Camera& camera) {
+    if (camera.ortho_height) return APERTURE_NONE;
+    const Lens& lens = camera.lens;
     if (lens.radius == 0.0f) return APERTURE_PINHOLE;
     return lens.blades == 0 ? APERTURE_DISK : APERTURE_POLYGON;
 }
@@ -60,7 +62,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_ESTIMATOR] = estimator_constant(settings.estimator, scene.light_count);
     constants[CONSTANT_HAS_NORMALS] = scene.has_normals;
     constants[CONSTANT_HAS_AOVS] = settings.aovs;
-    constants[CONSTANT_APERTURE] = aperture_constant(camera.lens);
+    constants[CONSTANT_APERTURE] = aperture_constant(camera);
     constants[CONSTANT_ENVIRONMENT] = scene.environment;
     constants[CONSTANT_EVEN_SKY] = scene.even_sky;
     constants[CONSTANT_MATERIALS] = scene.materials_present;

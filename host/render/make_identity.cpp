@@ -26,9 +26,8 @@ std::string exact(const glm::vec<3, Number>& v) {
     return exact(v.x) + ' ' + exact(v.y) + ' ' + exact(v.z);
 }
 
-std::string camera_text(const Camera& camera) {
-    std::string text = "at " + exact(camera.position) + " towards " + exact(camera.look_at) + ", up " +
-                       exact(camera.up) + ", field of view " + exact(camera.vertical_fov) + " rad";
+std::string perspective_text(const Camera& camera) {
+    std::string text = ", field of view " + exact(camera.vertical_fov) + " rad";
     const Lens& lens = camera.lens;
     if (lens.radius > 0.0f) {
         text += ", lens of radius " + exact(lens.radius) + " focused at " + exact(lens.focal_distance);
@@ -36,6 +35,13 @@ std::string camera_text(const Camera& camera) {
             text += ", " + std::to_string(lens.blades) + " blades at " + exact(lens.rotation) + " rad";
     }
     return text;
+}
+
+std::string camera_text(const Camera& camera) {
+    const std::string text =
+        "at " + exact(camera.position) + " towards " + exact(camera.look_at) + ", up " + exact(camera.up);
+    return text + (camera.ortho_height ? ", orthographic, " + exact(*camera.ortho_height) + " m high"
+                                       : perspective_text(camera));
 }
 
 std::string frame_text(const SceneFrame& frame) {

@@ -63,15 +63,17 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
     const vec3 forward(normalize(camera.look_at - camera.position));
     const vec3 right = normalize(cross(forward, camera.up));
     const vec3 up = cross(right, forward);
-    const float tan_y = std::tan(0.5f * camera.vertical_fov);
-    const float tan_x = tan_y * float(settings.size.x) / float(settings.size.y);
+    // Half the view, at distance 1 or of parallel rays.
+    const float half_y = camera.ortho_height ? 0.5f * frame.length(*camera.ortho_height)
+                                             : std::tan(0.5f * camera.vertical_fov);
+    const float half_x = half_y * float(settings.size.x) / float(settings.size.y);
     const Lens& lens = camera.lens;
     const float lens_radius = frame.length(double(lens.radius));
     const float cos_lens = std::cos(lens.rotation);
     const float sin_lens = std::sin(lens.rotation);
     return {.position = frame.point(camera.position),
-            .right = tan_x * right,
-            .up = tan_y * up,
+            .right = half_x * right,
+            .up = half_y * up,
             .forward = forward,
             .full_size = settings.size,
             .crop = {settings.crop.x0, settings.crop.y0},

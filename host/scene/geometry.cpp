@@ -50,6 +50,16 @@ uint64_t triangles_of(const Scene&, const Disk&) {
     return 0;
 }
 
+vec3 brightness(const DirectionalLight& light) {
+    return light.irradiance;
+}
+
+// Of a point or spot light.
+template <class Model>
+vec3 brightness(const Model& light) {
+    return light.intensity;
+}
+
 }  // namespace
 
 DoubleBox bounds(const Scene& scene, const Shape& shape) {
@@ -79,16 +89,23 @@ size_t emitter_count(const Scene& scene) {
                                 [](const Shape& shape) { return shape.emission.has_value(); }));
 }
 
-bool has_unlit_shape(const Scene& scene) {
-    return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
-        const auto* m = std::get_if<PrincipledMaterial>(&scene.materials[shape.material].model);
-        return m != nullptr && m->unlit;
-    });
-}
-
 bool gives_light(const Environment& environment) {
     return std::any_of(environment.radiance.begin(), environment.radiance.end(),
                        [](vec3 radiance) { return radiance != vec3(0.0f); });
+}
+
+bool gives_light(const Light& light) {
+    return std::visit([](const auto& model) { return brightness(model) != vec3(0.0f); }, light.model);
+}
+
+bool has_light(const Scene& scene) {
+    const auto is_unlit = [&](const Shape& shape) {
+        const auto* m = std::get_if<PrincipledMaterial>(&scene.materials[shape.material].model);
+        return m != nullptr && m->unlit;
+    };
+    return emitter_count(scene) > 0 || (scene.environment && gives_light(*scene.environment)) ||
+           std::ranges::any_of(scene.lights, [](const Light& light) { return gives_light(light); }) ||
+           std::ranges::any_of(scene.shapes, is_unlit);
 }
 
 }  // namespace candela

@@ -17,10 +17,13 @@ uint64_t triangle_count(const Scene& scene);
 // How many shapes emit light; the environment is not one of them.
 size_t emitter_count(const Scene& scene);
 
-// Whether a shape shows a colour without any light.
-bool has_unlit_shape(const Scene& scene);
-
 // Whether an environment is brighter than 0 anywhere.
 bool gives_light(const Environment& environment);
+
+// Whether a light is not black.
+bool gives_light(const Light& light);
+
+// Whether the picture shows anything but black: light, or a shape that shows its colour without any.
+bool has_light(const Scene& scene);
 
 }  // namespace candela

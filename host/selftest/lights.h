@@ -33,4 +33,8 @@ Evidence test_spheres_from_outside(const vk::Device& device, Effort effort);
 Evidence test_spheres_from_inside(const vk::Device& device, Effort effort);
 Evidence test_disks(const vk::Device& device, Effort effort);
 
+// Point, spot and directional lights, beside an emitter and alone, are chosen by their power; their samples
+// say what arrives, and that nothing else finds it; a square in between hides them.
+Evidence test_punctual_lights(const vk::Device& device, Effort effort);
+
 }  // namespace candela

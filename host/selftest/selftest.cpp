@@ -107,6 +107,7 @@ std::vector<Row> rows() {
          "samples",
          {test_flat_light_points, always<through_both_buffers<test_flat_light_values>>}},
         {"round lights", "samples", {test_spheres_from_outside, test_spheres_from_inside, test_disks}},
+        {"punctual lights", "samples", {test_punctual_lights}},
         {"skies", "samples", {always<test_sky_lookup>, test_sky_samples, test_choice_of_sky}},
         {"furnace", "images", {test_furnace}},
         {"bsdf = light = mis", "images", {test_estimators}},

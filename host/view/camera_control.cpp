@@ -61,6 +61,12 @@ std::string lens_json(const Lens& lens) {
     return text + " }";
 }
 
+std::string projection_json(const Camera& camera) {
+    if (camera.ortho_height) return ",\n      \"orthographic_height\": " + number(*camera.ortho_height);
+    return ",\n      \"vertical_fov\": " + number(glm::degrees(double(camera.vertical_fov))) +
+           ",\n      \"lens\": " + lens_json(camera.lens);
+}
+
 }  // namespace
 
 void orbit(Camera& camera, float azimuth, float elevation) {
@@ -80,12 +86,18 @@ void orbit(Camera& camera, float azimuth, float elevation) {
 
 void pan(Camera& camera, vec2 shift) {
     const Frame frame = frame_of(camera);
-    const double height =
-        2.0 * std::tan(0.5 * double(camera.vertical_fov)) * length(camera.look_at - camera.position);
+    const double height = camera.ortho_height.value_or(2.0 * std::tan(0.5 * double(camera.vertical_fov)) *
+                                                       length(camera.look_at - camera.position));
     move(camera, -height * (double(shift.x) * frame.right + double(shift.y) * frame.up));
 }
 
 void dolly(Camera& camera, float factor) {
+    if (camera.ortho_height) {
+        // Within what scene files may say.
+        camera.ortho_height = std::clamp(double(factor) * *camera.ortho_height, 2.0 * double(FLOAT_MIN),
+                                         0.5 * double(FLOAT_MAX));
+        return;
+    }
     const dvec3 out = camera.position - camera.look_at;
     const double distance = length(out);
     const double least = LEAST_DISTANCE * length(camera.look_at) + double(FLOAT_MIN);
@@ -100,8 +112,7 @@ void fly(Camera& camera, dvec3 shift) {
 std::string camera_json(const Camera& camera, const std::string& name) {
     return "{\n  \"cameras\": {\n    " + quote(name) + ": {\n      \"position\": " + vector(camera.position) +
            ",\n      \"look_at\": " + vector(camera.look_at) + ",\n      \"up\": " + vector(camera.up) +
-           ",\n      \"vertical_fov\": " + number(glm::degrees(double(camera.vertical_fov))) +
-           ",\n      \"lens\": " + lens_json(camera.lens) + "\n    }\n  }\n}\n";
+           projection_json(camera) + "\n    }\n  }\n}\n";
 }
 
 }  // namespace candela

@@ -17,7 +17,8 @@ void orbit(Camera& camera, float azimuth, float elevation);
 // `shift`, x to the right, y up, in heights of the picture.
 void pan(Camera& camera, vec2 shift);
 
-// Brings the camera to `factor` (above 0) times its distance from what it looks at.
+// Brings the camera to `factor` (above 0) times its distance from what it looks at; an orthographic one sees
+// so many times as much from the same place.
 void dolly(Camera& camera, float factor);
 
 // Moves the camera and what it looks at by `shift`: to the right, up, forwards, in the camera's frame [m].

@@ -70,6 +70,10 @@ void Viewer::apply(const ViewRequests& requests) {
 }
 
 void Viewer::set_focus(vec2 place) {
+    if (state_.camera.ortho_height) {
+        tell("an orthographic camera is sharp everywhere");
+        return;
+    }
     const uvec2 size = figures_.size;
     const uvec2 pixel = min(uvec2(max(place, 0.0f) * vec2(size)), size - 1u);
     const float depth = renderer_->positions()[4 * (size_t(pixel.y) * size.x + pixel.x) + 3];

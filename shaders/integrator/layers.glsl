@@ -71,7 +71,7 @@ float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
 
 // The same of a sample of a light.
 float emitted_share(LightSample light, LitPoint lit) {
-    if (is_light(light_at(light.light), LIGHT_ENVIRONMENT)) return 1.0;
+    if (!light_has_surface(light_at(light.light))) return 1.0;
     uvec4 bits = hash_pcg4d(uvec4(floatBitsToUint(light.wi), floatBitsToUint(lit.p.x)));
     return emitted_share(scene_light_textures(light.light).material, light_sample_attributes(light, lit),
                          light_sample_cosine(light, lit), unit_float(bits.xy));

@@ -1,4 +1,4 @@
-// Writes what the pinhole ray through the centre of each pixel hits: position and distance along the camera's axis, in
+// Writes what the sharp ray through the centre of each pixel hits: position and distance along the camera's axis, in
 // the frame of the scene. A pixel whose ray misses holds 0 0 0 and infinity.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -15,7 +15,7 @@ void main() {
     if (any(greaterThanEqual(gl_GlobalInvocationID.xy, tile.size))) return;
     uvec2 at = tile.origin + gl_GlobalInvocationID.xy;
     Parameters parameters = scene_parameters();
-    Ray ray = camera_ray_pinhole(parameters, vec2(parameters.crop + at) + 0.5);
+    Ray ray = camera_ray_sharp(parameters, vec2(parameters.crop + at) + 0.5);
     Hit hit = bvh_intersect(ray);
     vec4 value = vec4(vec3(0.0), uintBitsToFloat(0x7F800000u));
     if (is_hit(hit)) {

@@ -4,8 +4,11 @@
 
 #include "base/sampler.glsl"
 #include "light/area.glsl"
+#include "light/directional.glsl"
 #include "light/environment.glsl"
+#include "light/point.glsl"
 #include "light/sphere.glsl"
+#include "light/spot.glsl"
 #include "scene/material.glsl"
 
 // The light of a scene that has only one; an invocation reads it once.
@@ -38,15 +41,15 @@ Attributes light_attributes(uint i, LightRecord l, vec2 b, vec3 n) {
     return attributes_at(place);
 }
 
-// The attributes of the light's surface at a sample for that point; not of the environment.
+// The attributes of the light's surface at a sample for that point; only if it has one.
 Attributes light_sample_attributes(LightSample s, LitPoint lit) {
     LightRecord l = light_at(s.light);
     vec3 n = (lit.p + s.shadow - l.p) / l.e1.x;
     return light_attributes(s.light, l, area_light_coordinates(l, s.u), n);
 }
 
-// Cosine between the ray to the sample and the normal of the light's surface there, on the side that is seen; not of the
-// environment.
+// Cosine between the ray to the sample and the normal of the light's surface there, on the side that is seen; only if it
+// has one.
 float light_sample_cosine(LightSample s, LitPoint lit) {
     LightRecord l = light_at(s.light);
     vec3 n = is_light(l, LIGHT_SPHERE) ? lit.p + s.shadow - l.p : cross(l.e1, l.e2);
@@ -79,20 +82,26 @@ LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
         s = environment_light_sample_li(u);
     } else if (is_light(l, LIGHT_SPHERE)) {
         s = sphere_light_sample_li(l, lit.p, unit_float(u));
+    } else if (is_light(l, LIGHT_POINT)) {
+        s = point_light_sample_li(l, lit.p);
+    } else if (is_light(l, LIGHT_SPOT)) {
+        s = spot_light_sample_li(l, lit.p);
+    } else if (is_light(l, LIGHT_DIRECTIONAL)) {
+        s = directional_light_sample_li(l);
     } else {
         s = area_light_sample_li(l, lit.p, unit_float(u));
     }
     s.pdf *= light_pmf(i, lit);
     s.light = i;
     s.u = unit_float(u);
-    if ((TEXTURED & (TEXTURED_EMISSION | TEXTURED_OPACITY)) != 0u && !is_light(l, LIGHT_ENVIRONMENT)) {
+    if ((TEXTURED & (TEXTURED_EMISSION | TEXTURED_OPACITY)) != 0u && light_has_surface(l)) {
         light_apply_textures(s, lit);
     }
     return s;
 }
 
 // Density [1/sr] with which light_sample_li finds, for a lit point, the point of light i at that squared distance [m^2]
-// whose normal has the cosine cos_light to the ray; not for the environment.
+// whose normal has the cosine cos_light to the ray; only of lights with a surface.
 float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light) {
     LightRecord l = light_at(i);
     float pdf = is_light(l, LIGHT_SPHERE) ? sphere_light_pdf_li(l, lit.p, distance_squared, cos_light)

@@ -12,6 +12,12 @@ bool is_light(LightRecord l, const uint kind) {
     return (LIGHTS & ~(1u << kind)) == 0u || l.kind == kind;
 }
 
+// True if the light has a surface, which rays may hit.
+bool light_has_surface(LightRecord l) {
+    return !is_light(l, LIGHT_ENVIRONMENT) && !is_light(l, LIGHT_POINT) && !is_light(l, LIGHT_SPOT) &&
+           !is_light(l, LIGHT_DIRECTIONAL);
+}
+
 // Shadow rays end that part of their length earlier: so large may the error be of the distance at which a light is hit
 // from far away.
 const float LIGHT_T_MAX = 1.0 - 1.0 / 524288.0;
@@ -31,7 +37,7 @@ struct LitPoint {
 // A point on a light, as seen from a point that is lit.
 struct LightSample {
     vec3 wi;      // Unit direction from the lit point.
-    vec3 Li;      // Radiance that arrives if nothing is in between [W/(m^2 sr)].
+    vec3 Li;      // Radiance that arrives if nothing is in between [W/(m^2 sr)]; if delta, its integral over directions.
     float pdf;    // Density over solid angle at the lit point [1/sr]; 0 says that nothing arrives.
     bool delta;   // No other sampling could find it: pdf is the probability of choosing the light.
     vec3 shadow;  // The light is hidden if a ray from the lit point in this direction, of any length,

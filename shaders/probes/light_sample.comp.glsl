@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 2u
-#define RESULT_WORDS 17u
+#define RESULT_WORDS 18u
 #include "light/light_sampler.glsl"
 #include "probes/items.glsl"
 #include "scene/interaction.glsl"
@@ -19,6 +19,7 @@ void main() {
     put(s.wi);
     put(s.Li);
     put(s.pdf);
+    put(uint(s.delta));
     put(s.shadow);
     put(s.t_max);
     put(uint(bvh_occluded(Ray(from, s.shadow), s.t_max)));

@@ -14,8 +14,15 @@ vec3 camera_film_direction(Parameters camera, vec2 film) {
     return camera.forward + s.x * camera.right - s.y * camera.up;
 }
 
-// The pinhole ray through a film position. Unit direction.
-Ray camera_ray_pinhole(Parameters camera, vec2 film) {
+// The ray of an orthographic camera through a film position. Unit direction.
+Ray camera_ray_parallel(Parameters camera, vec2 film) {
+    vec2 s = 2.0 * film / vec2(camera.full_size) - 1.0;
+    return Ray(camera.position + s.x * camera.right - s.y * camera.up, camera.forward);
+}
+
+// The ray through a film position that an aperture without extent lets through. Unit direction.
+Ray camera_ray_sharp(Parameters camera, vec2 film) {
+    if (APERTURE == APERTURE_NONE) return camera_ray_parallel(camera, film);
     return Ray(camera.position, normalize(camera_film_direction(camera, film)));
 }
 
@@ -23,7 +30,7 @@ Ray camera_ray_pinhole(Parameters camera, vec2 film) {
 // rays of one film position meet in the plane of focus. Unit direction.
 // Ref: Cook, Porter and Carpenter 1984, Distributed Ray Tracing, section 2.
 Ray camera_ray(Parameters camera, vec2 film, vec2 u) {
-    if (APERTURE == APERTURE_PINHOLE) return camera_ray_pinhole(camera, film);
+    if (APERTURE == APERTURE_PINHOLE || APERTURE == APERTURE_NONE) return camera_ray_sharp(camera, film);
     vec2 aperture = APERTURE == APERTURE_DISK ? warp_disk(u) : warp_polygon(u, camera.blades);
     vec3 offset = aperture.x * camera.lens_x + aperture.y * camera.lens_y;
     vec3 to_focus = camera_film_direction(camera, film) - offset / camera.focal_distance;

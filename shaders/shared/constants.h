@@ -77,6 +77,7 @@ const uint BINDING_RESULTS = 21u;
 const uint APERTURE_PINHOLE = 0u;
 const uint APERTURE_DISK = 1u;
 const uint APERTURE_POLYGON = 2u;
+const uint APERTURE_NONE = 3u;  // Orthographic: parallel rays.
 
 // Kinds of environment that a kernel distinguishes.
 const uint ENVIRONMENT_NONE = 0u;

@@ -25,17 +25,22 @@ const uint LIGHT_PARALLELOGRAM = 1u;  // p + b1 e1 + b2 e2 with b1, b2 in [0, 1]
 const uint LIGHT_DISK = 2u;           // p + b1 e1 + b2 e2 with b1^2 + b2^2 <= 1.
 const uint LIGHT_SPHERE = 3u;         // Centre p, radius e1.x.
 const uint LIGHT_ENVIRONMENT = 4u;  // All around, infinitely far away; its texels are in tables of their own.
+const uint LIGHT_POINT = 5u;        // At p, equal in all directions.
+const uint LIGHT_SPOT = 6u;  // At p, around the unit axis e1. For a direction of which 1 - cos of the angle
+                             // to the axis is h, its intensity has the factor saturate((e2.x - h) e2.y)^2.
+const uint LIGHT_DIRECTIONAL = 7u;  // Infinitely far away in the unit direction e1.
 
 // An emitter. The front of a flat one is the side that cross(e1, e2) points to, that of a sphere is outside.
-// In the frame of the scene.
+// No ray hits the last three. In the frame of the scene.
 struct LightRecord {
     uint kind;  // LIGHT_*
     vec3 p;
     vec3 e1;
     vec3 e2;
-    vec3 radiance;   // [W/(m^2 sr)], constant over the surface and its directions.
+    vec3 radiance;   // [W/(m^2 sr)], constant over the surface and its directions; of a point or spot light
+                     // its intensity [W/sr], of a directional one the irradiance across it [W/m^2].
     uint two_sided;  // 1: emits from the back as well.
-    float pdf_area;  // Of a point on it, chosen uniformly by area [1/m^2]; 0 for the environment.
+    float pdf_area;  // Of a point on it, chosen uniformly by area [1/m^2]; 0 if it has no surface.
     float pmf;       // Probability of choosing the light among all.
     float error;     // How far from a point of it, along its normal, rays towards it must end; >= 0.
 };

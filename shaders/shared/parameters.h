@@ -20,7 +20,9 @@ const uint PARAMETERS_WORDS = 9u;
 
 struct Parameters {
     // The pinhole ray through film position s in [-1, 1]^2 (x to the right, y up) has the direction
-    // forward + s.x right + s.y up: `right` and `up` are scaled by the tangents of half the field of view.
+    // forward + s.x right + s.y up: `right` and `up` are scaled by the tangents of half the field of view. If
+    // the camera is orthographic, the ray has the direction forward and begins at position + s.x right + s.y
+    // up.
     vec3 position;
     vec3 right;
     vec3 up;

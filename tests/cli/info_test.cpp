@@ -71,6 +71,19 @@ TEST_F(Info, TellsTheSizeOfTheSky) {
     EXPECT_CONTAINS(candela({"info", CORNELL_BOX}).out, "environment   none");
 }
 
+TEST_F(Info, NamesTheLightsThatNoSurfaceShows) {
+    const std::string scene = CANDELA_SCENES "/../tests/references/punctual-lights.json";
+    const auto info = nlohmann::json::parse(candela({"info", scene, "--json"}).out);
+    EXPECT_EQ(info["lights"], 4);
+    EXPECT_EQ(
+        info["punctual_lights"],
+        nlohmann::json::parse(R"([{"name": "point 1", "type": "point"}, {"name": "spot 2", "type": "spot"},
+                                        {"name": "directional 3", "type": "directional"}])"));
+    EXPECT_CONTAINS(candela({"info", scene}).out,
+                    "lights        4: point 1 (point), spot 2 (spot), directional 3 (directional)");
+    EXPECT_CONTAINS(candela({"info", CORNELL_BOX}).out, "lights        1\n");
+}
+
 TEST_F(Info, TellsWhatTexturesTakeAndMakesThemSmaller) {
     const std::string scene = CANDELA_SCENES "/../tests/references/textured-diffuse.json";
     const auto whole = nlohmann::json::parse(candela({"info", scene, "--json"}).out);

@@ -34,10 +34,8 @@ TEST_F(RenderFiles, AttributesTellHowTheImageWasMade) {
                                                " --size 32x32 --spp 4 -o '" + output + "' --seed 7");
 }
 
-// The matrices project the positions of the image to their own pixels and depths.
-TEST_F(RenderFiles, CameraMatricesAgreeWithThePositions) {
-    ASSERT_EQ(candela({"render", MESH, "-o", file("a.exr"), "--size", "40x24", "--spp", "1"}).exit_code, 0);
-    const Image image = read_exr(file("a.exr"));
+// The matrices in the image's attributes project its positions to their own pixels and depths.
+void expect_matrices_agree(const Image& image) {
     const mat4 camera = std::get<mat4>(image.attributes.at("worldToCamera"));
     const mat4 ndc = std::get<mat4>(image.attributes.at("worldToNDC"));
     size_t hits = 0;
@@ -56,6 +54,16 @@ TEST_F(RenderFiles, CameraMatricesAgreeWithThePositions) {
         EXPECT_EQ((camera * p).y > 0, i / 40 < 12);
     }
     EXPECT_GT(hits, 100u);
+}
+
+TEST_F(RenderFiles, CameraMatricesAgreeWithThePositions) {
+    for (const std::string& scene :
+         {MESH, std::string(CANDELA_SCENES "/../tests/references/orthographic.json")}) {
+        SCOPED_TRACE(scene);
+        ASSERT_EQ(candela({"render", scene, "-o", file("a.exr"), "--size", "40x24", "--spp", "1"}).exit_code,
+                  0);
+        expect_matrices_agree(read_exr(file("a.exr")));
+    }
 }
 
 TEST_F(RenderFiles, ReportHasEveryField) {

@@ -85,6 +85,25 @@ TEST_F(RenderOptionsTest, CameraIsChosenByName) {
     EXPECT_NE(first, hash_of({"--camera", "close"}, MESH));
 }
 
+// The estimator bsdf leaves them out, and says so.
+TEST_F(RenderOptionsTest, LightsWithoutASurfaceNeedLightSamples) {
+    const std::string scene = CANDELA_SCENES "/../tests/references/punctual-lights.json";
+    const auto warnings = [&](const std::string& estimator, const std::string& of) {
+        const ProcessResult result = candela({"render", of, "-o", file("a.png"), "--size", "8x8", "--spp",
+                                              "1", "-q", "--estimator", estimator});
+        EXPECT_EQ(result.exit_code, 0);
+        return result.err;
+    };
+    EXPECT_EQ(
+        warnings("bsdf", scene),
+        "candela: warning: the estimator bsdf does not find the point, spot and directional lights of this "
+        "scene, which no surface shows; use mis or light\n");
+    EXPECT_EQ(warnings("mis", scene), "");
+    EXPECT_EQ(warnings("light", scene), "");
+    EXPECT_EQ(warnings("bsdf", CORNELL_BOX), "");
+    EXPECT_EQ(report_of({"--size", "8x8", "--spp", "1", "-o", file("a.png")}, scene)["lights"], 4);
+}
+
 TEST_F(RenderOptionsTest, SceneBuffersChangeNoBit) {
     const nlohmann::json texel = report_of({"--size", "32x32", "--spp", "4", "--scene-buffers", "texel"});
     const nlohmann::json storage = report_of({"--size", "32x32", "--spp", "4", "--scene-buffers", "storage"});

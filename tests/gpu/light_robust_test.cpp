@@ -37,8 +37,25 @@ class LightRobustnessTest : public LightTest {
                 return add_shape(scene, std::move(triangle), 0, emission);
             case 2:
                 return add_shape(scene, Disk{dvec3(p), dvec3(e1), dvec3(e2)}, 0, emission);
-            default:
+            case 3:
                 return add_shape(scene, Sphere{dvec3(p), length(e1)}, 0, emission);
+            default:
+                return add_punctual(scene, kind, p, e1, emission.radiance.factor);
+        }
+    }
+    // At p, or in the direction e1; a spot is as narrow as that is short.
+    static void add_punctual(Scene& scene, uint32_t kind, vec3 p, vec3 e1, vec3 intensity) {
+        const float angle = std::min(length(e1), 1.5f);
+        switch (kind) {
+            case 4:
+                scene.lights = {{"", PointLight{dvec3(p), intensity}}};
+                break;
+            case 5:
+                scene.lights = {{"", SpotLight{dvec3(p), dvec3(e1), intensity, 0.999f * angle, angle}}};
+                break;
+            default:
+                add_shape(scene, Sphere{dvec3(p), 1.0}, 0);
+                scene.lights = {{"", DirectionalLight{dvec3(e1), intensity}}};
         }
     }
     // At the light's own points, a rounding beside them, in its plane, at its centre, or anywhere.
@@ -80,13 +97,13 @@ class LightRobustnessTest : public LightTest {
 
 TEST_F(LightRobustnessTest, NoPlaceMakesAnUnsoundSample) {
     size_t arriving = 0, samples = 0;
-    for (int light = 0; light < 40; ++light) {
+    for (int light = 0; light < 70; ++light) {
         const vec3 p = size() * random_.cube(), e1 = size() * random_.direction(),
                    e2 = size() * random_.direction();
         Scene scene = scene_of_mesh({});
         scene.shapes.clear();
         const float power = size() * size();
-        add_lamp(scene, uint32_t(light) % 4, p, e1, e2, Emission{power * vec3(1, 0.5f, 0), light % 3 == 0});
+        add_lamp(scene, uint32_t(light) % 7, p, e1, e2, Emission{power * vec3(1, 0.5f, 0), light % 3 == 0});
         const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
         if (gpu.light_count == 0) continue;  // Flat, when its corners are rounded.
         const std::vector<LightItem> from = items(p, e1, e2);
@@ -96,7 +113,7 @@ TEST_F(LightRobustnessTest, NoPlaceMakesAnUnsoundSample) {
             ++samples;
             if (s.pdf == 0.0f) continue;
             ++arriving;
-            EXPECT_TRUE(is_sound(s)) << "kind " << light % 4 << ", p " << p.x << ' ' << p.y << ' ' << p.z
+            EXPECT_TRUE(is_sound(s)) << "kind " << light % 7 << ", p " << p.x << ' ' << p.y << ' ' << p.z
                                      << ", e1 " << e1.x << ' ' << e1.y << ' ' << e1.z << ", e2 " << e2.x
                                      << ' ' << e2.y << ' ' << e2.z << ", from " << from[i].from.x << ' '
                                      << from[i].from.y << ' ' << from[i].from.z << ", u " << from[i].u.x

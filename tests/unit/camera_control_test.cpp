@@ -94,6 +94,28 @@ TEST(CameraControl, ADollyScalesTheDistanceAndNeverReachesIt) {
     EXPECT_TRUE(is_finite(vec3(moved.position)));
 }
 
+// Three metres of the world fill the height of its picture, at any distance.
+TEST(CameraControl, AnOrthographicCameraPansAndZooms) {
+    Camera moved = camera();
+    moved.ortho_height = 3.0;
+    pan(moved, vec2(0.25f, -0.5f));
+    expect_near(moved.position, dvec3(-0.75, 1.5, 2));
+    expect_near(moved.look_at, dvec3(-0.75, 1.5, 0));
+    const Camera before = moved;
+    dolly(moved, 0.5f);
+    EXPECT_EQ(moved.ortho_height, 1.5);
+    EXPECT_EQ(moved.position, before.position);
+    for (const float factor : {0.5f, 2.0f}) {
+        for (int i = 0; i < 1000; ++i)
+            dolly(moved, factor);
+        EXPECT_TRUE(*moved.ortho_height > 0.0 && is_finite(vec3(float(*moved.ortho_height))));
+        std::string text = camera_json(moved, "far");
+        text.insert(text.rfind('}'), R"(, "shapes": [])");
+        SceneFolder folder;
+        EXPECT_EQ(folder.load(text).cameras[0].ortho_height, moved.ortho_height);
+    }
+}
+
 TEST(CameraControl, AFlightGoesAlongTheCamerasAxes) {
     Camera moved = camera();
     orbit(moved, -PI / 2, 0.0f);  // Now it looks along -X, and its right is -Z.
@@ -123,6 +145,13 @@ TEST(CameraControl, TheLoaderReadsItsJsonBackBitForBit) {
             EXPECT_EQ(read, saved) << text;
         }
     }
+    saved.lens = {};
+    saved.vertical_fov = 0.0f;
+    saved.ortho_height = 1.0 / 3;
+    std::string text = camera_json(saved, "main");
+    text.insert(text.rfind('}'), R"(, "shapes": [])");
+    SceneFolder folder;
+    EXPECT_EQ(folder.load(text).cameras.at(0), saved) << text;
 }
 
 }  // namespace

@@ -61,7 +61,8 @@ TEST_F(PictureIdentity, EveryPartOfTheCameraIsPartOfIt) {
         [](Camera& c) { c.position.z += 0x1p-20f; }, [](Camera& c) { c.look_at.x += 0x1p-10f; },
         [](Camera& c) { c.up.x += 0x1p-10f; },       [](Camera& c) { c.vertical_fov *= 1.0f + 0x1p-20f; },
         [](Camera& c) { c.lens.radius *= 1.5f; },    [](Camera& c) { c.lens.focal_distance *= 1.5f; },
-        [](Camera& c) { ++c.lens.blades; },          [](Camera& c) { c.lens.rotation += 0.1f; }};
+        [](Camera& c) { ++c.lens.blades; },          [](Camera& c) { c.lens.rotation += 0.1f; },
+        [](Camera& c) { c.ortho_height = 2.0; }};
     for (const auto& change : changes) {
         const std::string message =
             after([&](RenderSettings&, Scene& scene) { change(scene.cameras.front()); });
@@ -69,6 +70,10 @@ TEST_F(PictureIdentity, EveryPartOfTheCameraIsPartOfIt) {
         EXPECT_NE(message.find(", not at "), std::string::npos) << message;
     }
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.cameras.front().name = "another name"; }), "");
+    scene_.cameras.front().ortho_height = 2.0;
+    const std::string taller =
+        after([](RenderSettings&, Scene& scene) { scene.cameras.front().ortho_height = 2.5; });
+    EXPECT_NE(taller.find("orthographic, 2.5 m high, not at "), std::string::npos) << taller;
 }
 
 TEST_F(PictureIdentity, AnotherSceneIsAnother) {
@@ -84,6 +89,7 @@ TEST_F(PictureIdentity, AnotherSceneIsAnother) {
               another);
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.environment->rotation += 0.1f; }), another);
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.environment->visible ^= true; }), another);
+    EXPECT_EQ(after([](RenderSettings&, Scene& scene) { scene.lights = {{"", PointLight{}}}; }), another);
     EXPECT_EQ(after([](RenderSettings&, Scene& scene) {
                   for (Shape& shape : scene.shapes) {
                       if (shape.emission) shape.emission->radiance.factor *= 1.01f;

@@ -64,7 +64,8 @@ TEST(SceneCamera, ChecksItsFieldOfView) {
         folder.expect_error(marked("\"vertical_fov\": @" + std::string(angle)),
                             "the vertical field of view must lie between 0 and 180 degrees");
     }
-    const std::string either = "a camera needs either vertical_fov, or film_size and focal_length";
+    const std::string either =
+        "a camera needs either vertical_fov, or film_size and focal_length, or orthographic_height";
     folder.expect_error(lens(""), either);
     folder.expect_error(lens(", \"film_size\": [2, 1]"), either);
     folder.expect_error(lens(", \"focal_length\": 1"), either);
@@ -84,6 +85,28 @@ TEST(SceneCamera, ReadsFilmAndFocalLengthInAnyUnit) {
     const Scene scene = folder.load(camera(
         R"({"position": [0, 0, 1], "look_at": [0, 0, 0], "film_size": [36.02, 18], "focal_length": 9})"));
     EXPECT_FLOAT_EQ(scene.cameras[0].vertical_fov, PI / 2);
+}
+
+TEST(SceneCamera, ReadsAnOrthographicView) {
+    SceneFolder folder;
+    const auto view = [](const std::string& members) {
+        return camera(R"({"position": [0, 0, 1], "look_at": [0, 0, 0], "orthographic_height": )" + members +
+                      "}");
+    };
+    const Scene scene = folder.load(view("2.5"));
+    EXPECT_EQ(scene.cameras[0].ortho_height, 2.5);
+    EXPECT_EQ(scene.cameras[0].lens.radius, 0.0f);
+    EXPECT_FALSE(folder.load(settings(GOOD_CAMERA)).cameras[0].ortho_height.has_value());
+    folder.expect_error(view("@0"), "\"orthographic_height\": expected a number above 0, found 0");
+    folder.expect_error(view("@-1"), "\"orthographic_height\": expected a number above 0, found -1");
+    const auto remove = [](const std::string& key) {
+        return "a camera with orthographic_height is sharp everywhere and has no field of view; remove \"" +
+               key + "\" or orthographic_height";
+    };
+    folder.expect_error(view("1, \"vertical_fov\": @40"), remove("vertical_fov"));
+    folder.expect_error(view("1, \"film_size\": @[2, 1]"), remove("film_size"));
+    folder.expect_error(view("1, \"focal_length\": @1"), remove("focal_length"));
+    folder.expect_error(view("1, \"lens\": @{\"radius\": 0}"), remove("lens"));
 }
 
 TEST(SceneCamera, ReadsItsLens) {

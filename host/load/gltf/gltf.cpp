@@ -73,8 +73,7 @@ void complete_gltf_scene(const std::string& name, Scene& scene) {
             name +
             ": there is no camera; the scene is seen from the front, a little from the right and above");
     }
-    const bool has_light = emitter_count(scene) > 0 || !scene.lights.empty() || scene.environment;
-    if (has_light || has_unlit_shape(scene)) return;
+    if (scene.environment || has_light(scene)) return;
     scene.environment = gltf::studio();
     scene.warnings.push_back(name +
                              ": there is no light; a studio lights the scene, which the camera does not see");

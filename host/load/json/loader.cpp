@@ -2,6 +2,7 @@
 #include "load/json/loader.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -61,8 +62,8 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
                   const GltfOptions& gltf) {
     const json::Document document{file, json::parse(text, file)};
     const Node root(document);
-    root.allow_only(
-        {"$schema", "scene", "cameras", "film", "integrator", "materials", "shapes", "environment"});
+    root.allow_only({"$schema", "scene", "cameras", "film", "integrator", "materials", "shapes", "lights",
+                     "environment"});
 
     Scene scene;
     const auto base = root.find("scene");
@@ -86,6 +87,8 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
     }
     const auto shapes = base ? root.find("shapes") : root.require("shapes");
     if (shapes) read_shapes(*shapes, folder, scene);
+    if (const auto lights = root.find("lights"))
+        std::ranges::move(read_lights(*lights, scene), std::back_inserter(scene.lights));
     if (const auto environment = root.find("environment")) {
         scene.environment = read_environment(*environment, folder, scene);
     }
@@ -94,8 +97,7 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
         complete_gltf_scene(base->place(), scene);
     } else if (scene.shapes.empty() && !scene.environment) {
         scene.warnings.push_back(shapes->place() + ": the scene has no shapes");
-    } else if (emitter_count(scene) == 0 && !(scene.environment && gives_light(*scene.environment)) &&
-               !has_unlit_shape(scene)) {
+    } else if (!has_light(scene)) {
         scene.warnings.push_back(shapes->place() + ": the scene has no light: the image will be black");
     }
     return scene;

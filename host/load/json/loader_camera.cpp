@@ -1,4 +1,5 @@
-// Cameras: place and view, field of view (an angle, or film and focal length), and lens.
+// Cameras: place and view, field of view (an angle, or film and focal length) and lens, or parallel
+// projection.
 #include <cmath>
 
 #include "load/json/loader_parts.h"
@@ -27,7 +28,8 @@ float read_vertical_fov(const Node& node, const Film& film) {
     const auto size = node.find("film_size");
     const auto focal_length = node.find("focal_length");
     if (degrees ? (size || focal_length) : !(size && focal_length)) {
-        node.fail("a camera needs either vertical_fov, or film_size and focal_length");
+        node.fail(
+            "a camera needs either vertical_fov, or film_size and focal_length, or orthographic_height");
     }
     const float fov =
         float(degrees ? glm::radians(degrees->number()) : angle_of_film(*size, *focal_length, film));
@@ -56,11 +58,25 @@ Lens read_lens(const Node& node) {
     return lens;
 }
 
+// The height of the view of a camera with parallel rays, which has nothing else of a perspective one.
+double read_ortho_height(const Node& node, const Node& height) {
+    for (const char* key : {"vertical_fov", "film_size", "focal_length", "lens"}) {
+        if (const auto other = node.find(key)) {
+            other->fail(
+                std::string("a camera with orthographic_height is sharp everywhere and has no field of "
+                            "view; remove \"") +
+                key + "\" or orthographic_height");
+        }
+    }
+    return height.positive();
+}
+
 }  // namespace
 
 Camera read_camera(const Node& node, const Film& film) {
     constexpr double PARALLEL = 1e-6;  // Sine of the least angle between view and up.
-    node.allow_only({"position", "look_at", "up", "vertical_fov", "film_size", "focal_length", "lens"});
+    node.allow_only({"position", "look_at", "up", "vertical_fov", "film_size", "focal_length",
+                     "orthographic_height", "lens"});
     Camera camera;
     camera.name = node.key();
     const Node look_at = node.require("look_at");
@@ -75,6 +91,10 @@ Camera read_camera(const Node& node, const Film& film) {
     if (length(cross(view, upwards)) <= PARALLEL * length(view) * length(upwards)) {
         (up ? *up : node)
             .fail("the camera's up direction is zero or parallel to its view; give another \"up\"");
+    }
+    if (const auto height = node.find("orthographic_height")) {
+        camera.ortho_height = read_ortho_height(node, *height);
+        return camera;
     }
     camera.vertical_fov = read_vertical_fov(node, film);
     if (const auto lens = node.find("lens")) camera.lens = read_lens(*lens);

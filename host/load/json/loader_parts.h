@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "load/json/loader_textures.h"
 #include "load/json/shape_list.h"
@@ -32,6 +33,9 @@ using MaterialModel = decltype(Material::model);
 MaterialModel read_principled(const Node& node, const ImageFolder& images);
 MaterialModel read_rough_conductor(const Node& node, const ImageFolder& images);
 MaterialModel read_rough_dielectric(const Node& node, const ImageFolder& images);
+
+// Reads the list of lights without a surface, in its order. What is odd goes to scene.warnings.
+std::vector<Light> read_lights(const Node& node, Scene& scene);
 
 // Reads the environment. Its file is relative to `folder` and goes to scene.files; what is odd goes to
 // scene.warnings.

@@ -1,0 +1,102 @@
+// One overload of add() per kind of light.
+#include "gpu_scene/punctual_lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/color.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "scene/geometry.h"
+
+namespace candela {
+namespace {
+
+// Of a point light from the middle of the scene, in units of the frame: squares of distances remain finite.
+constexpr double FARTHEST = 1e18;
+
+// Twice the square of the sine of half an angle: 1 - cos, without cancellation.
+double one_minus_cos(double angle) {
+    const double s = std::sin(0.5 * angle);
+    return 2.0 * s * s;
+}
+
+class PunctualLights {
+  public:
+    PunctualLights(FlatScene& flat, const SceneFrame& frame, const Box& box)
+        : flat_(flat),
+          frame_(frame),
+          radius_(box.is_empty() ? 0.0 : 0.5 * length(glm::dvec3(box.extent()))) {}
+
+    void add(const std::string& name, const PointLight& light) {
+        LightRecord record = make_record(name, LIGHT_POINT, light.position, light.intensity);
+        append(record, 4.0);
+    }
+
+    void add(const std::string& name, const SpotLight& light) {
+        // Beyond that, the edge is harder than floats can tell.
+        constexpr double STEEPEST = 1e30;
+        LightRecord record = make_record(name, LIGHT_SPOT, light.position, light.intensity);
+        const double inner = one_minus_cos(double(light.inner_angle));
+        const double outer = one_minus_cos(double(light.outer_angle));
+        record.e1 = vec3(direction_of(light.direction));
+        record.e2 = vec3(float(outer), float(std::min(1.0 / (outer - inner), STEEPEST)), 0.0f);
+        // The mean of the falloff between the angles is a third: it is the square of what is uniform there.
+        append(record, 2.0 * (inner + (outer - inner) / 3.0));
+    }
+
+    void add(const std::string&, const DirectionalLight& light) {
+        LightRecord record{};
+        record.kind = LIGHT_DIRECTIONAL;
+        record.e1 = vec3(-direction_of(light.direction));
+        record.radiance = light.irradiance;
+        append(record, radius_ * radius_);
+    }
+
+  private:
+    // Divided by its greatest component first, which keeps squares from over- and underflowing.
+    static dvec3 direction_of(dvec3 d) {
+        return normalize(d / std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
+    }
+
+    // Of a light at a point. An intensity is a power, which lengths of the frame measure in units of their
+    // own, too.
+    LightRecord make_record(const std::string& name, uint kind, dvec3 position, vec3 intensity) const {
+        const auto fail = [&](const char* what) {
+            throw Error(concat("the light \"", name, "\" is ", what));
+        };
+        const dvec3 from_middle = (position - frame_.origin) / frame_.unit;
+        if (length(from_middle) > FARTHEST)
+            fail("too far from the scene for 32-bit floats; use a directional light");
+        const dvec3 scaled = dvec3(intensity) / (frame_.unit * frame_.unit);
+        if (std::max({scaled.x, scaled.y, scaled.z}) > double(FLOAT_MAX))
+            fail("too bright for 32-bit floats in a scene of this size; give it a lower intensity");
+        LightRecord record{};
+        record.kind = kind;
+        record.p = frame_.point(position);
+        record.radiance = vec3(scaled);
+        return record;
+    }
+
+    // `factor` is its power over pi if its radiance, which is an intensity or irradiance, is 1.
+    void append(const LightRecord& record, double factor) {
+        const double power = factor * double(luminance(record.radiance));
+        if (power == 0.0) return;
+        flat_.lights.push_back(record);
+        flat_.powers.push_back(power);
+    }
+
+    FlatScene& flat_;
+    const SceneFrame& frame_;
+    double radius_;  // Of the sphere around the scene.
+};
+
+}  // namespace
+
+void add_punctual_lights(FlatScene& flat, const Scene& scene, const SceneFrame& frame, const Box& box) {
+    PunctualLights lights(flat, frame, box);
+    for (const Light& light : scene.lights)
+        std::visit([&](const auto& model) { lights.add(light.name, model); }, light.model);
+}
+
+}  // namespace candela
