@@ -24,8 +24,7 @@ def reset():
 
 
 def principled(name, color, metallic=0.0, roughness=0.5, **inputs):
-    """A material of Blender's Principled BSDF, with multiple scattering. Its diffuse part is Disney's, which is Lambert's
-    within a few per cent."""
+    """A material of Blender's Principled BSDF, with multiple scattering."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     bsdf = material.node_tree.nodes["Principled BSDF"]
@@ -34,6 +33,13 @@ def principled(name, color, metallic=0.0, roughness=0.5, **inputs):
     for key, value in values.items():
         bsdf.inputs[key].default_value = value
     return material
+
+
+def matte(name, color):
+    """Rough metal, of which Blender and glTF say the same. Of plastic they do not: Blender's diffuse part is
+    Disney's, it loses nothing to the reflection above it, and without specular reflection it has none at grazing angles
+    either, where the exported file has."""
+    return principled(name, color, 1, 0.6)
 
 
 def emitting(name, color, strength):
@@ -111,23 +117,23 @@ def textured(material, made, slot, normal=False):
 
 
 def primitives():
-    floor(principled("floor", (0.5, 0.5, 0.5), roughness=0.8))
+    floor(matte("floor", (0.5, 0.5, 0.5)))
     bpy.ops.mesh.primitive_cube_add(size=1.2, location=(-2.2, 0, 0.6), rotation=(0, 0, 0.5))
-    last(principled("red", (0.7, 0.1, 0.05), roughness=0.6))
+    last(matte("red", (0.7, 0.1, 0.05)))
     bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=0.7, location=(-0.6, 0, 0.7))
     last(principled("gold", (1, 0.7, 0.3), 1, 0.3), smooth=True)
     bpy.ops.mesh.primitive_cone_add(vertices=48, radius1=0.7, depth=1.4, location=(0.9, 0, 0.7))
-    last(principled("green", (0.1, 0.5, 0.15), roughness=0.4))
+    last(matte("green", (0.1, 0.5, 0.15)))
     bpy.ops.mesh.primitive_torus_add(major_radius=0.6, minor_radius=0.22, location=(2.5, 0, 0.6), rotation=(1, 0, 0.4))
-    last(principled("blue", (0.1, 0.2, 0.7), roughness=0.25), smooth=True)
+    last(principled("blue", (0.1, 0.2, 0.7), 1, 0.25), smooth=True)
     lamp("SUN", 3, (0, 0, 5), (0.7, 0.2, 0.3))
     camera((0, -7, 3), (0.1, 0, 0.5))
 
 
 def suzanne():
-    floor(principled("floor", (0.6, 0.55, 0.5), roughness=0.7))
+    floor(matte("floor", (0.6, 0.55, 0.5)))
     bpy.ops.mesh.primitive_monkey_add(size=2, location=(-0.9, 0, 1.1), rotation=(-0.3, 0, 0.3))
-    head = last(principled("skin", (0.6, 0.35, 0.2), roughness=0.45, Clearcoat=1.0), smooth=True)
+    head = last(matte("skin", (0.6, 0.35, 0.2)), smooth=True)
     head.modifiers.new("subdivision", "SUBSURF").render_levels = 2
     head.modifiers["subdivision"].levels = 2
     bpy.ops.mesh.primitive_cube_add(size=0.5, location=(1.0, 0.3, 0.25))
@@ -141,13 +147,16 @@ def suzanne():
 
 
 def textures():
-    ground = principled("tiles", (1, 1, 1))
+    ground = matte("tiles", (1, 1, 1))
     textured(ground, image("tiles", "sRGB", lambda x, y: (0.8, 0.7, 0.6) if (int(4 * x) + int(4 * y)) % 2 else (0.2, 0.3, 0.4)),
              "Base Color")
-    textured(ground, image("wear", "Non-Color", lambda x, y: (0, 0.3 + 0.6 * x, 0)), "Roughness")
     floor(ground, 6)
+    worn = principled("worn", (0.9, 0.6, 0.5), 1)
+    textured(worn, image("wear", "Non-Color", lambda x, y: (0, 0.1 + 0.8 * x, 0)), "Roughness")
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=0.5, location=(1.5, 0.2, 0.5))
+    last(worn, smooth=True)
     bpy.ops.mesh.primitive_cube_add(size=1.4, location=(0, 0, 0.7), rotation=(0, 0, 0.6))
-    block = principled("waves", (0.7, 0.7, 0.7), roughness=0.5)
+    block = matte("waves", (0.7, 0.7, 0.7))
 
     def wave(x, y):
         slope = 0.5 * math.cos(8 * math.pi * x)
@@ -161,7 +170,7 @@ def textures():
 
 
 def glass():
-    floor(principled("floor", (0.55, 0.55, 0.6), roughness=0.9))
+    floor(matte("floor", (0.55, 0.55, 0.6)))
     output = bpy.data.node_groups.new("glTF Material Output", "ShaderNodeTree")
     output.inputs.new("NodeSocketFloat", "Thickness")
     for i, rough in enumerate((0.0, 0.3)):
@@ -177,11 +186,11 @@ def glass():
 
 
 def lights():
-    floor(principled("floor", (0.6, 0.6, 0.6), roughness=1.0, Specular=0.0))
+    floor(matte("floor", (0.6, 0.6, 0.6)))
     bpy.ops.mesh.primitive_plane_add(size=10, location=(0, 3, 0), rotation=(math.pi / 2, 0, 0))
-    last(principled("wall", (0.6, 0.6, 0.6), roughness=1.0, Specular=0.0))
+    last(matte("wall", (0.6, 0.6, 0.6)))
     bpy.ops.mesh.primitive_cylinder_add(vertices=48, radius=0.5, depth=1.6, location=(0.3, 0.6, 0.8))
-    last(principled("post", (0.5, 0.5, 0.5), roughness=1.0, Specular=0.0))
+    last(matte("post", (0.5, 0.5, 0.5)))
     lamp("POINT", 100, (-2.5, 1, 1.2), color=(1, 0.3, 0.2))
     lamp("SPOT", 400, (2.6, 0, 3.5), (-0.2, 0.1, 0), color=(0.3, 1, 0.4), spot_size=0.8, spot_blend=0.0)
     lamp("SUN", 0.5, (0, 0, 5), (0.6, -0.4, 0), color=(0.4, 0.5, 1))
