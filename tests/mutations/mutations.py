@@ -14,6 +14,7 @@ PRINCIPLED = "shaders/bsdf/principled.glsl"
 PRINCIPLED_FACETS = "shaders/bsdf/principled_facets.glsl"
 PRINCIPLED_LOBES = "shaders/bsdf/principled_lobes.glsl"
 SHEEN = "shaders/bsdf/sheen.glsl"
+FUZZ = "shaders/bsdf/fuzz.glsl"
 ROUGH_DIFFUSE = "shaders/bsdf/rough_diffuse.glsl"
 FILM = "shaders/bsdf/iridescence.glsl"
 LAYERS = "shaders/integrator/layers.glsl"
@@ -237,15 +238,20 @@ GROUPS = [
         ("anisotropy not squared", PRINCIPLED_LOBES, "mix(alpha, 1.0, square(r.anisotropy))", "mix(alpha, 1.0, r.anisotropy)"),
         ("roughness taken for alpha", PRINCIPLED_LOBES, "float alpha = square(r.roughness);", "float alpha = r.roughness;"),
         ("metal as bright at grazing angles as elsewhere", PRINCIPLED_FACETS,
-         "reflected += p.r_schlick * schlick_weight(cos_o);", ""),
+         "reflected += p.r_schlick * schlick_weight(cos_o);", "reflected += 0.0;"),
         ("the weight of the dielectric's reflection ignored", PRINCIPLED_LOBES, "d_0 = r.specular * min(", "d_0 = min("),
         ("total reflection not total where the reflection has a weight", PRINCIPLED_FACETS,
-         "reflected += p.r_total * vec3(total);", ""),
+         "reflected += p.r_total * vec3(total);", "reflected += 0.0;"),
         ("the film seen under the outer angle", FILM, "thickness * cos_film", "thickness * cos_o"),
         ("the film's phase turned at the wrong base", FILM, "mix(vec3(PI), vec3(2.0 * PI)", "mix(vec3(2.0 * PI), vec3(PI)"),
         ("rough diffuse light lost on one side only", ROUGH_DIFFUSE, "lost_o * lost_i / (1.0 - mean)", "lost_o"),
         ("sheen shadowed at steep angles as at flat ones", SHEEN,
          "x < 0.5 ? sheen_log_lambda(x, alpha)", "true ? sheen_log_lambda(x, alpha)"),
+        ("fuzz that takes nothing from what lies below", PRINCIPLED_LOBES, "return 1.0 - reflected;", "return 1.0;"),
+        ("a coat as bright under fuzz as without", PRINCIPLED_LOBES, "p.coat *= below_fuzz;", ""),
+        ("fuzz that sends light on instead of back", FUZZ, "shape.x * wi.xy + shape.y", "shape.x * wi.xy - shape.y"),
+        ("fuzz sampled by Lambert's law", PRINCIPLED, "fuzz_direction(p.fuzz_shape, wo, u)",
+         "warp_cosine_hemisphere(u)"),
         ("red bent more than blue", PRINCIPLED_FACETS, "vec3(max(ior - h, 1.0), ior, ior + h)", "vec3(ior + h, ior, max(ior - h, 1.0))"),
         ("all colours go where one is bent", PRINCIPLED, "transmitted *= along;", ""),
         ("the coat's darkening forgotten for the diffuse base", PRINCIPLED_LOBES, "p.diffuse *= factor;", ""),
