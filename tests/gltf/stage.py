@@ -127,6 +127,7 @@ class Stage:
         self.canvas = Canvas(*SIZE, DARK)
         self.canvas.text(4, 2, "".join(c if c in LETTERS else " " for c in name.lower()), GREY)
         self.backdrop_z = -1.0
+        self.backdrop_lit = False  # Readers take surfaces that glow as the light of a scene.
         self.checks = []
         self.check()
 
@@ -223,7 +224,9 @@ class Stage:
     def finish(self):
         """Adds the backdrop and the camera, which is the first one."""
         texture = self.file.texture(self.canvas.png(), NEAREST, (CLAMP, CLAMP))
-        self.tile((0, 0, *SIZE), self.unlit(texture=texture), self.backdrop_z)
+        matt = {"extensions": {"specular": {"specularFactor": 0}}, "base": {"baseColorTexture": {"index": texture}}}
+        material = self.surface((1, 1, 1), **matt) if self.backdrop_lit else self.unlit(texture=texture)
+        self.tile((0, 0, *SIZE), material, self.backdrop_z)
         camera = {"type": "orthographic", "name": "front", "orthographic": {
             "xmag": SIZE[0] / 2 / METRE, "ymag": SIZE[1] / 2 / METRE, "znear": 0.1, "zfar": 1000}}
         self.file.json.setdefault("cameras", []).insert(0, camera)
