@@ -118,7 +118,8 @@ def chart():
 
 
 def inset(rect, by=1):
-    return [rect[0] + by, rect[1] + by, rect[2] - by, rect[3] - by]
+    """Whole pixels within a rectangle, so far from its edges."""
+    return [math.ceil(rect[0]) + by, math.ceil(rect[1]) + by, math.floor(rect[2]) - by, math.floor(rect[3]) - by]
 
 
 class Stage:
@@ -154,6 +155,7 @@ class Stage:
         self.checks[-1]["shown"].append(inset(rect, by))
 
     def expect(self, rect, colour, by=1):
+        """Claims that a rectangle has a colour all over."""
         self.checks[-1]["colours"].append([inset(rect, by), list(colour)])
 
     # --- Places -----------------------------------------------------------------------------------------------------
