@@ -112,7 +112,7 @@ def directional_light(stage):
     material = stage.surface((0.7, 0.7, 0.7), extensions=MATT)
     for left, right, axis, angle in stage.pairs([
             ("flat", (1, 0, 0), 0), ("x 30", (1, 0, 0), 30), ("x m30", (1, 0, 0), -30), ("y 30", (0, 1, 0), 30),
-            ("y m30", (0, 1, 0), -30), ("y m70", (0, 1, 0), -70)]):
+            ("y m30", (0, 1, 0), -30), ("y m60", (0, 1, 0), -60)]):
         x, y = stage.centre(left)
         half = (left[2] - left[0]) / 2 / METRE
         turned = matrices.rotation(matrices.turn(axis, angle))

@@ -7,7 +7,7 @@ import matrices
 import shapes
 from gltf_file import COMPONENTS
 from shapes import bump
-from stage import METRE, chart, inset, model
+from stage import DARK, METRE, chart, codes, inset, model
 
 
 class Animation:
@@ -64,6 +64,7 @@ def sampled(times, values, interpolation, time, path):
     return matrices.unit(result) if path == "rotation" else result
 
 
+GREEN, ORANGE = (0.05, 0.6, 0.1), (0.9, 0.6, 0.2)
 STEP = 0.25  # Seconds between the keys of references; claims are about multiples of it.
 LENGTH = 2.0
 
@@ -80,7 +81,7 @@ def interpolation_test(stage):
     """Steps, lines and cubic splines, of scale, rotation and translation; before the first key and after the last one,
     things stay as they are there; a sampler that names no interpolation has lines. The left box of each pair moves
     so; the right one has a key for each quarter of a second, and both agree at 0, 0.5, 1.25 and 5 s. `--time` says
-    when."""
+    when. The green square is on its way from the left to the right from 0 to 2 s."""
     file = stage.file
     animation, material = Animation(file), stage.unlit(texture=file.texture(chart()))
     times = [0.25, 1.0, 2.0]
@@ -109,9 +110,15 @@ def interpolation_test(stage):
             else:
                 reference_channel(animation, node, path, times, values, name or "LINEAR")
     first = stage.checks[-1]
-    for time in ("0.5", "1.25", "5"):
-        stage.check("--time", time, spp=64, tolerance=6)
-        stage.checks[-1].update(equal=first["equal"], shown=first["shown"])
+    square, way = (126, 196, 146, 216), 160  # Pixels.
+    node = stage.put(stage.sheet(square), stage.unlit(GREEN))
+    animation.channel(node, "translation", [0, 2], [(0.0, 0.0, 0.0), (way / METRE, 0.0, 0.0)])
+    for time in (0, 0.5, 1.25, 5):
+        if time:
+            stage.check("--time", str(time), spp=64, tolerance=6)
+            stage.checks[-1].update(equal=first["equal"], shown=first["shown"])
+        x = way * min(time, 2) / 2
+        stage.expect((square[0] + x, square[1], square[2] + x, square[3]), codes(GREEN))
 
 
 def morphed_sheet(stage, rect, weights, moves):
@@ -206,9 +213,9 @@ def morph_stress_test(stage):
     second: both are equally high at 0, 0.75 and 1.5 s, which `--time` says."""
     file = stage.file
     animation = Animation(file)
-    orange = stage.unlit((0.9, 0.6, 0.2))
+    orange = stage.unlit(ORANGE)
     tall, width = 80 / METRE, 14
-    pairs = []
+    pairs, heights_at = [], {time: [] for time in (0, 0.75, 1.5)}
     for row, interpolation in enumerate(("LINEAR", "CUBICSPLINE")):
         bottom = 112 + 112 * row
         bars, places = [], []
@@ -239,12 +246,15 @@ def morph_stress_test(stage):
                 single = [(part[k],) for key, s in zip(keys, slope) for part in (s, key, s)]
             ticks = [STEP * i for i in range(9)]
             heights = [sampled(times, single, interpolation, t, "weights")[0] for t in ticks]
-            assert min(heights) >= 0
+            assert min(heights) >= 0 and max(heights) <= 1.03
             animation.channel(own, "scale", ticks, [(1.0, 1 + h * tall / (y1 - y0), 1.0) for h in heights], "LINEAR")
             pairs.append((rect, beside))
-    for time in ("0", "0.75", "1.5"):
-        stage.check("--time", time, spp=64, tolerance=6)
-        for top in (26, 138):
-            stage.shown((8, top, 312, top + 86))
+            for time, found in heights_at.items():
+                found.append(4 + 80 * heights[round(time / STEP)])
+    for time, found in heights_at.items():
+        stage.check("--time", str(time), spp=64, tolerance=6)
+        for (rect, _), height in zip(pairs, found):
+            stage.expect((rect[0], rect[3] - height, rect[2], rect[3]), codes(ORANGE))
+            stage.expect((rect[0], rect[3] - 92, rect[2], rect[3] - height), DARK)
         for a, b in pairs:
-            stage.equal((a[0], a[3] - 86, a[2], a[3]), (b[0], b[3] - 86, b[2], b[3]))
+            stage.equal((a[0], a[3] - 92, a[2], a[3]), (b[0], b[3] - 92, b[2], b[3]))

@@ -136,7 +136,7 @@ def anisotropy_rotation_test(stage):
     """The direction of anisotropy is turned counter-clockwise from the tangent, by a factor, by an image, or by both:
     it is as if the tangents were turned. In each pair, the right tile has turned tangents. Highlights run in
     other directions where the angle is another one."""
-    stage.sun((-0.2, 0.3, 0.93), 2)
+    stage.sun((-0.2, 0.3, 0.93), 0.5)
     cases = []
     for degrees in (0, 45, 90, 135):
         cases.append((f"factor {degrees}", degrees, math.radians(degrees), None))
@@ -156,7 +156,7 @@ def anisotropy_rotation_test(stage):
 def anisotropy_strength_test(stage):
     """Strength stretches highlights along the tangent; it comes from a factor (left tiles) or from the blue of an image
     (right tiles). At 0, it is as if the extension were not there. The upper row is metal, the lower one plastic."""
-    stage.sun((-0.2, 0.3, 0.93), 2)
+    stage.sun((-0.2, 0.3, 0.93), 0.5)
     for left, right, metallic, code in stage.pairs(
             [(f"{'metal' if metallic else 'plastic'} {code / 255:.1f}", metallic, code)
              for metallic in (1, 0) for code in (0, 77, 153, 204, 255)]):

@@ -1,6 +1,7 @@
-"""Models of spheres side by side, in the light of a studio: metals, plastics, coats, cloth, thin films, glass.
+"""Models of spheres side by side: metals, plastics, coats, cloth, thin films, glass.
 
 Spheres stand one behind the other, so that an orthographic camera sees them side by side, and none reflects another.
+Their files have no light: a reader shows them in surroundings of its own.
 """
 
 import shapes
@@ -8,9 +9,9 @@ from gltf_file import INDICES
 from models_normals import bump_map
 from stage import METRE, decoded, model, solid
 
-APART = 8.0  # Metres from one sphere to the next one.
+APART = 6.0  # Metres from one sphere to the next one.
 CODES = (0, 64, 128, 191, 255)
-GOLD, RED, TEAL, CLAY, BLACK = (1, 0.77, 0.34), (0.6, 0.03, 0.03), (0.03, 0.3, 0.32), (0.6, 0.36, 0.22), (0.02,) * 3
+GOLD, RED, TEAL, BLACK = (0.6, 0.44, 0.17), (0.3, 0.02, 0.02), (0.02, 0.12, 0.13), (0.02,) * 3
 
 
 def share(code):
@@ -31,7 +32,7 @@ class Balls:
         self.deep = deep
         self.count = 0
         if deep:
-            stage.backdrop_z = -500.0
+            stage.backdrop_z, stage.backdrop_lit = -250.0, True
 
     def put(self, label, material):
         """The next sphere; its cell."""
@@ -54,7 +55,6 @@ def alike(stage, rows, *pairs):
     for a, b in pairs:
         for one, other in zip(rows[a], rows[b]):
             stage.equal(one, other, 0)
-            stage.shown(one, 0)
 
 
 def grey(stage, *codes):
@@ -68,9 +68,9 @@ def metal_rough_spheres(stage):
     whose red says nothing."""
     balls = Balls(stage, 5, 4)
     rows = []
-    for metallic in (255, 0):
-        rows.append([(f"{share(code):.2f}", stage.surface(GOLD, share(metallic), share(code))) for code in CODES])
-        rows.append([("image", stage.surface(GOLD, 1, 1, base={"metallicRoughnessTexture": grey(
+    for metallic, colour in ((255, GOLD), (0, TEAL)):
+        rows.append([(f"{share(code):.2f}", stage.surface(colour, share(metallic), share(code))) for code in CODES])
+        rows.append([("image", stage.surface(colour, 1, 1, base={"metallicRoughnessTexture": grey(
             stage, 37, code, metallic)})) for code in CODES])
     rects = balls.rows(*rows)
     alike(stage, rects, (0, 1), (2, 3))
@@ -222,10 +222,12 @@ GLASS = {"transmission": {"transmissionFactor": 1}, "volume": {"thicknessFactor"
 @model("CompareIor")
 def compare_ior(stage):
     """Above, solid spheres of glass: with an index of 1 there is nothing to see but the squares behind, and the higher
-    the index, the stronger they are bent. Below, black plastic, which reflects nothing head-on at 1, and more the
-    higher its index. No index is 1.5."""
+    the index, the stronger they are bent. Below, black plastic, which reflects two suns the more the higher its index.
+    No index is 1.5."""
     balls = Balls(stage, 6, 3, deep=False)
     stage.backdrop_z = -0.6
+    stage.sun((-0.5, 0.5, 0.7))
+    stage.sun((0.7, -0.2, 0.7), 1)
     values = (1, 1.2, None, 1.5, 1.8, 2.4)
 
     def ior(value):
@@ -233,7 +235,7 @@ def compare_ior(stage):
 
     rects = balls.rows(
         [(f"{v or 'no ior'}", stage.surface((1, 1, 1), 0, 0, {**GLASS, **ior(v)})) for v in values],
-        [(f"{v or 'no ior'}", stage.surface(BLACK, 0, 0, ior(v))) for v in values])
+        [(f"{v or 'no ior'}", stage.surface(BLACK, 0, 0.3, ior(v))) for v in values])
     checks(stage, balls, 7)
     empty = balls.cells[12]
     stage.label(empty, "empty")
@@ -241,6 +243,7 @@ def compare_ior(stage):
         stage.equal(row[2], row[3], 0)
     stage.equal(rects[0][0], empty, 0)
     stage.differ(rects[0][1], rects[0][5], 4)
+    stage.differ(rects[1][1], rects[1][5], 4)
     stage.tolerate(12, 256)
 
 

@@ -81,11 +81,12 @@ def texture_settings_test(stage):
             stage.canvas.fill(((right[0] + right[2]) / 2, *right[1:]), (255, 255, 255))
             stage.equal(left, right)
         elif kind == "linear":  # Between the texels' centres, where light and not its code must grow evenly.
-            step = picture(2, 1, lambda x, y: (255, 255, 255) if x else (0, 0, 0))
+            dark = decoded(90)
+            step = picture(2, 1, lambda x, y: (255, 255, 255) if x else (90, 90, 90))
             stage.tile(left, stage.unlit(texture=stage.file.texture(step, LINEAR, (CLAMP, CLAMP))),
                        uv=lambda s, t: (0.25 + s / 2, t))
-            stage.tile(right, stage.unlit(), colour=lambda s, t: (s, s, s))
-            stage.equal(left, right)
+            stage.tile(right, stage.unlit(), colour=lambda s, t: (dark + (1 - dark) * s,) * 3)
+            ramp = left, right
         else:
             cross = stage.unlit((0.8, 0.02, 0.02))
             both = stage.unlit(linear(GREEN), doubleSided=True)
@@ -97,6 +98,9 @@ def texture_settings_test(stage):
                 stage.put(mesh, material)
             stage.expect([left[0] + 20, left[1] + 34, left[0] + 36, left[1] + 39], DARK, 0)  # Not the red sheet.
             stage.expect(right, GREEN)
+    stage.check(tolerance=6, spp=256)  # Of four texels, one may be taken at random.
+    stage.equal(*ramp)
+    stage.shown(ramp[0])
 
 
 @model("MultiUVTest")
@@ -215,7 +219,7 @@ def texture_encoding_test(stage):
     grey = stage.file.texture(solid(128, 128, 128))
     number, colour = 128 / 255, decoded(128)
     black = {"base": {}, "colour": (0.02, 0.02, 0.02)}
-    stage.sun((0.1, 0.3, 1))
+    stage.sun((0.1, 0.3, 1), 1)
     cases = [
         ("base colour", {"colour": (1, 1, 1), "base": {"baseColorTexture": {"index": grey}}}, {"colour": [colour] * 3}),
         ("emission", {**black, "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": grey}},

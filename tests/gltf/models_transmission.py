@@ -140,6 +140,7 @@ def diffuse_transmission_test(stage):
     colour of transmission, whatever their own one. In each pair, the right tile is painted as the left one must
     look; where all is reflected, it is black."""
     angle = math.radians(50)
+    stage.backdrop_z = -50.0  # Out of the sun's way.
     stage.sun((0, math.sin(angle), -math.cos(angle)), math.pi / math.cos(angle))
     orange = (240, 150, 40)
 

@@ -118,7 +118,8 @@ def chart():
 
 
 def inset(rect, by=1):
-    return [rect[0] + by, rect[1] + by, rect[2] - by, rect[3] - by]
+    """Whole pixels within a rectangle, so far from its edges."""
+    return [math.ceil(rect[0]) + by, math.ceil(rect[1]) + by, math.floor(rect[2]) - by, math.floor(rect[3]) - by]
 
 
 class Stage:
@@ -127,6 +128,7 @@ class Stage:
         self.canvas = Canvas(*SIZE, DARK)
         self.canvas.text(4, 2, "".join(c if c in LETTERS else " " for c in name.lower()), GREY)
         self.backdrop_z = -1.0
+        self.backdrop_lit = False  # Readers take surfaces that glow as the light of a scene.
         self.checks = []
         self.check()
 
@@ -153,6 +155,7 @@ class Stage:
         self.checks[-1]["shown"].append(inset(rect, by))
 
     def expect(self, rect, colour, by=1):
+        """Claims that a rectangle has a colour all over."""
         self.checks[-1]["colours"].append([inset(rect, by), list(colour)])
 
     # --- Places -----------------------------------------------------------------------------------------------------
@@ -223,7 +226,9 @@ class Stage:
     def finish(self):
         """Adds the backdrop and the camera, which is the first one."""
         texture = self.file.texture(self.canvas.png(), NEAREST, (CLAMP, CLAMP))
-        self.tile((0, 0, *SIZE), self.unlit(texture=texture), self.backdrop_z)
+        matt = {"extensions": {"specular": {"specularFactor": 0}}, "base": {"baseColorTexture": {"index": texture}}}
+        material = self.surface((1, 1, 1), **matt) if self.backdrop_lit else self.unlit(texture=texture)
+        self.tile((0, 0, *SIZE), material, self.backdrop_z)
         camera = {"type": "orthographic", "name": "front", "orthographic": {
             "xmag": SIZE[0] / 2 / METRE, "ymag": SIZE[1] / 2 / METRE, "znear": 0.1, "zfar": 1000}}
         self.file.json.setdefault("cameras", []).insert(0, camera)
