@@ -143,6 +143,7 @@ std::span<const std::byte> File::buffer_bytes(uint32_t i) {
                 }
                 files_.push_back(path);
             }
+            buffer_bytes_read_ += buffers_[i]->size();
         }
         bytes = *buffers_[i];
     } else if (i == 0 && chunk_) {
@@ -160,7 +161,7 @@ std::span<const std::byte> File::buffer_bytes(uint32_t i) {
 }
 
 void File::warn(const std::string& text) {
-    if (std::ranges::find(warnings_, text) == warnings_.end()) warnings_.push_back(text);
+    if (warned_.insert(text).second) warnings_.push_back(text);
 }
 
 }  // namespace candela::gltf

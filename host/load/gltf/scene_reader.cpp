@@ -21,8 +21,10 @@
 namespace candela::gltf {
 namespace {
 
-// Leaves the attributes that a material looks up, and adds those that are missing.
-void fit_attributes(File& file, const Node& primitive, const Material& material, TriangleMesh& mesh) {
+// Leaves the attributes that a material looks up, and adds those that are missing. `has_alpha`: whether the
+// file's material lets alpha count.
+void fit_attributes(File& file, const Node& primitive, const Material& material, bool has_alpha,
+                    TriangleMesh& mesh) {
     uint32_t sets = 0;
     for_each_texture(material, [&](const Texture& texture) { sets |= 1u << texture.uv_set; });
     if (needs_tangents(material)) {
@@ -39,10 +41,10 @@ void fit_attributes(File& file, const Node& primitive, const Material& material,
             uvs->assign(mesh.positions.size(), vec2(0.0f, 1.0f));
         }
     }
-    const bool opaque = !material.opacity.value.texture && material.opacity.value.factor == 1.0f;
-    for (vec4& color : mesh.colors) {
-        if (opaque && !material.opacity.cutoff) color.w = 1.0f;
-    }
+    const Opacity& opacity = material.opacity;
+    if (has_alpha || opacity.value != Textured<float>(1.0f) || opacity.cutoff) return;
+    for (vec4& color : mesh.colors)
+        color.w = 1.0f;
 }
 
 }  // namespace
@@ -73,7 +75,7 @@ void SceneReader::read() {
         const uint32_t i = waiting.back();
         waiting.pop_back();
         if (!nodes_[i].is_visible) continue;
-        if (seen[i]) file_.element("nodes", i).fail("the node is within itself, or twice in the scene");
+        if (seen[i]) file_.element("nodes", i).fail("the node is twice in the scene; name it once");
         seen[i] = true;
         read_node(i);
         const std::vector<uint32_t>& children = nodes_[i].children;
@@ -158,8 +160,10 @@ std::optional<size_t> SceneReader::add_primitive(const Node& primitive, const De
                                                  const Transform& transform) {
     std::optional<TriangleMesh> mesh = read_primitive(file_, primitive, deformation);
     if (!mesh) return std::nullopt;
-    const uint32_t material = material_for({material_of(primitive), !mesh->colors.empty()});
-    fit_attributes(file_, primitive, scene_.materials[material], *mesh);
+    const std::optional<uint32_t> of_file = material_of(primitive);
+    const uint32_t material = material_for({of_file, !mesh->colors.empty()});
+    const bool has_alpha = of_file && alpha_counts(file_.element("materials", *of_file));
+    fit_attributes(file_, primitive, scene_.materials[material], has_alpha, *mesh);
     builder_.add_mesh(primitive.place(), {material, material_emission(scene_.materials[material])}, transform,
                       std::move(*mesh));
     return scene_.shapes.size() - 1;
@@ -203,10 +207,14 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
     double aspect = 0.0;  // 0: the file states none.
     if (type.string() == "orthographic") {
         const Node sizes = camera.require("orthographic");
-        const double half_width = std::abs(sizes.require("xmag").number());
-        const double half_height = std::abs(sizes.require("ymag").number());
-        if (half_width == 0.0 || half_height == 0.0)
-            sizes.fail("the picture has no area; xmag and ymag are not 0");
+        const auto half = [&](const char* key) {
+            const Node value = sizes.require(key);
+            const double size = std::abs(value.number());
+            if (size < double(FLOAT_MIN) || size > double(MAX_COORDINATE))
+                value.fail_expected("a number from 1.2e-38 to 1e37, half the size of what is seen");
+            return size;
+        };
+        const double half_width = half("xmag"), half_height = half("ymag");
         result.ortho_height = 2.0 * half_height;
         aspect = half_width / half_height;
     } else if (type.string() == "perspective") {
@@ -225,13 +233,13 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
     }
     const dvec3 backwards(posed.world[2]);
     const dvec3 up(posed.world[1]);
-    if (!(length(cross(backwards, up)) > 0.0)) {
+    if (!has_direction(cross(backwards, up)) || !has_direction(backwards) || !has_direction(up)) {
         file_.warn(node, "left out a camera that its transform flattens");
         return;
     }
     result.name =
         unique_camera_name(name_of(node, name_of(camera, concat("camera ", scene_.cameras.size()))));
-    result.position = dvec3(posed.world[3]);
+    result.position = position_of(node, posed.world);
     result.look_at = result.position - normalize(backwards);
     result.up = vec3(normalize(up));
     scene_.cameras.push_back(result);
