@@ -27,6 +27,7 @@ from meshes import box, read_ply, write_ply
 import light_texture  # noqa: E402, F401 (registers a plugin; both need the variant)
 import principled_model  # noqa: E402
 import reflection_models  # noqa: E402
+import spot_cone  # noqa: E402, F401 (registers a plugin)
 from surroundings import around  # noqa: E402
 
 HERE = Path(__file__).parent
@@ -59,6 +60,8 @@ SPP = {
     "frosted-glass": 64,
     "thin-glass": 256,
     "coated-plastic": 256,
+    "punctual-lights": 256,
+    "orthographic": 256,
 }
 
 # A string, which stays, or a comment, which becomes a space.
@@ -280,16 +283,41 @@ def shape_of(shape, scene, folder, temporary):
     return result
 
 
+# --- Lights without a surface ---------------------------------------------------------------------------------------
+
+
+def light_of(light):
+    if light["type"] == "directional":
+        return {"type": "directional", "direction": light["direction"], "irradiance": colour(light["irradiance"])}
+    intensity = colour(light["intensity"])
+    position = np.array(light["position"], dtype=float)
+    if light["type"] == "point":
+        return {"type": "point", "position": position.tolist(), "intensity": intensity}
+    target = light["look_at"] if "look_at" in light else (position + light["direction"]).tolist()
+    axis = target - position
+    up = [1, 0, 0] if abs(axis[0]) < 0.5 * np.linalg.norm(axis) else [0, 1, 0]
+    inner, outer = float(light.get("inner_angle", 0)), float(light.get("outer_angle", 45))
+    # All of the falloff is in the texture: the light's own begins where that ends.
+    return {"type": "spot", "to_world": mi.ScalarTransform4f().look_at(position.tolist(), target, up),
+            "intensity": intensity, "cutoff_angle": outer, "beam_width": outer * (1 - 1e-5),
+            "texture": {"type": "candela_spot_cone", "inner": inner, "outer": outer}}
+
+
 # --- Camera and environment ------------------------------------------------------------------------------------------
 
 
 def sensor(camera):
+    look_at = mi.ScalarTransform4f().look_at(camera["position"], camera["look_at"], camera.get("up", [0, 1, 0]))
+    film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "component_format": "float32"}
+    if "orthographic_height" in camera:
+        # Mitsuba's film reaches from -1 to 1.
+        half = camera["orthographic_height"] / 2
+        return {"type": "orthographic", "to_world": look_at @ mi.ScalarTransform4f().scale([half, half, 1]),
+                "near_clip": 1e-3, "film": {**film, "pixel_format": "rgb"}, "sampler": {"type": "independent"}}
     if "vertical_fov" in camera:
         fov = camera["vertical_fov"]
     else:
         fov = np.degrees(2 * np.arctan(camera["film_size"][1] / (2 * camera["focal_length"])))
-    look_at = mi.ScalarTransform4f().look_at(camera["position"], camera["look_at"], camera.get("up", [0, 1, 0]))
-    film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "component_format": "float32"}
     result = {"type": "perspective", "to_world": look_at, "fov": float(fov), "fov_axis": "y", "near_clip": 1e-3}
     lens = camera.get("lens", {"radius": 0})
     if lens["radius"] > 0:
@@ -343,6 +371,8 @@ def load(name, temporary):
         result["environment"] = environment_of(scene["environment"], folder)
     for i, shape in enumerate(scene["shapes"]):
         result[f"shape{i}"] = shape_of(shape, scene, folder, temporary)
+    for i, light in enumerate(scene.get("lights", [])):
+        result[f"light{i}"] = light_of(light)
     return mi.load_dict(result)
 
 

@@ -50,6 +50,8 @@ constexpr std::array REFERENCES{
     Reference{"frosted-glass", 512},
     Reference{"thin-glass", 768},
     Reference{"coated-plastic", 256},
+    Reference{"punctual-lights", 768},
+    Reference{"orthographic", 512},
     Reference{"principled-nested-glass", 512, "nested-glass"},
 };
 
