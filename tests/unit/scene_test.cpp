@@ -114,12 +114,12 @@ TEST(Scene, SaysWhichKeysItKnows) {
     SceneFolder folder;
     folder.expect_error(
         "{" + GOOD_CAMERA + ",\n\"shapes\": [], @\"light\": []}",
-        "unknown key \"light\" (known: $schema, cameras, film, integrator, materials, shapes, "
-        "environment)");
+        "unknown key \"light\" (did you mean \"lights\"? known: $schema, cameras, film, integrator, "
+        "materials, shapes, lights, environment)");
     folder.expect_error(
         settings(R"("cameras": {"m": {"position": [0, 0, 1], "look_at": [0, 0, 0], @"vertcal_fov": 40}})"),
         "unknown key \"vertcal_fov\" (did you mean \"vertical_fov\"? known: position, look_at, up, "
-        "vertical_fov, film_size, focal_length, lens)");
+        "vertical_fov, film_size, focal_length, orthographic_height, lens)");
     folder.expect_error(
         scene_of(R"({"type": "box", "min": [0, 0, 0], "max": [1, 1, 1], @"colour": "white"})"),
         "unknown key \"colour\" (known: min, max, type, material, emission, two_sided, transform)");
