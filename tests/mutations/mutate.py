@@ -3,7 +3,7 @@
 
 Each way of mutations.py is built in a copy of this tree below build/mutations, and the tests of its group run against
 it, for two minutes at most. Prints the table of README.md, and exits with 1 if a way went unnoticed. Takes about
-forty minutes on two cores.
+ninety minutes on two cores.
 
 usage: mutate.py [WORD]...      WORD: only the ways whose names have one of them
 """
