@@ -211,32 +211,43 @@ std::string line_text(const std::string& file, Place place) {
     return file + ':' + std::to_string(place.line) + ':' + std::to_string(place.column);
 }
 
-// Appends the JSON pointer from `root` to `value`, which is compared by its address. Returns false, and
-// appends nothing, if it is not in there.
-bool append_pointer(const Value& root, const Value& value, std::string& pointer) {
-    if (&root == &value) return true;
-    const size_t length = pointer.size();
-    if (const auto* array = std::get_if<Array>(&root.data)) {
-        for (size_t i = 0; i < array->size(); ++i) {
-            pointer += '/' + std::to_string(i);
-            if (append_pointer((*array)[i], value, pointer)) return true;
-            pointer.resize(length);
-        }
-    } else if (const auto* object = std::get_if<Object>(&root.data)) {
-        for (const Member& member : *object) {
+bool is_at_or_before(Place a, Place b) {
+    return a.line != b.line ? a.line < b.line : a.column <= b.column;
+}
+
+// Of values in the order of the file, the last that begins at a place or before; the end if there is none.
+template <class Values, class PlaceOf>
+auto last_until(const Values& values, Place place, const PlaceOf& place_of) {
+    const auto after = std::partition_point(values.begin(), values.end(), [&](const auto& value) {
+        return is_at_or_before(place_of(value), place);
+    });
+    return after == values.begin() ? values.end() : std::prev(after);
+}
+
+// Appends the JSON pointer from `value` to the one that begins at a place, which its places lead to.
+void append_pointer(const Value* value, Place place, std::string& pointer) {
+    while (value->place.line != place.line || value->place.column != place.column) {
+        if (const auto* array = std::get_if<Array>(&value->data)) {
+            const auto next = last_until(*array, place, [](const Value& v) { return v.place; });
+            if (next == array->end()) return;
+            pointer += '/' + std::to_string(next - array->begin());
+            value = &*next;
+        } else if (const auto* object = std::get_if<Object>(&value->data)) {
+            const auto next = last_until(*object, place, [](const Member& m) { return m.value.place; });
+            if (next == object->end()) return;
             pointer += '/';
-            for (const char c : member.key) {
+            for (const char c : next->key) {
                 if (c == '~' || c == '/') {
                     pointer += c == '~' ? "~0" : "~1";
                 } else {
                     pointer += c;
                 }
             }
-            if (append_pointer(member.value, value, pointer)) return true;
-            pointer.resize(length);
+            value = &next->value;
+        } else {
+            return;
         }
     }
-    return false;
 }
 
 }  // namespace
@@ -258,7 +269,7 @@ void fail(const std::string& file, Place place, const std::string& message) {
 std::string place_of(const Document& document, const Value& value) {
     if (document.places == Document::Places::lines) return line_text(document.file, value.place);
     std::string pointer = document.file + '#';
-    append_pointer(document.root, value, pointer);
+    append_pointer(&document.root, value.place, pointer);
     return pointer;
 }
 

@@ -42,7 +42,7 @@ struct Document {
 };
 
 // Where a value of the document is, as messages begin: `file:line:column`, or `file#/key/0` with its JSON
-// pointer (RFC 6901), which takes a walk over the document.
+// pointer (RFC 6901).
 std::string place_of(const Document& document, const Value& value);
 
 // Parses `text`; `file` is its name in messages. Throws Error `file:line:column: cause` for text that is not

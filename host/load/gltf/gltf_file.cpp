@@ -160,7 +160,7 @@ std::span<const std::byte> File::buffer_bytes(uint32_t i) {
 }
 
 void File::warn(const std::string& text) {
-    if (std::ranges::find(warnings_, text) == warnings_.end()) warnings_.push_back(text);
+    if (warned_.insert(text).second) warnings_.push_back(text);
 }
 
 }  // namespace candela::gltf

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "load/node.h"
@@ -62,3 +63,4 @@ class File {
 };
 
 }  // namespace candela::gltf
+    std::unordered_set<std::string> warned_;  // The same, to be found.
