@@ -15,9 +15,6 @@
 namespace candela::gltf {
 namespace {
 
-// Elements of an accessor without bytes, which cost a file nothing.
-constexpr uint32_t MOST_ZEROS = 1u << 24;
-
 constexpr std::array<std::pair<std::string_view, uint32_t>, 5> WIDTHS{
     {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}}};
 
@@ -43,6 +40,10 @@ auto with_type(Component component, const Visit& visit) {
 
 size_t size_of_component(Component component) {
     return with_type(component, [](auto zero) { return sizeof zero; });
+}
+
+bool is_unsigned(Component component) {
+    return component == Component::uint8 || component == Component::uint16 || component == Component::uint32;
 }
 
 Component read_component(const Node& node) {
@@ -79,7 +80,8 @@ std::span<const std::byte> element_bytes(File& file, const Node& node, uint64_t 
     }
     const auto value = node.find("byteOffset");
     const uint64_t offset = value ? value->integer(0, UINT32_MAX) : 0;
-    const uint64_t end = offset + (count - 1) * stride + size;  // Below 2^65 / 2: each factor is below 2^32.
+    const uint64_t end =
+        offset + (count - 1) * stride + size;  // Below 2^64, as count and stride are below 2^32.
     if (end > bytes.size()) {
         node.fail(concat(count, " elements end at byte ", end, " of their view, which has ", bytes.size(),
                          "; is the file damaged?"));
@@ -123,9 +125,10 @@ Accessor::Accessor(File& file, const Node& reference, std::initializer_list<std:
     const size_t size = width_ * size_of_component(component_);
     if (node_.find("bufferView")) {
         bytes_ = element_bytes(file, node_, count_, size, stride_);
-    } else if (count_ > MOST_ZEROS) {
-        count.fail(concat("an accessor without a bufferView is all zeros, and has at most ", MOST_ZEROS,
-                          " elements; name the view of its bytes"));
+    } else if (count_ > file.bytes_read()) {
+        // Zeros cost a file nothing, but memory. Whatever goes along with others has as many as they.
+        count.fail(concat("an accessor without a bufferView is all zeros, and has no more elements than the ",
+                          file.bytes_read(), " bytes that were read; name the view of its bytes"));
     }
     if (const auto sparse = node_.find("sparse")) read_sparse(file, *sparse);
 }
@@ -133,7 +136,9 @@ Accessor::Accessor(File& file, const Node& reference, std::initializer_list<std:
 void Accessor::read_sparse(File& file, const Node& sparse) {
     const uint32_t replaced = sparse.require("count").integer(1, count_);
     const Node indices = sparse.require("indices");
-    const Component type = read_component(indices.require("componentType"));
+    const Node type_node = indices.require("componentType");
+    const Component type = read_component(type_node);
+    if (!is_unsigned(type)) type_node.fail_expected("5121, 5123 or 5125");
     size_t stride = 0;
     const auto index_bytes = element_bytes(file, indices, replaced, size_of_component(type), stride);
     sparse_.emplace();
@@ -151,8 +156,7 @@ void Accessor::read_sparse(File& file, const Node& sparse) {
         sparse_->indices.push_back(uint32_t(index));
     }
     const size_t size = width_ * size_of_component(component_);
-    size_t value_stride = 0;
-    sparse_->values = element_bytes(file, sparse.require("values"), replaced, size, value_stride);
+    sparse_->values = element_bytes(file, sparse.require("values"), replaced, size, sparse_->stride);
 }
 
 std::vector<float> Accessor::floats() const {
@@ -163,7 +167,7 @@ std::vector<float> Accessor::floats() const {
             copy_element<T>(bytes_.data() + i * stride_, width_, normalized_, &result[i * width_]);
         if (!sparse_) return;
         for (size_t i = 0; i < sparse_->indices.size(); ++i) {
-            copy_element<T>(sparse_->values.data() + i * width_ * sizeof(T), width_, normalized_,
+            copy_element<T>(sparse_->values.data() + i * sparse_->stride, width_, normalized_,
                             &result[size_t(sparse_->indices[i]) * width_]);
         }
     });
@@ -189,9 +193,7 @@ std::vector<float> Accessor::floats(std::span<const uint32_t> rows) const {
 }
 
 std::vector<uint32_t> Accessor::integers() const {
-    const bool is_unsigned =
-        component_ == Component::uint8 || component_ == Component::uint16 || component_ == Component::uint32;
-    if (!is_unsigned || normalized_) {
+    if (!is_unsigned(component_) || normalized_) {
         node_.require("componentType").fail("unsigned integers are expected here; export the file again");
     }
     std::vector<uint32_t> result(size_t(count_) * width_, 0);
@@ -208,7 +210,7 @@ std::vector<uint32_t> Accessor::integers() const {
             copy(bytes_.data() + i * stride_, i);
         if (!sparse_) return;
         for (size_t i = 0; i < sparse_->indices.size(); ++i)
-            copy(sparse_->values.data() + i * width_ * sizeof(T), sparse_->indices[i]);
+            copy(sparse_->values.data() + i * sparse_->stride, sparse_->indices[i]);
     });
     return result;
 }

@@ -18,8 +18,9 @@ enum class Component : uint32_t { int8 = 5120, uint8, int16, uint16, uint32 = 51
 
 // The part of an accessor whose elements replace others.
 struct Sparse {
-    std::vector<uint32_t> indices;  // Ascending, below the count of the whole.
+    std::vector<uint32_t> indices;  // Below the count of the whole; of equal ones, the last counts.
     std::span<const std::byte> values;
+    size_t stride = 0;  // From one of them to the next [bytes].
 };
 
 class Accessor {

@@ -143,6 +143,7 @@ std::span<const std::byte> File::buffer_bytes(uint32_t i) {
                 }
                 files_.push_back(path);
             }
+            buffer_bytes_read_ += buffers_[i]->size();
         }
         bytes = *buffers_[i];
     } else if (i == 0 && chunk_) {

@@ -41,6 +41,9 @@ class File {
     // The bytes that a bufferView stands for; valid as long as this file. Throws Error if they are not there.
     std::span<const std::byte> view_bytes(const Node& view);
 
+    // How many bytes have been read so far: the file, and the buffers that are used.
+    size_t bytes_read() const { return bytes_.size() + buffer_bytes_read_; }
+
     // Files besides this one that were read for buffers.
     const std::vector<std::filesystem::path>& files() const { return files_; }
 
@@ -58,9 +61,10 @@ class File {
     std::optional<std::string_view> chunk_;  // The buffer of a .glb.
     json::Document document_;
     std::vector<std::optional<std::string>> buffers_;  // What was read for each.
+    size_t buffer_bytes_read_ = 0;
     std::vector<std::filesystem::path> files_;
     std::vector<std::string> warnings_;
+    std::unordered_set<std::string> warned_;  // The same, to be found.
 };
 
 }  // namespace candela::gltf
-    std::unordered_set<std::string> warned_;  // The same, to be found.
