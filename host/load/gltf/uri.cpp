@@ -89,11 +89,14 @@ std::optional<std::string> inline_data(const Node& uri) {
 std::filesystem::path file_of(const Node& uri, const std::filesystem::path& folder) {
     const std::string& text = uri.file_name();
     if (text.empty()) uri.fail("the URI is empty; name a file");
-    if (has_scheme(text) || text.starts_with('/') || text.starts_with('\\')) {
+    const auto is_absolute = [](const std::string& name) {
+        return name.starts_with('/') || name.starts_with('\\');
+    };
+    const std::string decoded = has_scheme(text) || is_absolute(text) ? text : decode_percents(uri);
+    if (has_scheme(text) || is_absolute(decoded)) {
         uri.fail("only files that are named relative to this one are read, not " + quote(text.substr(0, 60)) +
                  "; put the file beside this one");
     }
-    const std::string decoded = decode_percents(uri);
     if (decoded.find('\0') != std::string::npos)
         uri.fail("a file name cannot hold the character U+0000; remove it");
     std::error_code ignored;
