@@ -64,6 +64,19 @@ void read_placement(File& file, const Node& node, PosedNode& posed) {
     if (scale) posed.trs.scale = scale->vector();
 }
 
+// Throws Error if a node is within itself. Each has one parent at most.
+void check_trees(const File& file, const std::vector<PosedNode>& nodes) {
+    constexpr uint32_t NONE = UINT32_MAX;
+    std::vector<uint32_t> seen_from(nodes.size(), NONE);  // The node from which a way upwards first met it.
+    for (uint32_t i = 0; i < nodes.size(); ++i) {
+        std::optional<uint32_t> at = i;
+        for (; at && seen_from[*at] == NONE; at = nodes[*at].parent)
+            seen_from[*at] = i;
+        if (at && seen_from[*at] == i)
+            file.element("nodes", *at).fail("the node is within itself; nodes form trees");
+    }
+}
+
 }  // namespace
 
 std::vector<PosedNode> read_nodes(File& file) {
@@ -89,6 +102,7 @@ std::vector<PosedNode> read_nodes(File& file) {
             nodes[i].children.push_back(child);
         }
     }
+    check_trees(file, nodes);
     return nodes;
 }
 

@@ -68,7 +68,7 @@ void SceneReader::read() {
         const uint32_t i = waiting.back();
         waiting.pop_back();
         if (!nodes_[i].is_visible) continue;
-        if (seen[i]) file_.element("nodes", i).fail("the node is within itself, or twice in the scene");
+        if (seen[i]) file_.element("nodes", i).fail("the node is twice in the scene; name it once");
         seen[i] = true;
         read_node(i);
         const std::vector<uint32_t>& children = nodes_[i].children;
