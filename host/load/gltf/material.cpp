@@ -266,6 +266,11 @@ Material read_material(File& file, Scene& scene, const Node& material) {
     return MaterialReader(file, scene, material).read();
 }
 
+bool alpha_counts(const Node& material) {
+    const auto mode = material.find("alphaMode");
+    return mode && mode->string() != "OPAQUE";
+}
+
 Material default_material() {
     PrincipledMaterial m;
     m.base_color = vec3(1.0f);

@@ -20,8 +20,10 @@
 namespace candela::gltf {
 namespace {
 
-// Leaves the attributes that a material looks up, and adds those that are missing.
-void fit_attributes(File& file, const Node& primitive, const Material& material, TriangleMesh& mesh) {
+// Leaves the attributes that a material looks up, and adds those that are missing. `has_alpha`: whether the
+// file's material lets alpha count.
+void fit_attributes(File& file, const Node& primitive, const Material& material, bool has_alpha,
+                    TriangleMesh& mesh) {
     uint32_t sets = 0;
     for_each_texture(material, [&](const Texture& texture) { sets |= 1u << texture.uv_set; });
     if (needs_tangents(material)) {
@@ -38,10 +40,10 @@ void fit_attributes(File& file, const Node& primitive, const Material& material,
             uvs->assign(mesh.positions.size(), vec2(0.0f, 1.0f));
         }
     }
-    const bool opaque = !material.opacity.value.texture && material.opacity.value.factor == 1.0f;
-    for (vec4& color : mesh.colors) {
-        if (opaque && !material.opacity.cutoff) color.w = 1.0f;
-    }
+    const Opacity& opacity = material.opacity;
+    if (has_alpha || opacity.value != Textured<float>(1.0f) || opacity.cutoff) return;
+    for (vec4& color : mesh.colors)
+        color.w = 1.0f;
 }
 
 }  // namespace
@@ -152,8 +154,10 @@ std::optional<size_t> SceneReader::add_primitive(const Node& primitive, const De
                                                  const Transform& transform) {
     std::optional<TriangleMesh> mesh = read_primitive(file_, primitive, deformation);
     if (!mesh) return std::nullopt;
-    const uint32_t material = material_for({material_of(primitive), !mesh->colors.empty()});
-    fit_attributes(file_, primitive, scene_.materials[material], *mesh);
+    const std::optional<uint32_t> of_file = material_of(primitive);
+    const uint32_t material = material_for({of_file, !mesh->colors.empty()});
+    const bool has_alpha = of_file && alpha_counts(file_.element("materials", *of_file));
+    fit_attributes(file_, primitive, scene_.materials[material], has_alpha, *mesh);
     builder_.add_mesh(primitive.place(), {material, material_emission(scene_.materials[material])}, transform,
                       std::move(*mesh));
     return scene_.shapes.size() - 1;
