@@ -73,7 +73,7 @@ Light read_light(File& file, const Node& reference, const glm::dmat4& world, Lig
         file.warn(*range, "the range of a light is ignored: its intensity falls with the squared distance");
     const dvec3 position(world[3]);
     const dvec3 axis = dvec3(-world[2]);
-    const dvec3 direction = length(axis) > 0.0 ? normalize(axis) : dvec3(0, 0, -1);
+    const dvec3 direction = has_direction(axis) ? normalize(axis) : dvec3(0, 0, -1);
     const vec3 power(intensity_factor(units) * intensity * dvec3(color));
 
     const Node type_node = light.require("type");

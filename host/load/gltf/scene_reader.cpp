@@ -201,10 +201,14 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
     double aspect = 0.0;  // 0: the file states none.
     if (type.string() == "orthographic") {
         const Node sizes = camera.require("orthographic");
-        const double half_width = std::abs(sizes.require("xmag").number());
-        const double half_height = std::abs(sizes.require("ymag").number());
-        if (half_width == 0.0 || half_height == 0.0)
-            sizes.fail("the picture has no area; xmag and ymag are not 0");
+        const auto half = [&](const char* key) {
+            const Node value = sizes.require(key);
+            const double size = std::abs(value.number());
+            if (size < double(FLOAT_MIN) || size > double(MAX_COORDINATE))
+                value.fail_expected("a number from 1.2e-38 to 1e37, half the size of what is seen");
+            return size;
+        };
+        const double half_width = half("xmag"), half_height = half("ymag");
         result.ortho_height = 2.0 * half_height;
         aspect = half_width / half_height;
     } else if (type.string() == "perspective") {
@@ -223,13 +227,13 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
     }
     const dvec3 backwards(posed.world[2]);
     const dvec3 up(posed.world[1]);
-    if (!(length(cross(backwards, up)) > 0.0)) {
+    if (!has_direction(cross(backwards, up)) || !has_direction(backwards) || !has_direction(up)) {
         file_.warn(node, "left out a camera that its transform flattens");
         return;
     }
     result.name =
         unique_camera_name(name_of(node, name_of(camera, concat("camera ", scene_.cameras.size()))));
-    result.position = dvec3(posed.world[3]);
+    result.position = position_of(node, posed.world);
     result.look_at = result.position - normalize(backwards);
     result.up = vec3(normalize(up));
     scene_.cameras.push_back(result);

@@ -2,6 +2,7 @@
 #include "load/gltf/values.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
 
@@ -31,6 +32,18 @@ vec3 color_of(File& file, const Node& object, std::string_view key, float hi, ve
     for (glm::length_t i = 0; i < 3; ++i)
         result[i] = limited(file, *node, color[i], 0.0f, hi);
     return result;
+}
+
+dvec3 position_of(const Node& place, const glm::dmat4& world) {
+    const dvec3 position(world[3]);
+    if (!all(lessThanEqual(abs(position), dvec3(double(MAX_COORDINATE)))))
+        place.fail("it lies beyond 1e37 along an axis; check the transforms of the nodes around it");
+    return position;
+}
+
+bool has_direction(dvec3 v) {
+    const double size = length(v);
+    return size > 0.0 && std::isfinite(size);
 }
 
 std::optional<Node> extension_of(const Node& element, std::string_view name) {

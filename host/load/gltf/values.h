@@ -15,6 +15,12 @@ float number_of(File& file, const Node& object, std::string_view key, float lo, 
 // The same for three numbers.
 vec3 color_of(File& file, const Node& object, std::string_view key, float hi, vec3 otherwise);
 
+// The position to which a node's matrix takes its origin. Throws Error at `place` if it lies too far away.
+dvec3 position_of(const Node& place, const glm::dmat4& world);
+
+// Whether a vector is neither zero nor too long for its length.
+bool has_direction(dvec3 v);
+
 // The extension of that name that an element has.
 std::optional<Node> extension_of(const Node& element, std::string_view name);
 
