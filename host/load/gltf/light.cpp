@@ -47,6 +47,8 @@ SpotLight read_cone(File& file, const Node& light) {
     const auto cone = light.find("spot");
     const float inner = cone ? number_of(file, *cone, "innerConeAngle", 0.0f, HALF_PI, 0.0f) : 0.0f;
     const float outer = cone ? number_of(file, *cone, "outerConeAngle", 0.0f, HALF_PI, PI / 4) : PI / 4;
+    if (inner > outer)
+        file.warn(*cone, "the inner angle of a spot is greater than the outer one, and counts as equal");
     spot.outer_angle = std::max(outer, 2.0f * LEAST_EDGE);
     spot.inner_angle = std::min(inner, spot.outer_angle - LEAST_EDGE);
     return spot;
@@ -71,7 +73,7 @@ Light read_light(File& file, const Node& reference, const glm::dmat4& world, Lig
     const double intensity = double(number_of(file, light, "intensity", 0.0f, MOST, 1.0f));
     if (const auto range = light.find("range"))
         file.warn(*range, "the range of a light is ignored: its intensity falls with the squared distance");
-    const dvec3 position(world[3]);
+    const dvec3 position = position_of(reference, world);
     const dvec3 axis = dvec3(-world[2]);
     const dvec3 direction = has_direction(axis) ? normalize(axis) : dvec3(0, 0, -1);
     const vec3 power(intensity_factor(units) * intensity * dvec3(color));
