@@ -84,8 +84,9 @@ std::vector<double> sample(const Sampler& s, double time, bool is_rotation) {
     if (s.interpolation == Interpolation::linear && is_rotation) {
         const float* a = s.value(key - 1);
         const float* b = s.value(key);
-        const glm::dquat q =
-            glm::slerp(glm::dquat(a[3], a[0], a[1], a[2]), glm::dquat(b[3], b[0], b[1], b[2]), t);
+        // Those of integers have a length of about 1.
+        const glm::dquat q = glm::slerp(normalize(glm::dquat(a[3], a[0], a[1], a[2])),
+                                        normalize(glm::dquat(b[3], b[0], b[1], b[2])), t);
         return {q.x, q.y, q.z, q.w};
     }
     for (size_t i = 0; i < s.width; ++i) {
