@@ -208,6 +208,11 @@ class PrimitiveReader {
     std::vector<glm::dmat4> blended_joints() {
         std::vector<glm::dmat4> blended(rows_.size(), glm::dmat4(0.0));
         std::vector<double> sums(rows_.size(), 0.0);
+        if (!attributes_.find("JOINTS_0") || !attributes_.find("WEIGHTS_0")) {
+            file_.warn(attributes_,
+                       "the mesh has a skin, but the primitive no joints; all of it follows the "
+                       "first one");
+        }
         for (int set = 0;; ++set) {
             const auto joints = attributes_.find("JOINTS_" + std::to_string(set));
             const auto weights = attributes_.find("WEIGHTS_" + std::to_string(set));
