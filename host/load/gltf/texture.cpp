@@ -1,6 +1,7 @@
 // Ref: Khronos, "glTF 2.0 Specification", sections 3.8 and 3.9.7.
 #include "load/gltf/texture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -77,6 +78,10 @@ uint32_t read_image(File& file, Scene& scene, const Node& reference) {
         image.fail("an image has either a uri or a bufferView; export the file again");
     const std::string name = concat(file.path().string(), "#/images/", index);
     const auto add = [&] {
+        // Data in line are decoded once.
+        const auto known =
+            std::ranges::find(scene.images, std::filesystem::path(name), &ImageFile::real_path);
+        if (known != scene.images.end()) return uint32_t(known - scene.images.begin());
         if (view) {
             const std::span<const std::byte> bytes = file.view_bytes(file.resolve("bufferViews", *view));
             const auto* begin = reinterpret_cast<const char*>(bytes.data());
