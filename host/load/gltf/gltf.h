@@ -21,11 +21,11 @@ inline constexpr Choices<LightUnits, 3> LIGHT_UNITS_NAMES{
 
 // What of a file is read. Where a name is asked for, the index of the element will do.
 struct GltfOptions {
-    std::optional<std::string> scene;       // None: the file's default.
-    std::optional<std::string> animation;   // Or "all"; none: the first, if there is a time.
-    std::optional<double> time;             // Of the animation [s]; none: nodes as they stand.
-    std::optional<std::string> variant;     // Of the materials; none: those of the file.
-    std::optional<LightUnits> light_units;  // None: those of the program that wrote the file.
+    std::optional<std::string> scene{};       // None: the file's default.
+    std::optional<std::string> animation{};   // Or "all"; none: the first, if there is a time.
+    std::optional<double> time{};             // Of the animation [s]; none: nodes as they stand.
+    std::optional<std::string> variant{};     // Of the materials; none: those of the file.
+    std::optional<LightUnits> light_units{};  // None: those of the program that wrote the file.
 
     bool operator==(const GltfOptions&) const = default;
 };
