@@ -60,6 +60,7 @@ LIBRARIES = {
     "libwebp": (r"webp/", ["host/base"]),
     "nlohmann-json": (r"nlohmann/", ["host/load", "host/cli"]),
     "tinyobjloader": (r"tiny_obj_loader", []),
+    "tinygltf": (r"tiny_gltf", []),
     "CLI11": (r"CLI/", ["host/cli"]),
     "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/probe", "host/selftest", "host/bench", "host/view",
                                  "host/cli", "host"]),

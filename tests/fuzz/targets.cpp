@@ -15,6 +15,7 @@
 #include "fuzz/image_text.h"
 #include "fuzz/memory_file.h"
 #include "gpu_scene/gpu_scene.h"
+#include "load/gltf/gltf.h"
 #include "load/json/loader.h"
 #include "load/obj/mtl.h"
 #include "load/obj/obj.h"
@@ -49,6 +50,29 @@ std::string with_checksums(std::string_view file) {
     return mended.append(file);
 }
 
+// A .glb file with the lengths of the file and of its second chunk set right: a fuzzer changes both all the
+// time.
+std::string with_lengths(std::string_view file) {
+    constexpr size_t LENGTH = 8, FIRST = 12, CHUNK_HEADER = 8;
+    std::string mended(file);
+    const auto set = [&](size_t at, size_t value) {
+        for (size_t i = 0; i < 4; ++i)
+            mended[at + i] = char(value >> (8 * i) & 0xFFu);
+    };
+    if (mended.size() < FIRST + CHUNK_HEADER) return mended;
+    set(LENGTH, mended.size());
+    size_t text = 0;
+    for (size_t i = 0; i < 4; ++i)
+        text |= size_t(uint8_t(mended[FIRST + i])) << (8 * i);
+    const size_t second = FIRST + CHUNK_HEADER + text;
+    if (second > mended.size()) {
+        set(FIRST, mended.size() - FIRST - CHUNK_HEADER);
+    } else if (mended.size() - second >= CHUNK_HEADER) {
+        set(second, mended.size() - second - CHUNK_HEADER);
+    }
+    return mended;
+}
+
 }  // namespace
 
 void scene(std::string_view bytes) {
@@ -68,6 +92,18 @@ void mtl(std::string_view bytes) {
 void ply(std::string_view bytes) {
     std::vector<std::string> warnings;
     load_ply(MemoryFile(bytes).path(), MeshNormals::file, warnings);
+}
+
+void gltf(std::string_view bytes) {
+    Scene scene;
+    add_gltf_scene(MemoryFile(bytes).path(), {.animation = "all", .time = 0.5}, scene);
+    complete_gltf_scene("fuzz.gltf", scene);
+    // Images are other targets, and are not read here.
+    if (scene.images.empty()) build_gpu_scene(scene);
+}
+
+void glb(std::string_view bytes) {
+    gltf(with_lengths(bytes));
 }
 
 void hdr(std::string_view bytes) {

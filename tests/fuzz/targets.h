@@ -10,6 +10,9 @@ void scene(std::string_view bytes);  // A scene file, its tree and its records.
 void obj(std::string_view bytes);
 void mtl(std::string_view bytes);
 void ply(std::string_view bytes);
+// Posed at a moment; their tree and their records.
+void gltf(std::string_view bytes);
+void glb(std::string_view bytes);  // With lengths that are right, whatever they are.
 void hdr(std::string_view bytes);
 void exr(std::string_view bytes);
 // Images of textures.
@@ -27,7 +30,9 @@ struct Target {
     std::string_view name;  // Its inputs are in corpora/NAME.
     void (*run)(std::string_view bytes);
 };
-inline constexpr std::array<Target, 13> TARGETS{{{"scene", scene},
+inline constexpr std::array<Target, 15> TARGETS{{{"scene", scene},
+                                                 {"gltf", gltf},
+                                                 {"glb", glb},
                                                  {"obj", obj},
                                                  {"mtl", mtl},
                                                  {"ply", ply},

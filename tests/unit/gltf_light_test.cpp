@@ -1,0 +1,271 @@
+// Cameras and lights of glTF files, and what files get that have neither.
+// Ref: Khronos, "glTF 2.0 Specification", section 3.10; KHR_lights_punctual.
+#include <cmath>
+
+#include "gltf_fixture.h"
+#include "scene/geometry.h"
+
+namespace candela {
+namespace {
+
+constexpr double ROOT = 0.70710678118654752;  // Of 1/2.
+
+class GltfCamera : public Gltf {
+  protected:
+    static GltfFile seen_by(const Json& camera, const Json& node = Json::object()) {
+        GltfFile file = corner_file();
+        Json all = {{"camera", file.push("cameras", camera)}};
+        all.update(node);
+        file.push("nodes", all);
+        return file;
+    }
+    static Json perspective(const Json& more = Json::object()) {
+        Json view = {{"yfov", 0.5}, {"znear", 0.1}};
+        view.update(more);
+        return {{"type", "perspective"}, {"perspective", view}};
+    }
+    static Json orthographic(const Json& xmag, const Json& ymag) {
+        return {{"type", "orthographic"},
+                {"orthographic", {{"xmag", xmag}, {"ymag", ymag}, {"znear", 0}, {"zfar", 1}}}};
+    }
+};
+
+TEST_F(GltfCamera, LooksAlongItsNodesNegativeZ) {
+    // A quarter turn about y takes -z to -x.
+    const Scene scene =
+        load(seen_by(perspective(), {{"translation", {1, 2, 3}}, {"rotation", {0, ROOT, 0, ROOT}}}));
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    const Camera& camera = scene.cameras[0];
+    EXPECT_EQ(camera.position, dvec3(1, 2, 3));
+    EXPECT_LE(distance(normalize(camera.look_at - camera.position), dvec3(-1, 0, 0)), 1e-6);
+    EXPECT_LE(distance(camera.up, vec3(0, 1, 0)), 1e-6f);
+    EXPECT_EQ(camera.vertical_fov, 0.5f);
+    EXPECT_FALSE(camera.ortho_height);
+    EXPECT_FALSE(camera.film_size);  // Without an aspect ratio.
+}
+
+TEST_F(GltfCamera, ItsAspectRatioGivesThePicturesSize) {
+    const auto size = [&](const Json& camera) {
+        return load(seen_by(camera)).cameras.at(0).film_size.value();
+    };
+    const auto ratio = [](uvec2 pixels) { return double(pixels.x) / double(pixels.y); };
+    for (const double aspect : {2.0, 1.0, 0.5, 16.0 / 9.0}) {
+        // Whole pixels.
+        EXPECT_NEAR(ratio(size(perspective({{"aspectRatio", aspect}}))), aspect, 1e-3);
+        EXPECT_NEAR(ratio(size(orthographic(aspect * 3.0, 3.0))), aspect, 1e-3);
+    }
+    EXPECT_EQ(size(perspective({{"aspectRatio", 1e9}})).x, 65536u);
+    EXPECT_EQ(size(perspective({{"aspectRatio", 1e-9}})).x, 1u);
+    expect_error(seen_by(perspective({{"aspectRatio", 0}})),
+                 "#/cameras/0/perspective/aspectRatio: "
+                 "\"aspectRatio\": expected a number above 0, found 0");
+}
+
+TEST_F(GltfCamera, AnOrthographicOneSeesTwiceItsMagnification) {
+    const Camera camera = load(seen_by(orthographic(3, 1.5))).cameras.at(0);
+    EXPECT_EQ(camera.ortho_height, 3.0);
+    EXPECT_EQ(load(seen_by(orthographic(-3, -1.5))).cameras.at(0).ortho_height, 3.0);
+    for (const auto& [size, text] :
+         {std::pair(0.0, "0"), std::pair(1e38, "1e+38"), std::pair(1e-40, "1e-40")}) {
+        const std::string message = std::string(
+                                        ": expected a number from 1.2e-38 to 1e37, half the size of what is "
+                                        "seen, found ") +
+                                    text;
+        expect_error(seen_by(orthographic(size, 1)), "#/cameras/0/orthographic/xmag: \"xmag\"" + message);
+        expect_error(seen_by(orthographic(1, size)), "#/cameras/0/orthographic/ymag: \"ymag\"" + message);
+    }
+}
+
+TEST_F(GltfCamera, HasTheNameOfItsNodeOrItsOwn) {
+    GltfFile file = seen_by(perspective());
+    file.root["cameras"][0]["name"] = "lens";
+    for (const Json& node :
+         {Json{{"camera", 0}, {"name", "left"}}, Json{{"camera", 0}, {"name", "left"}}, Json{{"camera", 0}}})
+        file.push("nodes", node);
+    std::vector<std::string> names;
+    for (const Camera& camera : load(file).cameras)
+        names.push_back(camera.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"lens", "left", "left (2)", "lens (2)"}));
+    EXPECT_EQ(load(seen_by(perspective())).cameras.at(0).name, "camera 0");
+}
+
+TEST_F(GltfCamera, RefusesOnesThatSeeNothing) {
+    for (const auto& [angle, text] : {std::pair(0.0, "0"), std::pair(3.2, "3.2"), std::pair(-1.0, "-1")}) {
+        expect_error(seen_by(perspective({{"yfov", angle}})),
+                     std::string("#/cameras/0/perspective/yfov: \"yfov\": "
+                                 "expected an angle between 0 and pi, found ") +
+                         text);
+    }
+    expect_error(seen_by({{"type", "fisheye"}}),
+                 "#/cameras/0/type: \"type\": expected \"perspective\" or "
+                 "\"orthographic\", found \"fisheye\"");
+    expect_error(seen_by({{"type", "perspective"}}),
+                 "#/cameras/0: the key \"perspective\" is missing here; add it");
+    expect_error(seen_by(Json::object()), "#/cameras/0: the key \"type\" is missing here; add it");
+    EXPECT_TRUE(expect_warning(seen_by(perspective(), {{"scale", {1, 0, 1}}}),
+                               "#/nodes/1: left out a camera that its transform flattens")
+                    .cameras.empty());
+    expect_error(seen_by(perspective(), {{"translation", {0, 2e37, 0}}}),
+                 "#/nodes/1: it lies beyond 1e37 along an axis; check the transforms of the nodes around it");
+    GltfFile file = seen_by(perspective());
+    file.root["nodes"][1]["camera"] = 1;
+    expect_error(file,
+                 "#/nodes/1/camera: there is no 1 in \"cameras\", which has 0 to 0; name one that the file "
+                 "has");
+}
+
+class GltfLight : public Gltf {
+  protected:
+    static GltfFile lit_by(const Json& light, const Json& node = Json::object()) {
+        GltfFile file = corner_file();
+        file.root["extensions"]["KHR_lights_punctual"]["lights"] = Json::array({light});
+        Json all = {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}};
+        all.update(node);
+        file.push("nodes", all);
+        return file;
+    }
+    template <class Model>
+    Model read(const Json& light, LightUnits units = LightUnits::spec) {
+        const Scene scene =
+            load(lit_by(light, {{"translation", {1, 2, 3}}, {"rotation", {0, ROOT, 0, ROOT}}}),
+                 {.light_units = units});
+        EXPECT_EQ(scene.warnings, std::vector<std::string>{});
+        return std::get<Model>(scene.lights.at(0).model);
+    }
+    static void expect_near(vec3 value, dvec3 expected) {
+        EXPECT_LE(distance(dvec3(value), expected), 1e-6 * length(expected));
+    }
+};
+
+TEST_F(GltfLight, ReadsEachKind) {
+    const auto point = read<PointLight>({{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 100}});
+    EXPECT_EQ(point.position, dvec3(1, 2, 3));
+    EXPECT_EQ(point.intensity, vec3(100, 50, 0));
+    EXPECT_EQ(read<PointLight>({{"type", "point"}}).intensity, vec3(1));
+    const auto spot = read<SpotLight>(
+        {{"type", "spot"}, {"intensity", 3}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}});
+    EXPECT_EQ(spot.position, dvec3(1, 2, 3));
+    EXPECT_LE(distance(spot.direction, dvec3(-1, 0, 0)), 1e-6);
+    EXPECT_EQ(spot.intensity, vec3(3));
+    EXPECT_EQ(spot.inner_angle, 0.25f);
+    EXPECT_EQ(spot.outer_angle, 0.5f);
+    const auto plain = read<SpotLight>({{"type", "spot"}, {"spot", Json::object()}});
+    EXPECT_EQ(plain.inner_angle, 0.0f);
+    EXPECT_EQ(plain.outer_angle, float(std::acos(-1.0) / 4));
+    const auto sun =
+        read<DirectionalLight>({{"type", "directional"}, {"color", {1, 0.5, 0}}, {"intensity", 4}});
+    EXPECT_LE(distance(sun.direction, dvec3(-1, 0, 0)), 1e-6);
+    EXPECT_EQ(sun.irradiance, vec3(4, 2, 0));
+    EXPECT_EQ(load(lit_by({{"type", "point"}, {"name", "lamp"}})).lights.at(0).name, "lamp");
+    EXPECT_EQ(load(lit_by({{"type", "point"}})).lights.at(0).name, "light 0");
+}
+
+TEST_F(GltfLight, CountsInTheUnitsThatAreAskedFor) {
+    const Json lamp = {{"type", "point"}, {"intensity", 683}},
+               sun = {{"type", "directional"}, {"intensity", 683}};
+    const Json spot = {{"type", "spot"}, {"intensity", 683}};
+    const double sphere = 4.0 * std::acos(-1.0);
+    expect_near(read<PointLight>(lamp, LightUnits::spec).intensity, dvec3(683));
+    expect_near(read<PointLight>(lamp, LightUnits::blender).intensity, dvec3(1));
+    expect_near(read<PointLight>(lamp, LightUnits::raw).intensity, dvec3(683 / sphere));
+    expect_near(read<SpotLight>(spot, LightUnits::blender).intensity, dvec3(1));
+    expect_near(read<SpotLight>(spot, LightUnits::raw).intensity, dvec3(683 / sphere));
+    expect_near(read<DirectionalLight>(sun, LightUnits::spec).irradiance, dvec3(683));
+    expect_near(read<DirectionalLight>(sun, LightUnits::blender).irradiance, dvec3(1));
+    expect_near(read<DirectionalLight>(sun, LightUnits::raw).irradiance, dvec3(683));
+    // Those of the program that wrote the file, unless others are asked for.
+    GltfFile file = lit_by(lamp);
+    file.root["asset"]["generator"] = "Khronos glTF Blender I/O v3.6.5";
+    const Scene scene = expect_warning(
+        file,
+        ": Blender wrote the file, so that its lights count as watts times 683 lm/W; where that is too dark, "
+        "give --light-units spec or raw");
+    expect_near(std::get<PointLight>(scene.lights.at(0).model).intensity, dvec3(1));
+    const Scene as_spec = load(file, {.light_units = LightUnits::spec});
+    EXPECT_TRUE(as_spec.warnings.empty());
+    EXPECT_EQ(std::get<PointLight>(as_spec.lights.at(0).model).intensity, vec3(683));
+    file.root["nodes"].erase(1);
+    EXPECT_TRUE(load(file).warnings.empty());
+}
+
+TEST_F(GltfLight, NotesWhatIsOdd) {
+    const std::string light = "#/extensions/KHR_lights_punctual/lights/0";
+    expect_warning(lit_by({{"type", "point"}, {"range", 5}}),
+                   light +
+                       "/range: the range of a light is ignored: its "
+                       "intensity falls with the squared distance");
+    expect_warning(lit_by({{"type", "point"}, {"intensity", -1}}),
+                   light + "/intensity: -1 is not between 0 and 1e+30; it counts as 0");
+    expect_warning(lit_by({{"type", "point"}, {"color", {1, 2, 1}}}),
+                   light + "/color: 2 is not between 0 and 1; it counts as 1");
+    expect_warning(lit_by({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}),
+                   light + "/spot/outerConeAngle: 2 is not between 0 and 1.5708; it counts as 1.5708");
+    const Scene scene = expect_warning(
+        lit_by({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.25}}}}),
+        light + "/spot: the inner angle of a spot is greater than the outer one, and counts as equal");
+    for (const Json& cone : {Json{{"innerConeAngle", 0.25}, {"outerConeAngle", 0.25}},
+                             Json{{"innerConeAngle", 0}, {"outerConeAngle", 0}}}) {
+        const auto spot = read<SpotLight>({{"type", "spot"}, {"spot", cone}});
+        EXPECT_LT(spot.inner_angle, spot.outer_angle);
+        EXPECT_NEAR(spot.outer_angle, cone["outerConeAngle"].get<double>(), 2.1e-4);
+    }
+}
+
+TEST_F(GltfLight, RefusesOnesThatAreNone) {
+    const std::string light = "#/extensions/KHR_lights_punctual/lights/0";
+    const std::string of_node = "#/nodes/1/extensions/KHR_lights_punctual/light: ";
+    expect_error(lit_by({{"type", "area"}}), light +
+                                                 "/type: \"type\": expected \"point\", \"spot\" or "
+                                                 "\"directional\", found \"area\"");
+    expect_error(lit_by(Json::object()), light + ": the key \"type\" is missing here; add it");
+    expect_error(lit_by({{"type", "point"}}, {{"translation", {0, 0, -2e37}}}),
+                 of_node + "it lies beyond 1e37 along an axis; check the transforms of the nodes around it");
+    GltfFile file = lit_by({{"type", "point"}});
+    file.root["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 1;
+    expect_error(file, of_node + "there is no light 1 among 1");
+    file.root.erase("extensions");
+    expect_error(file, of_node + "the file has no lights; export it again");
+}
+
+// What a viewer shows of a file without camera and light.
+TEST_F(GltfLight, FilesWithoutCameraOrLightGetBoth) {
+    const auto complete = [&](const GltfFile& file) {
+        folder_.write("m.gltf", file.gltf());
+        return load_gltf_scene(folder_.path() / "m.gltf");
+    };
+    const auto warnings = [&](const Scene& scene) {
+        std::string text;
+        for (const std::string& warning : scene.warnings)
+            text += folder_.without_folder(warning) + '\n';
+        return text;
+    };
+    const std::string camera =
+        "m.gltf: there is no camera; the scene is seen from the front, a little from the right and above\n";
+    const std::string light =
+        "m.gltf: there is no light; a studio lights the scene, which the camera does not see\n";
+    const Scene bare = complete(corner_file());
+    EXPECT_EQ(warnings(bare), camera + light);
+    EXPECT_EQ(bare.cameras.size(), 1u);
+    ASSERT_TRUE(bare.environment);
+    EXPECT_FALSE(bare.environment->visible);
+    EXPECT_TRUE(gives_light(*bare.environment));
+    EXPECT_EQ(bare.film.size, uvec2(1280, 720));
+    const Scene lit = complete(lit_by({{"type", "point"}}));
+    EXPECT_EQ(warnings(lit), camera);
+    EXPECT_FALSE(lit.environment);
+    // Surfaces that emit or need no light will do.
+    GltfFile glowing = corner_file();
+    glowing.root["meshes"][0]["primitives"][0]["material"] = 0;
+    glowing.root["materials"] = {{{"emissiveFactor", {1, 1, 1}}}};
+    EXPECT_EQ(warnings(complete(glowing)), camera);
+    glowing.root["materials"] = {{{"extensions", {{"KHR_materials_unlit", Json::object()}}}}};
+    EXPECT_EQ(warnings(complete(glowing)), camera);
+    EXPECT_EQ(warnings(complete(GltfFile())), "m.gltf: the scene has no surfaces\n" + camera + light);
+    GltfFile seen = corner_file();
+    seen.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+    seen.push("nodes", {{"camera", 0}});
+    EXPECT_EQ(warnings(complete(seen)), light);
+}
+
+}  // namespace
+}  // namespace candela

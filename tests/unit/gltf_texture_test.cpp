@@ -1,0 +1,235 @@
+// Textures of glTF files: their images, samplers and transforms; and which material a primitive has.
+// Ref: Khronos, "glTF 2.0 Specification", section 3.8; KHR_texture_transform; EXT_texture_webp;
+// KHR_materials_variants.
+#include <cmath>
+
+#include "gltf_fixture.h"
+
+namespace candela {
+namespace {
+
+class GltfTexture : public Gltf {
+  protected:
+    // A triangle with a base colour from texture 0.
+    static GltfFile textured(const Json& info = Json::object()) {
+        GltfFile file;
+        file.root["images"] = {{{"uri", "a.png"}}};
+        file.root["textures"] = {{{"source", 0}}};
+        Json reference = {{"index", 0}};
+        reference.update(info);
+        file.root["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", reference}}}}};
+        const Json attributes = {{"POSITION", file.add_corner()},
+                                 {"TEXCOORD_0", file.add<float>("VEC2", {0, 0, 1, 0, 0, 1})},
+                                 {"TEXCOORD_1", file.add<float>("VEC2", {0, 0, 1, 0, 0, 1})}};
+        file.show({{"attributes", attributes}, {"material", 0}});
+        return file;
+    }
+    static std::optional<Texture> texture_of(const Scene& scene) {
+        return std::get<PrincipledMaterial>(scene.materials.at(0).model).base_color.texture;
+    }
+    Texture read(const GltfFile& file) { return texture_of(load(file)).value(); }
+};
+
+TEST_F(GltfTexture, SamplersSayWhatLiesBetweenAndBeyondTexels) {
+    const Texture plain = read(textured());
+    EXPECT_EQ(plain.filter, TextureFilter::bilinear);
+    EXPECT_EQ(plain.wrap_u, Wrap::repeat);
+    EXPECT_EQ(plain.wrap_v, Wrap::repeat);
+    GltfFile file = textured();
+    file.root["textures"][0]["sampler"] = 0;
+    file.root["samplers"] = {{{"magFilter", 9728}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33648}}};
+    EXPECT_EQ(read(file).filter, TextureFilter::nearest);
+    EXPECT_EQ(read(file).wrap_u, Wrap::clamp);
+    EXPECT_EQ(read(file).wrap_v, Wrap::mirror);
+    file.root["samplers"][0] = {{"magFilter", 9729}, {"wrapS", 10497}};
+    EXPECT_EQ(read(file).filter, TextureFilter::bilinear);
+    EXPECT_EQ(read(file).wrap_u, Wrap::repeat);
+    file.root["samplers"][0]["wrapT"] = 1;
+    expect_error(file, "#/samplers/0/wrapT: \"wrapT\": expected 33071, 33648 or 10497, found 1");
+    file.root["textures"][0]["sampler"] = 1;
+    expect_error(file,
+                 "#/textures/0/sampler: there is no 1 in \"samplers\", which has 0 to 0; name one that the "
+                 "file has");
+}
+
+TEST_F(GltfTexture, ReadsTwoSetsOfCoordinates) {
+    EXPECT_EQ(read(textured()).uv_set, 0u);
+    EXPECT_EQ(read(textured({{"texCoord", 1}})).uv_set, 1u);
+    const Json other = {{"texCoord", 0}, {"extensions", {{"KHR_texture_transform", {{"texCoord", 1}}}}}};
+    EXPECT_EQ(read(textured(other)).uv_set, 1u);
+    const Scene scene = expect_warning(textured({{"texCoord", 2}}),
+                                       "#/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord: only "
+                                       "TEXCOORD_0 and TEXCOORD_1 are read; TEXCOORD_0 takes its place");
+    EXPECT_EQ(texture_of(scene)->uv_set, 0u);
+}
+
+// In the file, v grows downwards, here upwards: V = 1 - v. There,
+// u' = c sx u + s sy v + ox, v' = -s sx u + c sy v + oy.
+TEST_F(GltfTexture, TransformsCoordinatesByScaleThenRotationThenOffset) {
+    const auto expect = [&](const std::vector<double>& offset, double angle,
+                            const std::vector<double>& scale) {
+        const Texture texture = read(textured(
+            {{"extensions",
+              {{"KHR_texture_transform", {{"offset", offset}, {"rotation", angle}, {"scale", scale}}}}}}));
+        const double c = std::cos(angle), s = std::sin(angle);
+        for (const auto& [u, v] : {std::pair(0.0, 0.0), std::pair(1.0, 0.0), std::pair(0.0, 1.0),
+                                   std::pair(0.3, 0.8), std::pair(-2.0, 5.0)}) {
+            const double u1 = c * scale[0] * u + s * scale[1] * v + offset[0];
+            const double v1 = -s * scale[0] * u + c * scale[1] * v + offset[1];
+            const dvec3 ours(u, 1.0 - v, 1.0);
+            EXPECT_NEAR(dot(dvec3(texture.rows[0]), ours), u1, 1e-5);
+            EXPECT_NEAR(dot(dvec3(texture.rows[1]), ours), 1.0 - v1, 1e-5);
+        }
+    };
+    expect({0, 0}, 0, {1, 1});
+    expect({0.25, -0.5}, 0, {1, 1});
+    expect({0, 0}, 0, {2, -3});
+    expect({0.1, 0.2}, 0.7, {2, 0.5});
+    expect({0, 0}, -2.0, {1, 3});
+    // The extension's example: the lower left quadrant, turned clockwise by 90 degrees. The image's lower
+    // left quadrant is u' and V' from 0 to 1/2.
+    const Texture example =
+        read(textured({{"extensions",
+                        {{"KHR_texture_transform",
+                          {{"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}}}}}}));
+    for (const dvec3 corner : {dvec3(0, 0, 1), dvec3(1, 0, 1), dvec3(0, 1, 1), dvec3(1, 1, 1)}) {
+        for (const vec3 row : example.rows) {
+            const double at = dot(dvec3(row), corner);
+            EXPECT_TRUE(std::abs(at) < 1e-6 || std::abs(at - 0.5) < 1e-6) << at;
+        }
+    }
+    expect_error(
+        textured({{"extensions", {{"KHR_texture_transform", {{"offset", {0, 2e6}}}}}}}),
+        "#/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/offset: "
+        "\"offset\": expected numbers from -1e6 to 1e6, found [0, 2e+06]");
+    expect_error(
+        textured({{"extensions", {{"KHR_texture_transform", {{"scale", 2}}}}}}),
+        "#/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/scale: "
+        "\"scale\": expected two numbers, found 2");
+}
+
+TEST_F(GltfTexture, ImagesAreFilesDataInLineOrViews) {
+    GltfFile file = textured();
+    file.root["images"][0] = {{"uri", "two%20words.png"}};
+    folder_.write("two words.png", "");
+    const Scene beside = load(file);
+    EXPECT_EQ(beside.images.at(0).path, folder_.path() / "two words.png");
+    EXPECT_TRUE(beside.images[0].bytes.empty());
+    EXPECT_FALSE(beside.images[0].has_gamma);  // Section 3.8.3: colour profiles do not count.
+    file.root["images"][0] = {{"uri", "data:image/png;base64," + base64("a file")}};
+    EXPECT_EQ(load(file).images.at(0).bytes, "a file");
+    file.root["images"][0] = {{"bufferView", file.add_view<char>({'a', ' ', 'v', 'i', 'e', 'w'})},
+                              {"mimeType", "image/png"}};
+    const Scene within = load(file);
+    EXPECT_EQ(within.images.at(0).bytes, "a view");
+    EXPECT_EQ(folder_.without_folder(within.images[0].path.string()), "m.gltf#/images/0");
+    file.root["images"][0]["uri"] = "a.png";
+    const std::string one = "#/images/0: an image has either a uri or a bufferView; export the file again";
+    expect_error(file, one);
+    file.root["images"][0] = {{"mimeType", "image/png"}};
+    expect_error(file, one);
+    file.root["images"][0] = {{"uri", "https://example.org/a.png"}};
+    expect_error(file,
+                 "#/images/0/uri: only files that are named relative to this one are read, not "
+                 "\"https://example.org/a.png\"; put the file beside this one");
+    file.root["textures"][0]["source"] = 1;
+    expect_error(file,
+                 "#/textures/0/source: there is no 1 in \"images\", which has 0 to 0; name one that the file "
+                 "has");
+    file.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
+    expect_error(file,
+                 "#/materials/0/pbrMetallicRoughness/baseColorTexture/index: there is no 1 in \"textures\", "
+                 "which has 0 to 0; name one that the file has");
+}
+
+// The place of an image that cannot be read is where the file names it.
+TEST_F(GltfTexture, MessagesAboutImagesNameThem) {
+    GltfFile file = textured();
+    file.root["images"][0] = {{"bufferView", file.add_view<char>({'n', 'o', 'n', 'e'})}};
+    folder_.write("m.gltf", file.gltf());
+    const std::string message =
+        folder_.without_folder(error_of([&] { load_scene(folder_.path() / "m.gltf"); }));
+    EXPECT_TRUE(message.starts_with("m.gltf#/images/0: cannot read \"m.gltf#/images/0\": ")) << message;
+}
+
+TEST_F(GltfTexture, AnImageIsReadOnceForAllItsTextures) {
+    GltfFile file = textured();
+    file.root["images"].push_back({{"uri", "data:;base64,QUJD"}});
+    file.root["textures"] = {{{"source", 1}}, {{"source", 0}}, {{"source", 1}}};
+    file.root["materials"][0]["emissiveFactor"] = {1, 1, 1};
+    file.root["materials"][0]["emissiveTexture"] = {{"index", 2}};
+    file.root["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 1}};
+    EXPECT_EQ(load(file).images.size(), 2u);
+}
+
+TEST_F(GltfTexture, WebpComesFirstAndUnreadFormatsAreLeftOut) {
+    GltfFile file = textured();
+    file.root["images"] = {{{"uri", "a.png"}}, {{"uri", "a.webp"}}};
+    file.root["textures"][0]["extensions"]["EXT_texture_webp"] = {{"source", 1}};
+    EXPECT_EQ(load(file).images.at(0).path, folder_.path() / "a.webp");
+    file.root["textures"][0]["extensions"] = {{"KHR_texture_basisu", {{"source", 1}}}};
+    EXPECT_EQ(load(file).images.at(0).path, folder_.path() / "a.png");
+    file.root["textures"][0].erase("source");
+    const Scene scene = expect_warning(
+        file, "#/textures/0: the texture has no image in a format that is read; it counts as white");
+    EXPECT_FALSE(texture_of(scene));
+}
+
+TEST_F(GltfTexture, VariantsReplaceMaterials) {
+    GltfFile file = corner_file();
+    file.root["materials"] = {{{"name", "wood"}}, {{"name", "steel"}}};
+    Json& primitive = file.root["meshes"][0]["primitives"][0];
+    primitive["material"] = 0;
+    primitive["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 1}, {"variants", {1, 2}}}};
+    file.root["extensions"]["KHR_materials_variants"]["variants"] = {
+        {{"name", "warm"}}, {{"name", "cold"}}, {{"name", "blank"}}};
+    const auto name = [&](const std::optional<std::string>& variant) {
+        const Scene scene = load(file, {.variant = variant});
+        return scene.materials.at(scene.shapes.at(0).material).name;
+    };
+    EXPECT_EQ(name({}), "wood");
+    EXPECT_EQ(name("warm"), "wood");
+    EXPECT_EQ(name("cold"), "steel");
+    EXPECT_EQ(name("2"), "steel");
+    expect_text_error(
+        file.gltf(),
+        "--variant: m.gltf has nothing called \"hot\" among its variants (known: warm, cold, blank)",
+        "m.gltf", {.variant = "hot"});
+    expect_text_error(corner_file().gltf(),
+                      "--variant: m.gltf has nothing called \"hot\" among its variants (it has none)",
+                      "m.gltf", {.variant = "hot"});
+    primitive["extensions"]["KHR_materials_variants"]["mappings"][0]["material"] = 2;
+    expect_error(file,
+                 "#/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/0/material: there is no "
+                 "2 in \"materials\", which has 0 to 1; name one that the file has",
+                 {.variant = "cold"});
+    primitive["material"] = 5;
+    expect_error(file,
+                 "#/meshes/0/primitives/0/material: there is no 5 in \"materials\", which has 0 to 1; name "
+                 "one that the file has");
+}
+
+TEST_F(GltfTexture, VertexColoursMakeACopyOfTheMaterial) {
+    GltfFile file = corner_file();
+    file.root["materials"] = {{{"name", "wood"}}};
+    file.root["meshes"][0]["primitives"][0]["material"] = 0;
+    const size_t colors = file.add<float>("VEC3", {1, 0, 0, 0, 1, 0, 0, 0, 1});
+    for (const Json& material : {Json{{"material", 0}}, Json::object()}) {
+        Json primitive = {{"attributes", {{"POSITION", 0}, {"COLOR_0", colors}}}};
+        primitive.update(material);
+        file.show(primitive);
+        file.show(primitive);
+    }
+    const Scene scene = load(file);
+    ASSERT_EQ(scene.shapes.size(), 5u);
+    std::vector<std::string> names;
+    for (const Shape& shape : scene.shapes) {
+        const Material& material = scene.materials[shape.material];
+        names.push_back(material.name + (material.vertex_colors ? " with colours" : ""));
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"wood", "wood (2) with colours", "wood (2) with colours",
+                                               "(default) with colours", "(default) with colours"}));
+}
+
+}  // namespace
+}  // namespace candela
