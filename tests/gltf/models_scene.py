@@ -81,8 +81,8 @@ def negative_scale_test(stage):
                                 normal=None if textured else lambda s, t: bump(s * 0.9, t * 0.8),
                                 tangent=(lambda s, t: (1, 0, 0, 1)) if textured else None)
         x, y = stage.centre(left)
-        if scale:
-            stage.put(mesh, material, translation=[x, y, 0], scale=list(scale))
+        if scale:  # Boxes stand in front of their references, which they would light.
+            stage.put(mesh, material, translation=[x, y, 3 if textured is None else 0], scale=list(scale))
             matrix = matrices.scaling(*scale)
         else:
             parent = file.node(translation=[x, y, 0], scale=[1, -1, 1])

@@ -5,7 +5,7 @@ from models_textures import transform_info, transformed
 from stage import model, picture
 
 TURNED = {"offset": (0.3, 0.45), "rotation": 0.5, "scale": (0.6, 0.8)}
-MOVED = {"offset": (0.25, 0.6), "scale": (1.5, 0.5)}  # Of normal maps: a turn would turn the tangents, or not.
+MOVED = {"offset": (0.25, 0.6), "scale": (1.5, 0.5)}  # Where tangents count: baked, a turn would turn them, too.
 
 
 def patches(column, row):
@@ -69,7 +69,7 @@ def texture_transform_multi_test(stage):
     stage.sun((0.3, 0.9, -0.3), 4)  # From behind, for what passes.
     stage.backdrop_z = -50.0  # Out of the sun's way.
     for left, right, name, *slot in stage.pairs(SLOTS):
-        values = MOVED if name == "bump" else TURNED
+        values = MOVED if name == "bump" or "anisotropy" in slot[0] else TURNED
         stage.tile(left, with_texture(stage, *slot, transform_info(stage, textures[name], **values)))
         stage.tile(right, with_texture(stage, *slot, {"index": textures[name]}),
                    uv=lambda s, t: transformed(s, t, **values))

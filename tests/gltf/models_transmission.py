@@ -59,9 +59,10 @@ def transmission_test(stage):
         ("half", glass(tint, 128 / 255, 1), None, glass(tint, 1, 1, transmissionTexture=grey(stage, 128, 200, 10))),
         ("none", glass(tint, 0, 1, {}), None, stage.surface(tint)),
         ("index 1.5", glass(extensions={}), None, glass(extensions={"ior": {"ior": 1.5}})),
-        ("matt", glass(tint, 1, 0.6, {}), None, glass(tint, 1, 1, {}, base={
-            "metallicRoughnessTexture": grey(stage, 0, 153, 200)})),
+        ("matt", glass(tint, 1, 77 / 255, {}), None, glass(tint, 1, 1, {}, base={
+            "metallicRoughnessTexture": grey(stage, 0, 77, 200)})),
     ]
+    stage.backdrop_z = -0.3  # So near that a matt sheet does not show the neighbours.
     for left, right, material, second, reference in stage.pairs(cases):
         pattern(stage, left)
         stage.tile(left, material)
