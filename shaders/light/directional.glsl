@@ -2,6 +2,7 @@
 #ifndef LIGHT_DIRECTIONAL_GLSL
 #define LIGHT_DIRECTIONAL_GLSL
 
+#include "base/math.glsl"
 #include "light/sample.glsl"
 
 // The light as seen from anywhere. Its radiance has no value but in an integral over directions, which is its irradiance

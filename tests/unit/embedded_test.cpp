@@ -57,7 +57,7 @@ TEST(Embedded, AScenesTextIsReadAsItsFileIs) {
     EXPECT_EQ(scene.shapes.size(), load_scene(CANDELA_SCENES "/cornell-box.json").shapes.size());
     EXPECT_EQ(scene.warnings, std::vector<std::string>{});
     EXPECT_EQ(
-        error_of([] { parse_scene("{\n  \"lights\": 1 }", "own.json", {}); }).rfind("own.json:2:3: ", 0), 0u);
+        error_of([] { parse_scene("{\n  \"light\": 1 }", "own.json", {}); }).rfind("own.json:2:3: ", 0), 0u);
 }
 
 }  // namespace

@@ -7,7 +7,9 @@ namespace candela {
 namespace {
 
 uint32_t pass_growth(const RenderOptions& options) {
-    return options.settings(Scene{}).pass_growth;
+    Scene scene;
+    scene.cameras = {Camera{.name = {}, .lens = {}}};
+    return options.settings(scene).pass_growth;
 }
 
 TEST(RenderOptions, PicturesThatMayBeTakenAtAnyTimeGrowEvenly) {
