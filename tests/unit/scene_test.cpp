@@ -114,7 +114,7 @@ TEST(Scene, SaysWhichKeysItKnows) {
     SceneFolder folder;
     folder.expect_error(
         "{" + GOOD_CAMERA + ",\n\"shapes\": [], @\"light\": []}",
-        "unknown key \"light\" (known: $schema, cameras, film, integrator, materials, shapes, "
+        "unknown key \"light\" (known: $schema, scene, cameras, film, integrator, materials, shapes, "
         "environment)");
     folder.expect_error(
         settings(R"("cameras": {"m": {"position": [0, 0, 1], "look_at": [0, 0, 0], @"vertcal_fov": 40}})"),
