@@ -1,6 +1,7 @@
 // Animations of glTF files: what nodes do between keys, and which animation counts.
 // Ref: Khronos, "glTF 2.0 Specification", section 3.11 and appendix C.
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "gltf_fixture.h"
@@ -77,23 +78,34 @@ TEST_F(GltfAnimation, StepsAndLinesBetweenKeys) {
                      dvec3(1, 2, 3));
 }
 
-// A cubic Hermite spline is exact for cubic polynomials.
-TEST_F(GltfAnimation, CubicSplinesFollowAPolynomial) {
-    const auto p = [](double s) {
-        return dvec3(2.0 - s + 3.0 * s * s - 0.5 * s * s * s, s * s * s, 1.0 - s);
+// A cubic Hermite spline is exact for cubic polynomials: one before the middle key and another one after it.
+TEST_F(GltfAnimation, CubicSplinesFollowPolynomials) {
+    struct Curve {
+        std::function<dvec3(double)> value, slope;
     };
-    const auto slope = [](double s) { return dvec3(-1.0 + 6.0 * s - 1.5 * s * s, 3.0 * s * s, -1.0); };
-    const std::vector<float> times{1, 3, 3.5f};
+    const Curve first{
+        [](double s) { return dvec3(2.0 - s + 3.0 * s * s - 0.5 * s * s * s, s * s * s, 1.0 - s); },
+        [](double s) { return dvec3(-1.0 + 6.0 * s - 1.5 * s * s, 3.0 * s * s, -1.0); }};
+    // (12.5, 27, -2) at 3, as the first, but with other slopes.
+    const Curve second{[](double s) {
+                           const double d = s - 3.0;
+                           return dvec3(12.5 - 7.0 * d, 27.0 + d + 2.0 * d * d, -2.0 + 5.0 * d * d * d);
+                       },
+                       [](double s) {
+                           const double d = s - 3.0;
+                           return dvec3(-7.0, 1.0 + 4.0 * d, 15.0 * d * d);
+                       }};
     std::vector<float> values;
-    for (const float time : times) {
-        for (const dvec3 v : {slope(double(time)), p(double(time)), slope(double(time))})
-            values.insert(values.end(), {float(v.x), float(v.y), float(v.z)});
-    }
-    const GltfFile file = animated("translation", times, "CUBICSPLINE", "VEC3", values);
+    const auto add = [&](dvec3 v) { values.insert(values.end(), {float(v.x), float(v.y), float(v.z)}); };
+    const dvec3 unused(1e6, -1e6, 1e6);  // Before the first key and after the last.
+    for (const dvec3 v : {unused, first.value(1.0), first.slope(1.0), first.slope(3.0), first.value(3.0),
+                          second.slope(3.0), second.slope(3.5), second.value(3.5), unused})
+        add(v);
+    const GltfFile file = animated("translation", {1, 3, 3.5f}, "CUBICSPLINE", "VEC3", values);
     for (double time = 1.0; time <= 3.5; time += 0.15625)
-        expect_place(file, time, p(time));
-    expect_place(file, 0.0, p(1.0));
-    expect_place(file, 9.0, p(3.5));
+        expect_place(file, time, (time < 3.0 ? first : second).value(time));
+    expect_place(file, 0.0, first.value(1.0));
+    expect_place(file, 9.0, second.value(3.5));
 }
 
 TEST_F(GltfAnimation, RotationsTakeTheShorterArcAtConstantSpeed) {
