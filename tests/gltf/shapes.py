@@ -1,4 +1,4 @@
-"""Meshes as lists: sheets, spheres, boxes, tori. What a mesh does not have is None; (0, 0) of uvs is up on the left."""
+"""Meshes as lists: sheets, spheres, boxes. What a mesh does not have is None; (0, 0) of uvs is up on the left."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -78,27 +78,18 @@ def sphere(radius=1, around=48, along=24):
     positions, normals, uvs, tangents = [], [], [], []
     for row in range(along + 1):
         for column in range(around + 1):
-            phi, theta = 2 * math.pi * column / around, math.pi * row / along
-            n = (math.sin(theta) * math.sin(phi), math.cos(theta), math.sin(theta) * math.cos(phi))
+            # The seam's two sides are the same points, and so are those of a pole.
+            phi, theta = 2 * math.pi * (column % around) / around, math.pi * row / along
+            ring = 0.0 if row in (0, along) else math.sin(theta)
+            n = (ring * math.sin(phi), math.cos(theta), ring * math.cos(phi))
             normals.append(n)
             positions.append(tuple(radius * c for c in n))
             uvs.append((column / around, row / along))
             tangents.append((math.cos(phi), 0, -math.sin(phi), 1))
-    return Mesh(positions, cells(around, along), normals, tangents, uvs)
-
-
-def torus(radius, tube, around=48, along=24):
-    """A torus about the y axis."""
-    positions, normals, uvs = [], [], []
-    for row in range(along + 1):
-        for column in range(around + 1):
-            phi, theta = 2 * math.pi * column / around, 2 * math.pi * row / along
-            out, up = math.cos(theta), math.sin(theta)
-            n = (out * math.sin(phi), up, out * math.cos(phi))
-            normals.append(n)
-            positions.append((radius * math.sin(phi) + tube * n[0], tube * up, radius * math.cos(phi) + tube * n[2]))
-            uvs.append((column / around, row / along))
-    return Mesh(positions, cells(around, along), normals, None, uvs)
+    triangles = triples(cells(around, along))
+    first, last = 2 * around, len(triangles) - 2 * around
+    kept = [t for i, t in enumerate(triangles) if first <= i < last or i % 2 == (i >= last)]  # At poles, every other.
+    return Mesh(positions, [i for t in kept for i in t], normals, tangents, uvs)
 
 
 def box(low, high):
