@@ -28,7 +28,7 @@ set_tests_properties(readme PROPERTIES LABELS cli RUN_SERIAL TRUE)
 candela_check(rivals ${PYTHON3} tests/bench/rivals_test.py $<TARGET_FILE:candela>)
 set_tests_properties(rivals PROPERTIES LABELS cli RUN_SERIAL TRUE)
 candela_check(slurm ${PYTHON3} tests/slurm/slurm_test.py $<TARGET_FILE:candela>)
-set_tests_properties(slurm PROPERTIES LABELS cli)
+set_tests_properties(slurm PROPERTIES LABELS cli COST 100)  # Mostly waits, so it begins early: see tests/labels.cmake.
 if(CANDELA_EMBREE)
     candela_check(tracer ${PYTHON3} tests/bench/tracer_test.py $<TARGET_FILE:candela> $<TARGET_FILE:tracer>)
     set_tests_properties(tracer PROPERTIES LABELS cli RUN_SERIAL TRUE)

@@ -9,6 +9,11 @@ set(quick_gpu Math Sampler Warp Records Interaction Traversal LightTest Dielectr
 set(quick_render FurnaceTest.EveryRay Roulette DirectLightTest.Under SkyFurnaceTest.AnIdealMirror
     EstimatorTest.AgreeOnManyKindsOfLights IdentityTest.AStateThatWentThroughAFile)
 set(quick_cli Usage)
+# No label: tests that take ten seconds or more, the longest first. CTest begins with them, also where it has not
+# measured tests yet, as in a fresh clone: so none runs alone at the end.
+set(long_tests render.PrincipledPictureTest.EstimatorsAgree render.TexturedTest.EstimatorsAgree
+    cli.FileFaults.EveryCallMayFailInSomeWay cli.SelftestCommand.QuickPassesWithFewerSamples
+    render.NormalMapTest.EstimatorsAgree render.SamplerErrorTest.SobolIsNowhereWorseThanIndependent)
 
 foreach(kind IN ITEMS unit vk gpu render cli)
     set(unmatched ${quick_${kind}})
@@ -27,5 +32,16 @@ foreach(kind IN ITEMS unit vk gpu render cli)
     endforeach()
     if(${kind}_tests_TESTS AND unmatched)
         message(SEND_ERROR "no test of ${kind}_tests begins with what is to be quick: ${unmatched}")
+    endif()
+endforeach()
+
+set(cost 100)
+foreach(test IN LISTS long_tests)
+    string(REGEX MATCH "^[a-z]+" kind ${test})
+    if(test IN_LIST ${kind}_tests_TESTS)
+        set_tests_properties(${test} PROPERTIES COST ${cost})
+        math(EXPR cost "${cost} - 1")
+    elseif(${kind}_tests_TESTS)
+        message(SEND_ERROR "there is no test ${test}, which is to be among the first")
     endif()
 endforeach()

@@ -26,7 +26,7 @@ class PrincipledPictureTest : public EstimatorTest {
 };
 
 TEST_F(PrincipledPictureTest, EstimatorsAgree) {
-    expect_estimators_agree(layered_scene(), 3072, 2048);
+    expect_estimators_agree(layered_scene(), 1024, 1024);
 }
 
 TEST_F(PrincipledPictureTest, WhiteBodiesAreInvisible) {

@@ -10,7 +10,7 @@ class TexturedTest : public EstimatorTest {
 };
 
 TEST_F(TexturedTest, EstimatorsAgree) {
-    expect_estimators_agree(textured_scene(), 2048, 1536);
+    expect_estimators_agree(textured_scene(), 768, 1536);
 }
 
 // A lamp whose texture has two halves is two lamps.
