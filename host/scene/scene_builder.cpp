@@ -105,7 +105,7 @@ void SceneBuilder::add_instance(const std::string& place, size_t shape, const Tr
     auto& instance = std::get<MeshInstance>(copy.geometry);
     instance.transform = transform;
     if (!fits(scene_.meshes[instance.mesh], transform)) throw Error(place + ": " + TOO_FAR);
-    scene_.shapes.push_back(std::move(copy));
+    scene_.shapes.push_back(copy);
 }
 
 const Appearance* SceneBuilder::find_file_appearance(const std::string& name) const {

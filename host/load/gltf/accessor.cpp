@@ -21,20 +21,11 @@ constexpr std::array<std::pair<std::string_view, uint32_t>, 5> WIDTHS{
 // Calls visit(T()) with the C++ type of a component.
 template <class Visit>
 auto with_type(Component component, const Visit& visit) {
-    switch (component) {
-        case Component::int8:
-            return visit(int8_t());
-        case Component::uint8:
-            return visit(uint8_t());
-        case Component::int16:
-            return visit(int16_t());
-        case Component::uint16:
-            return visit(uint16_t());
-        case Component::uint32:
-            return visit(uint32_t());
-        case Component::float32:
-            break;
-    }
+    if (component == Component::int8) return visit(int8_t());
+    if (component == Component::uint8) return visit(uint8_t());
+    if (component == Component::int16) return visit(int16_t());
+    if (component == Component::uint16) return visit(uint16_t());
+    if (component == Component::uint32) return visit(uint32_t());
     return visit(float());
 }
 
@@ -203,7 +194,7 @@ std::vector<uint32_t> Accessor::integers() const {
             for (uint32_t c = 0; c < width_; ++c) {
                 T value;
                 std::memcpy(&value, bytes + c * sizeof(T), sizeof(T));
-                result[element * width_ + c] = uint32_t(value);
+                result[element * width_ + c] = uint32_t(double(value));
             }
         };
         for (size_t i = 0; !bytes_.empty() && i < count_; ++i)

@@ -89,7 +89,7 @@ vec3 cube_radiance(const std::array<Face, FACES>& faces, dvec3 w) {
                               : axis == 1 ? glm::dvec2(-w.x, sign * w.z)
                                           : glm::dvec2(-sign * w.x, -w.y);
     const glm::dvec2 uv = 0.5 * across / size[axis] + 0.5;
-    return faces[size_t(2 * axis + (negative ? 1 : 0))].look_up(uv.x, uv.y);
+    return faces[2 * size_t(axis) + (negative ? 1 : 0)].look_up(uv.x, uv.y);
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ Light read_light(File& file, const Node& reference, const glm::dmat4& world, Lig
         spot.intensity = power;
         result.model = spot;
     } else if (type != "point") {
-        type_node.fail_expected("\"point\", \"spot\" or \"directional\"");
+        type_node.fail_expected(R"("point", "spot" or "directional")");
     }
     return result;
 }

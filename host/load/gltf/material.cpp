@@ -250,7 +250,7 @@ class MaterialReader {
         if (name == "MASK") {
             opacity.cutoff = number(node_, "alphaCutoff", 0.0f, FLOAT_MAX, 0.5f);
         } else if (name != "BLEND") {
-            if (name != "OPAQUE") mode->fail_expected("\"OPAQUE\", \"MASK\" or \"BLEND\"");
+            if (name != "OPAQUE") mode->fail_expected(R"("OPAQUE", "MASK" or "BLEND")");
             opacity = {};
         }
     }

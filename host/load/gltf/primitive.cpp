@@ -14,7 +14,8 @@
 namespace candela::gltf {
 namespace {
 
-enum Mode : uint32_t { TRIANGLES = 4, TRIANGLE_STRIP = 5, TRIANGLE_FAN = 6 };
+constexpr uint32_t TRIANGLES = 4;
+constexpr uint32_t TRIANGLE_FAN = 6;
 
 // The indices of all corners, or 0, 1, 2 ... if the primitive has none. Each is below `vertices`.
 std::vector<uint32_t> read_corners(File& file, const Node& primitive, uint32_t vertices) {

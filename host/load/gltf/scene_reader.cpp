@@ -225,7 +225,7 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
             angle.fail_expected("an angle between 0 and pi");
         if (const auto ratio = view.find("aspectRatio")) aspect = ratio->positive();
     } else {
-        type.fail_expected("\"perspective\" or \"orthographic\"");
+        type.fail_expected(R"("perspective" or "orthographic")");
     }
     if (aspect > 0.0) {
         constexpr double MOST = 65536.0;  // Pixels along one side.
