@@ -22,6 +22,19 @@ TEST(RenderOptions, PicturesThatMayBeTakenAtAnyTimeGrowEvenly) {
     EXPECT_EQ(pass_growth(options), EVEN_PASS_GROWTH);
 }
 
+TEST(RenderOptions, APictureHasTheSizeOfItsCameraUnlessTheCommandLineSaysOtherwise) {
+    Scene scene;
+    scene.film.size = {40, 30};
+    scene.cameras = {Camera{.name = "first", .lens = {}},
+                     Camera{.name = "second", .lens = {}, .film_size = uvec2(8, 6)}};
+    RenderOptions options;
+    EXPECT_EQ(options.settings(scene).size, uvec2(40, 30));
+    options.camera = "second";
+    EXPECT_EQ(options.settings(scene).size, uvec2(8, 6));
+    options.picture.size = uvec2(5, 5);
+    EXPECT_EQ(options.settings(scene).size, uvec2(5, 5));
+}
+
 TEST(RenderOptions, AJobIsTheSceneUnlessTheCommandLineSaysOtherwise) {
     Scene scene;
     scene.cameras = {Camera{.name = "first", .lens = {}}, Camera{.name = "second", .lens = {}}};
