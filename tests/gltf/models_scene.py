@@ -96,8 +96,8 @@ def negative_scale_test(stage):
 @model("NodeVisibility")
 def node_visibility(stage):
     """What KHR_node_visibility hides is not there, nor what is below it, even if that says it is visible; lights
-    neither. Three ticks show, no cross; the sheet at the bottom is lit by a white sun alone, not by the hidden red
-    one."""
+    neither. Two ticks and a green tile show, nothing red; the sheet at the bottom is lit by a white sun alone, not by
+    the hidden red one."""
     file = stage.file
     file.used.add("KHR_node_visibility")
 
@@ -127,7 +127,7 @@ def node_visibility(stage):
 
 @model("MultipleScenes")
 def multiple_scenes(stage):
-    """Of several scenes, the one that the file names is shown: green, with a tick, and not the red one, which comes
+    """Of several scenes, the one that the file names is shown: the green one, and not the red one, which comes
     first."""
     file = stage.file
     rect = [100, 60, 220, 180]
@@ -183,8 +183,8 @@ def cameras(stage):
 
 @model("MaterialsVariants")
 def materials_variants(stage):
-    """Without a choice, primitives have their own materials: a green tile with a tick. Variants, if one is chosen,
-    replace them: "blue" by a blue one, "chart" by an image; what a variant does not name stays."""
+    """Without a choice, primitives have their own materials: both tiles are green. A variant that is chosen replaces
+    that of the left tile: "blue" by a blue one, "chart" by an image; what it does not name stays."""
     file = stage.file
     file.used.add("KHR_materials_variants")
     variants = {"variants": [{"name": "blue"}, {"name": "chart"}]}

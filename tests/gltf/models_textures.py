@@ -241,8 +241,8 @@ def texture_encoding_test(stage):
 
 @model("UnlitTest")
 def unlit_test(stage):
-    """Unlit surfaces show their colour in any light, here that of a blue sun, and cast no light: the painted squares
-    on the right have the same colours. Only the last pair is lit, and blue."""
+    """Unlit surfaces show their colour in any light, here that of a blue sun: the painted squares on the right have the
+    same colours. Only the last pair is lit, and blue."""
     texture = stage.file.texture(chart())
     stage.sun(colour=(0.05, 0.1, 1))
     cases = [("factor", {"colour": linear(ORANGE)}), ("image", {"texture": texture}),
