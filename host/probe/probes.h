@@ -95,6 +95,28 @@ struct WarpResult {
     vec2 polygon;
 };
 
+// interaction: a ray, and a direction in which another leaves from where it hits.
+struct InteractionItem {
+    vec3 o;
+    float unused0 = 0.0f;
+    vec3 d;
+    float unused1 = 0.0f;
+    vec3 wi;            // Reversed if it does not point to that side:
+    uint32_t side = 0;  // 0: the viewer's, 1: the other.
+};
+
+// Everything but t is 0 if the ray misses.
+struct InteractionResult {
+    float t;
+    vec3 p;
+    float p_error;
+    vec3 n;  // On the viewer's side.
+    uint32_t front;
+    vec3 next_o, next_d;
+    float next_t;
+    uint32_t id;
+};
+
 // traversal: a ray, and its nearest hit by the BVH and by brute force.
 struct RayItem {
     vec3 o;

@@ -18,26 +18,6 @@ namespace {
 
 constexpr uint32_t COUNT = 20000;
 
-struct InteractionItem {
-    vec3 o;
-    float unused0 = 0.0f;
-    vec3 d;
-    float unused1 = 0.0f;
-    vec3 wi;            // Reversed if it does not point to that side:
-    uint32_t side = 0;  // 0: the viewer's, 1: the other.
-};
-
-struct InteractionResult {
-    float t;
-    vec3 p;
-    float p_error;
-    vec3 n;
-    uint32_t front;
-    vec3 next_o, next_d;
-    float next_t;
-    uint32_t id;
-};
-
 const std::vector<Sphere> SPHERES{
     {dvec3(0), 1.0f},
     {dvec3(0), 1e-3f},
