@@ -23,6 +23,7 @@ struct Solid {
 
 std::vector<Solid> find_solids(const Scene& scene) {
     std::vector<Solid> solids;
+    const ShapeBounds bounds_of(scene);
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         const Shape& shape = scene.shapes[i];
         const std::optional<Interior> inside = interior(scene.materials[shape.material].model);
@@ -35,7 +36,7 @@ std::vector<Solid> find_solids(const Scene& scene) {
                 std::ranges::find_if(solids, [&](const Solid& s) { return s.walls && s.inside == *inside; });
         }
         if (place == solids.end()) place = solids.insert(place, {{}, *inside, i, wall});
-        place->box.extend(bounds(scene, shape));
+        place->box.extend(bounds_of(shape));
     }
     return solids;
 }

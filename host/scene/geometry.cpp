@@ -62,16 +62,46 @@ vec3 brightness(const Model& light) {
 
 }  // namespace
 
-DoubleBox bounds(const Scene& scene, const Shape& shape) {
+ShapeBounds::ShapeBounds(const Scene& scene) : scene_(scene), mesh_boxes_(scene.meshes.size()) {
+    constexpr uint64_t MANY_TRIANGLES = 1u << 22u;  // Of all copies: a fraction of a second.
+    std::vector<uint64_t> triangles(scene.meshes.size());
+    for (const Shape& shape : scene.shapes) {
+        if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry))
+            triangles[instance->mesh] += triangles_of(scene, *instance);
+    }
+    for (size_t i = 0; i < scene.meshes.size(); ++i) {
+        const TriangleMesh& mesh = scene.meshes[i];
+        if (triangles[i] < std::max<uint64_t>(MANY_TRIANGLES, 2 * mesh.triangles.size())) continue;
+        mesh_boxes_[i].emplace();
+        for (const uvec3 t : mesh.triangles) {
+            for (glm::length_t k = 0; k < 3; ++k)
+                mesh_boxes_[i]->extend(mesh.origin + dvec3(mesh.positions[t[k]]));
+        }
+    }
+}
+
+DoubleBox ShapeBounds::operator()(const Shape& shape) const {
     DoubleBox box;
-    std::visit([&](const auto& geometry) { extend(box, scene, geometry); }, shape.geometry);
+    const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+    if (instance == nullptr || !mesh_boxes_[instance->mesh]) {
+        std::visit([&](const auto& geometry) { extend(box, scene_, geometry); }, shape.geometry);
+        return box;
+    }
+    const DoubleBox& mesh = *mesh_boxes_[instance->mesh];
+    for (int corner = 0; corner < 8; ++corner) {
+        const auto side = [&](glm::length_t axis) {
+            return ((corner >> axis) & 1) != 0 ? mesh.hi[axis] : mesh.lo[axis];
+        };
+        box.extend(instance->transform.point({side(0), side(1), side(2)}));
+    }
     return box;
 }
 
 DoubleBox bounds(const Scene& scene) {
+    const ShapeBounds bounds_of(scene);
     DoubleBox box;
     for (const Shape& shape : scene.shapes)
-        box.extend(bounds(scene, shape));
+        box.extend(bounds_of(shape));
     return box;
 }
 

@@ -1,15 +1,28 @@
 // Questions about a whole scene.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "base/math.h"
 #include "scene/scene.h"
 
 namespace candela {
 
-// The least box around all shapes; empty for a scene without shapes.
+// The box around all shapes; empty for a scene without shapes. It is the least one but for meshes of which
+// many large copies are shown: of these, it contains the boxes around their placed boxes.
 DoubleBox bounds(const Scene& scene);
 
-DoubleBox bounds(const Scene& scene, const Shape& shape);
+// The same for some of the shapes of a scene, one by one.
+class ShapeBounds {
+  public:
+    explicit ShapeBounds(const Scene& scene);
+    DoubleBox operator()(const Shape& shape) const;
+
+  private:
+    const Scene& scene_;
+    std::vector<std::optional<DoubleBox>> mesh_boxes_;  // In the meshes' spaces, of those with many copies.
+};
 
 // How many triangles the shapes have; a quad counts as two, a sphere or disk as none.
 uint64_t triangle_count(const Scene& scene);
