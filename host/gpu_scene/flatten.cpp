@@ -51,22 +51,19 @@ PieceUv piece_uv(vec2 a, vec2 b, vec2 c) {
 
 class Flattener {
   public:
-    Flattener(const Scene& scene, const SceneFrame& frame, uint attributes)
-        : scene_(scene), frame_(frame), attributes_(attributes) {
-        size_t count = 0;
-        for (const Shape& shape : scene.shapes) {
-            const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
-            const TriangleMesh* mesh = instance != nullptr ? &scene.meshes[instance->mesh] : nullptr;
-            has_normals_ = has_normals_ || (mesh != nullptr && !mesh->normals.empty());
-            count += mesh != nullptr ? mesh->triangles.size() : 2;  // A quad may be two.
-        }
-        flat_.primitives.reserve(count);
-        if (has_normals_) flat_.normals.reserve(count);
-        flat_.attributes.reserve(count * attribute_words(attributes_));
-        for (const Shape& shape : scene.shapes) {
-            lets_pass_ = lets_rays_pass(scene, shape) ? 1 : 0;
-            std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
-        }
+    Flattener(const Scene& scene, const SceneFrame& frame, uint attributes, bool has_normals)
+        : scene_(scene), frame_(frame), attributes_(attributes), has_normals_(has_normals) {}
+
+    void reserve(size_t primitives) {
+        flat_.primitives.reserve(primitives);
+        flat_.surfaces.reserve(primitives);
+        if (has_normals_) flat_.normals.reserve(primitives);
+        flat_.attributes.reserve(primitives * attribute_words(attributes_));
+    }
+
+    void add(const Shape& shape, bool lets_pass) {
+        lets_pass_ = lets_pass ? 1 : 0;
+        std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
     }
 
     FlatScene take() { return std::move(flat_); }
@@ -254,7 +251,7 @@ class Flattener {
     const Scene& scene_;
     const SceneFrame& frame_;
     uint attributes_;
-    bool has_normals_ = false;
+    bool has_normals_;
     uint lets_pass_ = 0;  // Of the shape that is added.
     std::map<std::pair<uint32_t, TextureEncoding>, std::unique_ptr<ImagePyramid>>
         pyramids_;  // Of images that emit.
@@ -263,8 +260,39 @@ class Flattener {
 
 }  // namespace
 
-FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes) {
-    return Flattener(scene, frame, attributes).take();
+FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes,
+                  const std::vector<bool>& left_out) {
+    const auto is_left_out = [&](const Shape& shape) {
+        return !left_out.empty() && left_out[size_t(&shape - scene.shapes.data())];
+    };
+    size_t count = 0;
+    for (const Shape& shape : scene.shapes) {
+        if (is_left_out(shape)) continue;
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        count +=
+            instance != nullptr ? scene.meshes[instance->mesh].triangles.size() : 2;  // A quad may be two.
+    }
+    Flattener flattener(scene, frame, attributes, has_shading_normals(scene));
+    flattener.reserve(count);
+    for (const Shape& shape : scene.shapes) {
+        if (!is_left_out(shape)) flattener.add(shape, lets_rays_pass(scene, shape));
+    }
+    return flattener.take();
+}
+
+FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool lets_pass,
+                       const SceneFrame& frame, uint attributes, bool has_normals) {
+    Flattener flattener(scene, frame, attributes, has_normals);
+    flattener.reserve(scene.meshes[instance.mesh].triangles.size());
+    flattener.add({.geometry = instance, .material = 0, .emission = {}}, lets_pass);
+    return flattener.take();
+}
+
+bool has_shading_normals(const Scene& scene) {
+    return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        return instance != nullptr && !scene.meshes[instance->mesh].normals.empty();
+    });
 }
 
 bool lets_rays_pass(const Scene& scene, const Shape& shape) {

@@ -33,8 +33,16 @@ struct FlatScene {
 };
 
 // The records are in `frame`; so are areas and powers. `attributes` (bits ATTRIBUTE_*) says which of the
-// vertices' attributes are kept.
-FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes = 0);
+// vertices' attributes are kept; `left_out`, unless empty, which shapes are left out.
+FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes = 0,
+                  const std::vector<bool>& left_out = {});
+
+// A mesh by itself, of material 0; with records of normals if has_normals, zeros where it has none.
+FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool lets_pass,
+                       const SceneFrame& frame, uint attributes, bool has_normals);
+
+// Whether a mesh that is shown has shading normals.
+bool has_shading_normals(const Scene& scene);
 
 // Whether some rays may pass the shape: its material, or the colours of its vertices, are not opaque.
 bool lets_rays_pass(const Scene& scene, const Shape& shape);

@@ -2,66 +2,30 @@
 #include "gpu_scene/gpu_scene.h"
 
 #include <algorithm>
-#include <bit>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <numeric>
 #include <span>
 
-#include "base/error.h"
-#include "base/text.h"
-#include "bvh/bvh.h"
 #include "gpu_scene/alias_table.h"
+#include "gpu_scene/append.h"
 #include "gpu_scene/environment_map.h"
 #include "gpu_scene/flatten.h"
-#include "gpu_scene/material_record.h"
+#include "gpu_scene/geometry_arrays.h"
+#include "gpu_scene/material_arrays.h"
 #include "gpu_scene/nesting.h"
-#include "gpu_scene/principled_record.h"
 #include "gpu_scene/punctual_lights.h"
 #include "gpu_scene/texture_table.h"
 #include "scene/geometry.h"
 #include "scene/materials.h"
-#include "scene/mesh.h"
-#include "shared/bvh_node.h"
 #include "shared/material.h"
-#include "shared/primitive.h"
 
 namespace candela {
 namespace {
 
-template <class Record>
-void append(std::vector<uvec4>& out, const Record& record) {
-    out.insert(out.end(), record.begin(), record.end());
-}
-
-void append(std::vector<uvec4>& out, const std::vector<AliasEntry>& entries) {
+void append_alias(std::vector<uvec4>& out, const std::vector<AliasEntry>& entries) {
     for (size_t i = 0; i < entries.size(); i += 2)
         append(out, pack(entries[i], i + 1 < entries.size() ? entries[i + 1] : AliasEntry{}));
-}
-
-Bvh build_bvh_over(const std::vector<Primitive>& primitives) {
-    std::vector<Box> boxes;
-    boxes.reserve(primitives.size());
-    for (const Primitive& primitive : primitives)
-        boxes.push_back(bounds(primitive));
-    return build_bvh(boxes);
-}
-
-// For each corner of the first primitives in leaf order, the first corner with the same bits.
-std::array<uint32_t, LIST_MAX> list_corners(const std::vector<Primitive>& primitives,
-                                            std::span<const uint32_t> order) {
-    std::array<uint32_t, LIST_MAX> result{};
-    std::vector<std::array<uint32_t, 3>> corners;
-    for (size_t i = 0; i < std::min<size_t>(order.size(), LIST_MAX); ++i) {
-        const Primitive& p = primitives[order[i]];
-        for (const vec3& corner : {p.a, p.b, p.c, p.d}) {
-            corners.push_back(std::bit_cast<std::array<uint32_t, 3>>(corner));
-            const auto first = uint32_t(std::ranges::find(corners, corners.back()) - corners.begin());
-            result[i] |= first << 8u * ((corners.size() - 1) % 4);
-        }
-    }
-    return result;
 }
 
 // Adds the environment to the lights, with the power that falls onto the scene, as if onto a disk as wide as
@@ -87,114 +51,11 @@ bool add_environment_light(FlatScene& flat, const EnvironmentMap& map, const Box
     return true;
 }
 
-uint32_t textured_bits(const MaterialTextures& t) {
-    const auto bit = [](bool used, uint32_t of) { return used ? of : 0; };
-    return bit(t.base != TEXTURE_NONE, TEXTURED_BASE) | bit(t.specular != TEXTURE_NONE, TEXTURED_SPECULAR) |
-           bit(t.parameter != TEXTURE_NONE, TEXTURED_PARAMETER) |
-           bit(t.normal != TEXTURE_NONE, t.bump != 0 ? TEXTURED_BUMP : TEXTURED_NORMAL) |
-           bit(t.vertex_colors != 0, TEXTURED_VERTEX_COLORS);
-}
-
-MaterialTextures textures_of(const Material& material, const EncodedMaterial& encoded,
-                             const SceneFrame& frame, TextureTable& textures) {
-    constexpr float NO_CUTOFF = -1.0f;
-    const auto& [opacity, cutoff] = material.opacity;
-    const std::optional<NormalMap>& map = material.normal_map;
-    const std::optional<BumpMap>& bump = material.bump_map;
-    return {.base = textures.add(encoded.base),
-            .specular = textures.add(encoded.specular),
-            .parameter = textures.add(encoded.parameter),
-            .normal = map    ? textures.add(map->texture)
-                      : bump ? textures.add(bump->texture)
-                             : TEXTURE_NONE,
-            .bump = !map && bump ? 1u : 0u,
-            .normal_scale = map    ? map->scale
-                            : bump ? frame.length(double(bump->scale))
-                                   : 1.0f,
-            .opacity_texture = textures.add(opacity.texture),
-            .opacity = opacity.factor,
-            .cutoff = cutoff.value_or(NO_CUTOFF),
-            .vertex_colors = material.vertex_colors ? 1u : 0u,
-            .culled = is_culled(material) ? 1u : 0u};
-}
-
 // Whether what a surface emits passes fuzz, a coat or sheen.
 bool has_layers(const Material& material) {
     const auto* m = std::get_if<PrincipledMaterial>(&material.model);
     return m != nullptr && !m->unlit &&
            (m->fuzz.factor > 0.0f || m->coat.factor > 0.0f || m->sheen_color.factor != vec3(0.0f));
-}
-
-// What materials know a medium by; appends it to the media if it is new. (The first of them, outside of
-// everything, is none that a surface encloses.)
-uint32_t add_medium(std::vector<Interior>& media, const Interior& medium) {
-    auto place = std::find(media.begin() + 1, media.end(), medium);
-    if (place == media.end()) place = media.insert(place, medium);
-    if (media.size() > MAX_MEDIA) {
-        throw Error("the materials have more than " + std::to_string(MAX_MEDIA - 1) +
-                    " different media inside; use fewer");
-    }
-    static_assert(MAX_PRIORITY << MEDIUM_INDEX_BITS < 1u << MEDIUM_BITS);
-    return medium.priority << MEDIUM_INDEX_BITS | uint32_t(place - media.begin());
-}
-
-// Appends the record of a principled material and its images to `words`; returns its first word there.
-uint32_t append_principled(std::vector<uvec4>& words, EncodedPrincipled encoded, TextureTable& textures) {
-    const auto first = uint32_t(words.size());
-    if (first >= PRINCIPLED_PLACES)
-        throw Error("the principled materials are too many for their records; use fewer");
-    const auto images = principled_images(encoded.textures);
-    encoded.record.images = uint32_t(images.size());
-    encoded.record.coat_normal = textures.add(encoded.coat_normal);
-    append(words, pack(encoded.record));
-    for (const auto& [texture, image] : images) {
-        PrincipledImage record = image;
-        record.texture = textures.add(texture);
-        words.push_back(pack(record));
-    }
-    return first;
-}
-
-// Appends the records of materials, and of the media behind them, each once.
-void append_materials(GpuScene& gpu, const std::vector<Material>& materials, TextureTable& textures) {
-    if (materials.size() > MAX_MATERIALS) {
-        throw Error("the scene has " + std::to_string(materials.size()) + " materials, but at most " +
-                    std::to_string(MAX_MATERIALS) + " fit into the records; use fewer");
-    }
-    gpu.material_count = uint32_t(materials.size());
-    std::vector<Interior> media(1);
-    static_assert(MEDIUM_NONE == 0);
-    std::vector<std::pair<size_t, EncodedPrincipled>> principled;  // And the words of their materials.
-    for (const Material& material : materials) {
-        const std::optional<Interior> inside = interior(material.model);
-        const uint32_t medium = inside ? add_medium(media, *inside) : MEDIUM_NONE;
-        const EncodedMaterial encoded = encode_material(material.model, medium);
-        if (encoded.principled) {
-            principled.emplace_back(gpu.arrays[ARRAY_MATERIALS].size(), *encoded.principled);
-            gpu.principled |= encoded.principled->parts;
-            // Its coat has a normal of its own if the base has one.
-            const bool bent = material.normal_map || material.bump_map;
-            if (bent && (encoded.principled->parts & PRINCIPLED_HAS_COAT) != 0)
-                gpu.principled |= PRINCIPLED_HAS_COAT_NORMAL;
-        }
-        append(gpu.arrays[ARRAY_MATERIALS], pack(encoded.record));
-        gpu.materials_present |= 1u << encoded.record.model;
-        const MaterialTextures used = textures_of(material, encoded, gpu.frame, textures);
-        append(gpu.arrays[ARRAY_MATERIAL_TEXTURES], pack(used));
-        gpu.textured |= textured_bits(used);
-        if (used.culled != 0) gpu.principled |= PRINCIPLED_HAS_CULLED;
-    }
-    for (const auto& [word, encoded] : principled) {
-        std::vector<uvec4>& words = gpu.arrays[ARRAY_MATERIALS];
-        const uint32_t first = append_principled(words, encoded, textures);
-        words[word + 1].x = std::bit_cast<uint32_t>(principled_place(first));
-    }
-    for (const Interior& m : media) {
-        append(gpu.arrays[ARRAY_MEDIA],
-               pack(MediumRecord{vec3(gpu.frame.unit * dvec3(m.medium.absorption)), m.ior}));
-        gpu.has_media |= m.medium != Medium{};
-    }
-    if (gpu.textured == 0) gpu.arrays[ARRAY_MATERIAL_TEXTURES].clear();
 }
 
 // The attributes of vertices that textures and materials read.
@@ -234,8 +95,7 @@ uint64_t GpuScene::bytes() const {
     return words * sizeof(uvec4);
 }
 
-SceneFrame choose_frame(const Scene& scene) {
-    const DoubleBox box = bounds(scene);
+SceneFrame frame_around(const DoubleBox& box) {
     if (box.is_empty()) return {};
     const dvec3 extent = box.extent();
     const double size = std::max({extent.x, extent.y, extent.z});
@@ -248,10 +108,15 @@ SceneFrame choose_frame(const Scene& scene) {
     return frame;
 }
 
+SceneFrame choose_frame(const Scene& scene) {
+    return frame_around(bounds(scene));
+}
+
 namespace {
 
 // `packed(i)` is called when the texels of image i have been copied.
-GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<void(size_t)>& packed) {
+GpuScene build(const Scene& scene, const SceneFrame& frame, const InstancingRule& rule,
+               const std::function<void(size_t)>& packed) {
     GpuScene gpu;
     gpu.frame = frame;
     TextureTable textures(scene.images);
@@ -270,47 +135,16 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<
     gpu.texture_traits = textures.traits();
     gpu.attributes = needed_attributes(gpu);
     gpu.arrays[ARRAY_TEXTURES] = textures.records();
-    FlatScene flat = flatten(scene, frame, gpu.attributes);
-    gpu.arrays[ARRAY_TEXELS] = textures.texels(packed);
-    gpu.primitive_count = uint32_t(flat.primitives.size());
-    gpu.id_count = flat.id_count;
-    gpu.has_normals = !flat.normals.empty();
-    if (is_too_coarse(flat.coarse, flat.triangles)) {
-        gpu.warnings.push_back(
-            std::to_string(flat.coarse) + " of " + std::to_string(flat.triangles) +
-            " triangles are smaller than 16 steps of 32-bit coordinates in a scene of this "
-            "size, " +
-            number_text(frame.unit, 3) + " m: they look rough; render what is far apart by itself");
-    }
-    if (flat.flattened > 0) {
-        gpu.warnings.push_back("left out " + std::to_string(flat.flattened) +
-                               (flat.flattened == 1 ? " triangle" : " triangles") +
-                               " too small for 32-bit coordinates in a scene of this size");
-    }
+    const Instancing instancing = choose_instances(scene, rule);
+    FlatScene flat = flatten(scene, frame, gpu.attributes, instancing.is_instance);
+    gpu.arrays[ARRAY_TEXELS] = textures.texels(packed);  // Lights have read the images.
+    const SceneTree tree = append_geometry(gpu, scene, flat, instancing);
 
-    const auto start = std::chrono::steady_clock::now();
-    const Bvh bvh = build_bvh_over(flat.primitives);
-    gpu.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    gpu.bvh_depth = bvh.depth;
-    gpu.bvh_sah_cost = bvh.sah_cost;
-
-    gpu.arrays[ARRAY_NODES].reserve(bvh.nodes.size() * BVH_NODE_WORDS);
-    for (const auto& node : bvh.nodes)
-        append(gpu.arrays[ARRAY_NODES], node);
-    gpu.arrays[ARRAY_PRIMITIVES].reserve(flat.primitives.size() * PRIMITIVE_WORDS);
-    for (const uint32_t i : bvh.order) {
-        append(gpu.arrays[ARRAY_PRIMITIVES], pack(flat.primitives[i]));
-        gpu.primitives_present |= 1u << flat.primitives[i].kind;
-    }
-    gpu.list_corners = list_corners(flat.primitives, bvh.order);
-    if (flat.primitives.empty())
-        gpu.arrays[ARRAY_PRIMITIVES].resize(PRIMITIVE_WORDS);  // Traversal may read it all the same.
-
-    append_light_textures(gpu, flat, bvh.order, textures);
-    add_punctual_lights(flat, scene, frame, bvh.bounds);
+    append_light_textures(gpu, flat, tree.order, textures);
+    add_punctual_lights(flat, scene, frame, tree.bounds);
     if (scene.environment) {
         EnvironmentMap map = build_environment_map(*scene.environment);
-        const bool is_light = add_environment_light(flat, map, bvh.bounds);
+        const bool is_light = add_environment_light(flat, map, tree.bounds);
         if (is_light) gpu.environment_light = uint32_t(flat.lights.size() - 1);
         gpu.environment = scene.environment->visible ? ENVIRONMENT_VISIBLE : ENVIRONMENT_HIDDEN;
         gpu.even_sky = map.even;
@@ -320,30 +154,16 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const std::function<
             if (!is_light) texel.pdf = 0.0f;
             append(gpu.arrays[ARRAY_ENVIRONMENT], pack(texel));
         }
-        append(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS], map.alias);
+        append_alias(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS], map.alias);
     }
     assign_probabilities(flat);
     gpu.light_count = uint32_t(flat.lights.size());
 
-    gpu.arrays[ARRAY_SURFACES].reserve(flat.surfaces.size() * SURFACE_WORDS);
-    for (const uint32_t i : bvh.order)
-        append(gpu.arrays[ARRAY_SURFACES], pack(flat.surfaces[i]));
-    if (gpu.has_normals) {
-        gpu.arrays[ARRAY_NORMALS].reserve(flat.normals.size() * NORMALS_WORDS);
-        for (const uint32_t i : bvh.order)
-            append(gpu.arrays[ARRAY_NORMALS], flat.normals[i]);
-    }
-    const size_t attribute_count = attribute_words(gpu.attributes);
-    gpu.arrays[ARRAY_ATTRIBUTES].reserve(flat.attributes.size());
-    for (const uint32_t i : bvh.order) {
-        append(gpu.arrays[ARRAY_ATTRIBUTES],
-               std::span(flat.attributes).subspan(i * attribute_count, attribute_count));
-    }
     for (const LightRecord& light : flat.lights) {
         append(gpu.arrays[ARRAY_LIGHTS], pack(light));
         gpu.lights_present |= 1u << light.kind;
     }
-    if (gpu.light_count > 0) append(gpu.arrays[ARRAY_LIGHT_ALIAS], build_alias_table(flat.powers));
+    if (gpu.light_count > 0) append_alias(gpu.arrays[ARRAY_LIGHT_ALIAS], build_alias_table(flat.powers));
     return gpu;
 }
 
@@ -353,12 +173,12 @@ GpuScene build_gpu_scene(const Scene& scene) {
     return build_gpu_scene(scene, choose_frame(scene));
 }
 
-GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame) {
-    return build(scene, frame, [](size_t) {});
+GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame, const InstancingRule& rule) {
+    return build(scene, frame, rule, [](size_t) {});
 }
 
 GpuScene build_gpu_scene_freeing_images(Scene& scene) {
-    return build(scene, choose_frame(scene),
+    return build(scene, choose_frame(scene), {},
                  [&](size_t i) { scene.images[i].image.texels = std::vector<std::byte>(); });
 }
 

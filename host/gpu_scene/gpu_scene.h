@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gpu_scene/instancing.h"
 #include "scene/frame.h"
 #include "scene/scene.h"
 #include "shared/kernel_constants.h"
@@ -13,14 +14,30 @@
 
 namespace candela {
 
+// A mesh with a tree of its own: its primitives in leaf order, and its triangles.
+struct InstancedMesh {
+    uint32_t first_primitive = 0;
+    uint32_t primitives = 0;
+    uint64_t triangles = 0;
+};
+
+// An instance: the place of its record among the nodes, and its mesh in GpuScene::meshes.
+struct InstancePlace {
+    uint32_t node = 0;
+    uint32_t mesh = 0;
+};
+
 struct GpuScene {
     SceneFrame frame;  // Of all lengths and points below.
 
     // Records as shared/*.h describe them, in words of uvec4, by ARRAY_*.
     std::array<std::vector<uvec4>, ARRAY_COUNT> arrays;
 
-    uint32_t primitive_count = 0;  // Two triangles may be one: see shared/primitive.h.
-    uint32_t id_count = 0;         // Triangles, spheres and disks.
+    uint32_t primitive_count = 0;       // Two triangles may be one: see shared/primitive.h.
+    uint32_t baked_primitives = 0;      // The first of them, which lie in the frame of the scene; the others,
+    std::vector<InstancedMesh> meshes;  // in meshes' own spaces,
+    std::vector<InstancePlace> instances;  // are seen in instances.
+    uint32_t id_count = 0;                 // Triangles, spheres and disks; modulo 2^32.
     uint32_t light_count = 0;
     uint32_t material_count = 0;
     uint32_t environment_light = 0;     // Index of the environment among the lights; 0 if it is not one.
@@ -42,13 +59,13 @@ struct GpuScene {
     uint32_t texture_traits = 0;                    // Of all textures.
     std::array<uint32_t, LIST_MAX> list_corners{};  // Of the first primitives; see LIST_CORNERS_0.
 
-    uint32_t bvh_depth = 1;  // Levels of nodes.
+    uint32_t bvh_depth = 1;  // Levels of nodes; an instance is one, and those of its mesh follow.
 
     std::vector<std::string> warnings;  // What is lost on the way from the scene.
 
     // About the BVH, for reports.
     float bvh_sah_cost = 0.0f;
-    double bvh_seconds = 0.0;  // Wall time of the build alone.
+    double bvh_seconds = 0.0;  // Wall time of building it, and of placing instances.
 
     // Bytes that the arrays take on a device.
     uint64_t bytes() const;
@@ -58,11 +75,15 @@ struct GpuScene {
 // two that is greater than the box's longest side. It depends on no camera.
 SceneFrame choose_frame(const Scene& scene);
 
+// The same for a box.
+SceneFrame frame_around(const DoubleBox& box);
+
 // Flattens the shapes into primitives, builds the BVH and packs everything. Throws Error if the scene has
 // more primitives than a BVH can address.
-// The records are in the frame that choose_frame() chooses, or in `frame`.
+// The records are in the frame that choose_frame() chooses, or in `frame`; `rule` says which meshes get a
+// tree of their own.
 GpuScene build_gpu_scene(const Scene& scene);
-GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame);
+GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame, const InstancingRule& rule = {});
 
 // build_gpu_scene(), for the last use of the scene's images: each loses its texels as soon as they are
 // packed, so that memory does not hold them all twice.

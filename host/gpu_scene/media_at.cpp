@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "shared/instance.h"
 #include "shared/material.h"
 #include "shared/primitive.h"
 
@@ -31,10 +32,10 @@ void cross(Passage& passage, double t, bool out) {
 }
 
 // Ref: Moeller and Trumbore 1997, Fast, Minimum Storage Ray/Triangle Intersection.
-void cross_triangle(Passage& passage, dvec3 o, dvec3 a, dvec3 b, dvec3 c) {
-    const dvec3 e1 = b - a, e2 = c - a, p = glm::cross(DIRECTION, e2), s = o - a, q = glm::cross(s, e1);
+void cross_triangle(Passage& passage, dvec3 o, dvec3 d, dvec3 a, dvec3 b, dvec3 c) {
+    const dvec3 e1 = b - a, e2 = c - a, p = glm::cross(d, e2), s = o - a, q = glm::cross(s, e1);
     const double det = dot(e1, p);
-    const double u = dot(s, p) / det, v = dot(DIRECTION, q) / det;
+    const double u = dot(s, p) / det, v = dot(d, q) / det;
     if (det == 0.0 || u < 0.0 || v < 0.0 || u + v > 1.0) return;
     cross(passage, dot(e2, q) / det, det < 0.0);
 }
@@ -62,6 +63,39 @@ dvec3 point_of(uvec4 word) {
     return dvec3(std::bit_cast<vec4>(word));
 }
 
+// Counts where the ray from o along d crosses primitive i; a sphere or disk only along DIRECTION.
+void cross_primitive(Passage& passage, const GpuScene& scene, uint32_t i, dvec3 o, dvec3 d) {
+    const uvec4* w = &scene.arrays[ARRAY_PRIMITIVES][size_t{i} * PRIMITIVE_WORDS];
+    const dvec3 a = point_of(w[0]), b = point_of(w[1]), c = point_of(w[2]);
+    if (w[0].w == (PRIMITIVE_TAG | PRIMITIVE_SPHERE)) {
+        cross_sphere(passage, o, a, b.x);
+    } else if (w[0].w == (PRIMITIVE_TAG | PRIMITIVE_DISK)) {
+        cross_disk(passage, o, a, b, c);
+    } else {
+        cross_triangle(passage, o, d, a, b, c);
+        cross_triangle(passage, o, d, a, c, point_of(uvec4(w[0].w, w[1].w, w[2].w, 0)));
+    }
+}
+
+PackedBvhNode node_at(const GpuScene& scene, uint32_t i) {
+    PackedBvhNode node;
+    std::copy_n(&scene.arrays[ARRAY_NODES][size_t{i} * BVH_NODE_WORDS], BVH_NODE_WORDS, node.begin());
+    return node;
+}
+
+// Whether the line through o along d meets a box around the children of that node.
+bool meets_children(const GpuScene& scene, uint32_t i, dvec3 o, dvec3 d) {
+    const BvhNode node = unpack(node_at(scene, i));
+    Box box;
+    for (uint32_t k = 0; k < bvh_child_count(node); ++k)
+        box.extend(child_box(node, k));
+    // The axes that may separate a line from a box are at right angles to the line and to an edge.
+    const dvec3 middle = 0.5 * (dvec3(box.lo) + dvec3(box.hi)), half = dvec3(box.hi) - middle;
+    const dvec3 distance = abs(glm::cross(d, middle - o)), a = abs(d);
+    return distance.x <= half.y * a.z + half.z * a.y && distance.y <= half.z * a.x + half.x * a.z &&
+           distance.z <= half.x * a.y + half.y * a.x;
+}
+
 }  // namespace
 
 uvec2 media_at(const GpuScene& scene, dvec3 point) {
@@ -75,20 +109,22 @@ uvec2 media_at(const GpuScene& scene, dvec3 point) {
 
     const dvec3 o = (point - scene.frame.origin) / scene.frame.unit;
     std::map<uint32_t, Passage> passages;
-    for (uint32_t i = 0; i < scene.primitive_count; ++i) {
+    for (uint32_t i = 0; i < scene.baked_primitives; ++i) {
         const uint32_t medium = medium_of(scene.arrays[ARRAY_SURFACES][i].z & (MAX_MATERIALS - 1));
+        if (medium != MEDIUM_SAME) cross_primitive(passages[medium], scene, i, o, DIRECTION);
+    }
+    for (const auto& [node, mesh] : scene.instances) {
+        const PackedBvhNode w = node_at(scene, node);
+        const Instance instance = instance_unpack(w[0], w[1], w[2], w[3]);
+        const uint32_t medium = medium_of(instance.material);
         if (medium == MEDIUM_SAME) continue;
-        const uvec4* w = &scene.arrays[ARRAY_PRIMITIVES][size_t{i} * PRIMITIVE_WORDS];
-        const dvec3 a = point_of(w[0]), b = point_of(w[1]), c = point_of(w[2]);
-        Passage& passage = passages[medium];
-        if (w[0].w == (PRIMITIVE_TAG | PRIMITIVE_SPHERE)) {
-            cross_sphere(passage, o, a, b.x);
-        } else if (w[0].w == (PRIMITIVE_TAG | PRIMITIVE_DISK)) {
-            cross_disk(passage, o, a, b, c);
-        } else {
-            cross_triangle(passage, o, a, b, c);
-            cross_triangle(passage, o, a, c, point_of(uvec4(w[0].w, w[1].w, w[2].w, 0)));
-        }
+        const auto& rows = instance.to_mesh;
+        const glm::dmat3 to_mesh = transpose(glm::dmat3(dvec3(rows[0]), dvec3(rows[1]), dvec3(rows[2])));
+        const dvec3 from = to_mesh * (o - dvec3(instance.centre)), along = to_mesh * DIRECTION;
+        if (!meets_children(scene, instance.root, from, along)) continue;
+        const auto& [first, count, triangles] = scene.meshes[mesh];
+        for (uint32_t i = 0; i < count; ++i)
+            cross_primitive(passages[medium], scene, first + i, from, along);
     }
 
     std::vector<std::pair<uint32_t, Passage>> around;

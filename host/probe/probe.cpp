@@ -39,6 +39,7 @@ KernelConstants traversal_constants(const GpuScene& scene) {
     KernelConstants constants;
     constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
     constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
+    constants[CONSTANT_INSTANCED] = !scene.instances.empty();
     constants[CONSTANT_ATTRIBUTES] = scene.attributes;
     constants[CONSTANT_TEXTURED] = scene.textured;
     constants[CONSTANT_TEXTURE_TRAITS] = scene.texture_traits;

@@ -36,6 +36,7 @@ uint32_t aperture_constant(const Camera& camera) {
 // and only if rays pass none of them.
 uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
     const bool triangles = scene.primitives_present == 1u << PRIMITIVE_TRIANGLES;
+    if (!scene.instances.empty()) return 0;
     const bool opaque = (scene.textured & TEXTURED_OPACITY) == 0;
     return device.info().is_lavapipe() && triangles && opaque && scene.primitive_count <= LIST_MAX
                ? scene.primitive_count
@@ -69,6 +70,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_PRINCIPLED] = scene.principled;
     constants[CONSTANT_PRIMITIVES] = scene.primitives_present;
     constants[CONSTANT_BVH_DEPTH] = scene.bvh_depth;
+    constants[CONSTANT_INSTANCED] = !scene.instances.empty();
     constants[CONSTANT_LIGHTS] = scene.lights_present;
     constants[CONSTANT_HAS_MEDIA] = scene.has_media;
     constants[CONSTANT_NESTED_MEDIA] = scene.nested_media || media_at(scene, camera.position) != uvec2(0);

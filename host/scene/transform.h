@@ -21,6 +21,9 @@ class Transform {
     glm::dvec3 vector(glm::dvec3 v) const { return glm::dmat3(matrix_) * v; }
     // The unit normal in world space for a normal of any length; zero stays zero.
     vec3 normal(vec3 n) const;
+    // What point() multiplies by, and vector().
+    const glm::dmat4& matrix() const { return matrix_; }
+    glm::dmat3 linear() const { return glm::dmat3(matrix_); }
     // True if the transform turns clockwise into counter-clockwise.
     bool mirrors() const { return mirrors_; }
 

@@ -1,5 +1,5 @@
 // For selftest/traversal.h: item (ray). The nearest hit by the BVH and by testing every primitive, and whether the ray
-// is occluded before the hit, just behind it, and anywhere.
+// is occluded before the hit, just behind it, and anywhere. The scene has no instances.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -13,7 +13,7 @@ Hit brute_force(Ray ray) {
     Hit hit = hit_none(FLOAT_MAX);
     Candidate candidate = candidate_none();
     for (uint i = 0u; i < primitive_count; ++i) {
-        meet(i, primitive_hit(ray, shear, scene_primitive(i), i), hit, candidate);
+        meet(i, primitive_hit(ray, shear, scene_primitive(i), i, NO_INSTANCE), hit, candidate);
         for (int k = 0; k < 2; ++k) decide(ray, shear, hit, candidate);
     }
     return hit;

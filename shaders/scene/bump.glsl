@@ -21,7 +21,8 @@ UvEdges sphere_uv_edges(float radius, vec3 n) {
     return UvEdges(2.0 * PI * radius * around, PI * radius * up, vec2(1.0, 0.0), vec2(0.0, 1.0));
 }
 
-// The edges of the triangle that was hit, or the axes of the disk; for the set of coordinates of texture t.
+// The edges of the triangle that was hit, or the axes of the disk, in the frame of the scene; for the set of coordinates
+// of texture t.
 UvEdges uv_edges(TextureRecord t, Hit hit, vec3 n) {
     Primitive p = scene_primitive(hit_primitive(hit));
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) return sphere_uv_edges(p.b.x, n);
@@ -29,8 +30,14 @@ UvEdges uv_edges(TextureRecord t, Hit hit, vec3 n) {
     scene_attributes(hit_primitive(hit), has_trait(t.traits, TEXTURE_UV1, TEXTURE_UV_SETS) ? UV1_WORD : 0u, ab, cd);
     vec2 a = uintBitsToFloat(ab.xy), b = uintBitsToFloat(ab.zw), c = uintBitsToFloat(cd.xy);
     if (is_kind(p.kind, PRIMITIVE_DISK)) return UvEdges(p.b, p.c, b - a, c - a);
-    if (hit_second(hit)) return UvEdges(p.c - p.a, p.d - p.a, c - a, uintBitsToFloat(cd.zw) - a);
-    return UvEdges(p.b - p.a, p.c - p.a, b - a, c - a);
+    UvEdges edges = UvEdges(p.b - p.a, p.c - p.a, b - a, c - a);
+    if (hit_second(hit)) edges = UvEdges(p.c - p.a, p.d - p.a, c - a, uintBitsToFloat(cd.zw) - a);
+    if (is_instanced(hit.instance)) {
+        Instance instance = scene_instance(hit.instance);
+        edges.e1 = vector_to_scene(instance, edges.e1);
+        edges.e2 = vector_to_scene(instance, edges.e2);
+    }
+    return edges;
 }
 
 // The shading normal of s on its front side, turned as by a displacement of the surface along it: by the channel of

@@ -21,22 +21,50 @@ struct Interaction {
     Attributes attributes;
 };
 
-// The interpolated shading normal of the triangle that was hit, on the side of n.
-vec3 shading_normal(Hit hit, vec2 b, vec3 n) {
+// A vertex's shading normal in the frame of the scene.
+vec3 vertex_normal(uint bits, Hit hit, Instance instance) {
+    vec3 n = octahedral_unpack(bits);
+    return is_instanced(hit.instance) ? normalize(normal_to_scene(instance, n)) : n;
+}
+
+// The interpolated shading normal of the triangle that was hit, on the side of n, in the frame of the scene.
+vec3 shading_normal(Hit hit, Instance instance, vec2 b, vec3 n) {
     uvec4 normals = scene_normals(hit_primitive(hit));
     if (hit_second(hit)) normals.yz = normals.zw;
-    vec3 ns = (1.0 - b.x - b.y) * octahedral_unpack(normals.x) + b.x * octahedral_unpack(normals.y) +
-              b.y * octahedral_unpack(normals.z);
+    vec3 ns = (1.0 - b.x - b.y) * vertex_normal(normals.x, hit, instance) +
+              b.x * vertex_normal(normals.y, hit, instance) + b.y * vertex_normal(normals.z, hit, instance);
     float length_squared = dot(ns, ns);
     if (length_squared == 0.0) return n;
     ns *= inversesqrt(length_squared);
     return dot(ns, n) < 0.0 ? -ns : ns;
 }
 
+// Brings what is known of a point in the space of an instance's mesh to the frame of the scene.
+void bring_to_scene(Instance i, inout Interaction s) {
+    s.p = i.centre + vector_to_scene(i, s.p);
+    vec3 n = normal_to_scene(i, s.n);
+    float inv_length = inversesqrt(dot(n, n));
+    s.n = inv_length * n;
+    s.error = inv_length * s.error + i.error;
+    if ((ATTRIBUTES & ATTRIBUTE_TANGENT) != 0u) {
+        vec4 t = s.attributes.tangent;
+        vec3 along = vector_to_scene(i, t.xyz);
+        // As long as before, also if that is 0.
+        along *= sqrt(dot(t.xyz, t.xyz) / max(dot(along, along), 1e-36));
+        s.attributes.tangent = vec4(along, instance_determinant(i) < 0.0 ? -t.w : t.w);
+    }
+}
+
 // The point that the ray hit; is_hit(hit) must hold.
 Interaction interaction_at(Ray ray, Hit hit) {
     Primitive primitive = scene_primitive(hit_primitive(hit));
-    Surface surface = scene_surface(hit_primitive(hit));
+    Surface surface = hit_surface(hit);
+    Instance instance;
+    vec3 wo = -normalize(ray.d);
+    if (is_instanced(hit.instance)) {
+        instance = scene_instance(hit.instance);
+        ray = ray_to_mesh(instance, ray);
+    }
     vec3 a = primitive.a;
     vec2 at = hit_coordinates(ray, primitive, hit);
     Interaction s;
@@ -53,16 +81,17 @@ Interaction interaction_at(Ray ray, Hit hit) {
         s.n = normalize(cross(e1, e2));
         s.p = a + (at.x * e1 + at.y * e2);  // Where triangles are small, no sum but the last rounds by much.
     }
-    s.ns = s.n;
-    if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit, at, s.n);
     s.attributes = attributes_at(AttributePlace(hit_primitive(hit), hit_second(hit), at, is_kind(primitive.kind, PRIMITIVE_SPHERE), s.n));
-    s.wo = -normalize(ray.d);
+    s.error = surface.error;
+    if (is_instanced(hit.instance)) bring_to_scene(instance, s);
+    s.ns = s.n;
+    if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit, instance, at, s.n);
+    s.wo = wo;
     s.front = dot(s.wo, s.n) >= 0.0;
     if (!s.front) {
         s.n = -s.n;
         s.ns = -s.ns;
     }
-    s.error = surface.error;
     s.material = surface.material;
     s.light = surface.light;
     return s;

@@ -41,7 +41,7 @@ void list_intersect(Ray ray, RayShear shear, inout Hit hit) {
             }
         }
         TrianglesHit found = triangles_intersect(shear, v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]);
-        if (found.t > 0.0 && found.t < hit.t) hit = triangles_hit(found, uint(i));
+        if (found.t > 0.0 && found.t < hit.t) hit = triangles_hit(found, uint(i), NO_INSTANCE);
     }
 }
 

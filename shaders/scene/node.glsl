@@ -2,8 +2,10 @@
 #ifndef SCENE_NODE_GLSL
 #define SCENE_NODE_GLSL
 
+#include "base/math.glsl"
 #include "base/ray.glsl"
 #include "shared/bvh_node.h"
+#include "shared/instance.h"
 
 // The four bytes of a word as floats.
 vec4 bytes(uint word) {
@@ -65,10 +67,14 @@ ivec4 node_order(BoxHits hits, uvec4 children, uint node_count) {
 // rounding of the difference, the reciprocal (2.5 ulp in Vulkan) and the products, as well as of the bounds in
 // triangles_intersect. So a triangle is never culled by a box that contains it.
 // Ref: Ize 2013, Robust BVH Ray Traversal, for the problem; the bound is our own, for quantised boxes.
-NodeHits node_intersect(BvhNode node, Ray ray, vec3 inv_d, float t_max) {
+//
+// Above instances, a ray into whose space may be off by INSTANCE_RAY_ERROR of the largest coordinate of its origin, and
+// by what the instances' boxes allow for.
+NodeHits node_intersect(BvhNode node, Ray ray, vec3 inv_d, float t_max, bool above_instances) {
     vec3 scale = node.scale * inv_d;
     vec3 start = (node.origin - ray.o) * inv_d;
     vec3 margin = (abs(start) + 256.0 * abs(scale)) * (1.0 / 1048576.0);
+    if (above_instances) margin += INSTANCE_RAY_ERROR * max_component(abs(ray.o)) * abs(inv_d);
     vec3 near = start - margin;
     vec3 far = start + margin;
     bvec3 negative = lessThan(inv_d, vec3(0.0));

@@ -10,8 +10,8 @@
 const bool HAS_OPACITY = (TEXTURED & TEXTURED_OPACITY) != 0u;
 
 // A number in [0, 1) that is random for each ray and hit, whatever the order in which these are found: a hash of the
-// bits of the ray, of the surface's id in the scene, and of whether the hit is the first one of its primitive. (A
-// sample's rays differ from those of every other sample.)
+// bits of the ray in the primitive's space, of the surface's id in the scene, and of whether the hit is the first one of
+// its primitive. (A sample's rays differ from those of every other sample.)
 float opacity_random(Ray ray, uint id, bool first) {
     uvec4 v = hash_pcg4d(uvec4(floatBitsToUint(ray.d), id));
     return unit_float(hash_pcg4d(v ^ uvec4(floatBitsToUint(ray.o), uint(first))).x);
@@ -24,9 +24,9 @@ bool is_hit_from_behind(Ray ray, Primitive p, Hit hit, vec3 n) {
     return dot(n, ray.d) > 0.0;
 }
 
-// Whether the ray ends at a hit of that primitive, the first one there or not.
+// Whether the ray, in the primitive's space, ends at a hit of that primitive, the first one there or not.
 bool is_stopped(Ray ray, Primitive p, Hit hit, bool first) {
-    Surface surface = scene_surface(hit_primitive(hit));
+    Surface surface = hit_surface(hit);
     vec3 n = ray.o + hit.t * ray.d - p.a;
     if ((PRINCIPLED & PRINCIPLED_HAS_CULLED) != 0u && scene_material_textures(surface.material).culled != 0u &&
         is_hit_from_behind(ray, p, hit, n)) {

@@ -3,6 +3,7 @@
 #define SCENE_PRIMITIVE_GLSL
 
 #include "scene/disk.glsl"
+#include "scene/instance.glsl"
 #include "scene/sphere.glsl"
 #include "scene/triangle.glsl"
 #include "shared/kernel_constants.h"
@@ -15,14 +16,16 @@ bool is_kind(uint kind, const uint asked) {
     return (PRIMITIVES & ~(1u << asked)) == 0u || kind == asked;
 }
 
-// The nearest hit along a ray. Among equally near ones the first in leaf order wins, whatever the order of visits.
+// The nearest hit along a ray. Among equally near ones the first wins, by instance and then in leaf order, whatever the
+// order of visits.
 struct Hit {
-    float t;    // In lengths of ray.d; without a hit, how far the ray was followed.
-    int place;  // Twice its position in leaf order, plus 1 for the second of two triangles; negative: no hit.
+    float t;        // In lengths of ray.d; without a hit, how far the ray was followed.
+    int place;      // Twice its position in leaf order, plus 1 for the second of two triangles; negative: no hit.
+    uint instance;  // The place of its record among the nodes, or NO_INSTANCE.
 };
 
 Hit hit_none(float t_max) {
-    return Hit(t_max, -1);
+    return Hit(t_max, -1, NO_INSTANCE);
 }
 
 bool is_hit(Hit hit) {
@@ -39,36 +42,51 @@ bool hit_second(Hit hit) {
     return (hit.place & 1) != 0;
 }
 
-// A hit of the primitive at that position.
-Hit triangles_hit(TrianglesHit found, uint position) {
-    return Hit(found.t, int(2u * position + uint(found.second)));
+// The surface that was hit, with its place among all and the material of its instance.
+Surface hit_surface(Hit hit) {
+    Surface surface = scene_surface(hit_primitive(hit));
+    if (is_instanced(hit.instance)) {
+        Instance instance = scene_instance(hit.instance);
+        surface.id += instance.first_id;
+        surface.material = instance.material;
+    }
+    return surface;
+}
+
+// A hit of the primitive at that position, of that instance or of none.
+Hit triangles_hit(TrianglesHit found, uint position, uint instance) {
+    return Hit(found.t, int(2u * position + uint(found.second)), instance);
 }
 
 // Whether `found` is a hit that is nearer than `hit`.
 bool is_nearer(Hit found, Hit hit) {
-    return found.t > 0.0 && (found.t < hit.t || (found.t == hit.t && found.place < hit.place));
+    bool before = found.place < hit.place;
+    if (INSTANCED && found.instance != hit.instance) before = found.instance < hit.instance;
+    return found.t > 0.0 && (found.t < hit.t || (found.t == hit.t && before));
 }
 
-// The first hit of the primitive at that position in leaf order; its t is not above 0 if the ray misses.
-Hit primitive_hit(Ray ray, RayShear shear, Primitive p, uint position) {
-    if (is_kind(p.kind, PRIMITIVE_SPHERE)) return Hit(sphere_intersect(ray, p.a, p.b.x).x, int(2u * position));
-    if (is_kind(p.kind, PRIMITIVE_DISK)) return Hit(disk_intersect(ray, p.a, p.b, p.c).x, int(2u * position));
-    return triangles_hit(triangles_intersect(ray, shear, p.a, p.b, p.c, p.d), position);
+// The first hit of the primitive at that position in leaf order, of that instance or of none, by a ray in its space; the
+// hit's t is not above 0 if the ray misses.
+Hit primitive_hit(Ray ray, RayShear shear, Primitive p, uint position, uint instance) {
+    if (is_kind(p.kind, PRIMITIVE_SPHERE)) return Hit(sphere_intersect(ray, p.a, p.b.x).x, int(2u * position), instance);
+    if (is_kind(p.kind, PRIMITIVE_DISK)) return Hit(disk_intersect(ray, p.a, p.b, p.c).x, int(2u * position), instance);
+    return triangles_hit(triangles_intersect(ray, shear, p.a, p.b, p.c, p.d), position, instance);
 }
 
 // The hit beyond that first one: of the other triangle, or of the sphere's far side.
 Hit primitive_second_hit(Ray ray, RayShear shear, Primitive p, Hit first) {
-    if (is_kind(p.kind, PRIMITIVE_SPHERE)) return Hit(sphere_intersect(ray, p.a, p.b.x).y, first.place);
-    if (is_kind(p.kind, PRIMITIVE_DISK)) return Hit(-1.0, first.place);
+    if (is_kind(p.kind, PRIMITIVE_SPHERE)) return Hit(sphere_intersect(ray, p.a, p.b.x).y, first.place, first.instance);
+    if (is_kind(p.kind, PRIMITIVE_DISK)) return Hit(-1.0, first.place, first.instance);
     // The same triangle twice, so that the rounding of no other has a part in it.
     bool second = !hit_second(first);
     vec3 b = second ? p.c : p.b;
     vec3 c = second ? p.d : p.c;
-    return Hit(triangles_intersect(ray, shear, p.a, b, c, c).t, first.place ^ 1);
+    return Hit(triangles_intersect(ray, shear, p.a, b, c, c).t, first.place ^ 1, first.instance);
 }
 
 // Surface coordinates of a hit of that primitive: for a triangle, the barycentric ones of its second and third vertex;
-// for a disk, those along its axes. (Few hits need them, so traversal does not keep them.)
+// for a disk, those along its axes. The ray is in the primitive's space. (Few hits need them, so traversal does not keep
+// them.)
 vec2 hit_coordinates(Ray ray, Primitive p, Hit hit) {
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) return vec2(0.0);
     if (is_kind(p.kind, PRIMITIVE_DISK)) return disk_intersect(ray, p.a, p.b, p.c).yz;

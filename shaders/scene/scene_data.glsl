@@ -6,6 +6,7 @@
 #ifndef SCENE_SCENE_DATA_GLSL
 #define SCENE_SCENE_DATA_GLSL
 
+#include "shared/instance.h"
 #include "shared/kernel_constants.h"
 #include "shared/parameters.h"
 
@@ -66,6 +67,13 @@ BvhNode scene_node(uint i) {
     uvec4 a, b, c, d;
     READ_4(NODES, i * BVH_NODE_WORDS, a, b, c, d);
     return bvh_node_unpack(a, b, c, d);
+}
+
+// Instance whose record is in the place of that node.
+Instance scene_instance(uint i) {
+    uvec4 a, b, c, d;
+    READ_4(NODES, i * BVH_NODE_WORDS, a, b, c, d);
+    return instance_unpack(a, b, c, d);
 }
 
 // Primitive at that position in leaf order.

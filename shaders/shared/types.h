@@ -13,6 +13,9 @@ using uint = uint32_t;
 inline uint floatBitsToUint(float x) {
     return std::bit_cast<uint>(x);
 }
+inline float uintBitsToFloat(uint x) {
+    return std::bit_cast<float>(x);
+}
 inline uvec4 word(vec3 xyz, uint w) {
     return uvec4(floatBitsToUint(xyz.x), floatBitsToUint(xyz.y), floatBitsToUint(xyz.z), w);
 }

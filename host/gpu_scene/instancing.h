@@ -1,0 +1,42 @@
+// Which meshes get a tree of their own, and where their instances lie.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/frame.h"
+#include "scene/scene.h"
+#include "shared/instance.h"
+
+namespace candela {
+
+// When a mesh gets a tree of its own, below instances; otherwise its copies are baked: each becomes part of
+// the scene's one tree. Baked copies are faster, since their boxes are tighter and no ray changes its space.
+struct InstancingRule {
+    uint32_t least_uses = 2;
+    uint64_t least_triangles = 65536;  // Of all copies together.
+};
+
+// The shapes that are instances.
+struct Instancing {
+    std::vector<uint32_t> shapes;   // Indices, ascending.
+    std::vector<uint32_t> meshes;   // Those that they show: indices, ascending.
+    std::vector<bool> is_instance;  // Of every shape.
+};
+
+// Follows the rule; but what emits light is baked, since each of its triangles is a light of its own anyway,
+// and so is what is sheared or scaled too unevenly (MAX_INSTANCE_CONDITION).
+Instancing choose_instances(const Scene& scene, const InstancingRule& rule);
+
+// An instance's place in the frame of a scene.
+struct PlacedInstance {
+    Instance record;  // Only to_mesh, centre and error.
+    Box box;          // Around all that rays may meet there.
+};
+
+// `boxes` together contain the mesh, in `mesh_frame`.
+PlacedInstance place_instance(const Transform& transform, const SceneFrame& frame,
+                              const SceneFrame& mesh_frame, std::span<const Box> boxes);
+
+}  // namespace candela

@@ -1,0 +1,124 @@
+// See material_arrays.h.
+#include "gpu_scene/material_arrays.h"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "gpu_scene/append.h"
+#include "gpu_scene/material_record.h"
+#include "gpu_scene/principled_record.h"
+#include "scene/materials.h"
+#include "shared/material.h"
+
+namespace candela {
+namespace {
+
+uint32_t textured_bits(const MaterialTextures& t) {
+    const auto bit = [](bool used, uint32_t of) { return used ? of : 0; };
+    return bit(t.base != TEXTURE_NONE, TEXTURED_BASE) | bit(t.specular != TEXTURE_NONE, TEXTURED_SPECULAR) |
+           bit(t.parameter != TEXTURE_NONE, TEXTURED_PARAMETER) |
+           bit(t.normal != TEXTURE_NONE, t.bump != 0 ? TEXTURED_BUMP : TEXTURED_NORMAL) |
+           bit(t.vertex_colors != 0, TEXTURED_VERTEX_COLORS);
+}
+
+MaterialTextures textures_of(const Material& material, const EncodedMaterial& encoded,
+                             const SceneFrame& frame, TextureTable& textures) {
+    constexpr float NO_CUTOFF = -1.0f;
+    const auto& [opacity, cutoff] = material.opacity;
+    const std::optional<NormalMap>& map = material.normal_map;
+    const std::optional<BumpMap>& bump = material.bump_map;
+    return {.base = textures.add(encoded.base),
+            .specular = textures.add(encoded.specular),
+            .parameter = textures.add(encoded.parameter),
+            .normal = map    ? textures.add(map->texture)
+                      : bump ? textures.add(bump->texture)
+                             : TEXTURE_NONE,
+            .bump = !map && bump ? 1u : 0u,
+            .normal_scale = map    ? map->scale
+                            : bump ? frame.length(double(bump->scale))
+                                   : 1.0f,
+            .opacity_texture = textures.add(opacity.texture),
+            .opacity = opacity.factor,
+            .cutoff = cutoff.value_or(NO_CUTOFF),
+            .vertex_colors = material.vertex_colors ? 1u : 0u,
+            .culled = is_culled(material) ? 1u : 0u};
+}
+
+// What materials know a medium by; appends it to the media if it is new. (The first of them, outside of
+// everything, is none that a surface encloses.)
+uint32_t add_medium(std::vector<Interior>& media, const Interior& medium) {
+    auto place = std::find(media.begin() + 1, media.end(), medium);
+    if (place == media.end()) place = media.insert(place, medium);
+    if (media.size() > MAX_MEDIA) {
+        throw Error("the materials have more than " + std::to_string(MAX_MEDIA - 1) +
+                    " different media inside; use fewer");
+    }
+    static_assert(MAX_PRIORITY << MEDIUM_INDEX_BITS < 1u << MEDIUM_BITS);
+    return medium.priority << MEDIUM_INDEX_BITS | uint32_t(place - media.begin());
+}
+
+// Appends the record of a principled material and its images to `words`; returns its first word there.
+uint32_t append_principled(std::vector<uvec4>& words, EncodedPrincipled encoded, TextureTable& textures) {
+    const auto first = uint32_t(words.size());
+    if (first >= PRINCIPLED_PLACES)
+        throw Error("the principled materials are too many for their records; use fewer");
+    const auto images = principled_images(encoded.textures);
+    encoded.record.images = uint32_t(images.size());
+    encoded.record.coat_normal = textures.add(encoded.coat_normal);
+    append(words, pack(encoded.record));
+    for (const auto& [texture, image] : images) {
+        PrincipledImage record = image;
+        record.texture = textures.add(texture);
+        words.push_back(pack(record));
+    }
+    return first;
+}
+
+}  // namespace
+
+void append_materials(GpuScene& gpu, const std::vector<Material>& materials, TextureTable& textures) {
+    if (materials.size() > MAX_MATERIALS) {
+        throw Error("the scene has " + std::to_string(materials.size()) + " materials, but at most " +
+                    std::to_string(MAX_MATERIALS) + " fit into the records; use fewer");
+    }
+    gpu.material_count = uint32_t(materials.size());
+    std::vector<Interior> media(1);
+    static_assert(MEDIUM_NONE == 0);
+    std::vector<std::pair<size_t, EncodedPrincipled>> principled;  // And the words of their materials.
+    for (const Material& material : materials) {
+        const std::optional<Interior> inside = interior(material.model);
+        const uint32_t medium = inside ? add_medium(media, *inside) : MEDIUM_NONE;
+        const EncodedMaterial encoded = encode_material(material.model, medium);
+        if (encoded.principled) {
+            principled.emplace_back(gpu.arrays[ARRAY_MATERIALS].size(), *encoded.principled);
+            gpu.principled |= encoded.principled->parts;
+            // Its coat has a normal of its own if the base has one.
+            const bool bent = material.normal_map || material.bump_map;
+            if (bent && (encoded.principled->parts & PRINCIPLED_HAS_COAT) != 0)
+                gpu.principled |= PRINCIPLED_HAS_COAT_NORMAL;
+        }
+        append(gpu.arrays[ARRAY_MATERIALS], pack(encoded.record));
+        gpu.materials_present |= 1u << encoded.record.model;
+        const MaterialTextures used = textures_of(material, encoded, gpu.frame, textures);
+        append(gpu.arrays[ARRAY_MATERIAL_TEXTURES], pack(used));
+        gpu.textured |= textured_bits(used);
+        if (used.culled != 0) gpu.principled |= PRINCIPLED_HAS_CULLED;
+    }
+    for (const auto& [word, encoded] : principled) {
+        std::vector<uvec4>& words = gpu.arrays[ARRAY_MATERIALS];
+        const uint32_t first = append_principled(words, encoded, textures);
+        words[word + 1].x = std::bit_cast<uint32_t>(principled_place(first));
+    }
+    for (const Interior& m : media) {
+        append(gpu.arrays[ARRAY_MEDIA],
+               pack(MediumRecord{vec3(gpu.frame.unit * dvec3(m.medium.absorption)), m.ior}));
+        gpu.has_media |= m.medium != Medium{};
+    }
+    if (gpu.textured == 0) gpu.arrays[ARRAY_MATERIAL_TEXTURES].clear();
+}
+
+}  // namespace candela

@@ -1,0 +1,41 @@
+// Between the frame of the scene and the space of an instance's mesh.
+#ifndef SCENE_INSTANCE_GLSL
+#define SCENE_INSTANCE_GLSL
+
+#include "base/ray.glsl"
+#include "scene/scene_data.glsl"
+
+// Whether a hit in that instance, or in none, lies in the space of a mesh.
+bool is_instanced(uint instance) {
+    return INSTANCED && instance != NO_INSTANCE;
+}
+
+// A vector of the frame of the scene in the mesh's space.
+vec3 vector_to_mesh(Instance i, vec3 v) {
+    return vec3(dot(i.to_mesh[0], v), dot(i.to_mesh[1], v), dot(i.to_mesh[2], v));
+}
+
+// The ray in the mesh's space, with the same t.
+Ray ray_to_mesh(Instance i, Ray ray) {
+    return Ray(vector_to_mesh(i, ray.o - i.centre), vector_to_mesh(i, ray.d));
+}
+
+// The determinant of to_mesh; negative if the instance is mirrored.
+float instance_determinant(Instance i) {
+    return dot(i.to_mesh[0], cross(i.to_mesh[1], i.to_mesh[2]));
+}
+
+// A vector of the mesh's space in the frame of the scene: by Cramer's rule, since a record has no room for the inverse.
+// host/gpu_scene/instance_record.cpp bounds its rounding.
+vec3 vector_to_scene(Instance i, vec3 v) {
+    return (v.x * cross(i.to_mesh[1], i.to_mesh[2]) + v.y * cross(i.to_mesh[2], i.to_mesh[0]) +
+            v.z * cross(i.to_mesh[0], i.to_mesh[1])) / instance_determinant(i);
+}
+
+// A normal of the mesh's space in the frame of the scene, on the same side of the surface. A distance along the unit
+// normal n is by the length of the result shorter there.
+vec3 normal_to_scene(Instance i, vec3 n) {
+    return n.x * i.to_mesh[0] + n.y * i.to_mesh[1] + n.z * i.to_mesh[2];
+}
+
+#endif
