@@ -19,6 +19,19 @@ bool is_within_reach(dvec3 p) {
 
 namespace {
 
+// Whether a shape lies within reach, one function for each geometry.
+bool fits(const Scene&, const Quad& quad) {
+    return std::ranges::all_of(quad.corners, is_within_reach);
+}
+
+bool fits(const Scene&, const Sphere& sphere) {
+    return is_within_reach(abs(sphere.center) + sphere.radius);
+}
+
+bool fits(const Scene&, const Disk& disk) {
+    return is_within_reach(abs(disk.center) + abs(disk.e1) + abs(disk.e2));
+}
+
 bool fits(const TriangleMesh& mesh, const Transform& transform) {
     const Box box = local_bounds(mesh);
     for (unsigned corner = 0; corner < 8; ++corner) {
@@ -27,6 +40,10 @@ bool fits(const TriangleMesh& mesh, const Transform& transform) {
         if (!is_within_reach(transform.point(mesh.origin + p))) return false;
     }
     return true;
+}
+
+bool fits(const Scene& scene, const MeshInstance& instance) {
+    return fits(scene.meshes[instance.mesh], instance.transform);
 }
 
 // Throws Error if a mesh lacks the attributes that its material and emission look up; adds the tangents that
@@ -108,6 +125,15 @@ void SceneBuilder::add_instance(const std::string& place, size_t shape, const Tr
     scene_.shapes.push_back(copy);
 }
 
+bool SceneBuilder::add_placed(Shape shape) {
+    if (!std::visit([&](const auto& geometry) { return fits(scene_, geometry); }, shape.geometry))
+        return false;
+    if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry))
+        shape.material = material_at_scale(shape.material, instance->transform.mean_scale());
+    scene_.shapes.push_back(std::move(shape));
+    return true;
+}
+
 const Appearance* SceneBuilder::find_file_appearance(const std::string& name) const {
     const auto found = file_appearances_.find(name);
     return found == file_appearances_.end() ? nullptr : &found->second;
@@ -138,6 +164,7 @@ uint32_t SceneBuilder::material_at_scale(uint32_t material, double scale) {
     BumpMap& map = *scene_.materials[scaled].bump_map;
     map.scale = float(scale * double(*map.multiplier));
     known[scale] = scaled;
+    at_scale_[scaled].emplace(scale, scaled);
     return scaled;
 }
 

@@ -59,6 +59,9 @@ class SceneBuilder {
                   TriangleMesh mesh);
     // Adds another instance of the mesh of scene().shapes[shape], with the same appearance.
     void add_instance(const std::string& place, size_t shape, const Transform& transform);
+    // Adds a shape whose geometry was finished before and then placed elsewhere. Returns false, and adds
+    // nothing, if it reaches too far.
+    bool add_placed(Shape shape);
 
     // Adds a material under its name, or a similar one if that is taken; returns its index.
     uint32_t add_material(Material material);

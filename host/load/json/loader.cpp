@@ -62,8 +62,8 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
                   const GltfOptions& gltf) {
     const json::Document document{file, json::parse(text, file)};
     const Node root(document);
-    root.allow_only({"$schema", "scene", "cameras", "film", "integrator", "materials", "shapes", "lights",
-                     "environment"});
+    root.allow_only({"$schema", "scene", "cameras", "film", "integrator", "materials", "objects", "shapes",
+                     "lights", "environment"});
 
     Scene scene;
     const auto base = root.find("scene");
@@ -86,7 +86,7 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
             camera.film_size.reset();
     }
     const auto shapes = base ? root.find("shapes") : root.require("shapes");
-    if (shapes) read_shapes(*shapes, folder, scene);
+    if (shapes) read_shapes(*shapes, root.find("objects"), folder, scene);
     if (const auto lights = root.find("lights"))
         std::ranges::move(read_lights(*lights, scene), std::back_inserter(scene.lights));
     if (const auto environment = root.find("environment")) {

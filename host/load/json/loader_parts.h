@@ -41,10 +41,12 @@ std::vector<Light> read_lights(const Node& node, Scene& scene);
 // scene.warnings.
 Environment read_environment(const Node& node, const std::filesystem::path& folder, Scene& scene);
 
-// Reads the list of shapes into the scene, with their meshes, files and warnings. Files are relative to
-// `folder`. scene.materials must hold the scene file's; it gets those that the shapes bring: black for
-// emitters without a material, and those of OBJ files.
-void read_shapes(const Node& node, const std::filesystem::path& folder, Scene& scene);
+// Reads the list of shapes into the scene, with their meshes, files and warnings; and the objects, if there
+// are any, that instances among the shapes place. Files are relative to `folder`. scene.materials must hold
+// the scene file's; it gets those that the shapes bring: black for emitters without a material, and those of
+// OBJ files.
+void read_shapes(const Node& node, const std::optional<Node>& objects, const std::filesystem::path& folder,
+                 Scene& scene);
 
 // Round shapes: "sphere" and "disk".
 void read_sphere(const Node& node, ShapeList& shapes);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "load/json/loader_parts.h"
+#include "load/json/objects.h"
 #include "scene/mesh.h"
 
 namespace candela {
@@ -144,20 +145,39 @@ void read_mesh(const Node& node, ShapeList& shapes) {
     shapes.add_mesh(node.place(), appearance, transform, std::move(mesh));
 }
 
+// A reader of a shape that places no object.
+template <void (*READ)(const Node&, ShapeList&)>
+void alone(const Node& node, const ObjectMap&, ShapeList& shapes) {
+    READ(node, shapes);
+}
+
 }  // namespace
 
-void read_shapes(const Node& node, const std::filesystem::path& folder, Scene& scene) {
-    constexpr std::array<std::pair<std::string_view, void (*)(const Node&, ShapeList&)>, 7> READERS{
-        {{"quad", &read_quad},
-         {"box", &read_box},
-         {"mesh", &read_mesh},
-         {"sphere", &read_sphere},
-         {"disk", &read_disk},
-         {"obj", &read_obj},
-         {"ply", &read_ply}}};
+void read_shapes(const Node& node, const std::optional<Node>& objects, const std::filesystem::path& folder,
+                 Scene& scene) {
+    using Reader = void (*)(const Node&, const ObjectMap&, ShapeList&);
+    constexpr std::array<std::pair<std::string_view, Reader>, 8> READERS{{{"quad", &alone<read_quad>},
+                                                                          {"box", &alone<read_box>},
+                                                                          {"mesh", &alone<read_mesh>},
+                                                                          {"sphere", &alone<read_sphere>},
+                                                                          {"disk", &alone<read_disk>},
+                                                                          {"obj", &alone<read_obj>},
+                                                                          {"ply", &alone<read_ply>},
+                                                                          {"instance", &read_instance}}};
     ShapeList shapes(folder, scene);
-    for (const Node& shape : node.elements())
-        shape.require("type").choice(READERS)(shape, shapes);
+    ObjectMap known;
+    const auto read = [&](const Node& list) {
+        for (const Node& shape : list.elements())
+            shape.require("type").choice(READERS)(shape, known, shapes);
+    };
+    for (const Node& object : objects ? objects->members() : std::vector<Node>()) {
+        const auto before = std::ptrdiff_t(scene.shapes.size());
+        read(object);
+        const auto first = scene.shapes.begin() + before;
+        known.emplace(object.key(), std::vector<Shape>(first, scene.shapes.end()));
+        scene.shapes.erase(first, scene.shapes.end());
+    }
+    read(node);
 }
 
 }  // namespace candela
