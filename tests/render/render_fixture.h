@@ -135,7 +135,11 @@ class RenderTest : public vk::Vk {
     // Renders `spp` samples per pixel through the scene's first camera. Every sample must be finite, and no
     // path may reach the safety limit.
     Accumulation render(const Scene& scene, const RenderSettings& settings, uint32_t spp) const {
-        Renderer renderer(device(), build_gpu_scene(scene), scene.cameras.at(0), settings);
+        return render(build_gpu_scene(scene), scene.cameras.at(0), settings, spp);
+    }
+    Accumulation render(const GpuScene& scene, const Camera& camera, const RenderSettings& settings,
+                        uint32_t spp) const {
+        Renderer renderer(device(), scene, camera, settings);
         EXPECT_TRUE(renderer.render(spp, [](double) { return true; }));
         EXPECT_EQ(renderer.counters().nonfinite_samples, 0u);
         EXPECT_EQ(renderer.counters().depth_limit_hits, 0u);
