@@ -3,7 +3,8 @@ renders it with Cycles:
 
     blender -b --factory-startup -P blender_scenes.py -- FOLDER SPP
 
-FOLDER gets NAME.glb, NAME/NAME.gltf, NAME-embedded.gltf and NAME-cycles.exr. The world is black: glTF has none.
+FOLDER gets NAME.glb, NAME/NAME.gltf, NAME-embedded.gltf and, unless SPP is 0, NAME-cycles.exr. The world is black: glTF
+has none.
 """
 
 import math
@@ -220,9 +221,10 @@ def main(folder, spp):
         name = build.__name__
         reset()
         build()
-        set_up_cycles(spp)
-        bpy.context.scene.render.filepath = str(folder / f"{name}-cycles.exr")
-        bpy.ops.render.render(write_still=True)
+        if spp > 0:
+            set_up_cycles(spp)
+            bpy.context.scene.render.filepath = str(folder / f"{name}-cycles.exr")
+            bpy.ops.render.render(write_still=True)
         (folder / name).mkdir(exist_ok=True)
         options = {"export_lights": True, "export_cameras": True, "export_apply": True}
         bpy.ops.export_scene.gltf(filepath=str(folder / f"{name}.glb"), export_format="GLB", **options)

@@ -191,6 +191,39 @@ TEST_F(GltfAnimation, WhatItCannotAnimateIsNoted) {
     EXPECT_TRUE(load(file, {.time = 0.0}).warnings.empty());
 }
 
+TEST_F(GltfAnimation, NotesRotationsOfAnotherLength) {
+    // Of a spline, tangents have any length.
+    const std::vector<float> halves{9, 0, 0, 0, 0, 0, 0,    1,    0, 9, 0, 0,
+                                    0, 0, 0, 0, 0, 0, 0.5f, 0.5f, 9, 9, 9, 9};
+    const GltfFile file = animated("rotation", {0, 1}, "CUBICSPLINE", "VEC4", halves);
+    const Scene scene =
+        expect_warning(file,
+                       "#/animations/0/samplers/0/output: the rotation of key 1 is a quaternion "
+                       "of length 0.707107, not 1; all are divided by their lengths",
+                       {.time = 2.0});
+    EXPECT_LE(distance(world_mesh(scene).positions[1], vec3(0, 1, 0)), 1e-6f);
+    expect_warning(
+        animated("rotation", {0}, "STEP", "VEC4", std::vector<float>{0, 0, 0, 0}),
+        "#/animations/0/samplers/0/output: the rotation of key 0 is a quaternion of length 0, not 1; "
+        "all are divided by their lengths",
+        {.time = 0.0});
+}
+
+TEST_F(GltfAnimation, OfTwoChannelsWithOneTargetTheLastCounts) {
+    GltfFile file = animated("translation", {0}, "STEP", "VEC3", std::vector<float>{5, 0, 0});
+    Json& animation = file.root["animations"][0];
+    const size_t times = file.add<float>("SCALAR", {0}), places = file.add<float>("VEC3", {7, 7, 7});
+    animation["samplers"].push_back({{"input", times}, {"output", places}});
+    animation["channels"].push_back({{"sampler", 1}, {"target", {{"node", 0}, {"path", "scale"}}}});
+    EXPECT_TRUE(load(file, {.time = 0.0}).warnings.empty());
+    animation["channels"][1]["target"]["path"] = "translation";
+    const Scene scene = expect_warning(file,
+                                       "#/animations/0/channels/0/target: channel 1 has the same target, and "
+                                       "takes the place of this one",
+                                       {.time = 0.0});
+    EXPECT_EQ(world_mesh(scene).positions[0], vec3(7));
+}
+
 TEST_F(GltfAnimation, RefusesSamplersThatAreNoneOrDamaged) {
     const std::vector<float> places{1, 0, 0, 3, 10, 0};
     const auto expect = [&](const GltfFile& file, const std::string& message) {

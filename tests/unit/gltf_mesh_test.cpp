@@ -196,6 +196,34 @@ TEST_F(GltfMesh, ReadsColoursOfEachKind) {
     EXPECT_EQ(colors("VEC4", rgba, "OPAQUE"), expected);
 }
 
+TEST_F(GltfMesh, NotesColoursBeyondTheirRange) {
+    for (const float beyond : {-0.1f, 1.1f, INFINITE}) {
+        GltfFile file;
+        file.show({{"attributes",
+                    {{"POSITION", file.add_corner()},
+                     {"COLOR_0", file.add<float>("VEC3", {1, 0, 1, 0, 1, 0, 0, beyond, 1})}}}});
+        expect_warning(
+            file,
+            "#/meshes/0/primitives/0/attributes/COLOR_0: some colours are not between 0 and 1; the "
+            "nearest take their place");
+    }
+}
+
+TEST_F(GltfMesh, NotesTheIndexThatWouldRestartAStrip) {
+    GltfFile file;
+    std::vector<float> positions;
+    for (int i = 0; i < 256; ++i)
+        positions.insert(positions.end(), {float(i), float(i * i), 0});
+    const size_t many = file.add("VEC3", positions);
+    file.show({{"attributes", {{"POSITION", many}}}, {"indices", file.add<uint16_t>("SCALAR", {0, 1, 255})}});
+    EXPECT_TRUE(load(file).warnings.empty());
+    file.root["meshes"][0]["primitives"][0]["indices"] = file.add<uint8_t>("SCALAR", {0, 1, 255});
+    const Scene scene = expect_warning(
+        file,
+        "#/accessors/2: index 2 is 255, at which a strip may begin anew elsewhere; here it is a vertex");
+    EXPECT_EQ(world_mesh(scene).positions.at(2), vec3(255, 65025, 0));
+}
+
 TEST_F(GltfMesh, RefusesCoordinatesThatAreNotFinite) {
     GltfFile file;
     const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -242,6 +242,38 @@ TEST_F(GltfSkin, VerticesThatFollowNothingFollowTheFirstJoint) {
     EXPECT_EQ(world_mesh(scene).positions, moved);
 }
 
+TEST_F(GltfSkin, NotesWeightsAndMatricesThatItMends) {
+    GltfFile file = two_joints();
+    Json& attributes = file.root["meshes"][0]["primitives"][0]["attributes"];
+    const size_t good = attributes["WEIGHTS_0"];
+    attributes["WEIGHTS_0"] = file.add<float>("VEC4", {-1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    const std::string place = "#/meshes/0/primitives/0/attributes/";
+    Scene scene = expect_warning(file, place + "WEIGHTS_0: some weights are below 0, and count as 0");
+    EXPECT_EQ(world_mesh(scene).positions.at(0), vec3(0, 0, 5));
+    attributes["WEIGHTS_0"] = good;
+    attributes["JOINTS_1"] = attributes["JOINTS_0"];
+    expect_warning(file, place + "JOINTS_1: JOINTS_1 and WEIGHTS_1 count only together");
+    attributes.erase("JOINTS_1");
+    attributes["WEIGHTS_1"] = good;
+    expect_warning(file, place + "WEIGHTS_1: JOINTS_1 and WEIGHTS_1 count only together");
+    attributes.erase("WEIGHTS_1");
+
+    std::vector<float> matrices(32, 0.0f);
+    for (size_t i = 0; i < 8; ++i)
+        matrices[16 * (i / 4) + 5 * (i % 4)] = 1.0f;
+    matrices[31] = 1.0000001f;  // A rounding error.
+    file.root["skins"][0]["inverseBindMatrices"] = file.add("MAT4", matrices);
+    const std::vector<vec3> expected = world_mesh(load(file)).positions;
+    EXPECT_TRUE(load(file).warnings.empty());
+    matrices[16 + 3] = 0.5f;
+    file.root["skins"][0]["inverseBindMatrices"] = file.add("MAT4", matrices);
+    scene =
+        expect_warning(file,
+                       "#/skins/0/inverseBindMatrices: matrix 1 is not affine; the last row of each counts "
+                       "as 0, 0, 0, 1");
+    EXPECT_EQ(world_mesh(scene).positions, expected);
+}
+
 TEST_F(GltfSkin, RefusesSkinsThatAreNoneOrDamaged) {
     GltfFile file = two_joints();
     Json& skin = file.root["skins"][0];

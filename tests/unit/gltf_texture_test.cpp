@@ -198,7 +198,16 @@ TEST_F(GltfTexture, VariantsReplaceMaterials) {
     expect_text_error(corner_file().gltf(),
                       "--variant: m.gltf has nothing called \"hot\" among its variants (it has none)",
                       "m.gltf", {.variant = "hot"});
-    primitive["extensions"]["KHR_materials_variants"]["mappings"][0]["material"] = 2;
+    Json& mappings = primitive["extensions"]["KHR_materials_variants"]["mappings"];
+    mappings.push_back({{"material", 0}, {"variants", {0, 2}}});
+    EXPECT_EQ(name("cold"), "steel");
+    const Scene scene = expect_warning(
+        file,
+        "#/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/1/variants/1: the variant has a "
+        "material already, which counts",
+        {.variant = "blank"});
+    EXPECT_EQ(scene.materials.at(scene.shapes.at(0).material).name, "steel");
+    mappings[0]["material"] = 2;
     expect_error(file,
                  "#/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/0/material: there is no "
                  "2 in \"materials\", which has 0 to 1; name one that the file has",

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -40,6 +44,18 @@ Interpolation read_interpolation(const Node& sampler) {
     return node ? node->choice(NAMES) : Interpolation::linear;
 }
 
+// Notes the first key of a rotation that is no unit quaternion. Those of integers have a length of about 1.
+void check_rotations(File& file, const Node& output, const Sampler& sampler) {
+    for (size_t key = 0; key < sampler.times.size(); ++key) {
+        const float* q = sampler.value(key);
+        const double size = length(glm::dvec4(q[0], q[1], q[2], q[3]));
+        if (std::abs(size - 1.0) <= ROTATION_TOLERANCE) continue;
+        file.warn(output, concat("the rotation of key ", key, " is a quaternion of length ",
+                                 number_text(size, 6), ", not 1; all are divided by their lengths"));
+        return;
+    }
+}
+
 // `width`: numbers per key, of a VEC3 or VEC4; 0: as many scalars per key as there are.
 Sampler read_sampler(File& file, const Node& node, size_t width) {
     Sampler sampler;
@@ -62,6 +78,7 @@ Sampler read_sampler(File& file, const Node& node, size_t width) {
     }
     if (!std::ranges::all_of(sampler.values, [](float v) { return std::isfinite(v); }))
         output.fail("a value of the animation is not finite; export it again");
+    if (width == 4) check_rotations(file, output, sampler);
     return sampler;
 }
 
@@ -84,7 +101,6 @@ std::vector<double> sample(const Sampler& s, double time, bool is_rotation) {
     if (s.interpolation == Interpolation::linear && is_rotation) {
         const float* a = s.value(key - 1);
         const float* b = s.value(key);
-        // Those of integers have a length of about 1.
         const glm::dquat q = glm::slerp(normalize(glm::dquat(a[3], a[0], a[1], a[2])),
                                         normalize(glm::dquat(b[3], b[0], b[1], b[2])), t);
         return {q.x, q.y, q.z, q.w};
@@ -129,6 +145,22 @@ void apply_channel(File& file, const Node& animation, const Node& channel, doubl
     }
 }
 
+// Notes channels of an animation that move the same: the last one counts.
+void check_targets(File& file, const std::vector<Node>& channels) {
+    std::map<std::pair<uint32_t, std::string>, size_t> known;
+    for (size_t i = 0; i < channels.size(); ++i) {
+        const Node target = channels[i].require("target");
+        const auto node = target.find("node");
+        if (!node) continue;
+        const auto [first, is_new] =
+            known.try_emplace({file.index("nodes", *node), target.require("path").string()}, i);
+        if (is_new) continue;
+        file.warn(channels[first->second].require("target"),
+                  concat("channel ", i, " has the same target, and takes the place of this one"));
+        first->second = i;
+    }
+}
+
 }  // namespace
 
 void animate(File& file, const std::optional<std::string>& name, double time, std::vector<PosedNode>& nodes) {
@@ -151,7 +183,9 @@ void animate(File& file, const std::optional<std::string>& name, double time, st
     }
     for (const size_t i : chosen) {
         const Node animation = file.element("animations", i);
-        for (const Node& channel : animation.require("channels").elements())
+        const std::vector<Node> channels = animation.require("channels").elements();
+        check_targets(file, channels);
+        for (const Node& channel : channels)
             apply_channel(file, animation, channel, time, nodes);
     }
 }

@@ -34,7 +34,6 @@ glm::dmat4 read_node_matrix(File& file, const Node& node) {
 }
 
 glm::dquat read_rotation_of(File& file, const Node& node) {
-    constexpr double TOLERANCE = 1e-2;  // Of its length; exporters round to few digits.
     const std::vector<double> q = node.numbers(4);
     const glm::dquat rotation(q[3], q[0], q[1], q[2]);
     const double size = length(rotation);
@@ -42,7 +41,7 @@ glm::dquat read_rotation_of(File& file, const Node& node) {
         file.warn(node, "the rotation is a quaternion of length 0, and counts as none");
         return {1, 0, 0, 0};
     }
-    if (std::abs(size - 1.0) > TOLERANCE) {
+    if (std::abs(size - 1.0) > ROTATION_TOLERANCE) {
         file.warn(node, concat("the rotation is a quaternion of length ", number_text(size, 6),
                                ", not 1; it is divided by that"));
     }

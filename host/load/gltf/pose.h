@@ -12,6 +12,9 @@
 
 namespace candela::gltf {
 
+// How far a quaternion's length may be from 1 without a word; exporters round to few digits.
+inline constexpr double ROTATION_TOLERANCE = 1e-2;
+
 // Position, rotation and size, which may be animated.
 struct Trs {
     glm::dvec3 translation{0};

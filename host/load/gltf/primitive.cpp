@@ -34,6 +34,15 @@ std::vector<uint32_t> read_corners(File& file, const Node& primitive, uint32_t v
                                     ", but the primitive's vertices are 0 to ", vertices - 1,
                                     "; is the file damaged?"));
     }
+    const uint32_t restart = accessor.component() == Component::uint8    ? UINT8_MAX
+                             : accessor.component() == Component::uint16 ? UINT16_MAX
+                                                                         : UINT32_MAX;
+    const auto odd = std::ranges::find(corners, restart);
+    if (odd != corners.end()) {
+        file.warn(accessor.node(),
+                  concat("index ", odd - corners.begin(), " is ", restart,
+                         ", at which a strip may begin anew elsewhere; here it is a vertex"));
+    }
     return corners;
 }
 
@@ -198,10 +207,19 @@ class PrimitiveReader {
     void read_colors(TriangleMesh& mesh) {
         uint32_t width = 0;
         const std::vector<float> values = floats("COLOR_0", {"VEC3", "VEC4"}, width);
-        const auto limited = [](float v) { return v > 0.0f ? std::min(v, 1.0f) : 0.0f; };
+        bool in_range = true;
+        const auto limited = [&](float v) {
+            constexpr float ROUNDING = 1e-5f;
+            in_range = in_range && v >= -ROUNDING && v <= 1.0f + ROUNDING;
+            return v > 0.0f ? std::min(v, 1.0f) : 0.0f;
+        };
         for (size_t i = 0; width > 0 && i + width <= values.size(); i += width) {
             mesh.colors.emplace_back(limited(values[i]), limited(values[i + 1]), limited(values[i + 2]),
                                      width == 4 ? limited(values[i + 3]) : 1.0f);
+        }
+        if (!in_range) {
+            file_.warn(attributes_.require("COLOR_0"),
+                       "some colours are not between 0 and 1; the nearest take their place");
         }
     }
 
@@ -217,6 +235,10 @@ class PrimitiveReader {
         for (int set = 0;; ++set) {
             const auto joints = attributes_.find("JOINTS_" + std::to_string(set));
             const auto weights = attributes_.find("WEIGHTS_" + std::to_string(set));
+            if (set > 0 && joints.has_value() != weights.has_value()) {
+                file_.warn(joints ? *joints : *weights,
+                           concat("JOINTS_", set, " and WEIGHTS_", set, " count only together"));
+            }
             if (!joints || !weights) break;
             const Accessor joint_accessor(file_, *joints, {"VEC4"});
             const Accessor weight_accessor(file_, *weights, {"VEC4"});
@@ -224,6 +246,8 @@ class PrimitiveReader {
             check_count(*weights, weight_accessor);
             const std::vector<uint32_t> joint = joint_accessor.integers();
             const std::vector<float> weight = weight_accessor.floats();
+            if (std::ranges::any_of(weight, [](float w) { return w < 0.0f; }))
+                file_.warn(*weights, "some weights are below 0, and count as 0");
             for (size_t i = 0; i < rows_.size(); ++i) {
                 for (size_t k = 4 * size_t(rows_[i]); k < 4 * (size_t(rows_[i]) + 1); ++k) {
                     if (!(weight[k] > 0.0f) || !std::isfinite(weight[k])) continue;

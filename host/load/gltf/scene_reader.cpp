@@ -171,7 +171,7 @@ std::optional<size_t> SceneReader::add_primitive(const Node& primitive, const De
 
 std::optional<uint32_t> SceneReader::material_of(const Node& primitive) const {
     if (variant_) {
-        if (const auto material = variant_material(primitive, *variant_))
+        if (const auto material = variant_material(file_, primitive, *variant_))
             return file_.index("materials", *material);
     }
     const auto material = primitive.find("material");
@@ -209,6 +209,7 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
         const Node sizes = camera.require("orthographic");
         const auto half = [&](const char* key) {
             const Node value = sizes.require(key);
+            if (value.number() < 0.0) file_.warn(value, "the size of what is seen counts without its sign");
             const double size = std::abs(value.number());
             if (size < double(FLOAT_MIN) || size > double(MAX_COORDINATE))
                 value.fail_expected("a number from 1.2e-38 to 1e37, half the size of what is seen");

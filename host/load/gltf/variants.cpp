@@ -12,16 +12,22 @@ uint32_t find_variant(const File& file, const std::string& name) {
     return uint32_t(find_by_name(file, variants, name, "variants", "--variant"));
 }
 
-std::optional<Node> variant_material(const Node& primitive, uint32_t variant) {
+std::optional<Node> variant_material(File& file, const Node& primitive, uint32_t variant) {
     const auto extension = extension_of(primitive, "KHR_materials_variants");
     const auto mappings = extension ? extension->find("mappings") : std::nullopt;
     if (!mappings) return std::nullopt;
+    std::optional<Node> material;
     for (const Node& mapping : mappings->elements()) {
         for (const Node& number : mapping.require("variants").elements()) {
-            if (number.integer(0, UINT32_MAX) == variant) return mapping.require("material");
+            if (number.integer(0, UINT32_MAX) != variant) continue;
+            if (material) {
+                file.warn(number, "the variant has a material already, which counts");
+            } else {
+                material = mapping.require("material");
+            }
         }
     }
-    return std::nullopt;
+    return material;
 }
 
 }  // namespace candela::gltf
