@@ -159,7 +159,7 @@ class Descriptor {
     }
 
     // Appends the remaining bytes, at most `most`. Returns false, with errno, if reading fails.
-    bool read_all(std::string& bytes, size_t most = SIZE_MAX) const {
+    bool read_all(std::string& bytes, size_t most = SIZE_MAX, const ReadProgress& progress = {}) const {
         bytes.reserve(std::min<uint64_t>(size(), most));
         std::array<char, 65536> buffer;
         while (true) {
@@ -167,6 +167,7 @@ class Descriptor {
             if (count == 0) return true;
             if (count > 0) {
                 bytes.append(buffer.data(), size_t(count));
+                if (progress) progress(bytes.size(), size());
             } else if (errno != EINTR) {
                 return false;
             }
@@ -202,11 +203,11 @@ void check_readable(const fs::path& path) {
     if (::access(path.c_str(), R_OK) != 0) fail_to_read(path, describe(errno) + "; check the permissions");
 }
 
-std::string read_file(const fs::path& path) {
+std::string read_file(const fs::path& path, const ReadProgress& progress) {
     check_readable(path);
     const Descriptor file(path, O_RDONLY);
     std::string bytes;
-    if (!file.is_open() || !file.read_all(bytes))
+    if (!file.is_open() || !file.read_all(bytes, SIZE_MAX, progress))
         fail_to_read(path, describe(errno) + "; check the file and its disk");
     return bytes;
 }

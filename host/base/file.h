@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,8 +17,11 @@ std::string quoted(const std::filesystem::path& path);
 // Throws Error if `path` cannot be read: it is missing, a directory or a device, or may not be opened.
 void check_readable(const std::filesystem::path& path);
 
+// Called while a file is read: `done` bytes are there, of `of`, which is 0 for a pipe.
+using ReadProgress = std::function<void(size_t done, size_t of)>;
+
 // Returns the bytes of a file or pipe. Throws Error as check_readable() does, or if reading breaks off.
-std::string read_file(const std::filesystem::path& path);
+std::string read_file(const std::filesystem::path& path, const ReadProgress& progress = {});
 
 // The first bytes of a regular file, `most` at most. Throws Error as read_file() does, and for a pipe.
 struct FileStart {

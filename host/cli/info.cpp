@@ -190,9 +190,7 @@ void print(const Json& info) {
 
 ExitCode run(const InfoOptions& options) {
     Scene scene = load_with_progress(options.scene, options.loading);
-    const GpuScene gpu = build_gpu_scene_freeing_images(scene);
-    for (const std::string& warning : gpu.warnings)
-        print_warning(warning);
+    const GpuScene gpu = build_with_progress(scene);
     const Json info = describe(options, scene, gpu);
     if (options.json) {
         std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());

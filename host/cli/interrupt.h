@@ -1,4 +1,4 @@
-// Catches Ctrl-C, termination and the end of the terminal, so that the image so far can be kept.
+// Catches Ctrl-C, termination and the end of the terminal: the image so far can be kept, or nothing is left.
 #pragma once
 
 #include <array>
@@ -6,16 +6,22 @@
 
 namespace candela {
 
-// While it lives, the first SIGINT, SIGTERM or SIGHUP only sets a flag; a second one ends the program at
-// once. A SIGHUP that was ignored before, as by nohup, stays ignored. Only one may exist at a time.
+// What SIGINT, SIGTERM and SIGHUP do.
+enum class OnSignal {
+    note,  // The first only sets a flag; a second one ends the program at once.
+    quit,  // Each ends the program at once, with ExitCode::interrupted and a message that a scene was loaded.
+};
+
+// Rules what signals do while it lives. A SIGHUP that was ignored before, as by nohup, stays ignored. Only
+// one may exist at a time.
 class InterruptGuard {
   public:
-    InterruptGuard();
+    explicit InterruptGuard(OnSignal on_signal = OnSignal::note);
     ~InterruptGuard();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-    // Whether a signal has arrived.
+    // Whether a signal has been noted.
     bool interrupted() const;
 
     static constexpr std::array SIGNALS{SIGINT, SIGTERM, SIGHUP};

@@ -2,12 +2,14 @@
 #include "cli/loading.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
 #include "cli/arguments.h"
 #include "cli/console.h"
+#include "cli/interrupt.h"
 #include "cli/progress_line.h"
 #include "load/load.h"
 #include "scene/geometry.h"
@@ -35,23 +37,68 @@ void LoadingOptions::add_to(CLI::App& app) {
                "What the numbers of lights mean (default: blender for files that Blender wrote, else spec)");
 }
 
+namespace {
+
+// The progress of loading, a stage at a time.
+class LoadingLine {
+  public:
+    explicit LoadingLine(ProgressStyle style) : style_(style) {}
+
+    void update(const std::string& what, size_t done, size_t of) {
+        if (what != what_ || done < done_) line_.emplace(style_, 0.0);
+        what_ = what;
+        done_ = done;
+        const double share = of == 0 ? 0.0 : double(done) / double(of);
+        if (!line_->is_due(share)) return;
+        line_->print(line_->is_json() ? json_text(of) : text(of), share);
+    }
+
+  private:
+    std::string json_text(size_t of) const {
+        nlohmann::ordered_json json{{"state", "loading"}, {what_, done_}};
+        if (of > 0) json["of_" + what_] = of;
+        return json.dump();
+    }
+    std::string text(size_t of) const {
+        const auto number = [this](size_t n) { return what_ == "bytes" ? bytes_text(n) : std::to_string(n); };
+        return (what_ == "bytes" ? "read: " : what_ + ": ") + number(done_) +
+               (of > 0 ? " of " + number(of) : "");
+    }
+
+    ProgressStyle style_;
+    std::optional<ProgressLine> line_;
+    std::string what_;
+    size_t done_ = 0;
+};
+
+}  // namespace
+
 Scene load_with_progress(const std::string& file, const LoadingOptions& given, ProgressStyle style) {
     Scene scene;
     {
-        ProgressLine line(style, 0.0);
+        const InterruptGuard guard(OnSignal::quit);
+        LoadingLine line(style);
         LoadOptions options{.gltf = given.gltf};
-        options.images = {.progress = [&line](size_t done, size_t of) {
-            const double share = double(done) / double(of);
-            if (!line.is_due(share)) return;
-            const nlohmann::ordered_json json{{"state", "loading"}, {"images", done}, {"of_images", of}};
-            line.print(line.is_json() ? json.dump() : concat("images: ", done, " of ", of), share);
-        }};
+        options.progress = [&line](const char* what, size_t done, size_t of) { line.update(what, done, of); };
         if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
         scene = load_scene(file, options);
     }
     for (const std::string& warning : scene.warnings)
         print_warning(warning);
     return scene;
+}
+
+GpuScene build_with_progress(Scene& scene, ProgressStyle style) {
+    GpuScene gpu_scene;
+    {
+        const InterruptGuard guard(OnSignal::quit);
+        ProgressLine line(style, 0.0);
+        if (line.is_live()) line.print("building the tree", 0.0);
+        gpu_scene = build_gpu_scene_freeing_images(scene);
+    }
+    for (const std::string& warning : gpu_scene.warnings)
+        print_warning(warning);
+    return gpu_scene;
 }
 
 void warn_of_unseen_lights(const Scene& scene, Estimator estimator) {

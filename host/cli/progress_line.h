@@ -21,6 +21,7 @@ class ProgressLine {
     // Whether it is time to print, at the share `done` of the work, in [0, 1].
     bool is_due(double done) const;
     bool is_json() const { return output_ == Output::json; }
+    bool is_live() const { return output_ == Output::live; }
     // Prints the text, which replaces the live line.
     void print(const std::string& text, double done);
     // Clears the live line, so that others can print.

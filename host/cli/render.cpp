@@ -263,8 +263,8 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
 
     const auto start = std::chrono::steady_clock::now();
     const MessageOptions& messages = options.messages;
-    Scene scene = load_with_progress(options.scene_file, options.loading,
-                                     messages.quiet ? ProgressStyle::none : messages.progress);
+    const ProgressStyle style = messages.quiet ? ProgressStyle::none : messages.progress;
+    Scene scene = load_with_progress(options.scene_file, options.loading, style);
     files.read_all("the scene's file", scene.files);
     const double load_seconds = seconds_since(start);
     const RenderJob job = options.job(scene);
@@ -272,9 +272,7 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
     if (options.reference) reference = load_reference(*options.reference, job.settings);
 
     warn_of_unseen_lights(scene, job.settings.estimator);
-    const GpuScene gpu_scene = build_gpu_scene_freeing_images(scene);
-    for (const std::string& warning : gpu_scene.warnings)
-        print_warning(warning);
+    const GpuScene gpu_scene = build_with_progress(scene, style);
     RenderRecord record{.command_line = command_line,
                         .scene_file = options.scene_file,
                         .scene_attributes = scene.attributes,

@@ -22,22 +22,26 @@ void refuse(const std::filesystem::path& file, const GltfOptions& options) {
     throw Error(file.string() + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
 }
 
+Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options) {
+    return load_gltf_scene(file, options.gltf, options.progress);
+}
+
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) {
-    using Loader = Scene (*)(const std::filesystem::path&, const GltfOptions&);
+    using Loader = Scene (*)(const std::filesystem::path&, const LoadOptions&);
     constexpr std::array<std::pair<std::string_view, Loader>, 4> LOADERS{
-        {{".glb", &load_gltf_scene},
-         {".gltf", &load_gltf_scene},
+        {{".glb", &load_gltf},
+         {".gltf", &load_gltf},
          {".obj",
-          [](const auto& file, const auto& gltf) { return refuse(file, gltf), load_obj_scene(file); }},
+          [](const auto& file, const auto& all) { return refuse(file, all.gltf), load_obj_scene(file); }},
          {".ply",
-          [](const auto& file, const auto& gltf) { return refuse(file, gltf), load_ply_scene(file); }}}};
+          [](const auto& file, const auto& all) { return refuse(file, all.gltf), load_ply_scene(file); }}}};
     const auto loader =
         std::ranges::find(LOADERS, extension_of(path), [](const auto& known) { return known.first; });
-    Scene scene =
-        loader == LOADERS.end() ? load_json_scene(path, options.gltf) : loader->second(path, options.gltf);
-    load_images(scene, options.images);
+    Scene scene = loader == LOADERS.end() ? load_json_scene(path, options.gltf, options.progress)
+                                          : loader->second(path, options);
+    load_images(scene, options.images, options.progress);
     return scene;
 }
 

@@ -5,6 +5,7 @@
 
 #include "load/gltf/gltf.h"
 #include "scene/images.h"
+#include "scene/load_progress.h"
 #include "scene/scene.h"
 
 namespace candela {
@@ -12,6 +13,7 @@ namespace candela {
 struct LoadOptions {
     ImageOptions images{};
     GltfOptions gltf{};  // Also for a glTF file that a JSON scene names.
+    LoadProgress progress = no_progress;
 };
 
 // Reads a scene and the files that it names. The extension, in upper or lower case, chooses the format: glTF,

@@ -178,7 +178,7 @@ uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view
     return uint32_t(scene.images.size() - 1);
 }
 
-void load_images(Scene& scene, const ImageOptions& options) {
+void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& progress) {
     std::vector<std::vector<std::string>> warnings(scene.images.size());
     std::vector<TexelCodes> codes(scene.images.size(), TexelCodes::linear);
     for_each_srgb_texture(scene, [&](const Texture& texture) { codes[texture.image] = TexelCodes::encoded; });
@@ -198,7 +198,7 @@ void load_images(Scene& scene, const ImageOptions& options) {
             throw Error(file.place + ": " + error.what(), error.code());
         }
         const std::lock_guard lock(mutex);
-        options.progress(++done, scene.images.size());
+        progress("images", ++done, scene.images.size());
     });
     for (size_t i = 0; i < scene.images.size(); ++i) {
         for (const std::string& warning : warnings[i])

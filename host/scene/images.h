@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 
+#include "scene/load_progress.h"
 #include "scene/scene.h"
 
 namespace candela {
@@ -24,14 +24,12 @@ uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view
 struct ImageOptions {
     // Images with more texels along a side are made smaller.
     uint32_t texture_limit = UINT32_MAX;
-    // Called after each image, by one thread at a time.
-    std::function<void(size_t done, size_t of)> progress = [](size_t, size_t) {};
 };
 
 // Reads all images that have not been read, on all cores. An image that a PNG file says has another gamma
 // than sRGB's is converted for textures of sRGB; others take it as it is. Chooses the channel of opacities
 // that wait for their image (ALPHA_OR_RED), and turns bump maps of mesh files into normal maps where they are
 // some. Throws Error if one cannot be read; what is odd but usable goes to scene.warnings.
-void load_images(Scene& scene, const ImageOptions& options = {});
+void load_images(Scene& scene, const ImageOptions& options = {}, const LoadProgress& progress = no_progress);
 
 }  // namespace candela

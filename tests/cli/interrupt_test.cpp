@@ -1,13 +1,47 @@
 // Progress on a terminal and elsewhere, and Ctrl-C.
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <regex>
+#include <stdexcept>
+#include <thread>
+#include <tuple>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli/cli_fixture.h"
 #include "support/wait.h"
 
 namespace candela {
 namespace {
+
+// Fills a pipe byte by byte for as long as it lives, so that its reader never comes to an end.
+class EndlessPipe {
+  public:
+    explicit EndlessPipe(const std::string& path) {
+        if (::mkfifo(path.c_str(), 0600) != 0) throw std::runtime_error("cannot make " + path);
+        // For reading as well: so that there is no need to wait for the reader.
+        pipe_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+        writer_ = std::jthread([this](const std::stop_token& stop) {
+            while (!stop.stop_requested()) {
+                std::ignore = ::write(pipe_, " ", 1);
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            }
+        });
+    }
+    ~EndlessPipe() {
+        writer_ = {};
+        ::close(pipe_);
+    }
+    EndlessPipe(const EndlessPipe&) = delete;
+    EndlessPipe& operator=(const EndlessPipe&) = delete;
+
+  private:
+    int pipe_ = -1;
+    std::jthread writer_;
+};
 
 class Interrupt : public CliTest {
   protected:
@@ -22,6 +56,16 @@ class Interrupt : public CliTest {
         return terminal;
     }
 
+    // A glTF file whose buffer comes from the pipe m.bin.
+    std::string piped_scene() const {
+        return write("m.gltf", R"({
+            "asset": {"version": "2.0"},
+            "buffers": [{"uri": "m.bin", "byteLength": 36}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "nodes": [{"mesh": 0}]})");
+    }
     // A signal in the middle of rendering ends it with what there is.
     void expect_partial_image(int signal) const {
         Process process(endless(), on_terminal());
@@ -53,8 +97,10 @@ TEST_F(Interrupt, TheEndOfTheTerminalWritesWhatThereIs) {
 }
 
 TEST_F(Interrupt, NohupLetsItGoOn) {
-    Process process(Words{"/bin/sh", "-c", "trap '' HUP; exec \"$@\"", "sh"} + endless(), options());
-    wait_until("it renders", [&] { return process.catches(SIGINT) && process.catches(SIGTERM); });
+    Process process(
+        Words{"/bin/sh", "-c", "trap '' HUP; exec \"$@\"", "sh"} + endless() + Words{"--progress", "json"},
+        options());
+    ASSERT_TRUE(process.wait_for_err("rendering"));
     EXPECT_FALSE(process.catches(SIGHUP));
     process.send(SIGHUP);
     process.send(SIGINT);
@@ -72,8 +118,8 @@ TEST_F(Interrupt, MessagesThatNobodyReadsDoNotEndIt) {
 
 // The program cannot end by itself after the first signal, since nobody reads what it writes then.
 TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
-    Process process(endless(), options());
-    wait_until("it renders", [&] { return process.catches(SIGINT) && process.catches(SIGTERM); });
+    Process process(endless() + Words{"--progress", "json"}, options());
+    ASSERT_TRUE(process.wait_for_err("rendering"));
     process.block_err();
     process.send(SIGTERM);
     wait_until("it has the signal", [&] { return !process.catches(SIGINT); });
@@ -100,6 +146,36 @@ TEST_F(Interrupt, ATerminalGetsALiveLineWithRateAndTimeLeft) {
     EXPECT_EQ(run_process(brief, dumb).err.find('\x1b'), std::string::npos);
     EXPECT_EQ(run_process(brief, options()).err.find('\x1b'), std::string::npos);
     EXPECT_EQ(run_process(brief + Words{"--quiet"}, on_terminal()).err, "");
+}
+
+TEST_F(Interrupt, WhileASceneIsLoadedNothingIsWritten) {
+    const EndlessPipe pipe(file("m.bin"));
+    const Words words = call({"render", piped_scene(), "-o", file("a.png")});
+    const std::string message = "candela: error: interrupted while the scene was loaded\n";
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        Process process(words + Words{"--progress", "json"}, options());
+        ASSERT_TRUE(process.wait_for_err("\"bytes\""));
+        process.send(signal);
+        const ProcessResult result = process.finish();
+        EXPECT_EQ(result.exit_code, 130);
+        EXPECT_TRUE(std::regex_match(
+            result.err, std::regex("(\\{\"state\":\"loading\",\"bytes\":[0-9]+\\}\n)+" + message)))
+            << result.err;
+    }
+    Process process(words, on_terminal());
+    ASSERT_TRUE(process.wait_for_err("read: "));
+    process.send(SIGINT);
+    const ProcessResult result = process.finish();
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_TRUE(std::regex_match(result.err, std::regex("(\r\x1b\\[Kread: [0-9.]+ (B|KiB))+\r\x1b\\[K" +
+                                                        message.substr(0, message.size() - 1) + "\r?\n")))
+        << result.err;
+    EXPECT_FALSE(std::filesystem::exists(file("a.png")));
+}
+
+TEST_F(Interrupt, ATerminalSaysWhenTheTreeIsBuilt) {
+    const ProcessResult result = run_process(call({"info", CORNELL_BOX}), on_terminal());
+    EXPECT_EQ(result.err, "\r\x1b[Kbuilding the tree\r\x1b[K");
 }
 
 }  // namespace

@@ -1,8 +1,11 @@
 // Formats by the file's extension; meshes that are scenes of their own.
 #include "load/load.h"
 
+#include <tuple>
+
 #include <gtest/gtest.h>
 
+#include "gltf_fixture.h"
 #include "scene/geometry.h"
 #include "scene_fixture.h"
 
@@ -91,6 +94,40 @@ TEST_F(Load, MessagesNameTheFile) {
 TEST_F(Load, AnyOtherExtensionIsJson) {
     for (const char* name : {"a.json", "a.scene", "a", "obj"})
         EXPECT_EQ(load(name, scene_of(R"({"type": "sphere", "emission": 1})")).shapes.size(), 1u);
+}
+
+// Its second node shows the mesh again. A file is read in pieces of 64 KiB.
+TEST_F(Load, ProgressIsTold) {
+    using News = std::vector<std::tuple<std::string, size_t, size_t>>;
+    constexpr size_t PIECE = 65536;
+    News news;
+    const auto note = [&](const char* what, size_t done, size_t of) { news.emplace_back(what, done, of); };
+    GltfFile file;
+    file.bytes.resize(2 * PIECE);
+    const Json corner = {{"attributes", {{"POSITION", file.add_corner()}}}};
+    file.push("meshes", {{"primitives", {corner, corner, {{"attributes", Json::object()}}}}});
+    file.root["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}}};
+    const std::string document = file.document("m.bin");
+    folder_.write("m.gltf", document);
+    folder_.write("m.bin", file.bytes);
+    const size_t size = file.bytes.size();
+    News expected{{"bytes", document.size(), document.size()},
+                  {"bytes", PIECE, size},
+                  {"bytes", 2 * PIECE, size},
+                  {"bytes", size, size}};
+    for (size_t i = 1; i <= 6; ++i)
+        expected.emplace_back("meshes", i, 6);
+    load_scene(folder_.path() / "m.gltf", {.progress = note});
+    EXPECT_EQ(news, expected);
+
+    news.clear();
+    const std::string disk = R"({"type": "disk", "center": [0, 0, 0], "normal": [0, 1, 0], "radius": 1})";
+    folder_.load(
+        R"({"scene": "m.gltf", "objects": {"o": [)" + disk + R"(]}, "shapes": [)" + disk + ", " + disk + "]}",
+        {}, note);
+    for (size_t i = 1; i <= 3; ++i)
+        expected.emplace_back("shapes", i, 3);
+    EXPECT_EQ(news, expected);
 }
 
 }  // namespace

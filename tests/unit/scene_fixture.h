@@ -31,9 +31,10 @@ class SceneFolder {
         std::ofstream(folder_ / name, std::ios::binary) << text;
     }
 
-    Scene load(const std::string& text, const ImageOptions& images = {}) {
+    Scene load(const std::string& text, const ImageOptions& images = {},
+               const LoadProgress& progress = no_progress) {
         write("scene.json", text);
-        return load_scene(folder_ / "scene.json", {.images = images});
+        return load_scene(folder_ / "scene.json", {.images = images, .progress = progress});
     }
 
     // Loads a scene that has an error at its '@', and checks the message after `scene.json:line:column: `.

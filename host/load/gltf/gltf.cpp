@@ -52,11 +52,12 @@ bool is_gltf(const std::filesystem::path& path) {
     return extension == ".gltf" || extension == ".glb";
 }
 
-void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene) {
-    File file(path);
+void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene,
+                    const LoadProgress& progress) {
+    File file(path, progress);
     check_extensions(file);
     scene.files.push_back(path);
-    gltf::SceneReader(file, scene, options).read();
+    gltf::SceneReader(file, scene, options, progress).read();
     std::ranges::copy(file.files(), std::back_inserter(scene.files));
     read_attributes(file, scene);
     if (!scene.lights.empty())
@@ -79,10 +80,11 @@ void complete_gltf_scene(const std::string& name, Scene& scene) {
                              ": there is no light; a studio lights the scene, which the camera does not see");
 }
 
-Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options) {
+Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options,
+                      const LoadProgress& progress) {
     Scene scene;
     scene.film.size = GLTF_FILM_SIZE;
-    add_gltf_scene(path, options, scene);
+    add_gltf_scene(path, options, scene, progress);
     complete_gltf_scene(path.string(), scene);
     return scene;
 }

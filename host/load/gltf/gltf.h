@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "scene/load_progress.h"
 #include "scene/names.h"
 #include "scene/scene.h"
 
@@ -40,14 +41,16 @@ inline constexpr uvec2 GLTF_FILM_SIZE{1280, 720};
 // Whether a file's extension, in upper or lower case, is one of glTF.
 bool is_gltf(const std::filesystem::path& path);
 
-// Reads a scene and the buffers that it names; load_images() reads its images. A file without cameras gets
-// one, and one without light a studio. Throws Error with the JSON pointer of what is wrong. What is odd but
-// usable goes to Scene::warnings.
-Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options = {});
+// Reads a scene and the buffers that it names, with progress in bytes and then in meshes; load_images() reads
+// its images. A file without cameras gets one, and one without light a studio. Throws Error with the JSON
+// pointer of what is wrong. What is odd but usable goes to Scene::warnings.
+Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options = {},
+                      const LoadProgress& progress = no_progress);
 
 // Adds what a file holds to a scene, as load_gltf_scene() does, but neither camera nor studio. Materials that
 // the scene has already take the place of the file's of the same name.
-void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene);
+void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene,
+                    const LoadProgress& progress = no_progress);
 
 // Adds the camera and the studio if they are missing; `name` is what the warnings that say so begin with.
 void complete_gltf_scene(const std::string& name, Scene& scene);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -50,7 +51,8 @@ void check_version(const Node& root) {
 
 }  // namespace
 
-File::File(const std::filesystem::path& path) : path_(path), bytes_(read_file(path)) {
+File::File(const std::filesystem::path& path, LoadProgress progress)
+    : progress_(std::move(progress)), path_(path), bytes_(read(path)) {
     document_.file = path.string();
     document_.places = json::Document::Places::pointers;
     const std::string_view text = bytes_.starts_with(GLB_MAGIC) ? split_glb() : std::string_view(bytes_);
@@ -58,6 +60,10 @@ File::File(const std::filesystem::path& path) : path_(path), bytes_(read_file(pa
     if (!root().is_object()) root().fail_expected("an object { ... }, as every glTF file is");
     check_version(root());
     buffers_.resize(count("buffers"));
+}
+
+std::string File::read(const std::filesystem::path& path) const {
+    return read_file(path, [this](size_t done, size_t of) { progress_("bytes", done, of); });
 }
 
 // Finds the chunks; returns that of the JSON document.
@@ -137,7 +143,7 @@ std::span<const std::byte> File::buffer_bytes(uint32_t i) {
             if (!buffers_[i]) {
                 const std::filesystem::path path = file_of(*uri, folder());
                 try {
-                    buffers_[i] = read_file(path);
+                    buffers_[i] = read(path);
                 } catch (const Error& error) {
                     uri->fail(error.what());
                 }

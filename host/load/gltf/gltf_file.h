@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "load/node.h"
+#include "scene/load_progress.h"
 
 namespace candela::gltf {
 
@@ -18,8 +19,9 @@ namespace candela::gltf {
 // messages are JSON pointers: `room.glb#/accessors/3/count`.
 class File {
   public:
-    // Throws Error if the file cannot be read, is cut off, or is of another version than 2.
-    explicit File(const std::filesystem::path& path);
+    // Throws Error if the file cannot be read, is cut off, or is of another version than 2. Tells of the
+    // bytes of each file that it reads.
+    explicit File(const std::filesystem::path& path, LoadProgress progress = no_progress);
     File(const File&) = delete;
     File& operator=(const File&) = delete;
 
@@ -53,9 +55,11 @@ class File {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
+    std::string read(const std::filesystem::path& path) const;
     std::string_view split_glb();
     std::span<const std::byte> buffer_bytes(uint32_t index);
 
+    LoadProgress progress_;
     std::filesystem::path path_;
     std::string bytes_;                      // Of the file.
     std::optional<std::string_view> chunk_;  // The buffer of a .glb.

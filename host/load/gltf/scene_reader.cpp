@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/text.h"
 #include "load/gltf/animation.h"
@@ -49,10 +50,11 @@ void fit_attributes(File& file, const Node& primitive, const Material& material,
 
 }  // namespace
 
-SceneReader::SceneReader(File& file, Scene& scene, const GltfOptions& options)
+SceneReader::SceneReader(File& file, Scene& scene, const GltfOptions& options, const LoadProgress& progress)
     : file_(file),
       scene_(scene),
       options_(options),
+      progress_(progress),
       builder_(scene),
       units_(units_of(file, options)),
       known_materials_(scene.materials.size()) {
@@ -68,19 +70,10 @@ void SceneReader::read() {
     if (scene) {
         if (auto light = read_image_light(file_, *scene)) scene_.environment = std::move(light);
     }
-    std::vector<uint32_t> waiting = root_nodes(scene);
-    std::ranges::reverse(waiting);
-    std::vector<bool> seen(nodes_.size(), false);
-    while (!waiting.empty()) {
-        const uint32_t i = waiting.back();
-        waiting.pop_back();
-        if (!nodes_[i].is_visible) continue;
-        if (seen[i]) file_.element("nodes", i).fail("the node is twice in the scene; name it once");
-        seen[i] = true;
+    const std::vector<uint32_t> shown = shown_nodes(root_nodes(scene));
+    primitives_ = count_primitives(shown);
+    for (const uint32_t i : shown)
         read_node(i);
-        const std::vector<uint32_t>& children = nodes_[i].children;
-        waiting.insert(waiting.end(), children.rbegin(), children.rend());
-    }
 }
 
 std::optional<Node> SceneReader::chosen_scene() const {
@@ -114,6 +107,33 @@ std::vector<uint32_t> SceneReader::root_nodes(const std::optional<Node>& scene) 
     return roots;
 }
 
+std::vector<uint32_t> SceneReader::shown_nodes(std::vector<uint32_t> roots) const {
+    std::vector<uint32_t> waiting = std::move(roots);
+    std::ranges::reverse(waiting);
+    std::vector<uint32_t> shown;
+    std::vector<bool> seen(nodes_.size(), false);
+    while (!waiting.empty()) {
+        const uint32_t i = waiting.back();
+        waiting.pop_back();
+        if (!nodes_[i].is_visible) continue;
+        if (seen[i]) file_.element("nodes", i).fail("the node is twice in the scene; name it once");
+        seen[i] = true;
+        shown.push_back(i);
+        const std::vector<uint32_t>& children = nodes_[i].children;
+        waiting.insert(waiting.end(), children.rbegin(), children.rend());
+    }
+    return shown;
+}
+
+size_t SceneReader::count_primitives(const std::vector<uint32_t>& nodes) const {
+    size_t primitives = 0;
+    for (const uint32_t i : nodes) {
+        const auto mesh = file_.element("nodes", i).find("mesh");
+        if (mesh) primitives += file_.resolve("meshes", *mesh).require("primitives").size();
+    }
+    return primitives;
+}
+
 void SceneReader::read_node(uint32_t index) {
     const Node node = file_.element("nodes", index);
     const PosedNode& posed = nodes_[index];
@@ -139,20 +159,26 @@ void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
         file_.warn(node, "left out a mesh that its transform flattens");
         return;
     }
+    const auto read = [&](const Node& primitive, const Deformation& deformation) {
+        const std::optional<size_t> shape = add_primitive(primitive, deformation, transform);
+        progress_("meshes", ++done_, primitives_);
+        return shape;
+    };
     if (skin) {
         const std::vector<glm::dmat4> joints = joint_matrices(file_, file_.resolve("skins", *skin), nodes_);
         for (const Node& primitive : primitives.elements())
-            add_primitive(primitive, {weights, joints}, transform);
+            read(primitive, {weights, joints});
         return;
     }
     const auto [known, is_new] = shapes_.try_emplace({index, weights});
     if (is_new) {
         for (const Node& primitive : primitives.elements())
-            known->second.push_back(add_primitive(primitive, {.weights = weights}, transform));
+            known->second.push_back(read(primitive, {.weights = weights}));
         return;
     }
     for (const std::optional<size_t>& shape : known->second) {
         if (shape) builder_.add_instance(node.place(), *shape, transform);
+        progress_("meshes", ++done_, primitives_);
     }
 }
 

@@ -10,6 +10,7 @@
 #include "load/gltf/gltf_file.h"
 #include "load/gltf/pose.h"
 #include "load/gltf/primitive.h"
+#include "scene/load_progress.h"
 #include "scene/scene_builder.h"
 
 namespace candela::gltf {
@@ -17,7 +18,7 @@ namespace candela::gltf {
 class SceneReader {
   public:
     // All must outlive the reader.
-    SceneReader(File& file, Scene& scene, const GltfOptions& options);
+    SceneReader(File& file, Scene& scene, const GltfOptions& options, const LoadProgress& progress);
 
     // Adds what the nodes of the chosen scene show, in the order of the file.
     void read();
@@ -30,6 +31,10 @@ class SceneReader {
     std::optional<Node> chosen_scene() const;
     // Its root nodes; of a file without scenes, all nodes without a parent.
     std::vector<uint32_t> root_nodes(const std::optional<Node>& scene) const;
+    // The nodes below them that are shown, in the order of the file.
+    std::vector<uint32_t> shown_nodes(std::vector<uint32_t> roots) const;
+    // How many primitives the nodes show.
+    size_t count_primitives(const std::vector<uint32_t>& nodes) const;
     void read_node(uint32_t index);
     void read_mesh(const Node& node, const PosedNode& posed);
     // Adds a primitive; returns the index of its shape, or nothing if it shows nothing.
@@ -46,11 +51,14 @@ class SceneReader {
     File& file_;
     Scene& scene_;
     const GltfOptions& options_;
+    const LoadProgress& progress_;
     SceneBuilder builder_;
     LightUnits units_;
     std::optional<uint32_t> variant_;
     size_t known_materials_;  // Those of the scene before this file's.
     std::vector<PosedNode> nodes_;
+    size_t primitives_ = 0;                      // That are shown.
+    size_t done_ = 0;                            // Of them.
     std::map<MaterialUse, uint32_t> materials_;  // Indices into scene_.materials.
     // Shapes of meshes that stand still: by mesh and weights, the shape of each primitive.
     std::map<std::pair<uint32_t, std::vector<double>>, std::vector<std::optional<size_t>>> shapes_;

@@ -42,11 +42,12 @@ IntegratorSettings read_integrator(const Node& node) {
 }
 
 // Reads the glTF file that the scene adds to.
-void read_base(const Node& node, const std::filesystem::path& folder, const GltfOptions& gltf, Scene& scene) {
+void read_base(const Node& node, const std::filesystem::path& folder, const GltfOptions& gltf, Scene& scene,
+               const LoadProgress& progress) {
     const std::filesystem::path path = folder / node.file_name();
     if (!is_gltf(path)) node.fail_expected("the name of a glTF file, .gltf or .glb");
     try {
-        add_gltf_scene(path, gltf, scene);
+        add_gltf_scene(path, gltf, scene, progress);
     } catch (const Error& error) {
         throw Error(node.place() + ": " + error.what(), error.code());
     }
@@ -54,12 +55,13 @@ void read_base(const Node& node, const std::filesystem::path& folder, const Gltf
 
 }  // namespace
 
-Scene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf) {
-    return parse_scene(read_file(path), path.string(), path.parent_path(), gltf);
+Scene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf,
+                      const LoadProgress& progress) {
+    return parse_scene(read_file(path), path.string(), path.parent_path(), gltf, progress);
 }
 
 Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder,
-                  const GltfOptions& gltf) {
+                  const GltfOptions& gltf, const LoadProgress& progress) {
     const json::Document document{file, json::parse(text, file)};
     const Node root(document);
     root.allow_only({"$schema", "scene", "cameras", "film", "integrator", "materials", "objects", "shapes",
@@ -80,13 +82,13 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
         for (const Node& material : materials->members())
             scene.materials.push_back(read_material(material, {folder, scene}));
     }
-    if (base) read_base(*base, folder, gltf, scene);
+    if (base) read_base(*base, folder, gltf, scene, progress);
     if (root.find("film")) {
         for (Camera& camera : scene.cameras)
             camera.film_size.reset();
     }
     const auto shapes = base ? root.find("shapes") : root.require("shapes");
-    if (shapes) read_shapes(*shapes, root.find("objects"), folder, scene);
+    if (shapes) read_shapes(*shapes, root.find("objects"), folder, scene, progress);
     if (const auto lights = root.find("lights"))
         std::ranges::move(read_lights(*lights, scene), std::back_inserter(scene.lights));
     if (const auto environment = root.find("environment")) {

@@ -10,6 +10,7 @@
 #include "load/json/loader_textures.h"
 #include "load/json/shape_list.h"
 #include "load/node.h"
+#include "scene/load_progress.h"
 #include "scene/scene.h"
 
 namespace candela {
@@ -46,7 +47,7 @@ Environment read_environment(const Node& node, const std::filesystem::path& fold
 // the scene file's; it gets those that the shapes bring: black for emitters without a material, and those of
 // OBJ files.
 void read_shapes(const Node& node, const std::optional<Node>& objects, const std::filesystem::path& folder,
-                 Scene& scene);
+                 Scene& scene, const LoadProgress& progress);
 
 // Round shapes: "sphere" and "disk".
 void read_sphere(const Node& node, ShapeList& shapes);

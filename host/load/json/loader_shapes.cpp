@@ -154,7 +154,7 @@ void alone(const Node& node, const ObjectMap&, ShapeList& shapes) {
 }  // namespace
 
 void read_shapes(const Node& node, const std::optional<Node>& objects, const std::filesystem::path& folder,
-                 Scene& scene) {
+                 Scene& scene, const LoadProgress& progress) {
     using Reader = void (*)(const Node&, const ObjectMap&, ShapeList&);
     constexpr std::array<std::pair<std::string_view, Reader>, 8> READERS{{{"quad", &alone<read_quad>},
                                                                           {"box", &alone<read_box>},
@@ -166,11 +166,17 @@ void read_shapes(const Node& node, const std::optional<Node>& objects, const std
                                                                           {"instance", &read_instance}}};
     ShapeList shapes(folder, scene);
     ObjectMap known;
+    const std::vector<Node> members = objects ? objects->members() : std::vector<Node>();
+    size_t done = 0, of = node.size();
+    for (const Node& object : members)
+        of += object.size();
     const auto read = [&](const Node& list) {
-        for (const Node& shape : list.elements())
+        for (const Node& shape : list.elements()) {
             shape.require("type").choice(READERS)(shape, known, shapes);
+            progress("shapes", ++done, of);
+        }
     };
-    for (const Node& object : objects ? objects->members() : std::vector<Node>()) {
+    for (const Node& object : members) {
         const auto before = std::ptrdiff_t(scene.shapes.size());
         read(object);
         const auto first = scene.shapes.begin() + before;
