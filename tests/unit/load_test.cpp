@@ -121,7 +121,7 @@ TEST_F(Load, ProgressIsTold) {
     EXPECT_EQ(news, expected);
 
     news.clear();
-    const std::string disk = R"({"type": "disk", "center": [0, 0, 0], "normal": [0, 1, 0], "radius": 1})";
+    const std::string disk = R"({"type": "disk", "center": [0, 0, 0], "normal": [0, 1, 0], "emission": 1})";
     folder_.load(
         R"({"scene": "m.gltf", "objects": {"o": [)" + disk + R"(]}, "shapes": [)" + disk + ", " + disk + "]}",
         {}, note);
