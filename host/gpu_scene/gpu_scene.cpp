@@ -7,6 +7,8 @@
 #include <numeric>
 #include <span>
 
+#include "base/error.h"
+#include "base/text.h"
 #include "gpu_scene/alias_table.h"
 #include "gpu_scene/append.h"
 #include "gpu_scene/environment_map.h"
@@ -95,6 +97,25 @@ uint64_t GpuScene::bytes() const {
     return words * sizeof(uvec4);
 }
 
+namespace {
+
+// Throws Error if the triangles that emit are more than lights may be.
+void check_emitters(const Scene& scene) {
+    constexpr uint64_t MOST_LIGHTS = 1u << 24u;  // A gigabyte of records.
+    uint64_t triangles = 0;
+    for (const Shape& shape : scene.shapes) {
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        if (instance != nullptr && shape.emission) triangles += scene.meshes[instance->mesh].triangles.size();
+    }
+    if (triangles > MOST_LIGHTS) {
+        throw Error(concat("the scene has ", triangles,
+                           " triangles that emit, each of which is a light, but at most ", MOST_LIGHTS,
+                           " are possible; let fewer copies of a mesh emit, or simpler ones"));
+    }
+}
+
+}  // namespace
+
 SceneFrame frame_around(const DoubleBox& box) {
     if (box.is_empty()) return {};
     const dvec3 extent = box.extent();
@@ -135,6 +156,7 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const InstancingRule
     gpu.texture_traits = textures.traits();
     gpu.attributes = needed_attributes(gpu);
     gpu.arrays[ARRAY_TEXTURES] = textures.records();
+    check_emitters(scene);
     const Instancing instancing = choose_instances(scene, rule);
     FlatScene flat = flatten(scene, frame, gpu.attributes, instancing.is_instance);
     gpu.arrays[ARRAY_TEXELS] = textures.texels(packed);  // Lights have read the images.

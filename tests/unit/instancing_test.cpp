@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "gpu_scene/gpu_scene.h"
 #include "probe/random.h"
 #include "support/scene_builders.h"
@@ -157,6 +158,23 @@ TEST(Instancing, AMeshIsStoredOnce) {
         build_gpu_scene(scene, choose_frame(scene), {.least_uses = ~0u, .least_triangles = ~0u});
     EXPECT_TRUE(baked.instances.empty());
     EXPECT_EQ(baked.id_count, gpu.id_count);
+}
+
+TEST(Instancing, TooManyTrianglesThatEmitAreAnErrorBeforeTheyAreMade) {
+    Scene scene = empty_scene();
+    add_copies(scene, triangle_soup(1000, 0.1f, 1), 16778);
+    EXPECT_NO_THROW(build_gpu_scene(scene));
+    for (Shape& shape : scene.shapes)
+        shape.emission = Emission{vec3(1), false};
+    try {
+        build_gpu_scene(scene);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_STREQ(
+            error.what(),
+            "the scene has 16778000 triangles that emit, each of which is a light, but at most 16777216 "
+            "are possible; let fewer copies of a mesh emit, or simpler ones");
+    }
 }
 
 }  // namespace
