@@ -91,6 +91,29 @@ Json punctual_lights_of(const Scene& scene) {
     return lights;
 }
 
+// What the instances of meshes share: the triangles that are stored and that are seen of these meshes, and
+// about how many bytes all copies together would take besides.
+Json sharing_of(const GpuScene& gpu) {
+    uint64_t stored = 0, seen = 0, primitives_saved = 0;
+    for (const InstancedMesh& mesh : gpu.meshes)
+        stored += mesh.triangles;
+    for (const InstancePlace& instance : gpu.instances) {
+        seen += gpu.meshes[instance.mesh].triangles;
+        primitives_saved += gpu.meshes[instance.mesh].primitives;
+    }
+    uint64_t bytes = 0;
+    for (const uint array : {ARRAY_NODES, ARRAY_PRIMITIVES, ARRAY_SURFACES, ARRAY_NORMALS, ARRAY_ATTRIBUTES})
+        bytes += gpu.arrays[array].size() * sizeof(uvec4);
+    for (const InstancedMesh& mesh : gpu.meshes)
+        primitives_saved -= mesh.primitives;
+    const double per_primitive = double(bytes) / double(std::max(gpu.primitive_count, 1u));
+    return {{"instances", gpu.instances.size()},
+            {"meshes", gpu.meshes.size()},
+            {"triangles_stored", stored},
+            {"triangles_seen", seen},
+            {"bytes_saved", uint64_t(per_primitive * double(primitives_saved))}};
+}
+
 Json describe(const InfoOptions& options, const Scene& scene, const GpuScene& gpu) {
     std::vector<std::string> warnings = scene.warnings;
     std::ranges::copy(gpu.warnings, std::back_inserter(warnings));
@@ -105,6 +128,7 @@ Json describe(const InfoOptions& options, const Scene& scene, const GpuScene& gp
     const PixelRect& crop = settings.crop;
     return {{"scene", options.scene},
             {"primitives", gpu.id_count},
+            {"sharing", sharing_of(gpu)},
             {"lights", gpu.light_count},
             {"punctual_lights", punctual_lights_of(scene)},
             {"environment", environment_of(gpu)},
@@ -163,6 +187,13 @@ void print(const Json& info) {
     };
     row("scene", info["scene"].get<std::string>());
     row("primitives", info["primitives"].dump());
+    const Json& sharing = info["sharing"];
+    if (sharing["instances"] != 0) {
+        row("instances", sharing["instances"].dump() + " of " + sharing["meshes"].dump() +
+                             " meshes: " + sharing["triangles_seen"].dump() + " triangles, " +
+                             sharing["triangles_stored"].dump() + " stored; saves about " +
+                             bytes_text(sharing["bytes_saved"].get<uint64_t>()));
+    }
     row("lights", lights_text(info));
     const Json& environment = info["environment"];
     row("environment",
