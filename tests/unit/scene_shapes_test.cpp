@@ -37,7 +37,7 @@ TEST(SceneShapes, HaveASurface) {
     folder.expect_error(scene_of(box + ", \"emission\": 1, \"two_sided\": @1}"),
                         "\"two_sided\": expected true or false, found 1");
     folder.expect_error(scene_of(R"({"type": @"cone", "emission": 1})"),
-                        "unknown type \"cone\" (known: quad, box, mesh, sphere, disk, obj, ply)");
+                        "unknown type \"cone\" (known: quad, box, mesh, sphere, disk, obj, ply, instance)");
     folder.expect_error(scene_of("@3"), "\"shapes\": expected an object { ... }, found 3");
 }
 

@@ -153,7 +153,13 @@ GOOD = {
         },
         {"type": "sphere", "emission": 1},
         {"type": "disk", "center": [0, 1, 0], "normal": [0, 0, 1], "radius": 2, "material": "gold"},
+        {"type": "instance", "object": "tree", "transform": [{"scale": 2}], "material": "gold"},
+        {"type": "instance", "object": "tree", "transforms": [[{"scale": 2}], []]},
     ],
+    "objects": {
+        "ball": [{"type": "sphere", "material": "white"}],
+        "tree": [{"type": "instance", "object": "ball"}],
+    },
 }
 
 REMOVE = object()
@@ -177,6 +183,12 @@ BAD = [
     (["cameras"], REMOVE),
     (["cameras"], {}),
     (["lamps"], []),
+    (["objects"], []),
+    (["objects", "ball"], {"type": "sphere", "material": "white"}),
+    (["objects", "ball", 0, "material"], REMOVE),
+    (["shapes", 3, "object"], REMOVE),
+    (["shapes", 3, "transforms"], []),
+    (["shapes", 4, "transforms"], [{"scale": 2}]),
     (["lights"], {}),
     (["lights", 0, "type"], "area"),
     (["lights", 0, "position"], REMOVE),

@@ -88,7 +88,9 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
             camera.film_size.reset();
     }
     const auto shapes = base ? root.find("shapes") : root.require("shapes");
-    if (shapes) read_shapes(*shapes, root.find("objects"), folder, scene, progress);
+    const auto objects = root.find("objects");
+    if (objects && !shapes) objects->fail("objects are only seen where shapes place them; add \"shapes\"");
+    if (shapes) read_shapes(*shapes, objects, folder, scene, progress);
     if (const auto lights = root.find("lights"))
         std::ranges::move(read_lights(*lights, scene), std::back_inserter(scene.lights));
     if (const auto environment = root.find("environment")) {
