@@ -1,7 +1,9 @@
 # Read by CTest after it has discovered the tests: labels them beyond their kind. Each program is asked for its tests
 # once, so that none is lost between the labels, or run twice.
 #
-# slow: suites that begin with Slow. They run by `ctest --preset slow` alone.
+# slow: suites that begin with Slow, and what these names begin with. They run by `ctest --preset slow` alone.
+set(slow_render GlossyEstimatorTest PrincipledPictureTest.EstimatorsAgree TexturedTest.EstimatorsAgree
+    NormalMapTest.EstimatorsAgree DiffuseTransmissionTest.EstimatorsAgree SamplerErrorTest.SobolIsNowhere)
 # quick: the most telling tests, all together under a minute on two cores; here by what their names begin with.
 set(quick_unit ".")
 set(quick_vk ".")
@@ -11,14 +13,24 @@ set(quick_render FurnaceTest.EveryRay Roulette DirectLightTest.Under SkyFurnaceT
 set(quick_cli Usage)
 # No label: tests that take ten seconds or more, the longest first. CTest begins with them, also where it has not
 # measured tests yet, as in a fresh clone: so none runs alone at the end.
-set(long_tests render.PrincipledPictureTest.EstimatorsAgree render.TexturedTest.EstimatorsAgree
-    cli.FileFaults.EveryCallMayFailInSomeWay cli.SelftestCommand.QuickPassesWithFewerSamples
-    render.NormalMapTest.EstimatorsAgree render.SamplerErrorTest.SobolIsNowhereWorseThanIndependent)
+set(long_tests cli.FileFaults.EveryCallMayFailInSomeWay cli.SelftestCommand.QuickPassesWithFewerSamples
+    render.Scenes/IdentityTest.TunedForLavapipeOrNot/Everything
+    render.Gallery/InstanceTest.CutScenesHaveTheSamePicture/lemons)
 
 foreach(kind IN ITEMS unit vk gpu render cli)
     set(unmatched ${quick_${kind}})
+    set(unmatched_slow ${slow_${kind}})
     foreach(test IN LISTS ${kind}_tests_TESTS)
-        if(test MATCHES "^${kind}\\.([^.]*/)?Slow")
+        set(is_slow FALSE)
+        foreach(pattern IN LISTS slow_${kind} ITEMS Slow)
+            if(test MATCHES "^${kind}\\.([^.]*/)?${pattern}")
+                set(is_slow TRUE)
+                if(unmatched_slow)
+                    list(REMOVE_ITEM unmatched_slow ${pattern})
+                endif()
+            endif()
+        endforeach()
+        if(is_slow)
             set_tests_properties(${test} PROPERTIES LABELS slow)
             continue()
         endif()
@@ -30,6 +42,9 @@ foreach(kind IN ITEMS unit vk gpu render cli)
             endif()
         endforeach()
     endforeach()
+    if(${kind}_tests_TESTS AND unmatched_slow)
+        message(SEND_ERROR "no test of ${kind}_tests begins with what is to be slow: ${unmatched_slow}")
+    endif()
     if(${kind}_tests_TESTS AND unmatched)
         message(SEND_ERROR "no test of ${kind}_tests begins with what is to be quick: ${unmatched}")
     endif()

@@ -47,6 +47,48 @@ class GltfNode : public Gltf {
 
 constexpr double ROOT = 0.70710678118654752;  // Of 1/2.
 
+// EXT_mesh_gpu_instancing with these attributes.
+Json instanced(const Json& attributes) {
+    return {{"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}};
+}
+
+TEST_F(GltfNode, ShowsItsMeshManyTimes) {
+    GltfFile file;
+    Json node =
+        instanced({{"TRANSLATION", file.add<float>("VEC3", {1, 0, 0, 0, 2, 0})},
+                   {"ROTATION", file.add_normalized("VEC4", std::vector<int8_t>{0, 0, 0, 127, 0, 0, 90, 90})},
+                   {"SCALE", file.add<float>("VEC3", {1, 1, 1, 2, 3, 4})},
+                   {"_COLOR", 99}});
+    node["translation"] = {0, 0, 5};
+    file.show_corner(node);
+    const Scene scene = load(file);
+    ASSERT_EQ(scene.shapes.size(), 2u);
+    EXPECT_EQ(scene.meshes.size(), 1u);
+    EXPECT_TRUE(scene.warnings.empty());
+    expect_corners(scene, 0, {dvec3(1, 0, 5), dvec3(2, 0, 5), dvec3(1, 1, 5)});
+    expect_corners(scene, 1, {dvec3(0, 2, 5), dvec3(0, 4, 5), dvec3(-3, 2, 5)});
+}
+
+TEST_F(GltfNode, SaysWhatIsWrongWithItsInstances) {
+    GltfFile file;
+    const size_t two = file.add<float>("VEC3", {1, 0, 0, 0, 2, 0}), one = file.add<float>("VEC3", {1, 1, 1});
+    file.show_corner(instanced({{"TRANSLATION", two}, {"SCALE", one}}));
+    expect_error(
+        file,
+        "#/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes: the accessors have 2 and 1 elements; "
+        "each must have one for each instance");
+    GltfFile none = corner_file(instanced(Json::object()));
+    EXPECT_EQ(expect_warning(none,
+                             "#/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes: there is none of "
+                             "TRANSLATION, ROTATION and SCALE; the mesh is shown once")
+                  .shapes.size(),
+              1u);
+    GltfFile flat;
+    flat.show_corner(instanced({{"SCALE", flat.add<float>("VEC3", {1, 1, 1, 0, 0, 0})}}));
+    EXPECT_EQ(expect_warning(flat, "#/nodes/0: left out a mesh that its transform flattens").shapes.size(),
+              1u);
+}
+
 TEST_F(GltfNode, ScalesThenRotatesThenMoves) {
     expect_corners(Json::object(), {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)});
     expect_corners({{"translation", {1, 2, 3}}}, {dvec3(1, 2, 3), dvec3(2, 2, 3), dvec3(1, 3, 3)});

@@ -115,7 +115,7 @@ TEST_F(Load, ProgressIsTold) {
                   {"bytes", PIECE, size},
                   {"bytes", 2 * PIECE, size},
                   {"bytes", size, size}};
-    for (size_t i = 1; i <= 6; ++i)
+    for (const size_t i : {1, 2, 3, 6})  // The second node shows the same mesh.
         expected.emplace_back("meshes", i, 6);
     load_scene(folder_.path() / "m.gltf", {.progress = note});
     EXPECT_EQ(news, expected);

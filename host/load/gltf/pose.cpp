@@ -9,7 +9,6 @@
 #include "base/text.h"
 
 namespace candela::gltf {
-namespace {
 
 glm::dmat4 matrix_of(const Trs& trs) {
     glm::dmat4 m = glm::mat4_cast(trs.rotation);
@@ -18,6 +17,8 @@ glm::dmat4 matrix_of(const Trs& trs) {
     m[3] = glm::dvec4(trs.translation, 1.0);
     return m;
 }
+
+namespace {
 
 glm::dmat4 read_node_matrix(File& file, const Node& node) {
     const std::vector<double> numbers = node.numbers(16);  // Column by column.

@@ -22,6 +22,9 @@ struct Trs {
     glm::dvec3 scale{1};
 };
 
+// Scales, then rotates, then moves.
+glm::dmat4 matrix_of(const Trs& trs);
+
 struct PosedNode {
     Trs trs{};
     std::optional<glm::dmat4> matrix{};  // In place of trs.

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "load/gltf/animation.h"
 #include "load/gltf/image_light.h"
+#include "load/gltf/instances.h"
 #include "load/gltf/light.h"
 #include "load/gltf/material.h"
 #include "load/gltf/names.h"
@@ -153,32 +154,40 @@ void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
 
     std::vector<double> weights = posed.weights;
     if (const auto own = mesh.find("weights"); own && weights.empty()) weights = own->numbers(own->size());
-    const auto skin = node.find("skin");
-    Transform transform;
-    if (!skin && !transform.append(posed.world)) {
-        file_.warn(node, "left out a mesh that its transform flattens");
-        return;
-    }
-    const auto read = [&](const Node& primitive, const Deformation& deformation) {
-        const std::optional<size_t> shape = add_primitive(primitive, deformation, transform);
-        progress_("meshes", ++done_, primitives_);
-        return shape;
-    };
-    if (skin) {
+    if (const auto skin = node.find("skin")) {
+        if (const auto instances = extension_of(node, "EXT_mesh_gpu_instancing"))
+            file_.warn(*instances, "the mesh has a skin, and is shown once");
         const std::vector<glm::dmat4> joints = joint_matrices(file_, file_.resolve("skins", *skin), nodes_);
-        for (const Node& primitive : primitives.elements())
-            read(primitive, {weights, joints});
+        for (const Node& primitive : primitives.elements()) {
+            add_primitive(primitive, {weights, joints}, Transform());
+            progress_("meshes", ++done_, primitives_);
+        }
         return;
     }
-    const auto [known, is_new] = shapes_.try_emplace({index, weights});
+    for (const glm::dmat4& placement : read_instances(file_, node)) {
+        Transform transform;
+        if (transform.append(posed.world * placement)) {
+            place_mesh(node, primitives, {index, weights}, transform);
+        } else {
+            file_.warn(node, "left out a mesh that its transform flattens");
+        }
+    }
+    progress_("meshes", done_ += primitives.size(), primitives_);
+}
+
+void SceneReader::place_mesh(const Node& node, const Node& primitives, const StandingMesh& mesh,
+                             const Transform& transform) {
+    const auto [known, is_new] = shapes_.try_emplace(mesh);
     if (is_new) {
-        for (const Node& primitive : primitives.elements())
-            known->second.push_back(read(primitive, {.weights = weights}));
+        for (const Node& primitive : primitives.elements()) {
+            known->second.push_back(add_primitive(primitive, {.weights = mesh.second}, transform));
+            if (known->second.size() < primitives.size())
+                progress_("meshes", done_ + known->second.size(), primitives_);
+        }
         return;
     }
     for (const std::optional<size_t>& shape : known->second) {
         if (shape) builder_.add_instance(node.place(), *shape, transform);
-        progress_("meshes", ++done_, primitives_);
     }
 }
 

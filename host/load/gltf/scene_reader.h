@@ -37,6 +37,11 @@ class SceneReader {
     size_t count_primitives(const std::vector<uint32_t>& nodes) const;
     void read_node(uint32_t index);
     void read_mesh(const Node& node, const PosedNode& posed);
+    // A mesh that stands still: its index, and the weights of its morph targets.
+    using StandingMesh = std::pair<uint32_t, std::vector<double>>;
+    // Shows the mesh with these primitives once.
+    void place_mesh(const Node& node, const Node& primitives, const StandingMesh& mesh,
+                    const Transform& transform);
     // Adds a primitive; returns the index of its shape, or nothing if it shows nothing.
     std::optional<size_t> add_primitive(const Node& primitive, const Deformation& deformation,
                                         const Transform& transform);
@@ -57,11 +62,10 @@ class SceneReader {
     std::optional<uint32_t> variant_;
     size_t known_materials_;  // Those of the scene before this file's.
     std::vector<PosedNode> nodes_;
-    size_t primitives_ = 0;                      // That are shown.
-    size_t done_ = 0;                            // Of them.
-    std::map<MaterialUse, uint32_t> materials_;  // Indices into scene_.materials.
-    // Shapes of meshes that stand still: by mesh and weights, the shape of each primitive.
-    std::map<std::pair<uint32_t, std::vector<double>>, std::vector<std::optional<size_t>>> shapes_;
+    size_t primitives_ = 0;                                              // That are shown.
+    size_t done_ = 0;                                                    // Of them.
+    std::map<MaterialUse, uint32_t> materials_;                          // Indices into scene_.materials.
+    std::map<StandingMesh, std::vector<std::optional<size_t>>> shapes_;  // Of each primitive.
 };
 
 }  // namespace candela::gltf

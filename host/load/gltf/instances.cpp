@@ -1,0 +1,75 @@
+// Ref: Khronos, "EXT_mesh_gpu_instancing".
+#include "load/gltf/instances.h"
+
+#include <optional>
+#include <string_view>
+
+#include "base/text.h"
+#include "load/gltf/accessor.h"
+#include "load/gltf/pose.h"
+#include "load/gltf/values.h"
+
+namespace candela::gltf {
+namespace {
+
+// The numbers of one attribute, and how many copies they are for.
+struct InstanceAttribute {
+    std::vector<float> numbers;
+    uint32_t count = 0;
+};
+
+std::optional<InstanceAttribute> read_attribute(File& file, const Node& attributes, std::string_view key,
+                                                std::string_view type) {
+    const auto reference = attributes.find(key);
+    if (!reference) return std::nullopt;
+    const Accessor accessor(file, *reference, {type});
+    return InstanceAttribute{accessor.floats(), accessor.count()};
+}
+
+dvec3 three(const std::vector<float>& numbers, size_t i) {
+    return {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+}
+
+// A unit quaternion; none for one of length 0.
+glm::dquat unit_rotation(const std::vector<float>& numbers, size_t i) {
+    const float* q = &numbers[4 * i];
+    const glm::dquat rotation(q[3], q[0], q[1], q[2]);
+    const double size = length(rotation);
+    return size > 0.0 ? rotation / size : glm::dquat(1, 0, 0, 0);
+}
+
+}  // namespace
+
+std::vector<glm::dmat4> read_instances(File& file, const Node& node) {
+    const auto extension = extension_of(node, "EXT_mesh_gpu_instancing");
+    if (!extension) return {glm::dmat4(1.0)};
+    const Node attributes = extension->require("attributes");
+    const auto translation = read_attribute(file, attributes, "TRANSLATION", "VEC3");
+    const auto rotation = read_attribute(file, attributes, "ROTATION", "VEC4");
+    const auto scale = read_attribute(file, attributes, "SCALE", "VEC3");
+    std::optional<uint32_t> count;
+    for (const auto* attribute : {&translation, &rotation, &scale}) {
+        if (!*attribute) continue;
+        if (count && *count != (*attribute)->count) {
+            attributes.fail(concat("the accessors have ", *count, " and ", (*attribute)->count,
+                                   " elements; each must have one for each instance"));
+        }
+        count = (*attribute)->count;
+    }
+    if (!count) {
+        file.warn(attributes, "there is none of TRANSLATION, ROTATION and SCALE; the mesh is shown once");
+        return {glm::dmat4(1.0)};
+    }
+    std::vector<glm::dmat4> placements;
+    placements.reserve(*count);
+    for (size_t i = 0; i < *count; ++i) {
+        Trs trs;
+        if (translation) trs.translation = three(translation->numbers, i);
+        if (rotation) trs.rotation = unit_rotation(rotation->numbers, i);
+        if (scale) trs.scale = three(scale->numbers, i);
+        placements.push_back(matrix_of(trs));
+    }
+    return placements;
+}
+
+}  // namespace candela::gltf
