@@ -130,7 +130,7 @@ bool SceneBuilder::add_placed(Shape shape) {
         return false;
     if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry))
         shape.material = material_at_scale(shape.material, instance->transform.mean_scale());
-    scene_.shapes.push_back(std::move(shape));
+    scene_.shapes.push_back(shape);
     return true;
 }
 

@@ -69,7 +69,9 @@ void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes
     }
     std::optional<Appearance> own;
     if (node.find("material") || node.find("emission")) own = shapes.appearance_of(node);
-    for (const auto& [place_of, transform] : transforms_of(node)) {
+    for (const auto& placement : transforms_of(node)) {
+        const Node& place_of = placement.first;
+        const Transform& transform = placement.second;
         for (Shape shape : object->second) {
             if (!std::visit([&](auto& geometry) { return place(geometry, transform); }, shape.geometry)) {
                 place_of.fail(
@@ -81,7 +83,7 @@ void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes
                 shape.material = own->material;
                 shape.emission = own->emission;
             }
-            if (!shapes.add_placed(std::move(shape))) place_of.fail(TOO_FAR);
+            if (!shapes.add_placed(shape)) place_of.fail(TOO_FAR);
         }
     }
 }
