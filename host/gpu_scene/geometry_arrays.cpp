@@ -45,7 +45,8 @@ std::array<uint32_t, LIST_MAX> list_corners(const std::vector<Primitive>& primit
     return result;
 }
 
-void reserve_leaves(GpuScene& gpu, size_t count) {
+void reserve_leaves(GpuScene& gpu, size_t count, bool normals) {
+    if (normals) gpu.arrays[ARRAY_NORMALS].reserve(count * NORMALS_WORDS);
     gpu.arrays[ARRAY_PRIMITIVES].reserve(count * PRIMITIVE_WORDS);
     gpu.arrays[ARRAY_SURFACES].reserve(count * SURFACE_WORDS);
     gpu.arrays[ARRAY_ATTRIBUTES].reserve(count * attribute_words(gpu.attributes));
@@ -212,7 +213,7 @@ SceneTree append_geometry(GpuScene& gpu, const Scene& scene, const FlatScene& fl
     gpu.bvh_sah_cost = bvh.sah_cost;
     gpu.bvh_depth = bvh.depth;
     if (instances.shapes.empty()) {
-        reserve_leaves(gpu, bvh.order.size());
+        reserve_leaves(gpu, bvh.order.size(), !flat.normals.empty());
         append_leaves(gpu, flat, bvh.order);
         gpu.list_corners = list_corners(flat.primitives, bvh.order);
     } else {
@@ -221,7 +222,7 @@ SceneTree append_geometry(GpuScene& gpu, const Scene& scene, const FlatScene& fl
         size_t leaves = top.order.size();
         for (const auto& [mesh, tree] : trees)
             leaves += tree.bvh.order.size();
-        reserve_leaves(gpu, leaves);
+        reserve_leaves(gpu, leaves, has_shading_normals(scene));
         append_leaves(gpu, flat, top.order);
         std::vector<PackedBvhNode> nodes = std::move(top.nodes);
         const std::map<uint32_t, uint32_t> roots = append_mesh_trees(gpu, nodes, trees);

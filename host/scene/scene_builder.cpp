@@ -125,6 +125,10 @@ void SceneBuilder::add_instance(const std::string& place, size_t shape, const Tr
     scene_.shapes.push_back(copy);
 }
 
+void SceneBuilder::complete_mesh(const std::string& place, const Appearance& appearance, uint32_t mesh) {
+    complete_attributes(scene_, place, appearance, scene_.meshes[mesh]);
+}
+
 bool SceneBuilder::add_placed(Shape shape) {
     if (!std::visit([&](const auto& geometry) { return fits(scene_, geometry); }, shape.geometry))
         return false;

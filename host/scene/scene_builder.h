@@ -59,6 +59,9 @@ class SceneBuilder {
                   TriangleMesh mesh);
     // Adds another instance of the mesh of scene().shapes[shape], with the same appearance.
     void add_instance(const std::string& place, size_t shape, const Transform& transform);
+    // Gives a mesh of the scene what another appearance than its first needs. Throws Error if it lacks
+    // texture coordinates.
+    void complete_mesh(const std::string& place, const Appearance& appearance, uint32_t mesh);
     // Adds a shape whose geometry was finished before and then placed elsewhere. Returns false, and adds
     // nothing, if it reaches too far.
     bool add_placed(Shape shape);

@@ -26,14 +26,14 @@ float instance_determinant(Instance i) {
 }
 
 // A vector of the mesh's space in the frame of the scene: by Cramer's rule, since a record has no room for the inverse.
-// host/gpu_scene/instance_record.cpp bounds its rounding.
+// host/gpu_scene/instancing.cpp bounds its rounding.
 vec3 vector_to_scene(Instance i, vec3 v) {
     return (v.x * cross(i.to_mesh[1], i.to_mesh[2]) + v.y * cross(i.to_mesh[2], i.to_mesh[0]) +
             v.z * cross(i.to_mesh[0], i.to_mesh[1])) / instance_determinant(i);
 }
 
-// A normal of the mesh's space in the frame of the scene, on the same side of the surface. A distance along the unit
-// normal n is by the length of the result shorter there.
+// A normal of the mesh's space in the frame of the scene, on the same side of the surface. A distance from the surface
+// along the unit normal n, divided by the length of the result, is the distance there.
 vec3 normal_to_scene(Instance i, vec3 n) {
     return n.x * i.to_mesh[0] + n.y * i.to_mesh[1] + n.z * i.to_mesh[2];
 }

@@ -118,19 +118,13 @@ def check_all_shown(dump, file):
         return check(dump, write_wired(file, full, rest, Path(folder)))
 
 
-def files_of(paths):
-    found = [[path] if path.is_file() else sorted(p for p in path.rglob("*") if p.suffix in (".gltf", ".glb"))
-             for path in map(Path, paths)]
-    return [file for files in found for file in files]
-
-
 def main(arguments):
     verbose = "--verbose" in arguments
     check_file = check_all_shown if "--all-shown" in arguments else check
     dump, *paths = [a for a in arguments if not a.startswith("--")] or sys.exit(__doc__)
     logging.disable(logging.CRITICAL)
     counts, reasons, total, failed = collections.Counter(), collections.Counter(), 0, False
-    for file in files_of(paths):
+    for file in triangles.files_of(paths):
         word, lines, count = check_file(dump, file)
         counts[word] += 1
         total += count if word == "equal" else 0

@@ -12,7 +12,6 @@ anything differs.
 import collections
 import struct
 import sys
-from pathlib import Path
 
 import pose
 import triangles
@@ -51,17 +50,11 @@ def poses(dump, file):
             yield f"animation {index} at {time:.6g}", *compare(dump, file, index, time)
 
 
-def files_of(paths):
-    found = [[path] if path.is_file() else sorted(p for p in path.rglob("*") if p.suffix in (".gltf", ".glb"))
-             for path in map(Path, paths)]
-    return [file for files in found for file in files]
-
-
 def main(arguments):
     verbose = "--verbose" in arguments
     dump, *paths = [a for a in arguments if a != "--verbose"] or sys.exit(__doc__)
     counts, tested, failed = collections.Counter(), collections.Counter(), False
-    for file in files_of(paths):
+    for file in triangles.files_of(paths):
         done, shown = 0, 0
         try:
             found = kinds(pose.File(file).json)

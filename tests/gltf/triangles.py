@@ -13,6 +13,13 @@ NORMAL = 1e-5  # Normals are floats of unit length; what computed them took some
 UV = 1e-6  # Of the greatest coordinate; 1 - v is rounded to a float.
 
 
+def files_of(paths):
+    """The glTF files that are named, or lie in folders that are."""
+    found = [[path] if path.is_file() else sorted(p for p in path.rglob("*") if p.suffix in (".gltf", ".glb"))
+             for path in map(Path, paths)]
+    return [file for files in found for file in files]
+
+
 class Refused(Exception):
     """candela refuses the file; the message says why."""
 

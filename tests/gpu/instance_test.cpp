@@ -49,7 +49,7 @@ std::vector<NamedTransform> transforms() {
             {"far away", transform_of(random, dvec3(1), 0, dvec3(1e4, -2e4, 3e4))}};
 }
 
-// A scene of instances of one mesh, and far away two points, so that the frame is no instance's own.
+// A scene of instances of one mesh.
 Scene scene_of(const TriangleMesh& mesh, const std::vector<Transform>& places) {
     Scene scene = scene_of_mesh(mesh);
     scene.shapes.clear();

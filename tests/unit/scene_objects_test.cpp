@@ -102,6 +102,13 @@ TEST(SceneObjects, SayWhatIsWrongWithAnInstance) {
     folder.expect_error(
         with(R"({"type": "instance", "object": "things", "transforms": [@[{"translate": [1e37, 0, 0]}]]})"),
         TOO_FAR);
+    // A texture, and normals from an image, need coordinates that the mesh lacks.
+    std::string textured = with(R"(@{"type": "instance", "object": "things", "material": "red"})");
+    textured.replace(textured.find("[1, 0, 0]}"), 9, R"({"image": "red.png"})");
+    folder.expect_error(
+        textured,
+        "the material \"red\" has textures, but the mesh has no texture coordinates; export it "
+        "with them, or use a material without textures");
     folder.expect_error(with(R"({"type": "instance", "object": "things", "emission": @-1})"),
                         "\"emission\": expected numbers of at least 0, found -1");
 }

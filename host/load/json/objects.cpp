@@ -68,7 +68,13 @@ void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes
         name.fail_unknown("object", name.string(), names, "defined");
     }
     std::optional<Appearance> own;
-    if (node.find("material") || node.find("emission")) own = shapes.appearance_of(node);
+    if (node.find("material") || node.find("emission")) {
+        own = shapes.appearance_of(node);
+        for (const Shape& shape : object->second) {
+            if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry))
+                shapes.complete_mesh(node.place(), *own, instance->mesh);
+        }
+    }
     for (const auto& placement : transforms_of(node)) {
         const Node& place_of = placement.first;
         const Transform& transform = placement.second;
@@ -76,8 +82,7 @@ void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes
             if (!std::visit([&](auto& geometry) { return place(geometry, transform); }, shape.geometry)) {
                 place_of.fail(
                     "the transform flattens the object, or scales a sphere in it unevenly; use other "
-                    "factors, "
-                    "or a mesh instead of the sphere");
+                    "factors, or a mesh instead of the sphere");
             }
             if (own) {
                 shape.material = own->material;
