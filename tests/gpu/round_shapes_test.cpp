@@ -71,7 +71,7 @@ TEST_F(RoundShapesTest, OfEqualOnesTheFirstInLeafOrderWins) {
 
 // The nearest t > 0 in double precision, and a bound on the error of floats; none for a miss, or where
 // rounding decides whether there is a hit.
-struct Expected {
+struct ExpectedDistance {
     double t;
     double bound;
 };
@@ -79,7 +79,7 @@ struct Expected {
 // Lengths are relative to d. The point of the line next to the centre is off by e = 8 * 2^-24 of the centre's
 // distance D; the half chord, sqrt(r^2 - near^2), by (2 r e) / (2 half), and t by that and the roundings of
 // D.
-std::optional<Expected> expected(const Sphere& sphere, const RayItem& ray) {
+std::optional<ExpectedDistance> expected(const Sphere& sphere, const RayItem& ray) {
     const glm::dvec3 d(ray.d), f = glm::dvec3(ray.o) - glm::dvec3(sphere.center);
     const double a = length(d), b = -dot(f, d) / a, D = length(f), r = sphere.radius;
     const double near = length(f + b / a * d), e = 8 * 0x1p-24 * (D + r);
@@ -87,11 +87,11 @@ std::optional<Expected> expected(const Sphere& sphere, const RayItem& ray) {
     const double half = std::sqrt(r * r - near * near);
     const double t = b - half > 0.0 ? b - half : b + half;
     if (t <= 0.0) return std::nullopt;
-    return Expected{t / a, (e + r * e / half + 4 * 0x1p-24 * t) / a};
+    return ExpectedDistance{t / a, (e + r * e / half + 4 * 0x1p-24 * t) / a};
 }
 
 // The plane's distance has the roundings of a product of D, over the cosine; twice, for those of the normal.
-std::optional<Expected> expected(const Disk& disk, const RayItem& ray) {
+std::optional<ExpectedDistance> expected(const Disk& disk, const RayItem& ray) {
     const glm::dvec3 d(ray.d), e1(disk.e1), e2(disk.e2), n = normalize(cross(e1, e2));
     const glm::dvec3 to_center = glm::dvec3(disk.center) - glm::dvec3(ray.o);
     const double cosine = dot(d, n) / length(d), t = dot(to_center, n) / dot(d, n);
@@ -99,7 +99,7 @@ std::optional<Expected> expected(const Disk& disk, const RayItem& ray) {
     const double area = dot(cross(e1, e2), n);
     const double x = dot(cross(p, e2), n) / area, y = dot(cross(e1, p), n) / area;
     if (std::abs(cosine) < 1e-2 || x * x + y * y > 0.98 || t <= 0.0) return std::nullopt;
-    return Expected{t, 24 * 0x1p-24 * length(to_center) / std::abs(cosine) / length(d)};
+    return ExpectedDistance{t, 24 * 0x1p-24 * length(to_center) / std::abs(cosine) / length(d)};
 }
 
 TEST_F(RoundShapesTest, DistancesAgreeWithDoublePrecision) {
@@ -127,7 +127,7 @@ TEST_F(RoundShapesTest, DistancesAgreeWithDoublePrecision) {
                 const auto results =
                     trace(build_gpu_scene(scene, SceneFrame{}), rays, SceneAccess::texel_buffers);
                 for (size_t k = 0; k < rays.size(); ++k) {
-                    const std::optional<Expected> e = expected(shape, rays[k]);
+                    const std::optional<ExpectedDistance> e = expected(shape, rays[k]);
                     if (!e) continue;
                     ++checked;
                     ASSERT_NEAR(results[k].t, e->t, e->bound) << k;

@@ -141,7 +141,7 @@ TEST_F(TraversalTest, OneTriangle) {
 }
 
 // What double precision says of the ray and a triangle that it hits, and how far floats may be off.
-struct Expected {
+struct ExpectedHit {
     double t;
     double bound;
     bool well_conditioned;
@@ -153,7 +153,7 @@ struct Expected {
 // three times that, a barycentric coordinate by 192 P D / det. Their errors act on the range `depth` of the
 // vertices along the ray; the remaining operations are off by 20 P in sum. The bound doubles nearly all that,
 // for second-order terms, which are small if the barycentric coordinates are good to 1/4.
-Expected in_double(const RayItem& ray, const TriangleMesh& mesh, uint32_t id) {
+ExpectedHit in_double(const RayItem& ray, const TriangleMesh& mesh, uint32_t id) {
     int kz = 0;
     for (const int axis : {1, 2})
         kz = std::abs(ray.d[axis]) > std::abs(ray.d[kz]) ? axis : kz;
@@ -187,7 +187,7 @@ TEST_F(TraversalTest, DistancesAgreeWithDoublePrecision) {
         size_t checked = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             if (results[i].t == NO_HIT) continue;
-            const Expected expected = in_double(rays[i], mesh, results[i].id);
+            const ExpectedHit expected = in_double(rays[i], mesh, results[i].id);
             if (!expected.well_conditioned) continue;
             ++checked;
             ASSERT_NEAR(results[i].t, expected.t, expected.bound) << i;
@@ -219,7 +219,7 @@ TEST_F(TraversalTest, TheNearestHitIsTheOneOfDoublePrecision) {
             if (std::min({u, v, 1.0 - u - v}) >= -1e-12 && distance > 0.0)
                 nearest = std::min(nearest, distance);
         }
-        const Expected expected = in_double(rays[i], mesh, results[i].id);
+        const ExpectedHit expected = in_double(rays[i], mesh, results[i].id);
         ASSERT_NEAR(results[i].t, nearest, expected.bound) << i;
     }
 }

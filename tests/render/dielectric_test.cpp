@@ -6,11 +6,8 @@
 namespace candela {
 namespace {
 
-constexpr vec3 RADIANCE(1, 2, 3);
-constexpr float IOR = 1.5f;
+constexpr float ETA = 1.5f;
 constexpr float THICKNESS = 0.5f;  // Of the slabs [m].
-constexpr vec3 ABSORPTION(0.3f, 1, 2);
-constexpr double DEGREE = M_PI / 180.0;
 
 // Reflectance of a boundary for unpolarised light that arrives at theta > 0 from the thinner side: the mean
 // of sin^2(theta - theta_t) / sin^2(theta + theta_t) and of the same with tangents. Ref: Fresnel's equations.
@@ -80,10 +77,10 @@ TEST_F(DielectricTest, ASlabTransmitsAndReflects) {
             SCOPED_TRACE(testing::Message() << int(kind) << " at " << degrees << " degrees");
             const double theta = degrees * DEGREE;
             const double r =
-                kind == Fresnel::exact ? fresnel(double(IOR), theta) : schlick(double(IOR), theta);
+                kind == Fresnel::exact ? fresnel(double(ETA), theta) : schlick(double(ETA), theta);
             const double transmitted = (1.0 - r) / (1.0 + r);
             Scene scene = scene_seen_at(theta, 2.0);
-            add_slab(scene, {.ior = IOR, .fresnel = kind}, THICKNESS);
+            add_slab(scene, {.ior = ETA, .fresnel = kind}, THICKNESS);
             Scene behind = scene;
             add_panel(behind, -2, false, RADIANCE);
             expect_share(behind, 1024, glm::dvec3(transmitted));
@@ -108,12 +105,12 @@ TEST_F(DielectricTest, ASlabAbsorbs) {
     for (const double degrees : {0.0, 60.0}) {
         SCOPED_TRACE(degrees);
         const double theta = degrees * DEGREE;
-        const double r = fresnel(double(IOR), theta);
+        const double r = fresnel(double(ETA), theta);
         const double length =
-            double(THICKNESS) / std::sqrt(1.0 - std::pow(std::sin(theta) / double(IOR), 2.0));
+            double(THICKNESS) / std::sqrt(1.0 - std::pow(std::sin(theta) / double(ETA), 2.0));
         const glm::dvec3 a = glm::exp(-glm::dvec3(ABSORPTION) * length);
         Scene scene = scene_seen_at(theta, 2.0);
-        add_slab(scene, {.ior = IOR, .fresnel = Fresnel::exact, .inside = {ABSORPTION}}, THICKNESS);
+        add_slab(scene, {.ior = ETA, .fresnel = Fresnel::exact, .inside = {ABSORPTION}}, THICKNESS);
         add_panel(scene, -2, false, RADIANCE);
         expect_share(scene, 4096, (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a));
     }
@@ -122,12 +119,12 @@ TEST_F(DielectricTest, ASlabAbsorbs) {
 // A panel that shines within the glass: on its way out its radiance is divided by eta^2.
 TEST_F(DielectricTest, AnEmitterWithinTheGlass) {
     Scene scene = scene_seen_at(0.0, 2.0);
-    add_slab(scene, {.ior = IOR, .inside = {ABSORPTION}}, THICKNESS);
+    add_slab(scene, {.ior = ETA, .inside = {ABSORPTION}}, THICKNESS);
     constexpr float DEPTH = 0.2f;
     add_panel(scene, -DEPTH, false, RADIANCE);
-    const double r = fresnel(double(IOR), 0.0);
+    const double r = fresnel(double(ETA), 0.0);
     const glm::dvec3 a = glm::exp(-glm::dvec3(ABSORPTION) * double(DEPTH));
-    expect_share(scene, 1024, (1.0 - r) * a / double(IOR * IOR));
+    expect_share(scene, 1024, (1.0 - r) * a / double(ETA * ETA));
 }
 
 // A white floor and a lamp in the glass: what reaches the floor is absorbed on its way from the lamp, and
@@ -139,7 +136,7 @@ TEST_F(DielectricTest, ALampWithinTheGlass) {
     const dvec3 center(-0.5, 0.5 - double(DEPTH), 0);
     const double distance = std::sqrt(0.5);
     Scene scene = scene_seen_at(0.0, 2.0);
-    add_slab(scene, {.ior = IOR, .inside = {ABSORPTION}}, 2.0f * DEPTH);
+    add_slab(scene, {.ior = ETA, .inside = {ABSORPTION}}, 2.0f * DEPTH);
     add_panel(scene, -DEPTH, false, {});
     scene.materials.back().model = DiffuseMaterial{vec3(1)};
     add_shape(scene, Sphere{center, LAMP_RADIUS}, add_diffuse(scene, vec3(0)), Emission{RADIANCE, false});
@@ -152,8 +149,8 @@ TEST_F(DielectricTest, ALampWithinTheGlass) {
         const double way = distance * (std::sqrt(1.0 - x) - std::sqrt(sin2_max - x));
         irradiance_over_pi += glm::exp(-glm::dvec3(ABSORPTION) * way) * (std::sqrt(0.5) * sin2_max / POINTS);
     }
-    const double r = fresnel(double(IOR), 0.0);
-    const glm::dvec3 out = (1.0 - r) / double(IOR * IOR) * glm::exp(-glm::dvec3(ABSORPTION) * double(DEPTH));
+    const double r = fresnel(double(ETA), 0.0);
+    const glm::dvec3 out = (1.0 - r) / double(ETA * ETA) * glm::exp(-glm::dvec3(ABSORPTION) * double(DEPTH));
     for (const Estimator estimator : {Estimator::bsdf, Estimator::light, Estimator::mis}) {
         SCOPED_TRACE(int(estimator));
         RenderSettings settings = independent_settings(32, estimator, 2);
@@ -170,13 +167,13 @@ TEST_F(DielectricTest, ACameraWithinTheGlass) {
     for (const double degrees : {0.0, 30.0, 38.0, 43.0, 70.0}) {
         SCOPED_TRACE(degrees);
         const double theta = degrees * DEGREE;
-        const double outside = std::asin(std::min(1.0, double(IOR) * std::sin(theta)));
-        const double r = outside < 0.5 * M_PI ? fresnel(double(IOR), outside) : 1.0;
+        const double outside = std::asin(std::min(1.0, double(ETA) * std::sin(theta)));
+        const double r = outside < 0.5 * M_PI ? fresnel(double(ETA), outside) : 1.0;
         Scene scene = scene_seen_at(M_PI - theta, 2.0);
         scene.environment = constant_environment(RADIANCE);
-        add_slab(scene, {.ior = IOR, .fresnel = Fresnel::exact}, 20.0f);
+        add_slab(scene, {.ior = ETA, .fresnel = Fresnel::exact}, 20.0f);
         add_panel(scene, -10, false, 0.5f * RADIANCE);
-        expect_share(scene, 1024, glm::dvec3((1.0 - r) * double(IOR * IOR) + 0.5 * r));
+        expect_share(scene, 1024, glm::dvec3((1.0 - r) * double(ETA * ETA) + 0.5 * r));
     }
 }
 
@@ -185,7 +182,7 @@ TEST_F(DielectricTest, TotalReflectionIsExact) {
     for (const Fresnel kind : {Fresnel::schlick, Fresnel::exact}) {
         Scene scene = scene_seen_at(120.0 * DEGREE, 2.0);
         scene.environment = constant_environment(vec3(7));
-        add_slab(scene, {.ior = IOR, .fresnel = kind}, 20.0f);
+        add_slab(scene, {.ior = ETA, .fresnel = kind}, 20.0f);
         add_panel(scene, -10, false, RADIANCE);
         expect_pixels(image_of(render(scene, independent_settings(16, Estimator::mis, 3), 16)), RADIANCE);
     }

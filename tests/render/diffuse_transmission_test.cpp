@@ -7,15 +7,13 @@
 namespace candela {
 namespace {
 
-constexpr vec3 RADIANCE(1, 2, 3);
-constexpr vec3 ABSORPTION(0.3f, 1, 2);
-constexpr float REACH = 60.0f;
-constexpr Estimator ESTIMATORS[] = {Estimator::bsdf, Estimator::light, Estimator::mis};
+constexpr float HALF_WIDTH = 60.0f;
 
 // A horizontal sheet at that height, its front above.
 void add_sheet(Scene& scene, float height, const DiffuseTransmissionMaterial& sheet) {
     add_shape(scene,
-              parallelogram(vec3(-REACH, height, -REACH), vec3(0, 0, 2 * REACH), vec3(2 * REACH, 0, 0)),
+              parallelogram(vec3(-HALF_WIDTH, height, -HALF_WIDTH), vec3(0, 0, 2 * HALF_WIDTH),
+                            vec3(2 * HALF_WIDTH, 0, 0)),
               add_material(scene, sheet));
 }
 
@@ -107,7 +105,8 @@ TEST_F(DiffuseTransmissionTest, ALeafWithinAMediumLeavesItAsItIs) {
     add_sheet(scene, 0, {vec3(0), vec3(1), Medium{ABSORPTION}});
     add_sheet(scene, -DEPTH, {vec3(0), vec3(0.5f)});
     add_shape(scene,
-              parallelogram(vec3(-REACH, -2 * DEPTH, -REACH), vec3(0, 0, 2 * REACH), vec3(2 * REACH, 0, 0)),
+              parallelogram(vec3(-HALF_WIDTH, -2 * DEPTH, -HALF_WIDTH), vec3(0, 0, 2 * HALF_WIDTH),
+                            vec3(2 * HALF_WIDTH, 0, 0)),
               add_diffuse(scene, vec3(0)), Emission{RADIANCE, false});
     const glm::dvec3 layer = diffuse_transmittance(double(DEPTH));
     expect_share(scene, Estimator::bsdf, 1024, 0.5 * layer * layer);

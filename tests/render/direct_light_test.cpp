@@ -7,9 +7,6 @@
 namespace candela {
 namespace {
 
-constexpr vec3 REFLECTANCE(0.8f, 0.5f, 0.2f);
-constexpr vec3 RADIANCE(1, 2, 3);
-
 // Form factor from a surface element to a parallel rectangle a x b at height h, one of whose corners is
 // straight above. Ref: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.
 double corner_form_factor(double a, double b, double h) {

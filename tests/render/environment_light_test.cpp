@@ -6,10 +6,6 @@
 namespace candela {
 namespace {
 
-constexpr vec3 REFLECTANCE(0.8f, 0.5f, 0.2f);
-constexpr vec3 RADIANCE(1, 2, 3);
-constexpr double DEGREE = M_PI / 180.0;
-
 class EnvironmentLightTest : public RenderTest {
   protected:
     static RenderSettings settings(Estimator estimator) {

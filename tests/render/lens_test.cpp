@@ -8,7 +8,7 @@
 namespace candela {
 namespace {
 
-constexpr float RADIANCE = 100.0f;
+constexpr float BRIGHT = 100.0f;
 
 class LensTest : public RenderTest {
   protected:
@@ -45,12 +45,12 @@ TEST_F(LensTest, ThePlaneOfFocusIsSharp) {
     for (const uint32_t blades : {0u, 6u}) {
         Scene scene = black_scene({});
         add_shape(scene, parallelogram(vec3(-0.06f, -0.09f, -3), vec3(0.13f, 0, 0), vec3(0, 0.15f, 0)), 0,
-                  Emission{vec3(RADIANCE), false});
+                  Emission{vec3(BRIGHT), false});
         const Image pinhole = image_of(render(scene, settings(1), SPP));
         scene.cameras[0].lens = {.radius = 0.3f, .focal_distance = 3, .blades = blades, .rotation = 0};
         const Image lens = image_of(render(scene, settings(1), SPP));
         for (size_t i = 0; i < lens.pixel_count(); ++i)
-            ASSERT_NEAR(plane(lens, "", 0)[i], plane(pinhole, "", 0)[i], 1.01 * double(RADIANCE) / SPP);
+            ASSERT_NEAR(plane(lens, "", 0)[i], plane(pinhole, "", 0)[i], 1.01 * double(BRIGHT) / SPP);
         EXPECT_GT(image_mean(lens, 0).mean, 10.0);  // The quad covers a quarter of the picture.
     }
 }
@@ -120,7 +120,7 @@ TEST_P(BlurTest, IsAnImageOfTheAperture) {
                                .rotation = p.rotation});
     const float lamp_radius = LAMP_SLOPE * p.lamp;
     add_shape(scene, Disk{dvec3(0, 0, -p.lamp), dvec3(lamp_radius, 0, 0), dvec3(0, lamp_radius, 0)}, 0,
-              Emission{vec3(RADIANCE), false});
+              Emission{vec3(BRIGHT), false});
     const Image image = image_of(render(scene, settings(2), samples(2048)));
     const Blur blur{image, 2.0 * HALF_WIDTH / SIZE};
     const auto expect = [&](const char* what, std::pair<double, double> mean, double expected,
@@ -136,8 +136,7 @@ TEST_P(BlurTest, IsAnImageOfTheAperture) {
     const double film_area = 4.0 * HALF_WIDTH * HALF_WIDTH;
     const ImageMean energy = image_mean(image, 0);
     EXPECT_LE(energy.error, 4.0 * largest_error() * energy.mean);
-    expect("energy", {energy.mean, energy.error}, double(RADIANCE) * lamp_area / film_area,
-           1e-5 * energy.mean);
+    expect("energy", {energy.mean, energy.error}, double(BRIGHT) * lamp_area / film_area, 1e-5 * energy.mean);
 
     // It lies around the axis, as wide as the aperture, the lamp and a pixel together. Variances add up, that
     // of a pixel (Sheppard's correction) but for the aliasing of the sharp edge on the grid, less than the
@@ -163,7 +162,7 @@ TEST_P(BlurTest, IsAnImageOfTheAperture) {
         middle.add(double(plane(image, "", 0)[i]));
         middle_variance += double(plane(image, "Variance", 0)[i]);
     }
-    const double middle_radiance = double(RADIANCE) * lamp_area / (unit_area() * radius * radius);
+    const double middle_radiance = double(BRIGHT) * lamp_area / (unit_area() * radius * radius);
     expect("middle", {middle.mean(), std::sqrt(middle_variance) / double(middle.count())}, middle_radiance,
            1e-5 * middle_radiance);
 

@@ -6,7 +6,6 @@
 namespace candela {
 namespace {
 
-constexpr vec3 ABSORPTION(0.3f, 1, 2);
 constexpr vec3 OTHER_ABSORPTION(1.1f, 0.2f, 0.6f);
 
 // A body that bends no ray.

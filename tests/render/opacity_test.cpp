@@ -7,8 +7,6 @@
 namespace candela {
 namespace {
 
-constexpr Estimator ESTIMATORS[] = {Estimator::bsdf, Estimator::light, Estimator::mis};
-
 class OpacityTest : public EstimatorTest {
   protected:
     // A camera at z = 5 that looks along -z through a small window at a sky of radiance 1.

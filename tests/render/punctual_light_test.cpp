@@ -7,7 +7,6 @@
 namespace candela {
 namespace {
 
-constexpr vec3 REFLECTANCE(0.8f, 0.5f, 0.2f);
 constexpr vec3 INTENSITY(1, 2, 3);
 
 class PunctualLightTest : public EstimatorTest {

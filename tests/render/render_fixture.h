@@ -15,6 +15,13 @@
 
 namespace candela {
 
+// What most tests' lights emit, surfaces reflect and media absorb [1/m], and the estimators that must agree.
+inline constexpr vec3 RADIANCE(1, 2, 3);
+inline constexpr vec3 REFLECTANCE(0.8f, 0.5f, 0.2f);
+inline constexpr vec3 ABSORPTION(0.3f, 1, 2);
+inline constexpr Estimator ESTIMATORS[] = {Estimator::bsdf, Estimator::light, Estimator::mis};
+inline constexpr double DEGREE = M_PI / 180.0;
+
 // Settings for a whole small picture.
 inline RenderSettings settings_for(uint32_t width, uint32_t height) {
     RenderSettings settings;

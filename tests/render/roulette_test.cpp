@@ -82,16 +82,16 @@ TEST_F(RouletteTest, WithinClearGlassNoMorePathsEndThanMust) {
 // Only the path itself can find what a mirror shows: it goes on, however dark the mirror is. After the next
 // hit, on a wall, its throughput counts.
 TEST_F(RouletteTest, AMirrorEndsNoMorePathsThanItMust) {
-    constexpr float REFLECTANCE = 0.25f;
+    constexpr float GREY = 0.25f;
     Scene scene = scene_with_camera(dvec3(0, 2, 0), dvec3(0), 1e-3f);
     scene.environment = constant_environment(vec3(1));
-    const uint32_t mirror = add_material(scene, MirrorMaterial{vec3(REFLECTANCE)});
+    const uint32_t mirror = add_material(scene, MirrorMaterial{vec3(GREY)});
     const uint32_t white = add_material(scene, DiffuseMaterial{vec3(1)});
     add_shape(scene, Disk{dvec3(0), dvec3(0, 0, 9), dvec3(9, 0, 0)}, mirror);
     add_shape(scene, Disk{dvec3(0, 3, 0), dvec3(9, 0, 0), dvec3(0, 0, 9)}, white);
     RenderSettings two = settings(0);
     two.max_depth = 2;
-    expect_rays(scene, two, up_to_three(S, S * std::sqrt(double(REFLECTANCE) / S)));
+    expect_rays(scene, two, up_to_three(S, S * std::sqrt(double(GREY) / S)));
 }
 
 // A floor that reflects half of its light as a mirror would and half diffusely, under a sky that is bright

@@ -6,9 +6,6 @@
 namespace candela {
 namespace {
 
-constexpr vec3 REFLECTANCE(0.8f, 0.5f, 0.2f);
-constexpr vec3 RADIANCE(1, 2, 3);
-
 class RoundLightTest : public RenderTest {
   protected:
     static RenderSettings settings(Estimator estimator) {

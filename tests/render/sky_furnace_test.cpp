@@ -8,8 +8,6 @@
 namespace candela {
 namespace {
 
-constexpr Estimator ESTIMATORS[] = {Estimator::bsdf, Estimator::light, Estimator::mis};
-
 class SkyFurnaceTest : public RenderTest {
   protected:
     static constexpr uint32_t SIZE = 32;
@@ -146,7 +144,6 @@ class AlbedoTest : public RenderTest {
   protected:
     static constexpr double ANGLES[] = {0.0, 60.0,
                                         85.0};  // Between the view and the plane's normal [degrees].
-    static constexpr double DEGREE = M_PI / 180.0;
 
     // A plane under a sky of radiance 1, seen at that angle from the normal [rad], so closely that all
     // pixels see it at that angle.

@@ -3,19 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "support/quadrature.h"
 
 namespace candela {
 namespace {
-
-constexpr double PI_D = std::numbers::pi;
-
-double square(double x) {
-    return x * x;
-}
 
 // Where a level changes its sign between two points.
 double root_between(double lo, double hi, const std::function<double(double)>& level) {

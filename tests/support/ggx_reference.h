@@ -7,10 +7,17 @@
 #pragma once
 
 #include <functional>
+#include <numbers>
 
 #include "base/math.h"
 
 namespace candela {
+
+inline constexpr double PI_D = std::numbers::pi;
+
+inline double square(double x) {
+    return x * x;
+}
 
 // The roughness along x and y, above 0.
 struct Facets {

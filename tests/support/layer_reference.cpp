@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "support/ggx_reference.h"
@@ -11,12 +10,6 @@
 
 namespace candela {
 namespace {
-
-constexpr double PI_D = std::numbers::pi;
-
-double square(double x) {
-    return x * x;
-}
 
 // Ref: KHR_materials_sheen, "Sheen visibility" (Conty and Kulla 2017, "Production friendly microfacet sheen
 // BRDF").

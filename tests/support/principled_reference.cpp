@@ -4,23 +4,18 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
+#include "support/ggx_reference.h"
 #include "support/layer_reference.h"
 
 namespace candela {
 namespace {
 
-constexpr double PI_D = std::numbers::pi;
 constexpr double LEAST_ALPHA = 1e-3;              // Below it, reflection is ideal.
 constexpr double LEAST_STEP_OF_THE_INDEX = 1e-3;  // The same, in a volume.
 constexpr double LEAST_SHEEN_ROUGHNESS = 0.07;    // The model has no value at 0.
 constexpr double LEAST_FUZZ_ROUGHNESS = 0.01;     // The least that its fits are for.
 constexpr double ETA_OF_A_PERFECT_REFLECTOR = 1e6;
-
-double square(double x) {
-    return x * x;
-}
 
 double max_channel(dvec3 v) {
     return std::max({v.x, v.y, v.z});

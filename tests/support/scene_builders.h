@@ -7,6 +7,11 @@
 
 namespace candela {
 
+// The vertex at a corner: the third of the second triangle is corner 5.
+inline uint32_t vertex_of(const TriangleMesh& mesh, size_t corner) {
+    return mesh.triangles[corner / 3][glm::length_t(corner % 3)];
+}
+
 // A floor at y = 0 that a camera sees from (0, 1, 5), so closely that all pixels are one point: the origin.
 // Material 0 is that of the floor, material 1 is black.
 Scene floor_seen_closely(vec3 reflectance);

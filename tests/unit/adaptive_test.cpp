@@ -11,19 +11,19 @@
 namespace candela {
 namespace {
 
-constexpr uint32_t WIDTH = 96, HEIGHT = 64, EVEN = 16;
+constexpr uint32_t COLUMNS = 96, ROWS = 64, EVEN = 16;
 
 // A state with EVEN samples in every pixel; their mean and variance are mean(x) and variance(x) in all
 // channels, and each takes rays(x) rays.
 template <class Mean, class Variance, class Rays>
 Accumulation even_state(const Mean& mean, const Variance& variance, const Rays& rays) {
-    Accumulation state{.full = {WIDTH, HEIGHT}, .rect = {0, 0, WIDTH, HEIGHT}, .values = {}};
+    Accumulation state{.full = {COLUMNS, ROWS}, .rect = {0, 0, COLUMNS, ROWS}, .values = {}};
     state.values.resize(state.layer_count * state.pixel_count() * 4);
     for (size_t i = 0; i < state.pixel_count(); ++i) {
         const auto set = [&](uint32_t layer, size_t c, double value) {
             state.values[(layer * state.pixel_count() + i) * 4 + c] = float(value);
         };
-        const uint32_t x = uint32_t(i % WIDTH);
+        const uint32_t x = uint32_t(i % COLUMNS);
         for (size_t c = 0; c < 3; ++c) {
             set(LAYER_L, c, EVEN * mean(x));
             set(LAYER_SQUARE, c, variance(x) * (EVEN - 1) + EVEN * mean(x) * mean(x));
@@ -39,7 +39,7 @@ double one(uint32_t) {
 }
 
 Accumulation no_samples() {
-    Accumulation state{.full = {WIDTH, HEIGHT}, .rect = {0, 0, WIDTH, HEIGHT}, .values = {}};
+    Accumulation state{.full = {COLUMNS, ROWS}, .rect = {0, 0, COLUMNS, ROWS}, .values = {}};
     state.values.resize(state.layer_count * state.pixel_count() * 4);
     return state;
 }
@@ -53,7 +53,7 @@ double mean_limit(const Accumulation& state) {
 
 // A pixel of the middle row.
 uint32_t limit_at(const Accumulation& state, uint32_t x) {
-    return state.limit(size_t{HEIGHT / 2} * WIDTH + x);
+    return state.limit(size_t{ROWS / 2} * COLUMNS + x);
 }
 
 TEST(Adaptive, PassesEndAtPowersOfTwoAndAtTheTarget) {
@@ -79,11 +79,11 @@ TEST(Adaptive, TheFirstSamplesAndAnEighthOfAllAreEven) {
 TEST(Adaptive, SamplesAreInProportionToTheRootOfTheVariance) {
     Accumulation extra = no_samples();
     plan_extra_samples(even_state(
-                           one, [](uint32_t x) { return x < WIDTH / 2 ? 1.0 : 9.0; }, one),
+                           one, [](uint32_t x) { return x < COLUMNS / 2 ? 1.0 : 9.0; }, one),
                        EVEN, 64, extra);
-    for (const uint32_t x : {0u, 5u, WIDTH / 2 - 1})
+    for (const uint32_t x : {0u, 5u, COLUMNS / 2 - 1})
         EXPECT_EQ(limit_at(extra, x) + EVEN, 32u);
-    for (const uint32_t x : {WIDTH / 2, WIDTH - 1})
+    for (const uint32_t x : {COLUMNS / 2, COLUMNS - 1})
         EXPECT_EQ(limit_at(extra, x) + EVEN, 96u);
 }
 
@@ -91,22 +91,22 @@ TEST(Adaptive, SamplesAreInProportionToTheRootOfTheVariance) {
 // root of v / r.
 TEST(Adaptive, AndToThatOfTheirCost) {
     Accumulation extra = no_samples();
-    plan_extra_samples(even_state(one, one, [](uint32_t x) { return x < WIDTH / 2 ? 9.0 : 1.0; }), EVEN, 64,
+    plan_extra_samples(even_state(one, one, [](uint32_t x) { return x < COLUMNS / 2 ? 9.0 : 1.0; }), EVEN, 64,
                        extra);
     EXPECT_EQ(limit_at(extra, 5) + EVEN, 32u);
-    EXPECT_EQ(limit_at(extra, WIDTH - 5) + EVEN, 96u);
+    EXPECT_EQ(limit_at(extra, COLUMNS - 5) + EVEN, 96u);
 }
 
 // What counts is the error relative to the picture: three times as bright and three times as noisy is the
 // same. The darkness that is added to the square, 0.01 of the mean's, changes little.
 TEST(Adaptive, TheErrorIsRelative) {
     Accumulation extra = no_samples();
-    const auto brightness = [](uint32_t x) { return x < WIDTH / 2 ? 1.0 : 3.0; };
+    const auto brightness = [](uint32_t x) { return x < COLUMNS / 2 ? 1.0 : 3.0; };
     const auto variance = [&](uint32_t x) { return brightness(x) * brightness(x); };
     plan_extra_samples(even_state(brightness, variance, one), EVEN, 64, extra);
     // 1 / (1 + 0.04) and 9 / (9 + 0.04): their roots differ by 1.7 %, 1.1 samples of 64.
     EXPECT_NEAR(limit_at(extra, 5) + EVEN, 64, 2);
-    EXPECT_NEAR(limit_at(extra, WIDTH - 5) + EVEN, 64, 2);
+    EXPECT_NEAR(limit_at(extra, COLUMNS - 5) + EVEN, 64, 2);
 }
 
 // The work groups of column 50 share its error: eight columns of 96, for which there are 96 * 64 - 88 * 16
@@ -127,9 +127,9 @@ TEST(Adaptive, EveryPixelKeepsItsEvenSamplesAndNoneGetsMoreThanItsShare) {
     extra = no_samples();
     plan_extra_samples(one_group, EVEN, 64, extra);
     EXPECT_EQ(extra.limit(0) + EVEN, 16u * 64);
-    EXPECT_EQ(extra.limit(7 * WIDTH + 7) + EVEN, 16u * 64);
+    EXPECT_EQ(extra.limit(7 * COLUMNS + 7) + EVEN, 16u * 64);
     EXPECT_EQ(extra.limit(8), 0u);
-    EXPECT_EQ(extra.limit(8 * WIDTH), 0u);
+    EXPECT_EQ(extra.limit(8 * COLUMNS), 0u);
     plan_extra_samples(one_group, EVEN, 1u << 22, extra);
     EXPECT_EQ(extra.limit(0) + EVEN, MAX_SPP - 1);
 }
@@ -137,14 +137,14 @@ TEST(Adaptive, EveryPixelKeepsItsEvenSamplesAndNoneGetsMoreThanItsShare) {
 TEST(Adaptive, ALimitNeverFalls) {
     Accumulation extra = no_samples();
     plan_extra_samples(even_state(
-                           one, [](uint32_t x) { return x < WIDTH / 2 ? 1.0 : 9.0; }, one),
+                           one, [](uint32_t x) { return x < COLUMNS / 2 ? 1.0 : 9.0; }, one),
                        EVEN, 64, extra);
-    const uint32_t before = limit_at(extra, WIDTH - 5);
+    const uint32_t before = limit_at(extra, COLUMNS - 5);
     // The other half of the picture is noisy now, and gets the samples that are added.
     plan_extra_samples(even_state(
-                           one, [](uint32_t x) { return x < WIDTH / 2 ? 9.0 : 1.0; }, one),
+                           one, [](uint32_t x) { return x < COLUMNS / 2 ? 9.0 : 1.0; }, one),
                        EVEN, 70, extra);
-    EXPECT_EQ(limit_at(extra, WIDTH - 5), before);
+    EXPECT_EQ(limit_at(extra, COLUMNS - 5), before);
     EXPECT_NEAR(limit_at(extra, 5) + EVEN, 70 + 70 - before - EVEN, 1);
     EXPECT_NEAR(mean_limit(extra) + EVEN, 70, 0.5);
 }

@@ -117,7 +117,7 @@ TEST(ArrayMap, WhatFitsIntoThreeBuffersByKindFits) {
     EXPECT_GT(fitting, 50);
 }
 
-std::string error_of(const vk::DeviceInfo& device, SceneAccess access) {
+std::string map_error_of(const vk::DeviceInfo& device, SceneAccess access) {
     try {
         map_arrays(device, scene_of_sizes(SIZES), access);
     } catch (const Error& error) {
@@ -128,13 +128,13 @@ std::string error_of(const vk::DeviceInfo& device, SceneAccess access) {
 }
 
 TEST(ArrayMap, WhatIsTooLongIsNamed) {
-    EXPECT_EQ(error_of(device_of(500, 899, 4), SceneAccess::automatic),
+    EXPECT_EQ(map_error_of(device_of(500, 899, 4), SceneAccess::automatic),
               "the scene's array primitives needs 900 texels (14400 bytes), but a device allows "
               "maxTexelBufferElements = 500 and maxStorageBufferRange = 14384 bytes; use a smaller scene, or "
               "another "
               "device (candela devices lists them)");
     EXPECT_EQ(
-        error_of(device_of(500, 1370, 4), SceneAccess::storage_buffers),
+        map_error_of(device_of(500, 1370, 4), SceneAccess::storage_buffers),
         "the scene's arrays nodes, surfaces, normals, environment_alias, lights, materials, light_alias, "
         "media "
         "need 1371 texels (21936 bytes), but a device allows maxTexelBufferElements = 500 and "

@@ -11,10 +11,10 @@ namespace candela {
 namespace {
 
 // Positions are a few metres, and a movement rounds some ten times.
-constexpr float ROUNDING = 1e-5f;
+constexpr float CAMERA_ROUNDING = 1e-5f;
 
 void expect_near(dvec3 a, dvec3 b) {
-    EXPECT_LT(length(a - b), ROUNDING)
+    EXPECT_LT(length(a - b), CAMERA_ROUNDING)
         << a.x << ' ' << a.y << ' ' << a.z << ", not " << b.x << ' ' << b.y << ' ' << b.z;
 }
 
@@ -52,11 +52,11 @@ TEST(CameraControl, AnOrbitKeepsItsDistanceAndCanBeUndone) {
     const Camera before = moved;
     for (int i = 0; i < 100; ++i) {
         orbit(moved, 0.1f, 0.004f);
-        EXPECT_NEAR(length(moved.position - moved.look_at), 2.0f, ROUNDING);
+        EXPECT_NEAR(length(moved.position - moved.look_at), 2.0f, CAMERA_ROUNDING);
     }
     for (int i = 0; i < 100; ++i)
         orbit(moved, -0.1f, -0.004f);
-    EXPECT_LT(length(moved.position - before.position), 100 * ROUNDING);
+    EXPECT_LT(length(moved.position - before.position), 100 * CAMERA_ROUNDING);
 }
 
 // Beyond a pole the picture would stand on its head, and at a pole it would have no right.
@@ -77,8 +77,8 @@ TEST(CameraControl, APanMovesThePictureWithTheHand) {
     moved.look_at = dvec3(-1, 0, 1);
     const dvec3 point = moved.look_at;
     pan(moved, vec2(0.25f, -0.125f));
-    EXPECT_LT(length(shown_at(moved, point) - vec2(0.25f, -0.125f)), ROUNDING);
-    EXPECT_NEAR(length(moved.look_at - moved.position), std::sqrt(12.0f), ROUNDING);
+    EXPECT_LT(length(shown_at(moved, point) - vec2(0.25f, -0.125f)), CAMERA_ROUNDING);
+    EXPECT_NEAR(length(moved.look_at - moved.position), std::sqrt(12.0f), CAMERA_ROUNDING);
 }
 
 TEST(CameraControl, ADollyScalesTheDistanceAndNeverReachesIt) {

@@ -44,7 +44,7 @@ bool is_sampled(const Chart& chart, glm::dvec3 w) {
 
 // Directions have an error of 2^-53; what is 10^-3 wide, at alpha = 10^-3 or an exponent of 10^5, and seen at
 // the cosine 0.0045 of the grazing view, is known to 2^-53 / 10^-6 / 0.01.
-constexpr double ROUNDING = 1e-7;
+constexpr double CHART_ROUNDING = 1e-7;
 
 TEST(Charts, FindWhatTheyShow) {
     const std::vector<Chart> all = charts();
@@ -58,7 +58,7 @@ TEST(Charts, FindWhatTheyShow) {
             if (!is_sampled(all[k], point.w)) continue;
             const std::optional<glm::dvec2> found = find(all[k], point.w);
             ASSERT_TRUE(found);
-            ASSERT_LE(length(*found - place), ROUNDING)
+            ASSERT_LE(length(*found - place), CHART_ROUNDING)
                 << "chart " << k << " at " << place.x << ' ' << place.y;
         }
     }

@@ -14,7 +14,7 @@ std::string quad(const std::string& vertices) {
     return scene_of(R"({"type": "quad", "material": "white", "vertices": )" + vertices + "}");
 }
 
-std::string mesh(const std::string& members) {
+std::string white_mesh(const std::string& members) {
     return scene_of(R"({"type": "mesh", "material": "white", )" + members + "}");
 }
 
@@ -67,15 +67,15 @@ TEST(Geometry, BoxesHaveOutwardSides) {
 TEST(Geometry, RefusesBadMeshes) {
     SceneFolder folder;
     const std::string points = R"("positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]])";
-    folder.expect_error(mesh(points + R"(, "triangles": [[0, 1, @3]])"),
+    folder.expect_error(white_mesh(points + R"(, "triangles": [[0, 1, @3]])"),
                         "\"triangles\": expected a whole number from 0 to 2, found 3");
-    folder.expect_error(mesh(points + R"(, "triangles": [[0, 1, @-1]])"),
+    folder.expect_error(white_mesh(points + R"(, "triangles": [[0, 1, @-1]])"),
                         "\"triangles\": expected a whole number from 0 to 2, found -1");
-    folder.expect_error(mesh(points + R"(, "triangles": [@[0, 1]])"),
+    folder.expect_error(white_mesh(points + R"(, "triangles": [@[0, 1]])"),
                         "\"triangles\": expected three indices of positions, found [0, 1]");
-    folder.expect_error(mesh(R"("positions": @[], "triangles": [[0, 1, 2]])"),
+    folder.expect_error(white_mesh(R"("positions": @[], "triangles": [[0, 1, 2]])"),
                         "\"positions\": expected at least one point, found []");
-    folder.expect_error(mesh(points + R"(, "triangles": [[0, 1, 2]], "normals": @[[0, 0, 1]])"),
+    folder.expect_error(white_mesh(points + R"(, "triangles": [[0, 1, 2]], "normals": @[[0, 0, 1]])"),
                         "\"normals\": expected as many normals as positions, 3, found an array of 1");
     const std::string no_area = "the mesh has no triangle with an area; check its positions";
     folder.expect_error(scene_of("@{\"type\": \"mesh\", \"emission\": 1, " + points + ", \"triangles\": []}"),
@@ -87,7 +87,7 @@ TEST(Geometry, RefusesBadMeshes) {
 
 TEST(Geometry, NormalsOfAMeshAreMadeUnit) {
     SceneFolder folder;
-    const Scene scene = folder.load(mesh(R"("positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+    const Scene scene = folder.load(white_mesh(R"("positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
         "triangles": [[0, 1, 2]], "normals": [[0, 0, 1e30], [0, 3, 4], [0, 0, 0]])"));
     const TriangleMesh result = world_mesh(scene);
     const uvec3 t = result.triangles[0];

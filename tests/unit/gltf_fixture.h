@@ -17,6 +17,8 @@ namespace candela {
 
 using Json = nlohmann::json;
 
+inline constexpr double ROOT = 0.70710678118654752;  // Of 1/2.
+
 // The number that stands for a component type.
 template <class T>
 constexpr int component_type() {

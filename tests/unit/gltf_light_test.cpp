@@ -8,8 +8,6 @@
 namespace candela {
 namespace {
 
-constexpr double ROOT = 0.70710678118654752;  // Of 1/2.
-
 class GltfCamera : public Gltf {
   protected:
     static GltfFile seen_by(const Json& camera, const Json& node = Json::object()) {

@@ -45,8 +45,6 @@ class GltfNode : public Gltf {
     }
 };
 
-constexpr double ROOT = 0.70710678118654752;  // Of 1/2.
-
 // EXT_mesh_gpu_instancing with these attributes.
 Json instanced(const Json& attributes) {
     return {{"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}};

@@ -19,7 +19,7 @@ namespace {
 TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
     const Quad slanted = parallelogram(vec3(100, -50, 3), vec3(1, 0.3f, 0.1f), vec3(-0.2f, 1.7f, 0.3f));
     for (const Quad& quad : {SQUARE, slanted}) {
-        const GpuScene gpu = build_gpu_scene(scene_of({emitter(quad, vec3(2))}), SceneFrame{});
+        const GpuScene gpu = build_gpu_scene(scene_of_shapes({emitter(quad, vec3(2))}), SceneFrame{});
         ASSERT_EQ(gpu.light_count, 1u);
         ASSERT_EQ(gpu.primitive_count, 1u);
         const LightRecord l = light(gpu, 0);
@@ -38,7 +38,7 @@ TEST(GpuScene, AParallelogramIsOneLightForItsTwoTriangles) {
 
 TEST(GpuScene, AnyOtherQuadIsTwoLightsThatCoverIt) {
     const Quad kite{{dvec3(0, 0, 0), dvec3(2, 0, 0), dvec3(3, 3, 0), dvec3(0, 2, 0)}};
-    const GpuScene gpu = build_gpu_scene(scene_of({emitter(kite, vec3(1))}), SceneFrame{});
+    const GpuScene gpu = build_gpu_scene(scene_of_shapes({emitter(kite, vec3(1))}), SceneFrame{});
     ASSERT_EQ(gpu.light_count, 2u);
     double covered = 0.0, probability = 0.0;
     for (const uint32_t i : {0u, 1u}) {
@@ -68,7 +68,7 @@ TEST(GpuScene, LightsAreChosenByAreaLuminanceAndSides) {
     TriangleMesh mesh{.positions = {vec3(0), vec3(2, 0, 0), vec3(0, 2, 0), vec3(0, 0, 4)},
                       .normals = {},
                       .triangles = {uvec3(0, 1, 2), uvec3(0, 2, 3)}};
-    Scene scene = scene_of(
+    Scene scene = scene_of_shapes(
         {emitter(SQUARE, vec3(1)), emitter(large, vec3(0, 1, 0)), emitter(SQUARE, vec3(0.5f), true)});
     add_shape(scene, mesh, 0, Emission{.radiance = vec3(3), .two_sided = false});
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
@@ -91,17 +91,17 @@ TEST(GpuScene, LightsAreChosenByAreaLuminanceAndSides) {
 
 TEST(GpuScene, EmittersWithoutAreaOrRadianceAreHarmless) {
     const Quad flat = parallelogram(vec3(0), vec3(1, 0, 0), vec3(2, 0, 0));
-    EXPECT_EQ(build_gpu_scene(scene_of({emitter(flat, vec3(1))})).light_count, 0u);
-    EXPECT_EQ(build_gpu_scene(scene_of({emitter(SQUARE, vec3(0))})).light_count, 0u);
+    EXPECT_EQ(build_gpu_scene(scene_of_shapes({emitter(flat, vec3(1))})).light_count, 0u);
+    EXPECT_EQ(build_gpu_scene(scene_of_shapes({emitter(SQUARE, vec3(0))})).light_count, 0u);
     const GpuScene gpu =
-        build_gpu_scene(scene_of({emitter(SQUARE, vec3(0)), emitter(SQUARE, vec3(1))}), SceneFrame{});
+        build_gpu_scene(scene_of_shapes({emitter(SQUARE, vec3(0)), emitter(SQUARE, vec3(1))}), SceneFrame{});
     for (uint32_t i = 0; i < gpu.light_count; ++i)
         EXPECT_TRUE(std::isfinite(light(gpu, i).pdf_area));
 }
 
 TEST(GpuScene, IdsFollowTheOrderOfTheSceneAndEveryTriangleIsThere) {
     const TriangleMesh mesh = triangle_soup(100, 0.3f, 1);
-    Scene scene = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
+    Scene scene = scene_of_shapes({{.geometry = SQUARE, .material = 0, .emission = {}}});
     add_diffuse(scene, vec3(1));
     add_shape(scene, mesh, 1);
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
@@ -125,11 +125,11 @@ TEST(GpuScene, IdsFollowTheOrderOfTheSceneAndEveryTriangleIsThere) {
 
 TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
     EXPECT_FALSE(
-        build_gpu_scene(scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}})).has_normals);
+        build_gpu_scene(scene_of_shapes({{.geometry = SQUARE, .material = 0, .emission = {}}})).has_normals);
 
     TriangleMesh smooth = sphere_mesh(4, 6);
     smooth.normals = smooth.positions;
-    Scene scene = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
+    Scene scene = scene_of_shapes({{.geometry = SQUARE, .material = 0, .emission = {}}});
     add_shape(scene, smooth, 0);
     add_shape(scene, SQUARE, 0);
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
@@ -152,7 +152,7 @@ TEST(GpuScene, OnlySmoothMeshesHaveNormals) {
 }
 
 TEST(GpuScene, ArraysHoldTheRecordsOfWhatThereIs) {
-    Scene scene = scene_of({emitter(SQUARE, vec3(1))});
+    Scene scene = scene_of_shapes({emitter(SQUARE, vec3(1))});
     add_diffuse(scene, vec3(1));
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     const std::array<uint32_t, ARRAY_COUNT> records{1, 1, 1, 0, 2, 1, 1, 0, 0, 1, 0, 0, 0, 0, 0};
@@ -175,7 +175,7 @@ EnvironmentTexel texel(const GpuScene& gpu, uint32_t i) {
 // The power of a sky of luminance 1, over pi, on the sphere around the square's box, whose radius is sqrt(2)
 // / 2, is 1/2 * 4 pi; that of the square is 10.
 TEST(GpuScene, TheSkyIsALightAndChosenByThePowerThatFallsOntoTheScene) {
-    Scene scene = scene_of({emitter(SQUARE, vec3(10))});
+    Scene scene = scene_of_shapes({emitter(SQUARE, vec3(10))});
     const std::vector<vec3> radiance{vec3(1), vec3(1), vec3(1.5f, 0.6089f / 0.7152f, 1)};
     scene.environment = Environment{.size = {3, 1}, .radiance = radiance, .rotation = 0.5f};
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
@@ -204,7 +204,7 @@ TEST(GpuScene, TheSkyIsALightAndChosenByThePowerThatFallsOntoTheScene) {
 }
 
 TEST(GpuScene, TheSkyIsChosenForHalfOfTheSamplesAtMost) {
-    Scene scene = scene_of({emitter(SQUARE, vec3(1)), emitter(SQUARE, vec3(2))});
+    Scene scene = scene_of_shapes({emitter(SQUARE, vec3(1)), emitter(SQUARE, vec3(2))});
     scene.environment = Environment{.size = {2, 1}, .radiance = {vec3(50), vec3(150)}};
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     const std::vector<double> chosen = light_probabilities(gpu);
@@ -217,9 +217,9 @@ TEST(GpuScene, TheSkyIsChosenForHalfOfTheSamplesAtMost) {
 }
 
 TEST(GpuScene, ASkyThatIsEvenOrLightsNothingIsNotSampled) {
-    Scene black = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
+    Scene black = scene_of_shapes({{.geometry = SQUARE, .material = 0, .emission = {}}});
     black.environment = Environment{.size = {1, 1}, .radiance = {vec3(0)}};
-    Scene empty = scene_of({});
+    Scene empty = scene_of_shapes({});
     empty.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(2)}};
     Scene even = black;
     even.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(1)}};
@@ -233,7 +233,7 @@ TEST(GpuScene, ASkyThatIsEvenOrLightsNothingIsNotSampled) {
 }
 
 TEST(GpuScene, AnEvenSkyLeavesAllSamplesToTheLamps) {
-    Scene scene = scene_of({emitter(SQUARE, vec3(1))});
+    Scene scene = scene_of_shapes({emitter(SQUARE, vec3(1))});
     scene.environment = Environment{.size = {1, 1}, .radiance = {vec3(100)}};
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     ASSERT_EQ(gpu.light_count, 1u);
@@ -279,8 +279,8 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
     EXPECT_EQ(gpu.arrays[ARRAY_MEDIA], (std::vector<uvec4>{medium(vec3(0), 1), medium(vec3(1, 2, 3), 1.5f),
                                                            medium(vec3(0), 1.5f), medium(vec3(1, 2, 3), 1)}));
     EXPECT_TRUE(gpu.has_media);
-    EXPECT_FALSE(build_gpu_scene(scene_of({})).has_media);
-    EXPECT_EQ(build_gpu_scene(scene_of({})).materials_present, 1u << MATERIAL_DIFFUSE);
+    EXPECT_FALSE(build_gpu_scene(scene_of_shapes({})).has_media);
+    EXPECT_EQ(build_gpu_scene(scene_of_shapes({})).materials_present, 1u << MATERIAL_DIFFUSE);
 }
 
 // Behind the records of all materials, those of principled ones, each with the images that it takes values
@@ -312,7 +312,7 @@ TEST(GpuScene, PrincipledMaterialsHaveRecordsBehindTheOthers) {
 
 TEST(GpuScene, KindsOfPrimitivesArePresentOnlyIfTheyAre) {
     const auto present = [](std::vector<Shape> shapes) {
-        return build_gpu_scene(scene_of(std::move(shapes))).primitives_present;
+        return build_gpu_scene(scene_of_shapes(std::move(shapes))).primitives_present;
     };
     const Shape quad{.geometry = SQUARE, .material = 0, .emission = {}};
     const Shape sphere{.geometry = Sphere{}, .material = 0, .emission = {}};
@@ -329,9 +329,9 @@ TEST(GpuScene, KindsOfLightsArePresentOnlyIfTheyAre) {
     const Emission emission{.radiance = vec3(1)};
     const Shape quad{.geometry = SQUARE, .material = 0, .emission = emission};
     const Shape sphere{.geometry = Sphere{}, .material = 0, .emission = emission};
-    Scene scene = scene_of({quad, Shape{.geometry = Sphere{}, .material = 0, .emission = {}}});
+    Scene scene = scene_of_shapes({quad, Shape{.geometry = Sphere{}, .material = 0, .emission = {}}});
     EXPECT_EQ(build_gpu_scene(scene).lights_present, 1u << LIGHT_PARALLELOGRAM);
-    EXPECT_EQ(build_gpu_scene(scene_of({})).lights_present, 0u);
+    EXPECT_EQ(build_gpu_scene(scene_of_shapes({})).lights_present, 0u);
     scene.shapes.push_back(sphere);
     scene.environment = Environment{.size = {1, 2}, .radiance = {vec3(1), vec3(2)}};
     EXPECT_EQ(build_gpu_scene(scene).lights_present,
@@ -343,8 +343,8 @@ TEST(GpuScene, OfCornersInOnePlaceTheFirstIsNamed) {
     const Quad next = parallelogram(vec3(1, 0, 0), vec3(1, 0, 1), vec3(0, 1, 0));
     const TriangleMesh triangle{
         .positions = {vec3(5), vec3(6, 5, 5), vec3(5, 6, 5)}, .normals = {}, .triangles = {uvec3(0, 1, 2)}};
-    Scene scene = scene_of({Shape{.geometry = SQUARE, .material = 0, .emission = {}},
-                            Shape{.geometry = next, .material = 0, .emission = {}}});
+    Scene scene = scene_of_shapes({Shape{.geometry = SQUARE, .material = 0, .emission = {}},
+                                   Shape{.geometry = next, .material = 0, .emission = {}}});
     add_shape(scene, triangle, 0);
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
     ASSERT_EQ(gpu.primitive_count, 3u);
@@ -364,7 +364,7 @@ TEST(GpuScene, OfCornersInOnePlaceTheFirstIsNamed) {
 }
 
 TEST(GpuScene, AnEmptySceneIsARootWithoutChildren) {
-    const GpuScene gpu = build_gpu_scene(scene_of({}));
+    const GpuScene gpu = build_gpu_scene(scene_of_shapes({}));
     EXPECT_EQ(gpu.primitive_count, 0u);
     EXPECT_EQ(gpu.light_count, 0u);
     EXPECT_EQ(gpu.arrays[ARRAY_NODES].size(), BVH_NODE_WORDS);

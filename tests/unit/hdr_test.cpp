@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
 
 using Pixel = std::array<int, 4>;
 
-constexpr size_t WIDTH = 300;  // Longer than the longest run.
-constexpr size_t HEIGHT = 3;
+constexpr size_t HDR_COLUMNS = 300;  // Longer than the longest run.
+constexpr size_t HDR_ROWS = 3;
 
 // Normalised pixels (the greatest mantissa is at least 128) of all exponents: a third of them without any
 // run, then runs of several lengths.
-std::vector<Pixel> make_pixels(size_t total = WIDTH * HEIGHT) {
+std::vector<Pixel> make_pixels(size_t total = HDR_COLUMNS * HDR_ROWS) {
     std::mt19937 random(5);
     std::vector<Pixel> pixels;
     for (int i = 0; pixels.size() < total / 3; ++i)
@@ -145,9 +145,9 @@ void expect_pixels(const Image& image, const std::vector<Pixel>& pixels) {
 TEST_F(Hdr, EachEncodingGivesTheExactValues) {
     const std::vector<Pixel> pixels = make_pixels();
     for (const Encoder encoder : ENCODERS) {
-        const Image image = read(encode(encoder, pixels, WIDTH));
-        EXPECT_EQ(image.full, uvec2(WIDTH, HEIGHT));
-        EXPECT_EQ(image.data, (PixelRect{0, 0, WIDTH, HEIGHT}));
+        const Image image = read(encode(encoder, pixels, HDR_COLUMNS));
+        EXPECT_EQ(image.full, uvec2(HDR_COLUMNS, HDR_ROWS));
+        EXPECT_EQ(image.data, (PixelRect{0, 0, HDR_COLUMNS, HDR_ROWS}));
         EXPECT_EQ(image.channels.size(), 3u);
         expect_pixels(image, pixels);
     }
@@ -155,9 +155,9 @@ TEST_F(Hdr, EachEncodingGivesTheExactValues) {
 
 TEST_F(Hdr, RowsMayDifferInTheirEncoding) {
     const std::vector<Pixel> pixels = make_pixels();
-    std::string bytes = hdr_header(WIDTH, HEIGHT);
-    for (size_t y = 0; y < HEIGHT; ++y)
-        bytes += ENCODERS[(y + 1) % 3](&pixels[y * WIDTH], WIDTH);
+    std::string bytes = hdr_header(HDR_COLUMNS, HDR_ROWS);
+    for (size_t y = 0; y < HDR_ROWS; ++y)
+        bytes += ENCODERS[(y + 1) % 3](&pixels[y * HDR_COLUMNS], HDR_COLUMNS);
     expect_pixels(read(bytes), pixels);
 }
 
@@ -290,7 +290,7 @@ TEST_F(Hdr, SurvivesDamage) {
     std::mt19937 random(6);
     int refused = 0;
     for (int i = 0; i < 300; ++i) {
-        std::string bytes = encode(ENCODERS[size_t(i % 3)], pixels, WIDTH);
+        std::string bytes = encode(ENCODERS[size_t(i % 3)], pixels, HDR_COLUMNS);
         bytes[random() % bytes.size()] = char(random());
         bytes[random() % 70] = char(random());  // In the header, mostly.
         try {

@@ -9,7 +9,7 @@ namespace {
 
 // So identities, which use these constants alone, are the same on every device.
 TEST(KernelConstants, WhatTheDeviceSetsHasItsDefaultUntilThereIsOne) {
-    Scene scene = scene_of({emitter(SQUARE, vec3(1))});
+    Scene scene = scene_of_shapes({emitter(SQUARE, vec3(1))});
     scene.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(2)}, .visible = false};
     RenderSettings settings;
     settings.estimator = Estimator::light;

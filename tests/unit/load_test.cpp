@@ -12,7 +12,7 @@
 namespace candela {
 namespace {
 
-const std::string TRIANGLE = "v 10 0 0\nv 11 0 0\nv 10 2 0\n";
+const std::string OBJ_TRIANGLE = "v 10 0 0\nv 11 0 0\nv 10 2 0\n";
 
 class Load : public testing::Test {
   protected:
@@ -43,7 +43,7 @@ class Load : public testing::Test {
 };
 
 TEST_F(Load, AnObjFileIsAScene) {
-    const Scene scene = load("m.OBJ", TRIANGLE + "f 1 2 3\n");
+    const Scene scene = load("m.OBJ", OBJ_TRIANGLE + "f 1 2 3\n");
     expect_view_of_everything(scene);
     EXPECT_TRUE(scene.warnings.empty());
     EXPECT_EQ(scene.files, std::vector{folder_.path() / "m.OBJ"});
@@ -57,7 +57,7 @@ TEST_F(Load, AnObjFileIsAScene) {
 TEST_F(Load, AnObjFileKeepsItsMaterialsAndLamps) {
     folder_.write("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl lamp\nKd 0\nKe 5 6 7\n");
     const Scene scene =
-        load("m.obj", TRIANGLE + "mtllib m.mtl\nf 1 2 3\nusemtl red\nf 1 2 3\nusemtl lamp\nf 3 2 1\n");
+        load("m.obj", OBJ_TRIANGLE + "mtllib m.mtl\nf 1 2 3\nusemtl red\nf 1 2 3\nusemtl lamp\nf 3 2 1\n");
     expect_view_of_everything(scene);
     ASSERT_EQ(scene.shapes.size(), 3u);
     EXPECT_EQ(scene.materials[scene.shapes[1].material].name, "m.obj/red");

@@ -10,7 +10,7 @@
 namespace candela {
 namespace {
 
-const std::string SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string CORNERS = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 const std::string UVS = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
 class ObjAttributes : public testing::Test {
@@ -45,7 +45,7 @@ class ObjAttributes : public testing::Test {
 };
 
 TEST_F(ObjAttributes, TextureCoordinatesKeepTheDirectionOfTheFile) {
-    const TriangleMesh mesh = load(SQUARE + UVS + "f 1/1 2/2 3/3\nf -4/-4 -2/-2 -1/-1\n");
+    const TriangleMesh mesh = load(CORNERS + UVS + "f 1/1 2/2 3/3\nf -4/-4 -2/-2 -1/-1\n");
     EXPECT_EQ(corners(mesh, &TriangleMesh::uv0), (std::vector<vec2>{vec2(0, 0), vec2(1, 0), vec2(1, 1)}));
     EXPECT_EQ(corners(mesh, &TriangleMesh::uv0, 1), (std::vector<vec2>{vec2(0, 0), vec2(1, 1), vec2(0, 1)}));
     EXPECT_EQ(mesh.positions.size(), 4u);
@@ -53,13 +53,13 @@ TEST_F(ObjAttributes, TextureCoordinatesKeepTheDirectionOfTheFile) {
 }
 
 TEST_F(ObjAttributes, TextureCoordinatesHaveOneToThreeNumbers) {
-    const TriangleMesh mesh = load(SQUARE + "vt .25\nvt -1e30 +1e30 5 6\nvt 0.5 # 7\nf 1/1 2/2 3/3\n");
+    const TriangleMesh mesh = load(CORNERS + "vt .25\nvt -1e30 +1e30 5 6\nvt 0.5 # 7\nf 1/1 2/2 3/3\n");
     EXPECT_EQ(corners(mesh, &TriangleMesh::uv0),
               (std::vector<vec2>{vec2(0.25f, 0), vec2(-1e30f, 1e30f), vec2(0.5f, 0)}));
 }
 
 TEST_F(ObjAttributes, VerticesAreSplitAtSeams) {
-    const std::string square = SQUARE + UVS + "vn 0 0 1\nvn 1 0 1\n";
+    const std::string square = CORNERS + UVS + "vn 0 0 1\nvn 1 0 1\n";
     // The corners of both triangles differ in their second texture coordinates at one position of two.
     const std::string seam = "f 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/4/1 4/4/1\n";
     EXPECT_EQ(load(square + seam).positions.size(), 5u);
@@ -73,15 +73,15 @@ TEST_F(ObjAttributes, VerticesAreSplitAtSeams) {
 }
 
 TEST_F(ObjAttributes, CornersWithoutTextureCoordinatesHaveZeros) {
-    const TriangleMesh mesh = load(SQUARE + UVS + "f 1/2 2/2 3/3\nf 1 3//1 4/4\nvn 0 0 1\n");
+    const TriangleMesh mesh = load(CORNERS + UVS + "f 1/2 2/2 3/3\nf 1 3//1 4/4\nvn 0 0 1\n");
     EXPECT_EQ(corners(mesh, &TriangleMesh::uv0, 1), (std::vector<vec2>{vec2(0), vec2(0), vec2(0, 1)}));
     EXPECT_EQ(mesh.positions.size(), 6u);
 }
 
 TEST_F(ObjAttributes, AMeshWithoutTextureCoordinatesHasNone) {
-    EXPECT_TRUE(load(SQUARE + UVS + "f 1 2 3\n").uv0.empty());
-    EXPECT_TRUE(load(SQUARE + "f 1 2 3\n").uv0.empty());
-    const std::vector<ObjPart> some = parts(SQUARE + UVS +
+    EXPECT_TRUE(load(CORNERS + UVS + "f 1 2 3\n").uv0.empty());
+    EXPECT_TRUE(load(CORNERS + "f 1 2 3\n").uv0.empty());
+    const std::vector<ObjPart> some = parts(CORNERS + UVS +
                                             "usemtl a\nf 1 2 3 4\nusemtl b\nf 1/1 2/2 3/3\nf 1 3 4\n"
                                             "usemtl c\nf 1 2 3\nf 1 3 4/1\nusemtl a\nf 1 2 3\n");
     ASSERT_EQ(some.size(), 3u);
@@ -95,15 +95,15 @@ TEST_F(ObjAttributes, AMeshWithoutTextureCoordinatesHasNone) {
 
 TEST_F(ObjAttributes, RefusesTextureCoordinatesThatAreNoNumbers) {
     const std::string faces = "\nf 1/1 2/1 3/1\n";
-    expect_error(SQUARE + "vt" + faces,
+    expect_error(CORNERS + "vt" + faces,
                  "m.obj:5: a texture coordinate needs one to three numbers; is the file cut off?");
     for (const std::string word : {"nan", "inf", "-inf", "1.1e30", "-1.1e30", "1e39", "0,5", "x"}) {
         const std::string cause =
             "m.obj:5: a texture coordinate needs finite numbers from -1e30 to 1e30, found \"" + word + '"';
-        expect_error(SQUARE + "vt " + word + " 0" + faces, cause);
-        expect_error(SQUARE + "vt 0 " + word + faces, cause);
+        expect_error(CORNERS + "vt " + word + " 0" + faces, cause);
+        expect_error(CORNERS + "vt 0 " + word + faces, cause);
     }
-    EXPECT_NO_THROW(load(SQUARE + "vt 0 0 nan" + faces));
+    EXPECT_NO_THROW(load(CORNERS + "vt 0 0 nan" + faces));
 }
 
 TEST_F(ObjAttributes, ColoursFollowPositions) {
@@ -112,7 +112,7 @@ TEST_F(ObjAttributes, ColoursFollowPositions) {
     EXPECT_EQ(corners(mesh, &TriangleMesh::colors),
               (std::vector<vec4>{vec4(0.25f, 0.5f, 0.75f, 1), vec4(0, 1, 1, 1), vec4(1)}));
     EXPECT_EQ(corners(mesh, &TriangleMesh::colors, 1)[2], vec4(1));
-    EXPECT_TRUE(load(SQUARE + "f 1 2 3\n").colors.empty());
+    EXPECT_TRUE(load(CORNERS + "f 1 2 3\n").colors.empty());
     EXPECT_TRUE(load("v 0 0 0 1\nv 1 0 0 1 1\nv 1 1 0 1 #1 1\nf 1 2 3\n").colors.empty());
 }
 

@@ -7,7 +7,7 @@
 namespace candela {
 namespace {
 
-constexpr const char* SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string FOUR_CORNERS = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 constexpr const char* OBJ_SHAPE = R"({"type": "obj", "file": "m.obj"})";
 
 class ObjMaterials : public testing::Test {
@@ -15,7 +15,7 @@ class ObjMaterials : public testing::Test {
     ObjMaterials() { folder_.write("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl lamp\nKd 0\nKe 5 6 7\n"); }
 
     // Writes m.obj: the corners of a square, and `text` from line 5 on.
-    void write(const std::string& text) { folder_.write("m.obj", SQUARE + text); }
+    void write(const std::string& text) { folder_.write("m.obj", FOUR_CORNERS + text); }
 
     Scene load(const std::string& text, const std::string& shapes = OBJ_SHAPE) {
         write(text);
@@ -197,7 +197,7 @@ TEST_F(ObjMaterials, LieInSeveralLibraries) {
 TEST_F(ObjMaterials, LieBesideTheirFile) {
     std::filesystem::create_directory(folder_.path() / "parts");
     folder_.write("parts/p.mtl", "newmtl red clay\nKd 0 1 0\n");
-    folder_.write("parts/m.obj", std::string(SQUARE) + "mtllib p.mtl\nusemtl  red clay\t\nf 1 2 3\n");
+    folder_.write("parts/m.obj", std::string(FOUR_CORNERS) + "mtllib p.mtl\nusemtl  red clay\t\nf 1 2 3\n");
     const Scene scene = folder_.load(scene_of(R"({"type": "obj", "file": "parts/m.obj"})"));
     EXPECT_EQ(reflectance(scene, 0), vec3(0, 1, 0));
     EXPECT_EQ(scene.materials[scene.shapes[0].material].name, "parts/m.obj/red clay");

@@ -104,7 +104,7 @@ inline Shape emitter(Quad quad, vec3 radiance, bool two_sided = false) {
         .geometry = quad, .material = 0, .emission = Emission{.radiance = radiance, .two_sided = two_sided}};
 }
 
-inline Scene scene_of(std::vector<Shape> shapes) {
+inline Scene scene_of_shapes(std::vector<Shape> shapes) {
     Scene scene;
     add_diffuse(scene, vec3(0.25f, 0.5f, 0.75f));
     scene.shapes = std::move(shapes);

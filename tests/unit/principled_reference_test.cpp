@@ -17,7 +17,7 @@ namespace candela {
 namespace {
 
 // Quadratures meet 2e-5; an albedo is a sum of a few of them.
-constexpr double TOLERANCE = 2e-4;
+constexpr double QUADRATURE_ERROR = 2e-4;
 
 dvec3 view(double cosine, double azimuth = 0.7) {
     const double sine = std::sqrt(1 - cosine * cosine);
@@ -48,7 +48,7 @@ void for_views(PrincipledParameters material, const Check& check) {
 
 void expect_lossless(const PrincipledParameters& material) {
     for_views(material, [](const PrincipledReference& reference, const std::string& what) {
-        expect_all(reference.albedo(), 1, TOLERANCE, what);
+        expect_all(reference.albedo(), 1, QUADRATURE_ERROR, what);
     });
 }
 
@@ -63,7 +63,7 @@ void expect_lossless_from_both_sides(PrincipledParameters volume) {
 void expect_greatest_channel_lossless(const PrincipledParameters& material) {
     for_views(material, [](const PrincipledReference& reference, const std::string& what) {
         const dvec3 albedo = reference.albedo();
-        EXPECT_NEAR(std::max({albedo.x, albedo.y, albedo.z}), 1, TOLERANCE) << what;
+        EXPECT_NEAR(std::max({albedo.x, albedo.y, albedo.z}), 1, QUADRATURE_ERROR) << what;
     });
 }
 
@@ -101,7 +101,7 @@ TEST(PrincipledReference, DispersiveGlassLosesNoLight) {
                                          .inside = inside,
                                          .dispersion = 4};
         const PrincipledReference reference(glass, view(0.3));
-        expect_all(reference.albedo(), 1, TOLERANCE, inside ? "inside" : "outside");
+        expect_all(reference.albedo(), 1, QUADRATURE_ERROR, inside ? "inside" : "outside");
         EXPECT_NE(reference.albedos().reflection.x, reference.albedos().reflection.z);
     }
 }
@@ -403,8 +403,8 @@ TEST(PrincipledReference, SmoothSheenHidesTheBaseAtGrazingAngles) {
     const PrincipledReference cloth({.base_color = dvec3(1), .metalness = 1, .sheen_color = dvec3(1)},
                                     view(0.03));
     EXPECT_GT(cloth.shares().es, 1);
-    expect_all(cloth.albedos().sheen, 1, TOLERANCE, "sheen");
-    expect_all(cloth.albedo(), 1, TOLERANCE, "all");
+    expect_all(cloth.albedos().sheen, 1, QUADRATURE_ERROR, "sheen");
+    expect_all(cloth.albedo(), 1, QUADRATURE_ERROR, "all");
 }
 
 // Its matrix keeps the horizon, so that the density of a hemisphere stays one.
@@ -414,7 +414,8 @@ TEST(PrincipledReference, FuzzReflectsWhatItsFitSays) {
             const dvec3 wo = view(cosine);
             const double albedo =
                 integrate_over_cosine(wo, [&](dvec3 wi) { return dvec3(fuzz_f(roughness, wo, wi)); }).x;
-            EXPECT_NEAR(albedo, fuzz_albedo(roughness, cosine), TOLERANCE) << roughness << " " << cosine;
+            EXPECT_NEAR(albedo, fuzz_albedo(roughness, cosine), QUADRATURE_ERROR)
+                << roughness << " " << cosine;
         }
     }
 }
@@ -440,7 +441,7 @@ TEST(PrincipledReference, FuzzTakesFromLayersBelowWhateverItsColour) {
     const double reflected = 0.5 * fuzz_albedo(0.4, 0.2), below = 0.5 + 0.5 * std::pow(0.8, 5);
     const dvec3 expected = reflected * dvec3(1, 0.25, 0) + (1 - reflected) * below;
     for (int k = 0; k < 3; ++k)
-        EXPECT_NEAR(cloth.albedo()[k], expected[k], TOLERANCE);
+        EXPECT_NEAR(cloth.albedo()[k], expected[k], QUADRATURE_ERROR);
     EXPECT_NEAR(cloth.emission_factor(), 1 - reflected, 1e-12);
 }
 

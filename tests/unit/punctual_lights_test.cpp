@@ -25,7 +25,7 @@ double falloff(double angle) {
 
 // A square lamp, and one light of each kind.
 Scene scene_of_lights() {
-    Scene scene = scene_of({emitter(SQUARE, vec3(5))});
+    Scene scene = scene_of_shapes({emitter(SQUARE, vec3(5))});
     scene.lights = {
         {"sun", DirectionalLight{.direction = dvec3(0, 0, -3), .irradiance = vec3(4)}},
         {"bulb", PointLight{.position = dvec3(1, 2, 3), .intensity = vec3(0, 2, 0)}},
@@ -83,12 +83,12 @@ TEST(PunctualLights, AreInTheFrameOfTheScene) {
 }
 
 TEST(PunctualLights, DoNotCountIfTheyAreBlackOrThereIsNothingToLight) {
-    Scene scene = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
+    Scene scene = scene_of_shapes({{.geometry = SQUARE, .material = 0, .emission = {}}});
     scene.lights = {{"", PointLight{.intensity = vec3(0)}},
                     {"", SpotLight{.intensity = vec3(0)}},
                     {"", DirectionalLight{.irradiance = vec3(0)}}};
     EXPECT_EQ(build_gpu_scene(scene).light_count, 0u);
-    Scene empty = scene_of({});
+    Scene empty = scene_of_shapes({});
     empty.lights = {{"", DirectionalLight{}}};
     EXPECT_EQ(build_gpu_scene(empty).light_count, 0u);
 }
@@ -98,7 +98,7 @@ TEST(PunctualLights, ASpotMayBeAsNarrowAndHardAsFloatsCanSay) {
     const std::pair<float, float> cones[] = {
         {0.0f, 1e-30f}, {1e-12f, 1.0000001e-12f}, {0.5f, std::nextafter(0.5f, 1.0f)}, {0.5f, 0.5f}};
     for (const auto& [inner, outer] : cones) {
-        Scene scene = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
+        Scene scene = scene_of_shapes({{.geometry = SQUARE, .material = 0, .emission = {}}});
         scene.lights = {{"", PointLight{}}, {"", SpotLight{.inner_angle = inner, .outer_angle = outer}}};
         const GpuScene gpu = build_gpu_scene(scene);
         for (uint32_t i = 0; i < gpu.light_count; ++i) {
@@ -109,7 +109,7 @@ TEST(PunctualLights, ASpotMayBeAsNarrowAndHardAsFloatsCanSay) {
 }
 
 TEST(PunctualLights, AreRefusedWhereFloatsCannotHoldThem) {
-    Scene scene = scene_of({{.geometry = SQUARE, .material = 0, .emission = {}}});
+    Scene scene = scene_of_shapes({{.geometry = SQUARE, .material = 0, .emission = {}}});
     scene.lights = {{"star", PointLight{.position = dvec3(0, 0, 1e19)}}};
     EXPECT_EQ(error_of([&] { build_gpu_scene(scene); }),
               "the light \"star\" is too far from the scene for 32-bit floats; use a directional light");

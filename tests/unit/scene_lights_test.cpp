@@ -8,7 +8,7 @@ namespace candela {
 namespace {
 
 // A scene with a surface and these lights.
-std::string lit(const std::string& lights) {
+std::string lit_by(const std::string& lights) {
     return "{" + GOOD_CAMERA +
            ",\n\"materials\": {\"grey\": {\"type\": \"diffuse\", \"reflectance\": 0.5}},\n\"shapes\": "
            "[{\"type\": \"sphere\", \"material\": \"grey\"}],\n\"lights\": " +
@@ -16,17 +16,17 @@ std::string lit(const std::string& lights) {
 }
 
 std::string spot(const std::string& members) {
-    return lit("[@{\"type\": \"spot\", \"position\": [0, 1, 0], \"intensity\": 1, " + members + "}]");
+    return lit_by("[@{\"type\": \"spot\", \"position\": [0, 1, 0], \"intensity\": 1, " + members + "}]");
 }
 
 // The same with its mark among the members.
 std::string marked_spot(const std::string& members) {
-    return lit("[{\"type\": \"spot\", \"position\": [0, 1, 0], \"intensity\": 1, " + members + "}]");
+    return lit_by("[{\"type\": \"spot\", \"position\": [0, 1, 0], \"intensity\": 1, " + members + "}]");
 }
 
 TEST(SceneLights, AreReadInTheirOrder) {
     SceneFolder folder;
-    const Scene scene = folder.load(lit(R"([
+    const Scene scene = folder.load(lit_by(R"([
         {"type": "directional", "direction": [0, -2, 0.5], "irradiance": [3, 2, 1]},
         {"type": "spot", "position": [1, 2, 3], "look_at": [1, 0, 3], "intensity": 7,
             "inner_angle": 10, "outer_angle": 90},
@@ -63,36 +63,38 @@ TEST(SceneLights, AreEnoughToLightAScene) {
     SceneFolder folder;
     const std::string black =
         R"({"type": "point", "name": "off", "position": [0, 2, 0], "intensity": [0, 0, 0]})";
-    const Scene dark = folder.load(lit('[' + black + ']'));
+    const Scene dark = folder.load(lit_by('[' + black + ']'));
     ASSERT_EQ(dark.warnings.size(), 2u);
     EXPECT_NE(dark.warnings[0].find("the light \"off\" is black: it gives no light"), std::string::npos);
     EXPECT_NE(dark.warnings[1].find("the scene has no light: the image will be black"), std::string::npos);
     const std::string bright = R"({"type": "directional", "direction": [0, -1, 0], "irradiance": 1})";
-    folder.expect_warning(lit('[' + bright + ", @" + black + ']'),
+    folder.expect_warning(lit_by('[' + bright + ", @" + black + ']'),
                           "the light \"off\" is black: it gives no light");
 }
 
 TEST(SceneLights, ChecksTheirKeys) {
     SceneFolder folder;
-    folder.expect_error(lit("@{}"), "\"lights\": expected an array [ ... ], found an object");
-    folder.expect_error(lit("[@{}]"), "the key \"type\" is missing here; add it");
-    folder.expect_error(lit("[{\"type\": @\"area\"}]"),
+    folder.expect_error(lit_by("@{}"), "\"lights\": expected an array [ ... ], found an object");
+    folder.expect_error(lit_by("[@{}]"), "the key \"type\" is missing here; add it");
+    folder.expect_error(lit_by("[{\"type\": @\"area\"}]"),
                         "unknown type \"area\" (known: point, spot, directional)");
-    folder.expect_error(lit("[@{\"type\": \"point\", \"intensity\": 1}]"),
+    folder.expect_error(lit_by("[@{\"type\": \"point\", \"intensity\": 1}]"),
                         "the key \"position\" is missing here; add it");
-    folder.expect_error(lit("[@{\"type\": \"point\", \"position\": [0, 0, 0]}]"),
+    folder.expect_error(lit_by("[@{\"type\": \"point\", \"position\": [0, 0, 0]}]"),
                         "the key \"intensity\" is missing here; add it");
-    folder.expect_error(lit("[{\"type\": \"point\", \"position\": [0, 0, 0], \"intensity\": @[1, -1, 0]}]"),
-                        "\"intensity\": expected numbers of at least 0, found [1, -1, 0]");
-    folder.expect_error(lit("[{\"type\": \"point\", @\"radius\": 1}]"),
+    folder.expect_error(
+        lit_by("[{\"type\": \"point\", \"position\": [0, 0, 0], \"intensity\": @[1, -1, 0]}]"),
+        "\"intensity\": expected numbers of at least 0, found [1, -1, 0]");
+    folder.expect_error(lit_by("[{\"type\": \"point\", @\"radius\": 1}]"),
                         "unknown key \"radius\" (known: type, name, position, intensity)");
     folder.expect_error(
-        lit("[{\"type\": \"point\", \"name\": @1, \"position\": [0, 0, 0], \"intensity\": 1}]"),
+        lit_by("[{\"type\": \"point\", \"name\": @1, \"position\": [0, 0, 0], \"intensity\": 1}]"),
         "\"name\": expected a string, found 1");
-    folder.expect_error(lit("[{\"type\": \"directional\", \"direction\": @[0, 0, 0], \"irradiance\": 1}]"),
+    folder.expect_error(lit_by("[{\"type\": \"directional\", \"direction\": @[0, 0, 0], \"irradiance\": 1}]"),
                         "\"direction\": expected a direction, not zero, found [0, 0, 0]");
     folder.expect_error(
-        lit("[{\"type\": \"directional\", \"direction\": [0, 0, 1], @\"intensity\": 1, \"irradiance\": 1}]"),
+        lit_by(
+            "[{\"type\": \"directional\", \"direction\": [0, 0, 1], @\"intensity\": 1, \"irradiance\": 1}]"),
         "unknown key \"intensity\" (known: type, name, direction, irradiance)");
 }
 

@@ -13,7 +13,7 @@ std::string material(const std::string& value) {
 
 // The material that is read from the text.
 template <class Model>
-Model load(const std::string& value) {
+Model material(const std::string& value) {
     SceneFolder folder;
     const Scene scene = folder.load(material(value));
     EXPECT_EQ(scene.materials.at(0).name, "m");
@@ -46,7 +46,8 @@ TEST(SceneMaterials, HaveAKnownType) {
 }
 
 TEST(SceneMaterials, ReadDiffuse) {
-    EXPECT_EQ(load<DiffuseMaterial>(R"({"type": "diffuse", "reflectance": 0.25})").reflectance, vec3(0.25f));
+    EXPECT_EQ(material<DiffuseMaterial>(R"({"type": "diffuse", "reflectance": 0.25})").reflectance,
+              vec3(0.25f));
     SceneFolder folder;
     folder.expect_error(material(R"({"type": "diffuse", "reflectance": @[0.5, 0.5, 1.01]})"),
                         "\"reflectance\": expected numbers from 0 to 1, found [0.5, 0.5, 1.01]");
@@ -61,15 +62,15 @@ TEST(SceneMaterials, ReadDiffuse) {
 }
 
 TEST(SceneMaterials, ReadPhong) {
-    const auto phong = load<PhongMaterial>(
+    const auto phong = material<PhongMaterial>(
         R"({"type": "phong", "diffuse": [0.1, 0.2, 0.3], "specular": 0.5, "exponent": 12.5})");
     EXPECT_EQ(phong.diffuse, vec3(0.1f, 0.2f, 0.3f));
     EXPECT_EQ(phong.specular, vec3(0.5f));
     EXPECT_EQ(phong.exponent, 12.5f);
-    const auto polished = load<PhongMaterial>(R"({"type": "phong", "specular": 1, "exponent": 1e5})");
+    const auto polished = material<PhongMaterial>(R"({"type": "phong", "specular": 1, "exponent": 1e5})");
     EXPECT_EQ(polished.diffuse, vec3(0));
     EXPECT_EQ(polished.exponent, 1e5f);
-    EXPECT_EQ(load<PhongMaterial>(R"({"type": "phong", "specular": 1, "exponent": 0})").exponent, 0.0f);
+    EXPECT_EQ(material<PhongMaterial>(R"({"type": "phong", "specular": 1, "exponent": 0})").exponent, 0.0f);
 
     SceneFolder folder;
     const std::string exponent = "\"exponent\": expected a number from 0 to 100000, found ";
@@ -121,14 +122,15 @@ TEST(SceneMaterials, PhongMayReflectAllLight) {
 }
 
 TEST(SceneMaterials, ReadMirrorsAndConductors) {
-    EXPECT_EQ(load<MirrorMaterial>(R"({"type": "mirror"})").reflectance, vec3(1));
-    EXPECT_EQ(load<MirrorMaterial>(R"({"type": "mirror", "reflectance": [1, 0.5, 0]})").reflectance,
+    EXPECT_EQ(material<MirrorMaterial>(R"({"type": "mirror"})").reflectance, vec3(1));
+    EXPECT_EQ(material<MirrorMaterial>(R"({"type": "mirror", "reflectance": [1, 0.5, 0]})").reflectance,
               vec3(1, 0.5f, 0));
-    const auto gold =
-        load<ConductorMaterial>(R"({"type": "conductor", "reflectance": [1, 0.78, 0.34], "alpha": 0.001})");
+    const auto gold = material<ConductorMaterial>(
+        R"({"type": "conductor", "reflectance": [1, 0.78, 0.34], "alpha": 0.001})");
     EXPECT_EQ(gold.reflectance, vec3(1, 0.78f, 0.34f));
     EXPECT_EQ(gold.alpha, MIN_ALPHA);
-    EXPECT_EQ(load<ConductorMaterial>(R"({"type": "conductor", "reflectance": 1, "alpha": 1})").alpha, 1.0f);
+    EXPECT_EQ(material<ConductorMaterial>(R"({"type": "conductor", "reflectance": 1, "alpha": 1})").alpha,
+              1.0f);
 
     SceneFolder folder;
     const auto conductor = [](const std::string& alpha) {
@@ -148,12 +150,12 @@ TEST(SceneMaterials, ReadMirrorsAndConductors) {
 }
 
 TEST(SceneMaterials, ReadDiffuseTransmission) {
-    const auto leaf = load<DiffuseTransmissionMaterial>(
+    const auto leaf = material<DiffuseTransmissionMaterial>(
         R"({"type": "diffuse_transmission", "reflectance": [0.1, 0.2, 0.3], "transmittance": 0.7})");
     EXPECT_EQ(leaf.reflectance, vec3(0.1f, 0.2f, 0.3f));
     EXPECT_EQ(leaf.transmittance, vec3(0.7f));
     EXPECT_FALSE(leaf.inside);
-    const auto shell = load<DiffuseTransmissionMaterial>(
+    const auto shell = material<DiffuseTransmissionMaterial>(
         R"({"type": "diffuse_transmission", "reflectance": 0, "transmittance": 1,
             "absorption": {"transmittance": [0.5, 1, 0.25], "distance": 0.1}})");
     ASSERT_TRUE(shell.inside);
@@ -170,24 +172,27 @@ TEST(SceneMaterials, ReadDiffuseTransmission) {
 }
 
 TEST(SceneMaterials, ReadDielectrics) {
-    const auto glass = load<DielectricMaterial>(R"({"type": "dielectric", "ior": 1.52})");
+    const auto glass = material<DielectricMaterial>(R"({"type": "dielectric", "ior": 1.52})");
     EXPECT_EQ(glass.ior, 1.52f);
     EXPECT_FALSE(glass.exterior_ior);
     EXPECT_EQ(glass.priority, 0u);
     EXPECT_EQ(glass.fresnel, Fresnel::schlick);
     EXPECT_EQ(glass.inside.absorption, vec3(0));
-    const auto bubble = load<DielectricMaterial>(
+    const auto bubble = material<DielectricMaterial>(
         R"({"type": "dielectric", "ior": 1, "exterior_ior": 1.33, "fresnel": "exact",
             "absorption": {"transmittance": [0.5, 1, 0.25], "distance": 0.1}})");
     EXPECT_EQ(bubble.exterior_ior, 1.33f);
     EXPECT_EQ(bubble.fresnel, Fresnel::exact);
     // ln 2 / 0.1 m, 0, and twice the first.
     EXPECT_EQ(bubble.inside.absorption, vec3(6.9314718056f, 0.0f, 13.8629436112f));
-    const auto same = load<DielectricMaterial>(R"({"type": "dielectric", "ior": 1.5, "exterior_ior": 1.5})");
+    const auto same =
+        material<DielectricMaterial>(R"({"type": "dielectric", "ior": 1.5, "exterior_ior": 1.5})");
     EXPECT_EQ(same.ior, same.exterior_ior);
-    EXPECT_EQ(load<DielectricMaterial>(R"({"type": "dielectric", "ior": 2, "priority": 15})").priority, 15u);
-    EXPECT_EQ(load<DielectricMaterial>(R"({"type": "dielectric", "ior": 2, "fresnel": "schlick"})").fresnel,
-              Fresnel::schlick);
+    EXPECT_EQ(material<DielectricMaterial>(R"({"type": "dielectric", "ior": 2, "priority": 15})").priority,
+              15u);
+    EXPECT_EQ(
+        material<DielectricMaterial>(R"({"type": "dielectric", "ior": 2, "fresnel": "schlick"})").fresnel,
+        Fresnel::schlick);
 }
 
 TEST(SceneMaterials, CheckDielectrics) {

@@ -41,7 +41,7 @@ class ScenePrincipled : public testing::Test {
 const std::string TRANSPARENT = R"("transmission": 1, "thin_walled": false, )";
 
 // A mesh of the material "m" with these members more.
-std::string mesh(const std::string& members) {
+std::string mesh_of_m(const std::string& members) {
     return R"({"type": "mesh", "material": "m", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
                "triangles": [[0, 1, 2]])" +
            members + "}";
@@ -322,7 +322,7 @@ TEST_F(ScenePrincipled, ShapesEmitWhatTheirMaterialDoes) {
 TEST_F(ScenePrincipled, MeshesGetTheTangentsThatItNeeds) {
     const std::string uvs = R"(, "uvs": [[0, 0], [1, 0], [0, 1]], "uvs1": [[0, 0], [0, -1], [1, 0]])";
     const auto tangents = [&](const std::string& members) {
-        const Scene read = folder_.load(scene(R"("type": "principled", )" + members, mesh(uvs)));
+        const Scene read = folder_.load(scene(R"("type": "principled", )" + members, mesh_of_m(uvs)));
         EXPECT_EQ(needs_tangents(read.materials.at(0)), !read.meshes.at(0).tangents.empty());
         return read.meshes.at(0).tangents;
     };
@@ -348,7 +348,7 @@ TEST_F(ScenePrincipled, MeshesGetTheTangentsThatItNeeds) {
 
 TEST_F(ScenePrincipled, AnisotropicMeshesNeedCoordinates) {
     const auto refuse = [&](const std::string& members, const std::string& message) {
-        folder_.expect_error(scene(R"("type": "principled", )" + members, '@' + mesh("")), message);
+        folder_.expect_error(scene(R"("type": "principled", )" + members, '@' + mesh_of_m("")), message);
     };
     refuse("\"anisotropy\": 0.5",
            "the material \"m\" is anisotropic, but the mesh has no texture coordinates to say along which "
@@ -359,7 +359,8 @@ TEST_F(ScenePrincipled, AnisotropicMeshesNeedCoordinates) {
         "a material without textures";
     refuse(R"("anisotropy": {"image": "a.png"})", textures);
     refuse(R"("coat": 1, "coat_normal_map": {"image": "a.png"})", textures);
-    EXPECT_EQ(folder_.load(scene(R"("type": "principled", "anisotropy": 0)", mesh(""))).shapes.size(), 1u);
+    EXPECT_EQ(folder_.load(scene(R"("type": "principled", "anisotropy": 0)", mesh_of_m(""))).shapes.size(),
+              1u);
 }
 
 TEST_F(ScenePrincipled, WarnsOfANormalMapOfTheCoatThatIsNone) {

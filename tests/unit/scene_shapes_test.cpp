@@ -43,7 +43,7 @@ TEST(SceneShapes, HaveASurface) {
 
 // The sphere or disk that is read from its members.
 template <class Geometry>
-Geometry load(const std::string& members) {
+Geometry shape(const std::string& members) {
     SceneFolder folder;
     const Scene scene = folder.load(scene_of("{\"material\": \"white\", " + members + "}"));
     EXPECT_EQ(scene.shapes.size(), 1u);
@@ -52,14 +52,14 @@ Geometry load(const std::string& members) {
 }
 
 TEST(SceneShapes, ReadSpheres) {
-    const auto unit = load<Sphere>(R"("type": "sphere")");
+    const auto unit = shape<Sphere>(R"("type": "sphere")");
     EXPECT_EQ(unit.center, dvec3(0));
     EXPECT_EQ(unit.radius, 1.0);
-    const auto moved = load<Sphere>(R"("type": "sphere", "center": [1, 2, 3], "radius": 0.1)");
+    const auto moved = shape<Sphere>(R"("type": "sphere", "center": [1, 2, 3], "radius": 0.1)");
     EXPECT_EQ(moved.center, dvec3(1, 2, 3));
     EXPECT_EQ(moved.radius, 0.1);
     // A quarter turn about y takes x to -z and z to x; mirrored and doubled, x to 2 z and z to -2 x.
-    const auto turned = load<Sphere>(R"("type": "sphere", "center": [1, 2, 3], "radius": 0.25, "transform":
+    const auto turned = shape<Sphere>(R"("type": "sphere", "center": [1, 2, 3], "radius": 0.25, "transform":
         [{"rotate": 90, "axis": [0, 1, 0]}, {"scale": -2}, {"translate": [0, 10, 0]}])");
     // The turn's cosine is 6e-17 in doubles; times 3 and 2 that stays far below the tolerance.
     EXPECT_LT(length(turned.center - dvec3(-6, 6, 2)), 1e-6f);
@@ -106,16 +106,16 @@ TEST(SceneShapes, CheckSpheres) {
 }
 
 TEST(SceneShapes, ReadDisks) {
-    const auto disk = load<Disk>(R"("type": "disk", "center": [1, 2, 3], "normal": [0, 0, 5], "radius": 2)");
+    const auto disk = shape<Disk>(R"("type": "disk", "center": [1, 2, 3], "normal": [0, 0, 5], "radius": 2)");
     EXPECT_EQ(disk.center, dvec3(1, 2, 3));
     EXPECT_EQ(disk.e1, dvec3(2, 0, 0));
     EXPECT_EQ(disk.e2, dvec3(0, 2, 0));
-    const auto unit = load<Disk>(R"("type": "disk", "normal": [0, -1, 0])");
+    const auto unit = shape<Disk>(R"("type": "disk", "normal": [0, -1, 0])");
     EXPECT_EQ(unit.center, dvec3(0));
     EXPECT_EQ(cross(unit.e1, unit.e2), dvec3(0, -1, 0));
     for (const char* normal : {"[1, 2, -2]", "[-3, 0, 4]", "[1, 1, 1]", "[1e-200, 2e-200, 3e-200]",
                                "[-3e38, 1e38, 0]", "[0, 1, 1e-9]"}) {
-        const auto tilted = load<Disk>(R"("type": "disk", "radius": 3, "normal": )" + std::string(normal));
+        const auto tilted = shape<Disk>(R"("type": "disk", "radius": 3, "normal": )" + std::string(normal));
         double x = 0, y = 0, z = 0;
         ASSERT_EQ(std::sscanf(normal, "[%lf, %lf, %lf]", &x, &y, &z), 3);
         const glm::dvec3 n = normalize(glm::dvec3(x, y, z) / std::abs(x + y + z));
@@ -133,9 +133,10 @@ TEST(SceneShapes, TransformDisks) {
     for (const glm::dvec3 scale : {glm::dvec3(1, 2, 3), glm::dvec3(-1, 2, 3), glm::dvec3(-1, -2, -3)}) {
         const std::string factors =
             std::to_string(scale.x) + ", " + std::to_string(scale.y) + ", " + std::to_string(scale.z);
-        const auto disk = load<Disk>(R"("type": "disk", "center": [1, 1, 1], "normal": [1, 2, 2], "radius": 2,
+        const auto disk =
+            shape<Disk>(R"("type": "disk", "center": [1, 1, 1], "normal": [1, 2, 2], "radius": 2,
             "transform": [{"scale": [)" +
-                                     factors + "]}, {\"translate\": [5, 6, 7]}]");
+                        factors + "]}, {\"translate\": [5, 6, 7]}]");
         // Some ten roundings of numbers below 16, each by at most 9e-16; undoing the scale does not enlarge
         // that.
         constexpr double TOLERANCE = 1e-14;

@@ -11,7 +11,7 @@
 namespace candela {
 namespace {
 
-constexpr double INF = std::numeric_limits<double>::infinity();
+constexpr double INFINITY_D = std::numeric_limits<double>::infinity();
 
 void expect_relative(double actual, double expected, double tolerance) {
     EXPECT_NEAR(actual / expected, 1.0, tolerance) << actual << " against " << expected;
@@ -24,7 +24,7 @@ TEST(Statistics, NormalTailHasTheTabulatedValues) {
     expect_relative(normal_p_value(6.0), 1.9731752900753963e-9, 1e-13);
     expect_relative(normal_p_value(10.0), 1.5239706048321052e-23, 1e-13);
     EXPECT_EQ(normal_p_value(0.0), 1.0);
-    EXPECT_EQ(normal_p_value(-INF), 0.0);
+    EXPECT_EQ(normal_p_value(-INFINITY_D), 0.0);
 }
 
 TEST(Statistics, NormalCriticalValuesAreTheTabulatedOnes) {
@@ -35,7 +35,7 @@ TEST(Statistics, NormalCriticalValuesAreTheTabulatedOnes) {
     expect_relative(normal_critical_z(1e-9), 6.1094102048693971, 1e-14);
     expect_relative(normal_critical_z(1e-15), 8.0268588825345409, 1e-14);
     EXPECT_NEAR(normal_critical_z(1.0), 0.0, 1e-15);
-    EXPECT_EQ(normal_critical_z(0.0), INF);
+    EXPECT_EQ(normal_critical_z(0.0), INFINITY_D);
 }
 
 TEST(Statistics, NormalCriticalValueInvertsTheTail) {
@@ -80,7 +80,7 @@ TEST(Statistics, ChiSquaredHasItsClosedForms) {
         expect_relative(chi_squared_p_value(x, 4), std::exp(-x / 2) * (1 + x / 2), 1e-13);
     }
     EXPECT_EQ(chi_squared_p_value(0, 7), 1.0);
-    EXPECT_EQ(chi_squared_p_value(INF, 7), 0.0);
+    EXPECT_EQ(chi_squared_p_value(INFINITY_D, 7), 0.0);
 }
 
 // Ref: NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7.2 (upper critical values, four digits).
@@ -101,7 +101,7 @@ TEST(Statistics, StudentTHasItsClosedFormsAndTheNormalLimit) {
     }
     expect_relative(student_t_p_value(1.96, 1e6), 0.049996067585269791, 1e-9);
     EXPECT_EQ(student_t_p_value(0, 9), 1.0);
-    EXPECT_EQ(student_t_p_value(-INF, 9), 0.0);
+    EXPECT_EQ(student_t_p_value(-INFINITY_D, 9), 0.0);
 }
 
 TEST(Statistics, IncompleteBetaIsSymmetricAndHasItsClosedForms) {

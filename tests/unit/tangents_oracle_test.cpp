@@ -18,6 +18,7 @@
 #include "base/file.h"
 #include "scene/mesh.h"
 #include "scene/tangents.h"
+#include "support/scene_builders.h"
 
 namespace candela {
 namespace {
@@ -66,17 +67,13 @@ TriangleMesh taken_apart(const TriangleMesh& mesh) {
     return result;
 }
 
-uint32_t vertex_of(const TriangleMesh& mesh, size_t corner) {
-    return mesh.triangles[corner / 3][glm::length_t(corner % 3)];
-}
-
 class BlenderTangents : public testing::TestWithParam<const char*> {};
 
 // How far the two may differ [rad]. The file's numbers are off by up to 2^-16 each. Blender weights tangents
 // by an arc cosine of its own, in floats, that is off by up to 4.52e-5 rad. That turns a sum of tangents by
 // the sum of 4.52e-5 sin(angle to the mean), over the length of the sum: 5.3e-4 at most in these meshes,
 // where two thin triangles meet on Suzanne.
-constexpr double TOLERANCE = 1.8 * 0x1p-16 + 5.3e-4;
+constexpr double LARGEST_ANGLE = 1.8 * 0x1p-16 + 5.3e-4;
 
 TEST_P(BlenderTangents, AreTheSameAtEveryCorner) {
     const Expected expected = read_expected(GetParam());
@@ -95,7 +92,8 @@ TEST_P(BlenderTangents, AreTheSameAtEveryCorner) {
         }
         // Where nothing is known, Blender's is (1, 0, 0) whatever the normal is.
         const dvec3 wanted = blender - dot(blender, n) * n;
-        ASSERT_LT(std::atan2(length(cross(wanted, dvec3(tangent))), dot(wanted, dvec3(tangent))), TOLERANCE)
+        ASSERT_LT(std::atan2(length(cross(wanted, dvec3(tangent))), dot(wanted, dvec3(tangent))),
+                  LARGEST_ANGLE)
             << "corner " << c;
     }
     // Two triangles of Suzanne contain their normals at one corner, so that their angle there is 0.

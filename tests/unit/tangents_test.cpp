@@ -12,13 +12,10 @@
 
 #include "probe/random.h"
 #include "scene/mesh.h"
+#include "support/scene_builders.h"
 
 namespace candela {
 namespace {
-
-uint32_t vertex_of(const TriangleMesh& mesh, size_t corner) {
-    return mesh.triangles[corner / 3][glm::length_t(corner % 3)];
-}
 
 // The tangent of a corner.
 vec4 tangent_of(const TriangleMesh& mesh, size_t corner) {

@@ -12,10 +12,10 @@ namespace candela {
 namespace {
 
 constexpr uint32_t BLOCK = 8;
-constexpr uvec2 SIZE{45, 35};  // Ends within blocks.
+constexpr uvec2 JPEG_SIZE{45, 35};  // Ends within blocks.
 
 // Samples that are constant in each block; those of neighbours differ.
-std::vector<uint8_t> make_blocks(uint32_t channels, uvec2 size = SIZE, uint32_t block = BLOCK) {
+std::vector<uint8_t> make_blocks(uint32_t channels, uvec2 size = JPEG_SIZE, uint32_t block = BLOCK) {
     const std::vector<uint8_t> values = random_bytes(1024);
     std::vector<uint8_t> samples;
     for (uint32_t y = 0; y < size.y; ++y) {
@@ -28,7 +28,7 @@ std::vector<uint8_t> make_blocks(uint32_t channels, uvec2 size = SIZE, uint32_t 
 }
 
 void expect_near(const TexelImage& image, uint32_t channels, const std::vector<uint8_t>& samples,
-                 int tolerance, uvec2 size = SIZE) {
+                 int tolerance, uvec2 size = JPEG_SIZE) {
     EXPECT_EQ(image.size, size);
     EXPECT_EQ(image.channels, channels);
     EXPECT_EQ(image.type, TexelType::unorm8);
@@ -66,13 +66,14 @@ constexpr std::array<Adjust, 5> PROCESSES = {one_to_one,
 
 TEST(TexelJpeg, BlocksOfOneValueComeBackExactly) {
     for (const Adjust adjust : PROCESSES) {
-        expect_near(decode_quietly(encode_jpeg(SIZE, make_blocks(1), JCS_GRAYSCALE, adjust)), 1,
+        expect_near(decode_quietly(encode_jpeg(JPEG_SIZE, make_blocks(1), JCS_GRAYSCALE, adjust)), 1,
                     make_blocks(1), 0);
         const auto as_rgb = [&](j_compress_ptr jpeg) {
             jpeg_set_colorspace(jpeg, JCS_RGB);
             adjust(jpeg);
         };
-        expect_near(decode_quietly(encode_jpeg(SIZE, make_blocks(3), JCS_RGB, as_rgb)), 3, make_blocks(3), 0);
+        expect_near(decode_quietly(encode_jpeg(JPEG_SIZE, make_blocks(3), JCS_RGB, as_rgb)), 3,
+                    make_blocks(3), 0);
     }
 }
 
@@ -80,7 +81,8 @@ TEST(TexelJpeg, BlocksOfOneValueComeBackExactly) {
 // 1/2 < 2, and the others by less.
 TEST(TexelJpeg, ColoursComeBackWithinTheirRounding) {
     for (const Adjust adjust : PROCESSES)
-        expect_near(decode_quietly(encode_jpeg(SIZE, make_blocks(3), JCS_RGB, adjust)), 3, make_blocks(3), 1);
+        expect_near(decode_quietly(encode_jpeg(JPEG_SIZE, make_blocks(3), JCS_RGB, adjust)), 3,
+                    make_blocks(3), 1);
 }
 
 // The value of a sample before it is rounded, from the coefficients of its block.
@@ -162,24 +164,25 @@ size_t find_segment(const std::string& file, char marker) {
 }
 
 TEST(TexelJpeg, RefusesColoursForPrinting) {
-    const std::vector<uint8_t> samples = random_bytes(size_t{4} * SIZE.x * SIZE.y);
+    const std::vector<uint8_t> samples = random_bytes(size_t{4} * JPEG_SIZE.x * JPEG_SIZE.y);
     for (const J_COLOR_SPACE space : {JCS_CMYK, JCS_YCCK}) {
-        EXPECT_EQ(texel_error(encode_jpeg(SIZE, samples, JCS_CMYK,
+        EXPECT_EQ(texel_error(encode_jpeg(JPEG_SIZE, samples, JCS_CMYK,
                                           [&](j_compress_ptr jpeg) { jpeg_set_colorspace(jpeg, space); })),
                   "its colours are CMYK, which are for printing; convert it to RGB");
     }
-    EXPECT_EQ(texel_error(encode_jpeg(SIZE, random_bytes(size_t{2} * SIZE.x * SIZE.y), JCS_UNKNOWN)),
-              "it has 2 channels of no known meaning; save it as grey or RGB");
+    EXPECT_EQ(
+        texel_error(encode_jpeg(JPEG_SIZE, random_bytes(size_t{2} * JPEG_SIZE.x * JPEG_SIZE.y), JCS_UNKNOWN)),
+        "it has 2 channels of no known meaning; save it as grey or RGB");
 }
 
 TEST(TexelJpeg, RefusesKindsThatLibjpegDoesNotDecode) {
-    std::string lossless = encode_jpeg(SIZE, make_blocks(1));
+    std::string lossless = encode_jpeg(JPEG_SIZE, make_blocks(1));
     lossless[find_segment(lossless, '\xc0') - 1] = '\xc3';
     EXPECT_EQ(
         texel_error(lossless),
         "libjpeg does not decode its kind of JPEG (Unsupported JPEG process: SOF type 0xc3); save it as "
         "a baseline or progressive JPEG of 8 bits");
-    std::string deep = encode_jpeg(SIZE, make_blocks(1));
+    std::string deep = encode_jpeg(JPEG_SIZE, make_blocks(1));
     deep[find_segment(deep, '\xc0') + 2] = 12;
     EXPECT_EQ(texel_error(deep),
               "libjpeg does not decode its kind of JPEG (Unsupported JPEG data precision 12); save it as a "
@@ -194,7 +197,7 @@ TEST(TexelJpeg, RefusesEndlessScans) {
             scans.push_back({1, {c, 0, 0}, k, k, 0, 0});
     }
     const auto encode = [&](size_t count) {
-        return encode_jpeg(SIZE, make_blocks(3), JCS_RGB, [&](j_compress_ptr jpeg) {
+        return encode_jpeg(JPEG_SIZE, make_blocks(3), JCS_RGB, [&](j_compress_ptr jpeg) {
             one_to_one(jpeg);
             jpeg->scan_info = scans.data();
             jpeg->num_scans = int(count);
@@ -206,7 +209,7 @@ TEST(TexelJpeg, RefusesEndlessScans) {
 }
 
 TEST(TexelJpeg, RefusesMorePixelsThanItsBytesCanHold) {
-    std::string file = encode_jpeg(SIZE, make_blocks(1));
+    std::string file = encode_jpeg(JPEG_SIZE, make_blocks(1));
     const size_t frame = find_segment(file, '\xc0');
     file.replace(frame + 3, 4, "\x3e\x80\x3e\x80", 4);
     EXPECT_EQ(texel_error(file), damaged_file("its 16000x16000 pixels need more than " +
@@ -217,13 +220,13 @@ TEST(TexelJpeg, RefusesMorePixelsThanItsBytesCanHold) {
 
 TEST(TexelJpeg, AnIncompleteFileIsRefused) {
     for (const Adjust adjust : PROCESSES) {
-        const std::string file = encode_jpeg(SIZE, make_blocks(3), JCS_RGB, adjust);
+        const std::string file = encode_jpeg(JPEG_SIZE, make_blocks(3), JCS_RGB, adjust);
         for (const size_t end : {file.size() - 1, file.size() - 2, file.size() * 9 / 10})
             EXPECT_EQ(texel_error(file.substr(0, end)), damaged_file("Premature end of JPEG file"));
     }
     // With an end, but without the pixels before it. Arithmetic coding may leave out the zeros at an end.
     for (const Adjust adjust : {PROCESSES[0], PROCESSES[1], PROCESSES[4]}) {
-        const std::string file = encode_jpeg(SIZE, make_blocks(3), JCS_RGB, adjust);
+        const std::string file = encode_jpeg(JPEG_SIZE, make_blocks(3), JCS_RGB, adjust);
         const std::string message = texel_error(file.substr(0, file.size() * 9 / 10) + "\xff\xd9");
         EXPECT_TRUE(message.starts_with("the file is damaged or incomplete (")) << message;
     }
@@ -231,7 +234,7 @@ TEST(TexelJpeg, AnIncompleteFileIsRefused) {
 }
 
 TEST(TexelJpeg, WarnsOfWhatDoesNoHarm) {
-    std::string file = encode_jpeg(SIZE, make_blocks(1));
+    std::string file = encode_jpeg(JPEG_SIZE, make_blocks(1));
     std::vector<std::string> warnings;
     // libjpeg takes some of the padding for pixels that it does not need.
     const std::string padded = file.substr(0, file.size() - 2) + std::string(100, 'a') + "\xff\xd9";
@@ -250,7 +253,7 @@ TEST(TexelJpeg, WarnsOfWhatDoesNoHarm) {
 }
 
 TEST(TexelJpeg, BytesThatAreLeftOverWithinThePictureAreDamage) {
-    std::string file = encode_jpeg(SIZE, make_blocks(1), JCS_GRAYSCALE, PROCESSES[4]);
+    std::string file = encode_jpeg(JPEG_SIZE, make_blocks(1), JCS_GRAYSCALE, PROCESSES[4]);
     file.insert(find_segment(file, '\xd1') - 2, std::string(100, 'a'));
     const std::string message = texel_error(file);
     EXPECT_TRUE(message.ends_with(" extraneous bytes before marker 0xd1); write it again")) << message;

@@ -13,9 +13,9 @@ namespace candela {
 namespace {
 
 // Not a multiple of eight in either direction, so that rows end within a byte, and passes within a block.
-constexpr uvec2 SIZE{13, 11};
+constexpr uvec2 PNG_SIZE{13, 11};
 
-PngPicture make_picture(PngColor color, uint32_t bits, uvec2 size = SIZE) {
+PngPicture make_picture(PngColor color, uint32_t bits, uvec2 size = PNG_SIZE) {
     PngPicture picture{.size = size, .bits = bits, .color = color};
     std::mt19937 random(bits);
     picture.samples.resize(size_t{size.x} * size.y * picture.channels());
@@ -54,8 +54,8 @@ TEST(TexelPng, EveryColourTypeAndDepthGivesItsSamples) {
             const PngPicture picture = make_picture(color, bits);
             for (const bool interlaced : {false, true}) {
                 SCOPED_TRACE(testing::Message() << color << ", " << bits << (interlaced ? ", passes" : ""));
-                expect_texels(decode_quietly(encode_png(picture, "", interlaced)), SIZE, picture.channels(),
-                              bits == 16 ? TexelType::unorm16 : TexelType::unorm8,
+                expect_texels(decode_quietly(encode_png(picture, "", interlaced)), PNG_SIZE,
+                              picture.channels(), bits == 16 ? TexelType::unorm16 : TexelType::unorm8,
                               scaled(picture.samples, bits));
             }
         }
@@ -83,7 +83,7 @@ TEST(TexelPng, ATransparentColourBecomesAnAlphaChannel) {
                     std::equal(&picture.samples[i], &picture.samples[i] + channels, picture.samples.begin());
                 expected.push_back(is_key ? 0 : (bits == 16 ? 65535 : 255));
             }
-            expect_texels(decode_quietly(encode_png(picture, png_chunk("tRNS", key))), SIZE, channels + 1,
+            expect_texels(decode_quietly(encode_png(picture, png_chunk("tRNS", key))), PNG_SIZE, channels + 1,
                           bits == 16 ? TexelType::unorm16 : TexelType::unorm8, expected);
         }
     }
@@ -102,10 +102,10 @@ TEST(TexelPng, APaletteGivesItsColours) {
         }
         for (const bool interlaced : {false, true}) {
             SCOPED_TRACE(bits);
-            expect_texels(decode_quietly(encode_png(picture, chunk, interlaced)), SIZE, 3, TexelType::unorm8,
-                          opaque);
+            expect_texels(decode_quietly(encode_png(picture, chunk, interlaced)), PNG_SIZE, 3,
+                          TexelType::unorm8, opaque);
             expect_texels(decode_quietly(encode_png(picture, chunk + png_chunk("tRNS", "\x07"), interlaced)),
-                          SIZE, 4, TexelType::unorm8, transparent);
+                          PNG_SIZE, 4, TexelType::unorm8, transparent);
         }
     }
 }
@@ -178,7 +178,7 @@ TEST(TexelPng, UsesTheDefaultImageOfAnAnimation) {
     const std::string file =
         encode_png(picture, png_chunk("acTL", big_endian_bytes(2) + big_endian_bytes(0)));
     std::vector<std::string> warnings;
-    expect_texels(decode_texels(file, "a", warnings), SIZE, 3, TexelType::unorm8, picture.samples);
+    expect_texels(decode_texels(file, "a", warnings), PNG_SIZE, 3, TexelType::unorm8, picture.samples);
     EXPECT_EQ(warnings, std::vector<std::string>{"a: it is animated; its default image is used"});
 }
 
@@ -186,7 +186,7 @@ TEST(TexelPng, SkipsOtherChunksHoweverLong) {
     const PngPicture picture = make_picture(png_rgb, 8);
     const std::string chunks = png_chunk("iCCP", "no profile") + png_chunk("prVt", "private") +
                                png_chunk("tEXt", "Comment" + std::string(9'000'000, '\0'));
-    expect_texels(decode_quietly(encode_png(picture, chunks) + "and what follows the end"), SIZE, 3,
+    expect_texels(decode_quietly(encode_png(picture, chunks) + "and what follows the end"), PNG_SIZE, 3,
                   TexelType::unorm8, picture.samples);
 }
 

@@ -8,10 +8,10 @@
 namespace candela {
 namespace {
 
-constexpr uvec2 SIZE{37, 23};
+constexpr uvec2 WEBP_SIZE{37, 23};
 
 void expect_samples(const TexelImage& image, uint32_t channels, const std::vector<uint8_t>& samples) {
-    EXPECT_EQ(image.size, SIZE);
+    EXPECT_EQ(image.size, WEBP_SIZE);
     EXPECT_EQ(image.channels, channels);
     EXPECT_EQ(image.type, TexelType::unorm8);
     EXPECT_EQ(image.gamma, std::nullopt);
@@ -20,8 +20,8 @@ void expect_samples(const TexelImage& image, uint32_t channels, const std::vecto
 
 TEST(TexelWebp, LosslessFilesGiveTheirSamples) {
     for (const uint32_t channels : {3u, 4u}) {
-        const std::vector<uint8_t> samples = random_bytes(size_t{channels} * SIZE.x * SIZE.y);
-        expect_samples(decode_quietly(encode_webp(SIZE, samples)), channels, samples);
+        const std::vector<uint8_t> samples = random_bytes(size_t{channels} * WEBP_SIZE.x * WEBP_SIZE.y);
+        expect_samples(decode_quietly(encode_webp(WEBP_SIZE, samples)), channels, samples);
     }
 }
 
@@ -30,14 +30,14 @@ TEST(TexelWebp, LosslessFilesGiveTheirSamples) {
 // coarsest quantiser at this quality. Alpha is stored without loss.
 TEST(TexelWebp, LossyFilesGiveNearlyTheirColoursAndExactlyTheirAlpha) {
     for (const uint32_t channels : {3u, 4u}) {
-        std::vector<uint8_t> samples = random_bytes(size_t{channels} * SIZE.x * SIZE.y);
+        std::vector<uint8_t> samples = random_bytes(size_t{channels} * WEBP_SIZE.x * WEBP_SIZE.y);
         for (size_t i = 0; i < samples.size(); i += channels) {
             samples[i] = 200;
             samples[i + 1] = 100;
             samples[i + 2] = 50;
             if (channels == 4) samples[i + 3] = uint8_t(1 + samples[i + 3] % 255);
         }
-        const TexelImage image = decode_quietly(encode_webp(SIZE, samples, 100.0f));
+        const TexelImage image = decode_quietly(encode_webp(WEBP_SIZE, samples, 100.0f));
         ASSERT_EQ(image.channels, channels);
         const std::vector<uint32_t> values = texel_values(image);
         ASSERT_EQ(values.size(), samples.size());
@@ -61,7 +61,8 @@ TEST(TexelWebp, RefusesAnAnimation) {
 
 TEST(TexelWebp, SaysWhatIsDamaged) {
     for (const float quality : {-1.0f, 90.0f}) {
-        const std::string file = encode_webp(SIZE, random_bytes(size_t{4} * SIZE.x * SIZE.y), quality);
+        const std::string file =
+            encode_webp(WEBP_SIZE, random_bytes(size_t{4} * WEBP_SIZE.x * WEBP_SIZE.y), quality);
         EXPECT_EQ(texel_error(file.substr(0, file.size() - 1)), damaged_file("it ends early"));
         EXPECT_EQ(texel_error(file.substr(0, 12)), damaged_file("it ends early"));
         EXPECT_EQ(texel_error(riff("abcdefghijklmnopqrstuvwxyz")),

@@ -35,7 +35,7 @@ uint32_t selected(const std::optional<std::string>& request) {
 }
 
 // The message and the exit code of the error that `action` must throw.
-std::pair<std::string, ExitCode> error_of(const std::function<void()>& action) {
+std::pair<std::string, ExitCode> error_and_code_of(const std::function<void()>& action) {
     try {
         action();
     } catch (const Error& error) {
@@ -83,7 +83,7 @@ TEST(SelectDevice, TakesAnIndexOrAPartOfTheNameInAnyCase) {
 
 TEST(SelectDevice, NoMatchListsWhatThereIs) {
     for (const char* request : {"geforce", "4", "-1", "2x"}) {
-        const auto [message, code] = error_of([&] { selected(request); });
+        const auto [message, code] = error_and_code_of([&] { selected(request); });
         EXPECT_EQ(code, ExitCode::no_device);
         EXPECT_EQ(
             message,
@@ -96,7 +96,7 @@ TEST(SelectDevice, NoMatchListsWhatThereIs) {
 }
 
 TEST(SelectDevice, AnAmbiguousNameListsWhatThereIs) {
-    const auto [message, code] = error_of([] { selected("radeon"); });
+    const auto [message, code] = error_and_code_of([] { selected("radeon"); });
     EXPECT_EQ(code, ExitCode::no_device);
     EXPECT_NE(message.find("more than one device matches \"radeon\"; give the index"), std::string::npos)
         << message;
@@ -105,7 +105,7 @@ TEST(SelectDevice, AnAmbiguousNameListsWhatThereIs) {
 
 TEST(SelectDevice, ADeviceThatWillNotDoIsRefusedWithItsReason) {
     for (const char* request : {"1", "old"}) {
-        const auto [message, code] = error_of([&] { selected(request); });
+        const auto [message, code] = error_and_code_of([&] { selected(request); });
         EXPECT_EQ(code, ExitCode::no_device);
         EXPECT_EQ(message,
                   "device 1 \"Old Radeon\" will not do: it offers Vulkan 1.1.70, and 1.2 is needed; choose "
@@ -114,14 +114,14 @@ TEST(SelectDevice, ADeviceThatWillNotDoIsRefusedWithItsReason) {
 }
 
 TEST(SelectDevice, WithoutAUsableDeviceItNamesTheRemedy) {
-    const auto [none, none_code] = error_of([] { select_device({}, std::nullopt); });
+    const auto [none, none_code] = error_and_code_of([] { select_device({}, std::nullopt); });
     EXPECT_EQ(none_code, ExitCode::no_device);
     EXPECT_EQ(
         none,
         "Vulkan finds no device; install the driver of your GPU, or mesa-vulkan-drivers to render on the "
         "CPU");
     const auto [unfit, unfit_code] =
-        error_of([] { select_device(std::span(DEVICES).subspan(1, 1), std::nullopt); });
+        error_and_code_of([] { select_device(std::span(DEVICES).subspan(1, 1), std::nullopt); });
     EXPECT_EQ(unfit_code, ExitCode::no_device);
     EXPECT_NE(unfit.find("no Vulkan device here will do: 1: \"Old Radeon\""), std::string::npos) << unfit;
     EXPECT_NE(unfit.find("install a newer driver, or mesa-vulkan-drivers"), std::string::npos) << unfit;
@@ -133,8 +133,8 @@ TEST(VkCheck, PassesSuccessCodesOn) {
 }
 
 TEST(VkCheck, NamesTheCallThePlaceTheResultAndTheRemedy) {
-    const auto [message, code] =
-        error_of([] { check(VK_ERROR_DEVICE_LOST, "vkQueueSubmit(q)", "/home/me/host/vk/commands.cpp", 7); });
+    const auto [message, code] = error_and_code_of(
+        [] { check(VK_ERROR_DEVICE_LOST, "vkQueueSubmit(q)", "/home/me/host/vk/commands.cpp", 7); });
     EXPECT_EQ(code, ExitCode::device_lost);
     EXPECT_EQ(message,
               "vkQueueSubmit(q) failed at commands.cpp:7: VK_ERROR_DEVICE_LOST (-4); the driver stopped the "
@@ -142,9 +142,11 @@ TEST(VkCheck, NamesTheCallThePlaceTheResultAndTheRemedy) {
 }
 
 TEST(VkCheck, GivesEachKindOfFailureItsExitCode) {
-    EXPECT_EQ(error_of([] { VK_CHECK(VK_ERROR_OUT_OF_DEVICE_MEMORY); }).second, ExitCode::out_of_memory);
-    EXPECT_EQ(error_of([] { VK_CHECK(VK_ERROR_OUT_OF_HOST_MEMORY); }).second, ExitCode::out_of_memory);
-    EXPECT_EQ(error_of([] { VK_CHECK(VK_ERROR_INITIALIZATION_FAILED); }).second, ExitCode::failed);
+    EXPECT_EQ(error_and_code_of([] { VK_CHECK(VK_ERROR_OUT_OF_DEVICE_MEMORY); }).second,
+              ExitCode::out_of_memory);
+    EXPECT_EQ(error_and_code_of([] { VK_CHECK(VK_ERROR_OUT_OF_HOST_MEMORY); }).second,
+              ExitCode::out_of_memory);
+    EXPECT_EQ(error_and_code_of([] { VK_CHECK(VK_ERROR_INITIALIZATION_FAILED); }).second, ExitCode::failed);
 }
 
 // Stands for a Vulkan handle; `destroyed` holds what was destroyed, in order.
