@@ -6,9 +6,11 @@
 
 #include "bench/meshes.h"
 #include "bench/tracer.h"
+#include "bench/triangles.h"
 #include "gpu_scene/flatten.h"
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/triangle_pairs.h"
+#include "scene/geometry.h"
 #include "scene/mesh.h"
 
 namespace candela {
@@ -38,13 +40,15 @@ void add_speed(const Clocks& clocks, size_t triangles, std::vector<double>& valu
 // Adds the speed and cost of the trees over a scene's triangles.
 void add_builds(const std::string& subject, const Scene& scene, uint32_t runs, std::vector<Row>& rows) {
     std::vector<Box> triangles, pairs;
-    for (const BenchTriangle& t : triangles_of(scene)) {
-        triangles.emplace_back();
-        for (const vec3 corner : {t.a, t.b, t.c})
-            triangles.back().extend(corner);
+    for (const Primitive& p : flatten(scene, SceneFrame{}).primitives) {
+        pairs.push_back(bounds(p));
+        for (const auto& [b, c] : {std::pair(p.b, p.c), std::pair(p.c, p.d)}) {
+            if (b == c) continue;  // There is no second triangle.
+            triangles.emplace_back();
+            for (const vec3 corner : {p.a, b, c})
+                triangles.back().extend(corner);
+        }
     }
-    for (const Primitive& primitive : flatten(scene, SceneFrame{}).primitives)
-        pairs.push_back(bounds(primitive));
 
     Row whole{.subject = subject, .what = "pairs and tree", .unit = "Mtri/s"};
     Row speed{.subject = subject, .what = "tree over pairs", .unit = "Mtri/s"};
@@ -81,7 +85,7 @@ std::vector<Row> bench_build(const BenchOptions& options) {
     std::vector<Row> rows;
     for (const uint32_t triangles : options.triangles) {
         Scene scene = displaced_scene(triangles);
-        const std::string subject = triangles_text(triangles_of(scene).size());
+        const std::string subject = triangles_text(triangle_count(scene));
         options.progress("build: " + subject);
         add_builds(subject, scene, options.runs, rows);
         rows.push_back({.subject = subject,

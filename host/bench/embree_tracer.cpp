@@ -30,44 +30,64 @@ RTCRay embree_ray(const BenchRay& ray) {
     return r;
 }
 
-uint32_t closest(RTCScene scene, RTCIntersectContext& context, const BenchRay& ray) {
-    RTCRayHit query{embree_ray(ray), {}};
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene, &context, &query);
-    return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? NO_TRIANGLE : query.hit.primID;
-}
-
 uint32_t any(RTCScene scene, RTCIntersectContext& context, const BenchRay& ray) {
     RTCRay query = embree_ray(ray);
     rtcOccluded1(scene, &context, &query);
     return query.tfar < 0.0f ? ANY_HIT : NO_TRIANGLE;  // Embree sets tfar to minus infinity at a hit.
 }
 
+RTCScene scene_of(RTCDevice device, std::span<const BenchTriangle> triangles) {
+    RTCScene scene = rtcNewScene(device);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* const vertices = static_cast<vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), 3 * triangles.size()));
+    auto* const indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), triangles.size()));
+    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();
+    for (size_t i = 0; i < triangles.size(); ++i) {
+        vertices[3 * i] = triangles[i].a;
+        vertices[3 * i + 1] = triangles[i].b;
+        vertices[3 * i + 2] = triangles[i].c;
+    }
+    for (size_t i = 0; i < 3 * triangles.size(); ++i)
+        indices[i] = uint32_t(i);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    return scene;
+}
+
+void attach_instance(RTCDevice device, RTCScene scene, RTCScene mesh,
+                     const BenchTriangles::Instance& instance) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, mesh);
+    const glm::mat4x3 transform(vec3(instance.to_scene[0]), vec3(instance.to_scene[1]),
+                                vec3(instance.to_scene[2]), instance.centre);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &transform);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+}
+
+// Geometry 0 of its scene is that of the baked triangles, i + 1 is instance i.
 class EmbreeTracer : public RayTracer {
   public:
-    explicit EmbreeTracer(std::span<const BenchTriangle> triangles)
-        : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* const vertices = static_cast<vec3*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), 3 * triangles.size()));
-        auto* const indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), triangles.size()));
-        if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();
-        for (size_t i = 0; i < triangles.size(); ++i) {
-            vertices[3 * i] = triangles[i].a;
-            vertices[3 * i + 1] = triangles[i].b;
-            vertices[3 * i + 2] = triangles[i].c;
+    explicit EmbreeTracer(const BenchTriangles& triangles)
+        : device_(rtcNewDevice(nullptr)),
+          scene_(scene_of(device_, triangles.baked())),
+          triangles_(&triangles) {
+        for (const std::vector<BenchTriangle>& mesh : triangles.meshes()) {
+            meshes_.push_back(scene_of(device_, mesh));
+            rtcCommitScene(meshes_.back());
         }
-        for (size_t i = 0; i < 3 * triangles.size(); ++i)
-            indices[i] = uint32_t(i);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene_, geometry);
-        rtcReleaseGeometry(geometry);
+        for (const BenchTriangles::Instance& instance : triangles.instances())
+            attach_instance(device_, scene_, meshes_[instance.mesh], instance);
         rtcCommitScene(scene_);  // Medium quality, the default.
     }
     ~EmbreeTracer() override {
         rtcReleaseScene(scene_);
+        for (RTCScene mesh : meshes_)
+            rtcReleaseScene(mesh);
         rtcReleaseDevice(device_);
     }
 
@@ -89,6 +109,16 @@ class EmbreeTracer : public RayTracer {
     std::vector<uint32_t> results() const override { return results_; }
 
   private:
+    uint32_t closest(RTCIntersectContext& context, const BenchRay& ray) const {
+        RTCRayHit query{embree_ray(ray), {}};
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene_, &context, &query);
+        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return NO_TRIANGLE;
+        if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) return query.hit.primID;
+        return triangles_->instances()[query.hit.instID[0] - 1].first_id + query.hit.primID;
+    }
+
     // Traces chunks, counted over all repeats, until none are left.
     void trace_chunks(std::atomic<size_t>& next, uint32_t repeats) {
         // As Embree's manual recommends.
@@ -108,20 +138,22 @@ class EmbreeTracer : public RayTracer {
                     results_[i] = any(scene_, context, set_->rays[i]);
             } else {
                 for (size_t i = first; i < end; ++i)
-                    results_[i] = closest(scene_, context, set_->rays[i]);
+                    results_[i] = closest(context, set_->rays[i]);
             }
         }
     }
 
     RTCDevice device_;
     RTCScene scene_;
+    const BenchTriangles* triangles_;
+    std::vector<RTCScene> meshes_;
     const RaySet* set_ = nullptr;
     std::vector<uint32_t> results_;
 };
 
 }  // namespace
 
-std::unique_ptr<RayTracer> make_embree_tracer(std::span<const BenchTriangle> triangles) {
+std::unique_ptr<RayTracer> make_embree_tracer(const BenchTriangles& triangles) {
     return std::make_unique<EmbreeTracer>(triangles);
 }
 
@@ -135,7 +167,7 @@ std::optional<std::string> embree_version() {
 
 namespace candela {
 
-std::unique_ptr<RayTracer> make_embree_tracer(std::span<const BenchTriangle>) {
+std::unique_ptr<RayTracer> make_embree_tracer(const BenchTriangles&) {
     return nullptr;
 }
 

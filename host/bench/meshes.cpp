@@ -5,9 +5,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
+#include <utility>
 
-#include "gpu_scene/flatten.h"
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "probe/random.h"
 #include "probe/scenes.h"
 
@@ -83,6 +84,92 @@ TriangleMesh hilly_floor(uint32_t n) {
     return mesh;
 }
 
+// A tree that grows level by level.
+class Tree {
+  public:
+    explicit Tree(uint32_t seed) : random_(seed) {}
+
+    // Triangles of the wood of a tree with that many levels of branches.
+    static uint32_t wood(uint32_t levels) {
+        uint32_t branches = 1;
+        for (uint32_t level = 0; level < levels; ++level)
+            branches = 1 + CHILDREN * branches;
+        return branches * 2 * SIDES;
+    }
+
+    // A branch, those that leave it in its outer half, and so on up to the twigs.
+    void grow(vec3 from, vec3 direction, float length, float radius, uint32_t levels) {
+        const vec3 to = from + length * direction;
+        add_tube(from, to, radius);
+        if (levels == 0) {
+            twigs_.push_back({from, to});
+            return;
+        }
+        for (uint32_t i = 0; i < CHILDREN; ++i) {
+            const vec3 at = mix(from, to, 0.5f + 0.5f * random_.unit());
+            const vec3 bent = normalize(direction + 0.9f * random_.direction() + vec3(0.0f, 0.15f, 0.0f));
+            grow(at, bent, 0.6f * length, 0.5f * radius, levels - 1);
+        }
+    }
+
+    // Rhombuses of 10 x 4 cm around the twigs.
+    void add_leaves(uint32_t count) {
+        for (uint32_t i = 0; i < count; ++i) {
+            const auto& [from, to] = twigs_[i % twigs_.size()];
+            const vec3 at = mix(from, to, random_.unit()) + 0.15f * random_.cube();
+            const vec3 along = random_.direction();
+            const vec3 across = normalize(cross(along, random_.direction()));
+            add_quad(at, at + 0.05f * along - 0.02f * across, at + 0.1f * along,
+                     at + 0.05f * along + 0.02f * across);
+        }
+    }
+
+    TriangleMesh mesh;
+
+  private:
+    static constexpr uint32_t CHILDREN = 5, SIDES = 5;
+
+    // Whose far end is three fifths as thick.
+    void add_tube(vec3 from, vec3 to, float radius) {
+        const vec3 axis = normalize(to - from);
+        const vec3 x = normalize(cross(axis, std::abs(axis.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0)));
+        const vec3 y = cross(axis, x);
+        const auto around = [&](uint32_t side) {
+            const float angle = 2.0f * PI * float(side % SIDES) / float(SIDES);
+            return radius * (std::cos(angle) * x + std::sin(angle) * y);
+        };
+        for (uint32_t side = 0; side < SIDES; ++side) {
+            const vec3 a = around(side), b = around(side + 1);
+            add_quad(from + a, from + b, to + 0.6f * b, to + 0.6f * a);
+        }
+    }
+
+    void add_quad(vec3 a, vec3 b, vec3 c, vec3 d) {
+        const auto first = uint32_t(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), {a, b, c, d});
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+        mesh.triangles.emplace_back(first, first + 2, first + 3);
+    }
+
+    Random random_;
+    std::vector<std::pair<vec3, vec3>> twigs_;
+};
+
+// `place` turned about an axis, and scaled along its own.
+Transform placed_at(dvec3 place, dvec3 axis, double angle, dvec3 scale) {
+    Transform transform;
+    [[maybe_unused]] const bool regular =
+        transform.append(translate(glm::dmat4(1.0), place) * rotate(glm::dmat4(1.0), angle, axis) *
+                         glm::scale(glm::dmat4(1.0), scale));
+    assert(regular);
+    return transform;
+}
+
+void add_instance(Scene& scene, size_t mesh, const Transform& transform, uint32_t material) {
+    scene.shapes.push_back(
+        {.geometry = MeshInstance{uint32_t(mesh), transform}, .material = material, .emission = {}});
+}
+
 }  // namespace
 
 TriangleMesh displaced_sphere(uint32_t n, uint32_t seed) {
@@ -128,31 +215,60 @@ Scene displaced_scene(uint32_t triangles) {
     return scene;
 }
 
-std::vector<BenchTriangle> triangles_of(const Scene& scene) {
-    const FlatScene flat = flatten(scene, SceneFrame{});
-    std::vector<BenchTriangle> triangles(flat.id_count);
-    for (size_t i = 0; i < flat.primitives.size(); ++i) {
-        const Primitive& p = flat.primitives[i];
-        assert(p.kind == PRIMITIVE_TRIANGLES);
-        const uvec2 id = flat.surfaces[i].id;
-        triangles[id.x] = {p.a, p.b, p.c};
-        if (id.y != id.x) triangles[id.y] = {p.a, p.c, p.d};
-    }
-    return triangles;
+TriangleMesh tree_mesh(uint32_t triangles, uint32_t seed) {
+    // A quarter of the triangles at most is wood.
+    uint32_t levels = 0;
+    while (levels < 4 && Tree::wood(levels + 1) <= triangles / 4)
+        ++levels;
+    Tree tree(seed);
+    tree.grow(vec3(0), vec3(0, 1, 0), 3.5f, 0.2f, levels);
+    tree.add_leaves((triangles - Tree::wood(levels)) / 2);
+    return std::move(tree.mesh);
 }
 
-std::string triangles_text(uint64_t triangles) {
-    const auto count = double(triangles);
-    char text[40];
-    // From 999 500 on, three digits would round to 1000 k.
-    if (triangles >= 999500) {
-        std::snprintf(text, sizeof text, "%.3g M triangles", count / 1e6);
-    } else if (triangles >= 1000) {
-        std::snprintf(text, sizeof text, "%.3g k triangles", count / 1e3);
-    } else {
-        std::snprintf(text, sizeof text, "%.0f triangles", count);
+Scene forest_scene(uint32_t trees) {
+    constexpr uint32_t TRIANGLES = 100'000, KINDS = 20, TREES_PER_KIND = 500;
+    constexpr double SPACING = 4.5;  // Of a square grid, around whose points trees stand [m].
+    const auto rows = uint32_t(std::ceil(std::sqrt(double(trees))));
+    const double edge = SPACING * rows;
+    Scene scene = scene_with_camera(dvec3(-0.5 * edge, 16.0, 0.5 * edge), dvec3(0.0), 0.8f);
+    const uint32_t green = add_diffuse(scene, vec3(0.3f, 0.5f, 0.2f));
+    const uint32_t kinds = std::clamp(trees / TREES_PER_KIND, 1u, KINDS);
+    for (uint32_t kind = 0; kind < kinds; ++kind)
+        scene.meshes.push_back(tree_mesh(TRIANGLES, kind + 1));
+    Random random(1);
+    for (uint32_t i = 0; i < trees; ++i) {
+        const vec3 jitter = random.cube();
+        const double size = 0.8 + 0.4 * double(random.unit());
+        const dvec3 place(SPACING * (i % rows + 0.5 + 0.3 * double(jitter.x)) - 0.5 * edge, 0.0,
+                          SPACING * (i / rows + 0.5 + 0.3 * double(jitter.z)) - 0.5 * edge);
+        add_instance(scene, random.bits() % kinds,
+                     placed_at(place, dvec3(0, 1, 0), 2.0 * M_PI * double(random.unit()),
+                               size * dvec3(1.0, 1.0 + 0.1 * double(jitter.y), 1.0)),
+                     green);
     }
-    return text;
+    const double beyond = edge + 40.0;
+    add_shape(scene,
+              parallelogram(dvec3(-beyond, 0, beyond), dvec3(2.0 * beyond, 0, 0), dvec3(0, 0, -2.0 * beyond)),
+              green);
+    add_shape(
+        scene,
+        parallelogram(dvec3(-0.2 * edge, 100, -0.2 * edge), dvec3(0.4 * edge, 0, 0), dvec3(0, 0, 0.4 * edge)),
+        green, Emission{vec3(10.0f), false});
+    return scene;
+}
+
+Scene scattered_scene(uint32_t instances) {
+    Scene scene = scene_with_camera(dvec3(0, 0, 3), dvec3(0), 0.8f);
+    const uint32_t grey = add_diffuse(scene, vec3(0.5f));
+    scene.meshes.push_back(displaced_sphere(2, 1));
+    Random random(1);
+    const double size = 0.3 / std::cbrt(double(instances));
+    for (uint32_t i = 0; i < instances; ++i) {
+        const dvec3 place(random.cube()), axis(random.direction());
+        add_instance(scene, 0, placed_at(place, axis, 2.0 * M_PI * double(random.unit()), dvec3(size)), grey);
+    }
+    return scene;
 }
 
 }  // namespace candela

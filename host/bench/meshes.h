@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "scene/scene.h"
 
@@ -20,15 +18,16 @@ TriangleMesh displaced_sphere(uint32_t n, uint32_t seed);
 // corner; all materials are diffuse, all shading is flat.
 Scene displaced_scene(uint32_t triangles);
 
-// World space [m].
-struct BenchTriangle {
-    vec3 a, b, c;
-};
+// A tree of about that many triangles, at least ten, that stands at 0 and grows along +y to about 8 m: a stem
+// that branches up to four times, and leaves of two triangles around its twigs.
+TriangleMesh tree_mesh(uint32_t triangles, uint32_t seed);
 
-// The triangles, by id, of a scene that has no other shapes.
-std::vector<BenchTriangle> triangles_of(const Scene& scene);
+// `trees` instances of up to twenty trees of 100 000 triangles (one kind for every 500), turned, scaled and
+// so close that their crowns overlap, on a square of ground under a rectangular light. The camera looks over
+// the crowns from a corner. One material.
+Scene forest_scene(uint32_t trees);
 
-// "190 k triangles", "1 M triangles", "72 triangles": a number of triangles for people, to three digits.
-std::string triangles_text(uint64_t triangles);
+// That many instances of a mesh of 48 triangles, turned at random in a cube.
+Scene scattered_scene(uint32_t instances);
 
 }  // namespace candela

@@ -51,13 +51,13 @@ Vertex vertex_of(const BenchRay& ray, const BenchTriangle& triangle, double abov
 }
 
 // The vertices at the hits of a set; rays that miss have none.
-std::vector<Vertex> vertices_of(const RaySet& set, std::span<const BenchTriangle> triangles, double above,
+std::vector<Vertex> vertices_of(const RaySet& set, const TriangleById& triangle, double above,
                                 const ClosestHits& trace) {
     const std::vector<uint32_t> hits = trace(set);
     std::vector<Vertex> vertices;
     vertices.reserve(hits.size());
     for (size_t i = 0; i < hits.size(); ++i) {
-        if (hits[i] != NO_TRIANGLE) vertices.push_back(vertex_of(set.rays[i], triangles[hits[i]], above));
+        if (hits[i] != NO_TRIANGLE) vertices.push_back(vertex_of(set.rays[i], triangle(hits[i]), above));
     }
     return vertices;
 }
@@ -93,29 +93,19 @@ const Quad& light_of(const Scene& scene) {
     return std::get<Quad>(shape->geometry);
 }
 
-double extent_of(std::span<const BenchTriangle> triangles) {
-    Box box;
-    for (const BenchTriangle& triangle : triangles) {
-        box.extend(triangle.a);
-        box.extend(triangle.b);
-        box.extend(triangle.c);
-    }
-    const vec3 extent = box.extent();
-    return double(std::max({extent.x, extent.y, extent.z}));
-}
-
 }  // namespace
 
-std::vector<RaySet> make_ray_sets(const Scene& scene, std::span<const BenchTriangle> triangles,
+std::vector<RaySet> make_ray_sets(const Scene& scene, const TriangleById& triangle, const Box& bounds,
                                   uint32_t count, const ClosestHits& trace) {
     Random random(1);
-    const double above = START_ABOVE * extent_of(triangles);
+    const vec3 extent = bounds.extent();
+    const double above = START_ABOVE * double(std::max({extent.x, extent.y, extent.z}));
     RaySet primary{.name = "primary rays", .coherent = true, .rays = {}};
     primary.rays = primary_rays(scene.cameras.front(), count, random);
-    const std::vector<Vertex> seen = vertices_of(primary, triangles, above, trace);
+    const std::vector<Vertex> seen = vertices_of(primary, triangle, above, trace);
     RaySet first{.name = "first bounce", .rays = bounces(seen, random)};
     RaySet second{.name = "second bounce",
-                  .rays = bounces(vertices_of(first, triangles, above, trace), random)};
+                  .rays = bounces(vertices_of(first, triangle, above, trace), random)};
     RaySet shadow{.name = "shadow rays", .any_hit = true, .rays = shadow_rays(seen, light_of(scene), random)};
     std::vector<RaySet> sets;
     for (RaySet* set : {&primary, &first, &second, &shadow})

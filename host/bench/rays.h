@@ -3,11 +3,10 @@
 
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "bench/meshes.h"
+#include "bench/triangles.h"
 #include "scene/scene.h"
 
 namespace candela {
@@ -21,8 +20,8 @@ struct BenchRay {
 };
 static_assert(sizeof(BenchRay) == 32);
 
-// A tracer's result for a ray that misses. For a hit, it is the triangle's position in triangles_of() or,
-// where any hit will do, ANY_HIT.
+// A tracer's result for a ray that misses. For a hit, it is the triangle's id or, where any hit will do,
+// ANY_HIT.
 inline constexpr uint32_t NO_TRIANGLE = 0xFFFFFFFFu;
 inline constexpr uint32_t ANY_HIT = 0u;
 
@@ -35,14 +34,16 @@ struct RaySet {
 
 // The closest hits of rays.
 using ClosestHits = std::function<std::vector<uint32_t>(const RaySet&)>;
+// A triangle by its id.
+using TriangleById = std::function<BenchTriangle(uint32_t)>;
 
-// Four sets, each made from the hits of those before it in `triangles` (the scene's, by id), which `trace`
-// finds: primary rays, one through a random point of each pixel of a square picture of at least `count`
-// pixels and of whole tiles; their first and second bounces, distributed by the cosine; and shadow rays from
-// the hits of the primary rays to random points of the first emitting quad, which the scene must have. Rays
-// are in the order of pixels: tiles of 8x8, row-major, as are the pixels of each, so that neighbours are as
-// alike as in a renderer. Random numbers have a fixed seed.
-std::vector<RaySet> make_ray_sets(const Scene& scene, std::span<const BenchTriangle> triangles,
+// Four sets, each made from the hits of those before it, which `trace` finds. `bounds` is the box around all
+// triangles. They are: primary rays, one through a random point of each pixel of a square picture of at least
+// `count` pixels and of whole tiles; their first and second bounces, distributed by the cosine; and shadow
+// rays from the hits of the primary rays to random points of the first emitting quad, which the scene must
+// have. Rays are in the order of pixels: tiles of 8x8, row-major, as are the pixels of each, so that
+// neighbours are as alike as in a renderer. Random numbers have a fixed seed.
+std::vector<RaySet> make_ray_sets(const Scene& scene, const TriangleById& triangle, const Box& bounds,
                                   uint32_t count, const ClosestHits& trace);
 
 }  // namespace candela

@@ -37,9 +37,9 @@ class RayTracer {
 std::unique_ptr<RayTracer> make_device_tracer(const vk::Device& device, const GpuScene& scene,
                                               SceneAccess access, size_t batch = SIZE_MAX);
 
-// Embree's rtcIntersect1 and rtcOccluded1 on triangles (their ids are their positions), on all cores; null if
-// the program was built without Embree.
-std::unique_ptr<RayTracer> make_embree_tracer(std::span<const BenchTriangle> triangles);
+// Embree's rtcIntersect1 and rtcOccluded1 on triangles and its own instances of meshes, on all cores; null if
+// the program was built without Embree. `triangles` must outlive the tracer.
+std::unique_ptr<RayTracer> make_embree_tracer(const BenchTriangles& triangles);
 
 // "Embree 3.13.5"; none if the program was built without it.
 std::optional<std::string> embree_version();

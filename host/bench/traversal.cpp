@@ -1,14 +1,12 @@
 // See traversal.h.
 #include "bench/traversal.h"
 
-#include <cassert>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/text.h"
 #include "bench/meshes.h"
 #include "probe/scenes.h"
-#include "shared/primitive.h"
 
 namespace candela {
 namespace {
@@ -54,23 +52,20 @@ size_t count_differing(const std::vector<uint32_t>& a, const std::vector<uint32_
     return count;
 }
 
-void add_rows(const vk::Device& device, const BenchOptions& options, const std::string& name,
-              const Scene& scene, std::vector<Row>& rows) {
-    const std::vector<BenchTriangle> triangles = triangles_of(scene);
-    const std::string subject = (name.empty() ? "" : name + ", ") + triangles_text(triangles.size());
-    options.progress("traversal: " + subject);
-    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
-    assert(gpu.primitives_present == 1u << PRIMITIVE_TRIANGLES);
+void add_rows(const vk::Device& device, const BenchOptions& options, const std::string& subject,
+              const Scene& scene, const GpuScene& gpu, const BenchTriangles& triangles,
+              std::vector<Row>& rows) {
     const auto ours = make_device_tracer(device, gpu, options.scene_access);
     const auto rival = make_embree_tracer(triangles);
 
+    const auto triangle = [&](uint32_t id) { return triangles.at(id); };
     const auto closest_hits = [&](const RaySet& set) {
         ours->prepare(set);
         ours->trace(1);
         return ours->results();
     };
     size_t differing = 0, rays = 0;
-    for (const RaySet& set : make_ray_sets(scene, triangles, options.rays, closest_hits)) {
+    for (const RaySet& set : make_ray_sets(scene, triangle, triangles.bounds(), options.rays, closest_hits)) {
         rows.push_back(
             time_rays(subject, set, *ours, rival.get(), options.runs, works_on_cpu(device.info())));
         if (rival == nullptr) continue;
@@ -89,6 +84,36 @@ void add_rows(const vk::Device& device, const BenchOptions& options, const std::
                         {}});
 }
 
+void add_rows(const vk::Device& device, const BenchOptions& options, const std::string& name,
+              const Scene& scene, std::vector<Row>& rows) {
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
+    const BenchTriangles triangles(gpu);
+    const std::string subject = (name.empty() ? "" : name + ", ") + triangles_text(triangles.count());
+    options.progress("traversal: " + subject);
+    add_rows(device, options, subject, scene, gpu, triangles, rows);
+}
+
+// The time to make the records of a scene whose meshes have one tree each, and the bytes of each instance.
+void add_build_rows(const BenchOptions& options, std::vector<Row>& rows) {
+    const std::string subject = "scattered, " + std::to_string(options.instances) + " instances";
+    options.progress("instances: " + subject);
+    const Scene scene = scattered_scene(options.instances);
+    Row seconds{.subject = subject, .what = "build", .unit = "s"};
+    uint64_t bytes = 0;
+    for (uint32_t run = 0; run < options.runs; ++run) {
+        const Stopwatch watch;
+        bytes = build_gpu_scene(scene, SceneFrame{}).bytes();
+        const Clocks clocks = watch.elapsed();
+        seconds.ours.push_back(clocks.cpu / cores());
+        seconds.ours_wall.push_back(clocks.wall);
+    }
+    rows.push_back(seconds);
+    rows.push_back({.subject = subject,
+                    .what = "device memory",
+                    .unit = "B/instance",
+                    .ours = {double(bytes) / options.instances}});
+}
+
 }  // namespace
 
 std::vector<Row> bench_traversal(const vk::Device& device, const BenchOptions& options) {
@@ -96,6 +121,23 @@ std::vector<Row> bench_traversal(const vk::Device& device, const BenchOptions& o
     add_rows(device, options, "Cornell box", cornell_box(), rows);
     for (const uint32_t triangles : options.triangles)
         add_rows(device, options, "", displaced_scene(triangles), rows);
+    return rows;
+}
+
+std::vector<Row> bench_instances(const vk::Device& device, const BenchOptions& options) {
+    std::vector<Row> rows;
+    const Scene scene = forest_scene(options.trees);
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
+    const BenchTriangles triangles(gpu);
+    const std::string subject =
+        std::to_string(options.trees) + " trees, " + triangles_text(triangles.count());
+    options.progress("instances: " + subject);
+    add_rows(device, options, subject, scene, gpu, triangles, rows);
+    rows.push_back({.subject = subject,
+                    .what = "device memory",
+                    .unit = "MiB",
+                    .ours = {double(gpu.bytes()) / (1 << 20)}});
+    add_build_rows(options, rows);
     return rows;
 }
 

@@ -19,6 +19,11 @@ namespace candela {
 // and if the two tracers disagree.
 std::vector<Row> bench_traversal(const vk::Device& device, const BenchOptions& options);
 
+// The same, with Embree's own instances, in a forest_scene() of options.trees, and its bytes on the device;
+// then what making the records of a scattered_scene() of options.instances takes, in seconds and in bytes of
+// each.
+std::vector<Row> bench_instances(const vk::Device& device, const BenchOptions& options);
+
 // The row of one set: the two take turns, `runs` times, after each has traced the set twice to warm up. A run
 // repeats the set for about a tenth of a second. `rival` may be null.
 Row time_rays(const std::string& subject, const RaySet& set, RayTracer& ours, RayTracer* rival, uint32_t runs,

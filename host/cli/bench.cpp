@@ -108,6 +108,8 @@ Json settings_json(const BenchArguments& arguments, const RenderTask& task) {
     return {{"runs", arguments.bench.runs},
             {"rays", arguments.bench.rays},
             {"triangles", arguments.bench.triangles},
+            {"trees", arguments.bench.trees},
+            {"instances", arguments.bench.instances},
             {"scene_buffers", name_of(arguments.bench.scene_access, SCENE_ACCESS_NAMES)},
             {"seconds", task.seconds ? Json(*task.seconds) : Json(nullptr)},
             {"spp", arguments.render.spp ? Json(*arguments.render.spp) : Json(nullptr)},
@@ -159,6 +161,9 @@ std::vector<Row> run_group(BenchGroup group, const vk::Device& device, const Ben
     switch (group) {
         case BenchGroup::traversal:
             append(bench_traversal(device, arguments.bench));
+            break;
+        case BenchGroup::instances:
+            append(bench_instances(device, arguments.bench));
             break;
         case BenchGroup::build:
             append(bench_build(arguments.bench));
@@ -231,6 +236,8 @@ Command add_bench_command(CLI::App& app) {
     arguments->add_to(*command);
     command->footer(
         "traversal: only rays, in the Cornell box and in meshes; compared with Embree if built with it.\n"
+        "instances: the same in a forest of trees, 100 000 triangles each; and building instances of a small "
+        "mesh.\n"
         "build: pairing the triangles of those meshes and building their BVH, compared with Embree's over "
         "the\n"
         "triangles; both builders over the pairs, with the SAH cost; and all bytes on the device.\n"

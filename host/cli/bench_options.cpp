@@ -9,6 +9,8 @@ namespace {
 constexpr uint32_t MOST_RUNS = 1000;
 constexpr uint32_t LEAST_RAYS = 64, MOST_RAYS = 1u << 24;
 constexpr uint32_t LEAST_TRIANGLES = 72, MOST_TRIANGLES = 100'000'000;
+constexpr uint32_t MOST_TREES = 40'000;  // 4 G triangles: ids have 32 bits.
+constexpr uint32_t LEAST_INSTANCES = 2'000, MOST_INSTANCES = 10'000'000;
 
 // The values of a comma-separated list, if parse() accepts all of them.
 template <class T>
@@ -45,8 +47,9 @@ void BenchArguments::add_to(CLI::App& app) {
     app.option_defaults()->take_last();
     add_value(
         app, "--only", only, [](const std::string& text) { return parse_list(text, parse_group); },
-        "a list of traversal, build, render and first-pixel", "What to measure: a list (default: all)")
-        ->type_name("traversal,build,render,first-pixel");
+        "a list of traversal, instances, build, render and first-pixel",
+        "What to measure: a list (default: all)")
+        ->type_name("traversal,instances,build,render,first-pixel");
     add_value(
         app, "--runs", bench.runs, [](const std::string& text) { return parse_uint(text, 1, MOST_RUNS); },
         "a whole number from 1 to 1000", "Runs of everything (default: 5)")
@@ -54,13 +57,22 @@ void BenchArguments::add_to(CLI::App& app) {
     app.add_option("--json", json,
                    "Write each run as JSON; - writes it to standard output, instead of the table")
         ->type_name("FILE|-");
-    app.option_defaults()->group("Traversal and build");
+    app.option_defaults()->group("Traversal, instances and build");
     add_value(
         app, "--triangles", bench.triangles,
         [](const std::string& text) { return parse_list(text, parse_triangles); },
         "a list of numbers such as 190k, 1M, 10M, each from 72 to 100M",
         "Approximate sizes of the meshes (default: 190k,1M)")
         ->type_name("N,...");
+    add_value(
+        app, "--trees", bench.trees, [](const std::string& text) { return parse_uint(text, 1, MOST_TREES); },
+        "a whole number from 1 to 40000", "Instances of trees in the forest (default: 10000)")
+        ->type_name("N");
+    add_value(
+        app, "--instances", bench.instances,
+        [](const std::string& text) { return parse_uint(text, LEAST_INSTANCES, MOST_INSTANCES); },
+        "a whole number from 2000 to 10000000", "Instances of a small mesh to build (default: 1000000)")
+        ->type_name("N");
     add_value(
         app, "--rays", bench.rays,
         [](const std::string& text) { return parse_uint(text, LEAST_RAYS, MOST_RAYS); },

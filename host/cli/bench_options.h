@@ -13,8 +13,9 @@
 
 namespace candela {
 
-enum class BenchGroup { traversal, build, render, first_pixel };
-inline constexpr Choices<BenchGroup, 4> BENCH_GROUP_NAMES{{{"traversal", BenchGroup::traversal},
+enum class BenchGroup { traversal, instances, build, render, first_pixel };
+inline constexpr Choices<BenchGroup, 5> BENCH_GROUP_NAMES{{{"traversal", BenchGroup::traversal},
+                                                           {"instances", BenchGroup::instances},
                                                            {"build", BenchGroup::build},
                                                            {"render", BenchGroup::render},
                                                            {"first-pixel", BenchGroup::first_pixel}}};
@@ -22,8 +23,8 @@ inline constexpr Choices<BenchGroup, 4> BENCH_GROUP_NAMES{{{"traversal", BenchGr
 // The arguments of the command line.
 struct BenchArguments {
     std::vector<std::string> scenes;  // Empty: the embedded Cornell box.
-    std::vector<BenchGroup> only{BenchGroup::traversal, BenchGroup::build, BenchGroup::render,
-                                 BenchGroup::first_pixel};
+    std::vector<BenchGroup> only{BenchGroup::traversal, BenchGroup::instances, BenchGroup::build,
+                                 BenchGroup::render, BenchGroup::first_pixel};
     std::optional<std::string> json;  // "-": stdout.
     BenchOptions bench;
     std::optional<double> seconds;

@@ -23,8 +23,9 @@ class BenchCommand : public CliTest {
 };
 
 TEST_F(BenchCommand, MeasuresEverythingByDefault) {
-    const ProcessResult result = candela({"bench", "--runs", "2", "--triangles", "72", "--rays", "64",
-                                          "--spp", "2", "--size", "16x16", "--json", file("bench.json")});
+    const ProcessResult result =
+        candela({"bench", "--runs", "2", "--triangles", "72", "--trees", "2", "--instances", "2000", "--rays",
+                 "64", "--spp", "2", "--size", "16x16", "--json", file("bench.json")});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     for (const char* part : {"\ndevice   ",
                              "\ndriver   ",
@@ -38,6 +39,12 @@ TEST_F(BenchCommand, MeasuresEverythingByDefault) {
                              "\n  first bounce           Mrays/s ",
                              "\n  second bounce          Mrays/s ",
                              "\n  shadow rays            Mrays/s ",
+                             "\ninstances  ",
+                             "\n2 trees, 200 k triangles\n",
+                             "\n  device memory          MiB ",
+                             "\nscattered, 2000 instances\n",
+                             "\n  build                  s ",
+                             "\n  device memory          B/instance ",
                              "\nbuild  ",
                              "Mtri/s ",
                              "\n  SAH cost",
@@ -69,15 +76,19 @@ TEST_F(BenchCommand, MeasuresEverythingByDefault) {
     EXPECT_EQ(settings["runs"], 2);
     EXPECT_EQ(settings["rays"], 64);
     EXPECT_EQ(settings["triangles"], nlohmann::json({72}));
+    EXPECT_EQ(settings["trees"], 2);
+    EXPECT_EQ(settings["instances"], 2000);
     EXPECT_EQ(settings["spp"], 2);
     EXPECT_TRUE(settings["seconds"].is_null());
     EXPECT_EQ(settings["width"], 16);
     EXPECT_EQ(settings["sampler"], "sobol");
     for (const auto& group : report["groups"]) {
-        // The rival traces rays and builds trees.
-        const bool rivalled =
-            has_rival(result) && (group["group"] == "traversal" || group["group"] == "build");
         for (const auto& row : group["rows"]) {
+            // The rival traces rays and builds trees, but no records of instances.
+            const bool rivalled = has_rival(result) &&
+                                  (group["group"] == "traversal" || group["group"] == "instances" ||
+                                   group["group"] == "build") &&
+                                  row["what"] != "build";
             const bool timed = !row["candela"]["wall"].is_null();
             for (const double value : row["candela"]["runs"])
                 EXPECT_TRUE(value > 0.0 || row["what"] == "rays with another hit") << row;
@@ -149,22 +160,17 @@ TEST_F(BenchCommand, ARunMayEndByTheClock) {
 TEST_F(BenchCommand, HelpListsEveryOptionAndWhatIsMeasured) {
     const ProcessResult help = candela({"bench", "--help"});
     EXPECT_EQ(help.exit_code, 0);
-    for (const char* part : {"--only",          "--runs",
-                             "--json",          "--triangles",
-                             "--rays",          "--seconds",
-                             "--reference",     "--size",
-                             "--crop",          "--spp",
-                             "--seed",          "--max-depth",
-                             "--rr-depth",      "--estimator",
-                             "--sampler",       "--device",
-                             "--scene-buffers", "traversal:",
-                             "build:",          "render:",
-                             "first-pixel:",    "(x - r)^2 / (r^2 + 0.01 m^2)"})
+    for (const char* part :
+         {"--only",      "--runs",    "--json",    "--triangles",     "--trees",
+          "--instances", "--rays",    "--seconds", "--reference",     "--size",
+          "--crop",      "--spp",     "--seed",    "--max-depth",     "--rr-depth",
+          "--estimator", "--sampler", "--device",  "--scene-buffers", "traversal:",
+          "instances:",  "build:",    "render:",   "first-pixel:",    "(x - r)^2 / (r^2 + 0.01 m^2)"})
         EXPECT_CONTAINS(help.out, part);
 }
 
 TEST_F(BenchCommand, BadValuesAreNamedWithWhatIsExpected) {
-    const std::string groups = "a list of traversal, build, render and first-pixel";
+    const std::string groups = "a list of traversal, instances, build, render and first-pixel";
     const std::string triangles = "a list of numbers such as 190k, 1M, 10M, each from 72 to 100M";
     const std::vector<std::array<std::string, 3>> cases = {
         {"--only", "rays", groups},
@@ -176,6 +182,8 @@ TEST_F(BenchCommand, BadValuesAreNamedWithWhatIsExpected) {
         {"--triangles", "101M", triangles},
         {"--triangles", "1G", triangles},
         {"--triangles", "k", triangles},
+        {"--trees", "0", "a whole number from 1 to 40000"},
+        {"--instances", "1999", "a whole number from 2000 to 10000000"},
         {"--rays", "63", "a whole number from 64 to 16777216"},
         {"--seconds", "0", "a duration such as 5, 5s or 1.5m"},
         {"--spp", "0", "a whole number from 1 to 16777216"},

@@ -3,6 +3,7 @@
 
 #include "bench/meshes.h"
 #include "bench/tracer.h"
+#include "bench/triangles.h"
 #include "gpu/device_fixture.h"
 #include "selftest/traversal.h"
 
@@ -11,14 +12,16 @@ namespace {
 
 class BenchTest : public DeviceTest {
   protected:
-    BenchTest() : scene_(displaced_scene(300)), gpu_(build_gpu_scene(scene_, SceneFrame{})) {}
+    BenchTest()
+        : scene_(displaced_scene(300)), gpu_(build_gpu_scene(scene_, SceneFrame{})), triangles_(gpu_) {}
 
     // The benchmark's own sets, of 256 camera rays and what follows from them, and rays from outside and
     // inside the room, many of which miss it.
     std::vector<RaySet> ray_sets() const {
         const auto tracer = make_device_tracer(device(), gpu_, SceneAccess::texel_buffers);
-        std::vector<RaySet> sets = make_ray_sets(scene_, triangles_of(scene_), 256,
-                                                 [&](const RaySet& set) { return run(*tracer, set); });
+        std::vector<RaySet> sets = make_ray_sets(
+            scene_, [&](uint32_t id) { return triangles_.at(id); }, triangles_.bounds(), 256,
+            [&](const RaySet& set) { return run(*tracer, set); });
         RaySet closest{.name = "random rays", .rays = {}};
         for (const RayItem& ray : random_rays(256, vec3(0, 2, 0), 6.0f, 7))
             closest.rays.push_back({ray.o, INFINITE, ray.d});
@@ -50,6 +53,7 @@ class BenchTest : public DeviceTest {
 
     Scene scene_;
     GpuScene gpu_;
+    BenchTriangles triangles_;
 };
 
 TEST_F(BenchTest, KernelsFindTheHitsOfBruteForce) {
@@ -76,7 +80,7 @@ TEST_F(BenchTest, RaysInSeveralDispatchesFindTheSame) {
 
 // Without Embree there is nothing else to test.
 TEST_F(BenchTest, TheRivalIsThereWhenItsVersionIsAndFindsTheSameHits) {
-    const auto rival = make_embree_tracer(triangles_of(scene_));
+    const auto rival = make_embree_tracer(triangles_);
     ASSERT_EQ(rival != nullptr, embree_version().has_value());
     if (rival == nullptr) return;
     // No ray of this seed grazes an edge.

@@ -5,6 +5,9 @@ PATH = "shaders/integrator/path.glsl"
 LIGHT_SAMPLER = "shaders/light/light_sampler.glsl"
 AREA = "shaders/light/area.glsl"
 SPHERE = "shaders/light/sphere.glsl"
+POINT = "shaders/light/point.glsl"
+SPOT = "shaders/light/spot.glsl"
+DIRECTIONAL = "shaders/light/directional.glsl"
 SKY = "shaders/light/environment.glsl"
 PHONG = "shaders/bsdf/phong.glsl"
 MEDIUM = "shaders/medium/medium.glsl"
@@ -26,6 +29,7 @@ LIST = "shaders/scene/list.glsl"
 TRIANGLE = "shaders/scene/triangle.glsl"
 PRIMITIVE = "shaders/scene/primitive.glsl"
 INTERACTION = "shaders/scene/interaction.glsl"
+INSTANCE = "shaders/scene/instance.glsl"
 TEXTURE = "shaders/scene/texture.glsl"
 FILTER = "shaders/texture/filter.glsl"
 ATTRIBUTES = "shaders/scene/attributes.glsl"
@@ -38,6 +42,10 @@ RENDER = "shaders/kernels/render.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
 RENDERER = "host/render/renderer.cpp"
 FLATTEN = "host/gpu_scene/flatten.cpp"
+PUNCTUAL_LIGHTS = "host/gpu_scene/punctual_lights.cpp"
+MATERIAL_ARRAYS = "host/gpu_scene/material_arrays.cpp"
+GEOMETRY_ARRAYS = "host/gpu_scene/geometry_arrays.cpp"
+INSTANCING = "host/gpu_scene/instancing.cpp"
 
 # What a group runs: filters for the tests of shaders and for those of whole images, which tell much in little time.
 INTEGRATOR = ("Interaction*",
@@ -46,8 +54,10 @@ INTEGRATOR = ("Interaction*",
 BSDFS = ("BsdfTest*:Phong*:Dielectric*:Warp*", "Albedo*:SkyFurnace*:*Dielectric*Within*:*Reference*/glass")
 LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
+PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Orthographic*:ScaleTest*Mean*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
+INSTANCES = ("InstanceTest*", "*InstanceTest*:NestedMedia*Camera*")
 FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
 TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*:*Reference*/textured*:*Reference*/mask")
 MEDIA = ("Records*", "NestedMedia*:*Reference*/nested_glass")
@@ -152,7 +162,7 @@ GROUPS = [
         ("the frame's origin not subtracted from spheres", FLATTEN, "frame_.point(sphere.center)",
          "frame_.vector(sphere.center)"),
         ("the frame's unit forgotten for radii", FLATTEN, "frame_.length(sphere.radius)", "float(sphere.radius)"),
-        ("the frame's unit forgotten for media", "host/gpu_scene/gpu_scene.cpp",
+        ("the frame's unit forgotten for media", MATERIAL_ARRAYS,
          "vec3(gpu.frame.unit * dvec3(m.medium.absorption))", "vec3(0.0 * gpu.frame.unit + dvec3(m.medium.absorption))"),
         ("the camera rounded before it is in the frame", RENDERER, "frame.point(camera.position)",
          "frame.point(dvec3(vec3(camera.position)))"),
@@ -196,9 +206,9 @@ GROUPS = [
         ("light below the surface of a bent normal lost", BENT_NORMAL,
          "scattered.wi = mirrored(scattered.wi, n);", "scattered.pdf = 0.0;"),
         ("the first triangle's heights on the second", BUMP,
-         "if (hit_second(hit)) return UvEdges(p.c - p.a, p.d - p.a, c - a, uintBitsToFloat(cd.zw) - a);", ""),
+         "if (hit_second(hit)) edges = UvEdges(p.c - p.a, p.d - p.a, c - a, uintBitsToFloat(cd.zw) - a);", ""),
         ("heights that a mirrored image turns not turned", FILTER, "turned ? -float(n) : float(n)", "float(n)"),
-        ("the frame's unit forgotten for heights", "host/gpu_scene/gpu_scene.cpp", "frame.length(double(bump->scale))",
+        ("the frame's unit forgotten for heights", MATERIAL_ARRAYS, "frame.length(double(bump->scale))",
          "frame.length(frame.unit * double(bump->scale))"),
         ("a facet seen from behind", BENT_NORMAL, "if (up >= LEAST) return dot(wo, ns) < 0.0 ? -ns : ns;", "return ns;"),
     ]),
@@ -260,6 +270,57 @@ GROUPS = [
         ("the front culled", OPACITY, "return dot(n, ray.d) > 0.0;", "return dot(n, ray.d) < 0.0;"),
         ("every number from an image's red", MATERIAL, "channel == 0u ? texel.r : texel.g", "texel.r"),
         ("the tangent turned the wrong way", LAYERS, "p.rotation.x * t + p.rotation.y * b", "p.rotation.x * t - p.rotation.y * b"),
+    ]),
+    (PUNCTUAL, [
+        ("a point's light falls off with its distance, not with the square", POINT,
+         "l.radiance * inv_distance * inv_distance", "l.radiance * inv_distance"),
+        ("a surface on which a point lies hides it", POINT, "s.t_max = LIGHT_T_MAX;", "s.t_max = FLOAT_MAX;"),
+        ("points weighted as if rays could hit them", POINT, "s.delta = true;", "s.delta = false;"),
+        ("a spot's edge falls off linearly", SPOT, "return square(clamp(", "return (clamp("),
+        ("a spot shines everywhere", SPOT, "s.Li *= spot_light_falloff(l, -s.wi);", ""),
+        ("a spot shines backwards", SPOT, "(l, -s.wi)", "(l, s.wi)"),
+        ("a spot's angles swapped in its choice", PUNCTUAL_LIGHTS, "inner + (outer - inner) / 3.0",
+         "outer - (outer - inner) / 3.0"),
+        ("directional light from where it goes", DIRECTIONAL, "s.wi = l.e1;", "s.wi = -l.e1;"),
+        ("nothing far away hides directional light", DIRECTIONAL, "s.t_max = FLOAT_MAX;", "s.t_max = LIGHT_T_MAX;"),
+        ("directional light weighted as if rays could hit it", DIRECTIONAL, "s.delta = true;", "s.delta = false;"),
+        ("directional light chosen as in a scene of unit size", PUNCTUAL_LIGHTS, "append(record, radius_ * radius_);",
+         "append(record, 1.0);"),
+        ("the frame's unit forgotten for intensities", PUNCTUAL_LIGHTS,
+         "dvec3(intensity) / (frame_.unit * frame_.unit)", "dvec3(intensity)"),
+        ("parallel rays from one point", CAMERA, "Ray(camera.position + s.x * camera.right - s.y * camera.up, camera.forward)",
+         "Ray(camera.position, camera.forward)"),
+    ]),
+    (INSTANCES, [
+        ("what follows an instance traversed in its space", TRAVERSAL, "return INSTANCED && (t.entering || t.node < t.root);",
+         "return INSTANCED && t.entering;"),
+        ("hits behind an instance belong to it", TRAVERSAL, "t.instance = NO_INSTANCE;\n    t.root = 0u;", "t.root = 0u;"),
+        ("the siblings of an instance forgotten", TRAVERSAL, "t.leaves = others = 0u;", "t.leaves = others = t.pending = 0u;"),
+        ("rays of an instance not turned", INSTANCE, "vector_to_mesh(i, ray.d))", "ray.d)"),
+        ("normals turned as vectors are", INSTANCE, "return n.x * i.to_mesh[0] + n.y * i.to_mesh[1] + n.z * i.to_mesh[2];",
+         "return vector_to_scene(i, n);"),
+        ("normals of vertices not turned", INTERACTION, "normalize(normal_to_scene(instance, n)) : n", "n : n"),
+        ("bitangents of mirrored instances not mirrored", INTERACTION, "instance_determinant(i) < 0.0 ? -t.w : t.w",
+         "t.w"),
+        ("heights on instances not scaled", BUMP,
+         "if (is_instanced(hit.instance)) {", "if (false) {"),
+        ("an instance adds nothing to a surface's error", INTERACTION, "inv_length * s.error + i.error",
+         "inv_length * s.error"),
+        ("a surface's error not scaled by its instance", INTERACTION, "inv_length * s.error + i.error",
+         "s.error + i.error"),
+        ("boxes of instances without what rays may be off", "shaders/scene/node.glsl", "if (above_instances) margin +=",
+         "if (false) margin +="),
+        ("boxes of instances without a margin, a little small", INSTANCING, "const dvec3 spare = 2.0 * U *",
+         "const dvec3 spare = -64.0 * U *"),
+        ("of equal hits of two instances the last one found wins", "shaders/scene/primitive.glsl",
+         "before = found.instance < hit.instance;", "before = true;"),
+        ("all instances have the same ids", GEOMETRY_ARRAYS, "record.first_id = gpu.id_count;", "record.first_id = 0;"),
+        ("an instance has its mesh's material", GEOMETRY_ARRAYS, "record.material = instances.shapes[i]->material;",
+         "record.material = 0;"),
+        ("the stack as deep as the deepest mesh alone", GEOMETRY_ARRAYS, "top.instance_levels[i] + tree.bvh.depth",
+         "tree.bvh.depth"),
+        ("instances in no medium", "host/gpu_scene/media_at.cpp", "medium_of(instance.material)", "MEDIUM_SAME"),
+        ("sheared instances in spaces of their own", INSTANCING, "<= double{MAX_INSTANCE_CONDITION}", "<= 1e30"),
     ]),
     (DEVICES, [
         ("a work group's counts in the place of those before", RENDER, "if (n > 0u) atomicAdd(counters[i], n);",

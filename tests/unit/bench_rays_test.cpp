@@ -29,13 +29,15 @@ class BenchRays : public testing::Test {
     BenchRays() {
         for (size_t i = 0; i < triangles_.size(); i += 2)
             std::swap(triangles_[i].b, triangles_[i].c);
-        sets_ = make_ray_sets(scene_, triangles_, 1000, [this](const RaySet& set) {
-            std::vector<uint32_t> ids;
-            for (const BenchRay& ray : set.rays)
-                ids.push_back(closest(ray));
-            hits_.push_back(ids);
-            return ids;
-        });
+        const auto triangle = [this](uint32_t id) { return triangles_.at(id); };
+        sets_ =
+            make_ray_sets(scene_, triangle, BenchTriangles(gpu_).bounds(), 1000, [this](const RaySet& set) {
+                std::vector<uint32_t> ids;
+                for (const BenchRay& ray : set.rays)
+                    ids.push_back(closest(ray));
+                hits_.push_back(ids);
+                return ids;
+            });
     }
 
     uint32_t closest(const BenchRay& ray) const {
@@ -64,7 +66,8 @@ class BenchRays : public testing::Test {
     }
 
     const Scene scene_ = cornell_box();
-    std::vector<BenchTriangle> triangles_ = triangles_of(scene_);
+    const GpuScene gpu_ = build_gpu_scene(scene_, SceneFrame{});
+    std::vector<BenchTriangle> triangles_ = BenchTriangles(gpu_).baked();
     std::vector<std::vector<uint32_t>> hits_;  // Of the first two sets.
     std::vector<RaySet> sets_;
 };

@@ -9,7 +9,10 @@
 #include "bench/render.h"
 #include "bench/report.h"
 #include "bench/traversal.h"
+#include "bench/triangles.h"
 #include "cli/bench_report.h"
+#include "probe/scenes.h"
+#include "scene/geometry.h"
 #include "unit/base_fixture.h"
 
 namespace candela {
@@ -152,6 +155,8 @@ TEST(BenchMeshes, NumbersOfTrianglesHaveThreeDigits) {
     EXPECT_EQ(triangles_text(999499), "999 k triangles");
     EXPECT_EQ(triangles_text(999500), "1 M triangles");
     EXPECT_EQ(triangles_text(9987852), "9.99 M triangles");
+    EXPECT_EQ(triangles_text(999499999), "999 M triangles");
+    EXPECT_EQ(triangles_text(1000000004), "1 G triangles");
 }
 
 // Every edge, by the positions of its ends, occurs once in either direction. 41 is among the numbers whose
@@ -198,9 +203,56 @@ TEST(BenchMeshes, TheSameSeedMakesTheSameBumps) {
 
 // n is 1 for 72, 56 for 190 000, 129 for a million.
 TEST(BenchMeshes, ASceneHasAboutTheTrianglesAskedFor) {
-    EXPECT_EQ(triangles_of(displaced_scene(72)).size(), 72u);
-    EXPECT_EQ(triangles_of(displaced_scene(190000)).size(), 60u * 56 * 56 + 12);
-    EXPECT_EQ(triangles_of(displaced_scene(1000000)).size(), 60u * 129 * 129 + 12);
+    EXPECT_EQ(triangle_count(displaced_scene(72)), 72u);
+    EXPECT_EQ(triangle_count(displaced_scene(190000)), 60u * 56 * 56 + 12);
+    EXPECT_EQ(triangle_count(displaced_scene(1000000)), 60u * 129 * 129 + 12);
+}
+
+// Whose wood is at most a quarter.
+TEST(BenchMeshes, ATreeHasTheTrianglesAskedForAndTheSizeOfATree) {
+    for (const uint32_t triangles : {100u, 5000u, 100'000u}) {
+        const TriangleMesh tree = tree_mesh(triangles, 1);
+        EXPECT_EQ(tree.triangles.size(), triangles);
+        Box box;
+        for (const vec3 p : tree.positions)
+            box.extend(p);
+        EXPECT_NEAR(box.lo.y, 0.0f, 0.2f);
+        EXPECT_GT(box.hi.y, 3.0f);
+        EXPECT_LT(box.hi.y, 9.0f);
+        for (const uvec3 t : tree.triangles) {
+            const vec3 a = tree.positions[t.x], b = tree.positions[t.y], c = tree.positions[t.z];
+            ASSERT_GT(length(cross(b - a, c - a)), 1e-5f);
+        }
+        EXPECT_EQ(tree_mesh(triangles, 1).positions, tree.positions);
+        EXPECT_NE(tree_mesh(triangles, 2).positions, tree.positions);
+    }
+}
+
+TEST(BenchMeshes, AForestHasItsTrees) {
+    const Scene few = forest_scene(3), more = forest_scene(1000);
+    EXPECT_EQ(triangle_count(few), 300'004u);
+    EXPECT_EQ(few.meshes.size(), 1u);
+    EXPECT_EQ(triangle_count(more), 100'000'004u);
+    EXPECT_EQ(more.meshes.size(), 2u);
+}
+
+// The ids of copies go on where those of the shapes before end, as if all were baked.
+TEST(BenchTriangles, AreThoseOfTheScene) {
+    Scene scene = scattered_scene(50);
+    add_shape(scene, parallelogram(vec3(-2), vec3(4, 0, 0), vec3(0, 0, 4)), 0);
+    const BenchTriangles instanced(build_gpu_scene(scene, SceneFrame{}, {.least_triangles = 1}));
+    const BenchTriangles baked(build_gpu_scene(scene, SceneFrame{}, {.least_uses = UINT32_MAX}));
+    ASSERT_EQ(instanced.instances().size(), 50u);
+    ASSERT_EQ(instanced.baked().size(), 2u);
+    ASSERT_EQ(baked.baked().size(), 50u * 48 + 2);
+    EXPECT_EQ(instanced.count(), baked.count());
+    EXPECT_LT(length(instanced.bounds().lo - vec3(-2)) + length(instanced.bounds().hi - vec3(2, 1.1f, 2)),
+              0.3f);
+    for (uint32_t id = 0; id < 50 * 48; ++id) {
+        // Those baked come first where others are not. A triangle may begin at any of its corners.
+        const BenchTriangle a = instanced.at(2 + id), b = baked.at(id);
+        ASSERT_LT(length(a.a + a.b + a.c - b.a - b.b - b.c), 1e-5f) << id;
+    }
 }
 
 TEST(BenchMeshes, TheCameraSeesTheRoomFromWithinAndTheLightShinesDown) {

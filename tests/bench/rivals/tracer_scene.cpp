@@ -41,7 +41,7 @@ Surface surface(const Material& material) {
     if (m == nullptr || m->fresnel != Fresnel::exact || m->inside.absorption != vec3(0)) {
         refuse("material like \"" + material.name + "\"");
     }
-    return {Model::glass, vec3(1), m->ior / m->exterior_ior};
+    return {Model::glass, vec3(1), m->ior / m->exterior_ior.value_or(1.0f)};
 }
 
 // Column of an alias table, or its alias: 32 random bits choose the column, their remainder decides within

@@ -1,0 +1,55 @@
+// The triangles of a scene by their ids, as its records hold them: meshes that instances share have theirs
+// once.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "gpu_scene/gpu_scene.h"
+
+namespace candela {
+
+// In the frame of the scene, or in the space of a mesh.
+struct BenchTriangle {
+    vec3 a, b, c;
+};
+
+class BenchTriangles {
+  public:
+    struct Instance {
+        uint32_t mesh;      // Index into meshes().
+        uint32_t first_id;  // Of its triangles.
+        glm::dmat3 to_scene;
+        vec3 centre;  // The place of the mesh's origin.
+    };
+
+    // Of a scene of triangles alone, at most 2^32 of them.
+    explicit BenchTriangles(const GpuScene& scene);
+
+    // The triangle of that id, in the frame of the scene.
+    BenchTriangle at(uint32_t id) const;
+    // How many are seen.
+    uint64_t count() const { return count_; }
+    // What the triangles lie in.
+    const Box& bounds() const { return bounds_; }
+
+    // Those in the frame of the scene, by id; those of meshes by their ids in an instance, less its first.
+    const std::vector<BenchTriangle>& baked() const { return baked_; }
+    const std::vector<std::vector<BenchTriangle>>& meshes() const { return meshes_; }
+    // In the order of their ids, which follow those of the baked triangles.
+    const std::vector<Instance>& instances() const { return instances_; }
+
+  private:
+    std::vector<BenchTriangle> baked_;
+    std::vector<std::vector<BenchTriangle>> meshes_;
+    std::vector<Instance> instances_;
+    uint64_t count_ = 0;
+    Box bounds_;
+};
+
+// "190 k triangles", "1 M triangles", "72 triangles": a number of triangles for people, to three digits.
+std::string triangles_text(uint64_t triangles);
+
+}  // namespace candela
