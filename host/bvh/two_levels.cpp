@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <span>
 #include <string>
 
@@ -11,13 +12,29 @@
 namespace candela {
 namespace {
 
-// The children of a node: nodes, then instances, then primitives.
+// The children of a node: nodes and instances, then primitives.
 struct Regrouped {
     std::array<uint32_t, BVH_WIDTH> before{};  // Which child of the old node each is.
-    uint32_t nodes = 0;
-    uint32_t instances = 0;
+    uint32_t nodes = 0;                        // And instances.
     uint32_t count = 0;
 };
+
+// The children of a node of that many nodes and children in all, in their order.
+Regrouped children_of(uint32_t nodes, uint32_t count) {
+    Regrouped children{.nodes = nodes, .count = count};
+    std::iota(children.before.begin(), children.before.end(), 0u);
+    return children;
+}
+
+// Sorts the children that are nodes as bvh_longest_axis() says.
+void sort_nodes(const BvhNode& node, Regrouped& children) {
+    const auto axis = glm::length_t(bvh_longest_axis(node.scale));
+    const auto middle = [&](uint32_t child) {
+        const Box box = child_box(node, child);
+        return box.lo[axis] + box.hi[axis];
+    };
+    std::ranges::stable_sort(std::span(children.before).first(children.nodes), {}, middle);
+}
 
 // `node` with its boxes in the order of `children`.
 BvhNode reordered(const BvhNode& node, const Regrouped& children) {
@@ -54,34 +71,36 @@ TwoLevelTree separate_instances(const Bvh& tree, uint32_t primitive_count) {
         stack.pop_back();
         result.depth = std::max(result.depth, next.level);
         BvhNode node = unpack(tree.nodes[next.from]);
-        Regrouped children{.nodes = bvh_node_count(node.children), .count = bvh_child_count(node)};
+        Regrouped children = children_of(bvh_node_count(node.children), bvh_child_count(node));
         const auto box_of = [&](uint32_t child) {
             return tree.order[leaf_position(bvh_child(node.children, child))];
         };
-        for (uint32_t i = 0; i < children.count; ++i)
-            children.before[i] = i;
-        const auto leaves =
-            std::span(children.before).subspan(children.nodes, children.count - children.nodes);
-        const auto primitives = std::stable_partition(
-            leaves.begin(), leaves.end(), [&](uint32_t child) { return box_of(child) >= primitive_count; });
-        children.instances = uint32_t(primitives - leaves.begin());
+        const auto is_node = [old = children.nodes](uint32_t child) { return child < old; };
+        const auto begin = children.before.begin();
+        const auto primitives = std::stable_partition(begin, begin + children.count, [&](uint32_t child) {
+            return is_node(child) || box_of(child) >= primitive_count;
+        });
+        children.nodes = uint32_t(primitives - begin);
+        sort_nodes(node, children);
 
         const auto first = uint32_t(result.nodes.size());
         const auto first_primitive = uint32_t(result.order.size());
-        result.nodes.resize(first + children.nodes + children.instances);
-        for (uint32_t i = 0; i < children.instances; ++i) {
-            const uint32_t instance = box_of(leaves[i]) - primitive_count;
-            result.instance_nodes[instance] = first + children.nodes + i;
+        result.nodes.resize(first + children.nodes);
+        for (uint32_t i = children.nodes; i-- > 0;) {
+            const uint32_t child = children.before[i];
+            if (is_node(child)) {
+                stack.push_back({node.children.x + child, first + i, next.level + 1});
+                continue;
+            }
+            const uint32_t instance = box_of(child) - primitive_count;
+            result.instance_nodes[instance] = first + i;
             result.instance_levels[instance] = next.level + 1;
             result.depth = std::max(result.depth, next.level + 1);
         }
-        for (const uint32_t child : leaves.subspan(children.instances))
-            result.order.push_back(box_of(child));
-        for (uint32_t i = children.nodes; i-- > 0;)
-            stack.push_back({node.children.x + i, first + i, next.level + 1});
+        for (uint32_t i = children.nodes; i < children.count; ++i)
+            result.order.push_back(box_of(children.before[i]));
         node = reordered(node, children);
-        node.children =
-            bvh_children(children.nodes + children.instances, first, children.count, first_primitive);
+        node.children = bvh_children(children.nodes, first, children.count, first_primitive);
         result.nodes[next.to] = pack(node);
     }
     return result;
@@ -97,10 +116,20 @@ uint32_t append_tree(std::vector<PackedBvhNode>& nodes, uint64_t primitives, con
     if (primitives + tree.order.size() > BVH_MAX_PRIMITIVES)
         too_many("primitives", primitives + tree.order.size(), BVH_MAX_PRIMITIVES);
     const auto root = uint32_t(nodes.size());
-    for (const PackedBvhNode& packed : tree.nodes) {
-        BvhNode node = unpack(packed);
+    nodes.insert(nodes.end(), tree.nodes.begin(), tree.nodes.end());
+    // Children follow their parents.
+    for (size_t i = root; i < nodes.size(); ++i) {
+        BvhNode node = unpack(nodes[i]);
+        Regrouped children = children_of(bvh_node_count(node.children), bvh_child_count(node));
+        sort_nodes(node, children);
+        const std::span group = std::span(nodes).subspan(root + node.children.x, children.nodes);
+        std::array<PackedBvhNode, BVH_WIDTH> before;
+        std::ranges::copy(group, before.begin());
+        for (uint32_t c = 0; c < children.nodes; ++c)
+            group[c] = before[children.before[c]];
+        node = reordered(node, children);
         node.children += uvec2(root, uint32_t(primitives));
-        nodes.push_back(pack(node));
+        nodes[i] = pack(node);
     }
     return root;
 }

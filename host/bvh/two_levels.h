@@ -9,7 +9,8 @@
 namespace candela {
 
 // A tree over primitives and instances in one array of nodes. The record of an instance has a node's place
-// beside the nodes that are its siblings; what it says is left to the caller. Trees of meshes may follow.
+// beside the nodes that are its siblings; what it says is left to the caller. Trees of meshes may follow. The
+// children that are nodes lie in the order of bvh_longest_axis().
 struct TwoLevelTree {
     std::vector<PackedBvhNode> nodes;
     std::vector<uint32_t> order;            // Primitives in leaf order.
@@ -22,8 +23,9 @@ struct TwoLevelTree {
 // `primitive_count` primitives, and then those of instances. There is at least one instance.
 TwoLevelTree separate_instances(const Bvh& tree, uint32_t primitive_count);
 
-// Appends the tree of a mesh, whose primitives follow the `primitives` that there are before. Returns the
-// place of its root. Throws Error if the nodes or primitives are more than a tree may have.
+// Appends the tree of a mesh, with its nodes' children in that order, whose primitives follow the
+// `primitives` that there are before. Returns the place of its root. Throws Error if the nodes or primitives
+// are more than a tree may have.
 uint32_t append_tree(std::vector<PackedBvhNode>& nodes, uint64_t primitives, const Bvh& tree);
 
 }  // namespace candela

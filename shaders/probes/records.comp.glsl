@@ -30,7 +30,8 @@ void put_parameters(Parameters p) {
 }
 
 void put_node(uint i) {
-    BvhNode node = scene_node(i);
+    NodeWords w = scene_node_words(i);
+    BvhNode node = bvh_node_unpack(w.a, w.b, w.c, w.d);
     put(node.origin);
     put(node.scale);
     put(node.q_lo[0]);

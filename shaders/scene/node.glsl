@@ -93,4 +93,10 @@ NodeHits node_intersect(BvhNode node, Ray ray, vec3 inv_d, float t_max, bool abo
                     uint(min(min(first.x, first.y), min(first.z, first.w))) & 7u);
 }
 
+// Whether a ray meets a node's children rather from the last to the first.
+bool node_descends(BvhNode node, Ray ray) {
+    uint axis = bvh_longest_axis(node.scale);
+    return (axis == 0u ? ray.d.x : axis == 1u ? ray.d.y : ray.d.z) < 0.0;
+}
+
 #endif

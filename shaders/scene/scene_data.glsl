@@ -63,17 +63,21 @@ Parameters scene_parameters() {
     return parameters_unpack(parameter_words);
 }
 
-BvhNode scene_node(uint i) {
+// The record of a node, or of an instance in its place.
+struct NodeWords {
     uvec4 a, b, c, d;
-    READ_4(NODES, i * BVH_NODE_WORDS, a, b, c, d);
-    return bvh_node_unpack(a, b, c, d);
+};
+
+NodeWords scene_node_words(uint i) {
+    NodeWords w;
+    READ_4(NODES, i * BVH_NODE_WORDS, w.a, w.b, w.c, w.d);
+    return w;
 }
 
 // Instance whose record is in the place of that node.
 Instance scene_instance(uint i) {
-    uvec4 a, b, c, d;
-    READ_4(NODES, i * BVH_NODE_WORDS, a, b, c, d);
-    return instance_unpack(a, b, c, d);
+    NodeWords w = scene_node_words(i);
+    return instance_unpack(w.a, w.b, w.c, w.d);
 }
 
 // Primitive at that position in leaf order.

@@ -9,14 +9,23 @@
 // below: the index of the first child.
 const uint PENDING_SHIFT = 24u;
 const uint PENDING_NONE = 0u;
+// The highest child comes first, where there are instances.
+const uint PENDING_DESCENDS = 0x80000000u;
 
-bool pending_any(uint pending) {
-    return pending >> PENDING_SHIFT != 0u;
+// The bits of the pending children.
+uint pending_children(uint pending) {
+    return INSTANCED ? pending >> PENDING_SHIFT & 127u : pending >> PENDING_SHIFT;
 }
 
-// The lowest pending child; undefined if there is none.
+bool pending_any(uint pending) {
+    return pending_children(pending) != 0u;
+}
+
+// The pending child to be visited first; undefined if there is none.
 uint pending_first(uint pending) {
-    return uint(findLSB(pending >> PENDING_SHIFT));
+    uint children = pending_children(pending);
+    if (!INSTANCED) return uint(findLSB(children));
+    return uint(mix(findLSB(children), findMSB(children), (pending & PENDING_DESCENDS) != 0u));
 }
 
 // The node's index of a pending child.
@@ -24,9 +33,10 @@ uint pending_node(uint pending, uint child) {
     return (pending & (BVH_MAX_NODES - 1u)) + child;
 }
 
-// `pending` without its lowest child, if it has any.
+// `pending` without the child to be visited first, if it has any.
 uint pending_rest(uint pending) {
-    return pending & (pending - (1u << PENDING_SHIFT));
+    if (!INSTANCED) return pending & (pending - (1u << PENDING_SHIFT));
+    return pending & ~(1u << PENDING_SHIFT << pending_first(pending));
 }
 
 // The stack of bvh_advance, its top at 0: the pending children at each level above the current node, and PENDING_NONE

@@ -18,20 +18,19 @@ const uint NODE_NONE = 0xFFFFFFFFu;
 
 // The state of a ray that traverses the tree.
 struct Traversal {
-    Ray ray;        // In the space of the nodes that it visits: the scene's, or that of an instance's mesh.
-    vec3 inv_d;  // reciprocals(ray.d)
+    Ray ray;         // In the space of the nodes that it visits: the scene's, or that of an instance's mesh.
+    vec3 inv_d;      // reciprocals(ray.d)
     RayShear shear;
-    bool any_hit;     // The first hit ends the traversal.
-    Hit hit;          // The nearest so far.
-    uint node;        // To be visited next;
-    uint pending;     // then its siblings; those further up are on the stack.
-    uint leaves;      // To be tested before `node`; bit i: the primitive i places after
-    uint first_leaf;  // this position in leaf order.
+    bool any_hit;    // The first hit ends the traversal.
+    Hit hit;         // The nearest so far.
+    uint node;       // To be visited next;
+    uint pending;    // then its siblings; those further up are on the stack.
+    uint leaves;     // To be tested before `node`; bit i: the primitive i places after
+    uint first_leaf; // this position in leaf order.
     Candidate candidate;  // For bvh_decide.
     Ray outside;     // In the frame of the scene.
     uint instance;   // That the ray is in, or NO_INSTANCE,
     uint root;       // and the root of its mesh, behind which lie all nodes of the mesh; 0 outside.
-    bool entering;   // The ray is in an instance, but not yet in its space.
 };
 
 // A traversal at the root that looks for hits with t in (0, t_max). bvh_prepare comes first.
@@ -39,7 +38,7 @@ Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack[0] = PENDING_NONE;
     vec3 inv_d = reciprocals(ray.d);
     return Traversal(ray, inv_d, ray_shear(ray.d, inv_d), any_hit, hit_none(t_max), 0u, PENDING_NONE, 0u, 0u,
-                     candidate_none(), ray, NO_INSTANCE, 0u, false);
+                     candidate_none(), ray, NO_INSTANCE, 0u);
 }
 
 // Ends a traversal: no node is left to visit, no leaf to test.
@@ -48,34 +47,35 @@ void bvh_end(inout Traversal t) {
     t.leaves = 0u;
 }
 
-// Continues in another space.
-void change_space(inout Traversal t, Ray ray) {
-    t.ray = ray;
-    t.inv_d = reciprocals(ray.d);
-    t.shear = ray_shear(ray.d, t.inv_d);
-}
+// With instances, bvh_advance visits at most this many nodes: on software Vulkan, lanes that have found leaves wait for
+// those still on their way, which may be as far as the next instance.
+const uint NODES_PER_TURN = 7u;
 
-// Whether the next node lies in another space than the ray.
-bool changes_space(Traversal t) {
-    return INSTANCED && (t.entering || t.node < t.root);
-}
-
-// Leaves the instance that the ray is in if the next node lies outside: in the frame of the scene, whose nodes precede
-// those of meshes.
+// Brings the ray back to the frame of the scene if the next node lies there, before those of all meshes.
 void leave_instance(inout Traversal t) {
-    if (t.entering || t.leaves != 0u || !changes_space(t)) return;
-    change_space(t, t.outside);
-    t.instance = NO_INSTANCE;
-    t.root = 0u;
+    if (t.node < t.root) {
+        t.ray = t.outside;
+        t.instance = NO_INSTANCE;
+        t.root = 0u;
+    }
+    t.inv_d = reciprocals(t.ray.d);  // For enter_instance, too.
 }
 
-// Goes on to the root of the mesh of the instance that the ray enters, if it enters one.
-void enter_instance(inout Traversal t) {
-    if (!t.entering) return;
-    Instance instance = scene_instance(t.instance);
-    change_space(t, ray_to_mesh(instance, t.outside));
-    t.node = t.root = instance.root;
-    t.entering = false;
+// Brings the ray into the space of an instance if its record, of these words, lies in the node's place: then the root of
+// its mesh is the only child. On software Vulkan every lane computes with the words, and would take a hundred times as
+// long for the denormal numbers that those of a node may be.
+void enter_instance(inout Traversal t, BvhNode node, NodeWords words, inout bool down, inout uint rest,
+                    inout uint child) {
+    uint keep = is_instance(node) ? 0xFFFFFFFFu : 0u;
+    Instance instance = instance_unpack(words.a & keep, words.b & keep, words.c & keep, words.d & keep);
+    if (!is_instance(node)) return;
+    t.ray = ray_to_mesh(instance, t.outside);
+    t.instance = t.node;
+    t.root = instance.root;
+    t.leaves = 0u;
+    down = true;
+    rest = PENDING_NONE;
+    child = instance.root;
 }
 
 // The traversal waits for bvh_decide.
@@ -98,8 +98,8 @@ void bvh_decide(inout Traversal t) {
 // has ended.
 //
 // Leaves are tested as soon as their boxes are hit, and never wait on the stack, so that one word per level is enough.
-// On software Vulkan, neighbouring lanes wait for each other at the end of either loop. So what changes the space stands
-// outside of them.
+// On software Vulkan, neighbouring lanes wait for each other at the end of either loop. So a ray changes its space
+// within the loop of nodes, where every lane pays for it, but none waits.
 void bvh_advance(inout Traversal t) {
     if (LIST > 0u) {
         list_intersect(t.ray, t.shear, t.hit);
@@ -107,39 +107,41 @@ void bvh_advance(inout Traversal t) {
         return;
     }
 
-    if (INSTANCED) leave_instance(t);
-
     // Go to the nearest child, else to the next sibling, else up.
-    while (t.leaves == 0u && t.node != NODE_NONE && !changes_space(t)) {
+    for (uint k = 0u; t.leaves == 0u && t.node != NODE_NONE && (!INSTANCED || k < NODES_PER_TURN); ++k) {
+        if (INSTANCED) leave_instance(t);
+
         // What is next if this node has no child to visit.
         bool siblings = pending_any(t.pending);
         uint next = mix(stack[0], t.pending, siblings);
         uint next_node = mix(NODE_NONE, pending_node(next, pending_first(next)), pending_any(next));
 
-        BvhNode node = scene_node(t.node);
+        NodeWords words = scene_node_words(t.node);
+        BvhNode node = bvh_node_unpack(words.a, words.b, words.c, words.d);
         NodeHits met = node_intersect(node, t.ray, t.inv_d, t.hit.t, INSTANCED && t.root == 0u);
         t.leaves = met.leaves;
         t.first_leaf = bvh_first_primitive(node.children);
         bool down = met.nodes != 0u;
         uint others = met.nodes & ~(1u << met.nearest);
         uint child = node.children.x + met.nearest;
-        if (INSTANCED && is_instance(node)) {
-            t.leaves = others = 0u;
-            down = t.entering = true;
-            child = t.instance = t.node;
+        uint rest = node.children.x | others << PENDING_SHIFT;
+        if (INSTANCED) {
+            if (node_descends(node, t.ray)) rest |= PENDING_DESCENDS;
+            enter_instance(t, node, words, down, rest, child);
         }
         stack_move(!down && !siblings, down && siblings, t.pending);
-        t.pending = mix(pending_rest(next), node.children.x | others << PENDING_SHIFT, down);
+        t.pending = mix(pending_rest(next), rest, down);
         t.node = mix(next_node, child, down);
     }
+    if (INSTANCED) t.shear = ray_shear(t.ray.d, t.inv_d);
 
     // Test the leaves.
     while (t.leaves != 0u && !bvh_waits(t)) {
         uint position = t.first_leaf + uint(findLSB(t.leaves));
         t.leaves &= t.leaves - 1u;
-        meet(position, primitive_hit(t.ray, t.shear, scene_primitive(position), position, t.instance), t.hit, t.candidate);
+        Hit first = primitive_hit(t.ray, t.shear, scene_primitive(position), position, t.instance);
+        meet(position, first, t.hit, t.candidate);
     }
-    if (INSTANCED) enter_instance(t);
     if (t.any_hit && is_hit(t.hit)) bvh_end(t);
 }
 

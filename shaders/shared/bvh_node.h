@@ -80,6 +80,7 @@ inline BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d);
 inline uint bvh_node_count(uvec2 children);
 inline uint bvh_first_primitive(uvec2 children);
 inline uint bvh_last_child(uvec2 children);
+inline uint bvh_longest_axis(vec3 scale);
 
 #endif
 
@@ -112,6 +113,13 @@ uint bvh_first_primitive(uvec2 children) {
 // The last of a node's children, which are 0 .. bvh_last_child.
 uint bvh_last_child(uvec2 children) {
     return children.y >> 29u;
+}
+
+// The axis on which a node is longest, by its scale; of several, the first. Trees of scenes with instances
+// have the children that are nodes in ascending order of their boxes' middles along it.
+uint bvh_longest_axis(vec3 scale) {
+    if (scale.x >= scale.y && scale.x >= scale.z) return 0u;
+    return scale.y >= scale.z ? 1u : 2u;
 }
 
 #ifdef __cplusplus

@@ -19,8 +19,9 @@ struct Found {
     std::map<uint32_t, uint32_t> levels;  // Of nodes.
 };
 
+// `sorted`: by bvh_longest_axis().
 Found walk(const std::vector<PackedBvhNode>& nodes, uint32_t root,
-           const std::vector<uint32_t>& instance_nodes) {
+           const std::vector<uint32_t>& instance_nodes, bool sorted = true) {
     Found found;
     std::vector<uint32_t> waiting{root};
     found.levels[root] = 1;
@@ -28,8 +29,15 @@ Found walk(const std::vector<PackedBvhNode>& nodes, uint32_t root,
         const uint32_t at = waiting.back();
         waiting.pop_back();
         const BvhNode node = unpack(nodes.at(at));
+        const auto axis = glm::length_t(bvh_longest_axis(node.scale));
+        float middle = -INFINITE;
         for (uint32_t i = 0; i < bvh_child_count(node); ++i) {
             const uint32_t child = bvh_child(node.children, i);
+            if (sorted && !is_leaf(child)) {
+                const Box box = child_box(node, i);
+                EXPECT_GE(0.5f * (box.lo + box.hi)[axis], middle);
+                middle = 0.5f * (box.lo + box.hi)[axis];
+            }
             if (is_leaf(child)) {
                 EXPECT_TRUE(found.primitives.emplace(leaf_position(child), child_box(node, i)).second);
                 continue;
@@ -56,7 +64,7 @@ void expect_separated(size_t count, uint32_t primitives) {
     SCOPED_TRACE(primitives);
     const std::vector<Box> boxes = random_boxes(count, 0.1f);
     const Bvh bvh = build_bvh(boxes);
-    const Found before = walk(bvh.nodes, 0, {});
+    const Found before = walk(bvh.nodes, 0, {}, false);
     std::map<uint32_t, Box> decoded;  // By the boxes' indices.
     for (const auto& [position, box] : before.primitives)
         decoded.emplace(bvh.order[position], box);
@@ -102,7 +110,7 @@ TEST(TwoLevels, TheTreeOfAMeshFollows) {
     const Found found = walk(tree.nodes, root, {});
     EXPECT_EQ(found.levels.size(), mesh.nodes.size());
     ASSERT_EQ(found.primitives.size(), below.size());
-    const Found alone = walk(mesh.nodes, 0, {});
+    const Found alone = walk(mesh.nodes, 0, {}, false);
     for (const auto& [position, box] : alone.primitives)
         expect_equal(found.primitives.at(position + 30), box);
 }
