@@ -64,14 +64,16 @@ vec3 brightness(const Model& light) {
 
 ShapeBounds::ShapeBounds(const Scene& scene) : scene_(scene), mesh_boxes_(scene.meshes.size()) {
     constexpr uint64_t MANY_TRIANGLES = 1u << 22u;  // Of all copies: a fraction of a second.
-    std::vector<uint64_t> triangles(scene.meshes.size());
+    std::vector<uint64_t> uses(scene.meshes.size());
+    uint64_t copied = 0;
     for (const Shape& shape : scene.shapes) {
-        if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry))
-            triangles[instance->mesh] += triangles_of(scene, *instance);
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        if (instance != nullptr && ++uses[instance->mesh] > 1) copied += triangles_of(scene, *instance);
     }
+    if (copied < MANY_TRIANGLES) return;
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
         const TriangleMesh& mesh = scene.meshes[i];
-        if (triangles[i] < std::max<uint64_t>(MANY_TRIANGLES, 2 * mesh.triangles.size())) continue;
+        if (uses[i] < 2) continue;
         mesh_boxes_[i].emplace();
         for (const uvec3 t : mesh.triangles) {
             for (glm::length_t k = 0; k < 3; ++k)

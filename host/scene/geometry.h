@@ -9,8 +9,8 @@
 
 namespace candela {
 
-// The box around all shapes; empty for a scene without shapes. It is the least one but for meshes of which
-// many large copies are shown: of these, it contains the boxes around their placed boxes.
+// The box around all shapes; empty for a scene without shapes. It is the least one but for copied meshes, if
+// all copies have many triangles: of these, it contains the boxes around their placed boxes.
 DoubleBox bounds(const Scene& scene);
 
 // The same for some of the shapes of a scene, one by one.
@@ -21,7 +21,7 @@ class ShapeBounds {
 
   private:
     const Scene& scene_;
-    std::vector<std::optional<DoubleBox>> mesh_boxes_;  // In the meshes' spaces, of those with many copies.
+    std::vector<std::optional<DoubleBox>> mesh_boxes_;  // In the meshes' spaces, of copied ones.
 };
 
 // How many triangles the shapes have; a quad counts as two, a sphere or disk as none.

@@ -20,30 +20,26 @@ bool is_within_reach(dvec3 p) {
 namespace {
 
 // Whether a shape lies within reach, one function for each geometry.
-bool fits(const Scene&, const Quad& quad) {
+bool fits(const Quad& quad) {
     return std::ranges::all_of(quad.corners, is_within_reach);
 }
 
-bool fits(const Scene&, const Sphere& sphere) {
+bool fits(const Sphere& sphere) {
     return is_within_reach(abs(sphere.center) + sphere.radius);
 }
 
-bool fits(const Scene&, const Disk& disk) {
+bool fits(const Disk& disk) {
     return is_within_reach(abs(disk.center) + abs(disk.e1) + abs(disk.e2));
 }
 
-bool fits(const TriangleMesh& mesh, const Transform& transform) {
-    const Box box = local_bounds(mesh);
+// A mesh with that origin, in that box.
+bool fits(dvec3 origin, const Box& box, const Transform& transform) {
     for (unsigned corner = 0; corner < 8; ++corner) {
         const glm::dvec3 p(corner & 1u ? box.hi.x : box.lo.x, corner & 2u ? box.hi.y : box.lo.y,
                            corner & 4u ? box.hi.z : box.lo.z);
-        if (!is_within_reach(transform.point(mesh.origin + p))) return false;
+        if (!is_within_reach(transform.point(origin + p))) return false;
     }
     return true;
-}
-
-bool fits(const Scene& scene, const MeshInstance& instance) {
-    return fits(scene.meshes[instance.mesh], instance.transform);
 }
 
 // Throws Error if a mesh lacks the attributes that its material and emission look up; adds the tangents that
@@ -101,7 +97,7 @@ void SceneBuilder::add_mesh(const std::string& place, const Transform& transform
                         " without area");
     }
     for (MeshPart& part : parts) {
-        if (!fits(part.mesh, transform)) throw Error(place + ": " + TOO_FAR);
+        if (!fits(part.mesh.origin, local_bounds(part.mesh), transform)) throw Error(place + ": " + TOO_FAR);
         complete_normals(part.mesh);
         complete_attributes(scene_, place, part.appearance, part.mesh);
         part.appearance.material = material_at_scale(part.appearance.material, transform.mean_scale());
@@ -121,7 +117,7 @@ void SceneBuilder::add_instance(const std::string& place, size_t shape, const Tr
     Shape copy = scene_.shapes[shape];
     auto& instance = std::get<MeshInstance>(copy.geometry);
     instance.transform = transform;
-    if (!fits(scene_.meshes[instance.mesh], transform)) throw Error(place + ": " + TOO_FAR);
+    if (!instance_fits(instance)) throw Error(place + ": " + TOO_FAR);
     scene_.shapes.push_back(copy);
 }
 
@@ -130,12 +126,28 @@ void SceneBuilder::complete_mesh(const std::string& place, const Appearance& app
 }
 
 bool SceneBuilder::add_placed(Shape shape) {
-    if (!std::visit([&](const auto& geometry) { return fits(scene_, geometry); }, shape.geometry))
-        return false;
-    if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry))
+    const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+    const auto geometry_fits = [&](const auto& geometry) {
+        using Geometry = std::remove_cvref_t<decltype(geometry)>;
+        if constexpr (std::is_same_v<Geometry, MeshInstance>) {
+            return instance_fits(geometry);
+        } else {
+            return fits(geometry);
+        }
+    };
+    if (!std::visit(geometry_fits, shape.geometry)) return false;
+    if (instance != nullptr)
         shape.material = material_at_scale(shape.material, instance->transform.mean_scale());
     scene_.shapes.push_back(shape);
     return true;
+}
+
+bool SceneBuilder::instance_fits(const MeshInstance& instance) {
+    mesh_boxes_.resize(scene_.meshes.size());
+    const TriangleMesh& mesh = scene_.meshes[instance.mesh];
+    std::optional<Box>& box = mesh_boxes_[instance.mesh];
+    if (!box) box = local_bounds(mesh);
+    return fits(mesh.origin, *box, instance.transform);
 }
 
 const Appearance* SceneBuilder::find_file_appearance(const std::string& name) const {

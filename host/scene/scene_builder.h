@@ -83,11 +83,14 @@ class SceneBuilder {
     // The material whose heights are right for a mesh that is placed at that scale. (The first is
     // `material`.)
     uint32_t material_at_scale(uint32_t material, double scale);
+    // Whether an instance lies within reach.
+    bool instance_fits(const MeshInstance& instance);
 
     Scene& scene_;
     std::map<std::string, Appearance, std::less<>> file_appearances_;
     std::map<uint32_t, std::map<double, uint32_t>> at_scale_;  // By material and scale.
     std::optional<uint32_t> black_;
+    std::vector<std::optional<Box>> mesh_boxes_;  // Of meshes that have several instances.
 };
 
 }  // namespace candela
