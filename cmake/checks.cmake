@@ -49,7 +49,7 @@ find_file(RADV_MANIFEST NAMES radeon_icd.${CMAKE_HOST_SYSTEM_PROCESSOR}.json rad
     PATHS /usr/share/vulkan/icd.d NO_DEFAULT_PATH)
 foreach(family IN ITEMS vega10 navi21)
     candela_check(kernel_bounds.${family} $<TARGET_FILE:kernel_statistics> scenes/cornell-box.json scenes/showcase.json
-        tests/bench/scenes/layers.json --bounds tests/bench/kernel_bounds.json)
+        tests/bench/scenes/layers.json tests/bench/scenes/instances.json --bounds tests/bench/kernel_bounds.json)
     set_tests_properties(kernel_bounds.${family} PROPERTIES ENVIRONMENT "RADV_FORCE_FAMILY=${family};\
 VK_DRIVER_FILES=${RADV_MANIFEST};VK_ICD_FILENAMES=${RADV_MANIFEST};CANDELA_VALIDATION=1" LABELS check)
 endforeach()
