@@ -87,6 +87,21 @@ TEST_F(GltfNode, SaysWhatIsWrongWithItsInstances) {
               1u);
 }
 
+TEST_F(GltfNode, RotationsOfItsInstancesAreDividedByTheirLengths) {
+    GltfFile file;
+    file.show_corner(
+        instanced({{"ROTATION", file.add<float>("VEC4", {0, 0, 0, 1, 0, 0, 3, 3, 0, 0, 0, 0})}}));
+    const Scene scene = expect_warning(
+        file,
+        "#/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/ROTATION: the rotation of instance 1 is a "
+        "quaternion of length 4.24264, not 1; all are divided by their lengths, and one of length 0 counts "
+        "as "
+        "none");
+    ASSERT_EQ(scene.shapes.size(), 3u);
+    expect_corners(scene, 1, {dvec3(0), dvec3(0, 1, 0), dvec3(-1, 0, 0)});
+    expect_corners(scene, 2, {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)});
+}
+
 TEST_F(GltfNode, ScalesThenRotatesThenMoves) {
     expect_corners(Json::object(), {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)});
     expect_corners({{"translation", {1, 2, 3}}}, {dvec3(1, 2, 3), dvec3(2, 2, 3), dvec3(1, 3, 3)});

@@ -1,6 +1,7 @@
 // Ref: Khronos, "EXT_mesh_gpu_instancing".
 #include "load/gltf/instances.h"
 
+#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -30,12 +31,21 @@ dvec3 three(const std::vector<float>& numbers, size_t i) {
     return {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
 }
 
-// A unit quaternion; none for one of length 0.
-glm::dquat unit_rotation(const std::vector<float>& numbers, size_t i) {
+glm::dquat four(const std::vector<float>& numbers, size_t i) {
     const float* q = &numbers[4 * i];
-    const glm::dquat rotation(q[3], q[0], q[1], q[2]);
-    const double size = length(rotation);
-    return size > 0.0 ? rotation / size : glm::dquat(1, 0, 0, 0);
+    return {q[3], q[0], q[1], q[2]};
+}
+
+// Notes the first rotation that is no unit quaternion.
+void check_rotations(File& file, const Node& attributes, const InstanceAttribute& rotations) {
+    for (size_t i = 0; i < rotations.count; ++i) {
+        const double size = length(four(rotations.numbers, i));
+        if (std::abs(size - 1.0) <= ROTATION_TOLERANCE) continue;
+        file.warn(attributes.require("ROTATION"),
+                  concat("the rotation of instance ", i, " is a quaternion of length ", number_text(size, 6),
+                         ", not 1; all are divided by their lengths, and one of length 0 counts as none"));
+        return;
+    }
 }
 
 }  // namespace
@@ -60,12 +70,17 @@ std::vector<glm::dmat4> read_instances(File& file, const Node& node) {
         file.warn(attributes, "there is none of TRANSLATION, ROTATION and SCALE; the mesh is shown once");
         return {glm::dmat4(1.0)};
     }
+    if (rotation) check_rotations(file, attributes, *rotation);
     std::vector<glm::dmat4> placements;
     placements.reserve(*count);
     for (size_t i = 0; i < *count; ++i) {
         Trs trs;
         if (translation) trs.translation = three(translation->numbers, i);
-        if (rotation) trs.rotation = unit_rotation(rotation->numbers, i);
+        if (rotation) {
+            const glm::dquat q = four(rotation->numbers, i);
+            const double size = length(q);
+            if (size > 0.0) trs.rotation = q / size;
+        }
         if (scale) trs.scale = three(scale->numbers, i);
         placements.push_back(matrix_of(trs));
     }
