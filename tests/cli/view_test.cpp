@@ -24,6 +24,35 @@ TEST_F(View, FramesThenScreenshotsAreWhatRenderMakes) {
     EXPECT_EQ(read_file(file("a.png")), read_file(file("rendered.png")));
 }
 
+// A .glb file of one triangle.
+std::string glb() {
+    const float points[9] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+    std::string json = R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}]})";
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto words = [](std::initializer_list<uint32_t> values) {
+        return std::string(reinterpret_cast<const char*>(values.begin()), 4 * values.size());
+    };
+    return "glTF" + words({2, uint32_t(28 + json.size() + sizeof points), uint32_t(json.size())}) + "JSON" +
+           json + words({sizeof points}) + std::string("BIN\0", 4) +
+           std::string(reinterpret_cast<const char*>(points), sizeof points);
+}
+
+TEST_F(View, AGlbFileIsAScene) {
+    const std::string scene = write("triangle.glb", glb());
+    const Words settings{"--size", "80x60"};
+    const ProcessResult result =
+        view(settings + Words{"--frames", "4", "--screenshot", "a.exr"}, scene).finish();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const Image image = read_exr(file("a.exr"));
+    expect_same_rgb(image, rendered(settings + Words{"--spp", "4"}, scene));
+    const std::vector<float>& coverage = image.find("A")->values;
+    EXPECT_EQ(coverage[30 * 80 + 40], 1.0f);
+    EXPECT_EQ(coverage[0], 0.0f);
+}
+
 // All channels and attributes, to the bit, except for those that cannot be the same.
 TEST_F(View, AnExrIsTheOneThatRenderWritesAndCanBeMerged) {
     view({"--size", "60x40", "--spp", "4", "--camera", "pinhole", "--sampler", "stratified"}, DEPTH_OF_FIELD);
