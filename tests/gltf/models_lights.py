@@ -4,7 +4,7 @@ import math
 
 import matrices
 import shapes
-from stage import METRE, chart, chart_colour, encoded, linear, model
+from stage import METRE, chart, chart_colour, encoded, linear, model, picture
 
 MATT = {"specular": {"specularFactor": 0}}
 WHITE = 0.5  # Reflectance of walls.
@@ -125,6 +125,59 @@ def directional_light(stage):
         cosine = max(0, sum(p * q for p, q in zip(n, normal)))
         stage.canvas.fill(right, [encoded(0.7 * 1.2 * cosine * c) for c in (1, 0.8, 0.6)])
     stage.tolerate(6, 64)
+
+
+# Of a cube map's faces as OpenGL defines them: what goes to the right and downwards, before the images are mirrored.
+FACES = {"px": ((0, 0, -1), (0, -1, 0)), "nx": ((0, 0, 1), (0, -1, 0)), "py": ((1, 0, 0), (0, 0, 1)),
+         "ny": ((1, 0, 0), (0, 0, -1)), "pz": ((1, 0, 0), (0, -1, 0)), "nz": ((-1, 0, 0), (0, -1, 0))}
+FACE_COLOURS = ((240, 60, 60), (60, 220, 220), (70, 230, 60), (220, 70, 220), (70, 90, 240), (230, 220, 60))
+QUARTERS = ((1.0, 0.75), (0.5, 0.25))  # How bright those of a face are: rows, of the image that is stored.
+
+
+def quarter_code(face, right, down):
+    return [round(QUARTERS[down][right] * c) for c in FACE_COLOURS[face]]
+
+
+@model("EnvironmentTest")
+def environment_test(stage):
+    """Mirrors that are tilted so that each shows a quarter of a face of the cube map that lights the scene: faces, how
+    they lie and the turn of the whole are as specified. What lies behind the mirrors is not shown: a face, and half of
+    four."""
+    file = stage.file
+    stage.backdrop_z = -50.0  # So that mirrors do not see it.
+    file.used.add("EXT_lights_image_based")
+    images = []
+    for face in range(6):
+        images.append(file.image(picture(32, 32, lambda x, y: quarter_code(face, x // 16, y // 16))))
+    turn = matrices.turn((0, 1, 0), 90)
+    file.json.setdefault("extensions", {})["EXT_lights_image_based"] = {"lights": [{
+        "rotation": list(turn), "intensity": 1, "irradianceCoefficients": [[0, 0, 0]] * 9, "specularImageSize": 32,
+        "specularImages": [images]}]}
+    file.json["scenes"][0]["extensions"] = {"EXT_lights_image_based": {"light": 0}}
+    mirror = stage.surface((1, 1, 1), metallic=1, roughness=0)
+    axes = {"px": (1, 0, 0), "nx": (-1, 0, 0), "py": (0, 1, 0), "ny": (0, -1, 0), "pz": (0, 0, 1), "nz": (0, 0, -1)}
+    rotation = matrices.rotation(turn)
+    cases = []
+    for face, (name, (right, down)) in enumerate(FACES.items()):
+        for across, below in ((-1, -1), (1, -1), (-1, 1), (1, 1)):
+            inside = [a + 0.5 * across * r + 0.5 * below * d for a, r, d in zip(axes[name], right, down)]
+            seen = matrices.unit(matrices.direction(rotation, inside))
+            if seen[2] < 0:
+                continue
+            # Mirrored images: what lies to the left is stored to the right.
+            colour = quarter_code(face, 0 if across > 0 else 1, 1 if below > 0 else 0)
+            cases.append((f"{name} {'ul ur ll lr'.split()[2 * (below > 0) + (across < 0)]}", seen, colour))
+    for rect, (label, seen, colour) in zip(stage.grid(4, 3, 52, 44), cases):
+        stage.label(rect, label)
+        nx, ny, nz = matrices.unit([seen[0], seen[1], seen[2] + 1])
+        x, y = stage.centre(rect)
+        x0, y0, x1, y1 = stage.corners(rect)
+        mesh = shapes.sheet(x0, y0, x1, y1, normal=lambda s, t: (nx, ny, nz))
+        # The more it looks towards the camera the nearer to it, so that no mirror shows another one.
+        z = 8 * seen[2]
+        mesh.positions = [(px, py, z - (nx * (px - x) + ny * (py - y)) / nz) for px, py, _ in mesh.positions]
+        stage.put(mesh, mirror)
+        stage.expect(rect, colour)
 
 
 @model("EmissiveStrengthTest")
