@@ -102,7 +102,7 @@ class Tree {
         const vec3 to = from + length * direction;
         add_tube(from, to, radius);
         if (levels == 0) {
-            twigs_.push_back({from, to});
+            twigs_.emplace_back(from, to);
             return;
         }
         for (uint32_t i = 0; i < CHILDREN; ++i) {
@@ -238,10 +238,11 @@ Scene forest_scene(uint32_t trees) {
         scene.meshes.push_back(tree_mesh(TRIANGLES, kind + 1));
     Random random(1);
     for (uint32_t i = 0; i < trees; ++i) {
+        const uint32_t column = i % rows, row = i / rows;
         const vec3 jitter = random.cube();
         const double size = 0.8 + 0.4 * double(random.unit());
-        const dvec3 place(SPACING * (i % rows + 0.5 + 0.3 * double(jitter.x)) - 0.5 * edge, 0.0,
-                          SPACING * (i / rows + 0.5 + 0.3 * double(jitter.z)) - 0.5 * edge);
+        const dvec3 place(SPACING * (column + 0.5 + 0.3 * double(jitter.x)) - 0.5 * edge, 0.0,
+                          SPACING * (row + 0.5 + 0.3 * double(jitter.z)) - 0.5 * edge);
         add_instance(scene, random.bits() % kinds,
                      placed_at(place, dvec3(0, 1, 0), 2.0 * M_PI * double(random.unit()),
                                size * dvec3(1.0, 1.0 + 0.1 * double(jitter.y), 1.0)),
