@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdio>
-#include <span>
 
-#include "shared/instance.h"
 #include "shared/primitive.h"
 
 namespace candela {
@@ -56,12 +54,8 @@ BenchTriangles::BenchTriangles(const GpuScene& scene)
         boxes.push_back(box_around(meshes_.back()));
     }
     for (const InstancePlace& place : scene.instances) {
-        const auto w =
-            std::span(scene.arrays[ARRAY_NODES]).subspan(size_t{place.node} * BVH_NODE_WORDS, BVH_NODE_WORDS);
-        const candela::Instance record = instance_unpack(w[0], w[1], w[2], w[3]);
-        const auto& rows = record.to_mesh;
-        const glm::dmat3 to_mesh = transpose(glm::dmat3(dvec3(rows[0]), dvec3(rows[1]), dvec3(rows[2])));
-        instances_.push_back({place.mesh, record.first_id, inverse(to_mesh), record.centre});
+        const candela::Instance record = instance_at(scene, place);
+        instances_.push_back({place.mesh, record.first_id, inverse(map_to_mesh(record)), record.centre});
         count_ += meshes_[place.mesh].size();
         const Box& box = boxes[place.mesh];
         for (uint32_t corner = 0; corner < 8; ++corner)

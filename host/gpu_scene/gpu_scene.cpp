@@ -90,6 +90,11 @@ void append_light_textures(GpuScene& gpu, const FlatScene& flat, std::span<const
 
 }  // namespace
 
+Instance instance_at(const GpuScene& scene, const InstancePlace& place) {
+    const uvec4* const words = &scene.arrays[ARRAY_NODES][size_t{place.node} * BVH_NODE_WORDS];
+    return instance_unpack(words[0], words[1], words[2], words[3]);
+}
+
 uint64_t GpuScene::bytes() const {
     uint64_t words = 0;
     for (const std::vector<uvec4>& array : arrays)

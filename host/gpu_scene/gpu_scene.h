@@ -71,6 +71,9 @@ struct GpuScene {
     uint64_t bytes() const;
 };
 
+// The record of an instance of the scene.
+Instance instance_at(const GpuScene& scene, const InstancePlace& place);
+
 // The frame for a scene: its origin is the centre of the box around all shapes, its unit the least power of
 // two that is greater than the box's longest side. It depends on no camera.
 SceneFrame choose_frame(const Scene& scene);

@@ -104,4 +104,9 @@ PlacedInstance place_instance(const Transform& transform, const SceneFrame& fram
     return placed;
 }
 
+glm::dmat3 map_to_mesh(const Instance& instance) {
+    const auto& rows = instance.to_mesh;
+    return transpose(dmat3(dvec3(rows[0]), dvec3(rows[1]), dvec3(rows[2])));
+}
+
 }  // namespace candela

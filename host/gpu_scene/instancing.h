@@ -41,4 +41,7 @@ struct PlacedInstance {
 PlacedInstance place_instance(const Transform& transform, const SceneFrame& frame,
                               const SceneFrame& mesh_frame, std::span<const Box> boxes);
 
+// The map from the frame of the scene, relative to the instance's centre, to the space of its mesh.
+glm::dmat3 map_to_mesh(const Instance& instance);
+
 }  // namespace candela

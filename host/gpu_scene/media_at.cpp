@@ -113,16 +113,14 @@ uvec2 media_at(const GpuScene& scene, dvec3 point) {
         const uint32_t medium = medium_of(scene.arrays[ARRAY_SURFACES][i].z & (MAX_MATERIALS - 1));
         if (medium != MEDIUM_SAME) cross_primitive(passages[medium], scene, i, o, DIRECTION);
     }
-    for (const auto& [node, mesh] : scene.instances) {
-        const PackedBvhNode w = node_at(scene, node);
-        const Instance instance = instance_unpack(w[0], w[1], w[2], w[3]);
+    for (const InstancePlace& place : scene.instances) {
+        const Instance instance = instance_at(scene, place);
         const uint32_t medium = medium_of(instance.material);
         if (medium == MEDIUM_SAME) continue;
-        const auto& rows = instance.to_mesh;
-        const glm::dmat3 to_mesh = transpose(glm::dmat3(dvec3(rows[0]), dvec3(rows[1]), dvec3(rows[2])));
+        const glm::dmat3 to_mesh = map_to_mesh(instance);
         const dvec3 from = to_mesh * (o - dvec3(instance.centre)), along = to_mesh * DIRECTION;
         if (!meets_children(scene, instance.root, from, along)) continue;
-        const auto& [first, count, triangles] = scene.meshes[mesh];
+        const auto& [first, count, triangles] = scene.meshes[place.mesh];
         for (uint32_t i = 0; i < count; ++i)
             cross_primitive(passages[medium], scene, first + i, from, along);
     }

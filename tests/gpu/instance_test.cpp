@@ -84,6 +84,25 @@ void open_all_boxes(GpuScene& scene) {
     }
 }
 
+// Puts `count` nodes that nothing refers to between the top tree and those of meshes.
+void push_meshes_back(GpuScene& scene, uint32_t count) {
+    std::vector<uvec4>& words = scene.arrays[ARRAY_NODES];
+    uint32_t first = ~0u;  // Node of a mesh.
+    for (const InstancePlace& place : scene.instances) {
+        first = std::min(first, instance_at(scene, place).root);
+        words[size_t{place.node} * BVH_NODE_WORDS].w += count << 8u;
+    }
+    const auto begin = words.begin() + std::ptrdiff_t(first * BVH_NODE_WORDS);
+    for (auto i = begin; i != words.end(); i += BVH_NODE_WORDS) {
+        PackedBvhNode packed;
+        std::copy_n(i, BVH_NODE_WORDS, packed.begin());
+        BvhNode node = unpack(packed);
+        node.children.x += count;
+        std::ranges::copy(pack(node), i);
+    }
+    words.insert(begin, size_t{count} * BVH_NODE_WORDS, uvec4(~0u));
+}
+
 class InstanceTest : public DeviceTest {
   protected:
     std::vector<InteractionResult> interactions(const GpuScene& scene,
@@ -172,6 +191,33 @@ TEST_F(InstanceTest, BakedCopiesHaveTheSameHits) {
     }
     EXPECT_GT(hits, items.size() / 4);
     EXPECT_LT(others, items.size() / 500);
+}
+
+// Nodes of meshes may have any index.
+TEST_F(InstanceTest, MeshesMayLieBehindManyNodes) {
+    GpuScene scene = build_gpu_scene(scene_of(sphere_mesh(6, 8), forest(60, 0.2)), SceneFrame{}, ALL);
+    const std::vector<InteractionItem> items = items_in_frame(sized(test_effort(), 20'000), 1.2f, 7);
+    const std::vector<InteractionResult> expected = interactions(scene, items);
+    push_meshes_back(scene, 1u << 18);
+    const std::vector<InteractionResult> found = interactions(scene, items);
+    for (size_t i = 0; i < items.size(); ++i) {
+        ASSERT_EQ(found[i].t, expected[i].t) << i;
+        ASSERT_EQ(found[i].id, expected[i].id) << i;
+        ASSERT_EQ(found[i].next_t, expected[i].next_t) << i;
+    }
+}
+
+// Rays begin as near to a small body as its own size and place in the scene allow, not those of its mesh: 256
+// roundings of its size, which is a thousandth.
+TEST_F(InstanceTest, OffsetsShrinkWithTheBody) {
+    Random random(4);
+    const Transform small = transform_of(random, dvec3(1e-3), 0, dvec3(0));
+    const GpuScene scene = build_gpu_scene(scene_of(sphere_mesh(12, 16), {small}), SceneFrame{}, ALL);
+    for (const InteractionResult& r : interactions(scene, items_in_frame(1000, 2e-4f, 3))) {
+        ASSERT_LT(r.t, NO_HIT);
+        ASSERT_LE(r.p_error, 256 * 0x1p-24f * 1e-3f);
+        ASSERT_GT(r.p_error, 0.0f);
+    }
 }
 
 // Of a convex body, a ray that leaves it outside meets nothing, and one that goes in meets its other side.

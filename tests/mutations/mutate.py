@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[2]
 COPY = ROOT / "build/mutations"
 BUILD = COPY / "build/ci"
 LIMIT = 120.0  # Seconds that the tests of one mutation may take.
-PROGRAMS = ("gpu_tests", "render_tests")  # In the order of a group's filters.
+PROGRAMS = ("gpu_tests", "render_tests", "unit_tests")  # In the order of a group's filters, which may end earlier.
 FAILED = re.compile(r"^\[  FAILED  \] (\S+?)(?:,| \()", re.MULTILINE)
 SHOWN = 4  # Names in a line of the table.
 
@@ -42,12 +42,12 @@ def update_copy():
             shutil.copyfile(source, target)
 
 
-def build():
-    """Builds the copy; returns what went wrong, or nothing."""
+def build(filters):
+    """Builds the copy's programs for a group; returns what went wrong, or nothing."""
     commands = []
     if not (BUILD / "build.ninja").exists():
         commands.append(["cmake", "--preset", "ci"])
-    commands.append(["cmake", "--build", "--preset", "ci", "--target", *PROGRAMS])
+    commands.append(["cmake", "--build", "--preset", "ci", "--target", *PROGRAMS[:len(filters)]])
     for command in commands:
         result = subprocess.run(command, cwd=COPY, capture_output=True, text=True, check=False)
         if result.returncode != 0:
@@ -77,7 +77,7 @@ def mutate(filters, name, file, old, new):
         sys.exit(f"{file}: \"{old}\" stands there {original.count(old)} times, not once; mend mutations.py ({name})")
     path.write_text(original.replace(old, new), encoding="utf-8")
     try:
-        problem = build()
+        problem = build(filters)
         if problem:
             sys.exit(f"{name}: does not compile\n{problem[-4000:]}")
         return failed_tests(filters)
@@ -94,7 +94,7 @@ def main():
     unnoticed = 0
     for filters, ways in GROUPS:
         chosen = [way for way in ways if any(word in way[0] for word in words)]
-        problem = build() if chosen else ""  # After the last way of another group.
+        problem = build(filters) if chosen else ""  # After the last way of another group.
         if problem:
             sys.exit(f"the unbroken copy does not compile\n{problem[-4000:]}")
         failed = failed_tests(filters) if chosen else []

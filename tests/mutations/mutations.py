@@ -47,7 +47,8 @@ MATERIAL_ARRAYS = "host/gpu_scene/material_arrays.cpp"
 GEOMETRY_ARRAYS = "host/gpu_scene/geometry_arrays.cpp"
 INSTANCING = "host/gpu_scene/instancing.cpp"
 
-# What a group runs: filters for the tests of shaders and for those of whole images, which tell much in little time.
+# What a group runs: filters for the tests of shaders, for those of whole images, which tell much in little time, and
+# perhaps for those of the host alone.
 INTEGRATOR = ("Interaction*",
               "Furnace*:Roulette*:*RouletteKeeps*:EstimatorTest*Lights:*Dielectric*Within*:*Absorbs:SkyFurnace*:"
               "DirectLight*Under*:DiffuseTransmission*:*Reference*/glass:*Reference*/absorbing_glass")
@@ -57,7 +58,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
 PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Orthographic*:ScaleTest*Mean*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
-INSTANCES = ("InstanceTest*", "*InstanceTest*:NestedMedia*Camera*")
+INSTANCES = ("InstanceTest*", "InstancedNormals*:*InstanceTest*", "Instancing*:MediaAt*")
 FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
 TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*:*Reference*/textured*:*Reference*/mask")
 MEDIA = ("Records*", "NestedMedia*:*Reference*/nested_glass")

@@ -9,6 +9,7 @@
 #include "probe/random.h"
 #include "render_fixture.h"
 #include "scene/mesh.h"
+#include "scene/tangents.h"
 
 namespace candela {
 namespace {
@@ -30,10 +31,11 @@ Transform random_transform(Random& random, bool mirrored) {
     return transform;
 }
 
-// Moves every mesh into a space of its own, from which its instance brings it back to where it was.
-void cut_into_instances(Scene& scene) {
+// Moves every mesh into a space of its own, from which its instance brings it back to where it was. The first
+// is mirrored or not, and then every other one.
+void cut_into_instances(Scene& scene, bool mirrored = false) {
     Random random(1);
-    bool mirrored = true;
+    mirrored = !mirrored;
     for (Shape& shape : scene.shapes) {
         auto* instance = std::get_if<MeshInstance>(&shape.geometry);
         if (instance == nullptr) continue;
@@ -90,6 +92,73 @@ INSTANTIATE_TEST_SUITE_P(Gallery, InstanceTest,
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });
+
+// A square with images of normals and of heights, in spaces that mirror, shear and scale it.
+class InstancedNormalsTest : public RenderTest {
+  protected:
+    // Of each pixel's first hit, from the same camera rays.
+    std::vector<vec3> normals(const Scene& scene, const InstancingRule& rule) const {
+        RenderSettings settings = settings_for(32, 32);
+        settings.max_depth = 0;
+        settings.aovs = true;
+        const GpuScene gpu = build_gpu_scene(scene, choose_frame(scene), rule);
+        const Image image =
+            make_image(render(gpu, scene.cameras.at(0), settings, samples(1)), {.normal = true}, {});
+        std::vector<vec3> result;
+        for (size_t i = 0; i < 32 * 32; ++i) {
+            result.emplace_back(image.find("N.X")->values[i], image.find("N.Y")->values[i],
+                                image.find("N.Z")->values[i]);
+        }
+        return result;
+    }
+
+    // Cut with the first of the transforms that mirror every other time, and with the second.
+    void expect_same_normals(const Scene& scene) const {
+        const std::vector<vec3> baked = normals(scene, NONE);
+        for (const bool mirrored : {false, true}) {
+            SCOPED_TRACE(mirrored);
+            Scene cut = scene;
+            cut_into_instances(cut, mirrored);
+            const std::vector<vec3> instanced = normals(cut, ALL);
+            size_t bent = 0;
+            for (size_t i = 0; i < baked.size(); ++i) {
+                ASSERT_LT(length(instanced[i] - baked[i]), 2e-3f) << i;
+                bent += std::abs(baked[i].z) < 0.95f;
+            }
+            EXPECT_GT(bent, baked.size() / 4);
+        }
+    }
+
+    // Seen from the front; the texture's image slopes.
+    static Scene square(Texture& texture, const std::function<vec4(uint32_t, uint32_t)>& texel) {
+        Scene scene = scene_with_camera(dvec3(0, 0, 4), dvec3(0), 0.4f);
+        const uint32_t material = add_diffuse(scene, vec3(0.5f));
+        texture = add_texture(scene, uvec2(8, 8), texel);
+        TriangleMesh mesh;
+        mesh.positions = {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(1, 1, 0), vec3(-1, 1, 0)};
+        mesh.uv0 = {vec2(0, 0), vec2(1, 0), vec2(1, 1), vec2(0, 1)};
+        mesh.normals.assign(4, vec3(0, 0, 1));
+        mesh.triangles = {uvec3(0, 1, 2), uvec3(0, 2, 3)};
+        add_tangents(mesh);
+        add_shape(scene, mesh, material);
+        return scene;
+    }
+};
+
+TEST_F(InstancedNormalsTest, ImagesOfNormals) {
+    Texture texture;
+    Scene scene = square(texture, [](uint32_t, uint32_t) { return vec4(0.75f, 0.875f, 0.8f, 1); });
+    scene.materials[scene.shapes[0].material].normal_map = NormalMap{texture};
+    expect_same_normals(scene);
+}
+
+TEST_F(InstancedNormalsTest, ImagesOfHeights) {
+    Texture texture;
+    Scene scene = square(
+        texture, [](uint32_t x, uint32_t y) { return vec4(2 + float(x) / 8 - float(y) / 4, 0, 0, 1); });
+    scene.materials[scene.shapes[0].material].bump_map = BumpMap{texture, 1.0f};
+    expect_same_normals(scene);
+}
 
 using SlowInstanceTest = InstanceTest;
 

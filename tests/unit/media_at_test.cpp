@@ -61,6 +61,24 @@ TEST(MediaAt, MeshesHaveAnInside) {
         EXPECT_EQ(media(scene, p), uvec2(0));
 }
 
+// Two instances of a ball of radius 1, the second mirrored, sheared and of a medium of its own.
+TEST(MediaAt, InstancesHaveAnInside) {
+    Scene scene;
+    add_shape(scene, sphere_mesh(16, 24), add_material(scene, medium(1.5f)));
+    const uint32_t other = add_material(scene, medium(1.3f));
+    Transform transform;
+    ASSERT_TRUE(transform.append(glm::dmat4(-2, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1)));
+    scene.shapes.push_back({.geometry = MeshInstance{0, transform}, .material = other, .emission = {}});
+    const GpuScene instanced =
+        build_gpu_scene(scene, choose_frame(scene), {.least_uses = 1, .least_triangles = 1});
+    ASSERT_EQ(instanced.instances.size(), 2u);
+    for (const dvec3 p : {dvec3(0.1), dvec3(0.9, 0.1, 0), dvec3(0, 1.1, 0), dvec3(3.1, 0.01, 0),
+                          dvec3(2.9, 0, 0), dvec3(5.5, 0.8, 0.1), dvec3(3.9, 0.8, 0.1), dvec3(5, 0, 1.1)})
+        EXPECT_EQ(media_at(instanced, p), media(scene, p)) << p.x << ' ' << p.y;
+    EXPECT_EQ(media_at(instanced, dvec3(0.1)), uvec2(1, 0));
+    EXPECT_EQ(media_at(instanced, dvec3(5.5, 0.8, 0.1)), uvec2(2, 0));
+}
+
 TEST(MediaAt, UnderTheSurfaceOfALake) {
     Scene scene;
     const uint32_t water = add_material(scene, medium(1.33f));
