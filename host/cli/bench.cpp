@@ -231,7 +231,7 @@ ExitCode bench(const BenchArguments& arguments) {
 
 Command add_bench_command(CLI::App& app) {
     CLI::App* const command =
-        app.add_subcommand("bench", "Measure speed on this device; takes two minutes on a CPU");
+        app.add_subcommand("bench", "Measure speed on this device; takes three minutes on a CPU");
     const auto arguments = std::make_shared<BenchArguments>();
     arguments->add_to(*command);
     command->footer(
