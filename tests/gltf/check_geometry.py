@@ -50,6 +50,8 @@ def unread(document):
         return "normalised integers: trimesh takes them as they are"
     if any(p.get("mode") == 6 for p in primitives):
         return "fans: trimesh ignores them"
+    if any("EXT_mesh_gpu_instancing" in node.get("extensions", {}) for node in nodes):
+        return "instances: trimesh shows one"
     if any("KHR_node_visibility" in node.get("extensions", {}) for node in nodes):
         return "hidden nodes: trimesh shows them"
     if any("camera" in node and ("mesh" in node or "children" in node) for node in nodes):

@@ -163,6 +163,15 @@ def shown(file, nodes, parents, scene):
             waiting += nodes[i].get("children", [])
 
 
+def placed(file, node, world):
+    """The matrices from a node's mesh to the world: one, or those of EXT_mesh_gpu_instancing."""
+    extension = node.get("extensions", {}).get("EXT_mesh_gpu_instancing")
+    if extension is None or "skin" in node:  # A skinned mesh is where its joints are.
+        return [world]
+    rows = {name.lower(): file.accessor(i) for name, i in extension["attributes"].items() if not name.startswith("_")}
+    return [world @ local_matrix(dict(zip(rows, values))) for values in zip(*rows.values(), strict=True)]
+
+
 # --- Meshes -----------------------------------------------------------------------------------------------------------
 
 
@@ -201,6 +210,32 @@ def blended(file, primitive, joints):
     return matrices / total[:, None, None]
 
 
+def skinned(file, node, primitive, worlds):
+    """A matrix for each vertex, to the world."""
+    skin = file.items("skins")[node["skin"]]
+    joints = np.array([worlds[j] for j in skin["joints"]])
+    if "inverseBindMatrices" in skin:
+        inverse = file.accessor(skin["inverseBindMatrices"])[:len(joints)].reshape(-1, 4, 4)
+        joints = joints @ inverse.transpose(0, 2, 1)
+    return blended(file, primitive, joints)
+
+
+def posed(file, primitive, weights, position, matrices, mirrored=False):
+    """The triangles of a primitive, whose vertices go to the world by a matrix each."""
+    vertices = np.full((len(position), 8), np.nan)
+    vertices[:, :3] = np.einsum("vij,vj->vi", matrices[:, :3, :3], position) + matrices[:, :3, 3]
+    normal = morphed(file, primitive, "NORMAL", weights)
+    if normal is not None:
+        turned = np.linalg.solve(matrices[:, :3, :3].transpose(0, 2, 1), normal[:, :, None])[:, :, 0]
+        with np.errstate(invalid="ignore"):
+            vertices[:, 3:6] = turned / np.linalg.norm(turned, axis=1, keepdims=True)
+    uv = morphed(file, primitive, "TEXCOORD_0", weights)
+    if uv is not None:
+        vertices[:, 6:] = uv * (1, -1) + (0, 1)
+    faces = corners(file, primitive, len(position))
+    return vertices[faces[:, ::-1] if mirrored else faces]
+
+
 def triangles(path, animation=None, time=None, scene=None):
     """As in triangles.py."""
     file = File(path)
@@ -214,33 +249,18 @@ def triangles(path, animation=None, time=None, scene=None):
             continue
         mesh = file.items("meshes")[nodes[i]["mesh"]]
         weights = nodes[i].get("weights", mesh.get("weights", []))
+        places = placed(file, nodes[i], worlds[i])
         for primitive in mesh["primitives"]:
             position = morphed(file, primitive, "POSITION", weights)
             if position is None or primitive.get("mode", 4) < 4:
                 continue
             if "skin" in nodes[i]:
-                skin = file.items("skins")[nodes[i]["skin"]]
-                joints = np.array([worlds[j] for j in skin["joints"]])
-                if "inverseBindMatrices" in skin:
-                    inverse = file.accessor(skin["inverseBindMatrices"])[:len(joints)].reshape(-1, 4, 4)
-                    joints = joints @ inverse.transpose(0, 2, 1)
-                matrices = blended(file, primitive, joints)
-            else:
-                matrices = np.broadcast_to(worlds[i], (len(position), 4, 4))
-                edges = np.linalg.norm(worlds[i][:3, :3], axis=0)
-                if abs(np.linalg.det(worlds[i][:3, :3])) <= 1e-12 * edges.prod():
-                    continue
-            vertices = np.full((len(position), 8), np.nan)
-            vertices[:, :3] = np.einsum("vij,vj->vi", matrices[:, :3, :3], position) + matrices[:, :3, 3]
-            normal = morphed(file, primitive, "NORMAL", weights)
-            if normal is not None:
-                turned = np.linalg.solve(matrices[:, :3, :3].transpose(0, 2, 1), normal[:, :, None])[:, :, 0]
-                with np.errstate(invalid="ignore"):
-                    vertices[:, 3:6] = turned / np.linalg.norm(turned, axis=1, keepdims=True)
-            uv = morphed(file, primitive, "TEXCOORD_0", weights)
-            if uv is not None:
-                vertices[:, 6:] = uv * (1, -1) + (0, 1)
-            faces = corners(file, primitive, len(position))
-            mirrored = "skin" not in nodes[i] and np.linalg.det(worlds[i][:3, :3]) < 0
-            parts.append(vertices[faces[:, ::-1] if mirrored else faces])
+                parts.append(posed(file, primitive, weights, position, skinned(file, nodes[i], primitive, worlds)))
+                continue
+            for world in places:
+                edges = np.linalg.norm(world[:3, :3], axis=0)
+                determinant = np.linalg.det(world[:3, :3])
+                if abs(determinant) > 1e-12 * edges.prod():
+                    matrices = np.broadcast_to(world, (len(position), 4, 4))
+                    parts.append(posed(file, primitive, weights, position, matrices, determinant < 0))
     return np.concatenate(parts)
