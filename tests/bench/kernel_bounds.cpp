@@ -80,7 +80,9 @@ std::vector<std::string> find_violations(const KernelBounds& bounds, const std::
                                          std::span<const CompiledKernel> kernels) {
     std::vector<const KernelBound*> unused;
     for (const KernelBound& bound : bounds.bounds) {
-        if (device.find(bound.device) != std::string::npos) unused.push_back(&bound);
+        const bool compiled_so =
+            std::ranges::find(kernels, bound.buffers, &CompiledKernel::buffers) != kernels.end();
+        if (compiled_so && device.find(bound.device) != std::string::npos) unused.push_back(&bound);
     }
     std::vector<std::string> violations;
     for (const CompiledKernel& kernel : kernels) {

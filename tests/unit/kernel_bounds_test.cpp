@@ -72,9 +72,14 @@ TEST(KernelBounds, AKernelWithoutABoundIsNamed) {
 }
 
 TEST(KernelBounds, ABoundWithoutAKernelIsNamed) {
-    const auto found = violations({});
-    ASSERT_EQ(found.size(), 1u) << "the bound of another device counts as well";
-    EXPECT_NE(found[0].find("no such kernel was compiled"), std::string::npos) << found[0];
+    CompiledKernel other = make_kernel(50, 0, 0);
+    other.kernel = "position";
+    const auto found = violations({other});
+    ASSERT_EQ(found.size(), 2u) << "the bound of another device counts as well";
+    EXPECT_NE(found[1].find("render (texel buffers) of box on"), std::string::npos) << found[1];
+    EXPECT_NE(found[1].find("no such kernel was compiled"), std::string::npos) << found[1];
+    other.buffers = "storage";
+    EXPECT_EQ(violations({other}).size(), 1u) << "only kernels of one kind of buffers were compiled";
 }
 
 // The message of the error that a file of that text gives.
