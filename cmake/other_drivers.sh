@@ -79,7 +79,7 @@ tests() {
     driver=$1
     effort=$2
     shift 2
-    on "$driver" CANDELA_TEST_EFFORT="$effort" ctest --preset ci --parallel "$(nproc)" "$@"
+    on "$driver" CANDELA_TEST_EFFORT="$effort" ctest --preset ci "$@"
 }
 
 # compare DRIVER SIZE SCENE...: compares its images with those of the system's driver. The seeds differ, so that the
@@ -112,21 +112,23 @@ dpkg-deb -W "$packages"/chromium-common_*.deb
 "$candela" devices
 on swiftshader "$candela" devices
 if [ "$extent" = quick ]; then
-    # Beside the tests: most of it is one thread that compiles. Both in full, even if one fails.
+    # Beside the rest: most of it is one thread that compiles. Both in full, even if one fails.
     (step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick) >"$folder/selftest.txt" 2>&1 &
     selftest=$!
     # Records, exponentials, rays of extreme directions and sizes, and identical bits, of the scene that has everything.
     # The statistics of pictures, other rays and states in files are left to the selftest, which covers them in brief.
     some='^gpu\.(RecordsTest|ExponentialTest|TraversalTest\.(AMillionfold|AxisParallel|Distances|TheNearestHit))'
     some=$some'|IdentityTest.(ManySmall|Texel|Tuned|ACrop|SamplesThat).*/Everything'
-    (step "SwiftShader: tests" tests swiftshader quick -R "$some") &
-    tests=$!
+    (
+        step "SwiftShader: tests" tests swiftshader quick -R "$some"
+        step "SwiftShader: images" compare swiftshader 64x48 showcase
+    ) &
+    rest=$!
     passed=1
-    wait "$tests" || passed=0
+    wait "$rest" || passed=0
     wait "$selftest" || passed=0
     cat "$folder/selftest.txt"
     [ "$passed" = 1 ]
-    step "SwiftShader: images" compare swiftshader 64x48 showcase
     exit
 fi
 
@@ -134,11 +136,11 @@ dpkg-deb -W "$packages"/mesa-vulkan-drivers_*.deb
 on mesa "$candela" devices
 scenes="cornell-box cornell-glossy cornell-glass environment depth-of-field veach-mis showcase mesh"
 step "Mesa: selftest" on mesa "$candela" selftest
-step "Mesa: tests" tests mesa full -L '^(vk|gpu|render)$'
+step "Mesa: tests" tests mesa full --parallel "$(nproc)" -L '^(vk|gpu|render)$'
 step "Mesa: images" compare mesa 128x96 $scenes
 # SwiftShader takes 30 to 70 times as long as lavapipe: a sixteenth of the samples, a quarter of the pixels.
 step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
 # Without ConvergenceTest: its bounds hold only for one number of samples, and what they judge, an estimate, is the
 # host's work.
-step "SwiftShader: tests" tests swiftshader quick -L '^(vk|gpu|render)$' -E ConvergenceTest
+step "SwiftShader: tests" tests swiftshader quick --parallel "$(nproc)" -L '^(vk|gpu|render)$' -E ConvergenceTest
 step "SwiftShader: images" compare swiftshader 64x48 $scenes
