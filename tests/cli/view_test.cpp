@@ -53,6 +53,15 @@ TEST_F(View, AGlbFileIsAScene) {
     EXPECT_EQ(coverage[0], 0.0f);
 }
 
+TEST_F(View, InstancesAreShown) {
+    const std::string scene = std::string(CANDELA_SCENES) + "/../tests/bench/scenes/instances.json";
+    const Words settings{"--size", "80x60"};
+    const ProcessResult result =
+        view(settings + Words{"--frames", "4", "--screenshot", "a.exr"}, scene).finish();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    expect_same_rgb(read_exr(file("a.exr")), rendered(settings + Words{"--spp", "4"}, scene));
+}
+
 // All channels and attributes, to the bit, except for those that cannot be the same.
 TEST_F(View, AnExrIsTheOneThatRenderWritesAndCanBeMerged) {
     view({"--size", "60x40", "--spp", "4", "--camera", "pinhole", "--sampler", "stratified"}, DEPTH_OF_FIELD);
