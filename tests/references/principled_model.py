@@ -48,10 +48,12 @@ def rise(eta, cosine):
     return select(inside > 0, ((s * s + p * p) / 2 - f0) / (1 - f0), 1)
 
 
-def lost_in_all_directions(ax, ay):
-    """A fit of the share that facets of reflectance 1 lose on the average; candela defines its metals by it."""
+def metal_again(ax, ay, color):
+    """The share of light that comes back of what facets of a metal lose: candela's fit to random walks among them."""
     a = np.sqrt((ax**2 + ay**2) / 2)
-    return a**2 / (0.26 + a * (0.92 + 0.51 * a))
+    leaves = 1 - 0.397 * a
+    fresnel = color + (1 - color) * 0.0378 / (a + 0.0459)
+    return fresnel**2 * leaves / (1 - fresnel * (1 - leaves))
 
 
 # --- Means over the facets that a viewer sees ------------------------------------------------------------------------
@@ -168,9 +170,7 @@ class Principled(mi.BSDF):
         self.coat_facets = Facets(alphas(number("coat_roughness", 0), 0), eta_of(number("coat_ior", 1.5)))
         self.ideal, self.ideal_coat = alpha is None, self.coat_facets.alpha is None
 
-        lost = 0 if self.ideal else lost_in_all_directions(*alpha)
-        average = self.base + (1 - self.base) * MEAN_OF_SCHLICK
-        self.metal_lost = average**2 * (1 - lost) / (1 - average * lost)
+        self.metal_lost = np.zeros(3) if self.ideal else metal_again(*alpha, self.base)
         mean_fresnel = f0 + (1 - f0) * MEAN_OF_SCHLICK
         self.up_outside = mean_fresnel
         self.up_inside = mean_fresnel if self.thin else 1 - (1 - mean_fresnel) / self.ior**2

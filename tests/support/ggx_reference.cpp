@@ -205,8 +205,10 @@ double ggx_albedo(double alpha_x, double alpha_y, dvec3 wo) {
         .x;
 }
 
-double ggx_average_loss(double alpha) {
-    return square(alpha) / (0.26 + alpha * (0.92 + 0.51 * alpha));
+dvec3 ggx_again(double alpha, dvec3 f_0, dvec3 edge) {
+    const double leaves = 1 - 0.397 * alpha;
+    const dvec3 fresnel = f_0 + 0.0378 / (alpha + 0.0459) * edge;
+    return fresnel * fresnel * leaves / (dvec3(1) - (1 - leaves) * fresnel);
 }
 
 }  // namespace candela

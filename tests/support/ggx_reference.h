@@ -61,8 +61,8 @@ double refracted_share(const Facets& facets, dvec3 wo, dvec3 h, double eta);
 
 // Share of light that leaves the surface after one reflection by facets that reflect everything.
 double ggx_albedo(double alpha_x, double alpha_y, dvec3 wo);
-// What such facets of one roughness lose of an even sky, 2 int (1 - ggx_albedo) mu dmu: a fit, within 2.5 %
-// or 0.001.
-double ggx_average_loss(double alpha);
+// Of what they lose of an even sky, the share that comes back if each reflection leaves f_0 + edge S, S being
+// Schlick's power: fits to the mean of S and to how often light leaves, as PrincipledReferenceWalk finds it.
+dvec3 ggx_again(double alpha, dvec3 f_0, dvec3 edge);
 
 }  // namespace candela

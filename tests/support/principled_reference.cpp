@@ -141,9 +141,8 @@ void PrincipledReference::find_shares() {
 // diffuse light. After Kulla and Conty 2017, "Revisiting physically based shading at Imageworks", but as a
 // function of wo alone.
 void PrincipledReference::find_diffuse_parts() {
-    const dvec3 metal = metal_f0_ + (1 - film_) / 21 * (dvec3(1) - p_.base_color);
-    const double loss = ggx_average_loss(std::hypot(facets_.alpha_x, facets_.alpha_y) / std::numbers::sqrt2);
-    const dvec3 metal_again = metal * metal * (1 - loss) / (dvec3(1) - metal * loss);
+    const double alpha = std::hypot(facets_.alpha_x, facets_.alpha_y) / std::numbers::sqrt2;
+    const dvec3 metal_again = ggx_again(alpha, metal_f0_, (1 - film_) * (dvec3(1) - p_.base_color));
 
     // Schlick's reflectance of an even sky. From inside, the share eta^2 of it is not totally reflected, and
     // of that, as much is transmitted as from outside.

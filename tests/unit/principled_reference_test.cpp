@@ -244,27 +244,6 @@ TEST(PrincipledReference, AlbedoOfTheRoughestFacetsHasAClosedForm) {
     EXPECT_NEAR(ggx_albedo(1, 1, dvec3(0, 0, 1)), 1 - std::log(2.0), 2e-5);
 }
 
-TEST(PrincipledReference, AverageLossOfFacetsIsTheIntegral) {
-    for (const double alpha : {0.03, 0.2, 0.65, 1.0}) {
-        double loss = 0;
-        visit_interval(0, 1, 12, [&](double mu, double weight) {
-            loss += 2 * (1 - ggx_albedo(alpha, alpha, view(mu))) * mu * weight;
-        });
-        EXPECT_NEAR(ggx_average_loss(alpha), loss, std::max(0.025 * loss, 1e-3)) << alpha;
-    }
-}
-
-// Light that is lost at first meets facets again and again; each time it gets away or is lost once more.
-TEST(PrincipledReference, MetalGivesBackWhatFurtherReflectionsLeave) {
-    const double color = 0.7, reflectance = color + (1 - color) / 21, loss = ggx_average_loss(0.36);
-    double again = 0;
-    for (int times = 2; times < 100; ++times)
-        again += std::pow(reflectance, times) * std::pow(loss, times - 2) * (1 - loss);
-    const PrincipledReference metal({.base_color = dvec3(color), .metalness = 1, .roughness = 0.6},
-                                    view(0.4));
-    expect_all(metal.albedos().again_up, again * metal.shares().metal_lost, 1e-9, "grey metal");
-}
-
 // Diffuse light that goes through the surface of a volume is as much from either side, but spread over eta^2
 // times the projected solid angle inside.
 TEST(PrincipledReference, GlassSendsOnAsMuchLostLightFromEitherSide) {
