@@ -188,14 +188,14 @@ FacetMeans principled_measure(Principled p, vec3 d_0, vec3 d_edge, vec3 wo, vec2
 }
 
 // Colour of light that metal facets scatter more than once, m_0 + m_edge S each time: after each time but the first it
-// leaves with a probability. That and the mean of S are fits to random walks among facets of one roughness, within
+// stays with the same probability. That and the mean of S are fits to random walks among facets of one roughness, within
 // 0.001 of the albedo; the energy does not depend on them. Ref: Heitz et al. 2016, Multiple-Scattering Microfacet BSDFs
 // with the Smith Model, on the walks; Kulla and Conty 2017, on the sum over all times.
 vec3 metal_again(vec3 m_0, vec3 m_edge, vec2 alpha) {
     float a = sqrt(0.5 * dot(alpha, alpha));
-    float leaves = 1.0 - 0.397 * a;
+    float stays = 0.397 * a;
     vec3 mean = m_0 + m_edge * (0.0378 / (a + 0.0459));
-    return mean * mean * (leaves / (1.0 - mean * (1.0 - leaves)));
+    return mean * mean * ((1.0 - stays) / (1.0 - mean * stays));
 }
 
 // Share of light from all sides that a dielectric boundary reflects: what a facet scatters again goes to that side.
