@@ -62,6 +62,13 @@ def floor(material, size=20):
     return last(material)
 
 
+def dome(strength):
+    """An even sky, as a file without an environment can have it: a sphere that emits. By it the mean radiance depends
+    on how much light materials reflect in all, more than on where to."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=15)
+    last(emitting("sky", (0.9, 0.95, 1), strength))
+
+
 def lamp(kind, energy, location, rotation=(0, 0, 0), color=(1, 1, 1), **settings):
     """A light without size, as all of glTF's are."""
     data = bpy.data.lights.new(kind.lower(), kind)
@@ -128,6 +135,7 @@ def primitives():
     bpy.ops.mesh.primitive_torus_add(major_radius=0.6, minor_radius=0.22, location=(2.5, 0, 0.6), rotation=(1, 0, 0.4))
     last(principled("blue", (0.1, 0.2, 0.7), 1, 0.25), smooth=True)
     lamp("SUN", 3, (0, 0, 5), (0.7, 0.2, 0.3))
+    dome(1)
     camera((0, -7, 3), (0.1, 0, 0.5))
 
 
@@ -144,6 +152,7 @@ def suzanne():
     array = box.modifiers.new("array", "ARRAY")
     array.count, array.relative_offset_displace = 4, (0, 0, 1.1)
     lamp("POINT", 500, (3, -3, 4))
+    dome(0.5)
     camera((0, -6, 2), (0, 0, 0.9))
 
 
@@ -167,6 +176,7 @@ def textures():
     textured(block, image("waves", "Non-Color", wave), "Normal", normal=True)
     last(block)
     lamp("POINT", 300, (2.5, -2.5, 3))
+    dome(0.5)
     camera((0, -5, 2.6), (0, 0, 0.6))
 
 
@@ -183,6 +193,7 @@ def glass():
         last(material, smooth=True)
     bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0.5, 3.5), rotation=(math.pi, 0, 0))
     last(emitting("lamp", (1, 0.95, 0.9), 8))
+    dome(0.3)
     camera((0, -6, 2), (0, 0, 0.7))
 
 
