@@ -29,7 +29,10 @@ void PictureCopy::take(const Renderer& renderer) {
 }
 
 void PictureCopy::look(const Renderer& renderer, uint32_t spp, double seconds) {
-    if (look_seconds_ > std::max(SHORT_LOOK, LARGEST_SHARE * seconds)) return;
+    if (look_seconds_ > std::max(SHORT_LOOK, LARGEST_SHARE * seconds)) {
+        look_seconds_ /= 2;
+        return;
+    }
     const Clock::time_point start = Clock::now();
     take(renderer);
     Image image = make_image(*state_, {.sample_count = true}, {});
