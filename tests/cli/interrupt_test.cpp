@@ -116,11 +116,12 @@ TEST_F(Interrupt, MessagesThatNobodyReadsDoNotEndIt) {
     EXPECT_EQ(std::ranges::min(read_exr(file("a.exr")).find("SampleCount.V")->values), 4.0f);
 }
 
-// The program cannot end by itself after the first signal, since nobody reads what it writes then.
+// The program cannot end by itself after the first signal, since nobody reads what it writes.
 TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
     Process process(endless() + Words{"--progress", "json"}, options());
     ASSERT_TRUE(process.wait_for_err("rendering"));
     process.block_err();
+    wait_until("it waits for its reader", [&] { return process.waits_for_reader(); });
     process.send(SIGTERM);
     wait_until("it has the signal", [&] { return !process.catches(SIGINT); });
     process.send(SIGINT);

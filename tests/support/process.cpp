@@ -153,9 +153,18 @@ void Process::block_err() const {
     const int err = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
     if (err < 0) throw std::runtime_error("cannot open " + path);
     const std::array<char, 4096> blanks{};
-    while (::write(err, blanks.data(), blanks.size()) > 0) {
+    for (const size_t size :
+         {blanks.size(), size_t{1}}) {  // The last page takes what is shorter than a page.
+        while (::write(err, blanks.data(), size) > 0) {
+        }
     }
     ::close(err);
+}
+
+bool Process::waits_for_reader() const {
+    std::ifstream file("/proc/" + std::to_string(pid_) + "/wchan");
+    std::string function;  // Of the kernel, in which the main thread sleeps.
+    return std::getline(file, function) && function.find("pipe_write") != std::string::npos;
 }
 
 void Process::close_err() {

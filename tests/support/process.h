@@ -41,6 +41,8 @@ class Process {
     bool catches(int signal) const;
     // Fills its stderr, a pipe: from now on the program waits for ever when it writes there.
     void block_err() const;
+    // Whether it does so at this moment.
+    bool waits_for_reader() const;
     // Closes our end of its stderr, as a reader does who has seen enough.
     void close_err();
     // Waits for the end; kills the program if it hangs.
