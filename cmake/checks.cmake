@@ -48,17 +48,17 @@ candela_check(metal ${PYTHON3} cmake/checks/metal.py ${SPIRV_CROSS} ${spirv} ${p
 # slow tests. The driver is Mesa's own, whatever driver the other tests run on.
 find_file(RADV_MANIFEST NAMES radeon_icd.${CMAKE_HOST_SYSTEM_PROCESSOR}.json radeon_icd.json
     PATHS /usr/share/vulkan/icd.d NO_DEFAULT_PATH)
+set(texel_label check)
+set(storage_label slow)
 foreach(family IN ITEMS vega10 navi21)
-    foreach(pair IN ITEMS texel:check storage:slow)
-        string(REGEX REPLACE ":.*" "" buffers ${pair})
-        string(REGEX REPLACE ".*:" "" label ${pair})
+    foreach(buffers IN ITEMS texel storage)
         set(name kernel_bounds.${family}.${buffers})
         candela_check(${name} $<TARGET_FILE:kernel_statistics> scenes/cornell-box.json scenes/showcase.json
             tests/bench/scenes/layers.json tests/bench/scenes/instances.json --scene-buffers ${buffers}
             --bounds tests/bench/kernel_bounds.json)
         set_tests_properties(${name} PROPERTIES ENVIRONMENT "RADV_FORCE_FAMILY=${family};\
 VK_DRIVER_FILES=${RADV_MANIFEST};VK_ICD_FILENAMES=${RADV_MANIFEST};CANDELA_VALIDATION=1"
-            LABELS ${label})
+            LABELS ${${buffers}_label})
     endforeach()
 endforeach()
 

@@ -153,8 +153,8 @@ void Process::block_err() const {
     const int err = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
     if (err < 0) throw std::runtime_error("cannot open " + path);
     const std::array<char, 4096> blanks{};
-    for (const size_t size :
-         {blanks.size(), size_t{1}}) {  // The last page takes what is shorter than a page.
+    // Byte by byte at the end, since the last page takes what is shorter than a page.
+    for (const size_t size : {blanks.size(), size_t{1}}) {
         while (::write(err, blanks.data(), size) > 0) {
         }
     }

@@ -1,7 +1,7 @@
 // Light that a metal's facets scatter more than once, compared with random walks among the facets of a
 // surface of random heights. Ref: Heitz et al. 2016, "Multiple-Scattering Microfacet BSDFs with the Smith
 // Model", sections 3 and 4: heights are uniform here, which changes nothing for the light that leaves.
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -41,9 +41,7 @@ Walks walk(double alpha, double f_0, size_t count) {
         dvec3 d(std::sqrt(1 - cosine * cosine), 0, -cosine);
         double height = 1, light = 1;
         for (int reflections = 0;; ++reflections) {
-            // Lambda of d, the negative of what it would be from above for light on its way down.
-            const double below = d.z < 0 ? 1 + smith_lambda(facets, -d) : 0;
-            const double lambda = d.z < 0 ? -below : smith_lambda(facets, d);
+            const double lambda = d.z > 0 ? smith_lambda(facets, d) : -1 - smith_lambda(facets, -d);
             const double u = 1 - unit(random);
             if (d.z > 0 && u <= std::pow(height, lambda)) {
                 (reflections == 1 ? once : again) += light;
