@@ -58,8 +58,9 @@ std::string Progress::json_text(const std::string& state) const {
 }
 
 void Progress::update(double done, std::optional<double> error) {
+    const bool is_due = line_.is_due(done);  // Asked first: what is printed is then no earlier.
     now_ = {.done = done, .seconds = seconds(), .error = error};
-    if (line_.is_due(done)) line_.print(line_.is_json() ? json_text("rendering") : text(), done);
+    if (is_due) line_.print(line_.is_json() ? json_text("rendering") : text(), done);
 }
 
 void Progress::end(const std::string& state) const {

@@ -10,7 +10,7 @@
 namespace candela {
 
 // What has not happened after so long never will. It says that a program hangs, not how fast it has to be.
-inline constexpr std::chrono::minutes PATIENCE{20};
+inline constexpr std::chrono::minutes PATIENCE{60};
 
 // Waits until the condition holds; throws std::runtime_error, which ends the test, if it never does.
 inline void wait_until(const std::string& what, const std::function<bool()>& holds) {
