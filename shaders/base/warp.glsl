@@ -64,7 +64,7 @@ vec3 warp_ggx_visible_normal(vec2 u, vec2 alpha, vec3 w) {
     // horizon.
     vec3 v = normalize(vec3(alpha * w.xy, w.z));
     float across = dot(v.xy, v.xy);
-    vec3 t1 = across > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(across) : vec3(1.0, 0.0, 0.0);
+    vec3 t1 = across > 1e-30 ? vec3(-v.y, v.x, 0.0) * inversesqrt(across) : vec3(1.0, 0.0, 0.0);
     vec3 t2 = cross(v, t1);
     vec2 d = warp_disk(u);
     d.y = mix(sqrt(max(0.0, 1.0 - d.x * d.x)), d.y, 0.5 * (1.0 + v.z));

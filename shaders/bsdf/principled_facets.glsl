@@ -75,11 +75,12 @@ const float GREATEST_ETA = 100.0;
 // Facets that are measured: a power of two of at most 4, see lattice_point().
 const uint FACETS = 4u;
 
-// Factors of an index of refraction for red, green and blue; dispersion is 20 / Abbe number. No index falls below 1.
-// Ref: KHR_materials_dispersion.
+// Factors of an index of refraction for red, green and blue; dispersion is 20 / Abbe number. No index falls closer to 1
+// than LEAST_ALPHA: wo and wi are then so nearly opposite that rounding decides which facet lies between them.
+// Ref: KHR_materials_dispersion, where the limit is 1 itself.
 vec3 dispersion_spread(float ior, float dispersion) {
     float h = (ior - 1.0) * 0.025 * dispersion;
-    return vec3(max(ior - h, 1.0), ior, ior + h) / ior;
+    return vec3(max(ior - h, min(ior, 1.0 + LEAST_ALPHA)), ior, ior + h) / ior;
 }
 
 // (F - F(1)) / (1 - F(1)), F being Fresnel's reflectance of a dielectric at a cosine, F(1) that at normal incidence: in

@@ -36,7 +36,8 @@ PrincipledSurface principled_surface(inout MaterialRecord m, Interaction s, Ray 
     p.hue = LUMINANCE;
     p.spread = vec3(1.0);
     if ((PRINCIPLED & PRINCIPLED_HAS_DISPERSION) != 0u) {
-        p.hue = beta / (beta.x + beta.y + beta.z);
+        float sum = beta.x + beta.y + beta.z;
+        if (sum > 1e-30) p.hue = beta / sum;  // Less is nothing to be seen, and may be too small to divide by.
         p.spread = dispersion_spread(m.parameter, p.record.dispersion);
         if (p.inside) p.spread = 1.0 / p.spread;
     }

@@ -59,13 +59,14 @@ vec3 media_transmittance(uvec2 media, float distance) {
     return exp(-min(distance, far) * scene_medium(media_first(media)).absorption);
 }
 
-// The index of refraction beyond a boundary over that before it; 1, exactly, if the same medium fills both sides, as
-// where one is entered within another of a higher priority. `own_eta` if that of the surface holds, `eta`.
+// The index of refraction beyond a boundary over that before it; 1, exactly, if the indices are equal, or the same
+// medium fills both sides, as where one is entered within another of a higher priority. `own_eta` if that of the surface holds, `eta`.
 float media_eta(uvec2 here, uvec2 beyond, bool own_eta, float eta) {
     uint from = media_first(here);
     uint to = media_first(beyond);
     if (from == to) return 1.0;
-    return own_eta ? eta : scene_medium(to).ior / scene_medium(from).ior;
+    float above = scene_medium(to).ior, below = scene_medium(from).ior;
+    return own_eta ? eta : above == below ? 1.0 : above / below;  // Division may be off by a little.
 }
 
 #endif

@@ -10,14 +10,18 @@ bool is_instanced(uint instance) {
     return INSTANCED && instance != NO_INSTANCE;
 }
 
-// A vector of the frame of the scene in the mesh's space.
+// A vector of the frame of the scene in the mesh's space: the same bits wherever it is asked, since the coordinates of a
+// hit must be those of the ray that found it. (glslang 12 does not make a dot() precise.)
 vec3 vector_to_mesh(Instance i, vec3 v) {
-    return vec3(dot(i.to_mesh[0], v), dot(i.to_mesh[1], v), dot(i.to_mesh[2], v));
+    precise vec3 x = i.to_mesh[0] * v, y = i.to_mesh[1] * v, z = i.to_mesh[2] * v;
+    precise vec3 sum = vec3(x.x + x.y + x.z, y.x + y.y + y.z, z.x + z.y + z.z);
+    return sum;
 }
 
 // The ray in the mesh's space, with the same t.
 Ray ray_to_mesh(Instance i, Ray ray) {
-    return Ray(vector_to_mesh(i, ray.o - i.centre), vector_to_mesh(i, ray.d));
+    precise vec3 from_centre = ray.o - i.centre;
+    return Ray(vector_to_mesh(i, from_centre), vector_to_mesh(i, ray.d));
 }
 
 // The determinant of to_mesh; negative if the instance is mirrored.

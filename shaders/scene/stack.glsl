@@ -36,7 +36,7 @@ uint pending_node(uint pending, uint child) {
 // `pending` without the child to be visited first, if it has any.
 uint pending_rest(uint pending) {
     if (!INSTANCED) return pending & (pending - (1u << PENDING_SHIFT));
-    return pending & ~(1u << PENDING_SHIFT << pending_first(pending));
+    return pending & ~(1u << PENDING_SHIFT << (pending_first(pending) & 31u));
 }
 
 // The stack of bvh_advance, its top at 0: the pending children at each level above the current node, and PENDING_NONE

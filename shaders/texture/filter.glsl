@@ -49,8 +49,8 @@ AxisPlace axis_place(float t, uint n, uint traits, const uint group_shift) {
     }
     precise float x = scaled - 0.5;
     float below = floor(x);
-    int i = int(below);
     int last = int(n) - 1;
+    int i = clamp(int(below), -1, last);  // In range, whatever NaN becomes.
     bool repeats = !wrap.mirrored && !wrap.clamped;
     uint first = uint(i < 0 ? (repeats ? last : 0) : i);
     uint second = uint(i >= last ? (repeats ? 0 : last) : i + 1);

@@ -230,6 +230,53 @@ TEST_F(PrincipledTest, ValuesOfRandomMaterialsAreThoseOfTheReference) {
     }
 }
 
+// Cosines of unit vectors may be rounded to a little more than 1.
+TEST_F(PrincipledTest, ACosineAboveOneIsTakenForOne) {
+    const vec3 slanted = normalize(vec3(1.0f, 0.0f, 0.6f));
+    const float above = std::nextafter(std::nextafter(1.0f, 2.0f), 2.0f);
+    for (const auto& [name, material] : plain_materials()) {
+        const auto value = [&](float cosine) {
+            const vec3 w(0.0f, 0.0f, cosine);
+            return run({bsdf_item(principled(material), w, slanted, 0),
+                        bsdf_item(principled(material), slanted, w, 0)});
+        };
+        const std::vector<BsdfResult> at_one = value(1.0f), above_one = value(above);
+        for (size_t i = 0; i < 2; ++i) {
+            EXPECT_GT(at_one[i].f.x, 0.0f) << name;
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(above_one[i].f[c], at_one[i].f[c], ROUNDING * (double(at_one[i].f[c]) + 0.01))
+                    << name;
+        }
+    }
+}
+
+// Under the strongest dispersion, facets hardly bend red, and all of it passes: its mean over directions is 1, within
+// four standard errors.
+TEST_F(PrincipledTest, NoRedIsLostWhereItsIndexIsLeast) {
+    const PrincipledMaterial m{.base_color = vec3(1.0f),
+                               .roughness = 0.55f,
+                               .transmission = 1.0f,
+                               .inside = Medium{},
+                               .dispersion = 40.0f};
+    Random random(78);
+    for (const float cosine : {0.2f, 0.6f, 0.95f}) {
+        const vec3 wo(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
+        std::vector<BsdfItem> items(candela::samples(1u << 16u), bsdf_item(principled(m), wo, wo, 0));
+        for (uint32_t i = 0; i < items.size(); ++i) {
+            items[i].u = random.square();
+            items[i].uc = random.unit();
+            items[i].random = i;
+        }
+        RunningMoments red;
+        const double eta = 1.0 + double(LEAST_ALPHA);
+        for (const BsdfResult& s : run(items))
+            red.add(s.pdf > 0.0f ? double(s.weight.x) * (s.wi.z < 0.0f ? eta * eta : 1.0) : 0.0);
+        const double error = std::sqrt(red.variance() / double(items.size()));
+        EXPECT_LT(error, 0.05);
+        EXPECT_NEAR(red.mean(), 1.0, 4.0 * error) << cosine;
+    }
+}
+
 // Fuzz is not reciprocal, nor is a film, whose colour depends on the viewer.
 TEST_F(PrincipledTest, SheenCoatAndDiffuseBaseAreReciprocal) {
     const vec3 orange(0.7f, 0.5f, 0.2f), black(0);

@@ -200,10 +200,10 @@ dvec3 coat_darkening(double coat_ior, double cosine, dvec3 base_albedo, double b
     return (1 - returned) / (dvec3(1) - base_albedo * returned);
 }
 
-// Ref: KHR_materials_dispersion, "Implementation".
+// Ref: KHR_materials_dispersion, "Implementation", where the limit is 1.
 dvec3 dispersed_ior(double ior, double dispersion) {
     const double half_spread = (ior - 1) * 0.025 * dispersion;
-    return dvec3(std::max(1.0, ior - half_spread), ior, ior + half_spread);
+    return dvec3(std::max(std::min(ior, 1.001), ior - half_spread), ior, ior + half_spread);
 }
 
 }  // namespace candela

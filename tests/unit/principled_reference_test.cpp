@@ -429,7 +429,8 @@ TEST(PrincipledReference, DispersionSpreadsTheIndicesAboutGreens) {
     EXPECT_NEAR(ior.x, 1.475, 1e-12);
     EXPECT_NEAR(ior.y, 1.5, 1e-12);
     EXPECT_NEAR(ior.z, 1.525, 1e-12);
-    EXPECT_EQ(dispersed_ior(1.5, 100).x, 1);
+    EXPECT_EQ(dispersed_ior(1.5, 100).x, 1.001);
+    EXPECT_EQ(dispersed_ior(1.0005, 100).x, 1.0005);
 }
 
 }  // namespace
