@@ -6,7 +6,7 @@
 # Both are downloaded once and unpacked below build/; the system's driver stays as it is. Needs build/ci (sh
 # cmake/test.sh) and Debian 12; on other systems it says so and exits with 3. Prints how long each step took.
 #
-# usage: sh cmake/other_drivers.sh          all tests that need a device, on both
+# usage: sh cmake/other_drivers.sh          the tests vk, gpu and render, on both
 #        sh cmake/other_drivers.sh quick    SwiftShader alone, and what a foreign driver breaks first
 set -eu
 cd "$(dirname "$0")/.."
@@ -74,12 +74,14 @@ step() {
     echo "== $name: $(($(date +%s) - begin)) s"
 }
 
-# tests DRIVER EFFORT CTEST-OPTION...: runs tests on that driver, with the validation layer.
+# tests DRIVER EFFORT PRESET CTEST-OPTION...: runs tests on that driver, with the validation layer.
 tests() {
     driver=$1
     effort=$2
-    shift 2
-    on "$driver" CANDELA_TEST_EFFORT="$effort" ctest --preset ci "$@"
+    preset=$3
+    shift 3
+    echo "effort: $effort"
+    on "$driver" CANDELA_TEST_EFFORT="$effort" ctest --preset "$preset" "$@"
 }
 
 # compare DRIVER SIZE SCENE...: compares its images with those of the system's driver. The seeds differ, so that the
@@ -120,7 +122,7 @@ if [ "$extent" = quick ]; then
     some='^gpu\.(RecordsTest|ExponentialTest|TraversalTest\.(AMillionfold|AxisParallel|Distances|TheNearestHit))'
     some=$some'|IdentityTest.(ManySmall|Texel|Tuned|ACrop|SamplesThat).*/Everything'
     (
-        step "SwiftShader: tests" tests swiftshader quick -R "$some"
+        step "SwiftShader: tests" tests swiftshader quick ci -R "$some"
         step "SwiftShader: images" compare swiftshader 64x48 showcase
     ) &
     rest=$!
@@ -136,11 +138,13 @@ dpkg-deb -W "$packages"/mesa-vulkan-drivers_*.deb
 on mesa "$candela" devices
 scenes="cornell-box cornell-glossy cornell-glass environment depth-of-field veach-mis showcase mesh"
 step "Mesa: selftest" on mesa "$candela" selftest
-step "Mesa: tests" tests mesa full --parallel "$(nproc)" -L '^(vk|gpu|render)$'
+step "Mesa: tests" tests mesa full ci --parallel "$(nproc)" -L '^(vk|gpu|render)$'
+step "Mesa: slow tests" tests mesa full slow --parallel "$(nproc)" -R '^(gpu|render)[.]'
 step "Mesa: images" compare mesa 128x96 $scenes
 # SwiftShader takes 30 to 70 times as long as lavapipe: a sixteenth of the samples, a quarter of the pixels.
 step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
 # Without ConvergenceTest: its bounds hold only for one number of samples, and what they judge, an estimate, is the
-# host's work.
-step "SwiftShader: tests" tests swiftshader quick --parallel "$(nproc)" -L '^(vk|gpu|render)$' -E ConvergenceTest
+# host's work. Without the slow tests: others do the same with fewer samples.
+echo "left out: ConvergenceTest and the slow tests; the script says why"
+step "SwiftShader: tests" tests swiftshader quick ci --parallel "$(nproc)" -L '^(vk|gpu|render)$' -E ConvergenceTest
 step "SwiftShader: images" compare swiftshader 64x48 $scenes

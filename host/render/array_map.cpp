@@ -20,6 +20,9 @@ uint32_t available_buffers(const vk::DeviceInfo& device) {
     return device.limits.max_per_stage_descriptor_storage_buffers - 1;
 }
 
+// Where all arrays are texel buffers, a probe has one more, for its items, of the 16 that Vulkan promises.
+static_assert(ARRAY_COUNT + 1 <= 16);
+
 uint64_t bytes_of(const GpuScene& scene, uint32_t array) {
     return scene.arrays[array].size() * sizeof(uvec4);
 }

@@ -250,8 +250,8 @@ TEST_F(PrincipledTest, ACosineAboveOneIsTakenForOne) {
     }
 }
 
-// Under the strongest dispersion, facets hardly bend red, and all of it passes: its mean over directions is 1, within
-// four standard errors.
+// Under the strongest dispersion, facets hardly bend red, and all of it passes: its mean over directions is
+// 1, within four standard errors.
 TEST_F(PrincipledTest, NoRedIsLostWhereItsIndexIsLeast) {
     const PrincipledMaterial m{.base_color = vec3(1.0f),
                                .roughness = 0.55f,
