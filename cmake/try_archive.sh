@@ -37,6 +37,9 @@ for pair in "GLIBC $GLIBC" "GLIBCXX $GLIBCXX"; do
     [ "$(printf '%s\n%s\n' "$found" "$2" | sort -V | tail -n 1)" = "$2" ]
 done
 
+# Nothing else builds a program without a window. (It fails, so that grep's result counts.)
+"$build/candela" view scenes/cornell-box.json 2>&1 | grep -F 'view: this program was built without a window'
+
 # bring FILE...: copies files, and the shared libraries that they need, to the same places in the root folder.
 bring() {
     for file in "$@"; do
