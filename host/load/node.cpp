@@ -152,8 +152,10 @@ const std::string& Node::file_name() const {
 double Node::number() const {
     const double* value = std::get_if<double>(&value_->data);
     if (value == nullptr) fail_expected("a number");
-    if (std::abs(*value) > FLOAT_MAX) fail_expected("a number of at most 3.4e38 in size");
-    return *value;
+    // Some write the greatest float in so few digits that the number is above it.
+    constexpr double ROUNDED_TO_INFINITY = 0x1.ffffffp127;
+    if (std::abs(*value) >= ROUNDED_TO_INFINITY) fail_expected("a number of at most 3.4e38 in size");
+    return std::clamp(*value, -double(FLOAT_MAX), double(FLOAT_MAX));
 }
 
 float Node::number(float lo, float hi) const {

@@ -53,6 +53,7 @@ class Node {
 
     // As compact JSON.
     std::string text() const { return json::to_text(*value_); }
+    bool is_null() const { return std::holds_alternative<std::nullptr_t>(value_->data); }
     bool is_object() const { return std::holds_alternative<json::Object>(value_->data); }
     bool is_array() const { return std::holds_alternative<json::Array>(value_->data); }
     bool is_number() const { return std::holds_alternative<double>(value_->data); }

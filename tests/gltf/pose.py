@@ -255,7 +255,8 @@ def triangles(path, animation=None, time=None, scene=None):
             if position is None or primitive.get("mode", 4) < 4:
                 continue
             if "skin" in nodes[i]:
-                parts.append(posed(file, primitive, weights, position, skinned(file, nodes[i], primitive, worlds)))
+                parts.append(posed(file, primitive, weights, position, skinned(file, nodes[i], primitive, worlds),
+                                   np.linalg.det(worlds[i][:3, :3]) < 0))
                 continue
             for world in places:
                 edges = np.linalg.norm(world[:3, :3], axis=0)

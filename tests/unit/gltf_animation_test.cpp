@@ -69,6 +69,9 @@ TEST_F(GltfAnimation, StepsAndLinesBetweenKeys) {
     expect_place(step, 3.75, dvec3(3, 10, 0));
     expect_place(linear, 1.75, dvec3(2.5, 7.5, 0));
     expect_place(linear, 3.5, dvec3(6, 17.5, 3));
+    // The moment of a key is that key's, though no float is 1/5: the nearest one is above it.
+    expect_place(animated("translation", {0, 0.2f}, "STEP", "VEC3", std::vector<float>{1, 0, 0, 2, 0, 0}),
+                 0.2, dvec3(2, 0, 0));
     // LINEAR unless it says otherwise; a single key holds for ever.
     GltfFile implied = linear;
     implied.root["animations"][0]["samplers"][0].erase("interpolation");

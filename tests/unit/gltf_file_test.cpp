@@ -96,13 +96,20 @@ TEST_F(GltfFileTest, ReadsVersionTwoAlone) {
                       "number literal; expected ':'");
 }
 
+TEST_F(GltfFileTest, MayBeginWithAByteOrderMark) {
+    expect_corner(load_text("\xEF\xBB\xBF" + corner_file().gltf()));
+}
+
 TEST_F(GltfFileTest, DecodesTheNamesOfFiles) {
     std::filesystem::create_directory(folder_.path() / "sub");
-    for (const char* name : {"two words.bin", "größe.bin", "50%.bin", "as%20is.bin", "sub/b.bin"})
+    for (const char* name :
+         {"two words.bin", "größe.bin", "50%.bin", "as%20is.bin", "sub/b.bin", "sub/5% b.bin"})
         folder_.write(name, corner_file().bytes);
     for (const char* uri :
          {"two%20words.bin", "two words.bin", "gr%C3%B6%c3%9fe.bin", "größe.bin", "50%25.bin", "as%20is.bin",
-          "as%2520is.bin", "sub/b.bin", "sub%2fb.bin", "./sub/../two%20words.bin"}) {
+          "as%2520is.bin", "sub/b.bin", "sub%2fb.bin", "./sub/../two%20words.bin",
+          // As they should not be, and as Windows has them.
+          "50%.bin", R"(sub\b.bin)", "sub%5Cb.bin", R"(.\sub\5% b.bin)"}) {
         SCOPED_TRACE(uri);
         expect_corner(load_text(naming(uri)));
     }

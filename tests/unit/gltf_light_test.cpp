@@ -2,6 +2,7 @@
 // Ref: Khronos, "glTF 2.0 Specification", section 3.10; KHR_lights_punctual.
 #include <cmath>
 
+#include "base/image_io.h"
 #include "gltf_fixture.h"
 #include "scene/geometry.h"
 
@@ -182,6 +183,20 @@ TEST_F(GltfLight, CountsInTheUnitsThatAreAskedFor) {
         ": Blender wrote the file, so that its lights count as watts times 683 lm/W; where that is too dark, "
         "give --light-units spec or raw");
     expect_near(std::get<PointLight>(scene.lights.at(0).model).intensity, dvec3(1));
+    // Blender multiplies since its exporter 3.4.35; names without a version are of today.
+    for (const char* generator : {"Khronos glTF Blender I/O v1.2.75", "Khronos glTF Blender I/O v3.3.27"}) {
+        file.root["asset"]["generator"] = generator;
+        const Scene old = expect_warning(
+            file,
+            ": a Blender before 3.4 wrote the file, so that its lights count as watts; where that is "
+            "too dark, give --light-units spec");
+        expect_near(std::get<PointLight>(old.lights.at(0).model).intensity, dvec3(683 / sphere));
+    }
+    for (const char* generator :
+         {"Khronos glTF Blender I/O v3.4.50", "Khronos glTF Blender I/O v10.0.1", "Blender"}) {
+        file.root["asset"]["generator"] = generator;
+        expect_near(std::get<PointLight>(load(file).lights.at(0).model).intensity, dvec3(1));
+    }
     const Scene as_spec = load(file, {.light_units = LightUnits::spec});
     EXPECT_TRUE(as_spec.warnings.empty());
     EXPECT_EQ(std::get<PointLight>(as_spec.lights.at(0).model).intensity, vec3(683));
@@ -232,7 +247,7 @@ TEST_F(GltfLight, RefusesOnesThatAreNone) {
 TEST_F(GltfLight, FilesWithoutCameraOrLightGetBoth) {
     const auto complete = [&](const GltfFile& file) {
         folder_.write("m.gltf", file.gltf());
-        return load_gltf_scene(folder_.path() / "m.gltf");
+        return load_scene(folder_.path() / "m.gltf");
     };
     const auto warnings = [&](const Scene& scene) {
         std::string text;
@@ -261,11 +276,36 @@ TEST_F(GltfLight, FilesWithoutCameraOrLightGetBoth) {
     EXPECT_EQ(warnings(complete(glowing)), camera);
     glowing.root["materials"] = {{{"extensions", {{"KHR_materials_unlit", Json::object()}}}}};
     EXPECT_EQ(warnings(complete(glowing)), camera);
+    // One that needs no light is none for others.
+    glowing.show_corner();
+    EXPECT_EQ(warnings(complete(glowing)), camera + light);
     EXPECT_EQ(warnings(complete(GltfFile())), "m.gltf: the scene has no surfaces\n" + camera + light);
     GltfFile seen = corner_file();
     seen.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
     seen.push("nodes", {{"camera", 0}});
     EXPECT_EQ(warnings(complete(seen)), light);
+}
+
+// As of a toy whose lamps glow: a quarter of this image does, then half of it.
+TEST_F(GltfLight, AnImageThatIsMostlyBlackLightsNothing) {
+    const auto glowing = [&](uint8_t second) {
+        const std::vector<uint8_t> rgb{255, 255, 255, second, second, second, 12, 12, 12, 0, 0, 0};
+        write_png(folder_.path() / "glow.png", 2, 2, rgb);
+        GltfFile file;
+        file.root["images"] = {{{"uri", "glow.png"}}};
+        file.root["textures"] = {{{"source", 0}}};
+        file.root["materials"] = {{{"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", {{"index", 0}}}}};
+        const size_t uv = file.add<float>("VEC2", {0, 0, 1, 0, 0, 1});
+        file.show({{"attributes", {{"POSITION", file.add_corner()}, {"TEXCOORD_0", uv}}}, {"material", 0}});
+        folder_.write("m.gltf", file.gltf());
+        return load_scene(folder_.path() / "m.gltf");
+    };
+    const Scene toy = glowing(0);
+    EXPECT_TRUE(toy.environment);
+    EXPECT_EQ(
+        folder_.without_folder(toy.warnings.back()),
+        "m.gltf: what emits light is mostly black; a studio lights the scene, which the camera does not see");
+    EXPECT_FALSE(glowing(30).environment);
 }
 
 }  // namespace

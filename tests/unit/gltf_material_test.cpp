@@ -230,14 +230,18 @@ TEST_F(GltfMaterial, ReadsExtensionsOfBodies) {
     EXPECT_FALSE(body({{"attenuationDistance", 2}}).inside);
     EXPECT_EQ(body({{"attenuationDistance", 2}}).dispersion, 0.0f);
     EXPECT_FALSE(body(wine, 0.0).inside);
-    Json empty = wine;
-    empty["attenuationDistance"] = 0;
-    expect_error(
-        file_of({{"extensions",
-                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                   {"KHR_materials_volume", empty}}}}),
-        "#/materials/0/extensions/KHR_materials_volume/attenuationDistance: \"attenuationDistance\": "
-        "expected a distance above 0, found 0");
+    // What programs write for an infinite distance: nothing is lost.
+    Json endless = wine;
+    for (const Json& distance : {Json(nullptr), Json(3.4028235e38)}) {
+        endless["attenuationDistance"] = distance;
+        EXPECT_LE(body(endless).inside->absorption.z, 1e-37f);
+    }
+    endless["attenuationDistance"] = 0;
+    expect_warning(file_of({{"extensions",
+                             {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                              {"KHR_materials_volume", endless}}}}),
+                   "#/materials/0/extensions/KHR_materials_volume/attenuationDistance: the distance is not "
+                   "above 0, and counts as infinite");
 }
 
 TEST_F(GltfMaterial, AnUnlitOneShowsItsColourAlone) {

@@ -264,6 +264,10 @@ TEST_F(GltfNode, HiddenNodesHideTheirChildren) {
     Json& extensions = file.root["nodes"][0]["extensions"];
     extensions["KHR_node_visibility"] = {{"visible", false}};
     EXPECT_EQ(places(load(file)), (std::vector<float>{100}));
+    // Cameras see from there nonetheless.
+    file.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+    file.root["nodes"][1]["camera"] = 0;
+    EXPECT_EQ(load(file).cameras.size(), 1u);
     extensions["KHR_node_visibility"] = {{"visible", true}};
     EXPECT_EQ(places(load(file)).size(), 3u);
     extensions["KHR_node_visibility"] = Json::object();

@@ -229,6 +229,27 @@ TEST_F(GltfSkin, TangentsFollowToo) {
     EXPECT_EQ(world_mesh(load(file)).tangents.at(2), vec4(1, 0, 0, -1));
 }
 
+// A skeleton that is mirrored, and the mesh with it: its front stays the front.
+TEST_F(GltfSkin, AMirroredSkeletonTurnsTheTrianglesRound) {
+    GltfFile file = two_joints();
+    file.root["images"] = {{{"uri", "a.png"}}};
+    file.root["textures"] = {{{"source", 0}}};
+    file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+    Json& primitive = file.root["meshes"][0]["primitives"][0];
+    primitive["material"] = 0;
+    primitive["attributes"]["NORMAL"] = file.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+    primitive["attributes"]["TANGENT"] = file.add<float>("VEC4", {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1});
+    primitive["attributes"]["TEXCOORD_0"] = file.add<float>("VEC2", {0, 0, 1, 0, 0, 1});
+    primitive["attributes"].erase("JOINTS_0");
+    primitive["attributes"].erase("WEIGHTS_0");
+    file.push("nodes", {{"scale", {-1, 1, 1}}, {"children", {0, 1, 2}}});
+    const TriangleMesh mesh = world_mesh(load(file));
+    EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{uvec3(0, 2, 1)}));
+    EXPECT_EQ(mesh.positions.at(1), vec3(-2, 0, 0));
+    EXPECT_EQ(mesh.normals.at(1), vec3(0, 0, 1));
+    EXPECT_EQ(mesh.tangents.at(1), vec4(-1, 0, 0, -1));
+}
+
 TEST_F(GltfSkin, VerticesThatFollowNothingFollowTheFirstJoint) {
     GltfFile file = two_joints();
     Json& attributes = file.root["meshes"][0]["primitives"][0]["attributes"];

@@ -89,14 +89,14 @@ double spline(double v0, double out0, double in1, double v1, double step, double
            step * (t3 - t2) * in1;
 }
 
-std::vector<double> sample(const Sampler& s, double time, bool is_rotation) {
+std::vector<double> sample(const Sampler& s, float time, bool is_rotation) {
     const auto after = std::upper_bound(s.times.begin(), s.times.end(), time);
     const auto key = size_t(after - s.times.begin());
     const auto at = [&](size_t k) { return std::vector<double>(s.value(k), s.value(k) + s.width); };
     if (key == 0) return at(0);
     if (key == s.times.size() || s.interpolation == Interpolation::step) return at(key - 1);
     const double step = double(s.times[key]) - double(s.times[key - 1]);
-    const double t = (time - double(s.times[key - 1])) / step;
+    const double t = (double(time) - double(s.times[key - 1])) / step;
     std::vector<double> result(s.width);
     if (s.interpolation == Interpolation::linear && is_rotation) {
         const float* a = s.value(key - 1);
@@ -114,7 +114,7 @@ std::vector<double> sample(const Sampler& s, double time, bool is_rotation) {
     return result;
 }
 
-void apply_channel(File& file, const Node& animation, const Node& channel, double time,
+void apply_channel(File& file, const Node& animation, const Node& channel, float time,
                    std::vector<PosedNode>& nodes) {
     const Node target = channel.require("target");
     const auto reference = target.find("node");
@@ -181,12 +181,14 @@ void animate(File& file, const std::optional<std::string>& name, double time, st
                   quote(name_of(file.element("animations", 0), "0")) + ", of " + std::to_string(count) +
                   "; choose by --animation NAME, or all");
     }
+    // Rounded as the times of keys are: the moment of a key is its own.
+    const auto moment = float(std::clamp(time, -double(FLOAT_MAX), double(FLOAT_MAX)));
     for (const size_t i : chosen) {
         const Node animation = file.element("animations", i);
         const std::vector<Node> channels = animation.require("channels").elements();
         check_targets(file, channels);
         for (const Node& channel : channels)
-            apply_channel(file, animation, channel, time, nodes);
+            apply_channel(file, animation, channel, moment, nodes);
     }
 }
 

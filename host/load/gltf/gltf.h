@@ -42,8 +42,8 @@ inline constexpr uvec2 GLTF_FILM_SIZE{1280, 720};
 bool is_gltf(const std::filesystem::path& path);
 
 // Reads a scene and the buffers that it names, with progress in bytes and then in meshes; load_images() reads
-// its images. A file without cameras gets one, and one without light a studio. Throws Error with the JSON
-// pointer of what is wrong. What is odd but usable goes to Scene::warnings.
+// its images. A file without cameras gets one; add_studio() lights one without light. Throws Error with the
+// JSON pointer of what is wrong. What is odd but usable goes to Scene::warnings.
 Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options = {},
                       const LoadProgress& progress = no_progress);
 
@@ -52,7 +52,12 @@ Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& opti
 void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene,
                     const LoadProgress& progress = no_progress);
 
-// Adds the camera and the studio if they are missing; `name` is what the warnings that say so begin with.
+// Adds the camera if it is missing, and asks for the studio; `name` is what the warnings that say so begin
+// with.
 void complete_gltf_scene(const std::string& name, Scene& scene);
+
+// Lights a scene of a glTF file by a studio if it has no light, once its images have been read: what glows
+// through an image that is mostly black, as the lamps of a toy do, does not light a scene.
+void add_studio(Scene& scene);
 
 }  // namespace candela

@@ -17,6 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "files are little-endian, and copied as they are");
 
+constexpr std::string_view BYTE_ORDER_MARK = "\xEF\xBB\xBF";
 constexpr std::string_view GLB_MAGIC = "glTF";
 constexpr size_t GLB_HEADER_SIZE = 12;
 constexpr size_t CHUNK_HEADER_SIZE = 8;
@@ -55,7 +56,9 @@ File::File(const std::filesystem::path& path, LoadProgress progress)
     : progress_(std::move(progress)), path_(path), bytes_(read(path)) {
     document_.file = path.string();
     document_.places = json::Document::Places::pointers;
-    const std::string_view text = bytes_.starts_with(GLB_MAGIC) ? split_glb() : std::string_view(bytes_);
+    std::string_view text = bytes_.starts_with(GLB_MAGIC) ? split_glb() : std::string_view(bytes_);
+    if (text.starts_with(BYTE_ORDER_MARK))
+        text.remove_prefix(BYTE_ORDER_MARK.size());  // Of careless programs.
     document_.root = json::parse(text, document_.file);
     if (!root().is_object()) root().fail_expected("an object { ... }, as every glTF file is");
     check_version(root());

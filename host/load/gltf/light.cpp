@@ -2,8 +2,11 @@
 #include "load/gltf/light.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
+#include <cstdio>
 #include <string>
+#include <utility>
 
 #include "base/text.h"
 #include "load/gltf/names.h"
@@ -60,8 +63,13 @@ SpotLight read_cone(File& file, const Node& light) {
 LightUnits units_of(const File& file, const GltfOptions& options) {
     if (options.light_units) return *options.light_units;
     const auto generator = file.root().require("asset").find("generator");
-    const bool blender = generator && generator->string().find("Blender") != std::string::npos;
-    return blender ? LightUnits::blender : LightUnits::spec;
+    if (!generator || generator->string().find("Blender") == std::string::npos) return LightUnits::spec;
+    // "Khronos glTF Blender I/O v3.3.27". Before 3.4, it wrote its own watts.
+    int major = INT_MAX, minor = 0;
+    const size_t version = generator->string().find("I/O v");
+    if (version != std::string::npos)
+        std::sscanf(generator->string().c_str() + version, "I/O v%d.%d", &major, &minor);
+    return std::pair(major, minor) < std::pair(3, 4) ? LightUnits::raw : LightUnits::blender;
 }
 
 Light read_light(File& file, const Node& reference, const glm::dmat4& world, LightUnits units) {

@@ -183,11 +183,14 @@ class MaterialReader {
         if (number(volume, "thicknessFactor", 0.0f, FLOAT_MAX, 0.0f) == 0.0f) return;
         m.inside.emplace();
         const auto distance = volume.find("attenuationDistance");
-        if (!distance) return;          // Infinite.
+        if (!distance || distance->is_null()) return;  // Infinite. (JSON has no other word for it than null.)
         constexpr float LEAST = 1e-6f;  // Black would take up all light at once, and not as an exponential.
         const vec3 left = color_of(file_, volume, "attenuationColor", 1.0f, vec3(1.0f));
         const double length = distance->number();
-        if (!(length >= double(FLOAT_MIN))) distance->fail_expected("a distance above 0");
+        if (!(length >= double(FLOAT_MIN))) {
+            file_.warn(*distance, "the distance is not above 0, and counts as infinite");
+            return;
+        }
         for (glm::length_t i = 0; i < 3; ++i) {
             const double share = std::clamp(double(left[i]), double(LEAST), 1.0);
             m.inside->absorption[i] = float(std::min(-std::log(share) / length, double(FLOAT_MAX)));

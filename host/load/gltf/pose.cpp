@@ -116,6 +116,7 @@ void place_nodes(std::vector<PosedNode>& nodes) {
         waiting.pop_back();
         const glm::dmat4 local = node.matrix ? *node.matrix : matrix_of(node.trs);
         node.world = node.parent ? nodes[*node.parent].world * local : local;
+        if (node.parent) node.is_visible &= nodes[*node.parent].is_visible;
         waiting.insert(waiting.end(), node.children.begin(), node.children.end());
     }
 }

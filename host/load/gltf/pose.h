@@ -31,7 +31,7 @@ struct PosedNode {
     std::vector<double> weights{};       // Of morph targets; empty: those of the mesh.
     std::vector<uint32_t> children{};
     std::optional<uint32_t> parent{};
-    bool is_visible = true;  // KHR_node_visibility.
+    bool is_visible = true;  // KHR_node_visibility; once placed, of all nodes above, too.
     glm::dmat4 world{1.0};   // From the node's space to the scene's.
 };
 

@@ -280,6 +280,7 @@ class PrimitiveReader {
             if (!tangents.empty()) {
                 const glm::dvec3 t = linear * glm::dvec3(tangents[i]);
                 if (length(t) > 0.0) tangents[i] = vec4(vec3(normalize(t)), tangents[i].w);
+                if (deformation_.mirrors) tangents[i].w = -tangents[i].w;
             }
         }
     }
@@ -310,6 +311,10 @@ std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive,
     }
     const uint32_t vertices = Accessor(file, *position, {"VEC3"}).count();
     std::vector<uvec3> triangles = triangles_of(read_corners(file, primitive, vertices), mode);
+    if (deformation.mirrors) {
+        for (uvec3& t : triangles)
+            std::swap(t.y, t.z);
+    }
     TriangleMesh mesh = PrimitiveReader(file, primitive, deformation).read(std::move(triangles), vertices);
     drop_flat_triangles(mesh);
     if (mesh.triangles.empty()) {

@@ -14,6 +14,7 @@ namespace candela::gltf {
 struct Deformation {
     std::span<const double> weights{};     // Of its morph targets.
     std::span<const glm::dmat4> joints{};  // Of its skin, to the scene's space; empty: none.
+    bool mirrors = false;                  // Whether they turn the triangles round.
 };
 
 // Reads a primitive: in its own space, or the scene's if it has a skin. Texture coordinates get v upwards.

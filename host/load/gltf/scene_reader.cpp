@@ -71,9 +71,9 @@ void SceneReader::read() {
     if (scene) {
         if (auto light = read_image_light(file_, *scene)) scene_.environment = std::move(light);
     }
-    const std::vector<uint32_t> shown = shown_nodes(root_nodes(scene));
-    primitives_ = count_primitives(shown);
-    for (const uint32_t i : shown)
+    const std::vector<uint32_t> nodes = nodes_below(root_nodes(scene));
+    primitives_ = count_primitives(nodes);
+    for (const uint32_t i : nodes)
         read_node(i);
 }
 
@@ -108,29 +108,29 @@ std::vector<uint32_t> SceneReader::root_nodes(const std::optional<Node>& scene) 
     return roots;
 }
 
-std::vector<uint32_t> SceneReader::shown_nodes(std::vector<uint32_t> roots) const {
+std::vector<uint32_t> SceneReader::nodes_below(std::vector<uint32_t> roots) const {
     std::vector<uint32_t> waiting = std::move(roots);
     std::ranges::reverse(waiting);
-    std::vector<uint32_t> shown;
+    std::vector<uint32_t> nodes;
     std::vector<bool> seen(nodes_.size(), false);
     while (!waiting.empty()) {
         const uint32_t i = waiting.back();
         waiting.pop_back();
-        if (!nodes_[i].is_visible) continue;
         if (seen[i]) file_.element("nodes", i).fail("the node is twice in the scene; name it once");
         seen[i] = true;
-        shown.push_back(i);
+        nodes.push_back(i);
         const std::vector<uint32_t>& children = nodes_[i].children;
         waiting.insert(waiting.end(), children.rbegin(), children.rend());
     }
-    return shown;
+    return nodes;
 }
 
 size_t SceneReader::count_primitives(const std::vector<uint32_t>& nodes) const {
     size_t primitives = 0;
     for (const uint32_t i : nodes) {
         const auto mesh = file_.element("nodes", i).find("mesh");
-        if (mesh) primitives += file_.resolve("meshes", *mesh).require("primitives").size();
+        if (mesh && nodes_[i].is_visible)
+            primitives += file_.resolve("meshes", *mesh).require("primitives").size();
     }
     return primitives;
 }
@@ -138,8 +138,9 @@ size_t SceneReader::count_primitives(const std::vector<uint32_t>& nodes) const {
 void SceneReader::read_node(uint32_t index) {
     const Node node = file_.element("nodes", index);
     const PosedNode& posed = nodes_[index];
-    if (const auto mesh = node.find("mesh")) read_mesh(node, posed);
     if (const auto camera = node.find("camera")) read_camera(node, file_.resolve("cameras", *camera), posed);
+    if (!posed.is_visible) return;  // Cameras see from there nonetheless.
+    if (const auto mesh = node.find("mesh")) read_mesh(node, posed);
     if (const auto light = extension_of(node, "KHR_lights_punctual")) {
         if (const auto reference = light->find("light"))
             scene_.lights.push_back(read_light(file_, *reference, posed.world, units_));
@@ -158,8 +159,10 @@ void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
         if (const auto instances = extension_of(node, "EXT_mesh_gpu_instancing"))
             file_.warn(*instances, "the mesh has a skin, and is shown once");
         const std::vector<glm::dmat4> joints = joint_matrices(file_, file_.resolve("skins", *skin), nodes_);
+        // The node's transform moves nothing here, and yet says which side is the front (3.7.4).
+        const bool mirrors = determinant(glm::dmat3(posed.world)) < 0.0;
         for (const Node& primitive : primitives.elements()) {
-            add_primitive(primitive, {weights, joints}, Transform());
+            add_primitive(primitive, {weights, joints, mirrors}, Transform());
             progress_("meshes", ++done_, primitives_);
         }
         return;

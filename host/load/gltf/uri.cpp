@@ -1,8 +1,11 @@
 // Ref: RFC 3986 (URI), RFC 2397 (data), RFC 4648 (base64).
 #include "load/gltf/uri.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "load/quote.h"
 
@@ -49,8 +52,8 @@ std::optional<uint32_t> hex_digit(char c) {
     return std::nullopt;
 }
 
-std::string decode_percents(const Node& uri) {
-    const std::string& text = uri.string();
+// Nothing if a % is not followed by two digits.
+std::optional<std::string> decode_percents(const std::string& text) {
     std::string decoded;
     for (size_t i = 0; i < text.size(); ++i) {
         if (text[i] != '%') {
@@ -59,7 +62,7 @@ std::string decode_percents(const Node& uri) {
         }
         const auto high = i + 2 < text.size() ? hex_digit(text[i + 1]) : std::nullopt;
         const auto low = high ? hex_digit(text[i + 2]) : std::nullopt;
-        if (!low) uri.fail("a % in a URI is followed by two hexadecimal digits; write % itself as %25");
+        if (!low) return std::nullopt;
         decoded += char(16 * *high + *low);
         i += 2;
     }
@@ -92,17 +95,27 @@ std::filesystem::path file_of(const Node& uri, const std::filesystem::path& fold
     const auto is_absolute = [](const std::string& name) {
         return name.starts_with('/') || name.starts_with('\\');
     };
-    const std::string decoded = has_scheme(text) || is_absolute(text) ? text : decode_percents(uri);
-    if (has_scheme(text) || is_absolute(decoded)) {
+    const std::optional<std::string> decoded = decode_percents(text);
+    if (has_scheme(text) || is_absolute(text) || (decoded && is_absolute(*decoded))) {
         uri.fail("only files that are named relative to this one are read, not " + quote(text.substr(0, 60)) +
                  "; put the file beside this one");
     }
-    if (decoded.find('\0') != std::string::npos)
+    if (decoded && decoded->find('\0') != std::string::npos)
         uri.fail("a file name cannot hold the character U+0000; remove it");
+    // Some programs write names as they are, or as Windows has them.
+    std::vector<std::string> names{text};
+    if (decoded) names.insert(names.begin(), *decoded);
+    for (size_t i = 0, count = names.size(); i < count; ++i) {
+        std::string with_slashes = names[i];
+        std::ranges::replace(with_slashes, '\\', '/');
+        names.push_back(with_slashes);
+    }
     std::error_code ignored;
-    const bool as_written = !std::filesystem::exists(folder / decoded, ignored) &&
-                            std::filesystem::exists(folder / text, ignored);
-    return folder / (as_written ? text : decoded);
+    const auto found = std::ranges::find_if(
+        names, [&](const std::string& name) { return std::filesystem::exists(folder / name, ignored); });
+    if (found != names.end()) return folder / *found;
+    if (!decoded) uri.fail("a % in a URI is followed by two hexadecimal digits; write % itself as %25");
+    return folder / *decoded;
 }
 
 }  // namespace candela::gltf
