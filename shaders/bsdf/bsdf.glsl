@@ -73,6 +73,14 @@ BsdfValue bsdf_evaluate(Bsdf b, vec3 wo, vec3 wi) {
     return bsdf_zero();
 }
 
+// The value times the cosine and the density of a coat with a normal of its own, for wi below the horizon of what it
+// lies on; 0 for others.
+BsdfValue bsdf_evaluate_coat(Bsdf b, vec3 wo, vec3 wi) {
+    bool has_coat = (PRINCIPLED & PRINCIPLED_HAS_COAT_NORMAL) != 0u && is_model(b, 1u << MATERIAL_PRINCIPLED);
+    if (!has_coat) return bsdf_zero();
+    return principled_coat_evaluate(b.principled, wo, wi, 1.0);
+}
+
 // A direction wi, its weight and density, from u in [0,1)^2; uc in [0,1) chooses a lobe.
 BsdfSample bsdf_sample_f(Bsdf b, vec3 wo, float uc, vec2 u) {
     if (is_model(b, 1u << MATERIAL_DIFFUSE)) return diffuse_sample_f(b.base, u);

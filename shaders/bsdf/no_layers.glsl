@@ -13,6 +13,10 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
     return bsdf_zero();
 }
 
+BsdfValue principled_coat_evaluate(Principled p, vec3 wo, vec3 wi, float cosine) {
+    return bsdf_zero();
+}
+
 BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
     return bsdf_sample_failed();
 }

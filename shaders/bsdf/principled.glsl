@@ -75,6 +75,21 @@ BsdfValue principled_reflection(Principled p, vec3 wo, vec3 wi, bool through) {
                      ggx_reflected_pdf(d, wo.z, reach_o) * (through ? share : 1.0 - share));
 }
 
+// Value and density of a coat that is not ideal, whose normal is its own, and so is the side of a direction. The value is
+// for a cosine of wi to another normal: 1 gives the value times the cosine to the coat's.
+BsdfValue principled_coat_evaluate(Principled p, vec3 wo, vec3 wi, float cosine) {
+    if (p.coat_ideal || p.pmf.x <= 0.0) return bsdf_zero();
+    vec3 o = to_coat(p, wo), i = to_coat(p, wi);
+    if (o.z <= LEAST_COSINE || i.z <= LEAST_COSINE) return bsdf_zero();
+    vec3 sum = o + i;
+    float d = ggx_d(vec2(p.coat_alpha), normalize(sum));
+    float reach_o = ggx_reach(vec2(p.coat_alpha), o);
+    float visibility = ggx_visibility(o.z, i.z, reach_o, ggx_reach(vec2(p.coat_alpha), i));
+    float fresnel = coat_fresnel(p, 0.5 * length(sum));
+    return BsdfValue(vec3(p.coat * fresnel * d * visibility * (i.z / cosine)),
+                     p.pmf.x * ggx_reflected_pdf(d, o.z, reach_o));
+}
+
 // Value and density of all lobes that are not ideal.
 BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
     BsdfValue value = bsdf_zero();
@@ -109,18 +124,10 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
         value.f += facets.f;
         value.pdf += p.pmf.y * facets.pdf;
     }
-    if (principled_has(PRINCIPLED_HAS_COAT) && above && !p.coat_ideal && p.pmf.x > 0.0) {
-        vec3 o = to_coat(p, wo), i = to_coat(p, wi);
-        if (o.z > LEAST_COSINE && i.z > LEAST_COSINE) {
-            vec3 sum = o + i;
-            float d = ggx_d(vec2(p.coat_alpha), normalize(sum));
-            float reach_o = ggx_reach(vec2(p.coat_alpha), o);
-            float visibility = ggx_visibility(o.z, i.z, reach_o, ggx_reach(vec2(p.coat_alpha), i));
-            float fresnel = coat_fresnel(p, 0.5 * length(sum));
-            // The value times the cosine is that in the coat's frame.
-            value.f += p.coat * fresnel * d * visibility * (i.z / wi.z);
-            value.pdf += p.pmf.x * ggx_reflected_pdf(d, o.z, reach_o);
-        }
+    if (principled_has(PRINCIPLED_HAS_COAT) && above) {
+        BsdfValue coat = principled_coat_evaluate(p, wo, wi, wi.z);
+        value.f += coat.f;
+        value.pdf += coat.pdf;
     }
     return value;
 }
@@ -181,7 +188,14 @@ BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
         }
         float fresnel = coat_fresnel(p, o.z);
         s = principled_ideal(normalize(from_coat(p, i)), vec3(p.coat * fresnel), p.pmf.x, 1.0);
-        if (i.z <= LEAST_COSINE || s.wi.z <= LEAST_COSINE) return bsdf_sample_failed();
+        s.above = true;
+        if (i.z <= LEAST_COSINE) return bsdf_sample_failed();
+        // Below the horizon of the other layers, the coat is alone.
+        if (principled_has(PRINCIPLED_HAS_COAT_NORMAL) && !ideal && s.wi.z <= LEAST_COSINE) {
+            BsdfValue coat = principled_coat_evaluate(p, wo, s.wi, 1.0);
+            if (coat.pdf == 0.0) return bsdf_sample_failed();
+            return BsdfSample(s.wi, coat.f / coat.pdf, coat.pdf, false, 1.0, true);
+        }
     } else if (uc < to_facets) {
         ideal = p.ideal;
         s = principled_sample_facets(p, wo, min((uc - p.pmf.x) / p.pmf.y, 0.99999994), u);
@@ -198,7 +212,7 @@ BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
     BsdfValue value = principled_evaluate(p, wo, s.wi);
     if (value.pdf == 0.0) return bsdf_sample_failed();
     float eta = p.refracts && s.wi.z < 0.0 ? p.eta.y : 1.0;
-    return BsdfSample(s.wi, value.f * (abs(s.wi.z) / value.pdf), value.pdf, false, eta);
+    return BsdfSample(s.wi, value.f * (abs(s.wi.z) / value.pdf), value.pdf, false, eta, s.wi.z > 0.0);
 }
 
 #endif

@@ -23,16 +23,17 @@ struct BsdfSample {
     float pdf;    // [1/sr]; 0 says that the sample failed.
     bool delta;   // Ideal scattering: light samples cannot find wi.
     float eta;    // Index of refraction on wi's side over that on wo's; 1 unless wi is refracted.
+    bool above;   // Whether wi is meant to be on the viewer's side: wi.z > 0, but for layers with a normal of their own.
 };
 
 // A sample of scattering that is not ideal.
 BsdfSample bsdf_sample(vec3 wi, vec3 weight, float pdf) {
-    return BsdfSample(wi, weight, pdf, false, 1.0);
+    return BsdfSample(wi, weight, pdf, false, 1.0, wi.z > 0.0);
 }
 
 // A sample of ideal scattering, chosen with the probability pmf.
 BsdfSample bsdf_sample_delta(vec3 wi, vec3 weight, float pmf, float eta) {
-    return BsdfSample(wi, weight, pmf, true, eta);
+    return BsdfSample(wi, weight, pmf, true, eta, wi.z > 0.0);
 }
 
 // Nothing is scattered.

@@ -73,6 +73,10 @@ BsdfValue bent_evaluate(Bsdf bsdf, vec3 wo, vec3 wi, vec3 n) {
             BsdfValue value = bsdf_evaluate(bsdf, wo, w);
             sum.f += value.f * abs(w.z);
             sum.pdf += value.pdf;
+        } else if (above) {
+            BsdfValue coat = bsdf_evaluate_coat(bsdf, wo, w);
+            sum.f += coat.f;
+            sum.pdf += coat.pdf;
         }
         w = mirrored(wi, n);
     }
@@ -82,8 +86,7 @@ BsdfValue bent_evaluate(Bsdf bsdf, vec3 wo, vec3 wi, vec3 n) {
 // Mirrors a scattered direction that is on the wrong side of the surface.
 void bend_sample(inout BsdfSample scattered, Bsdf bsdf, vec3 wo, vec3 n) {
     if (scattered.pdf == 0.0) return;
-    bool above = scattered.wi.z > 0.0;
-    if ((dot(scattered.wi, n) > 0.0) != above) scattered.wi = mirrored(scattered.wi, n);
+    if ((dot(scattered.wi, n) > 0.0) != scattered.above) scattered.wi = mirrored(scattered.wi, n);
     if (!scattered.delta) scattered.pdf = bent_evaluate(bsdf, wo, scattered.wi, n).pdf;
 }
 

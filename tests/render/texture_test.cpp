@@ -143,6 +143,30 @@ TEST_F(NormalMapTest, WhiteBodiesStayInvisible) {
     }
 }
 
+// The coat has another horizon than what it lies on, whichever of the two has the map.
+TEST_F(NormalMapTest, WhiteBodiesStayInvisibleUnderACoat) {
+    for (const float roughness : {0.0f, 0.5f}) {
+        for (const bool on_coat : {false, true}) {
+            for (const Estimator estimator : {Estimator::bsdf, Estimator::mis}) {
+                SCOPED_TRACE(testing::Message() << roughness << ' ' << on_coat << ' ' << int(estimator));
+                Scene scene = bumpy_sphere(PrincipledMaterial{.base_color = vec3(1),
+                                                              .specular = 0.0f,
+                                                              .coat = 1.0f,
+                                                              .coat_roughness = roughness,
+                                                              .coat_ior = 2.0f},
+                                           false);
+                Material& material = scene.materials.back();
+                if (on_coat)
+                    std::swap(material.normal_map,
+                              std::get<PrincipledMaterial>(material.model).coat_normal_map);
+                RenderSettings s = independent_settings(32, estimator, 5);
+                s.rr_depth = DEPTH_SAFETY_LIMIT;
+                expect_mean(image_of(render(scene, s, samples(512))), glm::dvec3(1.0), 0x1p-15);
+            }
+        }
+    }
+}
+
 // Light and BSDF samples see the same surface, with lobes that the map turns below the horizon.
 TEST_F(NormalMapTest, EstimatorsAgree) {
     for (const decltype(Material::model)& model :
