@@ -102,9 +102,9 @@ LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
 
 // Density [1/sr] with which light_sample_li finds, for a lit point, the point of light i at that squared distance [m^2]
 // whose normal has the cosine cos_light to the ray; only of lights with a surface.
-float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light) {
+float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light, bool front) {
     LightRecord l = light_at(i);
-    float pdf = is_light(l, LIGHT_SPHERE) ? sphere_light_pdf_li(l, lit.p, distance_squared, cos_light)
+    float pdf = is_light(l, LIGHT_SPHERE) ? sphere_light_pdf_li(l, lit.p, distance_squared, cos_light, front)
                                           : area_light_pdf_li(l, distance_squared, cos_light);
     return light_pmf(i, lit) * pdf;
 }

@@ -13,12 +13,19 @@ float sphere_light_cap(float radius, float distance_squared) {
     return sin2_max / (1.0 + sqrt(1.0 - sin2_max));
 }
 
+// Whether a point whose squared distance to the centre this is lies inside. So does one on the sphere itself, wherever
+// rounding has put it: then the whole sphere is within its view, and not the near side alone.
+bool sphere_light_encloses(float radius, float distance_squared) {
+    const float ROUNDING = 1e-5;
+    return distance_squared <= square(radius) * (1.0 + ROUNDING);
+}
+
 // A point on the light from u in [0,1)^2.
 LightSample sphere_light_sample_li(LightRecord l, vec3 p_lit, vec2 u) {
     float radius = l.e1.x;
     vec3 to_center = l.p - p_lit;
     float distance_squared = dot(to_center, to_center);
-    if (distance_squared <= square(radius)) {
+    if (sphere_light_encloses(radius, distance_squared)) {
         vec3 n = warp_sphere(u);
         return area_light_sample_at(l, p_lit, l.p + radius * n, n);
     }
@@ -42,13 +49,13 @@ LightSample sphere_light_sample_li(LightRecord l, vec3 p_lit, vec2 u) {
 }
 
 // Density [1/sr] with which sphere_light_sample_li finds, from p_lit, the point at that squared distance [m^2] whose
-// normal has the cosine cos_light to the ray.
-float sphere_light_pdf_li(LightRecord l, vec3 p_lit, float distance_squared, float cos_light) {
+// normal has the cosine cos_light to the ray; `front`: whether the ray meets it from outside.
+float sphere_light_pdf_li(LightRecord l, vec3 p_lit, float distance_squared, float cos_light, bool front) {
     vec3 to_center = l.p - p_lit;
     float radius = l.e1.x;
     float center_squared = dot(to_center, to_center);
-    if (center_squared <= square(radius)) return area_light_pdf_li(l, distance_squared, cos_light);
-    return warp_cone_pdf(sphere_light_cap(radius, center_squared));
+    if (sphere_light_encloses(radius, center_squared)) return area_light_pdf_li(l, distance_squared, cos_light);
+    return front ? warp_cone_pdf(sphere_light_cap(radius, center_squared)) : 0.0;
 }
 
 #endif

@@ -139,5 +139,30 @@ TEST_F(RoundLightTest, ALightThatIsLookedAtShowsItsRadiance) {
     expect_pixels(seen(inside, true), RADIANCE);
 }
 
+// A veil that half of the rays pass: three quarters of those towards it meet it on one side or the other,
+// whatever finds them.
+TEST_F(RoundLightTest, ASphereThatRaysMayPassShinesFromItsFarSide) {
+    Scene scene = floor_under(Sphere{dvec3(0, 2, 0), 1.0}, true);
+    scene.materials.push_back(scene.materials[1]);
+    scene.materials.back().opacity.value = 0.5f;
+    scene.shapes.back().material = uint32_t(scene.materials.size() - 1);
+    expect_form_factor(scene, 0.25 * 0.75, 2048, 2048);
+}
+
+// Within a dome, light is sampled on all of it, though rounding puts points of it outside.
+TEST_F(RoundLightTest, ADomeLightsItself) {
+    for (const Estimator estimator : {Estimator::light, Estimator::mis, Estimator::bsdf}) {
+        SCOPED_TRACE(int(estimator));
+        Scene scene = scene_with_camera(dvec3(0.1, 0.2, 0), dvec3(0, 0, -1), 0.5f);
+        add_shape(scene, Sphere{dvec3(0), 1.0}, add_diffuse(scene, vec3(0.5f)), Emission{vec3(1), true});
+        // Something is lit from behind, so that points lie on surfaces themselves.
+        add_shape(scene, Disk{dvec3(0, 0, 0.9), dvec3(0.01, 0, 0), dvec3(0, 0.01, 0)},
+                  add_material(scene, DiffuseTransmissionMaterial{vec3(0.5f), vec3(0.5f), {}}));
+        RenderSettings s = independent_settings(32, estimator, 3);
+        s.max_depth = 1;
+        expect_mean(image_of(render(scene, s, samples(256))), glm::dvec3(1.5), 1e-4);
+    }
+}
+
 }  // namespace
 }  // namespace candela
