@@ -107,7 +107,7 @@ void add_environment(Path path, inout Estimate estimate) {
 void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     LitPoint lit = path_lit_point(path);
     float distance_squared = LIT_FROM_BEHIND ? dot(s.p - lit.p, s.p - lit.p) : square(t);
-    float pdf_light = light_pdf_li(s.light, lit, distance_squared, dot(s.wo, s.n));
+    float pdf_light = light_pdf_li(s.light, lit, distance_squared, dot(s.wo, s.n), s.front);
     float share = 1.0;
     if (HAS_COATED_EMISSION) {
         share = emitted_share(s.material, s.attributes, dot(s.wo, s.n), unit_float(hit_random(path.ray).xy));
@@ -180,6 +180,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
                Parameters parameters) {
     shadow = shadow_none();
     if (!is_hit(hit)) {
+        path.beta *= media_transmittance(path.media, FLOAT_MAX);  // Of a medium without an end.
         if (ENVIRONMENT != ENVIRONMENT_NONE) add_environment(path, estimate);
         return false;
     }
@@ -220,7 +221,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         return false;
     }
     // Whatever the shading normal is, rays pass where nothing changes.
-    if (NESTED_MEDIA && is_model(bsdf, MATERIALS_DIELECTRIC) && bsdf.parameter == 1.0) {
+    if (is_model(bsdf, MATERIALS_DIELECTRIC) && bsdf.parameter == 1.0) {
         s.ns = s.n;
         bent = false;
     }

@@ -141,7 +141,7 @@ float material_opacity(uint i, Attributes at) {
     float opacity = textures.opacity * texture_number(textures.opacity_texture, at);
     if ((TEXTURED & TEXTURED_VERTEX_COLORS) != 0u && textures.vertex_colors != 0u) opacity *= at.color.a;
     if (textures.cutoff >= 0.0) return opacity >= textures.cutoff ? 1.0 : 0.0;
-    return opacity;
+    return min(opacity, 1.0);  // Images of floats may hold more.
 }
 
 // Factor of the radiance of light `i`.

@@ -13,6 +13,7 @@ const std::vector<float> ETAS{1.5f, 1.33f, 2.4f, 1.0f / 1.5f, 0.25f, 1.0f};
 // the critical angle. Ref: Born and Wolf, Principles of Optics, section 1.5.2, equation 21a, which gives the
 // amplitudes in this form.
 double reflectance(double sine, double eta, bool exact) {
+    if (eta == 1.0) return 0.0;  // As if there were no boundary, though Schlick's approximation reflects.
     if (sine >= eta) return 1.0;
     const double i = std::asin(sine), t = std::asin(sine / eta);
     const double at_normal = (eta - 1.0) * (eta - 1.0) / ((eta + 1.0) * (eta + 1.0));

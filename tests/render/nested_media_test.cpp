@@ -168,5 +168,14 @@ TEST_F(NestedMediaTest, NestedClearBallsAreInvisible) {
         ASSERT_NEAR(value, 1.0f, 1e-3f);
 }
 
+// A lake that is only a sheet has no bottom, and no sky below it.
+TEST_F(NestedMediaTest, NoLightComesFromAMediumWithoutAnEnd) {
+    Scene scene = seen_along(dvec3(0, 1, 0), dvec3(0));
+    scene.cameras[0].up = vec3(0, 0, 1);
+    add_shape(scene, parallelogram(vec3(-9, 0, 9), vec3(18, 0, 0), vec3(0, 0, -18)),
+              add_material(scene, tint(vec3(0.1f, 2, 0))));
+    expect_share(scene, 8, glm::dvec3(0, 0, 1));
+}
+
 }  // namespace
 }  // namespace candela
