@@ -3,7 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <map>
+#include <numeric>
+#include <optional>
 #include <span>
+#include <tuple>
+#include <vector>
 
 #include "base/hash.h"
 #include "base/text.h"
@@ -18,22 +24,58 @@ struct Solid {
     DoubleBox box;
     Interior inside;
     size_t shape;        // The first, of several.
-    bool walls = false;  // Quads and disks: all those of one medium.
+    bool walls = false;  // Quads and disks of one medium: all that are no boxes.
 };
+
+// For each shape that is the side of a box, the first side of that box. Quads of one material that share
+// corners belong together, and six or more of them are taken for a box.
+std::vector<std::optional<size_t>> find_boxes(const Scene& scene) {
+    std::vector<size_t> first(scene.shapes.size());
+    std::iota(first.begin(), first.end(), size_t(0));
+    const auto root_of = [&](size_t i) {
+        while (first[i] != i)
+            i = first[i] = first[first[i]];
+        return i;
+    };
+    std::map<std::tuple<uint32_t, double, double, double>, size_t> owners;  // Of corners.
+    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+        const auto* quad = std::get_if<Quad>(&scene.shapes[i].geometry);
+        if (quad == nullptr || !interior(scene.materials[scene.shapes[i].material].model)) continue;
+        for (const dvec3& c : quad->corners) {
+            const auto [owner, is_new] = owners.try_emplace({scene.shapes[i].material, c.x, c.y, c.z}, i);
+            const size_t a = root_of(i), b = root_of(owner->second);
+            first[std::max(a, b)] = std::min(a, b);
+        }
+    }
+    constexpr size_t SIDES = 6;
+    std::vector<size_t> sides(first.size(), 0);
+    for (size_t i = 0; i < first.size(); ++i)
+        ++sides[root_of(i)];
+    std::vector<std::optional<size_t>> boxes(first.size());
+    for (size_t i = 0; i < first.size(); ++i) {
+        if (sides[root_of(i)] >= SIDES) boxes[i] = root_of(i);
+    }
+    return boxes;
+}
 
 std::vector<Solid> find_solids(const Scene& scene) {
     std::vector<Solid> solids;
     const ShapeBounds bounds_of(scene);
+    const std::vector<std::optional<size_t>> boxes = find_boxes(scene);
+    std::map<size_t, size_t> known_boxes;  // Solids, by their first sides.
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         const Shape& shape = scene.shapes[i];
         const std::optional<Interior> inside = interior(scene.materials[shape.material].model);
         if (!inside) continue;
-        const bool wall =
-            std::holds_alternative<Quad>(shape.geometry) || std::holds_alternative<Disk>(shape.geometry);
+        const bool wall = !boxes[i] && (std::holds_alternative<Quad>(shape.geometry) ||
+                                        std::holds_alternative<Disk>(shape.geometry));
         auto place = solids.end();
         if (wall) {
             place =
                 std::ranges::find_if(solids, [&](const Solid& s) { return s.walls && s.inside == *inside; });
+        } else if (boxes[i]) {
+            const auto [known, is_new] = known_boxes.try_emplace(*boxes[i], solids.size());
+            if (!is_new) place = solids.begin() + std::ptrdiff_t(known->second);
         }
         if (place == solids.end()) place = solids.insert(place, {{}, *inside, i, wall});
         place->box.extend(bounds_of(shape));

@@ -151,5 +151,40 @@ TEST(MediaMayNest, ABallInABoxOfQuads) {
     EXPECT_FALSE(boxes(3.0));
 }
 
+void add_box(Scene& scene, dvec3 lo, dvec3 hi, uint32_t material) {
+    constexpr uint8_t SIDES[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    for (const auto& side : SIDES) {
+        Quad quad;
+        for (size_t i = 0; i < 4; ++i) {
+            const uint8_t c = side[i];
+            quad.corners[i] =
+                dvec3((c & 1u) != 0 ? hi.x : lo.x, (c & 2u) != 0 ? hi.y : lo.y, (c & 4u) != 0 ? hi.z : lo.z);
+        }
+        add_shape(scene, quad, material);
+    }
+}
+
+// A table and a leg that is let into it are two solids, though of one glass.
+TEST(MediaAt, BoxesOfOneMaterialNestWhereTheyOverlap) {
+    const auto nests = [](double top) {
+        Scene scene;
+        const uint32_t glass = add_material(scene, medium(1.5f));
+        add_box(scene, dvec3(-5, 1, -5), dvec3(5, 2, 5), glass);
+        add_box(scene, dvec3(-1, 0, -1), dvec3(1, top, 1), glass);
+        return may_nest(scene);
+    };
+    EXPECT_TRUE(nests(1.1));
+    EXPECT_FALSE(nests(0.9));
+    // The surface and the bottom of a lake belong together.
+    Scene lake;
+    const uint32_t water = add_material(lake, medium(1.33f));
+    add_shape(lake, parallelogram(vec3(-9, 0, 9), vec3(18, 0, 0), vec3(0, 0, -18)), water);
+    add_shape(lake, parallelogram(vec3(-9, -4, 9), vec3(0, 0, -18), vec3(18, 0, 0)), water);
+    EXPECT_FALSE(may_nest(lake));
+    add_shape(lake, Sphere{dvec3(0, -2, 0), 1.0}, add_material(lake, medium(1.5f)));
+    EXPECT_TRUE(may_nest(lake));
+}
+
 }  // namespace
 }  // namespace candela
