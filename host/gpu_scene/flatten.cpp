@@ -110,9 +110,10 @@ class Flattener {
         const double error = pair_error(c[0], c[1], c[2], c[3]);
         const float origin_error = power_of_two_above(error);
         const auto& uv = quad.uvs;
-        // Where u grows; the corners are those of a square in (u, v), in either order.
-        const vec3 along_u = uv[1].x != uv[0].x ? (uv[1].x - uv[0].x) * e1 : (uv[3].x - uv[0].x) * e2;
-        const float handedness = uv[1].x != uv[0].x ? 1.0f : -1.0f;
+        // Where u grows; the corners are those of a square in (u, v), turned, mirrored or both.
+        const vec2 side = uv[1] - uv[0], other = uv[3] - uv[0];
+        const vec3 along_u = side.x != 0.0f ? side.x * e1 : other.x * e2;
+        const float handedness = side.x * other.y - side.y * other.x > 0.0f ? 1.0f : -1.0f;
         if (!shape.emission || length(c[0] + e1 + e2 - c[2]) <= rounding) {
             const uint light = add_flat_light(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2, error,
                                               piece_uv(uv[0], uv[1], uv[3]));
@@ -238,10 +239,11 @@ class Flattener {
                    const PieceUv& uv) {
         if (!shape.emission) return NO_LIGHT;
         const Emission& emission = *shape.emission;
-        const double power =
-            area * luminance(mean_radiance(emission, kind, uv)) * (emission.two_sided ? 2.0 : 1.0);
+        // Rays pass what is culled from behind, and see nothing of it.
+        const bool two_sided = emission.two_sided && !is_culled(scene_.materials[shape.material]);
+        const double power = area * luminance(mean_radiance(emission, kind, uv)) * (two_sided ? 2.0 : 1.0);
         if (power == 0.0) return NO_LIGHT;
-        flat_.lights.push_back({kind, p, e1, e2, emission.radiance.factor, emission.two_sided ? 1u : 0u,
+        flat_.lights.push_back({kind, p, e1, e2, emission.radiance.factor, two_sided ? 1u : 0u,
                                 float(1.0 / area), 0.0f, float(error)});
         flat_.powers.push_back(power);
         flat_.light_surfaces.push_back({uint(flat_.primitives.size()), &shape});

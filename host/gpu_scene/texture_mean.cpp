@@ -60,14 +60,17 @@ vec3 ImagePyramid::mean(const Texture& texture, std::span<const vec2> places, fl
     const auto level = std::min(size_t(std::ceil(std::log2(gap))), levels_.size() - 1);
     vec3 sum(0.0f);
     for (const vec2 place : places)
-        sum += look_up(levels_[level], texture, place);
+        sum += look_up(level, texture, place);
     return sum / float(places.size());
 }
 
-vec3 ImagePyramid::look_up(const Level& level, const Texture& texture, vec2 place) const {
+vec3 ImagePyramid::look_up(size_t number, const Texture& texture, vec2 place) const {
+    const Level& level = levels_[number];
+    // Half a texel of the image is a whole one of the next level, whose size was rounded up.
+    const glm::dvec2 size = glm::dvec2(levels_[0].size) / std::exp2(double(number));
     const dvec3 uv1(place.x, place.y, 1.0);
-    const double x = dot(dvec3(texture.rows[0]), uv1) * level.size.x - 0.5;
-    const double y = (1.0 - dot(dvec3(texture.rows[1]), uv1)) * level.size.y - 0.5;
+    const double x = dot(dvec3(texture.rows[0]), uv1) * size.x - 0.5;
+    const double y = (1.0 - dot(dvec3(texture.rows[1]), uv1)) * size.y - 0.5;
     const auto texel = [&](double column, double row) {
         return level.texels[size_t(wrapped(row, level.size.y, texture.wrap_v)) * level.size.x +
                             wrapped(column, level.size.x, texture.wrap_u)];

@@ -24,8 +24,8 @@ class ImagePyramid {
         std::vector<vec3> texels;
     };
 
-    // Between the centres of texels, linearly.
-    vec3 look_up(const Level& level, const Texture& texture, vec2 place) const;
+    // On the level of that number, between the centres of texels, linearly.
+    vec3 look_up(size_t number, const Texture& texture, vec2 place) const;
 
     std::vector<Level> levels_;  // The image, and each at half the size of that before, down to one texel.
 };

@@ -195,6 +195,8 @@ struct Material {
 struct Emission {
     Textured<vec3> radiance{vec3(0)};  // Each >= 0 and finite.
     bool two_sided = false;
+
+    bool operator==(const Emission&) const = default;
 };
 
 // Triangles over shared vertices, counter-clockwise seen from the front, in a space of their own. The array

@@ -163,5 +163,39 @@ TEST(Flatten, BoxesAreTheLeastOnes) {
     }
 }
 
+// The image may be turned on the quad or mirrored; the bitangent, w cross(n, t), is where v grows.
+TEST(Flatten, TangentsOfAQuadFollowItsImage) {
+    const dvec3 e1(2, 0, 0), e2(0, 0, -3);
+    for (size_t turn = 0; turn < 4; ++turn) {
+        for (const bool mirrored : {false, true}) {
+            Quad quad = parallelogram(vec3(0), vec3(e1), vec3(e2));
+            for (size_t i = 0; i < 4; ++i)
+                quad.uvs[i] = Quad{}.uvs[(turn + (mirrored ? 4 - i : i)) % 4];
+            Scene scene;
+            scene.materials.resize(1);
+            scene.shapes.push_back(shape(quad, 0));
+            const FlatScene flat = flatten(scene, SceneFrame{}, ATTRIBUTE_TANGENT);
+            const uint packed = flat.attributes.at(0).x;
+            const vec2 side = quad.uvs[1] - quad.uvs[0], other = quad.uvs[3] - quad.uvs[0];
+            const dvec3 along_u = double(side.x) * e1 + double(other.x) * e2;
+            const dvec3 along_v = double(side.y) * e1 + double(other.y) * e2;
+            const dvec3 n = normalize(cross(e1, e2));
+            const float w = dot(cross(n, along_u), along_v) > 0.0 ? 1.0f : -1.0f;
+            EXPECT_EQ(packed, pack_tangent(vec4(vec3(normalize(along_u)), w))) << turn << ' ' << mirrored;
+        }
+    }
+}
+
+// Rays pass its back and see nothing of it.
+TEST(Flatten, TheBackOfACulledShapeEmitsNothing) {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.materials[0].model = PrincipledMaterial{.double_sided = false};
+    scene.shapes.push_back(shape(ELLIPSE, 0, Emission{.radiance = vec3(1), .two_sided = true}));
+    const FlatScene flat = flatten(scene, SceneFrame{});
+    EXPECT_EQ(flat.lights.at(0).two_sided, 0u);
+    EXPECT_NEAR(flat.powers[0], 6.0 * M_PI, 2e-5);
+}
+
 }  // namespace
 }  // namespace candela

@@ -49,6 +49,41 @@ TEST(SceneObjects, AreSeenOnlyWhereInstancesPlaceThem) {
     }
 }
 
+// A material takes the place of the material alone, and so does emission.
+TEST(SceneObjects, AnInstanceReplacesOnlyWhatItNames) {
+    SceneFolder folder;
+    const Scene scene =
+        folder.load(scene_of_objects(THINGS, R"({"type": "instance", "object": "things", "material": "red"},
+                   {"type": "instance", "object": "things", "emission": 0},
+                   {"type": "instance", "object": "things", "emission": 5})"));
+    ASSERT_EQ(scene.shapes.size(), 12u);
+    for (size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(scene.materials[scene.shapes[i].material].name, "red");
+        EXPECT_EQ(scene.shapes[i].emission.has_value(), i == 2);
+        for (const size_t instance : {1u, 2u}) {
+            const Shape& shape = scene.shapes[4 * instance + i];
+            EXPECT_EQ(scene.materials[shape.material].name == "white", i != 2) << i;
+            EXPECT_EQ(shape.emission.has_value(), instance == 2) << i;
+        }
+    }
+    EXPECT_EQ(scene.shapes[2].emission->radiance, vec3(2));
+    EXPECT_EQ(scene.shapes[8].emission->radiance, vec3(5));
+}
+
+// What a material emits itself goes with it.
+TEST(SceneObjects, TheEmissionOfAMaterialGoesWithIt) {
+    std::string text = scene_of_objects(
+        R"("lamp": [{"type": "sphere", "material": "glow"}, {"type": "sphere", "material": "white"}])",
+        R"({"type": "instance", "object": "lamp", "material": "white"},
+           {"type": "instance", "object": "lamp", "material": "glow"})");
+    text.replace(text.find("\"red\""), 0, R"("glow": {"type": "principled", "emission": 3}, )");
+    SceneFolder folder;
+    const Scene scene = folder.load(text);
+    ASSERT_EQ(scene.shapes.size(), 4u);
+    for (size_t i = 0; i < 4; ++i)
+        EXPECT_EQ(scene.shapes[i].emission.has_value(), i >= 2) << i;
+}
+
 // What is mirrored has the place, front and texture coordinates that the same shape has with that transform.
 TEST(SceneObjects, AreMirroredAsTheirShapesAre) {
     const std::string square =

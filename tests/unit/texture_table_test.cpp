@@ -162,5 +162,17 @@ TEST(TextureMean, WhatIsBlackHasNoPower) {
     EXPECT_EQ(power_of({}, {10, 50}, {12, 52}, uvs), 0.0);
 }
 
+// Levels of an image whose sides are no powers of two are larger than half of the one before. The piece lies
+// within the last bright column.
+TEST(TextureMean, ALevelThatWasRoundedUpIsLookedUpWhereItIs) {
+    Scene scene = scene_with_camera(dvec3(0), dvec3(0, 0, -1), 1.0f);
+    const Texture texture = add_texture(
+        scene, {9, 1}, [](uint32_t x, uint32_t) { return vec4(vec3(x >= 4 && x < 8 ? 1.0f : 0.0f), 1.0f); });
+    TriangleMesh mesh{.uv0 = {vec2(7.55f / 9, 0.4f), vec2(7.95f / 9, 0.4f), vec2(7.75f / 9, 0.6f)}};
+    add_triangle(mesh, vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0));
+    add_shape(scene, mesh, add_diffuse(scene, vec3(0)), Emission{{vec3(1), texture}, false});
+    EXPECT_EQ(flatten(scene, SceneFrame{}, ATTRIBUTE_UV0).lights.size(), 1u);
+}
+
 }  // namespace
 }  // namespace candela

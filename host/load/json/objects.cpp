@@ -67,26 +67,23 @@ void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes
             names.push_back(known);
         name.fail_unknown("object", name.string(), names, "defined");
     }
-    std::optional<Appearance> own;
-    if (node.find("material") || node.find("emission")) {
-        own = shapes.appearance_of(node);
-        for (const Shape& shape : object->second) {
-            if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry))
-                shapes.complete_mesh(node.place(), *own, instance->mesh);
-        }
+    std::vector<Shape> shown = object->second;
+    for (Shape& shape : shown) {
+        const Appearance appearance = shapes.appearance_of(node, shape);
+        shape.material = appearance.material;
+        shape.emission = appearance.emission;
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        if (instance != nullptr && (node.find("material") || node.find("emission")))
+            shapes.complete_mesh(node.place(), appearance, instance->mesh);
     }
     for (const auto& placement : transforms_of(node)) {
         const Node& place_of = placement.first;
         const Transform& transform = placement.second;
-        for (Shape shape : object->second) {
+        for (Shape shape : shown) {
             if (!std::visit([&](auto& geometry) { return place(geometry, transform); }, shape.geometry)) {
                 place_of.fail(
                     "the transform flattens the object, or scales a sphere in it unevenly; use other "
                     "factors, or a mesh instead of the sphere");
-            }
-            if (own) {
-                shape.material = own->material;
-                shape.emission = own->emission;
             }
             if (!shapes.add_placed(shape)) place_of.fail(TOO_FAR);
         }

@@ -30,6 +30,18 @@ Appearance ShapeList::appearance_of(const Node& node) {
     return appearance;
 }
 
+Appearance ShapeList::appearance_of(const Node& node, const Shape& shape) {
+    Appearance result{shape.material, shape.emission};
+    if (const auto material = node.find("material")) {
+        const bool of_material = shape.emission == material_emission(scene().materials[shape.material]);
+        result.material = index_of(*material);
+        if (of_material) result.emission = material_emission(scene().materials[result.material]);
+    }
+    const std::optional<Emission> emission = emission_of(node);
+    if (node.find("emission")) result.emission = emission;
+    return result;
+}
+
 std::optional<Emission> ShapeList::emission_of(const Node& node) {
     const auto emission = node.find("emission");
     const auto two_sided = node.find("two_sided");

@@ -34,6 +34,9 @@ class ShapeList : public SceneBuilder {
     // zero emission is none, and what states none takes its material's. Throws Error if the node has neither,
     // or names an unknown material.
     Appearance appearance_of(const Node& node);
+    // The material and emission of a shape of an object that an instance's node shows: what the node names
+    // takes the place of the shape's own.
+    Appearance appearance_of(const Node& node, const Shape& shape);
     // The emission of a shape's node; none if it is absent or zero. Throws Error for two_sided without it.
     std::optional<Emission> emission_of(const Node& node);
     // The transform of a shape's node; the identity if it has none.
