@@ -32,6 +32,7 @@ Window::Window(uvec2 size, bool resizable, const std::string& title) : title_(ti
     if (glfwInit() == GLFW_FALSE) throw no_window();
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_RESIZABLE, resizable ? GLFW_TRUE : GLFW_FALSE);
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     window_ = glfwCreateWindow(int(size.x), int(size.y), title.c_str(), nullptr, nullptr);
     if (window_ == nullptr) {
         glfwTerminate();
@@ -39,6 +40,10 @@ Window::Window(uvec2 size, bool resizable, const std::string& title) : title_(ti
     }
     glfwSetWindowUserPointer(window_, this);
     watch();
+    // GLFW waits until X11 shows the window, for a tenth of a second at most, but for ever if other events
+    // are in its queue. (GLFW 3.3)
+    glfwPollEvents();
+    glfwShowWindow(window_);
 }
 
 Window::~Window() {

@@ -43,9 +43,12 @@ class ManagedView : public View {
                 <decor>no</decor><focus>yes</focus><position force="yes"><x>0</x><y>0</y></position>
             </application></applications>
         </openbox_config>)");
-        manager_.emplace(Words{"/usr/bin/env", "openbox", "--config-file", rules},
-                         ProcessOptions{.environment = environment()});
-        wait_until("openbox manages windows", [&] { return xdotool({"get_num_desktops"}) != "0\n"; });
+        // Windows that want to be shown while it starts may be forgotten; this it does when it has.
+        const std::string started = file("started");
+        manager_.emplace(
+            Words{"/usr/bin/env", "openbox", "--config-file", rules, "--startup", "touch " + started},
+            ProcessOptions{.environment = environment()});
+        wait_until("openbox manages windows", [&] { return std::filesystem::exists(started); });
     }
     // Starts `candela view` and waits until the manager has made the window active.
     void view_managed(const Words& arguments) {
@@ -71,6 +74,16 @@ TEST_F(ManagedView, MinimisedItGoesOnAndComesBackWithItsPicture) {
     const Image image = rendered(settings);
     wait_until("the screen shows it", [&] { return wrong_codes(screen(), image) == 0; });
     expect_same_rgb(picture_at_rest("cornell-box", {200, 150}, 40), image);
+    expect_clean_end();
+}
+
+TEST_F(ManagedView, WaitsForNoManager) {
+    manager_->send(SIGSTOP);
+    view({"--size", "200x150"});
+    wait_until("there is a picture", [&] { return samples() >= 1; });
+    EXPECT_TRUE(shows_nothing({200, 150}));
+    manager_->send(SIGCONT);
+    wait_until("the window is there", [&] { return !shows_nothing({200, 150}); });
     expect_clean_end();
 }
 
