@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 
 #include "base/tonemap.h"
 #include "cli/cli_fixture.h"
@@ -54,6 +56,16 @@ class ViewTest : public CliTest {
         viewer_.emplace(Words{"/usr/bin/env", "-C", file(""), CANDELA_BINARY, "view", scene} + arguments,
                         ProcessOptions{.environment = std::move(variables)});
         return *viewer_;
+    }
+
+    // Waits until the condition holds; throws std::runtime_error if the viewer ends before, or it never does.
+    void wait_until(const std::string& what, const std::function<bool()>& holds) const {
+        candela::wait_until(what, [&] {
+            const bool ended = viewer_ && viewer_->has_ended();
+            if (holds()) return true;
+            if (ended) throw std::runtime_error("the viewer ended before " + what);
+            return false;
+        });
     }
 
     // Runs xdotool, which takes several commands at once.

@@ -137,6 +137,12 @@ void Process::send(int signal) const {
     ::kill(pid_, signal);
 }
 
+bool Process::has_ended() const {
+    siginfo_t info{};
+    return pid_ > 0 && ::waitid(P_PID, id_t(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info.si_pid == pid_;
+}
+
 // /proc gives the signals as a mask in hexadecimal digits, with the first signal in its lowest bit.
 bool Process::catches(int signal) const {
     std::ifstream status("/proc/" + std::to_string(pid_) + "/status");

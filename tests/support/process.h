@@ -37,6 +37,8 @@ class Process {
     // What it has written to stderr, as far as that has been read.
     const std::string& err() const { return result_.err; }
     void send(int signal) const;
+    // Whether it has ended, though finish() has not been called.
+    bool has_ended() const;
     // Whether the program handles this signal itself.
     bool catches(int signal) const;
     // Fills its stderr, a pipe: from now on the program waits for ever when it writes there.
