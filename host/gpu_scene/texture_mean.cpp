@@ -66,7 +66,7 @@ vec3 ImagePyramid::mean(const Texture& texture, std::span<const vec2> places, fl
 
 vec3 ImagePyramid::look_up(size_t number, const Texture& texture, vec2 place) const {
     const Level& level = levels_[number];
-    // Half a texel of the image is a whole one of the next level, whose size was rounded up.
+    // Of the image in texels of the level: the last ones may reach beyond it, since sizes are rounded up.
     const glm::dvec2 size = glm::dvec2(levels_[0].size) / std::exp2(double(number));
     const dvec3 uv1(place.x, place.y, 1.0);
     const double x = dot(dvec3(texture.rows[0]), uv1) * size.x - 0.5;

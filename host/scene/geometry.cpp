@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/materials.h"
+
 namespace candela {
 namespace {
 
@@ -131,13 +133,10 @@ bool gives_light(const Light& light) {
 }
 
 bool has_light(const Scene& scene) {
-    const auto is_unlit = [&](const Shape& shape) {
-        const auto* m = std::get_if<PrincipledMaterial>(&scene.materials[shape.material].model);
-        return m != nullptr && m->unlit;
-    };
+    const auto needs_no_light = [&](const Shape& shape) { return is_unlit(scene.materials[shape.material]); };
     return emitter_count(scene) > 0 || (scene.environment && gives_light(*scene.environment)) ||
            std::ranges::any_of(scene.lights, [](const Light& light) { return gives_light(light); }) ||
-           std::ranges::any_of(scene.shapes, is_unlit);
+           std::ranges::any_of(scene.shapes, needs_no_light);
 }
 
 }  // namespace candela

@@ -16,6 +16,11 @@ std::optional<Emission> material_emission(const Material& material) {
     return Emission{m->emission, m->double_sided};
 }
 
+bool is_unlit(const Material& material) {
+    const auto* m = std::get_if<PrincipledMaterial>(&material.model);
+    return m != nullptr && m->unlit;
+}
+
 bool is_culled(const Material& material) {
     const auto* m = std::get_if<PrincipledMaterial>(&material.model);
     return m != nullptr && !m->double_sided && !m->inside;

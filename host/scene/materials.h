@@ -13,6 +13,9 @@ std::optional<Emission> material_emission(const Material& material);
 // Whether rays pass surfaces of this material from behind.
 bool is_culled(const Material& material);
 
+// Whether the surface shows its colour in any light.
+bool is_unlit(const Material& material);
+
 // Whether the light of a surface depends on its tangents: under normal maps, and where reflection is not the
 // same in all directions.
 bool needs_tangents(const Material& material);

@@ -125,6 +125,20 @@ class GltfSkin : public Gltf {
         file.push("skins", {{"joints", {1, 2}}});
         return file;
     }
+    // The same with normals, and tangents along x with that sign.
+    static GltfFile with_tangents(float sign) {
+        GltfFile file = two_joints();
+        file.root["images"] = {{{"uri", "a.png"}}};
+        file.root["textures"] = {{{"source", 0}}};
+        file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+        Json& primitive = file.root["meshes"][0]["primitives"][0];
+        primitive["material"] = 0;
+        primitive["attributes"]["NORMAL"] = file.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+        primitive["attributes"]["TANGENT"] =
+            file.add<float>("VEC4", {1, 0, 0, sign, 1, 0, 0, sign, 1, 0, 0, sign});
+        primitive["attributes"]["TEXCOORD_0"] = file.add<float>("VEC2", {0, 0, 1, 0, 0, 1});
+        return file;
+    }
 };
 
 TEST_F(GltfSkin, VerticesFollowTheirJointsAndNotTheirNode) {
@@ -214,15 +228,7 @@ TEST_F(GltfSkin, PositionsAndNormalsAreThoseOfTheBlendedMatrices) {
 }
 
 TEST_F(GltfSkin, TangentsFollowToo) {
-    GltfFile file = two_joints();
-    file.root["images"] = {{{"uri", "a.png"}}};
-    file.root["textures"] = {{{"source", 0}}};
-    file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
-    Json& primitive = file.root["meshes"][0]["primitives"][0];
-    primitive["material"] = 0;
-    primitive["attributes"]["NORMAL"] = file.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
-    primitive["attributes"]["TANGENT"] = file.add<float>("VEC4", {1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1});
-    primitive["attributes"]["TEXCOORD_0"] = file.add<float>("VEC2", {0, 0, 1, 0, 0, 1});
+    GltfFile file = with_tangents(-1);
     file.root["nodes"][2]["matrix"] = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1};
     file.root["nodes"][2].erase("translation");
     EXPECT_EQ(world_mesh(load(file)).tangents.at(1), vec4(0, 1, 0, -1));
@@ -231,15 +237,8 @@ TEST_F(GltfSkin, TangentsFollowToo) {
 
 // A skeleton that is mirrored, and the mesh with it: its front stays the front.
 TEST_F(GltfSkin, AMirroredSkeletonTurnsTheTrianglesRound) {
-    GltfFile file = two_joints();
-    file.root["images"] = {{{"uri", "a.png"}}};
-    file.root["textures"] = {{{"source", 0}}};
-    file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+    GltfFile file = with_tangents(1);
     Json& primitive = file.root["meshes"][0]["primitives"][0];
-    primitive["material"] = 0;
-    primitive["attributes"]["NORMAL"] = file.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
-    primitive["attributes"]["TANGENT"] = file.add<float>("VEC4", {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1});
-    primitive["attributes"]["TEXCOORD_0"] = file.add<float>("VEC2", {0, 0, 1, 0, 0, 1});
     primitive["attributes"].erase("JOINTS_0");
     primitive["attributes"].erase("WEIGHTS_0");
     file.push("nodes", {{"scale", {-1, 1, 1}}, {"children", {0, 1, 2}}});

@@ -5,7 +5,6 @@
 #include <iterator>
 #include <map>
 #include <optional>
-#include <variant>
 
 #include "base/image_io_parts.h"
 #include "base/text.h"
@@ -16,6 +15,7 @@
 #include "load/gltf/values.h"
 #include "scene/default_view.h"
 #include "scene/geometry.h"
+#include "scene/materials.h"
 
 namespace candela {
 namespace {
@@ -63,10 +63,7 @@ bool is_lit(const Scene& scene) {
         if (is_new) known->second = is_bright(scene.images[texture->image].image);
         return known->second;
     };
-    const auto needs_no_light = [&](const Shape& shape) {
-        const auto* m = std::get_if<PrincipledMaterial>(&scene.materials[shape.material].model);
-        return m != nullptr && m->unlit;
-    };
+    const auto needs_no_light = [&](const Shape& shape) { return is_unlit(scene.materials[shape.material]); };
     return std::ranges::any_of(scene.lights, [](const Light& light) { return gives_light(light); }) ||
            std::ranges::any_of(scene.shapes, emits) ||
            (!scene.shapes.empty() && std::ranges::all_of(scene.shapes, needs_no_light));
