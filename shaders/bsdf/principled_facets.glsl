@@ -83,6 +83,27 @@ vec3 dispersion_spread(float ior, float dispersion) {
     return vec3(max(ior - h, min(ior, 1.0 + LEAST_ALPHA)), ior, ior + h) / ior;
 }
 
+// The material m at a point where it has the values of `record`, seen from its front or from its back; its coat has no
+// normal of its own yet. eta is as in PrincipledSurface, and so are hue and random.
+PrincipledSurface principled_surface(MaterialRecord m, PrincipledRecord record, bool front, float eta, vec3 hue,
+                                     vec4 random) {
+    PrincipledSurface s;
+    s.record = record;
+    s.base_color = m.base;
+    s.eta = eta;
+    s.encloses = m.medium != MEDIUM_SAME;
+    s.inside = s.encloses && !front;
+    s.spread = vec3(1.0);
+    if (principled_has(PRINCIPLED_HAS_DISPERSION)) {
+        s.spread = dispersion_spread(m.parameter, record.dispersion);
+        if (s.inside) s.spread = 1.0 / s.spread;
+    }
+    s.coat_n = vec3(0.0, 0.0, 1.0);
+    s.hue = hue;
+    s.random = random;
+    return s;
+}
+
 // (F - F(1)) / (1 - F(1)), F being Fresnel's reflectance of a dielectric at a cosine, F(1) that at normal incidence: in
 // [0, 1], and 1 if reflection is total.
 float fresnel_edge(float eta, float cos_o) {

@@ -23,25 +23,17 @@ bool is_principled(MaterialRecord m) {
     return (MATERIALS & ~(1u << MATERIAL_PRINCIPLED)) == 0u || m.model == MATERIAL_PRINCIPLED;
 }
 
-// The material m at s; m gets its base colour there. Where prisms part colours, a
-// path's directions are chosen for those that it still carries; a path that carries one chooses no other.
-PrincipledSurface principled_surface(inout MaterialRecord m, Interaction s, Ray ray, vec3 beta) {
-    PrincipledSurface p;
-    p.record = principled_at(m, s.attributes);
-    p.encloses = m.medium != MEDIUM_SAME;
-    p.inside = p.encloses && !s.front;
-    p.coat_n = vec3(0.0, 0.0, 1.0);
+// Resolves the principled material m at s, which the path's ray hit, and writes its base colour back. With dispersion,
+// a direction is drawn for one colour, in proportion to the throughput that is left in each.
+PrincipledSurface layers_at(inout MaterialRecord m, Interaction s, float eta, Ray ray, vec3 beta) {
+    PrincipledRecord record = principled_at(m, s.attributes);
     uvec4 bits = hash_pcg4d(hit_random(ray));
-    p.random = vec4(unit_float(bits.xy), unit_float(bits.zw));
-    p.hue = LUMINANCE;
-    p.spread = vec3(1.0);
+    vec3 hue = LUMINANCE;
     if ((PRINCIPLED & PRINCIPLED_HAS_DISPERSION) != 0u) {
         float sum = beta.x + beta.y + beta.z;
-        if (sum > 1e-30) p.hue = beta / sum;  // Less is nothing to be seen, and may be too small to divide by.
-        p.spread = dispersion_spread(m.parameter, p.record.dispersion);
-        if (p.inside) p.spread = 1.0 / p.spread;
+        if (sum > 1e-30) hue = beta / sum;  // Less is nothing to be seen, and may be too small to divide by.
     }
-    return p;
+    return principled_surface(m, record, s.front, eta, hue, vec4(unit_float(bits.xy), unit_float(bits.zw)));
 }
 
 // The frame around the shading normal whose x is the direction of the greatest roughness.
@@ -56,17 +48,13 @@ Frame principled_frame(PrincipledRecord p, Interaction s) {
     return Frame(x, cross(s.ns, x), s.ns);
 }
 
-// What fuzz, coat and sheen leave of the light that a surface of material i emits at that cosine to its normal, measured as in
-// bsdf/principled.glsl: right on average over `random`, uniform in [0, 1)^2.
+// Fraction of material i's emission that passes its fuzz, coat and sheen at that cosine to its normal; unbiased over
+// `random`, uniform in [0, 1)^2.
 float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
     MaterialRecord m = scene_material(i);
     if (!is_principled(m)) return 1.0;
-    PrincipledSurface s;
-    s.record = principled_at(m, at);
-    s.inside = false;
-    s.coat_n = vec3(0.0, 0.0, 1.0);
-    s.hue = LUMINANCE;
-    s.random = random.xyxy;
+    PrincipledRecord record = principled_at(m, at);
+    PrincipledSurface s = principled_surface(m, record, true, m.parameter, LUMINANCE, random.xyxy);
     return principled_layers(s, vec3(sqrt(max(1.0 - square(cosine), 0.0)), 0.0, cosine));
 }
 
@@ -99,11 +87,10 @@ vec3 coat_normal(PrincipledRecord p, Interaction s, vec3 unbent, Frame frame) {
 void add_layers(inout Bsdf bsdf, inout MaterialRecord m, inout Frame frame, Interaction s, vec3 unbent, Ray ray,
                 vec3 beta) {
     if (!is_principled(m)) return;
-    PrincipledSurface surface = principled_surface(m, s, ray, beta);
+    PrincipledSurface surface = layers_at(m, s, bsdf.parameter, ray, beta);
     if (HAS_ANISOTROPY) frame = principled_frame(surface.record, s);
     if (HAS_COAT_NORMALS) surface.coat_n = coat_normal(surface.record, s, unbent, frame);
-    bsdf.base = surface.base_color = m.base;
-    surface.eta = bsdf.parameter;
+    bsdf.base = m.base;
     bsdf.principled = principled_lobes(surface, frame_to_local(frame, s.wo));
 }
 

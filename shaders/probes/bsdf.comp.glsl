@@ -20,18 +20,10 @@ void main() {
     if (material.model == MATERIAL_PRINCIPLED) {
         uvec4 words[PRINCIPLED_WORDS];
         for (uint i = 0u; i < PRINCIPLED_WORDS; ++i) words[i] = item(5u + i);
-        PrincipledSurface surface;
-        surface.record = principled_unpack(words);
-        surface.encloses = material.medium != MEDIUM_SAME;
-        surface.inside = surface.encloses && !front;
-        surface.coat_n = vec3(0.0, 0.0, 1.0);
-        surface.hue = vec3(1.0 / 3.0);
         uvec4 bits = hash_pcg4d(uvec4(item(2u).w, 1u, 2u, 3u));
-        surface.random = vec4(unit_float(bits.xy), unit_float(bits.zw));
-        surface.spread = dispersion_spread(material.parameter, surface.record.dispersion);
-        if (surface.inside) surface.spread = 1.0 / surface.spread;
-        surface.eta = bsdf.parameter;
-        surface.base_color = bsdf.base;
+        PrincipledSurface surface =
+            principled_surface(material, principled_unpack(words), front, bsdf.parameter, vec3(1.0 / 3.0),
+                               vec4(unit_float(bits.xy), unit_float(bits.zw)));
         bsdf.principled = principled_lobes(surface, wo);
     }
     vec3 wi = item_floats(3u).xyz;
