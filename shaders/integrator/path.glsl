@@ -20,13 +20,10 @@
 #define INTEGRATOR_PATH_GLSL
 
 #include "base/sampler.glsl"
-#include "bsdf/bsdf.glsl"
-#include "integrator/bent_normal.glsl"
-#include "integrator/layers.glsl"
+#include "integrator/surface.glsl"
 #include "light/light_sampler.glsl"
 #include "medium/medium.glsl"
 #include "scene/interaction.glsl"
-#include "scene/material.glsl"
 
 // Survival is never more likely than this, so that every path ends.
 const float RR_MAX_SURVIVAL = 0.99;
@@ -116,61 +113,66 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
                   area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
 }
 
-// How a surface is shaded.
-struct Shading {
-    Frame frame;  // Around the shading normal.
-    vec3 wo;      // Towards the viewer, in that frame.
-    bool bent;    // The shading normal is that of a normal or bump map.
-};
+// A sample of a light for the surface, as lit; layers above what emits leave a fraction of its radiance.
+LightSample sample_light(LitPoint lit, Sampler random, uint pair, uint fill) {
+    LightSample light = light_sample_li(lit, sampler_pair(random, pair + PAIR_LIGHT), fill);
+    if (HAS_COATED_EMISSION) light.Li *= emitted_share(light, lit);
+    return light;
+}
 
-// The shadow ray from s, as lit, towards the sample of a light, and what it adds to L if it is not blocked: beta f cos Li / pdf,
-// weighted and attenuated. `behind` is the medium behind the surface.
-ShadowRay direct_light(Path path, Interaction s, Shading shading, Bsdf bsdf, uint behind, LitPoint lit,
-                       LightSample light) {
+// The shadow ray from a surface, as lit, towards the sample of a light, and what it adds to L if it is not blocked:
+// beta f cos Li / pdf, weighted and attenuated.
+ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample light) {
     Ray ray = Ray(lit.p, light.shadow);
     uvec2 media = path.media;
     bool viewers_side = true;
     if (LIT_FROM_BEHIND) {
-        viewers_side = dot(light.wi, s.n) > 0.0;
-        ray.o = interaction_spawn_origin(s, viewers_side);
+        viewers_side = dot(light.wi, x.s.n) > 0.0;
+        ray.o = interaction_spawn_origin(x.s, viewers_side);
         if (light.t_max < FLOAT_MAX) ray.d += lit.p - ray.o;
-        if (!viewers_side) media = media_beyond(path.media, behind, s.front);
+        if (!viewers_side) media = media_beyond(path.media, x.material.medium, x.s.front);
     }
-    vec3 wi = frame_to_local(shading.frame, light.wi);
-    BsdfValue value;
-    vec3 Ld;
-    if (shading.bent) {
-        value = bent_evaluate(bsdf, shading.wo, wi, frame_to_local(shading.frame, s.n));
-        Ld = path.beta * value.f * light.Li;
-    } else {
-        value = bsdf_evaluate(bsdf, shading.wo, wi);
-        Ld = path.beta * value.f * abs(wi.z) * light.Li;
-    }
+    float cosine;
+    BsdfValue value = surface_evaluate(x, light.wi, cosine);
+    vec3 Ld = path.beta * value.f * cosine * light.Li;
     Ld *= media_transmittance(media, light.t_max * length(ray.d));
     // A light is not seen if the geometric and the shading normal disagree about its side.
-    bool sides_differ = LIT_FROM_BEHIND ? !shading.bent && (wi.z > 0.0) != viewers_side : dot(light.wi, s.n) <= 0.0;
+    bool sides_differ = LIT_FROM_BEHIND
+                            ? surface_reflects(x, light.wi, dot(light.wi, x.frame.z)) != viewers_side
+                            : dot(light.wi, x.s.n) <= 0.0;
     bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
     float weight = 1.0;
     if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, value.pdf);
     return ShadowRay(ray, dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
 }
 
-// Continues the path from s in the direction that its BSDF sampled; returns whether the path goes on. `behind` is the
-// medium behind the surface. A direction carries nothing if the geometric and the shading normal disagree about its
-// side.
-bool path_scatter(inout Path path, Interaction s, Shading shading, uint behind, BsdfSample scattered) {
-    vec3 wi = frame_to_world(shading.frame, scattered.wi);
+// Continues the path in the direction that the BSDF sampled; returns whether the path goes on. A direction carries
+// nothing if the geometric and the shading normal disagree about its side.
+bool path_scatter(inout Path path, ShadedSurface x, BsdfSample scattered) {
+    vec3 wi = frame_to_world(x.frame, scattered.wi);
     path.beta *= scattered.weight;
-    bool viewers_side = shading.bent ? dot(wi, s.n) > 0.0 : scattered.wi.z > 0.0;
+    bool viewers_side = surface_reflects(x, wi, scattered.wi.z);
     if (scattered.pdf == 0.0 || max_component(path.beta) == 0.0) return false;
-    if (viewers_side ? dot(wi, s.n) <= 0.0 : dot(wi, s.n) >= 0.0) return false;
+    if (viewers_side ? dot(wi, x.s.n) <= 0.0 : dot(wi, x.s.n) >= 0.0) return false;
     path.eta_scale *= square(scattered.eta);
     path.pdf_bsdf = scattered.pdf;
     path.delta = scattered.delta;
-    path.p = s.p;
-    path.ns = s.ns;
-    if (!viewers_side) path.media = media_beyond(path.media, behind, s.front);
-    path.ray = Ray(interaction_spawn_origin(s, viewers_side), wi);
+    path.p = x.s.p;
+    path.ns = x.s.ns;
+    if (!viewers_side) path.media = media_beyond(path.media, x.material.medium, x.s.front);
+    path.ray = Ray(interaction_spawn_origin(x.s, viewers_side), wi);
+    return true;
+}
+
+// Russian roulette: paths with a low throughput end early, and the survivors are weighted up. The square root lets them
+// end a vertex or two later, which reduces the noise by more than its rays cost. After ideal scattering the throughput
+// has no say: nothing but this path can find what lies ahead, often a light.
+// Ref: Arvo and Kirk 1990, Particle Transport and Image Synthesis.
+bool path_survives(inout Path path, float u) {
+    float survival = RR_MAX_SURVIVAL;
+    if (!path.delta) survival = min(survival, sqrt(max_component(path.beta) * path.eta_scale));
+    if (u >= survival) return false;
+    path.beta /= survival;
     return true;
 }
 
@@ -184,34 +186,20 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         if (ENVIRONMENT != ENVIRONMENT_NONE) add_environment(path, estimate);
         return false;
     }
-    Interaction s = interaction_at(path.ray, hit);
-    MaterialRecord material = material_at(s.material, s.attributes, path.ray);
-    Bsdf bsdf = bsdf_at(material, s.front);
-    vec3 unbent = s.ns;
-    bool bent = bend_normal(s, hit);
-    if (NESTED_MEDIA && bsdf_refracts(material)) {
-        uvec2 beyond = media_beyond(path.media, material.medium, s.front);
-        bool own_eta = !is_principled(material) && material.specular.x != 0.0;
-        bsdf.parameter = media_eta(path.media, beyond, own_eta, bsdf.parameter);
-        // A boundary within one medium is glass between equal indices, whatever it is made of.
-        if (is_principled(material) && media_first(path.media) == media_first(beyond)) {
-            material.model = bsdf.model = MATERIAL_DIELECTRIC_EXACT;
-        }
-    }
+    ShadedSurface x = surface_at(path.ray, hit, path.media);
     if (path.depth == 0u) {
         estimate.visible = true;
-        estimate.albedo = bsdf_albedo(bsdf);
-        estimate.normal = s.ns;
+        estimate.albedo = bsdf_albedo(x.bsdf);
+        estimate.normal = x.s.ns;
     }
 
     // Attenuate by the medium on the way.
     path.beta *= media_transmittance(path.media, hit.t);
 
     // Add what the surface emits; light samples of the previous vertex may already account for a part.
-    if (s.light != NO_LIGHT) add_emission(path, estimate, s, hit.t);
-
-    if (is_model(bsdf, 1u << MATERIAL_UNLIT)) {
-        estimate.L += path.beta * bsdf.base;
+    if (x.s.light != NO_LIGHT) add_emission(path, estimate, x.s, hit.t);
+    if (is_model(x.bsdf, 1u << MATERIAL_UNLIT)) {
+        estimate.L += path.beta * x.bsdf.base;
         return false;
     }
 
@@ -220,45 +208,24 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         estimate.cut = path.depth == DEPTH_SAFETY_LIMIT;
         return false;
     }
-    // Whatever the shading normal is, rays pass where nothing changes.
-    if (is_model(bsdf, MATERIALS_DIELECTRIC) && bsdf.parameter == 1.0) {
-        s.ns = s.n;
-        bent = false;
-    }
-    bent = bent || has_coat_map(material);
-    if (bent) s.ns = consistent_normal(s.wo, s.n, s.ns);
-    Frame frame = frame_from_z(s.ns);
+    surface_turn(x);
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
     uvec2 choice = sampler_pair(random, pair + PAIR_CHOICE);
 
     // Choose a point on a light, before the lobes of a principled material take room.
-    LitPoint lit = lit_point(s);
+    LitPoint lit = lit_point(x.s);
     LightSample light;
-    if (ESTIMATOR != ESTIMATOR_BSDF) light = light_sample_li(lit, sampler_pair(random, pair + PAIR_LIGHT), choice.x);
-    if (HAS_COATED_EMISSION && ESTIMATOR != ESTIMATOR_BSDF) light.Li *= emitted_share(light, lit);
-    add_layers(bsdf, material, frame, s, unbent, path.ray, path.beta);
-    if (is_principled(material) && path.depth == 0u) estimate.albedo = bsdf_albedo(bsdf);
-    Shading shading = Shading(frame, frame_to_local(frame, s.wo), bent);
+    if (ESTIMATOR != ESTIMATOR_BSDF) light = sample_light(lit, random, pair, choice.x);
+    surface_add_layers(x, path.ray, path.beta);
+    if (path.depth == 0u && is_principled(x.material)) estimate.albedo = bsdf_albedo(x.bsdf);
 
     // Add direct light.
-    if (ESTIMATOR != ESTIMATOR_BSDF) shadow = direct_light(path, s, shading, bsdf, material.medium, lit, light);
+    if (ESTIMATOR != ESTIMATOR_BSDF) shadow = direct_light(path, x, lit, light);
 
     // Scatter.
     vec2 u = unit_float(sampler_pair(random, pair + PAIR_BSDF));
-    BsdfSample scattered = bsdf_sample_f(bsdf, shading.wo, unit_float(choice.y), u);
-    if (bent) bend_sample(scattered, bsdf, shading.wo, frame_to_local(frame, s.n));
-    if (!path_scatter(path, s, shading, material.medium, scattered)) return false;
-
-    // Russian roulette: paths with a low throughput end early, and the survivors are weighted up. The square root lets
-    // them end a vertex or two later, which reduces the noise by more than its rays cost. After ideal scattering the
-    // throughput does not count: nothing but this path can find what lies ahead, often a light.
-    // Ref: Arvo and Kirk 1990, Particle Transport and Image Synthesis.
-    if (path.depth >= parameters.rr_depth) {
-        float survival = RR_MAX_SURVIVAL;
-        if (!path.delta) survival = min(survival, sqrt(max_component(path.beta) * path.eta_scale));
-        if (unit_float(choice.x) >= survival) return false;
-        path.beta /= survival;
-    }
+    if (!path_scatter(path, x, surface_sample_f(x, unit_float(choice.y), u))) return false;
+    if (path.depth >= parameters.rr_depth && !path_survives(path, unit_float(choice.x))) return false;
     ++path.depth;
     return true;
 }

@@ -1,6 +1,12 @@
 // Brings every pixel of a tile to a number of samples, or to the pixel's limit if that is less: each invocation traces
 // one path after the other for its pixel and folds it into the accumulation image. A pixel's own count says which
 // samples it still needs, so that any division of the work into tiles and dispatches gives the same bits.
+//
+// One iteration of a lane's loop, for a path on its way to vertex k:
+//     trace the shadow ray of vertex k - 1, then the path's ray to vertex k
+//     add the direct light of vertex k - 1; if the path ended there, fold the sample
+//     shade vertex k, which yields its shadow ray and the path's next ray
+// For a new sample, "vertex k - 1" is the last one of the sample before.
 #ifndef KERNELS_RENDER_GLSL
 #define KERNELS_RENDER_GLSL
 

@@ -1,0 +1,87 @@
+// The surface at the hit of a path's ray, resolved once: what it is made of at that point, what lies on both sides, and
+// the normal with which it is shaded. The integrator asks nothing else of materials.
+#ifndef INTEGRATOR_SURFACE_GLSL
+#define INTEGRATOR_SURFACE_GLSL
+
+#include "base/frame.glsl"
+#include "bsdf/bsdf.glsl"
+#include "integrator/bent_normal.glsl"
+#include "integrator/layers.glsl"
+#include "medium/medium.glsl"
+#include "scene/interaction.glsl"
+#include "scene/material.glsl"
+
+struct ShadedSurface {
+    Interaction s;  // Its shading normal may come from a normal map or a bump map.
+    MaterialRecord material;
+    Bsdf bsdf;
+    vec3 unbent;  // The shading normal of the shape itself.
+    bool bent;    // Shaded as integrator/bent_normal.glsl says.
+    Frame frame;  // Around the shading normal; surface_turn() sets it,
+    vec3 wo;      // and surface_add_layers() this: towards the viewer, in that frame.
+};
+
+// The ratio of the indices of refraction where media nest. A boundary within one medium is glass between equal indices,
+// whatever it is made of.
+void surface_nest(inout ShadedSurface x, uvec2 media) {
+    if (!NESTED_MEDIA || !bsdf_refracts(x.material)) return;
+    bool principled = is_principled(x.material);
+    uvec2 beyond = media_beyond(media, x.material.medium, x.s.front);
+    x.bsdf.parameter = media_eta(media, beyond, !principled && x.material.specular.x != 0.0, x.bsdf.parameter);
+    if (principled && media_first(media) == media_first(beyond)) {
+        x.material.model = x.bsdf.model = MATERIAL_DIELECTRIC_EXACT;
+    }
+}
+
+// The surface that the ray hit, from within these media; is_hit(hit) must hold.
+ShadedSurface surface_at(Ray ray, Hit hit, uvec2 media) {
+    ShadedSurface x;
+    x.s = interaction_at(ray, hit);
+    x.material = material_at(x.s.material, x.s.attributes, ray);
+    x.bsdf = bsdf_at(x.material, x.s.front);
+    x.unbent = x.s.ns;
+    x.bent = bend_normal(x.s, hit);
+    surface_nest(x, media);
+    return x;
+}
+
+// Turns the shading normal towards the viewer where that is needed, and puts the frame around it.
+void surface_turn(inout ShadedSurface x) {
+    // Rays pass a boundary between equal indices straight, regardless of its shading normal.
+    if (is_model(x.bsdf, MATERIALS_DIELECTRIC) && x.bsdf.parameter == 1.0) {
+        x.s.ns = x.s.n;
+        x.bent = false;
+    }
+    x.bent = x.bent || has_coat_map(x.material);
+    if (x.bent) x.s.ns = consistent_normal(x.s.wo, x.s.n, x.s.ns);
+    x.frame = frame_from_z(x.s.ns);
+}
+
+// Adds the lobes of a principled material, for a path with that throughput.
+void surface_add_layers(inout ShadedSurface x, Ray ray, vec3 beta) {
+    add_layers(x.bsdf, x.material, x.frame, x.s, x.unbent, ray, beta);
+    x.wo = frame_to_local(x.frame, x.s.wo);
+}
+
+// Whether scattering into wi, whose cosine to the shading normal is cos_i, stays on the viewer's side.
+bool surface_reflects(ShadedSurface x, vec3 wi, float cos_i) {
+    return x.bent ? dot(wi, x.s.n) > 0.0 : cos_i > 0.0;
+}
+
+// Value and density for a direction wi of the scene. The value lacks the factor `cosine`.
+BsdfValue surface_evaluate(ShadedSurface x, vec3 wi, out float cosine) {
+    vec3 local = frame_to_local(x.frame, wi);
+    cosine = 1.0;
+    if (x.bent) return bent_evaluate(x.bsdf, x.wo, local, frame_to_local(x.frame, x.s.n));
+    cosine = abs(local.z);
+    return bsdf_evaluate(x.bsdf, x.wo, local);
+}
+
+// A direction in the frame of the surface, from u in [0, 1)^2; uc in [0, 1) chooses a lobe.
+BsdfSample surface_sample_f(ShadedSurface x, float uc, vec2 u) {
+    BsdfSample scattered = bsdf_sample_f(x.bsdf, x.wo, uc, u);
+    if (x.bent) bend_sample(scattered, x.bsdf, x.wo, frame_to_local(x.frame, x.s.n));
+    return scattered;
+}
+
+#endif
