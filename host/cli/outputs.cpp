@@ -132,6 +132,7 @@ Json make_report(const RenderRecord& record) {
                 {"seed", settings.seed},
                 {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},
                 {"sampler", name_of(settings.sampler, SAMPLER_NAMES)},
+                {"terminator", name_of(settings.terminator, TERMINATOR_NAMES)},
                 {"adaptive", record.adaptive},
                 {"max_depth", settings.max_depth},
                 {"rr_depth", settings.rr_depth},

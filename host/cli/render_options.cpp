@@ -146,6 +146,8 @@ void RenderOptions::add_sampling_options(CLI::App& app) {
     add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
                "How direct light is sampled; mis has the least noise, bsdf misses lights without a surface");
     add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
+    add_choice(app, "--terminator", terminator, TERMINATOR_NAMES,
+               "Where light ends on meshes with smooth normals: smooth as they are, or flat as their triangles");
 }
 
 void RenderOptions::add_message_options(CLI::App& app) {
@@ -202,6 +204,7 @@ RenderSettings RenderOptions::settings(const Scene& scene) const {
             .crop = picture.crop_within(size),
             .estimator = estimator.value_or(proposed.estimator),
             .sampler = sampler.value_or(proposed.sampler),
+            .terminator = terminator.value_or(proposed.terminator),
             .seed = seed.value_or(proposed.seed),
             .first_sample = samples ? samples->first : 0,
             .max_depth = std::min(depth, DEPTH_SAFETY_LIMIT),

@@ -106,6 +106,7 @@ struct RenderOptions {
     std::optional<uint32_t> rr_depth;
     std::optional<Estimator> estimator;
     std::optional<SamplerKind> sampler;
+    std::optional<Terminator> terminator;
 
     CheckpointOptions checkpoint;
     std::optional<std::string> device;  // Index or part of the name.

@@ -24,6 +24,7 @@ constexpr std::array<SettingName, Identity::SETTING_COUNT> NAMES{{{"size", nullp
                                                                   {"seed", "candela.seed"},
                                                                   {"sampler", "candela.sampler"},
                                                                   {"estimator", "candela.estimator"},
+                                                                  {"terminator", "candela.terminator"},
                                                                   {"max depth", "candela.maxDepth"},
                                                                   {"rr depth", "candela.rrDepth"},
                                                                   {"camera", "candela.camera"},

@@ -11,9 +11,9 @@
 namespace candela {
 
 struct Identity {
-    // The settings as people read them: size, crop, seed, sampler, estimator, max depth, rr depth, camera and
-    // frame.
-    static constexpr size_t SETTING_COUNT = 9;
+    // The settings as people read them: size, crop, seed, sampler, estimator, terminator, max depth, rr
+    // depth, camera and frame.
+    static constexpr size_t SETTING_COUNT = 10;
     std::array<std::string, SETTING_COUNT> settings;
     // Of the scene's arrays, the record of camera and settings, and the specialization constants.
     uint64_t hash = 0;

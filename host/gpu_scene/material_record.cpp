@@ -49,9 +49,14 @@ EncodedMaterial encode(const DiffuseTransmissionMaterial& m) {
     return encoded(MATERIAL_DIFFUSE_TRANSMISSION, m.reflectance, m.transmittance);
 }
 
+bool lets_light_in(const PrincipledMaterial& m) {
+    return m.transmission.factor > 0.0f || m.diffuse_transmission.factor > 0.0f;
+}
+
 EncodedMaterial encode(const PrincipledMaterial& m) {
     if (m.unlit) return encoded(MATERIAL_UNLIT, m.base_color);
     EncodedMaterial result = encoded(MATERIAL_PRINCIPLED, m.base_color.factor, NO_COLOR, principled_ior(m));
+    result.record.specular.y = lets_light_in(m) ? 1.0f : 0.0f;
     result.principled = encode_principled(m);
     return result;
 }
@@ -71,8 +76,7 @@ std::optional<Interior> behind(const DiffuseTransmissionMaterial& m) {
 }
 
 std::optional<Interior> behind(const PrincipledMaterial& m) {
-    const bool lets_light_in = m.transmission.factor > 0.0f || m.diffuse_transmission.factor > 0.0f;
-    if (!m.inside || m.unlit || !lets_light_in) return std::nullopt;
+    if (!m.inside || m.unlit || !lets_light_in(m)) return std::nullopt;
     return Interior{*m.inside, principled_ior(m), m.priority};
 }
 

@@ -62,6 +62,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_SAMPLER] = sampler_constant(settings.sampler);
     constants[CONSTANT_ESTIMATOR] = estimator_constant(settings.estimator, scene.light_count);
     constants[CONSTANT_HAS_NORMALS] = scene.has_normals;
+    constants[CONSTANT_SMOOTH_TERMINATOR] = settings.terminator == Terminator::smooth;
     constants[CONSTANT_HAS_AOVS] = settings.aovs;
     constants[CONSTANT_APERTURE] = aperture_constant(camera);
     constants[CONSTANT_ENVIRONMENT] = scene.environment;

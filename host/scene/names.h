@@ -28,6 +28,9 @@ inline constexpr Choices<SamplerKind, 3> SAMPLER_NAMES{{{"independent", SamplerK
                                                         {"stratified", SamplerKind::stratified},
                                                         {"sobol", SamplerKind::sobol}}};
 
+inline constexpr Choices<Terminator, 2> TERMINATOR_NAMES{
+    {{"smooth", Terminator::smooth}, {"flat", Terminator::flat}}};
+
 inline constexpr Choices<Fresnel, 2> FRESNEL_NAMES{
     {{"schlick", Fresnel::schlick}, {"exact", Fresnel::exact}}};
 

@@ -48,6 +48,9 @@ struct Film {
 
 enum class Estimator { bsdf, light, mis };
 enum class SamplerKind { independent, stratified, sobol };
+// Where the light of a mesh with smooth normals ends: where its normals turn away from it, or where its
+// triangles do.
+enum class Terminator { smooth, flat };
 
 // What the scene file proposes; the command line overrides it.
 struct IntegratorSettings {
@@ -56,6 +59,7 @@ struct IntegratorSettings {
     uint32_t rr_depth = 3;              // The first rr_depth bounces always survive.
     Estimator estimator = Estimator::mis;
     SamplerKind sampler = SamplerKind::sobol;
+    Terminator terminator = Terminator::smooth;
     uint32_t seed = 0;
 };
 

@@ -51,6 +51,14 @@ bool bsdf_refracts(MaterialRecord m) {
     return is_model(b, MATERIALS_DIELECTRIC);
 }
 
+// True if some light passes the surface.
+bool material_transmits(MaterialRecord m) {
+    Bsdf b;
+    b.model = m.model;
+    if (is_model(b, 1u << MATERIAL_PRINCIPLED)) return m.specular.y != 0.0;
+    return is_model(b, MATERIALS_DIELECTRIC | 1u << MATERIAL_DIFFUSE_TRANSMISSION);
+}
+
 // The material seen from its front, or from its back, where the two media of a dielectric are swapped.
 // The lobes of a principled material are added later: see integrator/layers.glsl.
 Bsdf bsdf_at(MaterialRecord m, bool front) {

@@ -73,23 +73,23 @@ bool has_coat_map(MaterialRecord m) {
 }
 
 // The coat's normal in `frame`; `unbent` is the shading normal of the shape.
-vec3 coat_normal(PrincipledRecord p, Interaction s, vec3 unbent, Frame frame) {
+vec3 coat_normal(PrincipledRecord p, Interaction s, vec3 unbent, vec3 horizon, Frame frame) {
     s.ns = unbent;
     if (p.coat_normal != TEXTURE_NONE) {
         vec3 n = mapped_normal(p.coat_normal, p.coat_normal_scale, s);
         s.ns = s.front ? n : -n;
     }
-    return frame_to_local(frame, consistent_normal(s.wo, s.n, s.ns));
+    return frame_to_local(frame, consistent_normal(s.wo, horizon, s.ns));
 }
 
 // Adds the lobes of the material m, if it is principled, at s, which the path's ray hit; m gets its base colour there,
 // and x of the frame the direction of the greatest roughness. `unbent` is the shading normal of the shape.
-void add_layers(inout Bsdf bsdf, inout MaterialRecord m, inout Frame frame, Interaction s, vec3 unbent, Ray ray,
-                vec3 beta) {
+void add_layers(inout Bsdf bsdf, inout MaterialRecord m, inout Frame frame, Interaction s, vec3 unbent, vec3 horizon,
+                Ray ray, vec3 beta) {
     if (!is_principled(m)) return;
     PrincipledSurface surface = layers_at(m, s, bsdf.parameter, ray, beta);
     if (HAS_ANISOTROPY) frame = principled_frame(surface.record, s);
-    if (HAS_COAT_NORMALS) surface.coat_n = coat_normal(surface.record, s, unbent, frame);
+    if (HAS_COAT_NORMALS) surface.coat_n = coat_normal(surface.record, s, unbent, horizon, frame);
     bsdf.base = m.base;
     bsdf.principled = principled_lobes(surface, frame_to_local(frame, s.wo));
 }
@@ -112,8 +112,8 @@ float emitted_share(LightSample light, LitPoint lit) {
     return 1.0;
 }
 
-void add_layers(inout Bsdf bsdf, inout MaterialRecord m, inout Frame frame, Interaction s, vec3 unbent, Ray ray,
-                vec3 beta) {}
+void add_layers(inout Bsdf bsdf, inout MaterialRecord m, inout Frame frame, Interaction s, vec3 unbent, vec3 horizon,
+                Ray ray, vec3 beta) {}
 
 #endif
 

@@ -75,7 +75,7 @@ ShadowRay shadow_none() {
 // known after the light is sampled. Otherwise it is the origin of the path's next ray, so that no other point has to be
 // kept.
 LitPoint lit_point(Interaction s) {
-    return LitPoint(LIT_FROM_BEHIND ? s.p : interaction_spawn_origin(s, true), s.ns);
+    return LitPoint(LIT_FROM_BEHIND ? s.p + s.lift : interaction_spawn_origin(s, true), s.ns);
 }
 
 // The lit point of the path's last vertex.
@@ -127,7 +127,7 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
     uvec2 media = path.media;
     bool viewers_side = true;
     if (LIT_FROM_BEHIND) {
-        viewers_side = dot(light.wi, x.s.n) > 0.0;
+        viewers_side = dot(light.wi, x.horizon) > 0.0;
         ray.o = interaction_spawn_origin(x.s, viewers_side);
         if (light.t_max < FLOAT_MAX) ray.d += lit.p - ray.o;
         if (!viewers_side) media = media_beyond(path.media, x.material.medium, x.s.front);
@@ -136,10 +136,10 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
     BsdfValue value = surface_evaluate(x, light.wi, cosine);
     vec3 Ld = path.beta * value.f * cosine * light.Li;
     Ld *= media_transmittance(media, light.t_max * length(ray.d));
-    // A light is not seen if the geometric and the shading normal disagree about its side.
+    // A light is not seen if the horizon and the shading normal disagree about its side.
     bool sides_differ = LIT_FROM_BEHIND
                             ? surface_reflects(x, light.wi, dot(light.wi, x.frame.z)) != viewers_side
-                            : dot(light.wi, x.s.n) <= 0.0;
+                            : dot(light.wi, x.horizon) <= 0.0;
     bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
     float weight = 1.0;
     if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, value.pdf);
@@ -147,17 +147,17 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
 }
 
 // Continues the path in the direction that the BSDF sampled; returns whether the path goes on. A direction carries
-// nothing if the geometric and the shading normal disagree about its side.
+// nothing if the horizon and the shading normal disagree about its side.
 bool path_scatter(inout Path path, ShadedSurface x, BsdfSample scattered) {
     vec3 wi = frame_to_world(x.frame, scattered.wi);
     path.beta *= scattered.weight;
     bool viewers_side = surface_reflects(x, wi, scattered.wi.z);
     if (scattered.pdf == 0.0 || max_component(path.beta) == 0.0) return false;
-    if (viewers_side ? dot(wi, x.s.n) <= 0.0 : dot(wi, x.s.n) >= 0.0) return false;
+    if (viewers_side ? dot(wi, x.horizon) <= 0.0 : dot(wi, x.horizon) >= 0.0) return false;
     path.eta_scale *= square(scattered.eta);
     path.pdf_bsdf = scattered.pdf;
     path.delta = scattered.delta;
-    path.p = x.s.p;
+    path.p = x.s.p + x.s.lift;
     path.ns = x.s.ns;
     if (!viewers_side) path.media = media_beyond(path.media, x.material.medium, x.s.front);
     path.ray = Ray(interaction_spawn_origin(x.s, viewers_side), wi);

@@ -15,10 +15,11 @@ struct ShadedSurface {
     Interaction s;  // Its shading normal may come from a normal map or a bump map.
     MaterialRecord material;
     Bsdf bsdf;
-    vec3 unbent;  // The shading normal of the shape itself.
-    bool bent;    // Shaded as integrator/bent_normal.glsl says.
-    Frame frame;  // Around the shading normal; surface_turn() sets it,
-    vec3 wo;      // and surface_add_layers() this: towards the viewer, in that frame.
+    vec3 unbent;   // The shading normal of the shape itself.
+    vec3 horizon;  // The normal that says on which side of the surface a direction is; surface_turn() sets it,
+    bool bent;     // Shaded as integrator/bent_normal.glsl says.
+    Frame frame;   // and this: around the shading normal.
+    vec3 wo;       // Towards the viewer, in that frame; surface_add_layers() sets it.
 };
 
 // The ratio of the indices of refraction where media nest. A boundary within one medium is glass between equal indices,
@@ -39,40 +40,50 @@ ShadedSurface surface_at(Ray ray, Hit hit, uvec2 media) {
     x.s = interaction_at(ray, hit);
     x.material = material_at(x.s.material, x.s.attributes, ray);
     x.bsdf = bsdf_at(x.material, x.s.front);
+    if (material_transmits(x.material)) x.s.lift = vec3(0.0);
     x.unbent = x.s.ns;
     x.bent = bend_normal(x.s, hit);
     surface_nest(x, media);
     return x;
 }
 
-// Turns the shading normal towards the viewer where that is needed, and puts the frame around it.
+// Turns the shading normals towards the viewer where that is needed, and puts the frame around the one that holds.
+//
+// The horizon is that of the geometric normal; if SMOOTH, that of the shape's shading normal: light that scatters above
+// it but below the triangle's plane begins above the plane, and meets the surface again unless the lift takes it past.
 void surface_turn(inout ShadedSurface x) {
+    x.horizon = x.s.n;
+    if (SMOOTH) {
+        x.unbent = facing_normal(x.s.wo, x.s.n, x.unbent);
+        x.horizon = x.unbent;
+        if (!x.bent) x.s.ns = x.unbent;
+    }
     // Rays pass a boundary between equal indices straight, regardless of its shading normal.
     if (is_model(x.bsdf, MATERIALS_DIELECTRIC) && x.bsdf.parameter == 1.0) {
-        x.s.ns = x.s.n;
+        x.s.ns = x.horizon = x.s.n;
         x.bent = false;
     }
     x.bent = x.bent || has_coat_map(x.material);
-    if (x.bent) x.s.ns = consistent_normal(x.s.wo, x.s.n, x.s.ns);
+    if (x.bent) x.s.ns = consistent_normal(x.s.wo, x.horizon, x.s.ns);
     x.frame = frame_from_z(x.s.ns);
 }
 
 // Adds the lobes of a principled material, for a path with that throughput.
 void surface_add_layers(inout ShadedSurface x, Ray ray, vec3 beta) {
-    add_layers(x.bsdf, x.material, x.frame, x.s, x.unbent, ray, beta);
+    add_layers(x.bsdf, x.material, x.frame, x.s, x.unbent, x.horizon, ray, beta);
     x.wo = frame_to_local(x.frame, x.s.wo);
 }
 
 // Whether scattering into wi, whose cosine to the shading normal is cos_i, stays on the viewer's side.
 bool surface_reflects(ShadedSurface x, vec3 wi, float cos_i) {
-    return x.bent ? dot(wi, x.s.n) > 0.0 : cos_i > 0.0;
+    return x.bent ? dot(wi, x.horizon) > 0.0 : cos_i > 0.0;
 }
 
 // Value and density for a direction wi of the scene. The value lacks the factor `cosine`.
 BsdfValue surface_evaluate(ShadedSurface x, vec3 wi, out float cosine) {
     vec3 local = frame_to_local(x.frame, wi);
     cosine = 1.0;
-    if (x.bent) return bent_evaluate(x.bsdf, x.wo, local, frame_to_local(x.frame, x.s.n));
+    if (x.bent) return bent_evaluate(x.bsdf, x.wo, local, frame_to_local(x.frame, x.horizon));
     cosine = abs(local.z);
     return bsdf_evaluate(x.bsdf, x.wo, local);
 }
@@ -80,7 +91,7 @@ BsdfValue surface_evaluate(ShadedSurface x, vec3 wi, out float cosine) {
 // A direction in the frame of the surface, from u in [0, 1)^2; uc in [0, 1) chooses a lobe.
 BsdfSample surface_sample_f(ShadedSurface x, float uc, vec2 u) {
     BsdfSample scattered = bsdf_sample_f(x.bsdf, x.wo, uc, u);
-    if (x.bent) bend_sample(scattered, x.bsdf, x.wo, frame_to_local(x.frame, x.s.n));
+    if (x.bent) bend_sample(scattered, x.bsdf, x.wo, frame_to_local(x.frame, x.horizon));
     return scattered;
 }
 

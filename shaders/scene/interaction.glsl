@@ -5,6 +5,7 @@
 #include "base/frame.glsl"
 #include "scene/attributes.glsl"
 #include "scene/scene_data.glsl"
+#include "scene/smooth.glsl"
 #include "scene/traversal.glsl"
 
 // In the frame of the scene. Both normals are unit vectors on the viewer's side of the surface; the geometric normal alone
@@ -15,28 +16,28 @@ struct Interaction {
     vec3 n;         // Geometric normal.
     vec3 ns;        // Shading normal.
     bool front;     // The viewer sees the front side.
-    float error;    // How far from p, along n, rays must begin.
+    float error;    // How far from the surface, along n, rays must begin.
+    vec3 lift;      // From p to where light that stays on the viewer's side begins: see scene/smooth.glsl.
     uint material;
     uint light;  // Light that the surface belongs to, or NO_LIGHT.
     Attributes attributes;
 };
 
-// A vertex's shading normal in the frame of the scene.
-vec3 vertex_normal(uint bits, Hit hit, Instance instance) {
-    vec3 n = octahedral_unpack(bits);
-    return is_instanced(hit.instance) ? normalize(normal_to_scene(instance, n)) : n;
-}
-
-// The interpolated shading normal of the triangle that was hit, on the side of n, in the frame of the scene.
-vec3 shading_normal(Hit hit, Instance instance, vec2 b, vec3 n) {
-    uvec4 normals = scene_normals(hit_primitive(hit));
-    if (hit_second(hit)) normals.yz = normals.zw;
-    vec3 ns = (1.0 - b.x - b.y) * vertex_normal(normals.x, hit, instance) +
-              b.x * vertex_normal(normals.y, hit, instance) + b.y * vertex_normal(normals.z, hit, instance);
-    float length_squared = dot(ns, ns);
-    if (length_squared == 0.0) return n;
-    ns *= inversesqrt(length_squared);
-    return dot(ns, n) < 0.0 ? -ns : ns;
+// The interpolated shading normal of the triangle that was hit, on the viewer's side, and the lift of light from it. The
+// ray is `ray_length` long.
+void smooth_shading(inout Interaction s, Hit hit, Instance instance, Primitive primitive, vec2 b, float ray_length) {
+    VertexNormals normals = vertex_normals(hit, instance);
+    s.ns = shading_normal(normals, b, s.n);
+    if (!SMOOTH) return;
+    bool second = hit_second(hit);
+    vec3 e1 = (second ? primitive.c : primitive.b) - primitive.a;
+    vec3 e2 = (second ? primitive.d : primitive.c) - primitive.a;
+    if (is_instanced(hit.instance)) {
+        e1 = vector_to_scene(instance, e1);
+        e2 = vector_to_scene(instance, e2);
+    }
+    float side = dot(normals.a + normals.b + normals.c, s.n) < 0.0 ? -1.0 : 1.0;
+    s.lift = smooth_lift(smooth_height(normals, e1, e2, b, side), s.wo, s.ns, ray_length);
 }
 
 // Brings what is known of a point in the space of an instance's mesh to the frame of the scene.
@@ -61,6 +62,7 @@ Interaction interaction_at(Ray ray, Hit hit) {
     Surface surface = hit_surface(hit);
     Instance instance;
     vec3 wo = -normalize(ray.d);
+    float ray_length = hit.t * length(ray.d);
     if (is_instanced(hit.instance)) {
         instance = scene_instance(hit.instance);
         ray = ray_to_mesh(instance, ray);
@@ -84,13 +86,13 @@ Interaction interaction_at(Ray ray, Hit hit) {
     s.attributes = attributes_at(AttributePlace(hit_primitive(hit), hit_second(hit), at, is_kind(primitive.kind, PRIMITIVE_SPHERE), s.n));
     s.error = surface.error;
     if (is_instanced(hit.instance)) bring_to_scene(instance, s);
-    s.ns = s.n;
-    if (HAS_NORMALS && surface.has_normals != 0u) s.ns = shading_normal(hit, instance, at, s.n);
     s.wo = wo;
     s.front = dot(s.wo, s.n) >= 0.0;
-    if (!s.front) {
-        s.n = -s.n;
-        s.ns = -s.ns;
+    if (!s.front) s.n = -s.n;
+    s.ns = s.n;
+    s.lift = vec3(0.0);
+    if (HAS_NORMALS && surface.has_normals != 0u) {
+        smooth_shading(s, hit, instance, primitive, at, ray_length);
     }
     s.material = surface.material;
     s.light = surface.light;
@@ -99,6 +101,7 @@ Interaction interaction_at(Ray ray, Hit hit) {
 
 // The origin of a ray that leaves the surface on the viewer's side, or on the other.
 vec3 interaction_spawn_origin(Interaction s, bool viewers_side) {
+    if (SMOOTH && viewers_side) return (s.p + s.lift) + s.error * s.n;
     return s.p + (viewers_side ? s.error : -s.error) * s.n;
 }
 

@@ -7,7 +7,7 @@
 //   conductor                MATERIAL_CONDUCTOR, reflectance             0                alpha
 //   dielectric               MATERIAL_DIELECTRIC_*, 0                    own_eta, 0, 0    eta
 //   diffuse transmission     MATERIAL_DIFFUSE_TRANSMISSION, reflectance  transmittance    0
-//   principled               MATERIAL_PRINCIPLED, base colour            record, 0, 0     ior
+//   principled               MATERIAL_PRINCIPLED, base colour            record, some, 0  ior
 //   unlit                    MATERIAL_UNLIT, radiance                    0                0
 #ifndef SHARED_MATERIAL_H
 #define SHARED_MATERIAL_H
@@ -41,7 +41,7 @@ struct MaterialRecord {
     uint medium;      // Behind the surface; 24 bits.
     vec3 base;        // Reflectance, each in [0, 1].
     vec3 specular;    // Phong's ks, or transmittance; each in [0, 1]. own_eta: 1 if eta holds whatever is in
-                      // front. record: see shared/principled.h.
+                      // front. record: see shared/principled.h. some: 1 if some light passes the surface.
     float parameter;  // Phong's exponent; alpha; or eta, the index behind the surface over that in front.
 };
 

@@ -29,6 +29,8 @@ LIST = "shaders/scene/list.glsl"
 TRIANGLE = "shaders/scene/triangle.glsl"
 PRIMITIVE = "shaders/scene/primitive.glsl"
 INTERACTION = "shaders/scene/interaction.glsl"
+SMOOTH = "shaders/scene/smooth.glsl"
+SURFACE = "shaders/integrator/surface.glsl"
 INSTANCE = "shaders/scene/instance.glsl"
 TEXTURE = "shaders/scene/texture.glsl"
 FILTER = "shaders/texture/filter.glsl"
@@ -56,6 +58,7 @@ BSDFS = ("BsdfTest*:Phong*:Dielectric*:Warp*", "Albedo*:SkyFurnace*:*Dielectric*
 LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
 PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Orthographic*:ScaleTest*Mean*")
+TERMINATOR = ("Interaction*", "Terminator*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 INSTANCES = ("InstanceTest*", "InstancedNormals*:*InstanceTest*", "Instancing*:MediaAt*")
@@ -67,7 +70,7 @@ DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:Fi
 
 GROUPS = [
     (INTEGRATOR, [
-        ("cosine dropped from direct light", PATH, "* abs(wi.z) * light.Li", "* light.Li"),
+        ("cosine dropped from direct light", PATH, "value.f * cosine * light.Li", "value.f * light.Li"),
         ("emission counted in full beside light samples", PATH, "return power_heuristic(path.pdf_bsdf, pdf_light);",
          "return 1.0;"),
         ("MIS weight of emission with twice the light's density", PATH, "power_heuristic(path.pdf_bsdf, pdf_light)",
@@ -77,17 +80,17 @@ GROUPS = [
         ("roulette blind to refraction", PATH, "max_component(path.beta) * path.eta_scale",
          "max_component(path.beta) / path.eta_scale"),
         ("roulette after ideal scattering as after any", PATH, "if (!path.delta) survival", "survival"),
-        ("roulette with the number that chose the lobe", PATH, "unit_float(choice.x) >= survival",
-         "unit_float(choice.y) >= survival"),
+        ("roulette with the number that chose the lobe", PATH, "!path_survives(path, unit_float(choice.x))",
+         "!path_survives(path, unit_float(choice.y))"),
         ("the same dimensions at every bounce", PATH, "path.depth * PAIRS_PER_BOUNCE", "0u"),
         ("one bounce too many", PATH, "path.depth == parameters.max_depth", "path.depth > parameters.max_depth"),
         ("absorption also outside of the solid", MEDIUM, "uvec2(front ? behind : MEDIUM_NONE, 0u)", "uvec2(behind, 0u)"),
         ("a thin sheet bounds the medium around it", MEDIUM, "if (behind == MEDIUM_SAME) return here;",
          "if (behind == MEDIUM_SAME) return MEDIA_NONE;"),
         ("light through a sheet absorbed by the medium before it", PATH,
-         "if (!viewers_side) media = media_beyond(path.media, behind, s.front);", ""),
+         "if (!viewers_side) media = media_beyond(path.media, x.material.medium, x.s.front);", ""),
         ("light through a sheet looked for from the viewer's side", PATH,
-         "ray.o = interaction_spawn_origin(s, viewers_side);", "ray.o = interaction_spawn_origin(s, true);"),
+         "ray.o = interaction_spawn_origin(x.s, viewers_side);", "ray.o = interaction_spawn_origin(x.s, true);"),
     ]),
     (BSDFS, [
         ("a sheet's sides chosen otherwise than the density says", "shaders/bsdf/diffuse_transmission.glsl",
@@ -123,6 +126,15 @@ GROUPS = [
          "size.x + x]) * solid_angle", "size.x + x]) * (solid_angle > 0.0 ? 1.0 : 0.0)"),
         ("sky turned the wrong way", SKY, "turn.x * w.x - turn.y * w.z", "turn.x * w.x + turn.y * w.z"),
     ]),
+    (TERMINATOR, [
+        ("light begins at flat triangles", SMOOTH, "return 0.5 * MARGIN * sum;", "return 0.0;"),
+        ("light begins above the side that is hollow", SMOOTH, "max(side * dot(e1,", "max(-side * dot(e1,"),
+        ("light samples begin at the triangle, BSDF samples above it", PATH,
+         "return LitPoint(LIT_FROM_BEHIND ? s.p + s.lift : interaction_spawn_origin(s, true), s.ns);",
+         "return LitPoint(s.p + s.error * s.n, s.ns);"),
+        ("the horizon is that of the triangle", SURFACE, "x.horizon = x.unbent;", ""),
+        ("the back of a shading normal is black", SURFACE, "x.unbent = facing_normal(x.s.wo, x.s.n, x.unbent);", ""),
+    ]),
     (SAMPLES, [
         ("aperture not uniform", CAMERA, "? warp_disk(u)", "? u.x * cos_sin_turn(u.y)"),
         ("lens and pixel share their random numbers", RENDER, "PAIR_LENS", "PAIR_PIXEL"),
@@ -153,7 +165,7 @@ GROUPS = [
         ("the distance of a sliver not kept within its box", TRIANGLE, "t0 = lesser(greater(t0, begin), end);", ""),
         ("of two triangles always the first", TRIANGLE, "bool second = meets1 && !(meets0 && t0 <= t1);",
          "bool second = !meets0;"),
-        ("the first triangle's normals on the second", INTERACTION, "normals.yz = normals.zw;",
+        ("the first triangle's normals on the second", SMOOTH, "normals.yz = normals.zw;",
          "normals.yz = normals.yz;"),
     ]),
     (FRAMES, [
@@ -219,8 +231,8 @@ GROUPS = [
          "return front ? media_entered(here, behind) : MEDIA_NONE;"),
         ("the second of the media lost when the first is left", MEDIUM, "uvec4(here.x ? m.y : m.x", "uvec4(here.x ? m.z : m.x"),
         ("nothing around the camera", PATH, "NESTED_MEDIA ? media : MEDIA_NONE", "MEDIA_NONE"),
-        ("indices of refraction against the air", PATH, "if (NESTED_MEDIA && bsdf_refracts(material)) {",
-         "if (false) {"),
+        ("indices of refraction against the air", SURFACE, "if (!NESTED_MEDIA || !bsdf_refracts(x.material)) return;",
+         "return;"),
         ("a stated exterior index ignored", MEDIUM, "return own_eta ? eta :", "return"),
         ("the exterior nearest to the camera's medium first", "host/gpu_scene/media_at.cpp",
          "p.second.nearest_exit);", "-p.second.nearest_exit);"),
@@ -302,7 +314,7 @@ GROUPS = [
         ("rays of an instance not turned", INSTANCE, "vector_to_mesh(i, ray.d))", "ray.d)"),
         ("normals turned as vectors are", INSTANCE, "return n.x * i.to_mesh[0] + n.y * i.to_mesh[1] + n.z * i.to_mesh[2];",
          "return vector_to_scene(i, n);"),
-        ("normals of vertices not turned", INTERACTION, "normalize(normal_to_scene(instance, n)) : n", "n : n"),
+        ("normals of vertices not turned", SMOOTH, "normalize(normal_to_scene(instance, n)) : n", "n : n"),
         ("bitangents of mirrored instances not mirrored", INTERACTION, "instance_determinant(i) < 0.0 ? -t.w : t.w",
          "t.w"),
         ("heights on instances not scaled", BUMP,

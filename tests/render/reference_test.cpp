@@ -152,6 +152,7 @@ TEST_P(ReferenceTest, AnIndependentRendererMakesTheSamePicture) {
     const Scene scene = load_scene(scene_file(name));
     RenderSettings settings = independent_settings(reference.full.x, Estimator::mis, 1);
     settings.max_depth = scene.integrator.max_depth.value_or(DEPTH_SAFETY_LIMIT);
+    settings.terminator = scene.integrator.terminator;
     const Image image = image_of(render(scene, settings, std::max(samples(spp), LEAST_SPP)));
     EXPECT_LE(median_relative_error(image), largest_pixel_error());
     EXPECT_TRUE(agree(image, reference, fs::path(CANDELA_FAILURES) / name));

@@ -49,6 +49,8 @@ TEST_F(PictureIdentity, EverySettingIsNamedWithBothValues) {
                  [](RenderSettings& s) { s.sampler = SamplerKind::stratified; });
     expect_named("its estimator is light, not mis",
                  [](RenderSettings& s) { s.estimator = Estimator::light; });
+    expect_named("its terminator is flat, not smooth",
+                 [](RenderSettings& s) { s.terminator = Terminator::flat; });
     expect_named("its max depth is 5, not 4096", [](RenderSettings& s) { s.max_depth = 5; });
     expect_named("its seed is 2, not 0, its rr depth is 4, not 3", [](RenderSettings& s) {
         s.rr_depth = 4;
@@ -119,7 +121,7 @@ TEST_F(PictureIdentity, AnImageCarriesIt) {
 
     const std::string remedy = "; give a file that candela render wrote, unchanged";
     for (const char* name : {"candela.identity", "candela.seed", "candela.sampler", "candela.estimator",
-                             "candela.maxDepth", "candela.rrDepth", "candela.camera"}) {
+                             "candela.terminator", "candela.maxDepth", "candela.rrDepth", "candela.camera"}) {
         Image without = image;
         without.attributes.erase(name);
         EXPECT_EQ(error_of([&] { identity_of(without, "a.exr"); }),

@@ -25,7 +25,7 @@ Film read_film(const Node& node) {
 IntegratorSettings read_integrator(const Node& node) {
     constexpr uint32_t MOST_SAMPLES = 1u << 24;  // The count is kept as a float.
     constexpr uint32_t MOST_BOUNCES = 4096;      // The safety limit of unlimited paths.
-    node.allow_only({"spp", "max_depth", "rr_depth", "estimator", "sampler", "seed"});
+    node.allow_only({"spp", "max_depth", "rr_depth", "estimator", "sampler", "terminator", "seed"});
     IntegratorSettings settings;
     if (const auto spp = node.find("spp")) settings.spp = spp->integer(1, MOST_SAMPLES);
     if (const auto depth = node.find("max_depth")) {
@@ -37,6 +37,8 @@ IntegratorSettings read_integrator(const Node& node) {
     if (const auto estimator = node.find("estimator"))
         settings.estimator = estimator->choice(ESTIMATOR_NAMES);
     if (const auto sampler = node.find("sampler")) settings.sampler = sampler->choice(SAMPLER_NAMES);
+    if (const auto terminator = node.find("terminator"))
+        settings.terminator = terminator->choice(TERMINATOR_NAMES);
     if (const auto seed = node.find("seed")) settings.seed = seed->integer(0, ~0u);
     return settings;
 }
