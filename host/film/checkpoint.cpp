@@ -53,7 +53,7 @@ uint64_t checksum(const Image& header, std::span<const Accumulation> states) {
 
 template <class Number>
 Number number_attribute(const Image& image, const std::string& attribute, const std::string& name) {
-    const std::string& text = text_attribute(image, attribute, name);
+    const std::string text = text_attribute(image, attribute, name);
     Number number{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc{} && end == text.data() + text.size()) return number;
@@ -188,7 +188,7 @@ Checkpoint load_checkpoint(const std::filesystem::path& path) {
 }
 
 Checkpoint checkpoint_of(const Image& image, const std::string& name, bool with_checksum) {
-    const std::string& expected = text_attribute(image, CHECKSUM_ATTRIBUTE, name);
+    const std::string expected = text_attribute(image, CHECKSUM_ATTRIBUTE, name);
     check_format(image, name);
     Checkpoint checkpoint;
     for (size_t index = 0; index < count_states(image); ++index)

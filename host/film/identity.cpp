@@ -54,7 +54,7 @@ void set_identity(Image& image, const Identity& identity) {
     }
 }
 
-const std::string& text_attribute(const Image& image, const std::string& attribute, const std::string& name) {
+std::string text_attribute(const Image& image, const std::string& attribute, const std::string& name) {
     const auto found = image.attributes.find(attribute);
     if (found == image.attributes.end() || !std::holds_alternative<std::string>(found->second)) {
         throw Error(name + ": the attribute " + attribute +
@@ -65,7 +65,7 @@ const std::string& text_attribute(const Image& image, const std::string& attribu
 
 Identity identity_of(const Image& image, const std::string& name) {
     Identity identity;
-    const std::string& text = text_attribute(image, HASH_ATTRIBUTE, name);
+    const std::string text = text_attribute(image, HASH_ATTRIBUTE, name);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), identity.hash, 16);
     if (error != std::errc{} || end != text.data() + text.size()) {
         throw Error(name + ": the attribute " + HASH_ATTRIBUTE + " is \"" + text +

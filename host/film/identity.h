@@ -51,7 +51,7 @@ std::string difference(const Identity& theirs, const Identity& ours);
 
 // The text of an attribute. If the image does not have it, throws Error that names the attribute and `name`,
 // and asks for a file that candela render wrote.
-const std::string& text_attribute(const Image& image, const std::string& attribute, const std::string& name);
+std::string text_attribute(const Image& image, const std::string& attribute, const std::string& name);
 
 // 16 hexadecimal digits.
 std::string hexadecimal(uint64_t value);

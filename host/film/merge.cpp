@@ -85,7 +85,7 @@ Part describe(const std::filesystem::path& file, Image image) {
             "it was rendered with --adaptive: where its samples lie depends on what they found; render parts "
             "with --samples");
     }
-    const std::string& samples = text_attribute(image, SAMPLES, part.name);
+    const std::string samples = text_attribute(image, SAMPLES, part.name);
     const auto ranges = parse_ranges(samples);
     if (!ranges) {
         refuse(part.name, std::string("the attribute ") + SAMPLES + " is \"" + samples +
