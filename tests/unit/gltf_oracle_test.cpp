@@ -53,8 +53,10 @@ std::vector<double> elements(const tinygltf::Model& model, int index) {
         for (size_t i = 0; i < accessor.count; ++i)
             read(i, data(accessor.bufferView, accessor.byteOffset + i * size_t(stride)));
     }
-    const auto& [count, is_sparse, indices, values] = accessor.sparse;
-    for (size_t i = 0; is_sparse && i < size_t(count); ++i) {
+    const auto& sparse = accessor.sparse;
+    const auto& indices = sparse.indices;
+    const auto& values = sparse.values;
+    for (size_t i = 0; sparse.isSparse && i < size_t(sparse.count); ++i) {
         const auto index_size = size_t(tinygltf::GetComponentSizeInBytes(uint32_t(indices.componentType)));
         const uint8_t* at = data(indices.bufferView, size_t(indices.byteOffset) + i * index_size);
         read(size_t(component(indices.componentType, at, false)),
