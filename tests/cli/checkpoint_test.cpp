@@ -2,9 +2,11 @@
 // never lost, and the image has the same bits.
 #include "film/checkpoint.h"
 
+#include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <random>
+#include <system_error>
 #include <thread>
 
 #include "cli/cli_fixture.h"
@@ -131,8 +133,9 @@ TEST_F(CheckpointTest, AFullDiskKeepsTheOldCheckpointAndTheRendering) {
     const ProcessResult result = run_process(limited + call(arguments + Words{"--spp", "200"}), options());
     EXPECT_CONTAINS(result.err,
                     "candela: warning: cannot write \"" + state_ +
-                        "\": File too large; free some space or choose another place; the rendering goes "
-                        "on without this checkpoint");
+                        "\": " + std::generic_category().message(EFBIG) +
+                        "; free some space or choose another place; the rendering goes on without this "
+                        "checkpoint");
     EXPECT_CONTAINS(result.err, "rendered 200 spp");
     EXPECT_EQ(read_file(state_), before);
     EXPECT_TRUE(std::filesystem::exists(file("b.png")));

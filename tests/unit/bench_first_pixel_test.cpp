@@ -1,9 +1,11 @@
 // The benchmark of the first image: which calls it times, in which environment, and what it says of those
 // that fail.
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "base/file.h"
 #include "bench/first_pixel.h"
@@ -72,7 +74,7 @@ TEST_F(BenchFirstPixel, AProgramThatFailsIsNamedWithItsCall) {
     EXPECT_NE(killed.find("` was ended by signal 9; see above for what it said"), std::string::npos)
         << killed;
     EXPECT_EQ(error_of([] { bench("/nonexistent/candela"); }),
-              "cannot start /nonexistent/candela: No such file or directory");
+              "cannot start /nonexistent/candela: " + std::generic_category().message(ENOENT));
 }
 
 TEST_F(BenchFirstPixel, AFolderThatCannotBeMadeIsNamed) {
@@ -81,10 +83,9 @@ TEST_F(BenchFirstPixel, AFolderThatCannotBeMadeIsNamed) {
     ::setenv("TMPDIR", "/nonexistent", 1);
     const std::string message = error_of([] { bench("/bin/true"); });
     before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", kept.c_str(), 1);
-    EXPECT_EQ(message,
-              "first-pixel: cannot create a folder for its images: No such file or directory; set TMPDIR to "
-              "a folder "
-              "that may be written to");
+    EXPECT_EQ(message, "first-pixel: cannot create a folder for its images: " +
+                           std::generic_category().message(ENOENT) +
+                           "; set TMPDIR to a folder that may be written to");
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // Files that others may not read, write or replace, and the permissions of those that candela writes.
+#include <cerrno>
 #include <fstream>
+#include <system_error>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -12,6 +14,11 @@ namespace candela {
 namespace {
 
 namespace fs = std::filesystem;
+
+// What the system says of files that permissions protect.
+std::string denied() {
+    return std::generic_category().message(EACCES);
+}
 
 // Takes away the rights of root, who may read and write everything, while it lives.
 class Unprivileged {
@@ -47,7 +54,7 @@ TEST(File, SaysThatPermissionIsMissingToRead) {
     write_file_atomically(secret, "x");
     fs::permissions(secret, fs::perms::none);
     EXPECT_EQ(error_of([&] { read_file(secret); }),
-              "cannot read \"" + secret.string() + "\": Permission denied; check the permissions");
+              "cannot read \"" + secret.string() + "\": " + denied() + "; check the permissions");
 }
 
 TEST(File, FindsADirectoryInWhichNotEvenRootMayCreateFiles) {
@@ -64,14 +71,14 @@ TEST(File, RespectsWriteProtection) {
     const fs::path file = directory / "file";
     write_file_atomically(file, "old");
     fs::permissions(file, fs::perms::owner_read);
-    EXPECT_EQ(error_of([&] { check_writable(file); }),
-              "cannot write \"" + file.string() +
-                  "\": the file exists and is write-protected (Permission denied); choose another name");
+    EXPECT_EQ(error_of([&] { check_writable(file); }), "cannot write \"" + file.string() +
+                                                           "\": the file exists and is write-protected (" +
+                                                           denied() + "); choose another name");
     fs::permissions(directory.path(), fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_EQ(error_of([&] { check_writable(directory / "new"); }),
               "cannot write \"" + (directory / "new").string() +
-                  "\": no file can be created in the directory \"" + directory.path().string() +
-                  "\" (Permission denied); choose a place that you may write to");
+                  "\": no file can be created in the directory \"" + directory.path().string() + "\" (" +
+                  denied() + "); choose a place that you may write to");
     fs::permissions(directory.path(), fs::perms::owner_all);
 }
 

@@ -2,8 +2,10 @@
 #include "base/file.h"
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <fstream>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -154,8 +156,8 @@ TEST(File, KeepsTheOldFileAndNoTemporaryOneWhenTheDiskIsFull) {
         const FileSizeLimit limit(1000);
         message = error_of([&] { write_file_atomically(file, std::string(5000, 'x')); });
     }
-    EXPECT_EQ(message, "cannot write \"" + file.string() +
-                           "\": File too large; free some space or choose another place");
+    EXPECT_EQ(message, "cannot write \"" + file.string() + "\": " + std::generic_category().message(EFBIG) +
+                           "; free some space or choose another place");
     EXPECT_EQ(read_file(file), "old");
     EXPECT_EQ(directory.size(), 1);
 }

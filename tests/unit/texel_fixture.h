@@ -71,6 +71,15 @@ inline std::string damaged_file(const std::string& how) {
     return "the file is damaged or incomplete (" + how + "); write it again";
 }
 
+// Expects that a file is refused for a reason in the words of the library that decodes it, which differ
+// between versions.
+inline void expect_damaged(const std::string& bytes) {
+    const std::string message = texel_error(bytes);
+    EXPECT_TRUE(message.starts_with("the file is damaged or incomplete (") &&
+                message.ends_with("); write it again"))
+        << message;
+}
+
 // A JPEG file of the highest quality, of one channel or three. `adjust` may change libjpeg's defaults.
 inline std::string encode_jpeg(
     uvec2 size, const std::vector<uint8_t>& samples, J_COLOR_SPACE space = JCS_GRAYSCALE,

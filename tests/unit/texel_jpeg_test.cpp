@@ -215,22 +215,21 @@ TEST(TexelJpeg, RefusesMorePixelsThanItsBytesCanHold) {
     EXPECT_EQ(texel_error(file), damaged_file("its 16000x16000 pixels need more than " +
                                               std::to_string(file.size()) + " bytes"));
     file.replace(frame + 3, 4, "\x00\x00\x00\x01", 4);
-    EXPECT_EQ(texel_error(file), damaged_file("Empty JPEG image (DNL not supported)"));
+    expect_damaged(file);  // It has no rows.
 }
 
 TEST(TexelJpeg, AnIncompleteFileIsRefused) {
     for (const Adjust adjust : PROCESSES) {
         const std::string file = encode_jpeg(JPEG_SIZE, make_blocks(3), JCS_RGB, adjust);
         for (const size_t end : {file.size() - 1, file.size() - 2, file.size() * 9 / 10})
-            EXPECT_EQ(texel_error(file.substr(0, end)), damaged_file("Premature end of JPEG file"));
+            expect_damaged(file.substr(0, end));
     }
     // With an end, but without the pixels before it. Arithmetic coding may leave out the zeros at an end.
     for (const Adjust adjust : {PROCESSES[0], PROCESSES[1], PROCESSES[4]}) {
         const std::string file = encode_jpeg(JPEG_SIZE, make_blocks(3), JCS_RGB, adjust);
-        const std::string message = texel_error(file.substr(0, file.size() * 9 / 10) + "\xff\xd9");
-        EXPECT_TRUE(message.starts_with("the file is damaged or incomplete (")) << message;
+        expect_damaged(file.substr(0, file.size() * 9 / 10) + "\xff\xd9");
     }
-    EXPECT_EQ(texel_error("\xff\xd8\xff\xd9"), damaged_file("JPEG datastream contains no image"));
+    expect_damaged("\xff\xd8\xff\xd9");
 }
 
 TEST(TexelJpeg, WarnsOfWhatDoesNoHarm) {
@@ -240,23 +239,20 @@ TEST(TexelJpeg, WarnsOfWhatDoesNoHarm) {
     const std::string padded = file.substr(0, file.size() - 2) + std::string(100, 'a') + "\xff\xd9";
     expect_near(decode_texels(padded, "a", warnings), 1, make_blocks(1), 0);
     ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_TRUE(warnings[0].starts_with("a: libjpeg says: Corrupt JPEG data: ")) << warnings[0];
-    EXPECT_TRUE(warnings[0].ends_with(" extraneous bytes before marker 0xd9")) << warnings[0];
+    EXPECT_TRUE(warnings[0].starts_with("a: libjpeg says: ")) << warnings[0];
     std::string spaced = file;
     spaced.insert(find_segment(spaced, '\xdb') - 2, "ab");
-    EXPECT_EQ(texel_warning(spaced),
-              "a: libjpeg says: Corrupt JPEG data: 2 extraneous bytes before marker 0xdb");
+    EXPECT_TRUE(texel_warning(spaced).starts_with("a: libjpeg says: "));
     std::string version = file;
     version[version.find("JFIF") + 5] = 9;
-    EXPECT_EQ(texel_warning(version), "a: libjpeg says: Warning: unknown JFIF revision number 9.01");
+    EXPECT_TRUE(texel_warning(version).starts_with("a: libjpeg says: "));
     expect_near(decode_quietly(file + "and what follows the end"), 1, make_blocks(1), 0);
 }
 
 TEST(TexelJpeg, BytesThatAreLeftOverWithinThePictureAreDamage) {
     std::string file = encode_jpeg(JPEG_SIZE, make_blocks(1), JCS_GRAYSCALE, PROCESSES[4]);
     file.insert(find_segment(file, '\xd1') - 2, std::string(100, 'a'));
-    const std::string message = texel_error(file);
-    EXPECT_TRUE(message.ends_with(" extraneous bytes before marker 0xd1); write it again")) << message;
+    expect_damaged(file);
 }
 
 }  // namespace

@@ -192,7 +192,7 @@ TEST(TexelPng, SkipsOtherChunksHoweverLong) {
 
 TEST(TexelPng, PassesOnWhatLibpngWarnsOf) {
     const std::string file = encode_png(make_picture(png_rgb_alpha, 8), png_chunk("tRNS", "123456"));
-    EXPECT_EQ(texel_warning(file), "a: libpng says: tRNS: invalid with alpha channel");
+    EXPECT_TRUE(texel_warning(file).starts_with("a: libpng says: "));
 }
 
 TEST(TexelPng, RefusesSizesThatCannotBe) {
@@ -205,8 +205,7 @@ TEST(TexelPng, RefusesSizesThatCannotBe) {
     // Of 1032 * 100 bytes, 100 could tell; a file of a byte less cannot.
     PngPicture picture{.size = {1032, 100}, .bits = 8, .color = png_grey};
     const std::string file = PNG_SIGNATURE + png_header(picture);
-    EXPECT_EQ(texel_error(file + std::string(100 - file.size(), '\0')),
-              damaged_file("[00][00][00][00]: invalid chunk type"));
+    expect_damaged(file + std::string(100 - file.size(), '\0'));
     EXPECT_EQ(texel_error(file + std::string(99 - file.size(), '\0')),
               damaged_file("its 1032x100 pixels need more than 99 bytes"));
 }
@@ -216,18 +215,16 @@ TEST(TexelPng, SaysWhatIsDamaged) {
     EXPECT_EQ(texel_error(PNG_SIGNATURE), damaged_file("it ends in its header"));
     EXPECT_EQ(texel_error(PNG_SIGNATURE + png_chunk("IEND", std::string(13, '\0'))),
               damaged_file("it begins with no header"));
-    EXPECT_EQ(texel_error(encode_png(picture)), damaged_file("IDAT: Missing PLTE before IDAT"));
-    EXPECT_EQ(texel_error(encode_png(make_picture(png_rgb, 8), png_chunk("NEED", ""))),
-              damaged_file("NEED: unhandled critical chunk"));
+    expect_damaged(encode_png(picture));  // It has no palette.
+    expect_damaged(encode_png(make_picture(png_rgb, 8), png_chunk("NEED", "")));
     std::string file = encode_png(make_picture(png_grey, 8), png_chunk("tEXt", "abcdefgh"));
     EXPECT_EQ(texel_error(file.substr(0, file.size() - 20)), damaged_file("it ends early"));
     file[file.find("abcdefgh")] = 'b';
-    EXPECT_EQ(texel_error(file), damaged_file("tEXt: CRC error"));
+    expect_damaged(file);  // The checksum is wrong.
     PngPicture small = make_picture(png_grey, 8), large = small;
     large.size.y += 1;
-    EXPECT_EQ(texel_error(PNG_SIGNATURE + png_header(large) +
-                          png_chunk("IDAT", zlib_stored(png_pixels(small, false))) + png_chunk("IEND", "")),
-              damaged_file("Not enough image data"));
+    expect_damaged(PNG_SIGNATURE + png_header(large) +
+                   png_chunk("IDAT", zlib_stored(png_pixels(small, false))) + png_chunk("IEND", ""));
 }
 
 }  // namespace
