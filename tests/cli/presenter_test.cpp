@@ -47,7 +47,8 @@ class PresenterTest : public ViewTest {
     void SetUp() override {
         ViewTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        ::setenv("DISPLAY", display_.c_str(), 1);
+        for (const auto& [name, value] : environment())
+            ::setenv(name.c_str(), value.c_str(), 1);
         window_.emplace(SIZE, true, "presenter");
         instance_.emplace(vk::Instance::Options{true, window_->instance_extensions()});
         vk::Surface surface = make_surface();

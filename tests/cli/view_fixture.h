@@ -45,7 +45,11 @@ class ViewTest : public CliTest {
     }
 
     std::map<std::string, std::string> environment() const {
-        return {{"DISPLAY", display_}, {"CANDELA_VALIDATION", "1"}, {"XDG_CACHE_HOME", CANDELA_CACHE}};
+        // Windows belong to that display, whatever session the tests run in.
+        return {{"DISPLAY", display_},
+                {"XDG_SESSION_TYPE", "x11"},
+                {"CANDELA_VALIDATION", "1"},
+                {"XDG_CACHE_HOME", CANDELA_CACHE}};
     }
 
     // Starts `candela view` of a scene in the test's folder, where it writes its files. Without a window
