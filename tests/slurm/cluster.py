@@ -70,6 +70,9 @@ class Cluster:
             (self.folder / name).mkdir()
         (self.folder / "slurm.conf").write_text(CONFIGURATION.format(
             folder=self.folder, user=getpass.getuser(), host=socket.gethostname().split(".")[0], ports=free_ports(3)))
+        # Newer versions would otherwise start only where control groups are mounted; older ones do not know the word.
+        if int(self.run("slurmctld", "-V").split()[1].split(".")[0]) >= 23:  # slurm-wlm 24.11.5
+            (self.folder / "cgroup.conf").write_text("CgroupPlugin=disabled\n")
         key = self.folder / "munge.key"
         key.write_bytes(os.urandom(128))
         key.chmod(0o400)
@@ -81,7 +84,7 @@ class Cluster:
             self.start("slurmctld", "-D", "-i")
             for node in ("n1", "n2"):
                 self.start("slurmd", "-D", "-N", node)
-            wait_until("nodes", lambda: self.run("sinfo", "--noheader", "--Node", "--format=%T", check=False).count("idle") == 2)
+            wait_until("nodes", self.has_idle_nodes)
         except BaseException:
             self.__exit__()
             raise
@@ -102,6 +105,11 @@ class Cluster:
         with open(self.folder / "daemons.log", "ab") as log:
             self.daemons.append(subprocess.Popen(command, env=self.environment, stdout=log, stderr=log,
                                                  stdin=subprocess.DEVNULL, cwd=self.folder))
+
+    def has_idle_nodes(self):
+        if any(daemon.poll() is not None for daemon in self.daemons):
+            raise AssertionError("a daemon has ended: " + (self.folder / "daemons.log").read_text(errors="replace"))
+        return self.run("sinfo", "--noheader", "--Node", "--format=%T", check=False).count("idle") == 2
 
     def run(self, *command, check=True, **more):
         """Runs the command and returns what it prints."""
