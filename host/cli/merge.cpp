@@ -67,8 +67,10 @@ Command add_merge_command(CLI::App& app, const std::string& command_line) {
         ->type_name("")
         ->take_all();
     arguments->options.add_images_to(*command);
-    add_value(*command, "--missing", arguments->missing, parse_samples, SAMPLES_EXPECTED,
-              "Only print which of these samples no part holds, one range per line")
+    add_value(
+        *command, "--missing", arguments->missing, parse_samples, SAMPLES_EXPECTED,
+        "Only print which of these samples no part holds, one range per line; a file that cannot be read "
+        "holds none")
         ->type_name("A..B")
         ->excludes(command->get_option("--output"));
     command->footer(

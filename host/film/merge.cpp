@@ -227,11 +227,10 @@ std::vector<Part> describe_all(const std::vector<std::filesystem::path>& files, 
     std::ranges::sort(parts, {}, [](const Part& part) {
         return std::tuple(part.samples.front().first, part.samples.back().end, part.name);
     });
-    const Part& first = parts.front();
     for (const Part& part : parts) {
-        const std::string different = difference(part.identity, first.identity);
+        const std::string different = difference(part.identity, parts.front().identity);
         if (!different.empty())
-            refuse(part.name, "it does not belong with " + first.name + ": " + different +
+            refuse(part.name, "it does not belong with " + parts.front().name + ": " + different +
                                   "; merge parts of one rendering");
     }
     refuse_overlaps(parts);
@@ -273,9 +272,20 @@ Merged merge_files(const std::vector<std::filesystem::path>& files, const PartRe
 
 Missing missing_samples(const std::vector<std::filesystem::path>& files, SampleRange wanted,
                         const PartReader& read) {
-    const std::vector<Part> parts = describe_all(files, read);
-    std::vector<SampleRange> complete;
     Missing missing;
+    std::vector<std::filesystem::path> readable;
+    for (const std::filesystem::path& file : files) {
+        try {
+            // A damaged file may have a whole header, so all is decoded, though few values are kept.
+            read.image(file, {.channels = {COUNT_CHANNEL}});
+            readable.push_back(file);
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::failed) throw;
+            missing.warnings.push_back(std::string("a part is left out: ") + error.what());
+        }
+    }
+    const std::vector<Part> parts = describe_all(readable, read);
+    std::vector<SampleRange> complete;
     for (const Part& part : parts) {
         const float number = number_attribute(part.header, SPP);
         const uint32_t least = number >= 0.0f && number <= float(MAX_SPP) ? uint32_t(number) : 0;

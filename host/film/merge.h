@@ -34,12 +34,13 @@ struct PartReader {
 Merged merge_files(const std::vector<std::filesystem::path>& files, const PartReader& read = {});
 
 struct Missing {
-    std::vector<SampleRange> samples;   // Of those wanted, ascending.
-    std::vector<std::string> warnings;  // Of interrupted parts, some of whose pixels have fewer samples.
+    std::vector<SampleRange> samples;  // Of those wanted, ascending.
+    std::vector<std::string>
+        warnings;  // Of files that cannot be read, and of interrupted parts, some of whose pixels have fewer.
 };
 
-// The samples among `wanted` that no part holds for all pixels. Reads only headers. Throws Error as
-// merge_files() does, as far as headers show what is wrong.
+// The samples among `wanted` that no part holds for all pixels. A file that cannot be read holds none. Throws
+// Error as merge_files() does, as far as headers show what is wrong.
 Missing missing_samples(const std::vector<std::filesystem::path>& files, SampleRange wanted,
                         const PartReader& read = {});
 

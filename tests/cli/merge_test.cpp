@@ -137,6 +137,12 @@ TEST_F(MergeTest, MissingPrintsWhatIsToBeRendered) {
     result = candela({"merge", "--missing", "0..4", a, b});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.out, "");
+    std::filesystem::resize_file(b, std::filesystem::file_size(b) - 1);
+    result = candela({"merge", "--missing", "0..16", a, b});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "4..16\n");
+    EXPECT_CONTAINS(result.err,
+                    "candela: warning: a part is left out: cannot read \"" + b + "\": the file is damaged");
     result = candela({"merge", "--missing", "4..4", a});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_CONTAINS(result.err,

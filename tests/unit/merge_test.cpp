@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
+#include "base/file.h"
 #include "merge_fixture.h"
 
 namespace candela {
@@ -129,6 +131,24 @@ TEST_F(Merge, OnlyChannelsOfAllPartsAreKept) {
                                         "the channel Z is left out: b.exr does not have it"}));
     EXPECT_EQ(merged.image.channels.size(), 8u);
     EXPECT_EQ(merged.image.find("Z"), nullptr);
+}
+
+TEST_F(Merge, AFileThatCannotBeReadHoldsNoSamples) {
+    const auto a = write("a.exr", {0, 4}), b = write("b.exr", {4, 8});
+    const std::string whole = read_file(b);
+    std::string zeros = whole;
+    std::fill(zeros.end() - 16, zeros.end(), '\0');
+    for (const std::string& damaged :
+         {whole.substr(0, whole.size() - 1), whole.substr(0, whole.size() / 2), std::string(), zeros}) {
+        std::ofstream(b, std::ios::binary) << damaged;
+        const Missing missing = missing_samples({b, a}, {0, 8});
+        EXPECT_EQ(to_text(missing.samples), "4..8");
+        ASSERT_EQ(missing.warnings.size(), 1u);
+        EXPECT_TRUE(text(missing.warnings[0]).starts_with("a part is left out: cannot read \"b.exr\": "))
+            << missing.warnings[0];
+        EXPECT_EQ(to_text(missing_samples({b}, {2, 8}).samples), "2..8");
+    }
+    EXPECT_EQ(to_text(missing_samples({a, folder_ / "none.exr"}, {0, 8}).samples), "4..8");
 }
 
 TEST_F(Merge, MissingSamplesAreThoseOfNoPart) {
