@@ -188,7 +188,8 @@ void PngDecoder::read_rows(uint8_t* rows, size_t row_bytes) {
     });
 }
 
-// The colours are looked up here: libpng says nothing of indices that the palette lacks.
+// The colours are looked up here. Of indices that the palette lacks, some versions of libpng warn, and none
+// counts them.
 TexelImage PngDecoder::decode_palette() {
     png_colorp colors = nullptr;
     png_bytep alphas = nullptr;
@@ -204,7 +205,10 @@ TexelImage PngDecoder::decode_palette() {
         }
     }
     std::vector<uint8_t> indices(size_t{start_.size.x} * start_.size.y);
-    attempt([this] { png_set_packing(png_); });
+    attempt([this] {
+        png_set_packing(png_);
+        png_set_check_for_invalid_index(png_, 0);
+    });
     read_rows(indices.data(), start_.size.x);
 
     TexelImage image = make_texels(start_.size, alpha_count > 0 ? 4 : 3, TexelType::unorm8);
