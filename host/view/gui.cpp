@@ -74,6 +74,14 @@ const Overlay& Gui::draw(uvec2 size) {
 void Gui::take(const KeyInput& input) {
     ImGui_ImplGlfw_KeyCallback(window_.handle(), input.key, input.scancode,
                                input.down ? GLFW_PRESS : GLFW_RELEASE, input.modifiers);
+#if IMGUI_VERSION_NUM >= 18900
+    // These versions ask the system for the modifiers, too, which may be ahead of the input being handled.
+    if (input.key >= GLFW_KEY_LEFT_SHIFT && input.key <= GLFW_KEY_RIGHT_SUPER)
+        modifiers_[size_t(input.key - GLFW_KEY_LEFT_SHIFT)] = input.down;
+    constexpr std::array KINDS{ImGuiMod_Shift, ImGuiMod_Ctrl, ImGuiMod_Alt, ImGuiMod_Super};
+    for (size_t i = 0; i < KINDS.size(); ++i)
+        ImGui::GetIO().AddKeyEvent(KINDS[i], modifiers_[i] || modifiers_[i + KINDS.size()]);
+#endif
 }
 
 void Gui::take(const CharacterInput& input) {

@@ -38,7 +38,8 @@ class Gui {
 
     Window& window_;
     vec2 mouse_;
-    std::array<bool, 5> buttons_{};  // Which are down.
+    std::array<bool, 5> buttons_{};    // Which are down.
+    std::array<bool, 8> modifiers_{};  // The same of Shift, Ctrl, Alt and Super, left and right.
     Overlay overlay_;
 };
 
