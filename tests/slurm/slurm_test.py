@@ -18,6 +18,7 @@ CANDELA = os.path.abspath(sys.argv.pop(1))
 ROOT = Path(__file__).resolve().parents[2]
 SUBMIT = ROOT / "integrations/slurm/submit.sh"
 SCENE = ROOT / "scenes/cornell-box.json"
+NAME = "%x, 50%"  # Of the picture; Slurm replaces %x in names of logs, and has lists with commas.
 ACTIVE = ("PENDING", "CONFIGURING", "RUNNING", "COMPLETING", "REQUEUED")  # States of a job that has not ended.
 
 
@@ -29,7 +30,7 @@ class Slurm(unittest.TestCase):
 
     def setUp(self):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory(prefix="candela-", dir="/tmp")))
-        self.parts = self.folder / "box.parts"
+        self.parts = self.folder / f"{NAME}.parts"
 
     def candela(self, *arguments):
         return subprocess.run([CANDELA, *map(str, arguments)], capture_output=True, text=True, check=True).stdout
@@ -38,8 +39,8 @@ class Slurm(unittest.TestCase):
         """Submits a picture; returns what that prints, and the numbers of the jobs."""
         # On one thread of the CPU a task takes seconds, so that it can be ended midway.
         printed = self.cluster.run(
-            SUBMIT, "--part", part, SCENE, "--spp", spp, "--size", size, "-o", self.folder / "box.exr",
-            "-o", self.folder / "box.png", "--checkpoint-every", "0.1s", "--device", "llvmpipe",
+            SUBMIT, "--part", part, SCENE, "--spp", spp, "--size", size, "-o", self.folder / f"{NAME}.exr",
+            "-o", self.folder / f"{NAME}.png", "--checkpoint-every", "0.1s", "--device", "llvmpipe",
             check=check, CANDELA=str(candela), LP_NUM_THREADS="1")
         return printed, [line.split()[1].rstrip(":") for line in printed.splitlines() if line.startswith("Job ")]
 
@@ -102,11 +103,11 @@ class Slurm(unittest.TestCase):
         self.cluster.set_nodes("n2", "RESUME")
         self.assertEqual(self.end_of(merge), "COMPLETED", self.merge_log())
         self.assertIn("merged 8 parts: samples 0..192\n", self.merge_log())
-        self.assertTrue((self.folder / "box.png").exists())
+        self.assertTrue((self.folder / f"{NAME}.png").exists())
 
         # The picture of one run, but for the rounding that merge promises: 3 units of 2^-24 in every mean.
         self.candela("render", SCENE, "--spp", spp, "--size", size, "-o", self.folder / "one.exr", "--quiet")
-        self.candela("compare", self.folder / "box.exr", self.folder / "one.exr", "--relmse", (3 * 2**-24) ** 2)
+        self.candela("compare", self.folder / f"{NAME}.exr", self.folder / "one.exr", "--relmse", (3 * 2**-24) ** 2)
         for first in (killed, ended):  # A task that went on has the bits of one that was never ended.
             alone = self.candela("render", SCENE, "--samples", f"{first}..{first + part}", "--size", size,
                                  "-o", self.folder / "alone.exr", "--quiet", "--report", "-")
@@ -142,6 +143,15 @@ class Slurm(unittest.TestCase):
         self.assertIn("merged 5 parts: samples 0..20\n", self.merge_log())
         _, (merge,) = self.submit(4, 20, "32x32")
         self.assertEqual(self.end_of(merge), "COMPLETED", self.merge_log())
+
+        # A part that cannot be read is missing, with its checkpoint and without.
+        for part in (self.parts / "part-00000004.exr", self.parts / "part-00000012.exr"):
+            os.truncate(part, part.stat().st_size - 1)
+        (self.parts / "part-00000012.state").unlink()
+        printed, (_, merge) = self.submit(4, 20, "32x32")
+        self.assertIn(": tasks 1,3 of 4 sample(s) each\n", printed)
+        self.assertEqual(self.end_of(merge), "COMPLETED", self.merge_log())
+        self.assertEqual(self.merge_log().count("merged 5 parts: samples 0..20\n"), 3, self.merge_log())
 
     def test_a_part_is_what_half_of_the_time_allows(self):
         def submitted(*options):
