@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Tests setup.sh against a system of stubs: what it installs, what it says first, and when it stops."""
+"""Tests setup.sh against a system of stubs: what it installs, what it says first, and when it stops; and what debian13.sh
+says where it cannot run."""
 import os
 import shutil
 import subprocess
@@ -79,6 +80,30 @@ class Setup(unittest.TestCase):
         result = install(absent="g++")
         self.assertEqual(result.returncode, 100)
         self.assertNotIn("done", result.stdout)
+
+
+class Debian13(unittest.TestCase):
+    def said(self, user_id=0, answer="", without_debootstrap=False):
+        """What it says where it tries nothing; apt-get prints the answer, and installs nothing."""
+        with tempfile.TemporaryDirectory() as path:
+            for name, body in (STUBS | {"apt-get": 'echo "$ANSWER"; [ "$1" != install ]'}).items():
+                stub = Path(path, name)
+                stub.write_text("#!/bin/sh\n" + body + "\n")
+                stub.chmod(0o755)
+            result = subprocess.run(
+                ["/bin/sh", "cmake/debian13.sh"], cwd=ROOT, capture_output=True, text=True, check=False,
+                env={"PATH": f"{path}:/usr/bin:/bin", "ANSWER": answer, "USER_ID": str(user_id),
+                     "ABSENT": "debootstrap" if without_debootstrap else "", "UNKNOWN": ""})
+        self.assertEqual(result.returncode, 3, result.stderr)
+        return result.stdout.splitlines()[-1]
+
+    def test_it_says_why_it_tries_nothing(self):
+        self.assertEqual(self.said(user_id=1000), "Nothing was tried: a system in a folder needs root.")
+        self.assertEqual(self.said(), "Nothing was tried: apt knows no mirror of Debian.")
+        self.assertEqual(self.said(answer="none:/", without_debootstrap=True),
+                         "Nothing was tried: debootstrap cannot be installed.")
+        self.assertEqual(self.said(answer="none:/"),
+                         "Nothing was tried: the mirror that apt knows has no Debian 13, or cannot be reached.")
 
 
 if __name__ == "__main__":
