@@ -5,6 +5,7 @@ find_program(SPIRV_CROSS NAMES spirv-cross REQUIRED)
 # Debian's own interpreter first, since the package python3-jsonschema belongs to it.
 find_program(PYTHON3 NAMES python3 HINTS /usr/bin REQUIRED)
 find_program(CLANG_FORMAT NAMES clang-format-14)
+find_program(SHELLCHECK NAMES shellcheck)
 
 # candela_check(NAME COMMAND...) adds a test of the sources. The timeout only says that it hangs.
 function(candela_check name)
@@ -16,6 +17,7 @@ candela_check(layers ${PYTHON3} cmake/checks/layers.py ${CMAKE_SOURCE_DIR})
 candela_check(layers_test ${PYTHON3} cmake/checks/layers_test.py)
 candela_check(promises ${PYTHON3} cmake/checks/promises.py docs/files.md ${CMAKE_SOURCE_DIR})
 candela_check(setup_test ${PYTHON3} cmake/checks/setup_test.py)
+candela_check(workflows_test ${PYTHON3} cmake/checks/workflows_test.py)
 candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
 set_tests_properties(shaders_alone PROPERTIES LABELS check)
 candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes tests/references tests/bench/scenes)
@@ -27,6 +29,7 @@ candela_check(readme ${PYTHON3} cmake/checks/readme.py $<TARGET_FILE:candela> RE
 set_tests_properties(readme PROPERTIES LABELS cli COST 100)  # Long, so it begins early: see tests/labels.cmake.
 candela_check(rivals ${PYTHON3} tests/bench/rivals_test.py $<TARGET_FILE:candela>)
 set_tests_properties(rivals PROPERTIES LABELS cli RUN_SERIAL TRUE)
+candela_check(submit ${PYTHON3} tests/slurm/submit_test.py)
 candela_check(slurm ${PYTHON3} tests/slurm/slurm_test.py $<TARGET_FILE:candela>)
 set_tests_properties(slurm PROPERTIES LABELS cli COST 100)  # Mostly waits.
 if(CANDELA_EMBREE)
@@ -69,4 +72,17 @@ if(CLANG_FORMAT)
     candela_check(format ${CLANG_FORMAT} --dry-run -Werror ${sources})
 else()
     candela_check(format ${CMAKE_COMMAND} -E echo "skipped: clang-format 14 is not here")
+endif()
+
+file(GLOB_RECURSE scripts CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/.ci/*
+    ${CMAKE_SOURCE_DIR}/cmake/*.sh ${CMAKE_SOURCE_DIR}/integrations/*.sh ${CMAKE_SOURCE_DIR}/integrations/*.sbatch
+    ${CMAKE_SOURCE_DIR}/scenes/*.sh ${CMAKE_SOURCE_DIR}/tests/*.sh)
+set(shellcheck_version)
+if(SHELLCHECK)
+    execute_process(COMMAND ${SHELLCHECK} --version OUTPUT_VARIABLE shellcheck_version)
+endif()
+if(shellcheck_version MATCHES "version: 0\\.9\\.")
+    candela_check(shellcheck ${SHELLCHECK} --external-sources ${scripts})
+else()
+    candela_check(shellcheck ${CMAKE_COMMAND} -E echo "skipped: shellcheck 0.9 is not here; others find other things")
 endif()

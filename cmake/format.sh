@@ -2,4 +2,4 @@
 # Formats every C++ file as .clang-format says; the test `format` checks it.   usage: sh cmake/format.sh
 set -eu
 cd "$(dirname "$0")/.."
-find host tests shaders/shared -name '*.cpp' -o -name '*.h' | xargs clang-format-14 -i
+find host tests shaders/shared \( -name '*.cpp' -o -name '*.h' \) -exec clang-format-14 -i {} +

@@ -29,6 +29,7 @@ fi
 
 # mirror SUITE: prints where apt finds it; nothing if apt does not know.
 mirror() {
+    # shellcheck disable=SC2016  # Apt replaces this.
     apt-get indextargets --format '$(REPO_URI)' "Codename: $1" | head -n 1
 }
 
@@ -90,6 +91,7 @@ compare() {
     driver=$1
     options="--size $2 --spp 64 --sampler independent --aov variance --quiet"
     shift 2
+    # shellcheck disable=SC2086  # The options are words.
     for scene in "$@"; do
         echo "$scene:"
         "$candela" render "scenes/$scene.json" $options --seed 1 -o "$folder/first.exr"
@@ -136,15 +138,15 @@ fi
 
 dpkg-deb -W "$packages"/mesa-vulkan-drivers_*.deb
 on mesa "$candela" devices
-scenes="cornell-box cornell-glossy cornell-glass environment depth-of-field veach-mis showcase mesh"
+set -- cornell-box cornell-glossy cornell-glass environment depth-of-field veach-mis showcase mesh
 step "Mesa: selftest" on mesa "$candela" selftest
 step "Mesa: tests" tests mesa full ci --parallel "$(nproc)" -L '^(vk|gpu|render)$'
 step "Mesa: slow tests" tests mesa full slow --parallel "$(nproc)" -R '^(gpu|render)[.]'
-step "Mesa: images" compare mesa 128x96 $scenes
+step "Mesa: images" compare mesa 128x96 "$@"
 # SwiftShader takes 30 to 70 times as long as lavapipe: a sixteenth of the samples, a quarter of the pixels.
 step "SwiftShader: selftest" on swiftshader "$candela" selftest --effort quick
 # Without ConvergenceTest: its bounds hold only for one number of samples, and what they judge, an estimate, is the
 # host's work. Without the slow tests: others do the same with fewer samples.
 echo "left out: ConvergenceTest and the slow tests; the script says why"
 step "SwiftShader: tests" tests swiftshader quick ci --parallel "$(nproc)" -L '^(vk|gpu|render)$' -E ConvergenceTest
-step "SwiftShader: images" compare swiftshader 64x48 $scenes
+step "SwiftShader: images" compare swiftshader 64x48 "$@"

@@ -1,5 +1,7 @@
 # Sourced by demo.sh and test.sh: installs the missing packages of packages.txt with apt, as root or with sudo. Does
 # nothing, and needs no network, if none is missing.
+# shellcheck shell=sh
+# shellcheck disable=SC2005,SC2046,SC2086  # Lists of packages split into words; `echo $(...)` makes a line of several.
 
 # packages WHEN...: prints the names in packages.txt that are for one of these uses.
 packages() {

@@ -30,12 +30,14 @@ newest() {
     objdump -T "$root/$home/bin/candela" "$root/$home"/lib/lib*.so* |
         grep -o "[( ]$1_[0-9.]*" | sed "s/.*_//" | sort -uV | tail -n 1
 }
-for pair in "GLIBC $GLIBC" "GLIBCXX $GLIBCXX"; do
-    set -- $pair
+# check_newest NAME VERSION: fails if they need a newer one.
+check_newest() {
     found=$(newest "$1")
     echo "The archive asks for $1 $found; $2 is allowed"
     [ "$(printf '%s\n%s\n' "$found" "$2" | sort -V | tail -n 1)" = "$2" ]
-done
+}
+check_newest GLIBC "$GLIBC"
+check_newest GLIBCXX "$GLIBCXX"
 
 # Nothing else builds a program without a window. (It fails, so that grep's result counts.)
 "$build/candela" view scenes/cornell-box.json 2>&1 | grep -F 'view: this program was built without a window'
@@ -47,7 +49,8 @@ bring() {
         ldd "$file" 2>/dev/null | grep -o '/[^ ]*' | while read -r library; do cp -L --parents "$library" "$root"; done
     done
 }
-manifest=$(ls /usr/share/vulkan/icd.d/lvp_icd*.json | head -n 1)
+set -- /usr/share/vulkan/icd.d/lvp_icd*.json
+manifest=$1
 driver=$(grep -o '"library_path": *"[^"]*"' "$manifest" | cut -d '"' -f 4)
 bring "$manifest" "$driver" "$(ldconfig -p | grep -o '/.*/libvulkan\.so\.1$' | head -n 1)"
 # The program's own libraries are in the archive; these are the system's.
@@ -56,6 +59,7 @@ for library in libc.so.6 libm.so.6 libstdc++.so.6 libgcc_s.so.1; do
 done
 
 # The dynamic loader asks /proc where the program is.
+# shellcheck disable=SC2016  # The inner shell replaces these.
 unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$@"' sh \
     "$root" "/$home/bin/candela" render "/$home/share/candela/scenes/cornell-box.json" \
     --spp 1 --size 64x64 -o /tmp/box.png -o /tmp/box.exr

@@ -7,6 +7,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 effort=-max_total_time=180
 case ${1:-} in -*) effort=$1; shift ;; esac
+# shellcheck disable=SC2046  # The names of targets are words.
 [ $# -gt 0 ] || set -- $(ls tests/fuzz/corpora)
 
 if ! command -v clang++ >/dev/null; then
@@ -19,6 +20,7 @@ mkdir -p build/fuzz/findings
 export effort
 export ASAN_OPTIONS=quarantine_size_mb=16 UBSAN_OPTIONS=print_stacktrace=1
 # Runs as many at a time as there are processors; each says at its end how many inputs it ran.
+# shellcheck disable=SC2016  # The inner shells replace these.
 printf '%s\n' "$@" | xargs -P "$(nproc)" -I NAME sh -c '
     name=NAME
     mkdir -p "build/fuzz/corpora/$name"
