@@ -1,4 +1,9 @@
 # Sourced by run and nightly: stages, and how long each took.
+# shellcheck shell=bash
+
+# Warnings are errors with the compiler of Debian 12 alone: others, which users may have, warn of other things.
+# shellcheck disable=SC2034  # The scripts that source this one use it.
+strict=-DCANDELA_WERROR=GNU-12
 took=()
 
 # stage NAME COMMAND...: runs it; when the script ends, all stages are listed with their seconds, a failed one last.

@@ -45,7 +45,11 @@ find_path(STB_INCLUDE_DIR NAMES stb_image_write.h PATH_SUFFIXES stb REQUIRED)
 # multiply and add where the shaders do not, so that CPU references agree with the device bit for bit.
 add_library(candela_flags INTERFACE)
 target_compile_options(candela_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-    -ffp-contract=off $<$<BOOL:${CANDELA_WERROR}>:-Werror>)
+    -ffp-contract=off)
+string(REGEX MATCH "^[0-9]+" compiler_major "${CMAKE_CXX_COMPILER_VERSION}")
+if(CANDELA_WERROR STREQUAL "${CMAKE_CXX_COMPILER_ID}-${compiler_major}")
+    target_compile_options(candela_flags INTERFACE -Werror)
+endif()
 target_compile_definitions(candela_flags INTERFACE GLM_FORCE_XYZW_ONLY GLM_FORCE_EXPLICIT_CTOR)
 target_include_directories(candela_flags INTERFACE ${CMAKE_SOURCE_DIR}/host ${CMAKE_SOURCE_DIR}/shaders)
 target_include_directories(candela_flags SYSTEM INTERFACE ${STB_INCLUDE_DIR} ${VOLK_INCLUDE_DIR})

@@ -1,11 +1,12 @@
 #!/bin/sh
-# Installs what is missing, builds candela with warnings as errors, and runs all tests and checks except the slow ones,
-# on the Vulkan device that it finds.   usage: sh cmake/test.sh
+# Installs what is missing, builds candela, and runs all tests and checks except the slow ones, on the Vulkan device
+# that it finds.
+#   usage: sh cmake/test.sh [OPTIONS of cmake, such as -DCANDELA_VIEW=OFF]
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/setup.sh
 
 install_packages render test optional
-cmake --preset ci
+cmake --preset ci "$@"
 cmake --build --preset ci
 ctest --preset ci --parallel "$(nproc)"
