@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "base/temporary_file.h"
 
 namespace candela {
@@ -181,7 +182,7 @@ class Descriptor {
 }  // namespace
 
 std::string quoted(const fs::path& path) {
-    return '"' + path.string() + '"';
+    return '"' + printable(path.string(), MOST_PATH_BYTES) + '"';
 }
 
 void check_readable(const fs::path& path) {

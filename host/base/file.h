@@ -11,7 +11,7 @@
 
 namespace candela {
 
-// The path in quotation marks, as messages show it.
+// The path in quotation marks, as messages show it: printable, and cut at MOST_PATH_BYTES.
 std::string quoted(const std::filesystem::path& path);
 
 // Throws Error if `path` cannot be read: it is missing, a directory or a device, or may not be opened.

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/image_io_parts.h"
+#include "base/printable.h"
 
 namespace candela {
 
@@ -127,7 +128,8 @@ void ExrFile::read_channels(Image& image) const {
         const exr_attr_chlist_entry_t& entry = list->entries[i];
         const std::string name(entry.name.str, size_t(entry.name.length));
         if (entry.x_sampling != 1 || entry.y_sampling != 1)
-            fail("channel \"" + name + "\" is subsampled; write it at full resolution");
+            fail("channel \"" + printable(name, MOST_NAME_BYTES) +
+                 "\" is subsampled; write it at full resolution");
         image.channels.push_back({name, {}, entry.pixel_type == EXR_PIXEL_HALF});
     }
 }

@@ -8,6 +8,7 @@
 #include <half.h>
 
 #include "base/image_io.h"
+#include "base/printable.h"
 #include "base/texel_io_parts.h"
 
 namespace candela {
@@ -77,10 +78,10 @@ Planes find_planes(const TexelSource& source, const Image& image) {
     } else if (const Channel* grey = image.find("Y")) {
         planes = {grey->values};
     } else {
-        std::string names;
+        std::vector<std::string> names;
         for (const Channel& channel : image.channels)
-            names += (names.empty() ? "" : ", ") + channel.name;
-        source.fail("a texture needs the channels R, G and B, or Y, but the file has " + names +
+            names.push_back(channel.name);
+        source.fail("a texture needs the channels R, G and B, or Y, but the file has " + joined(names) +
                     "; write it with one of these");
     }
     if (const Channel* alpha = image.find("A")) planes.push_back(alpha->values);

@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/image_io.h"
+#include "base/printable.h"
 #include "bench/build.h"
 #include "bench/clocks.h"
 #include "bench/first_pixel.h"
@@ -19,6 +20,7 @@
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
+#include "cli/json_text.h"
 #include "cli/loading.h"
 #include "cli/vulkan.h"
 #include "probe/scenes.h"
@@ -76,7 +78,7 @@ void print_progress(const std::string& text, bool table) {
     const bool terminal = stderr_is_terminal();
     if (terminal) std::fputs("\r\x1b[K", stderr);
     if (text.empty() || !(terminal || !table)) return;
-    std::fprintf(stderr, "%s%s", text.c_str(), terminal ? "" : "\n");
+    std::fprintf(stderr, "%s%s", printable(text, MOST_PATH_BYTES).c_str(), terminal ? "" : "\n");
 }
 
 std::string rival_text() {
@@ -86,8 +88,9 @@ std::string rival_text() {
 
 void print_heading(const vk::DeviceInfo& device, const BenchOptions& options) {
     std::printf("candela %s bench\n", CANDELA_VERSION);
-    std::printf("device   %u: %s (%s)\n", device.index, device.name.c_str(), vk::to_string(device.type));
-    std::printf("driver   %s\n", device.driver.c_str());
+    std::printf("device   %u: %s (%s)\n", device.index, printable(device.name, MOST_NAME_BYTES).c_str(),
+                vk::to_string(device.type));
+    std::printf("driver   %s\n", printable(device.driver, MOST_NAME_BYTES).c_str());
     std::printf("system   %s, %.0f cores\n", system_text().c_str(), cores());
     std::printf("rival    %s\n\n", rival_text().c_str());
     std::printf("Median (least .. largest) of %u run(s); ratio: candela over Embree, run by run.\n",
@@ -147,7 +150,7 @@ Json report_json(const BenchArguments& arguments, const vk::DeviceInfo& device,
 
 // To a file, or to stdout for "-".
 void write_json(const std::string& target, const Json& report) {
-    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    const std::string text = json_text(report) + '\n';
     if (target != "-") return write_file_atomically(target, text);
     std::printf("%s", text.c_str());
     flush_results();

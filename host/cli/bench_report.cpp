@@ -54,7 +54,7 @@ std::string table_text(const BenchTable& table) {
     std::string text = line(cells);
     std::string subject;
     for (const Row& row : table.rows) {
-        if (row.subject != subject) text += row.subject + '\n';
+        if (row.subject != subject) text += printable(row.subject, MOST_PATH_BYTES) + '\n';
         subject = row.subject;
         cells = {"  " + row.what, row.unit, spread_text(row.ours), median_text(row.ours_wall)};
         if (const auto r = ratio(row))

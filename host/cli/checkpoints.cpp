@@ -2,7 +2,6 @@
 #include "cli/checkpoints.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "base/file.h"
@@ -27,8 +26,7 @@ std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& i
     const std::string& path = *job.checkpoint.file;
     std::error_code unreadable;
     if (!std::filesystem::exists(path, unreadable)) {
-        if (!job.messages.quiet)
-            std::fprintf(stderr, "\"%s\" does not exist yet: starting anew\n", path.c_str());
+        if (!job.messages.quiet) print_note('"' + path + "\" does not exist yet: starting anew");
         return std::nullopt;
     }
     Checkpoint checkpoint = load_checkpoint(path);

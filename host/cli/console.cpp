@@ -12,16 +12,27 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/printable.h"
 
 namespace candela {
 
 void print_warning(const std::string& message) {
     // On a terminal it takes the place of a live line, if there is one.
-    std::fprintf(stderr, "%scandela: warning: %s\n", stderr_is_terminal() ? "\r\x1b[K" : "", message.c_str());
+    std::fprintf(stderr, "%scandela: warning: %s\n", stderr_is_terminal() ? "\r\x1b[K" : "",
+                 printable(message, MOST_MESSAGE_BYTES).c_str());
+}
+
+void print_warnings(const std::vector<std::string>& messages) {
+    for (const std::string& line : summary_of(messages))
+        print_warning(line);
 }
 
 void print_error(const std::string& message) {
-    std::fprintf(stderr, "candela: error: %s\n", message.c_str());
+    std::fprintf(stderr, "candela: error: %s\n", printable(message, MOST_MESSAGE_BYTES).c_str());
+}
+
+void print_note(const std::string& message) {
+    std::fprintf(stderr, "%s\n", printable(message, MOST_MESSAGE_BYTES).c_str());
 }
 
 bool stderr_is_terminal() {

@@ -3,14 +3,23 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace candela {
+
+// Messages are lines: what is not printable in them is escaped, and what exceeds MOST_MESSAGE_BYTES is cut.
 
 // Prints `candela: warning: MESSAGE` to stderr.
 void print_warning(const std::string& message);
 
+// Prints what summary_of() makes of many.
+void print_warnings(const std::vector<std::string>& messages);
+
 // Prints `candela: error: MESSAGE` to stderr.
 void print_error(const std::string& message);
+
+// Prints the message alone to stderr.
+void print_note(const std::string& message);
 
 // True if lines on stderr can be rewritten: it is a terminal, and not a dumb one.
 bool stderr_is_terminal();

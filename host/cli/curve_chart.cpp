@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "base/printable.h"
 #include "cli/console.h"
 
 namespace candela {
@@ -20,11 +21,10 @@ constexpr double LEGEND_LINE = 18;
 constexpr std::array<const char*, 8> COLOURS = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                 "#56b4e9", "#e69f00", "#000000", "#8c6d00"};
 
-// Escapes the characters that mean something in XML. Control characters, which XML cannot hold, become
-// spaces.
+// A name as XML, which cannot hold all control characters.
 std::string escape(const std::string& text) {
     std::string escaped;
-    for (const char c : text) {
+    for (const char c : printable(text, MOST_NAME_BYTES)) {
         if (c == '&') {
             escaped += "&amp;";
         } else if (c == '<') {
@@ -34,7 +34,7 @@ std::string escape(const std::string& text) {
         } else if (c == '"') {
             escaped += "&quot;";
         } else {
-            escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+            escaped += c;
         }
     }
     return escaped;

@@ -7,8 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/printable.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/json_text.h"
 #include "cli/vulkan.h"
 #include "vk/device_info.h"
 #include "vk/instance.h"
@@ -44,12 +46,12 @@ const char* yes_or_no(bool value) {
 }
 
 void print_row(const char* key, const std::string& value) {
-    std::printf("    %-26s%s\n", key, value.c_str());
+    std::printf("    %-26s%s\n", key, printable(value, MOST_MESSAGE_BYTES).c_str());
 }
 
 void print(const vk::DeviceInfo& info, bool is_default) {
-    std::printf("%u: %s (%s)%s\n", info.index, info.name.c_str(), vk::to_string(info.type),
-                is_default ? ", used by default" : "");
+    std::printf("%u: %s (%s)%s\n", info.index, printable(info.name, MOST_NAME_BYTES).c_str(),
+                vk::to_string(info.type), is_default ? ", used by default" : "");
     print_row("will do", info.reason.empty() ? "yes" : "no: " + info.reason);
     print_row("Vulkan", vk::version_text(info.api_version));
     if (!info.reason.empty()) return;  // The rest may be unknown.
@@ -88,7 +90,7 @@ ExitCode devices(bool json) {
         Json list = Json::array();
         for (const vk::DeviceInfo& info : devices)
             list.push_back(describe(info, best == info.index));
-        std::printf("%s\n", list.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+        std::printf("%s\n", json_text(list).c_str());
     } else {
         for (const vk::DeviceInfo& info : devices)
             print(info, best == info.index);

@@ -9,9 +9,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/printable.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/json_text.h"
 #include "cli/loading.h"
 #include "gpu_scene/gpu_scene.h"
 #include "render/renderer.h"
@@ -147,14 +149,7 @@ Json describe(const InfoOptions& options, const Scene& scene, const GpuScene& gp
             {"crop", {crop.x0, crop.y0, crop.x1, crop.y1}},
             {"device_bytes", device_bytes(gpu, settings)},
             {"device_bytes_by_part", memory_of(gpu, settings)},
-            {"warnings", warnings}};
-}
-
-std::string join(const Json& words) {
-    std::string text;
-    for (const Json& word : words)
-        text += (text.empty() ? "" : ", ") + word.get<std::string>();
-    return text;
+            {"warnings", summary_of(warnings)}};
 }
 
 std::string bounds_text(const Json& bounds) {
@@ -170,17 +165,15 @@ std::string bounds_text(const Json& bounds) {
 
 // `3: sun (directional), lamp (spot)`: how many there are, and those that no surface shows by name.
 std::string lights_text(const Json& info) {
-    std::string text = info["lights"].dump();
-    for (const Json& light : info["punctual_lights"]) {
-        text += (&light == &info["punctual_lights"].front() ? ": " : ", ") +
-                light["name"].get<std::string>() + " (" + light["type"].get<std::string>() + ')';
-    }
-    return text;
+    std::vector<std::string> names;
+    for (const Json& light : info["punctual_lights"])
+        names.push_back(light["name"].get<std::string>() + " (" + light["type"].get<std::string>() + ')');
+    return info["lights"].dump() + (names.empty() ? "" : ": " + joined(names));
 }
 
 void print(const Json& info) {
     const auto row = [](const char* key, const std::string& value) {
-        std::printf("%-14s%s\n", key, value.c_str());
+        std::printf("%-14s%s\n", key, printable(value, MOST_MESSAGE_BYTES).c_str());
     };
     const auto bytes = [&info](const std::string& part) {
         return bytes_text(info["device_bytes_by_part"][part].get<uint64_t>());
@@ -201,7 +194,7 @@ void print(const Json& info) {
     row("materials", info["materials"].dump());
     if (!info["images"].empty())
         row("images", std::to_string(info["images"].size()) + ", " + bytes("texels"));
-    row("cameras", join(info["cameras"]));
+    row("cameras", joined(info["cameras"].get<std::vector<std::string>>()));
     for (const auto& [name, text] : info["attributes"].items())
         row((name + ' ').c_str(), text.get<std::string>());
     row("bounds", bounds_text(info["bounds"]));
@@ -224,7 +217,7 @@ ExitCode run(const InfoOptions& options) {
     const GpuScene gpu = build_with_progress(scene);
     const Json info = describe(options, scene, gpu);
     if (options.json) {
-        std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+        std::printf("%s\n", json_text(info).c_str());
     } else {
         print(info);
     }

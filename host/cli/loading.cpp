@@ -83,8 +83,7 @@ Scene load_with_progress(const std::string& file, const LoadingOptions& given, P
         if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
         scene = load_scene(file, options);
     }
-    for (const std::string& warning : scene.warnings)
-        print_warning(warning);
+    print_warnings(scene.warnings);
     return scene;
 }
 
@@ -96,8 +95,7 @@ GpuScene build_with_progress(Scene& scene, ProgressStyle style) {
         if (line.is_live()) line.print("building the tree", 0.0);
         gpu_scene = build_gpu_scene_freeing_images(scene);
     }
-    for (const std::string& warning : gpu_scene.warnings)
-        print_warning(warning);
+    print_warnings(gpu_scene.warnings);
     return gpu_scene;
 }
 

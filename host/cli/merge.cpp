@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/printable.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
@@ -30,8 +31,7 @@ struct MergeArguments {
 ExitCode print_missing(const MergeArguments& arguments) {
     const Missing missing =
         missing_samples({arguments.parts.begin(), arguments.parts.end()}, *arguments.missing);
-    for (const std::string& warning : missing.warnings)
-        print_warning(warning);
+    print_warnings(missing.warnings);
     for (const SampleRange& range : missing.samples)
         std::printf("%s\n", to_text({&range, 1}).c_str());
     flush_results();
@@ -45,13 +45,13 @@ ExitCode run(const MergeArguments& arguments, const std::string& command_line) {
         files.write("-o", path);
     check_outputs(arguments.options.images);
     Merged merged = merge_files({arguments.parts.begin(), arguments.parts.end()});
-    for (const std::string& warning : merged.warnings)
-        print_warning(warning);
+    print_warnings(merged.warnings);
     merged.image.attributes["candela.commandLine"] = command_line;
     const std::string samples = std::get<std::string>(merged.image.attributes.at("candela.samples"));
     const size_t count = arguments.parts.size();
     write_images(arguments.options.images, std::move(merged.image));
-    std::printf("merged %zu part%s: samples %s\n", count, count == 1 ? "" : "s", samples.c_str());
+    std::printf("merged %zu part%s: samples %s\n", count, count == 1 ? "" : "s",
+                printable(samples, MOST_MESSAGE_BYTES).c_str());
     flush_results();
     return ExitCode::done;
 }

@@ -18,6 +18,7 @@
 #include "base/image_io.h"
 #include "base/tonemap.h"
 #include "cli/console.h"
+#include "cli/json_text.h"
 
 namespace candela {
 namespace {
@@ -157,8 +158,7 @@ Json make_report(const RenderRecord& record) {
 }
 
 void write_report(const std::string& target, const Json& report) {
-    // Names come from files and drivers and may hold bytes that are not UTF-8.
-    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    const std::string text = json_text(report) + '\n';
     if (target == STDOUT) {
         std::fputs(text.c_str(), stdout);
         flush_results();

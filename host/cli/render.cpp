@@ -41,8 +41,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 // Prints what --verbose adds before rendering.
 void print_details(const vk::Device& device, const GpuScene& scene, const RenderRecord& record) {
     const vk::DeviceInfo& info = device.info();
-    std::fprintf(stderr, "device: %s (%s), Vulkan %s, driver %s\n", info.name.c_str(),
-                 vk::to_string(info.type), vk::version_text(info.api_version).c_str(), info.driver.c_str());
+    print_note("device: " + info.name + " (" + vk::to_string(info.type) + "), Vulkan " +
+               vk::version_text(info.api_version) + ", driver " + info.driver);
     std::fprintf(stderr, "scene: %u primitives, %u lights, loaded in %s s\n", scene.id_count,
                  scene.light_count, fixed(record.load_seconds, 3).c_str());
     std::fprintf(stderr, "BVH: depth %u, SAH cost %s, built in %s s\n", scene.bvh_depth,

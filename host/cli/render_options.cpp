@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/image_io.h"
+#include "base/printable.h"
 #include "cli/loading.h"
 #include "shared/constants.h"
 
@@ -169,12 +170,13 @@ AovSelection ImageOutputs::written_aovs() const {
 
 const Camera& RenderOptions::choose_camera(const Scene& scene) const {
     if (!camera) return scene.cameras.front();
-    std::string names;
+    std::vector<std::string> names;
     for (const Camera& defined : scene.cameras) {
         if (defined.name == *camera) return defined;
-        names += (names.empty() ? "" : ", ") + defined.name;
+        names.push_back(defined.name);
     }
-    throw Error("--camera: unknown camera \"" + *camera + "\" (defined: " + names + ")", ExitCode::usage);
+    throw Error("--camera: unknown camera \"" + *camera + "\" (defined: " + joined(names) + ")",
+                ExitCode::usage);
 }
 
 RenderJob RenderOptions::job(const Scene& scene) const {

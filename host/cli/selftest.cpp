@@ -9,10 +9,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/printable.h"
 #include "base/text.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/json_text.h"
 #include "cli/vulkan.h"
 #include "version.h"
 #include "vk/device.h"
@@ -38,8 +40,9 @@ std::string probability_text(double p) {
 
 void print_heading(const vk::DeviceInfo& device, Effort effort, double level) {
     std::printf("candela %s selftest\n", CANDELA_VERSION);
-    std::printf("device   %u: %s (%s)\n", device.index, device.name.c_str(), vk::to_string(device.type));
-    std::printf("driver   %s\n", device.driver.c_str());
+    std::printf("device   %u: %s (%s)\n", device.index, printable(device.name, MOST_NAME_BYTES).c_str(),
+                vk::to_string(device.type));
+    std::printf("driver   %s\n", printable(device.driver, MOST_NAME_BYTES).c_str());
     std::printf("Vulkan   %s\n", vk::version_text(device.api_version).c_str());
     std::printf("system   %s\n", system_text().c_str());
     std::printf("effort   %s\n\n", name_of(effort, EFFORT_NAMES).c_str());
@@ -116,7 +119,7 @@ void print_json(const std::vector<CheckResult>& results, const vk::DeviceInfo& d
                          {"checks", checks},
                          {"failed", failed},
                          {"passed", failed == 0}};
-    std::printf("%s\n", report.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    std::printf("%s\n", json_text(report).c_str());
 }
 
 void print_verdict(const std::vector<CheckResult>& results, size_t checks, size_t failed) {

@@ -1,5 +1,4 @@
 // `candela view`: a window that shows how a scene's picture accumulates.
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -135,7 +134,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
                        .target = arguments.frames.value_or(options.spp.value_or(MAX_SPP)),
                        .close_at_target = arguments.frames.has_value(),
                        .stopped = [&guard] { return guard.interrupted(); },
-                       .say = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); },
+                       .say = print_note,
                        .add_attributes =
                            [&](Image& image, const ViewedPicture& picture) {
                                add_attributes(image, picture, device, command_line);

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/image_io.h"
+#include "base/printable.h"
 #include "film/sample_range.h"
 
 namespace candela {
@@ -57,7 +58,7 @@ Number number_attribute(const Image& image, const std::string& attribute, const 
     Number number{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc{} && end == text.data() + text.size()) return number;
-    throw Error(name + ": the attribute " + attribute + " is \"" + text +
+    throw Error(name + ": the attribute " + attribute + " is \"" + printable(text, MOST_NAME_BYTES) +
                 "\"; give a file that candela render wrote, unchanged");
 }
 

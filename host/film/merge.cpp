@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "film/identity.h"
 #include "film/part_sum.h"
 #include "film/sample_range.h"
@@ -35,6 +36,10 @@ float number_attribute(const Image& image, const char* attribute) {
     const auto found = image.attributes.find(attribute);
     const auto* const number = found == image.attributes.end() ? nullptr : std::get_if<float>(&found->second);
     return number == nullptr ? 0.0f : *number;
+}
+
+std::string ranges_text(std::span<const SampleRange> samples) {
+    return printable(to_text(samples), MOST_NAME_BYTES);
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
@@ -88,7 +93,8 @@ Part describe(const std::filesystem::path& file, Image image) {
     const std::string samples = text_attribute(image, SAMPLES, part.name);
     const auto ranges = parse_ranges(samples);
     if (!ranges) {
-        refuse(part.name, std::string("the attribute ") + SAMPLES + " is \"" + samples +
+        refuse(part.name, std::string("the attribute ") + SAMPLES + " is \"" +
+                              printable(samples, MOST_NAME_BYTES) +
                               "\"; give a file that candela render wrote, unchanged");
     }
     part.samples = *ranges;
@@ -143,10 +149,12 @@ std::vector<std::string> common_channels(const std::vector<Part>& parts, std::ve
     for (const std::string& name : names) {
         const auto lacking =
             std::ranges::find_if(parts, [&](const Part& part) { return part.header.find(name) == nullptr; });
+        const std::string quoted_name = '"' + printable(name, MOST_NAME_BYTES) + '"';
         if (!PartSum::knows(name)) {
-            warnings.push_back("the channel " + name + " is left out: candela does not know how to merge it");
+            warnings.push_back("the channel " + quoted_name +
+                               " is left out: candela does not know how to merge it");
         } else if (lacking != parts.end()) {
-            warnings.push_back("the channel " + name + " is left out: " + lacking->name +
+            warnings.push_back("the channel " + quoted_name + " is left out: " + lacking->name +
                                " does not have it");
         } else {
             common.push_back(name);
@@ -158,7 +166,7 @@ std::vector<std::string> common_channels(const std::vector<Part>& parts, std::ve
 // `least`: the samples of the pixel that has fewest.
 void warn_of_interruption(const Part& part, uint32_t least, std::vector<std::string>& warnings) {
     if (least < total_count(part.samples)) {
-        warnings.push_back(part.name + " was interrupted: of the samples " + to_text(part.samples) +
+        warnings.push_back(part.name + " was interrupted: of the samples " + ranges_text(part.samples) +
                            " some pixels hold only " + std::to_string(least));
     }
 }
@@ -246,7 +254,7 @@ Merged merge_files(const std::vector<std::filesystem::path>& files, const PartRe
     const std::vector<SampleRange> samples = samples_of(parts);
     const std::vector<SampleRange> missing = gaps(samples, {0, samples.empty() ? 0 : samples.back().end});
     if (!missing.empty())
-        merged.warnings.push_back("the samples " + to_text(missing) + " are missing: no part holds them");
+        merged.warnings.push_back("the samples " + ranges_text(missing) + " are missing: no part holds them");
     warn_of_makers(parts, merged.warnings);
     const std::vector<std::string> channels = common_channels(parts, merged.warnings);
     PartSum sum(first.header, channels);

@@ -236,7 +236,7 @@ void append_pointer(const Value* value, Place place, std::string& pointer) {
             const auto next = last_until(*object, place, [](const Member& m) { return m.value.place; });
             if (next == object->end()) return;
             pointer += '/';
-            for (const char c : next->key) {
+            for (const char c : printable(next->key, MOST_NAME_BYTES)) {
                 if (c == '~' || c == '/') {
                     pointer += c == '~' ? "~0" : "~1";
                 } else {
@@ -282,9 +282,10 @@ std::string to_text(const Value& value) {
     }
     if (const auto* object = std::get_if<Object>(&value.data)) {
         for (const Member& member : *object)
-            text += (text.empty() ? "" : ",") + quote(member.key) + ':' + to_text(member.value);
+            text += (text.empty() ? "" : ",") + json_string(member.key) + ':' + to_text(member.value);
         return '{' + text + '}';
     }
+    if (const auto* string = std::get_if<std::string>(&value.data)) return json_string(*string);
     return describe(value);
 }
 

@@ -32,7 +32,8 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 // The name that was probably meant, or null if none is close.
 const std::string* nearest(std::string_view name, std::span<const std::string> known) {
     const std::string* best = nullptr;
-    size_t least = std::min<size_t>(3, name.size());  // At most two slips, and not the whole name.
+    if (name.size() > MOST_NAME_BYTES) return nullptr;  // Nobody wrote it.
+    size_t least = std::min<size_t>(3, name.size());    // At most two slips, and not the whole name.
     for (const std::string& candidate : known) {
         const size_t longer = std::max(candidate.size(), name.size());
         if (longer - std::min(candidate.size(), name.size()) >= least) continue;
@@ -62,14 +63,9 @@ void Node::fail_expected(const std::string& what) const {
 
 void Node::fail_unknown(const std::string& what, std::string_view name, std::span<const std::string> known,
                         const std::string& word) const {
-    constexpr size_t MOST_LISTED = 20;
     std::string message = "unknown " + what + ' ' + quote(name) + " (";
     if (const std::string* guess = nearest(name, known)) message += "did you mean " + quote(*guess) + "? ";
-    message += word + ": ";
-    if (known.empty()) message += "none";
-    for (size_t i = 0; i < std::min(known.size(), MOST_LISTED); ++i)
-        message += (i == 0 ? "" : ", ") + known[i];
-    fail(message + (known.size() > MOST_LISTED ? ", ...)" : ")"));
+    fail(message + word + ": " + (known.empty() ? "none" : joined(known)) + ')');
 }
 
 const json::Object& Node::object() const {

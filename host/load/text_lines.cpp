@@ -46,14 +46,6 @@ std::optional<double> parse_finite(std::string_view word) {
     return fits ? value : std::nullopt;  // Comparisons with NaN are false.
 }
 
-std::string joined(const std::vector<std::string>& names) {
-    constexpr size_t MOST_LISTED = 20;
-    std::string text;
-    for (size_t i = 0; i < std::min(names.size(), MOST_LISTED); ++i)
-        text += (i == 0 ? "" : ", ") + names[i];
-    return names.size() > MOST_LISTED ? text + ", ..." : text;
-}
-
 std::string_view next_line(std::string_view& text) {
     const size_t length = std::min(text.find_first_of("\r\n"), text.size());
     const std::string_view line = text.substr(0, length);

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace candela {
 
@@ -24,9 +23,6 @@ std::optional<double> parse_number(std::string_view word);
 
 // The same, if a float can hold it; none for NaN, too.
 std::optional<double> parse_finite(std::string_view word);
-
-// "a, b, c", cut off after 20.
-std::string joined(const std::vector<std::string>& names);
 
 // Cuts the next line and its end, which is \n, \r\n or \r, off `text`, which is not empty. Returns the line
 // without its end.

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/image_io.h"
+#include "base/printable.h"
 
 namespace candela {
 namespace {
@@ -28,11 +29,11 @@ void check_complete(const Image& image, const std::string& file) {
 RgbPlanes find_colours(const Image& image, const std::string& file) {
     if (const std::optional<RgbPlanes> rgb = image.find_rgb()) return *rgb;
     if (const Channel* grey = image.find("Y")) return {grey->values, grey->values, grey->values};
-    std::string names;
+    std::vector<std::string> names;
     for (const Channel& channel : image.channels)
-        names += (names.empty() ? "" : ", ") + channel.name;
-    throw Error(file + ": an environment needs the channels R, G and B, or Y, but the file has " + names +
-                "; write it with one of these");
+        names.push_back(channel.name);
+    throw Error(file + ": an environment needs the channels R, G and B, or Y, but the file has " +
+                joined(names) + "; write it with one of these");
 }
 
 // Whether any channel is negative or not finite; then the others cannot be trusted either.

@@ -110,7 +110,8 @@ void fly(Camera& camera, dvec3 shift) {
 }
 
 std::string camera_json(const Camera& camera, const std::string& name) {
-    return "{\n  \"cameras\": {\n    " + quote(name) + ": {\n      \"position\": " + vector(camera.position) +
+    return "{\n  \"cameras\": {\n    " + json_string(name) +
+           ": {\n      \"position\": " + vector(camera.position) +
            ",\n      \"look_at\": " + vector(camera.look_at) + ",\n      \"up\": " + vector(camera.up) +
            projection_json(camera) + "\n    }\n  }\n}\n";
 }

@@ -7,6 +7,7 @@
 
 #include <imgui.h>
 
+#include "base/printable.h"
 #include "view/controls.h"
 
 namespace candela {
@@ -39,7 +40,7 @@ void show_figures(const ViewFigures& figures) {
     ImGui::Text("%u x %u pixels, %.1f MiB on", figures.size.x, figures.size.y,
                 double(figures.device_bytes) / (1 << 20));
     ImGui::PushTextWrapPos();
-    ImGui::TextUnformatted(figures.device.c_str());
+    ImGui::TextUnformatted(printable(figures.device, MOST_NAME_BYTES).c_str());
     ImGui::PopTextWrapPos();
 }
 
@@ -55,11 +56,13 @@ void show_buttons(ViewState& state, ViewRequests& requests) {
 
 void show_camera(ViewState& state, ViewRequests& requests, std::span<const Camera> cameras,
                  const Camera& home) {
-    if (ImGui::BeginCombo("camera", state.camera.name.c_str())) {
+    const auto name_of = [](const Camera& camera) { return printable(camera.name, MOST_NAME_BYTES); };
+    if (ImGui::BeginCombo("camera", name_of(state.camera).c_str())) {
         for (size_t i = 0; i < cameras.size(); ++i) {
-            if (ImGui::Selectable(cameras[i].name.c_str(), cameras[i].name == state.camera.name)) {
+            ImGui::PushID(int(i));  // Names may look alike, or be empty.
+            if (ImGui::Selectable(name_of(cameras[i]).c_str(), cameras[i].name == state.camera.name))
                 requests.camera = i;
-            }
+            ImGui::PopID();
         }
         ImGui::EndCombo();
     }

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/printable.h"
 #include "render/steady_renderer.h"
 #include "view/pace.h"
 
@@ -54,7 +55,7 @@ Viewer::Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewSt
         radiance_ = scene_.environment->radiance;
         state_.environment_rotation = scene_.environment->rotation;
     }
-    for (const std::string& warning : gpu_scene_.warnings)
+    for (const std::string& warning : summary_of(gpu_scene_.warnings))
         options_.say("warning: " + warning);
     figures_.device = options_.device.name;
     begin();

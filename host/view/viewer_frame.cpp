@@ -4,6 +4,7 @@
 #include <deque>
 #include <string>
 
+#include "base/printable.h"
 #include "view/controls.h"
 #include "view/panel.h"
 #include "view/viewer.h"
@@ -88,8 +89,8 @@ void Viewer::set_focus(vec2 place) {
 }
 
 void Viewer::update_title() {
-    std::string title =
-        options_.name + ": " + std::to_string(uint32_t(figures_.samples)) + " samples per pixel";
+    std::string title = printable(options_.name, MOST_NAME_BYTES) + ": " +
+                        std::to_string(uint32_t(figures_.samples)) + " samples per pixel";
     if (figures_.error) {
         char text[48];
         std::snprintf(text, sizeof text, ", estimated error %.2f %%", 100.0 * *figures_.error);
@@ -99,7 +100,7 @@ void Viewer::update_title() {
 }
 
 void Viewer::tell(const std::string& message) {
-    figures_.message = message;
+    figures_.message = printable(message, MOST_MESSAGE_BYTES);
     options_.say(message);
 }
 

@@ -230,7 +230,7 @@ TEST_F(GltfNode, ShowsTheSceneThatIsAskedFor) {
     expect_text_error(
         file.gltf(),
         "--scene: m.gltf has nothing called \"x\" among its scenes (known: 0, 1, 2, 3, 4, 5, 6, 7, "
-        "8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, ...)",
+        "8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19 and 1 more)",
         "m.gltf", {.scene = "x"});
 }
 

@@ -125,10 +125,10 @@ TEST_F(Merge, OnlyChannelsOfAllPartsAreKept) {
     std::vector<std::string> warnings = merged.warnings;
     for (std::string& warning : warnings)
         warning = text(warning);
-    EXPECT_EQ(warnings,
-              (std::vector<std::string>{"the channel Mask is left out: candela does not know how to merge it",
-                                        "the channel SampleCount.V is left out: b.exr does not have it",
-                                        "the channel Z is left out: b.exr does not have it"}));
+    EXPECT_EQ(warnings, (std::vector<std::string>{
+                            "the channel \"Mask\" is left out: candela does not know how to merge it",
+                            "the channel \"SampleCount.V\" is left out: b.exr does not have it",
+                            "the channel \"Z\" is left out: b.exr does not have it"}));
     EXPECT_EQ(merged.image.channels.size(), 8u);
     EXPECT_EQ(merged.image.find("Z"), nullptr);
 }

@@ -2,6 +2,7 @@
 #include "load/gltf/names.h"
 
 #include <charconv>
+#include <vector>
 
 #include "base/error.h"
 #include "load/quote.h"
@@ -15,20 +16,18 @@ std::string name_of(const Node& element, const std::string& otherwise) {
 
 size_t find_by_name(const File& file, const std::optional<Node>& array, const std::string& name,
                     std::string_view what, const char* option) {
-    constexpr size_t MOST_LISTED = 20;
     const size_t count = array ? array->size() : 0;
-    std::string names;
+    std::vector<std::string> names;
     for (size_t i = 0; i < count; ++i) {
-        const std::string known = name_of((*array)[i], std::to_string(i));
-        if (known == name) return i;
-        if (i < MOST_LISTED) names += (i == 0 ? "" : ", ") + known;
+        names.push_back(name_of((*array)[i], std::to_string(i)));
+        if (names.back() == name) return i;
     }
     size_t index = 0;
     const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), index);
     if (error == std::errc() && end == name.data() + name.size() && index < count) return index;
     throw Error(std::string(option) + ": " + file.path().string() + " has nothing called " + quote(name) +
                     " among its " + std::string(what) + " (" +
-                    (count == 0 ? "it has none" : "known: " + names) + (count > MOST_LISTED ? ", ...)" : ")"),
+                    (count == 0 ? "it has none" : "known: " + joined(names)) + ')',
                 ExitCode::usage);
 }
 

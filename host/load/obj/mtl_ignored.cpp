@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "base/printable.h"
 #include "base/text.h"
-#include "load/text_lines.h"
 
 namespace candela {
 

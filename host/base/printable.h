@@ -1,0 +1,37 @@
+// What files, drivers and libraries say, made fit for a terminal: nothing of it moves the cursor, colours or
+// hides text, turns its direction or begins a line, and there is not too much of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace candela {
+
+// The most bytes that are shown of a name or another text within a message, of the name of a file, and of a
+// whole message.
+inline constexpr size_t MOST_NAME_BYTES = 120;
+inline constexpr size_t MOST_PATH_BYTES = 1000;
+inline constexpr size_t MOST_MESSAGE_BYTES = 4000;
+
+// `text` with its control and invisible characters escaped as in JSON (`\u001b`, `\n`), and bytes that are
+// not UTF-8 as `\xff`. What is longer than `most` bytes, which are at least 40, loses its middle: whole
+// characters are left out, and `…` takes their place. A second call changes nothing.
+std::string printable(std::string_view text, size_t most = SIZE_MAX);
+
+// The same JSON, in UTF-8, with escapes in its strings for the characters that printable() escapes.
+std::string printable_json(std::string_view json);
+
+// "a, b, c": printable names; after 20, how many more there are.
+std::string joined(std::span<const std::string> names);
+
+// As few lines as say what the warnings do, each a printable message. A warning that differs from an earlier
+// one only in its place (`file:line:column: ...` or `file#/pointer: ...`) is counted there. If more than
+// three differ only in names and numbers, the first three are followed by how many more there are. What
+// exceeds 64 KiB in all is only counted. The kinds are in the order of their first warnings.
+std::vector<std::string> summary_of(const std::vector<std::string>& warnings);
+
+}  // namespace candela
