@@ -16,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::string_view_literals;
 
-constexpr const char* FORMATS_READ = "PNG, JPEG, WebP, Radiance HDR or OpenEXR";
-
 // What files of a kind have in common: these bytes, at that offset.
 struct Signature {
     const char* name;  // With its article.
@@ -82,7 +80,7 @@ std::string lower_start(std::string_view bytes) {
     const auto refuse = [&](const Signature& kind) {
         if (kind.bytes == "version https://git-lfs")
             source.fail("it is a pointer of Git LFS, not the image itself; run `git lfs pull`");
-        source.fail("it is " + std::string(kind.name) + "; convert it to " + FORMATS_READ);
+        source.fail("it is " + std::string(kind.name) + "; convert it to " + source.limits.formats);
     };
     for (const Signature& kind : OTHER_KINDS) {
         if (matches(source.bytes, kind)) refuse(kind);
@@ -92,7 +90,7 @@ std::string lower_start(std::string_view bytes) {
         if (matches(start, kind)) refuse(kind);
     }
     source.fail("its first bytes are not those of an image that can be read; give " +
-                std::string(FORMATS_READ));
+                std::string(source.limits.formats));
 }
 
 const TexelFormat& find_format(const TexelSource& source) {

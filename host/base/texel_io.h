@@ -15,6 +15,8 @@ namespace candela {
 struct TexelLimits {
     // An image with more is refused before memory is taken for any of them.
     uint64_t max_pixels = uint64_t{1} << 28;
+    // Not a limit: what messages about other formats advise.
+    const char* formats = "PNG, JPEG, WebP, Radiance HDR or OpenEXR";
 };
 
 // Reads an image of one of these kinds, whatever its extension:

@@ -12,6 +12,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/printable.h"
 #include "base/shrink_image.h"
 #include "base/texel_io.h"
 #include "base/text.h"
@@ -109,14 +110,31 @@ bool points_up(vec4 mean) {
     return mean.z > 0.6f && std::abs(mean.x - 0.5f) < FAR && std::abs(mean.y - 0.5f) < FAR;
 }
 
+// Whether the name of an image says where it is: within the file that names it.
+bool is_within(const ImageFile& file) {
+    return file.place.starts_with(file.path.string());
+}
+
+// A message that begins with the name of an image, with the place before it.
+std::string at_place(const ImageFile& file, const std::string& message) {
+    return is_within(file) ? message : file.place + ": " + message;
+}
+
+// `PLACE: the normal map of the material "x", FILE,`.
+std::string map_text(const ImageFile& file, const char* what, const Material& material) {
+    const std::string name = is_within(file) ? "" : ", " + file.path.string() + ',';
+    return concat(file.place, ": the ", what, " of the material \"",
+                  printable(material.name, MOST_NAME_BYTES), '"', name);
+}
+
 // `what` is what the messages call the map.
 void check_normal_map(Scene& scene, const Material& material, const NormalMap& map, const char* what) {
     const ImageFile& file = scene.images[map.texture.image];
     const vec4 mean = mean_codes(file.image);
     if (points_up(mean)) return;
-    scene.warnings.push_back(concat(file.place, ": the ", what, " of the material \"", material.name, "\", ",
-                                    file.path.string(), ", has a mean of ", number_text(double(mean.x), 2),
-                                    ' ', number_text(double(mean.y), 2), ' ', number_text(double(mean.z), 2),
+    scene.warnings.push_back(concat(map_text(file, what, material), " has a mean of ",
+                                    number_text(double(mean.x), 2), ' ', number_text(double(mean.y), 2), ' ',
+                                    number_text(double(mean.z), 2),
                                     ", not about 0.5 0.5 1; is it one in tangent space?"));
 }
 
@@ -132,8 +150,7 @@ void check_bump_map(Scene& scene, Material& material) {
     const ImageFile& file = scene.images[bump.texture.image];
     const vec4 mean = mean_codes(file.image);
     if (!is_blue(mean)) return;
-    const std::string what = concat(file.place, ": the bump map of the material \"", material.name, "\", ",
-                                    file.path.string(), ", has the colours of a normal map");
+    const std::string what = map_text(file, "bump map", material) + " has the colours of a normal map";
     if (!bump.multiplier) {
         scene.warnings.push_back(what + "; if it is one, name it as normal_map");
         return;
@@ -153,9 +170,10 @@ void check_opacity(Scene& scene, const Material& material) {
     const Texture& texture = *material.opacity.value.texture;
     const ImageFile& file = scene.images[texture.image];
     if (texture.channel != ALPHA || file.image.channels % 2 == 0) return;
-    scene.warnings.push_back(file.place + ": the opacity of the material \"" + material.name +
-                             "\" is the alpha of " + file.path.string() +
-                             ", which has none: it is opaque; name another channel");
+    scene.warnings.push_back(
+        concat(file.place, ": the opacity of the material \"", printable(material.name, MOST_NAME_BYTES),
+               "\" is the alpha of ", is_within(file) ? "the image" : file.path.string(),
+               ", which has none: it is opaque", file.of_gltf ? "" : "; name another channel"));
 }
 
 }  // namespace
@@ -188,21 +206,23 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
         ImageFile& file = scene.images[i];
         if (!file.image.texels.empty()) return;
         try {
-            TexelImage image = file.bytes.empty() ? read_texels(file.path, warnings[i])
-                                                  : decode_texels(file.bytes, file.path, warnings[i]);
+            TexelLimits limits;
+            if (file.of_gltf) limits.formats = "PNG, JPEG or WebP";
+            TexelImage image = file.bytes.empty() ? read_texels(file.path, warnings[i], limits)
+                                                  : decode_texels(file.bytes, file.path, warnings[i], limits);
             file.bytes = {};
-            if (!file.has_gamma) image.gamma.reset();
+            if (file.of_gltf) image.gamma.reset();
             if (file.glossiness) image = roughness_of(image, *file.glossiness);
             file.image = shrink(std::move(image), options.texture_limit, codes[i]);
         } catch (const Error& error) {
-            throw Error(file.place + ": " + error.what(), error.code());
+            throw Error(at_place(file, error.what()), error.code());
         }
         const std::lock_guard lock(mutex);
         progress("images", ++done, scene.images.size());
     });
     for (size_t i = 0; i < scene.images.size(); ++i) {
         for (const std::string& warning : warnings[i])
-            scene.warnings.push_back(scene.images[i].place + ": " + warning);
+            scene.warnings.push_back(at_place(scene.images[i], warning));
     }
     convert_gammas(scene);
     for (Material& material : scene.materials) {

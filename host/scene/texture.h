@@ -21,8 +21,9 @@ struct ImageFile {
     std::string bytes{};                // The file, if it is within another one.
     // The image is to be one of roughness: 1 - this times the alpha of the file.
     std::optional<float> glossiness{};
-    bool has_gamma = true;  // If the file states one, it counts.
-    std::string place{};    // Where the scene names it first, for messages.
+    // A glTF file names it: a gamma of its own does not count, and only some formats are advised.
+    bool of_gltf = false;
+    std::string place{};  // Where the scene names it first, for messages.
     TexelImage image{};
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gltf_fixture.h"
+#include "support/png_writer.h"
 
 namespace candela {
 namespace {
@@ -115,7 +116,7 @@ TEST_F(GltfTexture, ImagesAreFilesDataInLineOrViews) {
     const Scene beside = load(file);
     EXPECT_EQ(beside.images.at(0).path, folder_.path() / "two words.png");
     EXPECT_TRUE(beside.images[0].bytes.empty());
-    EXPECT_FALSE(beside.images[0].has_gamma);  // Section 3.8.3: colour profiles do not count.
+    EXPECT_TRUE(beside.images[0].of_gltf);  // Section 3.8.3: colour profiles do not count.
     file.root["images"][0] = {{"uri", "data:image/png;base64," + base64("a file")}};
     EXPECT_EQ(load(file).images.at(0).bytes, "a file");
     file.root["images"][0] = {{"bufferView", file.add_view<char>({'a', ' ', 'v', 'i', 'e', 'w'})},
@@ -147,9 +148,58 @@ TEST_F(GltfTexture, MessagesAboutImagesNameThem) {
     GltfFile file = textured();
     file.root["images"][0] = {{"bufferView", file.add_view<char>({'n', 'o', 'n', 'e'})}};
     folder_.write("m.gltf", file.gltf());
-    const std::string message =
-        folder_.without_folder(error_of([&] { load_scene(folder_.path() / "m.gltf"); }));
-    EXPECT_TRUE(message.starts_with("m.gltf#/images/0: cannot read \"m.gltf#/images/0\": ")) << message;
+    const auto message = [&] {
+        return folder_.without_folder(error_of([&] { load_scene(folder_.path() / "m.gltf"); }));
+    };
+    EXPECT_EQ(message(),
+              "cannot read \"m.gltf#/images/0\": its first bytes are not those of an image that can be read; "
+              "give PNG, JPEG or WebP");
+    file.root["images"][0] = {{"uri", "a.bmp"}};
+    folder_.write("a.bmp", "BM");
+    folder_.write("m.gltf", file.gltf());
+    EXPECT_EQ(
+        message(),
+        "m.gltf#/images/0/uri: cannot read \"a.bmp\": it is a BMP image; convert it to PNG, JPEG or WebP");
+}
+
+// What is odd in an image within the file names the file once, and advises nothing that glTF cannot say.
+TEST_F(GltfTexture, WarningsAboutImagesNameTheFileOnce) {
+    GltfFile file = textured();
+    const std::string white =
+        encode_png({.size = uvec2(1), .bits = 8, .color = png_rgb, .samples = {255, 255, 255}});
+    file.root["images"][0] = {{"uri", "data:image/png;base64," + base64(white)}};
+    file.root["materials"][0]["name"] = "wall";
+    file.root["materials"][0]["alphaMode"] = "MASK";
+    file.root["materials"][0]["normalTexture"] = {{"index", 0}};
+    folder_.write("m.gltf", file.gltf());
+    std::string all;
+    for (const std::string& warning : load_scene(folder_.path() / "m.gltf").warnings)
+        all += folder_.without_folder(warning) + '\n';
+    EXPECT_NE(
+        all.find("m.gltf#/images/0/uri: the normal map of the material \"wall\" has a mean of 1 1 1, not "),
+        std::string::npos)
+        << all;
+    EXPECT_NE(
+        all.find(
+            "m.gltf#/images/0/uri: the opacity of the material \"wall\" is the alpha of the image, which "
+            "has none: it is opaque\n"),
+        std::string::npos)
+        << all;
+}
+
+// A cube of light decodes its images itself.
+TEST_F(GltfTexture, MessagesAboutFacesOfACubeNameThem) {
+    GltfFile file = textured();
+    file.root["images"][0] = {{"uri", "none.png"}};
+    file.root["scenes"] = {{{"nodes", {0}}, {"extensions", {{"EXT_lights_image_based", {{"light", 0}}}}}}};
+    const Json light = {{"specularImages", {std::vector<int>(6)}}};
+    file.root["extensions"]["EXT_lights_image_based"]["lights"] = {light};
+    expect_error(file, "#/images/0/uri: cannot read \"none.png\": the file does not exist; check the name");
+    file.root["images"][0] = {{"bufferView", file.add_view<char>({'G', 'I', 'F', '8'})}};
+    expect_text_error(
+        file.gltf(),
+        "cannot read \"m.gltf#/extensions/EXT_lights_image_based/lights/0/specularImages/0/0\": "
+        "it is a GIF image; convert it to PNG or JPEG");
 }
 
 TEST_F(GltfTexture, AnImageIsReadOnceForAllItsTextures) {

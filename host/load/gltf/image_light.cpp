@@ -51,18 +51,18 @@ std::string image_bytes(File& file, const Node& reference) {
     }
     const Node uri = image.require("uri");
     if (auto data = inline_data(uri)) return std::move(*data);
-    return read_file(file_of(uri, file.folder()));
+    try {
+        return read_file(file_of(uri, file.folder()));
+    } catch (const Error& error) {
+        uri.fail(error.what());
+    }
 }
 
 // RGBD if there is an alpha: the colour over it.
 Face read_face(File& file, const Node& reference) {
     std::vector<std::string> warnings;
-    TexelImage image;
-    try {
-        image = decode_texels(image_bytes(file, reference), reference.place(), warnings);
-    } catch (const Error& error) {
-        reference.fail(error.what());
-    }
+    const TexelImage image =
+        decode_texels(image_bytes(file, reference), reference.place(), warnings, {.formats = "PNG or JPEG"});
     if (image.size.x != image.size.y)
         reference.fail(concat("the face of a cube is square, not ", image.size.x, " by ", image.size.y));
     Face face{.size = image.size.x, .radiance = {}};

@@ -91,7 +91,7 @@ uint32_t read_image(File& file, Scene& scene, const Node& reference) {
         return add_image(scene, file_of(*uri, file.folder()), uri->place());
     };
     const uint32_t added = add();
-    scene.images[added].has_gamma = false;  // Section 3.8.3: colour profiles do not count.
+    scene.images[added].of_gltf = true;  // Section 3.8.3: colour profiles do not count.
     return added;
 }
 
