@@ -13,6 +13,7 @@ namespace {
 
 constexpr size_t MOST_OF_A_KIND = 3;
 constexpr size_t MOST_BYTES = size_t{64} << 10;
+constexpr size_t AROUND_LINE = 24;  // Bytes that are printed around each line.
 
 constexpr std::string_view DIGITS = "0123456789";
 
@@ -119,7 +120,7 @@ std::vector<std::string> summary_of(const std::vector<std::string>& warnings) {
     for (const Kind& kind : kinds_of(warnings)) {
         for (const Same& same : kind.shown) {
             std::string line = line_of(same);
-            bytes += line.size();
+            bytes += line.size() + AROUND_LINE;
             if (bytes > MOST_BYTES) break;
             lines.push_back(std::move(line));
             left -= same.count;

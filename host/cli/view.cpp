@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/image_io.h"
+#include "base/printable.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
@@ -119,7 +120,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
 
     warn_of_unseen_lights(scene, state.settings.estimator);
     const std::string name = std::filesystem::path(options.scene_file).stem().string();
-    Window window(state.settings.size, !arguments.frames, name);
+    Window window(state.settings.size, !arguments.frames, printable(name, MOST_NAME_BYTES));
     vk::Instance::Options instance_wishes = instance_options();
     instance_wishes.extensions = window.instance_extensions();
     const vk::Instance instance(instance_wishes);

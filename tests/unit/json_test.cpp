@@ -118,6 +118,10 @@ TEST(Json, TellsPlacesByLinesOrPointers) {
     document.places = json::Document::Places::pointers;
     EXPECT_EQ(json::place_of(document, member(inner, "~")), "x.json#/a~1b/1/~0");
     EXPECT_EQ(json::place_of(document, document.root), "x.json#");
+    document.root = json::parse("{\"" + std::string(1'000'000, 'x') + "\\u001b\": 1}", "x.json");
+    const std::string cut = json::place_of(document, std::get<json::Object>(document.root.data)[0].value);
+    EXPECT_LT(cut.size(), 150u);
+    EXPECT_TRUE(cut.ends_with("xxx\\u001b")) << cut;
 }
 
 TEST(Json, DescribesValuesForMessages) {
