@@ -192,6 +192,14 @@ TEST_F(GltfAnimation, WhatItCannotAnimateIsNoted) {
                    {.time = 0.0});
     file.root["animations"][0]["channels"][0]["target"].erase("node");
     EXPECT_TRUE(load(file, {.time = 0.0}).warnings.empty());
+    file.root["animations"][0]["channels"][0]["target"]["extensions"]["KHR_animation_pointer"] = {
+        {"pointer", "/materials/0/emissiveFactor"}};
+    expect_warning(
+        file,
+        "#/animations/0/channels/0/target: ignored what KHR_animation_pointer moves: only nodes and "
+        "weights are animated",
+        {.time = 0.0});
+    EXPECT_TRUE(load(file).warnings.empty());
 }
 
 TEST_F(GltfAnimation, NotesRotationsOfAnotherLength) {

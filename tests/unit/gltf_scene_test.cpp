@@ -30,7 +30,7 @@ TEST_F(GltfScene, RefusesExtensionsThatItRequiresAndNotesTheOthers) {
     file.root["extensionsUsed"] = {"KHR_texture_transform", "KHR_draco_mesh_compression"};
     expect_warning(file,
                    "#/extensionsUsed/1: the extension \"KHR_draco_mesh_compression\" is not read: "
-                   "uncompressed meshes take the place of compressed ones");
+                   "uncompressed data take the place of compressed ones");
     file.root["extensionsUsed"] = Json::array({"ACME_teapots"});
     expect_warning(file,
                    "#/extensionsUsed/0: the extension \"ACME_teapots\" is not read: what it adds is missing");
@@ -47,6 +47,38 @@ TEST_F(GltfScene, RefusesExtensionsThatItRequiresAndNotesTheOthers) {
     EXPECT_TRUE(load(file).warnings.empty());
     file.root["extensionsRequired"] = 1;
     expect_error(file, "#/extensionsRequired: \"extensionsRequired\": expected an array [ ... ], found 1");
+}
+
+TEST_F(GltfScene, ExtensionsThatChangeNoPictureNeedNoWarning) {
+    for (const char* name :
+         {"EXT_mesh_features", "EXT_structural_metadata", "EXT_instance_features", "MSFT_lod",
+          "KHR_animation_pointer", "KHR_xmp_json_ld", "KHR_node_visibility", "CESIUM_RTC",
+          "CESIUM_primitive_outline", "VRMC_vrm", "VRMC_vrm_animation", "VRMC_springBone",
+          "MSFT_packing_occlusionRoughnessMetallic", "KHR_physics_rigid_bodies", "OMI_seat",
+          "FB_ngon_encoding", "GODOT_single_root", "AGI_articulations", "KHR_audio_emitter"}) {
+        GltfFile file = corner_file();
+        file.root["extensionsUsed"] = file.root["extensionsRequired"] = Json::array({name});
+        EXPECT_TRUE(load(file).warnings.empty()) << name;
+    }
+    // What begins like one of them is another.
+    GltfFile file = corner_file();
+    file.root["extensionsRequired"] = Json::array({"MSFT_lod2"});
+    expect_error(file,
+                 "#/extensionsRequired/0: the file requires the extension \"MSFT_lod2\", which is not read; "
+                 "export the scene without it");
+}
+
+TEST_F(GltfScene, WhatOtherExtensionsWouldChangeIsSaid) {
+    for (const auto& [name, missing] :
+         {std::pair("EXT_lights_ies", "lights shine evenly, without a profile"),
+          std::pair("EXT_texture_avif", "images in PNG, JPEG or WebP take the place of those that it adds"),
+          std::pair("VRMC_materials_mtoon", "toon shading looks as the material does without it"),
+          std::pair("VRM", "toon shading looks as the material does without it")}) {
+        GltfFile file = corner_file();
+        file.root["extensionsUsed"] = Json::array({name});
+        expect_warning(file,
+                       concat("#/extensionsUsed/0: the extension \"", name, "\" is not read: ", missing));
+    }
 }
 
 TEST_F(GltfScene, WhatAFileSaysOfItselfIsKept) {

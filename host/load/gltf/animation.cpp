@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "load/gltf/accessor.h"
 #include "load/gltf/names.h"
+#include "load/gltf/values.h"
 #include "load/quote.h"
 
 namespace candela::gltf {
@@ -118,7 +119,12 @@ void apply_channel(File& file, const Node& animation, const Node& channel, float
                    std::vector<PosedNode>& nodes) {
     const Node target = channel.require("target");
     const auto reference = target.find("node");
-    if (!reference) return;  // Of an extension, and without effect otherwise.
+    if (!reference) {
+        if (extension_of(target, "KHR_animation_pointer"))
+            file.warn(target,
+                      "ignored what KHR_animation_pointer moves: only nodes and weights are animated");
+        return;
+    }
     PosedNode& node = nodes[file.index("nodes", *reference)];
     const Node path = target.require("path");
     const std::string& kind = path.string();

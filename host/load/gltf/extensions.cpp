@@ -11,30 +11,101 @@
 namespace candela::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 27> READ{
-    "EXT_lights_image_based", "EXT_mesh_gpu_instancing", "EXT_texture_webp", "KHR_lights_punctual",
-    "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_diffuse_transmission",
-    "KHR_materials_dispersion", "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_iridescence", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_sheen",
-    "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_variants",
-    "KHR_materials_volume", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_texture_transform",
-    "KHR_xmp_json_ld",
-    // What these say does not show in a picture.
-    "EXT_mesh_manifold", "KHR_node_hoverability", "KHR_node_selectability", "KHR_interactivity",
-    "MSFT_packing_normalRoughnessMetallic"};
+constexpr std::array<std::string_view, 23> READ{"EXT_lights_image_based",
+                                                "EXT_mesh_gpu_instancing",
+                                                "EXT_texture_webp",
+                                                "KHR_lights_punctual",
+                                                "KHR_materials_anisotropy",
+                                                "KHR_materials_clearcoat",
+                                                "KHR_materials_diffuse_transmission",
+                                                "KHR_materials_dispersion",
+                                                "KHR_materials_emissive_strength",
+                                                "KHR_materials_ior",
+                                                "KHR_materials_iridescence",
+                                                "KHR_materials_pbrSpecularGlossiness",
+                                                "KHR_materials_sheen",
+                                                "KHR_materials_specular",
+                                                "KHR_materials_transmission",
+                                                "KHR_materials_unlit",
+                                                "KHR_materials_variants",
+                                                "KHR_materials_volume",
+                                                "KHR_mesh_quantization",
+                                                "KHR_node_visibility",
+                                                "KHR_texture_transform",
+                                                "KHR_xmp_json_ld",
+                                                "VRMC_materials_hdr_emissiveMultiplier"};
+
+// What these say does not show in a picture: metadata, sound, physics, behaviour, hints, lines. Where a name
+// ends in *, all that begin so.
+constexpr std::array<std::string_view, 38> UNSEEN{"AGI_articulations",
+                                                  "AGI_stk_metadata",
+                                                  "BENTLEY_materials_line_style",
+                                                  "BENTLEY_materials_point_style",
+                                                  "CESIUM_primitive_outline",
+                                                  "CESIUM_RTC",
+                                                  "EXT_feature_metadata",
+                                                  "EXT_instance_features",
+                                                  "EXT_mesh_features",
+                                                  "EXT_mesh_manifold",
+                                                  "EXT_mesh_primitive_edge_visibility",
+                                                  "EXT_structural_metadata",
+                                                  "FB_geometry_metadata",
+                                                  "FB_ngon_encoding",
+                                                  "GODOT_single_root",
+                                                  "GOOGLE_camera_settings",
+                                                  "GRIFFEL_bim_data",
+                                                  "HUBS_components",
+                                                  "KHR_animation_pointer",
+                                                  "KHR_audio*",
+                                                  "KHR_collision_shapes",
+                                                  "KHR_implicit_shapes",
+                                                  "KHR_interactivity",
+                                                  "KHR_node_hoverability",
+                                                  "KHR_node_selectability",
+                                                  "KHR_physics_rigid_bodies",
+                                                  "KHR_rigid_bodies",
+                                                  "KHR_xmp",
+                                                  "MOZ_hubs_components",
+                                                  "MSFT_audio_emitter",
+                                                  "MSFT_collision_shapes",
+                                                  "MSFT_lod",
+                                                  "MSFT_packing*",
+                                                  "MSFT_physics*",
+                                                  "OMI_*",
+                                                  "VRMC_node_constraint",
+                                                  "VRMC_springBone*",
+                                                  "VRMC_vrm*"};
 
 // What is not read, and what is missing then.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 7> NOT_READ{
-    {{"EXT_meshopt_compression", "uncompressed data take the place of compressed ones"},
-     {"KHR_animation_pointer", "only nodes and weights are animated"},
-     {"KHR_draco_mesh_compression", "uncompressed meshes take the place of compressed ones"},
+constexpr const char* UNCOMPRESSED = "uncompressed data take the place of compressed ones";
+constexpr const char* OTHER_IMAGES = "images in PNG, JPEG or WebP take the place of those that it adds";
+constexpr const char* NO_TOON = "toon shading looks as the material does without it";
+constexpr std::array<std::pair<std::string_view, std::string_view>, 16> NOT_READ{
+    {{"EXT_lights_ies", "lights shine evenly, without a profile"},
+     {"EXT_meshopt_compression", UNCOMPRESSED},
+     {"EXT_texture_avif", OTHER_IMAGES},
+     {"FB_materials_modmap", "materials look as they do without it"},
+     {"GOOGLE_tilt_brush_material", "brushes look as their materials do without it"},
+     {"KHR_draco_mesh_compression", UNCOMPRESSED},
+     {"KHR_gaussian_splatting", "splats are points, which are left out"},
      {"KHR_materials_volume_scatter", "bodies absorb light within, but do not scatter it"},
-     {"KHR_meshopt_compression", "uncompressed data take the place of compressed ones"},
-     {"KHR_texture_basisu", "images in PNG, JPEG or WebP take the place of KTX textures"},
-     {"MSFT_texture_dds", "images in PNG, JPEG or WebP take the place of DDS textures"}}};
+     {"KHR_meshopt_compression", UNCOMPRESSED},
+     {"KHR_techniques_webgl", "materials look as they do without it"},
+     {"KHR_texture_basisu", OTHER_IMAGES},
+     {"MOZ_lightmap", "light is computed instead"},
+     {"MSFT_texture_dds", OTHER_IMAGES},
+     {"NV_materials_mdl", "materials look as they do without it"},
+     {"VRM", NO_TOON},
+     {"VRMC_materials_mtoon", NO_TOON}}};
 
-bool is_read(std::string_view name) {
-    return std::ranges::find(READ, name) != READ.end();
+bool fits(std::string_view name, std::string_view known) {
+    return known.ends_with('*') ? name.starts_with(known.substr(0, known.size() - 1)) : name == known;
+}
+
+// Whether a picture lacks nothing of what the extension says.
+bool needs_no_warning(std::string_view name) {
+    return std::ranges::find(READ, name) != READ.end() ||
+           std::ranges::any_of(UNSEEN, [&](std::string_view known) { return fits(name, known); });
 }
 
 }  // namespace
@@ -42,7 +113,7 @@ bool is_read(std::string_view name) {
 void check_extensions(File& file) {
     if (const auto required = file.root().find("extensionsRequired")) {
         for (const Node& name : required->elements()) {
-            if (is_read(name.string())) continue;
+            if (needs_no_warning(name.string())) continue;
             name.fail("the file requires the extension " + quote(name.string()) +
                       ", which is not read; export the scene without it");
         }
@@ -50,7 +121,7 @@ void check_extensions(File& file) {
     const auto used = file.root().find("extensionsUsed");
     if (!used) return;
     for (const Node& name : used->elements()) {
-        if (is_read(name.string())) continue;
+        if (needs_no_warning(name.string())) continue;
         const auto known = std::ranges::find(NOT_READ, std::string_view(name.string()),
                                              [](const auto& entry) { return entry.first; });
         file.warn(name, "the extension " + quote(name.string()) + " is not read: " +

@@ -183,7 +183,7 @@ class MaterialReader {
         if (number(volume, "thicknessFactor", 0.0f, FLOAT_MAX, 0.0f) == 0.0f) return;
         m.inside.emplace();
         const auto distance = volume.find("attenuationDistance");
-        if (!distance || distance->is_null()) return;  // Infinite. (JSON has no other word for it than null.)
+        if (!distance) return;          // Infinite.
         constexpr float LEAST = 1e-6f;  // Black would take up all light at once, and not as an exponential.
         const vec3 left = color_of(file_, volume, "attenuationColor", 1.0f, vec3(1.0f));
         const double length = distance->number();
@@ -241,7 +241,9 @@ class MaterialReader {
         const vec3 factor = color_of(file_, node_, "emissiveFactor", MOST, vec3(0.0f));
         if (factor == vec3(0.0f)) return;
         const auto e = extension("KHR_materials_emissive_strength");
-        const float strength = e ? number(*e, "emissiveStrength", 0.0f, MOST, 1.0f) : 1.0f;
+        float strength = e ? number(*e, "emissiveStrength", 0.0f, MOST, 1.0f) : 1.0f;
+        if (const auto old = extension("VRMC_materials_hdr_emissiveMultiplier"); old && !e)
+            strength = number(*old, "emissiveMultiplier", 0.0f, MOST, 1.0f);
         const dvec3 radiance = min(dvec3(factor) * double(strength), dvec3(double(MOST)));
         m.emission = vec3(radiance);
         m.emission.texture = texture(node_, "emissiveTexture", TextureEncoding::srgb);
