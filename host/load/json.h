@@ -39,6 +39,7 @@ struct Document {
     std::string file;  // Its name in messages.
     Value root;
     Places places = Places::lines;
+    bool nulls_are_absent = false;  // Whether a member that is null is as good as none.
 };
 
 // Where a value of the document is, as messages begin: `file:line:column`, or `file#/key/0` with its JSON

@@ -87,7 +87,10 @@ void Node::allow_only(std::initializer_list<std::string_view> keys,
 
 std::optional<Node> Node::find(std::string_view key) const {
     for (const json::Member& member : object()) {
-        if (member.key == key) return child(member.key, member.value);
+        if (member.key != key) continue;
+        const Node node = child(member.key, member.value);
+        if (node.is_null() && document_->nulls_are_absent) return std::nullopt;
+        return node;
     }
     return std::nullopt;
 }

@@ -43,8 +43,32 @@ TEST_F(GltfFileTest, ABinaryFileMayHoldFurtherChunksAndZerosAsSpaces) {
     const Scene scene = load_text(file.glb() + "rest", {}, "m.glb");
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_EQ(folder_.without_folder(scene.warnings[0]),
-              "m.glb: ignored what follows the end that the header states, at byte " +
-                  std::to_string(file.glb().size()));
+              "m.glb: ignored what follows the last chunk, at byte " + std::to_string(file.glb().size()));
+    // The buffer after a chunk of another kind.
+    expect_corner(load_text(
+        glb_of(glb_chunk("JSON", json) + glb_chunk("XTRA", "anything") + glb_chunk("BIN\0", file.bytes)), {},
+        "m.glb"));
+}
+
+// Programs forget the headers of file and chunks in the length that the header states.
+TEST_F(GltfFileTest, ReadsAllChunksIfTheHeaderStatesFewerBytes) {
+    const std::string glb = corner_file().glb();
+    for (const size_t length : {size_t(0), size_t(40), glb.size() - 12, glb.size() - 20}) {
+        std::string text = glb;
+        text.replace(8, 4, little_endian(uint32_t(length)));
+        const Scene scene = load_text(text, {}, "m.glb");
+        EXPECT_EQ(scene.shapes.size(), 1u);
+        ASSERT_EQ(scene.warnings.size(), 1u);
+        EXPECT_EQ(folder_.without_folder(scene.warnings[0]),
+                  concat("m.glb: the header states ", length, " bytes, but the chunks have ", glb.size(),
+                         "; all are read"));
+    }
+    std::string text = glb + "abc";
+    text.replace(8, 4, little_endian(uint32_t(text.size())));
+    const Scene scene = load_text(text, {}, "m.glb");
+    EXPECT_EQ(scene.shapes.size(), 1u);
+    EXPECT_EQ(folder_.without_folder(scene.warnings.at(0)),
+              concat("m.glb: ignored what follows the last chunk, at byte ", glb.size()));
 }
 
 TEST_F(GltfFileTest, RefusesDamagedBinaryFiles) {
@@ -140,11 +164,12 @@ TEST_F(GltfFileTest, RefusesDataThatAreNoBase64) {
     const auto expect = [&](const std::string& uri, const std::string& message) {
         expect_text_error(naming(uri), "m.gltf#/buffers/0/uri: " + message);
     };
-    const std::string not_base64 = "the data of the URI are no base64; is the file cut off?";
+    const std::string not_base64 = "the data of the URI are not base64; is the file cut off?";
     expect("data:;base64,AAAA*", not_base64);
     expect("data:;base64,AAAAA", not_base64);
     expect("data:;base64,AA=A", not_base64);
     expect("data:;base64,AAA===", not_base64);
+    expect("data:;base64,AAA%3", not_base64);
     const std::string kind = "data in a URI are read as base64, data:TYPE;base64,DATA; encode them so";
     expect("data:text/plain,hello", kind);
     expect("data:;base64", kind);
@@ -155,13 +180,25 @@ TEST_F(GltfFileTest, RefusesDataThatAreNoBase64) {
     ASSERT_TRUE(text.ends_with("=="));
     text.resize(text.size() - 2);
     expect_corner(load_text(file.document("data:application/gltf-buffer;base64," + text)));
+    // In lines, as mail has them; percent-encoded, as of any URI; a scheme in capitals.
+    expect_corner(load_text(file.document("data:;base64," + text.insert(20, "\r\n ") + "%3D%3D")));
+    expect_corner(load_text(file.document("DATA:application/octet-stream;charset=utf-8;base64," + text)));
 }
 
 TEST_F(GltfFileTest, RefusesBuffersAndViewsThatAreTooShort) {
     GltfFile file = corner_file();
     const auto expect = [&](const std::string& message) { expect_error(file, message); };
     file.root["buffers"] = {{{"byteLength", 37}, {"uri", "data:;base64," + base64(file.bytes)}}};
-    expect("#/buffers/0: the buffer has 36 bytes, not the 37 that its byteLength states; is a file cut off?");
+    // What is missing is not needed.
+    EXPECT_EQ(
+        expect_warning(file,
+                       "#/buffers/0: the buffer has 36 bytes, not the 37 that its byteLength states; is "
+                       "a file cut off?")
+            .shapes.size(),
+        1u);
+    file.root["bufferViews"][0]["byteLength"] = 37;
+    expect("#/bufferViews/0: the view ends at byte 37 of its buffer, which has 36; is a file cut off?");
+    file.root["bufferViews"][0]["byteLength"] = 36;
     file.root["buffers"][0]["byteLength"] = 35;
     expect("#/bufferViews/0: the view ends at byte 36 of its buffer, which has 35; is a file cut off?");
     file.root["buffers"][0]["byteLength"] = 0;
@@ -187,6 +224,26 @@ TEST_F(GltfFileTest, RefusesBuffersAndViewsThatAreTooShort) {
     expect(
         "#/bufferViews/0/buffer: there is no 1 in \"buffers\", which is empty or missing; name one that the "
         "file has");
+}
+
+TEST_F(GltfFileTest, BuffersThatExtensionsFillAreRefusedByTheirNames) {
+    for (const std::string name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+        GltfFile file = corner_file();
+        file.root["buffers"] = {{{"byteLength", 36}, {"extensions", {{name, {{"fallback", true}}}}}}};
+        expect_error(file, "#/buffers/0: the data are compressed by meshopt (" + name +
+                               "), which is not read; export the file without compression");
+    }
+}
+
+TEST_F(GltfFileTest, MembersThatAreNullAreAbsent) {
+    GltfFile file = corner_file();
+    file.root["animations"] = file.root["extensionsRequired"] = file.root["scene"] = nullptr;
+    file.root["nodes"][0].update({{"name", nullptr}, {"translation", nullptr}, {"children", nullptr}});
+    file.root["meshes"][0]["primitives"][0]["material"] = nullptr;
+    file.root["bufferViews"][0]["byteOffset"] = nullptr;
+    expect_corner(load(file));
+    file.root["bufferViews"][0]["byteLength"] = nullptr;
+    expect_error(file, "#/bufferViews/0: the key \"byteLength\" is missing here; add it");
 }
 
 TEST_F(GltfFileTest, KnowsItsExtensionInUpperAndLowerCase) {

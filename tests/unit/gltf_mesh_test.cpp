@@ -284,11 +284,6 @@ TEST_F(GltfMesh, RefusesIndicesAndAttributesThatDoNotFit) {
     primitive["mode"] = 7;
     expect_error(file,
                  "#/meshes/0/primitives/0/mode: \"mode\": expected a whole number from 0 to 6, found 7");
-    primitive.erase("attributes");
-    primitive["mode"] = 4;
-    expect_error(file, "#/meshes/0/primitives/0: the key \"attributes\" is missing here; add it");
-    file.root["meshes"][0] = Json::object();
-    expect_error(file, "#/meshes/0: the key \"primitives\" is missing here; add it");
 }
 
 TEST_F(GltfMesh, LeavesOutWhatShowsNoSurface) {
@@ -301,7 +296,12 @@ TEST_F(GltfMesh, LeavesOutWhatShowsNoSurface) {
     }
     GltfFile none;
     none.show({{"attributes", {{"NORMAL", none.add_corner()}}}});
-    expect_warning(none, "#/meshes/0/primitives/0: left out a primitive without positions");
+    const std::string message = "#/meshes/0/primitives/0: left out a primitive without positions";
+    expect_warning(none, message);
+    none.root["meshes"][0]["primitives"][0].erase("attributes");
+    expect_warning(none, message);
+    none.root["meshes"][0] = Json::object();
+    expect_warning(none, "#/meshes/0: left out a mesh without primitives");
     const auto expect_flat = [&](const std::vector<float>& positions) {
         GltfFile file;
         file.show({{"attributes", {{"POSITION", file.add("VEC3", positions)}}}});
@@ -309,6 +309,35 @@ TEST_F(GltfMesh, LeavesOutWhatShowsNoSurface) {
     };
     expect_flat({0, 0, 0, 1, 1, 1, 2, 2, 2});
     expect_flat({0, 0, 0, 1, 1, 1});  // No triangle at all.
+    const auto expect_empty = [&](const char* type, int component, bool of_indices) {
+        GltfFile file;
+        const size_t positions = file.add_corner();
+        const size_t empty =
+            file.push("accessors", {{"type", type}, {"componentType", component}, {"count", 0}});
+        Json primitive = {{"attributes", {{"POSITION", of_indices ? positions : empty}}}};
+        if (of_indices) primitive["indices"] = empty;
+        file.show(primitive);
+        expect_warning(file, "#/meshes/0/primitives/0: left out a primitive without triangles");
+    };
+    expect_empty("VEC3", 5126, false);
+    expect_empty("SCALAR", 5123, true);
+}
+
+TEST_F(GltfMesh, DataThatOnlyDracoHoldsAreRefused) {
+    GltfFile file = corner_file();
+    Json& primitive = file.root["meshes"][0]["primitives"][0];
+    primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
+    // The same data stand beside it.
+    EXPECT_EQ(load(file).shapes.size(), 1u);
+    const std::string message =
+        "#/meshes/0/primitives/0: the mesh is compressed by Draco (KHR_draco_mesh_compression), which is not "
+        "read; export it without compression";
+    primitive["indices"] =
+        file.push("accessors", {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}});
+    expect_error(file, message);
+    file.root["meshes"][0]["primitives"][0].erase("indices");
+    file.root["accessors"][0].erase("bufferView");
+    expect_error(file, message);
 }
 
 }  // namespace

@@ -89,6 +89,11 @@ TEST_F(GltfScene, WhatAFileSaysOfItselfIsKept) {
     EXPECT_EQ(
         load(file).attributes,
         (Attributes{{"gltf.generator", "by hand"}, {"gltf.copyright", "CC0"}, {"gltf.version", "2.0"}}));
+    // Names of another type are none.
+    file.root["asset"]["generator"] = file.root["nodes"][0]["name"] = file.root["meshes"][0]["name"] = 7;
+    file.root["materials"] = {{{"name", 7}}};
+    file.root["meshes"][0]["primitives"][0]["material"] = 0;
+    EXPECT_EQ(load(file).materials.at(0).name, "material 0");
 }
 
 TEST_F(GltfScene, ANativeSceneReplacesMaterialsByName) {

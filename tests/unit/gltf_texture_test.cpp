@@ -45,12 +45,24 @@ TEST_F(GltfTexture, SamplersSayWhatLiesBetweenAndBeyondTexels) {
     file.root["samplers"][0] = {{"magFilter", 9729}, {"wrapS", 10497}};
     EXPECT_EQ(read(file).filter, TextureFilter::bilinear);
     EXPECT_EQ(read(file).wrap_u, Wrap::repeat);
-    file.root["samplers"][0]["wrapT"] = 1;
-    expect_error(file, "#/samplers/0/wrapT: \"wrapT\": expected 33071, 33648 or 10497, found 1");
+    // What glTF has no number for, and programs write.
+    for (const auto& [mode, nearest, wrap] :
+         {std::tuple(0, 10497, Wrap::repeat), std::tuple(10496, 33071, Wrap::clamp),
+          std::tuple(33069, 33071, Wrap::clamp)}) {
+        file.root["samplers"][0]["wrapT"] = mode;
+        const Scene scene =
+            expect_warning(file, concat("#/samplers/0/wrapT: ", mode, " is not 33071, 33648 or 10497; ",
+                                        nearest, " takes its place"));
+        EXPECT_EQ(texture_of(scene).value().wrap_v, wrap);
+    }
     file.root["textures"][0]["sampler"] = 1;
     expect_error(file,
                  "#/textures/0/sampler: there is no 1 in \"samplers\", which has 0 to 0; name one that the "
                  "file has");
+    file.root.erase("samplers");
+    const Scene without =
+        expect_warning(file, "#/textures/0/sampler: the file has no samplers; the texture repeats");
+    EXPECT_EQ(texture_of(without).value().wrap_u, Wrap::repeat);
 }
 
 TEST_F(GltfTexture, ReadsTwoSetsOfCoordinates) {
@@ -124,11 +136,16 @@ TEST_F(GltfTexture, ImagesAreFilesDataInLineOrViews) {
     const Scene within = load(file);
     EXPECT_EQ(within.images.at(0).bytes, "a view");
     EXPECT_EQ(folder_.without_folder(within.images[0].path.string()), "m.gltf#/images/0");
+    file.root["images"][0]["uri"] = "";
+    EXPECT_EQ(load(file).images.at(0).bytes, "a view");
     file.root["images"][0]["uri"] = "a.png";
     const std::string one = "#/images/0: an image has either a uri or a bufferView; export the file again";
     expect_error(file, one);
-    file.root["images"][0] = {{"mimeType", "image/png"}};
-    expect_error(file, one);
+    for (const Json& none : {Json{{"mimeType", "image/png"}}, Json{{"uri", ""}}}) {
+        file.root["images"][0] = none;
+        EXPECT_FALSE(texture_of(
+            expect_warning(file, "#/images/0: the image has neither a uri nor a bufferView; it is white")));
+    }
     file.root["images"][0] = {{"uri", "https://example.org/a.png"}};
     expect_error(file,
                  "#/images/0/uri: only files that are named relative to this one are read, not "
@@ -220,9 +237,13 @@ TEST_F(GltfTexture, WebpComesFirstAndUnreadFormatsAreLeftOut) {
     file.root["textures"][0]["extensions"] = {{"KHR_texture_basisu", {{"source", 1}}}};
     EXPECT_EQ(load(file).images.at(0).path, folder_.path() / "a.png");
     file.root["textures"][0].erase("source");
-    const Scene scene = expect_warning(
-        file, "#/textures/0: the texture has no image in a format that is read; it counts as white");
-    EXPECT_FALSE(texture_of(scene));
+    for (const std::string name : {"KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"}) {
+        file.root["textures"][0]["extensions"] = {{name, {{"source", 1}}}};
+        EXPECT_FALSE(texture_of(expect_warning(file, "#/textures/0: the texture has an image of " + name +
+                                                         " alone, which is not read; it is white")));
+    }
+    file.root["textures"][0].erase("extensions");
+    EXPECT_FALSE(texture_of(expect_warning(file, "#/textures/0: the texture has no image; it is white")));
 }
 
 TEST_F(GltfTexture, VariantsReplaceMaterials) {

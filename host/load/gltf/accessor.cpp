@@ -67,6 +67,10 @@ std::span<const std::byte> element_bytes(File& file, const Node& node, uint64_t 
     stride = size;
     if (const auto value = view.find("byteStride")) {
         stride = value->integer(0, UINT32_MAX);
+        if (stride == 0) {
+            file.warn(*value, "a stride of 0 is read as none: elements follow each other");
+            stride = size;
+        }
         if (stride < size) value->fail_expected(concat("at least ", size, ", the size of an element"));
     }
     const auto value = node.find("byteOffset");

@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "load/gltf/uri.h"
+#include "load/gltf/values.h"
 #include "load/quote.h"
 
 namespace candela::gltf {
@@ -34,6 +35,15 @@ std::span<const std::byte> as_span(std::string_view bytes) {
     return std::as_bytes(std::span(bytes.data(), bytes.size()));
 }
 
+// Throws Error for a buffer that is to be filled by an extension alone.
+void check_meshopt(const Node& buffer) {
+    for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+        if (!extension_of(buffer, name)) continue;
+        buffer.fail(concat("the data are compressed by meshopt (", name,
+                           "), which is not read; export the file without compression"));
+    }
+}
+
 // Throws Error unless a loader of glTF 2.0 can read the file.
 void check_version(const Node& root) {
     const Node asset = root.require("asset");
@@ -56,6 +66,7 @@ File::File(const std::filesystem::path& path, LoadProgress progress)
     : progress_(std::move(progress)), path_(path), bytes_(read(path)) {
     document_.file = path.string();
     document_.places = json::Document::Places::pointers;
+    document_.nulls_are_absent = true;  // Some programs write null for what they do not know.
     std::string_view text = bytes_.starts_with(GLB_MAGIC) ? split_glb() : std::string_view(bytes_);
     if (text.starts_with(BYTE_ORDER_MARK))
         text.remove_prefix(BYTE_ORDER_MARK.size());  // Of careless programs.
@@ -83,23 +94,29 @@ std::string_view File::split_glb() {
     }
     const uint32_t length = word_at(bytes, 8);
     if (length > bytes.size()) cut_off("it is shorter than its header says");
-    if (length < bytes.size())
-        warn(concat(name, ": ignored what follows the end that the header states, at byte ", length));
-    bytes = bytes.substr(0, std::max<size_t>(length, GLB_HEADER_SIZE));
 
     std::optional<std::string_view> text;
-    size_t chunks = 0;
-    for (size_t offset = GLB_HEADER_SIZE; offset < bytes.size(); ++chunks) {
-        if (bytes.size() - offset < CHUNK_HEADER_SIZE) cut_off("a chunk's header has 8 bytes");
+    size_t offset = GLB_HEADER_SIZE, chunks = 0;
+    for (; offset < bytes.size() && offset != length; ++chunks) {
+        if (bytes.size() - offset < CHUNK_HEADER_SIZE) {
+            if (text) break;
+            cut_off("a chunk's header has 8 bytes");
+        }
         const size_t size = word_at(bytes, offset);
         const uint32_t type = word_at(bytes, offset + 4);
         offset += CHUNK_HEADER_SIZE;
         if (size > bytes.size() - offset) cut_off("a chunk is shorter than its header says");
         if (chunks == 0 && type == JSON_CHUNK) text = bytes.substr(offset, size);
-        if (chunks == 1 && type == BINARY_CHUNK) chunk_ = bytes.substr(offset, size);
+        if (text && !chunk_ && type == BINARY_CHUNK) chunk_ = bytes.substr(offset, size);
         offset += size;
     }
     if (!text) throw Error(name + ": the first chunk of the file is not its JSON document; export it again");
+    if (offset < bytes.size()) {
+        warn(concat(name, ": ignored what follows the last chunk, at byte ", offset));
+    } else if (length < offset) {
+        warn(concat(name, ": the header states ", length, " bytes, but the chunks have ", offset,
+                    "; all are read"));
+    }
     // Filled up with spaces; some programs fill with zeros.
     return text->substr(0, text->find_last_not_of('\0') + 1);
 }
@@ -158,13 +175,14 @@ std::span<const std::byte> File::buffer_bytes(uint32_t i) {
     } else if (i == 0 && chunk_) {
         bytes = *chunk_;
     } else {
+        check_meshopt(buffer);
         buffer.fail(
             "the buffer has neither a uri nor, as the first of a .glb, a binary chunk; export the file "
             "again");
     }
     if (bytes.size() < length) {
-        buffer.fail(concat("the buffer has ", bytes.size(), " bytes, not the ", length,
-                           " that its byteLength states; is a file cut off?"));
+        warn(buffer, concat("the buffer has ", bytes.size(), " bytes, not the ", length,
+                            " that its byteLength states; is a file cut off?"));
     }
     return as_span(bytes.substr(0, length));
 }

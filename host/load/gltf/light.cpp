@@ -63,12 +63,14 @@ SpotLight read_cone(File& file, const Node& light) {
 LightUnits units_of(const File& file, const GltfOptions& options) {
     if (options.light_units) return *options.light_units;
     const auto generator = file.root().require("asset").find("generator");
-    if (!generator || generator->string().find("Blender") == std::string::npos) return LightUnits::spec;
-    // "Khronos glTF Blender I/O v3.3.27". Before 3.4, it wrote its own watts.
+    const std::string name = generator && generator->is_string() ? generator->string() : "";
+    if (name.find("Blender") == std::string::npos) return LightUnits::spec;
+    // "Khronos glTF Blender I/O v3.3.27". Before 3.4, it wrote its own watts. The first exporters, "Khronos
+    // Blender glTF 2.0 I/O" and the like, state no version.
+    if (name.starts_with("Khronos Blender glTF 2.0")) return LightUnits::raw;
     int major = INT_MAX, minor = 0;
-    const size_t version = generator->string().find("I/O v");
-    if (version != std::string::npos)
-        std::sscanf(generator->string().c_str() + version, "I/O v%d.%d", &major, &minor);
+    const size_t version = name.find("I/O v");
+    if (version != std::string::npos) std::sscanf(name.c_str() + version, "I/O v%d.%d", &major, &minor);
     return std::pair(major, minor) < std::pair(3, 4) ? LightUnits::raw : LightUnits::blender;
 }
 

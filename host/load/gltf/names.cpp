@@ -11,7 +11,7 @@ namespace candela::gltf {
 
 std::string name_of(const Node& element, const std::string& otherwise) {
     const auto name = element.find("name");
-    return name && !name->string().empty() ? name->string() : otherwise;
+    return name && name->is_string() && !name->string().empty() ? name->string() : otherwise;
 }
 
 size_t find_by_name(const File& file, const std::optional<Node>& array, const std::string& name,

@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "load/gltf/accessor.h"
+#include "load/gltf/values.h"
 #include "scene/mesh.h"
 #include "scene/texture.h"
 
@@ -293,6 +294,29 @@ class PrimitiveReader {
     std::vector<uint32_t> rows_;  // The vertices that triangles use.
 };
 
+// Throws Error for a primitive whose data are compressed, and not given without compression, too.
+void check_draco(const File& file, const Node& primitive) {
+    if (!extension_of(primitive, "KHR_draco_mesh_compression")) return;
+    const auto check = [&](const Node& reference) {
+        if (file.resolve("accessors", reference).find("bufferView")) return;
+        primitive.fail(
+            "the mesh is compressed by Draco (KHR_draco_mesh_compression), which is not read; export it "
+            "without "
+            "compression");
+    };
+    if (const auto indices = primitive.find("indices")) check(*indices);
+    if (const auto attributes = primitive.find("attributes")) {
+        for (const Node& attribute : attributes->members())
+            check(attribute);
+    }
+}
+
+// Whether the accessor of that index states that it has no elements.
+bool is_empty(const File& file, const Node& reference) {
+    const auto count = file.resolve("accessors", reference).find("count");
+    return count && count->is_number() && count->number() == 0.0;
+}
+
 }  // namespace
 
 std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive,
@@ -304,9 +328,16 @@ std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive,
         file.warn(primitive, "left out points or lines, which have no surface");
         return std::nullopt;
     }
-    const auto position = primitive.require("attributes").find("POSITION");
+    check_draco(file, primitive);
+    const auto attributes = primitive.find("attributes");
+    const auto position = attributes ? attributes->find("POSITION") : std::nullopt;
     if (!position) {
         file.warn(primitive, "left out a primitive without positions");
+        return std::nullopt;
+    }
+    const auto indices = primitive.find("indices");
+    if (is_empty(file, *position) || (indices && is_empty(file, *indices))) {
+        file.warn(primitive, "left out a primitive without triangles");
         return std::nullopt;
     }
     const uint32_t vertices = Accessor(file, *position, {"VEC3"}).count();

@@ -129,8 +129,9 @@ size_t SceneReader::count_primitives(const std::vector<uint32_t>& nodes) const {
     size_t primitives = 0;
     for (const uint32_t i : nodes) {
         const auto mesh = file_.element("nodes", i).find("mesh");
-        if (mesh && nodes_[i].is_visible)
-            primitives += file_.resolve("meshes", *mesh).require("primitives").size();
+        if (!mesh || !nodes_[i].is_visible) continue;
+        const auto all = file_.resolve("meshes", *mesh).find("primitives");
+        primitives += all ? all->size() : 0;
     }
     return primitives;
 }
@@ -151,7 +152,12 @@ void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
     const Node reference = node.require("mesh");
     const uint32_t index = file_.index("meshes", reference);
     const Node mesh = file_.element("meshes", index);
-    const Node primitives = mesh.require("primitives");
+    const auto found = mesh.find("primitives");
+    if (!found) {
+        file_.warn(mesh, "left out a mesh without primitives");
+        return;
+    }
+    const Node& primitives = *found;
 
     std::vector<double> weights = posed.weights;
     if (const auto own = mesh.find("weights"); own && weights.empty()) weights = own->numbers(own->size());
@@ -262,7 +268,10 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
         result.vertical_fov = float(angle.number());
         if (!(result.vertical_fov > 0.0f && result.vertical_fov < PI))
             angle.fail_expected("an angle between 0 and pi");
-        if (const auto ratio = view.find("aspectRatio")) aspect = ratio->positive();
+        if (const auto ratio = view.find("aspectRatio")) {
+            aspect = std::max(ratio->number(), 0.0);
+            if (aspect == 0.0) file_.warn(*ratio, "an aspect ratio that is not above 0 is ignored");
+        }
     } else {
         type.fail_expected(R"("perspective" or "orthographic")");
     }

@@ -15,24 +15,29 @@ namespace {
 
 // The numbers of OpenGL.
 constexpr uint32_t NEAREST = 9728;
+constexpr uint32_t CLAMP = 10496;
+constexpr uint32_t CLAMP_TO_BORDER = 33069;
 constexpr uint32_t CLAMP_TO_EDGE = 33071;
 constexpr uint32_t MIRRORED_REPEAT = 33648;
 constexpr uint32_t REPEAT = 10497;
 
-Wrap read_wrap_mode(const Node& sampler, std::string_view key) {
+Wrap read_wrap_mode(File& file, const Node& sampler, std::string_view key) {
     const auto node = sampler.find(key);
     const uint32_t mode = node ? node->integer(0, UINT32_MAX) : REPEAT;
     if (mode == CLAMP_TO_EDGE) return Wrap::clamp;
     if (mode == MIRRORED_REPEAT) return Wrap::mirror;
-    if (mode != REPEAT) node->fail_expected("33071, 33648 or 10497");
-    return Wrap::repeat;
+    if (mode == REPEAT) return Wrap::repeat;
+    const bool clamps = mode == CLAMP || mode == CLAMP_TO_BORDER;
+    file.warn(*node, concat(mode, " is not 33071, 33648 or 10497; ", clamps ? CLAMP_TO_EDGE : REPEAT,
+                            " takes its place"));
+    return clamps ? Wrap::clamp : Wrap::repeat;
 }
 
-void read_texture_sampler(const Node& sampler, Texture& texture) {
+void read_texture_sampler(File& file, const Node& sampler, Texture& texture) {
     const auto filter = sampler.find("magFilter");
     if (filter && filter->integer(0, UINT32_MAX) == NEAREST) texture.filter = TextureFilter::nearest;
-    texture.wrap_u = read_wrap_mode(sampler, "wrapS");
-    texture.wrap_v = read_wrap_mode(sampler, "wrapT");
+    texture.wrap_u = read_wrap_mode(file, sampler, "wrapS");
+    texture.wrap_v = read_wrap_mode(file, sampler, "wrapT");
 }
 
 // The rows of KHR_texture_transform for coordinates with v upwards. The extension's v grows downwards:
@@ -67,13 +72,29 @@ std::optional<Node> image_of(const Node& texture) {
     return texture.find("source");
 }
 
+// Why there is none.
+std::string reason_without_image(const Node& texture) {
+    for (const char* name : {"KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"}) {
+        if (extension_of(texture, name))
+            return concat("the texture has an image of ", name, " alone, which is not read");
+    }
+    return "the texture has no image";
+}
+
+// Whether an image says where its bytes are.
+bool has_bytes(const Node& image) {
+    const auto uri = image.find("uri");
+    return image.find("bufferView") || (uri && !uri->string().empty());
+}
+
 }  // namespace
 
 uint32_t read_image(File& file, Scene& scene, const Node& reference) {
     const uint32_t index = file.index("images", reference);
     const Node image = file.element("images", index);
-    const auto uri = image.find("uri");
+    auto uri = image.find("uri");
     const auto view = image.find("bufferView");
+    if (view && uri && uri->string().empty()) uri.reset();
     if (uri.has_value() == view.has_value())
         image.fail("an image has either a uri or a bufferView; export the file again");
     const std::string name = concat(file.path().string(), "#/images/", index);
@@ -100,12 +121,22 @@ std::optional<Texture> read_texture(File& file, Scene& scene, const Node& info, 
     const Node element = file.resolve("textures", info.require("index"));
     const auto source = image_of(element);
     if (!source) {
-        file.warn(element, "the texture has no image in a format that is read; it counts as white");
+        file.warn(element, reason_without_image(element) + "; it is white");
+        return std::nullopt;
+    }
+    if (!has_bytes(file.resolve("images", *source))) {
+        file.warn(file.resolve("images", *source),
+                  "the image has neither a uri nor a bufferView; it is white");
         return std::nullopt;
     }
     Texture texture{.image = read_image(file, scene, *source), .encoding = encoding, .channel = channel};
-    if (const auto sampler = element.find("sampler"))
-        read_texture_sampler(file.resolve("samplers", *sampler), texture);
+    if (const auto sampler = element.find("sampler")) {
+        if (file.count("samplers") == 0) {
+            file.warn(*sampler, "the file has no samplers; the texture repeats");
+        } else {
+            read_texture_sampler(file, file.resolve("samplers", *sampler), texture);
+        }
+    }
     auto set = info.find("texCoord");
     if (const auto transform = extension_of(info, "KHR_texture_transform")) {
         read_transform_of_uvs(*transform, texture);

@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
+#include "base/image_io_parts.h"
 #include "load/quote.h"
 
 namespace candela::gltf {
 namespace {
 
 constexpr uint8_t NO_DIGIT = 255;
+constexpr std::string_view SPACES = " \t\r\n";
 
 // The value of each character as a digit of base64.
 constexpr std::array<uint8_t, 256> BASE64_DIGITS = [] {
@@ -24,8 +27,14 @@ constexpr std::array<uint8_t, 256> BASE64_DIGITS = [] {
     return digits;
 }();
 
-// Nothing for a text that is no base64. The padding (=) may be missing.
+// Nothing for a text that is not base64. The padding (=) may be missing, and lines may be broken.
 std::optional<std::string> decode_base64(std::string_view text) {
+    std::string without_spaces;
+    if (text.find_first_of(SPACES) != std::string_view::npos) {
+        std::ranges::copy_if(text, std::back_inserter(without_spaces),
+                             [](char c) { return SPACES.find(c) == std::string_view::npos; });
+        text = without_spaces;
+    }
     for (int i = 0; i < 2 && text.ends_with('='); ++i)
         text.remove_suffix(1);
     if (text.size() % 4 == 1) return std::nullopt;
@@ -80,12 +89,19 @@ bool has_scheme(std::string_view uri) {
 
 std::optional<std::string> inline_data(const Node& uri) {
     const std::string_view text = uri.string();
-    if (!text.starts_with("data:")) return std::nullopt;
+    constexpr std::string_view SCHEME = "data:";
+    if (lower_case(text.substr(0, SCHEME.size())) != SCHEME) return std::nullopt;
     const size_t comma = text.find(',');
     if (comma == std::string_view::npos || !text.substr(0, comma).ends_with(";base64"))
         uri.fail("data in a URI are read as base64, data:TYPE;base64,DATA; encode them so");
-    std::optional<std::string> bytes = decode_base64(text.substr(comma + 1));
-    if (!bytes) uri.fail("the data of the URI are no base64; is the file cut off?");
+    const std::string_view data = text.substr(comma + 1);
+    std::optional<std::string> bytes;
+    if (data.find('%') == std::string_view::npos) {
+        bytes = decode_base64(data);
+    } else if (const auto decoded = decode_percents(std::string(data))) {
+        bytes = decode_base64(*decoded);
+    }
+    if (!bytes) uri.fail("the data of the URI are not base64; is the file cut off?");
     return bytes;
 }
 
