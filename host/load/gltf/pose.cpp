@@ -18,6 +18,17 @@ glm::dmat4 matrix_of(const Trs& trs) {
     return m;
 }
 
+bool make_affine(glm::dmat4& matrix) {
+    constexpr double ROUNDING = 1e-6;  // Of numbers that were floats.
+    bool was_affine = true;
+    for (glm::length_t column = 0; column < 4; ++column) {
+        const double right = column == 3 ? 1.0 : 0.0;
+        was_affine = was_affine && std::abs(matrix[column].w - right) <= ROUNDING;
+        matrix[column].w = right;
+    }
+    return was_affine;
+}
+
 namespace {
 
 glm::dmat4 read_node_matrix(File& file, const Node& node) {
@@ -25,12 +36,7 @@ glm::dmat4 read_node_matrix(File& file, const Node& node) {
     glm::dmat4 matrix;
     for (int i = 0; i < 16; ++i)
         matrix[i / 4][i % 4] = numbers[size_t(i)];
-    const glm::dvec4 last_row(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w);
-    if (last_row != glm::dvec4(0, 0, 0, 1)) {
-        file.warn(node, "the matrix is not affine; its last row counts as 0, 0, 0, 1");
-        for (glm::length_t column = 0; column < 4; ++column)
-            matrix[column].w = column == 3 ? 1.0 : 0.0;
-    }
+    if (!make_affine(matrix)) file.warn(node, "the matrix is not affine; its last row is read as 0, 0, 0, 1");
     return matrix;
 }
 
@@ -64,19 +70,6 @@ void read_placement(File& file, const Node& node, PosedNode& posed) {
     if (scale) posed.trs.scale = scale->vector();
 }
 
-// Throws Error if a node is within itself. Each has one parent at most.
-void check_trees(const File& file, const std::vector<PosedNode>& nodes) {
-    constexpr uint32_t NONE = UINT32_MAX;
-    std::vector<uint32_t> seen_from(nodes.size(), NONE);  // The node from which a way upwards first met it.
-    for (uint32_t i = 0; i < nodes.size(); ++i) {
-        std::optional<uint32_t> at = i;
-        for (; at && seen_from[*at] == NONE; at = nodes[*at].parent)
-            seen_from[*at] = i;
-        if (at && seen_from[*at] == i)
-            file.element("nodes", *at).fail("the node is within itself; nodes form trees");
-    }
-}
-
 }  // namespace
 
 std::vector<PosedNode> read_nodes(File& file) {
@@ -92,33 +85,10 @@ std::vector<PosedNode> read_nodes(File& file) {
         }
         const auto children = node.find("children");
         if (!children) continue;
-        for (const Node& reference : children->elements()) {
-            const uint32_t child = file.index("nodes", reference);
-            if (nodes[child].parent) {
-                reference.fail(concat("node ", child, " has a parent already, node ", *nodes[child].parent,
-                                      "; copy the node, so that each has one"));
-            }
-            nodes[child].parent = uint32_t(i);
-            nodes[i].children.push_back(child);
-        }
+        for (const Node& reference : children->elements())
+            nodes[i].children.push_back(file.index("nodes", reference));
     }
-    check_trees(file, nodes);
     return nodes;
-}
-
-void place_nodes(std::vector<PosedNode>& nodes) {
-    std::vector<uint32_t> waiting;  // Parents before their children.
-    for (size_t i = 0; i < nodes.size(); ++i) {
-        if (!nodes[i].parent) waiting.push_back(uint32_t(i));
-    }
-    while (!waiting.empty()) {
-        PosedNode& node = nodes[waiting.back()];
-        waiting.pop_back();
-        const glm::dmat4 local = node.matrix ? *node.matrix : matrix_of(node.trs);
-        node.world = node.parent ? nodes[*node.parent].world * local : local;
-        if (node.parent) node.is_visible &= nodes[*node.parent].is_visible;
-        waiting.insert(waiting.end(), node.children.begin(), node.children.end());
-    }
 }
 
 }  // namespace candela::gltf

@@ -25,20 +25,21 @@ struct Trs {
 // Scales, then rotates, then moves.
 glm::dmat4 matrix_of(const Trs& trs);
 
+// Makes the last row of a matrix 0, 0, 0, 1. Returns whether it was that before, but for rounding.
+bool make_affine(glm::dmat4& matrix);
+
 struct PosedNode {
     Trs trs{};
     std::optional<glm::dmat4> matrix{};  // In place of trs.
     std::vector<double> weights{};       // Of morph targets; empty: those of the mesh.
     std::vector<uint32_t> children{};
+    // What NodeTrees adds.
     std::optional<uint32_t> parent{};
     bool is_visible = true;  // KHR_node_visibility; once placed, of all nodes above, too.
     glm::dmat4 world{1.0};   // From the node's space to the scene's.
 };
 
-// The nodes as they stand in the file. Throws Error for a node with two parents or within itself.
+// The nodes as they stand in the file, each by itself.
 std::vector<PosedNode> read_nodes(File& file);
-
-// Computes PosedNode::world of all nodes.
-void place_nodes(std::vector<PosedNode>& nodes);
 
 }  // namespace candela::gltf

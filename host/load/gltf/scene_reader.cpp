@@ -13,6 +13,7 @@
 #include "load/gltf/light.h"
 #include "load/gltf/material.h"
 #include "load/gltf/names.h"
+#include "load/gltf/node_trees.h"
 #include "load/gltf/primitive.h"
 #include "load/gltf/skin.h"
 #include "load/gltf/values.h"
@@ -49,6 +50,33 @@ void fit_attributes(File& file, const Node& primitive, const Material& material,
         color.w = 1.0f;
 }
 
+// The transform with a little thickness where it flattens bodies into plane figures, so that their front and
+// back do not share a plane. Nothing if it leaves them no area.
+std::optional<glm::dmat4> thickened(const glm::dmat4& world) {
+    constexpr double THIN = 1e-12;      // As Transform has it.
+    constexpr double THICKNESS = 1e-5;  // Relative to the longest edge of a cube's image.
+    const glm::dmat3 m(world);
+    const double longest = std::max({length(m[0]), length(m[1]), length(m[2])});
+    // Of a matrix of rank 2, the cofactors are the product of the figures' normal and the axis that vanishes.
+    const glm::dmat3 cofactor(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+    const double size = length(dvec3(length(cofactor[0]), length(cofactor[1]), length(cofactor[2])));
+    if (!(size > THIN * longest * longest) || !std::isfinite(size)) return std::nullopt;
+    glm::dmat4 result = world;
+    for (glm::length_t i = 0; i < 3; ++i)
+        result[i] += glm::dvec4(THICKNESS * longest / size * cofactor[i], 0.0);
+    return result;
+}
+
+// Nothing for a transform under which a mesh shows no surface.
+std::optional<Transform> transform_of(const glm::dmat4& world) {
+    Transform transform;
+    if (transform.append(world)) return transform;
+    const std::optional<glm::dmat4> thick = thickened(world);
+    transform = Transform();
+    if (thick && transform.append(*thick)) return transform;
+    return std::nullopt;
+}
+
 }  // namespace
 
 SceneReader::SceneReader(File& file, Scene& scene, const GltfOptions& options, const LoadProgress& progress)
@@ -65,15 +93,15 @@ SceneReader::SceneReader(File& file, Scene& scene, const GltfOptions& options, c
 void SceneReader::read() {
     nodes_ = read_nodes(file_);
     if (options_.time) animate(file_, options_.animation, *options_.time, nodes_);
-    place_nodes(nodes_);
 
     const std::optional<Node> scene = chosen_scene();
     if (scene) {
         if (auto light = read_image_light(file_, *scene)) scene_.environment = std::move(light);
     }
-    const std::vector<uint32_t> nodes = nodes_below(root_nodes(scene));
-    primitives_ = count_primitives(nodes);
-    for (const uint32_t i : nodes)
+    NodeTrees trees(file_, root_nodes(scene), scene.has_value(), nodes_);
+    trees.place();
+    primitives_ = count_primitives(trees.shown());
+    for (const uint32_t i : trees.shown())
         read_node(i);
 }
 
@@ -93,36 +121,19 @@ std::vector<uint32_t> SceneReader::root_nodes(const std::optional<Node>& scene) 
     if (scene) {
         const auto nodes = scene->find("nodes");
         if (!nodes) return roots;
-        for (const Node& reference : nodes->elements()) {
-            const uint32_t node = file_.index("nodes", reference);
-            if (nodes_[node].parent)
-                reference.fail(concat("node ", node, " is a child of node ", *nodes_[node].parent,
-                                      ", and so cannot be a root of the scene"));
-            roots.push_back(node);
-        }
+        for (const Node& reference : nodes->elements())
+            roots.push_back(file_.index("nodes", reference));
         return roots;
     }
+    std::vector<bool> is_child(nodes_.size(), false);
+    for (const PosedNode& node : nodes_) {
+        for (const uint32_t child : node.children)
+            is_child[child] = true;
+    }
     for (uint32_t i = 0; i < nodes_.size(); ++i) {
-        if (!nodes_[i].parent) roots.push_back(i);
+        if (!is_child[i]) roots.push_back(i);
     }
     return roots;
-}
-
-std::vector<uint32_t> SceneReader::nodes_below(std::vector<uint32_t> roots) const {
-    std::vector<uint32_t> waiting = std::move(roots);
-    std::ranges::reverse(waiting);
-    std::vector<uint32_t> nodes;
-    std::vector<bool> seen(nodes_.size(), false);
-    while (!waiting.empty()) {
-        const uint32_t i = waiting.back();
-        waiting.pop_back();
-        if (seen[i]) file_.element("nodes", i).fail("the node is twice in the scene; name it once");
-        seen[i] = true;
-        nodes.push_back(i);
-        const std::vector<uint32_t>& children = nodes_[i].children;
-        waiting.insert(waiting.end(), children.rbegin(), children.rend());
-    }
-    return nodes;
 }
 
 size_t SceneReader::count_primitives(const std::vector<uint32_t>& nodes) const {
@@ -174,11 +185,10 @@ void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
         return;
     }
     for (const glm::dmat4& placement : read_instances(file_, node)) {
-        Transform transform;
-        if (transform.append(posed.world * placement)) {
-            place_mesh(node, primitives, {index, weights}, transform);
+        if (const auto transform = transform_of(posed.world * placement)) {
+            place_mesh(node, primitives, {index, weights}, *transform);
         } else {
-            file_.warn(node, "left out a mesh that its transform flattens");
+            file_.warn(node, "left out a mesh that its transform shrinks to a line or a point");
         }
     }
     progress_("meshes", done_ += primitives.size(), primitives_);

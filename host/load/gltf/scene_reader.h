@@ -31,8 +31,6 @@ class SceneReader {
     std::optional<Node> chosen_scene() const;
     // Its root nodes; of a file without scenes, all nodes without a parent.
     std::vector<uint32_t> root_nodes(const std::optional<Node>& scene) const;
-    // These and all below them, in the order of the file.
-    std::vector<uint32_t> nodes_below(std::vector<uint32_t> roots) const;
     // How many primitives the nodes show.
     size_t count_primitives(const std::vector<uint32_t>& nodes) const;
     void read_node(uint32_t index);

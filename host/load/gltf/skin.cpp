@@ -1,7 +1,6 @@
 // Ref: Khronos, "glTF 2.0 Specification", section 3.7.3.
 #include "load/gltf/skin.h"
 
-#include <cmath>
 #include <optional>
 
 #include "base/text.h"
@@ -23,18 +22,13 @@ std::vector<glm::dmat4> joint_matrices(File& file, const Node& skin, const std::
     if (accessor.count() < matrices.size()) {
         reference->fail(concat("there are ", accessor.count(), " matrices for ", matrices.size(), " joints"));
     }
-    constexpr double AFFINE = 1e-6;  // What rounding leaves in the last row.
     const std::vector<float> numbers = accessor.floats();
     std::optional<size_t> first_odd;
     for (size_t i = 0; i < matrices.size(); ++i) {
         glm::dmat4 inverse_bind;
         for (int k = 0; k < 16; ++k)
             inverse_bind[k / 4][k % 4] = double(numbers[16 * i + size_t(k)]);
-        for (glm::length_t column = 0; column < 4; ++column) {
-            const double right = column == 3 ? 1.0 : 0.0;
-            if (!(std::abs(inverse_bind[column].w - right) <= AFFINE) && !first_odd) first_odd = i;
-            inverse_bind[column].w = right;
-        }
+        if (!make_affine(inverse_bind) && !first_odd) first_odd = i;
         matrices[i] = matrices[i] * inverse_bind;
     }
     if (first_odd) {
