@@ -35,6 +35,9 @@ void LoadingOptions::add_to(CLI::App& app) {
     app.add_option("--variant", gltf.variant, "Variant of the materials by name or index")->type_name("NAME");
     add_choice(app, "--light-units", gltf.light_units, LIGHT_UNITS_NAMES,
                "What the numbers of lights mean (default: blender for files that Blender wrote, else spec)");
+    add_choice(
+        app, "--studio", gltf.studio, STUDIO_NAMES,
+        "A studio lights the scene: auto (default) if nothing else does, off, or the one of this name");
 }
 
 namespace {

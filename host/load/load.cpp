@@ -42,7 +42,7 @@ Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) 
     Scene scene = loader == LOADERS.end() ? load_json_scene(path, options.gltf, options.progress)
                                           : loader->second(path, options);
     load_images(scene, options.images, options.progress);
-    add_studio(scene);
+    add_studio(scene, options.gltf.studio.value_or(StudioChoice::automatic));
     return scene;
 }
 

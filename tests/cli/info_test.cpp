@@ -100,6 +100,21 @@ TEST_F(Info, TellsWhatTexturesTakeAndMakesThemSmaller) {
     EXPECT_CONTAINS(wrong.err, "--texture-limit: cannot use \"0\"; expected a whole number from 1 to 65535");
 }
 
+TEST_F(Info, AStudioLightsAFileAsIsAskedFor) {
+    const std::string scene = write("node.gltf", R"({"asset": {"version": "2.0"}, "nodes": [{}]})");
+    const auto environment = [&](const Words& options) {
+        const ProcessResult result = candela(Words{"info", scene, "--json"} + options);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return nlohmann::json::parse(result.out)["environment"];
+    };
+    EXPECT_EQ(environment({}), (std::vector<int>{128, 64}));
+    EXPECT_EQ(environment({"--studio", "default"}), (std::vector<int>{128, 64}));
+    EXPECT_EQ(environment({"--studio", "off"}), nullptr);
+    const ProcessResult wrong = candela({"info", scene, "--studio", "night"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_CONTAINS(wrong.err, "--studio: cannot use \"night\"; expected auto|off|default");
+}
+
 TEST_F(Info, WarningsGoToStderrAndIntoTheJson) {
     const std::string scene = write("empty.json", R"({
         "cameras": { "main": { "position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40 } }, "shapes": [] })");

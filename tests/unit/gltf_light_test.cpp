@@ -308,8 +308,134 @@ TEST_F(GltfLight, AnImageThatIsMostlyBlackLightsNothing) {
     EXPECT_TRUE(toy.environment);
     EXPECT_EQ(
         folder_.without_folder(toy.warnings.back()),
-        "m.gltf: what emits light is mostly black; a studio lights the scene, which the camera does not see");
+        "m.gltf: only small or dim surfaces emit light; a studio, which the camera does not see, lights the "
+        "scene (--studio off leaves it out)");
     EXPECT_FALSE(glowing(30).environment);
+}
+
+// A body, and what glows near it.
+class GltfStudio : public Gltf {
+  protected:
+    GltfStudio() {
+        file_.push("meshes", square(0));
+        file_.push("meshes", square(1));
+        file_.push("nodes", {{"mesh", 0}});
+        file_.root["materials"] = {Json::object(), {{"emissiveFactor", {1, 1, 1}}}};
+    }
+    // A mesh of the square [-1, 1]^2 that faces +z.
+    Json square(int material) {
+        const size_t positions = file_.add<float>("VEC3", {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0});
+        const size_t indices = file_.add<uint8_t>("SCALAR", {0, 1, 2, 0, 2, 3});
+        return {
+            {"primitives",
+             {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", material}}}}};
+    }
+    // Another square that emits.
+    void glow(const Json& node) {
+        Json all = {{"mesh", 1}};
+        all.update(node);
+        file_.push("nodes", all);
+    }
+    Scene complete(std::optional<StudioChoice> studio = {}) {
+        folder_.write("m.gltf", file_.gltf());
+        Scene scene = load_scene(folder_.path() / "m.gltf", {.images = {}, .gltf = {.studio = studio}});
+        EXPECT_FALSE(scene.warnings.empty());
+        scene.warnings.erase(scene.warnings.begin());  // There is no camera.
+        for (std::string& warning : scene.warnings)
+            warning = folder_.without_folder(warning);
+        return scene;
+    }
+    void expect_lit_by_itself() {
+        const Scene scene = complete();
+        EXPECT_FALSE(scene.environment);
+        EXPECT_EQ(scene.warnings, Warnings());
+    }
+    void expect_dim() {
+        const Scene scene = complete();
+        EXPECT_TRUE(scene.environment);
+        EXPECT_EQ(scene.warnings,
+                  Warnings{"m.gltf: only small or dim surfaces emit light; a studio, which the "
+                           "camera does not see, lights the scene (--studio off leaves it out)"});
+    }
+
+    using Warnings = std::vector<std::string>;
+    static inline const Json FACING_BACK = {0, 1, 0, 0};  // A half turn about y.
+    GltfFile file_;
+};
+
+TEST_F(GltfStudio, AnEyeThatGlowsDoesNotPutItOut) {
+    glow({{"scale", {0.1, 0.1, 0.1}}, {"translation", {0.5, 0.5, 0.05}}});
+    expect_dim();
+}
+
+TEST_F(GltfStudio, ALargePanelDoesIfItFacesTheScene) {
+    const Json towards = {{"translation", {0, 0, 2}}, {"rotation", FACING_BACK}},
+               away = {{"translation", {0, 0, 2}}};
+    // A body larger than the panel, so that the panel is less than half of all.
+    file_.root["nodes"][0]["scale"] = {1.5, 1.5, 1};
+    glow(towards);
+    expect_lit_by_itself();
+    file_.root["nodes"].erase(1);
+    glow(away);
+    expect_dim();
+    file_.root["nodes"].erase(1);
+    glow(towards);
+    file_.root["materials"][1]["emissiveFactor"] = {0.1, 0.1, 0.1};
+    expect_dim();
+}
+
+TEST_F(GltfStudio, ABodyThatGlowsAllOverNeedsNone) {
+    file_.root["materials"][0]["emissiveFactor"] = {0.2, 0.2, 0.2};
+    expect_lit_by_itself();
+    file_.root["materials"][0]["emissiveFactor"] = {0.01, 0.01, 0.01};
+    expect_dim();
+}
+
+TEST_F(GltfStudio, WhatIsBrighterThanWhiteIsALightOfAnySize) {
+    glow({{"scale", {0.1, 0.1, 0.1}}});
+    file_.root["materials"][1]["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", 2}};
+    const Scene scene = complete();
+    EXPECT_FALSE(scene.environment);
+    EXPECT_EQ(scene.warnings,
+              Warnings{"m.gltf: only small or dim surfaces emit light; where that is too dark, give --studio "
+                       "default"});
+    // As old files of VRM say it.
+    file_.root["materials"][1]["extensions"] = {
+        {"VRMC_materials_hdr_emissiveMultiplier", {{"emissiveMultiplier", 2}}}};
+    EXPECT_FALSE(complete().environment);
+}
+
+TEST_F(GltfStudio, CanBeChosen) {
+    const Scene off = complete(StudioChoice::off);
+    EXPECT_FALSE(off.environment);
+    EXPECT_EQ(off.warnings,
+              Warnings{"m.gltf: there is no light, and the studio is off: the picture will be black"});
+    glow({{"scale", {0.1, 0.1, 0.1}}});
+    const Scene alone = complete(StudioChoice::off);
+    EXPECT_FALSE(alone.environment);
+    EXPECT_EQ(alone.warnings, Warnings());
+    glow({{"translation", {0, 0, 1}}, {"rotation", FACING_BACK}});
+    expect_lit_by_itself();
+    const Scene always = complete(StudioChoice::standard);
+    ASSERT_TRUE(always.environment);
+    EXPECT_EQ(always.warnings, Warnings());
+    EXPECT_EQ(complete(StudioChoice::automatic).environment.has_value(), false);
+    // Also in the place of the environment of a native scene.
+    folder_.write("m.gltf", file_.gltf());
+    folder_.write("s.json", R"({"scene": "m.gltf", "environment": {"radiance": 1}})");
+    const auto environment = [&](StudioChoice studio) {
+        return load_scene(folder_.path() / "s.json", {.images = {}, .gltf = {.studio = studio}}).environment;
+    };
+    EXPECT_EQ(environment(StudioChoice::standard).value().radiance, always.environment->radiance);
+    EXPECT_EQ(environment(StudioChoice::off).value().radiance, std::vector<vec3>{vec3(1)});
+}
+
+// A native scene states its lights by hand.
+TEST_F(GltfStudio, ShapesOfANativeSceneLightIt) {
+    folder_.write("m.gltf", file_.gltf());
+    folder_.write("s.json", R"({"scene": "m.gltf", "shapes":
+        [{"type": "disk", "center": [0, 0, 1], "normal": [0, 0, -1], "radius": 0.01, "emission": 0.5}]})");
+    EXPECT_FALSE(load_scene(folder_.path() / "s.json").environment);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <optional>
 
 #include "base/image_io_parts.h"
@@ -14,8 +13,6 @@
 #include "load/gltf/scene_reader.h"
 #include "load/gltf/values.h"
 #include "scene/default_view.h"
-#include "scene/geometry.h"
-#include "scene/materials.h"
 
 namespace candela {
 namespace {
@@ -38,35 +35,6 @@ void read_attributes(const File& file, Scene& scene) {
     const uint32_t index = number.integer(0, UINT32_MAX);
     if (index >= packets.size()) number.fail(concat("there are only ", packets.size(), " packets"));
     scene.attributes.emplace_back("gltf.xmp", packets[index].text());
-}
-
-// Whether at least half of an image, but for noise of its compression, is not black.
-bool is_bright(const TexelImage& image) {
-    constexpr float BLACK = 0.05f;
-    constexpr size_t LOOKS = 65536;  // Spread over the image.
-    const size_t count = size_t(image.size.x) * image.size.y, step = count / LOOKS + 1;
-    size_t bright = 0, looks = 0;
-    for (size_t i = 0; i < count; i += step, ++looks)
-        bright += any(greaterThan(vec3(texel_codes(image, i)), vec3(BLACK)));
-    return 2 * bright >= looks;
-}
-
-// Whether people would see the scene: by its lights, by surfaces that emit, or since all surfaces need no
-// light.
-bool is_lit(const Scene& scene) {
-    std::map<uint32_t, bool> bright;  // Images.
-    const auto emits = [&](const Shape& shape) {
-        if (!shape.emission || shape.emission->radiance.factor == vec3(0.0f)) return false;
-        const std::optional<Texture>& texture = shape.emission->radiance.texture;
-        if (!texture) return true;
-        const auto [known, is_new] = bright.try_emplace(texture->image);
-        if (is_new) known->second = is_bright(scene.images[texture->image].image);
-        return known->second;
-    };
-    const auto needs_no_light = [&](const Shape& shape) { return is_unlit(scene.materials[shape.material]); };
-    return std::ranges::any_of(scene.lights, [](const Light& light) { return gives_light(light); }) ||
-           std::ranges::any_of(scene.shapes, emits) ||
-           (!scene.shapes.empty() && std::ranges::all_of(scene.shapes, needs_no_light));
 }
 
 void warn_of_units(File& file, const GltfOptions& options, const Scene& scene) {
@@ -112,15 +80,6 @@ void complete_gltf_scene(const std::string& name, Scene& scene) {
             ": there is no camera; the scene is seen from the front, a little from the right and above");
     }
     scene.studio_place = name;
-}
-
-void add_studio(Scene& scene) {
-    if (!scene.studio_place || scene.environment || is_lit(scene)) return;
-    scene.environment = gltf::studio();
-    const char* cause =
-        emitter_count(scene) > 0 ? ": what emits light is mostly black" : ": there is no light";
-    scene.warnings.push_back(*scene.studio_place + cause +
-                             "; a studio lights the scene, which the camera does not see");
 }
 
 Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options,

@@ -20,6 +20,15 @@ enum class LightUnits {
 inline constexpr Choices<LightUnits, 3> LIGHT_UNITS_NAMES{
     {{"spec", LightUnits::spec}, {"blender", LightUnits::blender}, {"raw", LightUnits::raw}}};
 
+// Whether a studio lights the scene of a file.
+enum class StudioChoice {
+    automatic,  // If nothing else does.
+    off,
+    standard,  // In any case, and in place of an environment.
+};
+inline constexpr Choices<StudioChoice, 3> STUDIO_NAMES{
+    {{"auto", StudioChoice::automatic}, {"off", StudioChoice::off}, {"default", StudioChoice::standard}}};
+
 // What of a file is read. Where a name is asked for, the index of the element will do.
 struct GltfOptions {
     std::optional<std::string> scene{};       // None: the file's default.
@@ -27,13 +36,14 @@ struct GltfOptions {
     std::optional<double> time{};             // Of the animation [s]; none: nodes as they stand.
     std::optional<std::string> variant{};     // Of the materials; none: those of the file.
     std::optional<LightUnits> light_units{};  // None: those of the program that wrote the file.
+    std::optional<StudioChoice> studio{};     // None: automatic.
 
     bool operator==(const GltfOptions&) const = default;
 };
 
 // What messages say of these options for another file.
 inline constexpr const char* GLTF_OPTIONS_ALONE =
-    "--scene, --animation, --time, --variant and --light-units are for glTF files; leave them out";
+    "--scene, --animation, --time, --variant, --light-units and --studio are for glTF files; leave them out";
 
 // The picture of a file whose camera says nothing of it.
 inline constexpr uvec2 GLTF_FILM_SIZE{1280, 720};
@@ -56,8 +66,10 @@ void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& option
 // with.
 void complete_gltf_scene(const std::string& name, Scene& scene);
 
-// Lights a scene of a glTF file by a studio if it has no light, once its images have been read: what glows
-// through an image that is mostly black, as the lamps of a toy do, does not light a scene.
-void add_studio(Scene& scene);
+// Lights a scene of a glTF file by a studio, once its images have been read. Surfaces that emit are enough in
+// its place if what they send to the sphere around the scene is at least a tenth of what the studio does
+// (Glow::radiance), if half of the scene's area is as bright, or if they are brighter than white.
+// docs/gltf.md says so to users.
+void add_studio(Scene& scene, StudioChoice choice = StudioChoice::automatic);
 
 }  // namespace candela

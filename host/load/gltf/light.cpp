@@ -11,7 +11,6 @@
 #include "base/text.h"
 #include "load/gltf/names.h"
 #include "load/gltf/values.h"
-#include "scene/environment.h"
 
 namespace candela::gltf {
 namespace {
@@ -105,32 +104,6 @@ Light read_light(File& file, const Node& reference, const glm::dmat4& world, Lig
         type_node.fail_expected(R"("point", "spot" or "directional")");
     }
     return result;
-}
-
-Environment studio() {
-    constexpr uvec2 SIZE{128, 64};
-    struct Box {
-        dvec3 towards;    // Its middle.
-        double half;      // Cosine of the angle to its edge.
-        double radiance;  // [W/(m^2 sr)]
-    };
-    const Box boxes[] = {{normalize(dvec3(-0.6, 0.9, 0.6)), 0.85, 2.5},
-                         {normalize(dvec3(1.0, 0.35, 0.5)), 0.9, 0.85},
-                         {normalize(dvec3(0.2, 0.6, -1.0)), 0.93, 1.25}};
-    constexpr double SOFTNESS = 0.03;  // Of edges, in cosines.
-    Environment environment{.size = SIZE, .radiance = {}, .visible = false};
-    for (uint32_t y = 0; y < SIZE.y; ++y) {
-        for (uint32_t x = 0; x < SIZE.x; ++x) {
-            const dvec3 w = latitude_longitude_direction({(x + 0.5) / SIZE.x, (y + 0.5) / SIZE.y});
-            double radiance =
-                w.y < 0.0 ? 0.15 + 0.06 * -w.y : 0.15 + 0.15 * w.y;  // Floor; walls and ceiling.
-            for (const Box& box : boxes)
-                radiance += box.radiance *
-                            glm::smoothstep(box.half - SOFTNESS, box.half + SOFTNESS, dot(w, box.towards));
-            environment.radiance.emplace_back(float(radiance));
-        }
-    }
-    return environment;
 }
 
 }  // namespace candela::gltf
