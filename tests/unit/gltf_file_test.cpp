@@ -124,6 +124,17 @@ TEST_F(GltfFileTest, MayBeginWithAByteOrderMark) {
     expect_corner(load_text("\xEF\xBB\xBF" + corner_file().gltf()));
 }
 
+// As programs on Windows write names.
+TEST_F(GltfFileTest, BytesThatAreNotUtf8AreLatin1) {
+    folder_.write("größe €.bin", corner_file().bytes);
+    std::string text = naming("NAME €.bin");
+    const Scene scene = load_text(text.replace(text.find("NAME"), 4, "gr\xF6\xDF\x65"));
+    EXPECT_EQ(scene.shapes.size(), 1u);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(folder_.without_folder(scene.warnings[0]),
+              "m.gltf: the text is not UTF-8; other bytes are read as Latin-1");
+}
+
 TEST_F(GltfFileTest, DecodesTheNamesOfFiles) {
     std::filesystem::create_directory(folder_.path() / "sub");
     for (const char* name :

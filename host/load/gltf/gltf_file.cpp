@@ -35,6 +35,41 @@ std::span<const std::byte> as_span(std::string_view bytes) {
     return std::as_bytes(std::span(bytes.data(), bytes.size()));
 }
 
+// How many bytes the character of UTF-8 at `i` has; 0 if there is none.
+size_t character_size(std::string_view text, size_t i) {
+    const auto lead = uint8_t(text[i]);
+    if (lead < 0x80u) return 1;
+    const size_t size = lead >= 0xC2u && lead < 0xE0u   ? 2
+                        : lead >= 0xE0u && lead < 0xF0u ? 3
+                        : lead >= 0xF0u && lead < 0xF5u ? 4
+                                                        : 0;
+    if (i + size > text.size()) return 0;
+    for (size_t k = 1; k < size; ++k) {
+        if ((uint8_t(text[i + k]) & 0xC0u) != 0x80u) return 0;
+    }
+    return size;
+}
+
+// The text with bytes that are not UTF-8 as the characters of Latin-1; nothing if there are none.
+std::optional<std::string> mended(std::string_view text) {
+    const auto end_of_utf8 = [&](size_t i) {
+        while (i < text.size() && character_size(text, i) > 0)
+            i += character_size(text, i);
+        return i;
+    };
+    size_t end = end_of_utf8(0);
+    if (end == text.size()) return std::nullopt;
+    std::string result(text.substr(0, end));
+    while (end < text.size()) {
+        const auto code = uint8_t(text[end]);
+        result += {char(0xC0u | code >> 6u), char(0x80u | (code & 0x3Fu))};
+        const size_t begin = end + 1;
+        end = end_of_utf8(begin);
+        result += text.substr(begin, end - begin);
+    }
+    return result;
+}
+
 // Throws Error for a buffer that is to be filled by an extension alone.
 void check_meshopt(const Node& buffer) {
     for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
@@ -70,7 +105,9 @@ File::File(const std::filesystem::path& path, LoadProgress progress)
     std::string_view text = bytes_.starts_with(GLB_MAGIC) ? split_glb() : std::string_view(bytes_);
     if (text.starts_with(BYTE_ORDER_MARK))
         text.remove_prefix(BYTE_ORDER_MARK.size());  // Of careless programs.
-    document_.root = json::parse(text, document_.file);
+    const std::optional<std::string> in_utf8 = mended(text);
+    if (in_utf8) warn(document_.file + ": the text is not UTF-8; other bytes are read as Latin-1");
+    document_.root = json::parse(in_utf8 ? *in_utf8 : text, document_.file);
     if (!root().is_object()) root().fail_expected("an object { ... }, as every glTF file is");
     check_version(root());
     buffers_.resize(count("buffers"));
