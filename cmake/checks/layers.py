@@ -17,7 +17,7 @@ MAY_INCLUDE = {
     "host/load/obj": ["host/base", "host/scene", "host/load/quote.h", "host/load/text_lines.h"],
     "host/load/ply": ["host/base", "host/scene", "host/load/quote.h", "host/load/text_lines.h"],
     "host/bvh": ["host/base", "shaders/shared"],
-    "host/vk": ["host/base/error.h", "host/base/file.h"],
+    "host/vk": ["host/base/error.h", "host/base/private_file.h"],
     "host/gpu_scene": ["host/base", "host/scene", "host/bvh", "shaders/shared"],
     "host/film": ["host/base", "shaders/shared"],
     "host/render": ["host/base", "host/scene", "host/gpu_scene", "host/film", "host/vk", "shaders/shared"],

@@ -225,14 +225,6 @@ FileStart read_file_start(const fs::path& path, size_t most) {
     return start;
 }
 
-std::optional<std::string> read_regular_file(const fs::path& path) {
-    // Without O_NONBLOCK, opening a pipe would wait for a writer.
-    const Descriptor file(path, O_RDONLY | O_NONBLOCK);
-    std::string bytes;
-    if (!file.is_regular() || !file.read_all(bytes)) return std::nullopt;
-    return bytes;
-}
-
 void check_writable(const fs::path& path) {
     const fs::path target = writable_target(path);
     remove_abandoned_files(folder_of(target));
@@ -247,7 +239,7 @@ void check_writable(const fs::path& path) {
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
     const fs::path target = writable_target(path);
     try {
-        TemporaryFile file(target);
+        TemporaryFile file(target, permissions_of(target));
         file.write(bytes);
         file.flush();
         put_in_place(path, file);
@@ -264,14 +256,6 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
         return fs::weakly_canonical(folder_of(target), ignored) / target.filename();
     };
     return place(a) == place(b);
-}
-
-void create_private_folders(const fs::path& folder) {
-    std::error_code ignored;
-    if (folder.has_relative_path() && !fs::exists(folder, ignored)) {
-        create_private_folders(folder.parent_path());
-        ::mkdir(folder.c_str(), 0700);
-    }
 }
 
 }  // namespace candela

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -30,10 +29,6 @@ struct FileStart {
 };
 FileStart read_file_start(const std::filesystem::path& path, size_t most);
 
-// Returns the bytes of a file that may be missing, such as a cache; nothing also if it cannot be read or is
-// not a regular file.
-std::optional<std::string> read_regular_file(const std::filesystem::path& path);
-
 // Throws Error if write_file_atomically(path, ...) could not succeed now: the directory is missing or may not
 // be written to, or the target is a directory, a device, write-protected, or a file that cannot be replaced:
 // mounted by itself, or another user's where only owners may replace files. Really creates and removes a
@@ -50,9 +45,5 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 // Whether two paths name one file: by device and inode if both exist, else by where the names lead, links
 // followed.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
-
-// Creates a folder and the missing ones above it, for this user alone; an absolute path. A failure shows when
-// a file is written there.
-void create_private_folders(const std::filesystem::path& folder);
 
 }  // namespace candela

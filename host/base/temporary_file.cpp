@@ -89,17 +89,22 @@ bool is_abandoned(const fs::path& file, pid_t owner) {
 
 }  // namespace
 
-TemporaryFile::TemporaryFile(fs::path target) : target_(std::move(target)) {
-    struct stat old {};
-    const bool replaces = ::stat(target_.c_str(), &old) == 0;
-    const mode_t mode = replaces ? old.st_mode & 0777u : 0666u;
+std::optional<mode_t> permissions_of(const fs::path& file) {
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+    return status.st_mode & 0777u;
+}
+
+TemporaryFile::TemporaryFile(fs::path target, std::optional<mode_t> permissions)
+    : target_(std::move(target)) {
+    const mode_t mode = permissions.value_or(0666);
     do {
         name_ = target_.parent_path() / new_name();
         file_ = retried([&] { return ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode); });
     } while (file_ < 0 && errno == EEXIST);  // Left behind by another process of that number.
     if (file_ < 0) fail("open");
     ::flock(file_, LOCK_EX | LOCK_NB);  // Where there are no locks, nothing is ever removed.
-    if (replaces) ::fchmod(file_, mode);
+    if (permissions) ::fchmod(file_, mode);
 }
 
 TemporaryFile::~TemporaryFile() {

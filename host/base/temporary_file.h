@@ -2,16 +2,22 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
+
+#include <sys/types.h>
 
 namespace candela {
 
-// A new, empty file beside `target`, with the target's permissions if that exists. Removed with this object
+// The permissions of a regular file; nothing if there is none of that name.
+std::optional<mode_t> permissions_of(const std::filesystem::path& file);
+
+// A new, empty file beside `target`, with these permissions or the usual ones. Removed with this object
 // unless commit() gave it the target's name. Its own name says which process of which computer it belongs to,
 // and it is locked as long as that process lives. All functions throw std::system_error.
 class TemporaryFile {
   public:
-    explicit TemporaryFile(std::filesystem::path target);
+    explicit TemporaryFile(std::filesystem::path target, std::optional<mode_t> permissions = {});
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
     ~TemporaryFile();

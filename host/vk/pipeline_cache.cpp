@@ -1,5 +1,5 @@
 // The file of the pipeline cache: a hash of the data, 8 bytes in the machine's order, then the data that
-// Vulkan gave.
+// Vulkan gave. A driver runs what it holds, so that nobody else may have written it.
 #include "vk/pipeline_cache.h"
 
 #include <cstdint>
@@ -7,10 +7,13 @@
 #include <span>
 #include <string>
 
-#include "base/file.h"
+#include "base/private_file.h"
 #include "vk/check.h"
 
 namespace candela::vk {
+
+// What a driver keeps for our few kernels has less by far.
+static constexpr size_t MOST_BYTES = size_t{64} << 20;
 
 // FNV-1a, 64 bits. Vulkan checks only the header, and drivers trust the rest.
 static uint64_t hash(std::span<const char> data) {
@@ -32,9 +35,9 @@ static bool fits_device(std::span<const char> data, const VkPhysicalDeviceProper
 }
 
 // The data of the file, or nothing if it is missing, damaged or foreign.
-static std::vector<char> load(const std::filesystem::path& file,
+static std::vector<char> load(const std::filesystem::path& folder, const std::string& name,
                               const VkPhysicalDeviceProperties& properties) {
-    const std::string bytes = read_regular_file(file).value_or("");
+    const std::string bytes = read_private_file(folder, name, MOST_BYTES).value_or("");
     uint64_t expected = 0;
     if (bytes.size() < sizeof expected) return {};
     std::memcpy(&expected, bytes.data(), sizeof expected);
@@ -55,11 +58,8 @@ static std::string file_name(const VkPhysicalDeviceProperties& properties) {
 
 PipelineCache::PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& properties,
                              const std::optional<std::filesystem::path>& folder)
-    : device_(device) {
-    if (folder) {
-        file_ = *folder / file_name(properties);
-        loaded_ = load(*file_, properties);
-    }
+    : device_(device), folder_(folder), name_(file_name(properties)) {
+    if (folder) loaded_ = load(*folder, name_, properties);
     VkPipelineCacheCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
     info.initialDataSize = loaded_.size();
@@ -71,7 +71,7 @@ PipelineCache::PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& 
 
 PipelineCache::~PipelineCache() {
     try {
-        if (file_) save();
+        if (folder_) save();
     } catch (...) {  // No memory, or no place on the disk: the next run compiles again.
     }
 }
@@ -88,8 +88,7 @@ void PipelineCache::save() const {
     std::string bytes(sizeof checksum, '\0');
     std::memcpy(bytes.data(), &checksum, sizeof checksum);
     bytes.append(data.begin(), data.end());
-    create_private_folders(file_->parent_path());
-    write_file_atomically(*file_, bytes);
+    if (bytes.size() <= MOST_BYTES) write_private_file(*folder_, name_, bytes);
 }
 
 }  // namespace candela::vk

@@ -37,16 +37,6 @@ class Unprivileged {
     bool was_root_ = ::geteuid() == 0;
 };
 
-TEST(File, PrivateFoldersAreForThisUserAlone) {
-    const TemporaryDirectory directory;
-    create_private_folders(directory / "a/b");
-    EXPECT_EQ(fs::status(directory / "a").permissions(), fs::perms(0700));
-    EXPECT_EQ(fs::status(directory / "a/b").permissions(), fs::perms(0700));
-    write_file_atomically(directory / "file", "");
-    create_private_folders(directory / "file/b");
-    EXPECT_EQ(directory.size(), 2);
-}
-
 TEST(File, SaysThatPermissionIsMissingToRead) {
     const Unprivileged unprivileged;
     const TemporaryDirectory directory;

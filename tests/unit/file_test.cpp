@@ -75,17 +75,6 @@ TEST(File, ReadsBackEveryByteThatItWrote) {
     }
 }
 
-TEST(File, OfACacheIsARegularOneOrNothing) {
-    const TemporaryDirectory directory;
-    write_file_atomically(directory / "file", "bytes");
-    EXPECT_EQ(read_regular_file(directory / "file"), "bytes");
-    ASSERT_EQ(::mkfifo((directory / "pipe").c_str(), 0600), 0);
-    EXPECT_EQ(read_regular_file(directory / "pipe"), std::nullopt);
-    EXPECT_EQ(read_regular_file(directory.path()), std::nullopt);
-    EXPECT_EQ(read_regular_file("/dev/zero"), std::nullopt);
-    EXPECT_EQ(read_regular_file(directory / "missing"), std::nullopt);
-}
-
 TEST(File, ReadsAPipe) {
     const TemporaryDirectory directory;
     const std::string pipe = (directory / "pipe").string();

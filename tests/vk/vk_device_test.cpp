@@ -289,10 +289,12 @@ TEST_F(VkPipelineCache, IsForThisUserAlone) {
     EXPECT_EQ(std::filesystem::status(directory_).permissions(), std::filesystem::perms(0700));
 }
 
-// A folder, a pipe that nobody writes to, and a device without end.
+// A folder, a pipe that nobody writes to, a device without end, and a link to another file.
 TEST_F(VkPipelineCache, WhatIsNoFileIsLeftAlone) {
     use_cache();
     const std::filesystem::path place = file();
+    const std::filesystem::path other = directory_ / "other";
+    write(other, "precious");
     const auto fill = [&](const std::function<void()>& make) {
         std::filesystem::remove(place);
         make();
@@ -302,6 +304,27 @@ TEST_F(VkPipelineCache, WhatIsNoFileIsLeftAlone) {
     fill([&] { std::filesystem::create_directory(place); });
     fill([&] { ASSERT_EQ(::mkfifo(place.c_str(), 0600), 0); });
     fill([&] { std::filesystem::create_symlink("/dev/zero", place); });
+    std::filesystem::remove(place);
+    std::filesystem::create_symlink(other, place);
+    use_cache();
+    EXPECT_TRUE(std::filesystem::is_symlink(place));
+    EXPECT_EQ(contents(other), "precious");
+}
+
+TEST_F(VkPipelineCache, WhatOthersMayHaveWrittenIsNotUsed) {
+    use_cache();
+    write(file(), "old");
+    std::filesystem::permissions(directory_, std::filesystem::perms(0777));
+    use_cache();
+    EXPECT_EQ(contents(file()), "old");
+}
+
+// As large as no cache is; the file takes no room on the disk.
+TEST_F(VkPipelineCache, AHugeFileIsIgnoredAndReplaced) {
+    use_cache();
+    std::filesystem::resize_file(file(), uintmax_t{1} << 40);
+    use_cache();
+    expect_good();
 }
 
 TEST_F(VkPipelineCache, AFileThatCannotBeWrittenIsNoError) {
