@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include <ImfChannelList.h>
@@ -99,6 +100,18 @@ std::vector<half> to_half(const fs::path& path, const Image& image, const Channe
     return values;
 }
 
+// Lets the library compress on all cores, which takes most of the time of writing; the file does not depend
+// on it. If the system lets no more threads be started, on fewer; without any, the caller's does it all. One
+// by one: what the library has started before a failure it uses.
+void start_threads() {
+    try {
+        for (int count = Imf::globalThreadCount() + 1; count <= int(std::thread::hardware_concurrency());
+             ++count)
+            Imf::setGlobalThreadCount(count);
+    } catch (const std::system_error&) {
+    }
+}
+
 }  // namespace
 
 void write_exr(const fs::path& path, const Image& image) {
@@ -119,8 +132,7 @@ void write_exr(const fs::path& path, const Image& image) {
             const Imf::PixelType type = channel.half ? Imf::HALF : Imf::FLOAT;
             frame.insert(channel.name, Imf::Slice::Make(type, values, header.dataWindow()));
         }
-        // ZIP takes most of the time of writing; the order of the file does not depend on the threads.
-        Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
+        start_threads();
         Imf::OutputFile file(stream, header);
         file.setFrameBuffer(frame);
         file.writePixels(int(image.data.height()));

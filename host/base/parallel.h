@@ -9,11 +9,13 @@
 #include <thread>
 #include <vector>
 
+#include "base/threads.h"
+
 namespace candela {
 
-// Calls step(i) for i = 0 .. count - 1, in no particular order, on as many threads as there are cores. If
-// steps throw, those that have not begun are left out, and the exception of the first one, by i, that has
-// thrown is thrown here.
+// Calls step(i) for i = 0 .. count - 1, in no particular order, on as many threads as there are cores, or on
+// fewer if no more can be started. If steps throw, those that have not begun are left out, and the exception
+// of the first one, by i, that has thrown is thrown here.
 template <class Step>
 void parallel_for(size_t count, const Step& step) {
     std::atomic<size_t> next = 0;
@@ -35,10 +37,8 @@ void parallel_for(size_t count, const Step& step) {
         }
     };
     {
-        std::vector<std::jthread> helpers;
         const size_t threads = std::min<size_t>(count, std::max(1u, std::thread::hardware_concurrency()));
-        for (size_t i = 1; i < threads; ++i)
-            helpers.emplace_back(work);
+        const std::vector<std::jthread> helpers = start_helpers(std::max<size_t>(threads, 1) - 1, work);
         work();
     }
     if (error) std::rethrow_exception(error);

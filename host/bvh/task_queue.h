@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/threads.h"
+
 namespace candela {
 
 // Tasks are taken newest first, which keeps the number of waiting ones small.
@@ -21,13 +23,12 @@ class TaskQueue {
         changed_.notify_one();
     }
 
-    // Calls work(task) for every task, on `threads` (>= 1) threads of which the caller's is one, until none
-    // is left. The first exception that `work` throws ends the run and is thrown here.
+    // Calls work(task) for every task, on `threads` (>= 1) threads of which the caller's is one, or on fewer
+    // if no more can be started, until none is left. The first exception that `work` throws ends the run and
+    // is thrown here.
     template <class Work>
     void run(unsigned threads, const Work& work) {
-        std::vector<std::jthread> helpers;
-        for (unsigned i = 1; i < threads; ++i)
-            helpers.emplace_back([&] { serve(work); });
+        std::vector<std::jthread> helpers = start_helpers(threads - 1, [&] { serve(work); });
         serve(work);
         helpers.clear();  // Joins.
         if (error_) std::rethrow_exception(error_);
