@@ -1,14 +1,19 @@
 // Reads the environment for commands that use Vulkan.
 #include "cli/vulkan.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <latch>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 #include <sys/mman.h>
 
 #include "base/error.h"
+#include "base/threads.h"
 
 namespace candela {
 
@@ -45,21 +50,38 @@ static void keep_drivers_off_full_disks() {
         ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
 }
 
-// Drivers that find no room for threads and code end the program silently or hang.
+// Drivers that find no room for threads and code end the program silently or hang. Writable memory is what
+// both limits count, on the address space and on data.
 static void check_address_space() {
     constexpr size_t NEEDED = size_t{768} << 20;
-    void* const room = ::mmap(nullptr, NEEDED, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    void* const room =
+        ::mmap(nullptr, NEEDED, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (room == MAP_FAILED) {
         throw Error(
-            "cannot use Vulkan: fewer than 768 MiB of address space are left, which its drivers "
-            "take; raise the limit (ulimit -v)",
+            "cannot use Vulkan: fewer than 768 MiB of address space or data are left, which its drivers "
+            "take; raise the limit (ulimit -v, ulimit -d)",
             ExitCode::out_of_memory);
     }
     ::munmap(room, NEEDED);
 }
 
+// Drivers that can start only some of their threads wait for the others for ever.
+static void check_threads() {
+    // Lavapipe's: two pools of a thread per core, each of at most 16, and two threads more.
+    const size_t needed = 2 * std::clamp<size_t>(std::thread::hardware_concurrency(), 1, 16) + 2;
+    std::latch end(1);
+    const std::vector<std::jthread> threads = start_helpers(needed, [&end] { end.wait(); });
+    end.count_down();
+    if (threads.size() < needed) {
+        throw Error("cannot use Vulkan: its drivers start up to " + std::to_string(needed) +
+                    " threads, and the system allows only " + std::to_string(threads.size()) +
+                    " more; raise the limit (ulimit -u), or end other programs");
+    }
+}
+
 vk::Instance::Options instance_options() {
     check_address_space();
+    check_threads();
     keep_drivers_off_full_disks();
     return {.validation = is_on("CANDELA_VALIDATION")};
 }

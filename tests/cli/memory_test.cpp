@@ -1,4 +1,5 @@
-// Where the address space is small, the program ends with a message. (Sanitizers need more of it.)
+// Where the address space is small, or that for data, the program ends with a message. (Sanitizers need more
+// of it.)
 #include <filesystem>
 #include <fstream>
 
@@ -11,20 +12,25 @@ namespace {
 
 class LittleMemory : public CliTest {
   protected:
-    ProcessResult run(const Words& arguments) const {
-        return run_process(Words{"/bin/sh", "-c", "ulimit -v 400000; exec \"$0\" \"$@\""} + call(arguments),
+    // Runs candela after a command of the shell, which counts in KiB.
+    static ProcessResult run(const Words& arguments, const std::string& limit = "ulimit -v 400000") {
+        return run_process(Words{"/bin/sh", "-c", limit + "; exec \"$0\" \"$@\""} + call(arguments),
                            options());
     }
 };
 
 // Drivers would end the program without a message, or wait for ever.
 TEST_F(LittleMemory, IsAnErrorBeforeADriverFindsOut) {
-    const ProcessResult result = run({"render", CORNELL_BOX, "--size", "16x16", "-o", file("a.png")});
-    EXPECT_EQ(result.exit_code, 5) << result.err;
-    EXPECT_CONTAINS(
-        result.err,
-        "candela: error: cannot use Vulkan: fewer than 768 MiB of address space are left, which its "
-        "drivers take; raise the limit (ulimit -v)");
+    for (const char* limit : {"ulimit -v 400000", "ulimit -d 100000", "ulimit -d 300000",
+                              "ulimit -v 4000000; ulimit -d 250000"}) {
+        const ProcessResult result =
+            run({"render", CORNELL_BOX, "--size", "16x16", "-o", file("a.png")}, limit);
+        EXPECT_EQ(result.exit_code, 5) << limit << result.err;
+        EXPECT_CONTAINS(
+            result.err,
+            "candela: error: cannot use Vulkan: fewer than 768 MiB of address space or data are left, which "
+            "its drivers take; raise the limit (ulimit -v, ulimit -d)");
+    }
 }
 
 // Twenty million vertices, all zero, in a file that takes no room on the disk.
