@@ -53,10 +53,64 @@ static VkDebugUtilsMessengerCreateInfoEXT messenger_info(MessageLog* log) {
     return info;
 }
 
+static VKAPI_ATTR VkBool32 VKAPI_CALL on_complaint(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                   VkDebugUtilsMessageTypeFlagsEXT,
+                                                   const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                   void* complaints) {
+    auto& text = *static_cast<std::string*>(complaints);
+    const std::string message = data->pMessage;
+    // That there is no driver is clear; and a damaged file would be a lack of memory to the loader.
+    std::string said = message.substr(0, message.find(", this is usually because"));
+    if (said.ends_with('.')) said.pop_back();
+    if (said.find("vkCreateInstance") == std::string::npos) text += (text.empty() ? "" : "; ") + said;
+    return VK_FALSE;
+}
+
+// What the loader finds wrong with the files of drivers, in its own words; empty if nothing.
+static std::string complaints_of_loader(const VkApplicationInfo& application) {
+    std::string complaints;
+    VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(nullptr);
+    messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
+    messenger.pfnUserCallback = on_complaint;
+    messenger.pUserData = &complaints;
+    const char* const extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    VkInstanceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    info.pNext = &messenger;
+    info.pApplicationInfo = &application;
+    info.enabledExtensionCount = 1;
+    info.ppEnabledExtensionNames = &extension;
+    VkInstance instance = VK_NULL_HANDLE;
+    if (vkCreateInstance(&info, nullptr, &instance) == VK_SUCCESS) {
+        volkLoadInstance(instance);
+        vkDestroyInstance(instance, nullptr);
+    }
+    return complaints;
+}
+
+// Throws the Error for an instance that could not be made, with that result.
+static void check_created(VkResult result, const VkApplicationInfo& application) {
+    if (result == VK_SUCCESS) return;
+    const std::string complaints = complaints_of_loader(application);
+    if (!complaints.empty()) {
+        throw Error("no Vulkan driver can be loaded: " + complaints +
+                        "; mend or remove that file, or install the driver again",
+                    ExitCode::no_device);
+    }
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
+        throw Error(
+            "no Vulkan driver is installed; install the driver of your GPU, or mesa-vulkan-drivers to render "
+            "on the CPU",
+            ExitCode::no_device);
+    }
+    VK_CHECK(result);
+}
+
 // The instance extensions of a layer, or, for null, of Vulkan itself.
 static std::vector<VkExtensionProperties> instance_extensions(const char* layer) {
     uint32_t count = 0;
-    VK_CHECK(vkEnumerateInstanceExtensionProperties(layer, &count, nullptr));
+    // The loader fails here where it cannot read a driver's file. Why it says only when an instance is made.
+    if (vkEnumerateInstanceExtensionProperties(layer, &count, nullptr) < 0) return {};
     std::vector<VkExtensionProperties> extensions(count);
     VK_CHECK(vkEnumerateInstanceExtensionProperties(layer, &count, extensions.data()));
     return extensions;
@@ -117,14 +171,7 @@ static VkInstance create_instance(const std::vector<std::string>& required, Mess
     info.ppEnabledExtensionNames = extensions.data();
 
     VkInstance instance = VK_NULL_HANDLE;
-    const VkResult result = vkCreateInstance(&info, nullptr, &instance);
-    if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
-        throw Error(
-            "no Vulkan driver is installed; install the driver of your GPU, or mesa-vulkan-drivers to render "
-            "on the CPU",
-            ExitCode::no_device);
-    }
-    VK_CHECK(result);
+    check_created(vkCreateInstance(&info, nullptr, &instance), application);
     return instance;
 }
 

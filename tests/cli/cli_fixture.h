@@ -21,9 +21,13 @@ inline const std::string CORNELL_BOX = std::string(CANDELA_SCENES) + "/cornell-b
 inline const std::string DEPTH_OF_FIELD = std::string(CANDELA_SCENES) + "/depth-of-field.json";
 inline const std::string MESH = std::string(CANDELA_SCENES) + "/mesh.json";
 
-// A driver list that names no driver: a computer without Vulkan.
-inline const std::map<std::string, std::string> NO_DRIVER = {{"VK_DRIVER_FILES", "/nonexistent.json"},
-                                                             {"VK_ICD_FILENAMES", "/nonexistent.json"}};
+// The driver list that a file is: of one driver, or of none for /dev/null.
+inline std::map<std::string, std::string> driver_file(const std::string& path) {
+    return {{"VK_DRIVER_FILES", path}, {"VK_ICD_FILENAMES", path}};
+}
+
+// A computer without Vulkan.
+inline const std::map<std::string, std::string> NO_DRIVER = driver_file("/dev/null");
 
 // The variables that insert tests/faults/device_fault.cpp before the driver.
 inline const std::map<std::string, std::string> FAULT_LAYER = {

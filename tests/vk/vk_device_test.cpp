@@ -131,12 +131,37 @@ TEST_F(Vk, ADeviceThatWillNotDoIsNotOpened) {
 }
 
 TEST(VkInstance, WithoutADriverNamesTheRemedy) {
-    const ScopedVariable old_name("VK_ICD_FILENAMES", "/nonexistent.json");
-    const ScopedVariable new_name("VK_DRIVER_FILES", "/nonexistent.json");
+    const ScopedVariable old_name("VK_ICD_FILENAMES", "/dev/null");
+    const ScopedVariable new_name("VK_DRIVER_FILES", "/dev/null");
     EXPECT_EQ(error_of(ExitCode::no_device, [] { Instance instance({}); }),
               "no Vulkan driver is installed; install the driver of your GPU, or mesa-vulkan-drivers to "
               "render on the "
               "CPU");
+}
+
+// A driver's file that cannot be read, and one whose library is missing, or is not a library.
+TEST(VkInstance, WithABrokenDriverNamesItsFile) {
+    const std::filesystem::path driver =
+        std::filesystem::temp_directory_path() / ("candela-driver-" + std::to_string(getpid()) + ".json");
+    const ScopedVariable old_name("VK_ICD_FILENAMES", driver.c_str());
+    const ScopedVariable new_name("VK_DRIVER_FILES", driver.c_str());
+    const auto with_library = [](const std::string& library) {
+        return R"({"file_format_version": "1.0.0", "ICD": {"api_version": "1.2.0", "library_path": ")" +
+               library + "\"}}";
+    };
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"{\"ICD", driver.string()},
+        {with_library("/nonexistent/lib.so"), "/nonexistent/lib.so"},
+        {with_library(driver.string()), driver.string()}};
+    for (const auto& [text, named] : cases) {
+        std::ofstream(driver) << text;
+        const std::string message = error_of(ExitCode::no_device, [] { Instance instance({}); });
+        EXPECT_TRUE(message.starts_with("no Vulkan driver can be loaded: ")) << message;
+        EXPECT_NE(message.find(named), std::string::npos) << message;
+        EXPECT_TRUE(message.ends_with("; mend or remove that file, or install the driver again")) << message;
+        EXPECT_EQ(message.find("memory"), std::string::npos) << message;
+    }
+    std::filesystem::remove(driver);
 }
 
 TEST(VkInstance, WithoutTheValidationLayerNamesTheRemedy) {
