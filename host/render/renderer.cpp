@@ -56,6 +56,37 @@ const vk::Device& check_memory(const vk::Device& device, const GpuScene& scene,
     return device;
 }
 
+// The part of the picture, from its first pixel on, that fits into one image: all of it, or whole tiles.
+PixelRect largest_part(const vk::DeviceLimits& limits, const RenderSettings& settings) {
+    constexpr uint32_t TILE = 64;  // Drivers fill up images to such sizes.
+    const uint64_t bytes = std::min(limits.max_image_bytes, limits.max_memory_allocation_size);
+    const uint64_t pixels = bytes / (sizeof(vec4) * layer_count(settings));
+    const PixelRect& all = settings.crop;
+    const auto most = [&](uint32_t wanted, uint64_t allowed) {
+        allowed = std::min<uint64_t>(allowed, limits.max_image_dimension_2d);
+        return wanted <= allowed ? wanted : uint32_t(allowed / TILE * TILE);
+    };
+    const uint32_t width = most(all.width(), limits.max_image_dimension_2d);
+    const uint32_t height = most(all.height(), pixels / ((width + TILE - 1) / TILE * TILE));
+    return {all.x0, all.y0, all.x0 + width, all.y0 + height};
+}
+
+vk::StorageImage make_accumulation(const vk::Device& device, const RenderSettings& settings) {
+    const PixelRect& rect = settings.crop;
+    try {
+        return vk::make_storage_image(device, rect.width(), rect.height(), layer_count(settings),
+                                      "accumulation");
+    } catch (const Error& error) {
+        const PixelRect part = largest_part(device.limits(), settings);
+        if (error.code() != ExitCode::out_of_memory || part == rect) throw;
+        const auto text = [](uint32_t number) { return std::to_string(number); };
+        throw Error(std::string(error.what()) + "; or render the picture in parts of at most " +
+                        text(part.width()) + 'x' + text(part.height()) + " (the first one by --crop " +
+                        text(part.x0) + ',' + text(part.y0) + ',' + text(part.x1) + ',' + text(part.y1) + ')',
+                    error.code());
+    }
+}
+
 }  // namespace
 
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
@@ -126,8 +157,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
       constants_(kernel_constants(device, scene, scene_.map(), camera, settings)),
       counter_buffer_(device, COUNTER_BYTES, vk::BufferUsage::storage, "counters"),
       counts_(device, COUNTER_BYTES, vk::BufferUsage::readback, "counts"),
-      image_(vk::make_storage_image(device, image_size().x, image_size().y, layer_count(settings),
-                                    "accumulation")),
+      image_(make_accumulation(device, settings)),
       commands_(device) {
     if (settings_.submission_seconds == 0.0) {
         const bool cpu = device.info().type == vk::DeviceType::cpu;
@@ -156,7 +186,7 @@ void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSe
     if (size == uvec2(image_.width(), image_.height()) && layer_count(settings) == image_.layers()) {
         vk::clear(image_);
     } else {
-        image_ = vk::make_storage_image(*device_, size.x, size.y, layer_count(settings), "accumulation");
+        image_ = make_accumulation(*device_, settings);
         render_kernel_->bind(BINDING_IMAGE, image_);
     }
     samples_ = 0;

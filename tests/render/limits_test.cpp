@@ -49,6 +49,37 @@ TEST_F(LimitsTest, ASceneForNeitherSaysWhatItNeeds) {
                   " bytes; use a smaller scene, or another device (candela devices lists them)");
 }
 
+// The part that the message names fits, and with another row of tiles it does not.
+TEST_F(LimitsTest, APictureThatIsTooLargeForOneImageSaysWhichPartFits) {
+    const uint64_t allowed = uint64_t{256} * 128 * LAYER_COUNT_COLOUR * sizeof(vec4);
+    info_.limits.max_image_bytes = info_.limits.max_memory_allocation_size = allowed;
+    info_.limits.max_image_dimension_2d = 500;
+    const vk::Device device(instance_, info_);
+    const Scene scene = cornell_box();
+    const GpuScene gpu_scene = build_gpu_scene(scene);
+    const auto message_of = [&](const PixelRect& crop) {
+        RenderSettings settings = settings_for(600, 600);
+        settings.crop = crop;
+        settings.aovs = false;
+        return vk::error_of(ExitCode::out_of_memory, [&] {
+            const Renderer renderer(device, gpu_scene, scene.cameras.at(0), settings);
+        });
+    };
+    const std::string allows = ", but \"" + info_.name + "\" allows ";
+    const std::string remedy =
+        "; use less or choose another device; or render the picture in parts of at most ";
+    EXPECT_EQ(message_of({10, 20, 210, 420}),
+              "image \"accumulation\" (200x400, 4 layers) needs 5120000 bytes" + allows +
+                  std::to_string(allowed) + " (maxResourceSize)" + remedy +
+                  "200x128 (the first one by --crop 10,20,210,148)");
+    EXPECT_EQ(message_of({10, 20, 210, 148}), "no error");
+    EXPECT_NE(message_of({10, 20, 210, 212}), "no error");
+    EXPECT_EQ(message_of({0, 0, 600, 10}),
+              "image \"accumulation\" (600x10, 4 layers) needs 600 pixels across" + allows +
+                  "500 (maxImageDimension2D)" + remedy + "448x10 (the first one by --crop 0,0,448,10)");
+    EXPECT_EQ(message_of({0, 0, 448, 10}), "no error");
+}
+
 // Lavapipe of Mesa 22 ends an invocation's loops after 65 535 iterations in sum; then the error says what
 // there may be too much of. Other drivers go on until all shapes are tested.
 TEST_F(LimitsTest, MoreShapesInOnePlaceThanADriverLoopsOverAreNamed) {
