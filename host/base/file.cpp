@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
+#include <optional>
 #include <system_error>
 
 #include <fcntl.h>
@@ -117,21 +119,49 @@ void check_replaceable(const fs::path& path, const fs::path& target) {
     }
 }
 
-// Gives a finished file the name of its target. If that has become impossible, gives it a name beside the
-// target and throws an Error that says so.
+// Gives a file the name of its target.
 void put_in_place(const fs::path& path, TemporaryFile& file) {
     try {
         file.commit();
     } catch (const std::system_error& error) {
-        fs::path kept;
-        try {
-            kept = file.commit_beside();
-        } catch (const std::system_error&) {
-            throw std::system_error(error);
-        }
         fail_to_write(path, "no file can be put in its place (" + describe(error.code().value()) +
-                                "); what was to be written is in " + quoted(kept));
+                                "); choose another place");
     }
+}
+
+// Writes a new file under a free name like that of `target`, which another folder may hold. Returns its path;
+// nothing if that fails.
+std::optional<fs::path> write_beside(const fs::path& target, std::optional<mode_t> permissions,
+                                     std::string_view bytes) {
+    try {
+        TemporaryFile file(target, permissions);
+        file.write(bytes);
+        file.flush();
+        return file.commit_beside();
+    } catch (const std::system_error&) {
+        return std::nullopt;
+    }
+}
+
+// As write_beside(), in a new folder for this user alone among the temporary files.
+std::optional<fs::path> write_to_temporary_folder(const fs::path& target, std::string_view bytes) {
+    std::error_code error;
+    std::string folder = (fs::temp_directory_path(error) / "candela-XXXXXX").string();
+    if (error || ::mkdtemp(folder.data()) == nullptr) return std::nullopt;
+    auto kept = write_beside(folder / target.filename(), std::nullopt, bytes);
+    if (!kept) fs::remove(folder, error);
+    return kept;
+}
+
+// Writes what can no longer be written to `target`: beside it, else to the working folder, else to the
+// temporary one. Returns the path; nothing if all three fail.
+std::optional<fs::path> write_elsewhere(const fs::path& target, std::string_view bytes) {
+    const std::optional<mode_t> permissions = permissions_of(target);
+    std::optional<fs::path> kept = write_beside(target, permissions, bytes);
+    std::error_code error;
+    const fs::path working = fs::current_path(error);
+    if (!kept && !error) kept = write_beside(working / target.filename(), permissions, bytes);
+    return kept ? kept : write_to_temporary_folder(target, bytes);
 }
 
 // An open file.
@@ -245,6 +275,16 @@ void write_file_atomically(const fs::path& path, std::string_view bytes) {
         put_in_place(path, file);
     } catch (const std::system_error& error) {
         fail_to_write(path, target, error.code().value());
+    }
+}
+
+void write_finished_work(const fs::path& path, std::string_view bytes) {
+    try {
+        write_file_atomically(path, bytes);
+    } catch (const Error& error) {
+        const std::optional<fs::path> kept = write_elsewhere(follow_links(path), bytes);
+        if (!kept) throw;
+        throw Error(std::string(error.what()) + "; what was to be written is in " + quoted(*kept));
     }
 }
 

@@ -38,9 +38,16 @@ void check_writable(const std::filesystem::path& path);
 
 // Writes `bytes` to `path`, which keeps its old contents until the new ones are safely on the disk, and its
 // permissions. A symbolic link stays and its target is replaced. Throws Error (also on a full disk), with no
-// temporary file left behind. If the bytes are on the disk but cannot take the place of the old ones, they
-// get a free name beside it, such as box-1.exr, which the Error names.
+// temporary file left behind.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+// The same for what must not get lost, because it took long and is made only once. If it cannot be written to
+// `path`, it gets a free name such as box-1.exr: beside that, else in the working folder, else in a new
+// folder for this user alone among the temporary files. The Error then says where it is.
+void write_finished_work(const std::filesystem::path& path, std::string_view bytes);
+
+// One of these two.
+using FileWriter = void (*)(const std::filesystem::path& path, std::string_view bytes);
 
 // Whether two paths name one file: by device and inode if both exist, else by where the names lead, links
 // followed.

@@ -59,7 +59,8 @@ Image read_image(const fs::path& path, const ImageLimits& limits) {
     throw Error(describe_unknown(path, ".exr, .hdr"));
 }
 
-void write_png(const fs::path& path, uint32_t width, uint32_t height, std::span<const uint8_t> rgb8) {
+void write_png(const fs::path& path, uint32_t width, uint32_t height, std::span<const uint8_t> rgb8,
+               FileWriter write) {
     assert(rgb8.size() == size_t(3) * width * height);
     constexpr uint64_t MAX_BYTES = uint64_t(1) << 30;  // stb_image_write counts bytes in an int, twice over.
     if ((uint64_t(3) * width + 1) * height > MAX_BYTES) {
@@ -73,7 +74,7 @@ void write_png(const fs::path& path, uint32_t width, uint32_t height, std::span<
     if (stbi_write_png_to_func(append, &bytes, int(width), int(height), 3, rgb8.data(), 0) == 0) {
         throw Error("cannot write " + quoted(path) + ": there is not enough memory to encode the PNG file");
     }
-    write_file_atomically(path, bytes);
+    write(path, bytes);
 }
 
 }  // namespace candela

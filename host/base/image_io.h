@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/file.h"
 #include "base/image.h"
 
 namespace candela {
@@ -26,7 +27,8 @@ ImageFormat image_format(const std::filesystem::path& path);
 // column vectors; the file holds the transposed matrices that OpenEXR defines, for row vectors. Throws Error
 // if the file cannot be written, or if a finite value of a 16-bit channel exceeds 65504. The file appears
 // whole or not at all.
-void write_exr(const std::filesystem::path& path, const Image& image);
+void write_exr(const std::filesystem::path& path, const Image& image,
+               FileWriter write = write_file_atomically);
 
 // What to read of an image.
 struct ImageLimits {
@@ -72,6 +74,6 @@ Image read_image(const std::filesystem::path& path, const ImageLimits& limits = 
 // cannot be written or the picture is larger than the encoder's limit of 2^30 bytes. The file appears whole
 // or not at all.
 void write_png(const std::filesystem::path& path, uint32_t width, uint32_t height,
-               std::span<const uint8_t> rgb8);
+               std::span<const uint8_t> rgb8, FileWriter write = write_file_atomically);
 
 }  // namespace candela

@@ -114,7 +114,7 @@ void start_threads() {
 
 }  // namespace
 
-void write_exr(const fs::path& path, const Image& image) {
+void write_exr(const fs::path& path, const Image& image, FileWriter write) {
     assert(image.pixel_count() > 0 && image.data.x1 <= image.full.x && image.data.y1 <= image.full.y);
     std::vector<std::vector<half>> halves;  // Of the 16-bit channels; must live until the pixels are written.
     for (const Channel& channel : image.channels) {
@@ -139,7 +139,7 @@ void write_exr(const fs::path& path, const Image& image) {
     } catch (const std::exception& error) {
         throw Error("cannot write " + quoted(path) + ": OpenEXR refuses the image (" + error.what() + ')');
     }
-    write_file_atomically(path, stream.bytes());
+    write(path, stream.bytes());
 }
 
 }  // namespace candela

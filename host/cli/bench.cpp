@@ -151,7 +151,7 @@ Json report_json(const BenchArguments& arguments, const vk::DeviceInfo& device,
 // To a file, or to stdout for "-".
 void write_json(const std::string& target, const Json& report) {
     const std::string text = json_text(report) + '\n';
-    if (target != "-") return write_file_atomically(target, text);
+    if (target != "-") return write_finished_work(target, text);
     std::printf("%s", text.c_str());
     flush_results();
 }

@@ -73,4 +73,8 @@ void CheckpointWriter::write(const CheckpointHeader& header, std::span<const Acc
     interval_.restart();
 }
 
+void CheckpointWriter::finish(const CheckpointHeader& header, std::span<const Accumulation> states) const {
+    save_checkpoint(path_, header, states, write_finished_work);
+}
+
 }  // namespace candela

@@ -22,8 +22,7 @@ void check_checkpoint(const CheckpointOptions& options);
 // target.
 std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& identity);
 
-// Writes checkpoints, the first after one interval. A failed write is a warning: the rendering continues, the
-// file keeps its old contents, and the next write comes after another interval.
+// Writes checkpoints, the first after one interval.
 class CheckpointWriter {
   public:
     // `every`: seconds from the end of a write to the next.
@@ -31,7 +30,11 @@ class CheckpointWriter {
 
     // Whether the interval is over.
     bool due() const { return interval_.over(); }
+    // A failure is a warning: the rendering continues, the file keeps its old contents, and the next write
+    // comes after another interval.
     void write(const CheckpointHeader& header, std::span<const Accumulation> states);
+    // Writes the last one, as finished work. Throws Error if it is not where it should be.
+    void finish(const CheckpointHeader& header, std::span<const Accumulation> states) const;
 
   private:
     std::filesystem::path path_;

@@ -90,7 +90,8 @@ ExitCode run(const CompareArguments& arguments) {
             "--z: the images do not both have Variance; render both with --aov variance, or use --relmse");
     }
     if (arguments.heatmap) {
-        write_png(*arguments.heatmap, a.data.width(), a.data.height(), heatmap(a, b, options));
+        write_png(*arguments.heatmap, a.data.width(), a.data.height(), heatmap(a, b, options),
+                  write_finished_work);
     }
     print(comparison, options);
     std::printf("%s\n", comparison.passed ? "the images agree" : "the images DIFFER");

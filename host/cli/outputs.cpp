@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "base/file.h"
 #include "base/image_io.h"
 #include "base/tonemap.h"
+#include "cli/attempts.h"
 #include "cli/console.h"
 #include "cli/json_text.h"
 
@@ -83,12 +83,12 @@ void use_half(Image& image) {
     }
 }
 
-void write_image(const ImageOutputs& outputs, const std::string& path, const Image& image) {
+void write_image(const ImageOutputs& outputs, const std::string& path, const Image& image, FileWriter write) {
     if (image_format(path) == ImageFormat::exr) {
-        write_exr(path, image);
+        write_exr(path, image, write);
     } else {
         write_png(path, image.data.width(), image.data.height(),
-                  develop(image, outputs.tonemap, float(outputs.exposure)));
+                  develop(image, outputs.tonemap, float(outputs.exposure)), write);
     }
 }
 
@@ -163,28 +163,9 @@ void write_report(const std::string& target, const Json& report) {
         std::fputs(text.c_str(), stdout);
         flush_results();
     } else {
-        write_file_atomically(target, text);
+        write_finished_work(target, text);
     }
 }
-
-// Tries one thing after another; in the end throws the last Error, after the others have been printed.
-class Attempts {
-  public:
-    void attempt(const std::function<void()>& write) {
-        try {
-            write();
-        } catch (const Error& error) {
-            if (failure_) print_error(failure_->what());
-            failure_ = error;
-        }
-    }
-    void finish() const {
-        if (failure_) throw Error(*failure_);
-    }
-
-  private:
-    std::optional<Error> failure_;
-};
 
 }  // namespace
 
@@ -220,7 +201,7 @@ void write_images(const ImageOutputs& outputs, Image image) {
     if (outputs.half) use_half(image);
     Attempts attempts;
     for (const std::string& path : outputs.files)
-        attempts.attempt([&] { write_image(outputs, path, image); });
+        attempts.attempt([&] { write_image(outputs, path, image, write_finished_work); });
     attempts.finish();
 }
 
@@ -229,7 +210,7 @@ void write_current_images(const ImageOutputs& outputs, const RenderRecord& recor
     if (outputs.half) use_half(image);
     for (const std::string& path : outputs.files) {
         try {
-            write_image(outputs, path, image);
+            write_image(outputs, path, image, write_file_atomically);
         } catch (const Error& error) {
             print_warning(std::string(error.what()) + "; the rendering goes on without this image");
         }

@@ -58,15 +58,15 @@ void check_report(const std::optional<std::string>& file);
 // command line.
 void add_attributes(Image& image, const RenderRecord& record);
 
-// Writes all images. If one fails, still writes the others, and then throws the Error.
+// Writes all images, as finished work. If one fails, still writes the others, and then throws the Error.
 void write_images(const ImageOutputs& outputs, Image image);
 
 // Writes all images, with attributes, during a rendering. A failure is a warning: the file keeps its old
 // contents.
 void write_current_images(const ImageOutputs& outputs, const RenderRecord& record, Image image);
 
-// Writes all images, with attributes, and the report, if a file is given. If one fails, still writes the
-// others, and then throws the Error.
+// Writes all images, with attributes, and the report, if a file is given, as finished work. If one fails,
+// still writes the others, and then throws the Error.
 void write_outputs(const ImageOutputs& outputs, const std::optional<std::string>& report,
                    const RenderRecord& record, Image image);
 

@@ -28,10 +28,11 @@ ExitCode run(const PlotArguments& arguments) {
     for (const std::string& path : arguments.reports)
         files.read("REPORT", path);
     files.write("-o", arguments.output);
+    check_writable(arguments.output);
     std::vector<Curve> curves;
     for (const std::string& path : arguments.reports)
         curves.push_back(curve_of_report(read_file(path), path));
-    write_file_atomically(arguments.output, draw_curves(curves));
+    write_finished_work(arguments.output, draw_curves(curves));
     return ExitCode::done;
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/attempts.h"
 #include "cli/checkpoints.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
@@ -74,19 +75,18 @@ struct Upkeep {
     double seconds() const { return seconds_before + progress.seconds(); }
 };
 
-void write_checkpoint(SteadyRenderer& renderer, const RenderRecord& record, double seconds, Upkeep& upkeep) {
-    upkeep.checkpoints->write({.identity = record.identity,
-                               .maker = record.maker,
-                               .render_seconds = seconds,
-                               .planned = upkeep.planned},
-                              renderer.states());
+CheckpointHeader checkpoint_header(const RenderRecord& record, double seconds, const Upkeep& upkeep) {
+    return {.identity = record.identity,
+            .maker = record.maker,
+            .render_seconds = seconds,
+            .planned = upkeep.planned};
 }
 
 // Writes a checkpoint and the images if they are due.
 void keep(SteadyRenderer& renderer, const ImageOutputs& outputs, const RenderRecord& record, Upkeep& upkeep) {
     if (upkeep.checkpoints && upkeep.checkpoints->due()) {
         renderer.hold();
-        write_checkpoint(renderer, record, upkeep.seconds(), upkeep);
+        upkeep.checkpoints->write(checkpoint_header(record, upkeep.seconds(), upkeep), renderer.states());
     }
     if (upkeep.images && upkeep.images->over()) {
         renderer.hold();
@@ -144,7 +144,6 @@ std::optional<Error> trace(SteadyRenderer& renderer, const RenderJob& job, const
     record.device_failures = renderer.failures();
     record.convergence = upkeep.convergence.points();
     record.estimated_error = upkeep.convergence.estimate();
-    if (upkeep.checkpoints) write_checkpoint(renderer, record, record.render_seconds, upkeep);
     return failure;
 }
 
@@ -237,8 +236,18 @@ ExitCode render_on(const vk::Instance& instance, const vk::DeviceInfo& device, c
     Image image = collect_image(renderer, aovs, record);
     print_outcome(job.messages, record, job.target);
     record.validation_messages = instance.validation_messages().size();
-    write_outputs(job.images, report, record, std::move(image));
-    if (failure) throw Error(*failure);
+    Attempts attempts;
+    if (upkeep.checkpoints) {
+        attempts.attempt([&] {
+            upkeep.checkpoints->finish(checkpoint_header(record, record.render_seconds, upkeep),
+                                       renderer.states());
+        });
+    }
+    attempts.attempt([&] { write_outputs(job.images, report, record, std::move(image)); });
+    attempts.attempt([&] {
+        if (failure) throw Error(*failure);
+    });
+    attempts.finish();
     upkeep.progress.end(record.complete ? "done" : interrupted ? "interrupted" : "time limit");
     return interrupted ? ExitCode::interrupted : ExitCode::done;
 }

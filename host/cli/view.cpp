@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/image_io.h"
 #include "base/printable.h"
+#include "cli/attempts.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
@@ -141,9 +142,11 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
                                add_attributes(image, picture, device, command_line);
                            }});
         complete = viewer.run();
+        Attempts attempts;
         for (const std::string& path : arguments.screenshots) {
-            if (complete) viewer.save(path);
+            if (complete) attempts.attempt([&] { viewer.save(path); });
         }
+        attempts.finish();
     }
     check_validation(instance);
     if (guard.interrupted()) return ExitCode::interrupted;

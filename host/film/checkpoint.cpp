@@ -165,7 +165,7 @@ void check_together(const Checkpoint& checkpoint, const std::string& name) {
 }  // namespace
 
 void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& header,
-                     std::span<const Accumulation> states) {
+                     std::span<const Accumulation> states, FileWriter write) {
     const Accumulation& first = states.front();
     Image image{.full = first.full, .data = first.rect, .channels = {}, .attributes = {}};
     for (size_t index = 0; index < states.size(); ++index) {
@@ -181,7 +181,7 @@ void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& 
     set_identity(image, header.identity);
     set_maker(image, header.maker);
     image.attributes[CHECKSUM_ATTRIBUTE] = hexadecimal(checksum(image, states));
-    write_exr(path, image);
+    write_exr(path, image, write);
 }
 
 Checkpoint load_checkpoint(const std::filesystem::path& path) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file.h"
 #include "film/accumulation.h"
 #include "film/identity.h"
 
@@ -28,7 +29,7 @@ struct Checkpoint {
 // with a checksum. There must be one or four states, all with values. Throws Error if writing fails; the file
 // then keeps its old contents.
 void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& header,
-                     std::span<const Accumulation> states);
+                     std::span<const Accumulation> states, FileWriter write = write_file_atomically);
 
 // Reads it back. Throws Error if the file is not a checkpoint, if any bit of it that matters has changed, if
 // it holds a state that no renderer produces, or if a newer version wrote it.

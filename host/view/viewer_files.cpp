@@ -13,7 +13,7 @@ void Viewer::write_radiance(const std::filesystem::path& path, const Accumulatio
     const bool placed = !positions.empty();
     Image image = make_image(state, {true, true, placed, placed, true, true}, positions);
     options_.add_attributes(image, {gpu_scene_, camera_, settings_, state, render_seconds_});
-    write_exr(path, image);
+    write_exr(path, image, write_finished_work);
 }
 
 void Viewer::save(const std::filesystem::path& path) {
@@ -21,7 +21,7 @@ void Viewer::save(const std::filesystem::path& path) {
     if (image_format(path) == ImageFormat::png) {
         const Image image = make_image(state, {}, {});
         write_png(path, state.rect.width(), state.rect.height(),
-                  develop(image, state_.tonemap, state_.exposure_ev));
+                  develop(image, state_.tonemap, state_.exposure_ev), write_finished_work);
     } else {
         write_radiance(path, state, renderer_->positions());
     }
@@ -37,7 +37,7 @@ void Viewer::save_as_asked(const ViewRequests& requests) {
     if (requests.save_exr) save_as_next(".exr", [this](const std::string& path) { save(path); });
     if (requests.save_camera) {
         save_as_next("-camera.json", [this](const std::string& path) {
-            write_file_atomically(path, camera_json(state_.camera, "view"));
+            write_finished_work(path, camera_json(state_.camera, "view"));
         });
     }
 }

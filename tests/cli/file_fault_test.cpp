@@ -1,6 +1,7 @@
 // File operations fail, one after the other (tests/faults/file_fault.cpp), in a rendering that reads a scene
 // of several files and a checkpoint and writes a checkpoint, two images and a report, with a warm cache.
-// Whatever fails, each file is the old or the new one, and messages and exit codes say which.
+// Whatever fails, each file is the old or the new one, and messages and exit codes say which; what was
+// rendered is there, if need be elsewhere.
 #include <array>
 #include <cerrno>
 #include <map>
@@ -17,8 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int SHORT_COUNT = 0;
-constexpr std::array FAULTS{ENOSPC, EIO, EDQUOT, EBUSY, EPERM, EINTR, SHORT_COUNT};
+// No errors: a write of half its bytes, and the name of the picture that becomes a folder.
+constexpr int SHORT_COUNT = 0, BECOMES_FOLDER = -1;
+constexpr std::array FAULTS{ENOSPC, EIO, EDQUOT, EBUSY, EPERM, EINTR, SHORT_COUNT, BECOMES_FOLDER};
 
 constexpr uint32_t OLD_SPP = 2, NEW_SPP = 4;
 
@@ -94,20 +96,44 @@ class FileFaults : public CliTest {
             fs::copy_file(folder_ / name, directory_ / state / name);
     }
     void restore(const std::string& state) const {
+        if (fs::is_directory(picture())) fs::remove(picture());
+        fs::remove(file_of("a.exr"));
         for (const char* name : FILES)
             fs::copy_file(directory_ / state / name, folder_ / name, fs::copy_options::overwrite_existing);
     }
 
-    // The contents of a file, except for times.
-    static std::string contents(const fs::path& path) {
-        const std::string name = path.filename().string();
+    fs::path picture() const { return folder_ / "a.exr"; }
+    // Where it is now, if its name has become a folder.
+    fs::path file_of(const std::string& name) const {
+        const fs::path was = folder_ / (name + ".was");
+        return fs::exists(was) ? was : folder_ / name;
+    }
+
+    // The contents of the file of that name, which lies at `path`, except for times.
+    static std::string contents(const std::string& name, const fs::path& path) {
         if (name == "a.exr") return std::to_string(image_hash(read_exr(path)));
         if (name == "a.png") return read_file(path);
         if (name == "report.json") return nlohmann::json::parse(read_file(path))["image_hash"];
         return std::to_string(load_checkpoint(path).states.at(0).total_samples());
     }
     bool is(const std::string& state, const char* name) const {
-        return contents(folder_ / name) == contents(directory_ / state / name);
+        return contents(name, file_of(name)) == contents(name, directory_ / state / name);
+    }
+
+    // Removes what the messages say was kept elsewhere, which must be new; returns how many files that are.
+    size_t take_kept(const std::string& messages) const {
+        const std::string words = "; what was to be written is in \"";
+        size_t kept = 0;
+        for (size_t at = messages.find(words); at != std::string::npos; at = messages.find(words, at)) {
+            at += words.size();
+            const fs::path path = messages.substr(at, messages.find('"', at) - at);
+            std::string name = path.filename().string();  // Such as a-1.exr.
+            name.erase(name.find("-1"), 2);
+            EXPECT_EQ(contents(name, path), contents(name, directory_ / "new" / name));
+            fs::remove(path);
+            ++kept;
+        }
+        return kept;
     }
 
     // The line of the log for that call, and how many lines it has.
@@ -126,11 +152,13 @@ class FileFaults : public CliTest {
     size_t expect_fault_loses_nothing(size_t call, int error) const {
         restore("old");
         fs::remove(directory_ / "log");
-        const ProcessResult result = render(NEW_SPP, {{"LD_PRELOAD", CANDELA_FILE_FAULT},
-                                                      {"FILE_FAULT_FOLDER", folder_.string()},
-                                                      {"FILE_FAULT_LOG", file("log")},
-                                                      {"FILE_FAULT_AT", std::to_string(call)},
-                                                      {"FILE_FAULT_ERRNO", std::to_string(error)}});
+        const ProcessResult result = render(
+            NEW_SPP, {{"LD_PRELOAD", CANDELA_FILE_FAULT},
+                      {"FILE_FAULT_FOLDER", folder_.string()},
+                      {"FILE_FAULT_LOG", file("log")},
+                      {"FILE_FAULT_AT", std::to_string(call)},
+                      {"FILE_FAULT_ERRNO", std::to_string(std::max(error, 0))},
+                      {"FILE_FAULT_BECOMES_FOLDER", error == BECOMES_FOLDER ? picture().string() : ""}});
         size_t calls = 0;
         const std::string line = log_line(call, calls);
         SCOPED_TRACE(line + ", errno " + std::to_string(error) + ": " + result.err);
@@ -140,25 +168,22 @@ class FileFaults : public CliTest {
             error == SHORT_COUNT || (error == EINTR && line.find(" rename ") == std::string::npos &&
                                      line.find(" mmap ") == std::string::npos);
         EXPECT_EQ(result.signal, 0);
-        if (line.empty() || of_cache || to_remove || passes) {
-            EXPECT_EQ(result.exit_code, 0);
-            EXPECT_EQ(result.err, "");
-        } else {
-            // A checkpoint that cannot be written is a warning.
+        if (error == BECOMES_FOLDER) {
             EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << result.exit_code;
-            EXPECT_CONTAINS(result.err, result.exit_code == 0 ? "candela: warning: " : "candela: error: ");
+        } else {
+            EXPECT_EQ(result.exit_code, line.empty() || of_cache || to_remove || passes ? 0 : 1);
         }
+        EXPECT_EQ(result.err.starts_with("candela: error: "), result.exit_code == 1);
         size_t old = 0;
         for (const char* name : FILES) {
             const bool is_old = is("old", name);
             EXPECT_TRUE(is_old || is("new", name)) << name;
             old += is_old;
         }
-        if (result.exit_code == 0) {
-            EXPECT_EQ(old, result.err.empty() ? 0u : 1u);
-        } else {
-            EXPECT_GE(old, 1u);
-        }
+        const size_t kept = take_kept(result.err);
+        // Nothing was rendered, or all of it is kept.
+        EXPECT_TRUE(old == FILES.size() ? kept == 0 : old == kept) << old << ' ' << kept;
+        EXPECT_EQ(old == 0, result.exit_code == 0);
         expect_nothing_left(to_remove);
         return line.empty() ? 0 : calls;
     }

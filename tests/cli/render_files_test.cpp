@@ -162,23 +162,6 @@ TEST_F(RenderFiles, TooLargeAPictureSaysWhatItNeeds) {
     EXPECT_CONTAINS(result.err, "use a smaller picture (--size, --crop) or scene");
 }
 
-// The folder of the first output vanishes while rendering; the second is written all the same.
-TEST_F(RenderFiles, OneFailingOutputDoesNotTakeTheOthersWithIt) {
-    std::filesystem::create_directory(file("gone"));
-    ProcessOptions terminal = options();
-    terminal.terminal = true;
-    Process process(call({"render", CORNELL_BOX, "--size", "32x32", "--spp", "16777216", "-o",
-                          file("gone/a.exr"), "-o", file("b.exr")}),
-                    terminal);
-    ASSERT_TRUE(process.wait_for_err("Msamples/s"));
-    std::filesystem::remove(file("gone"));
-    process.send(SIGINT);
-    const ProcessResult result = process.finish();
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_CONTAINS(result.err, "candela: error: cannot write \"" + file("gone/a.exr"));
-    EXPECT_EQ(read_exr(file("b.exr")).full, uvec2(32, 32));
-}
-
 TEST_F(RenderFiles, CompiledKernelsAreKeptWhereXdgSays) {
     const Words arguments = {"render", CORNELL_BOX, "--size", "8x8", "--spp", "1", "-o", file("a.png")};
     const auto files_in = [this](const char* folder) {

@@ -1,8 +1,10 @@
 // A library for LD_PRELOAD that makes one call on files fail. Calls of open, write, fsync, rename, unlink and
 // mmap (in all their variants) count from 1 on if they concern a path below the folder FILE_FAULT_FOLDER, or
 // a descriptor of a file there. Call FILE_FAULT_AT fails with the errno FILE_FAULT_ERRNO; with
-// FILE_FAULT_ERRNO=0 a write writes half of its bytes instead, and other calls succeed. Every call that
-// counts adds a line "NUMBER CALL PATH" to the file FILE_FAULT_LOG, in another folder.
+// FILE_FAULT_ERRNO=0 a write writes half of its bytes instead, and other calls succeed. If
+// FILE_FAULT_BECOMES_FOLDER names a file, that becomes a folder just before, and the file, if there is one,
+// is called NAME.was. Every call that counts adds a line "NUMBER CALL PATH" to the file FILE_FAULT_LOG, in
+// another folder.
 #include <atomic>
 #include <cerrno>
 #include <climits>
@@ -32,24 +34,32 @@ std::string variable(const char* name) {
     return value == nullptr ? "" : value;
 }
 
-// The absolute path, with neither links nor dots resolved.
-std::string absolute(int folder, const char* path) {
-    if (path[0] == '/') return path;
-    char base[PATH_MAX] = "";
-    if (folder == AT_FDCWD) {
-        if (::getcwd(base, sizeof base) == nullptr) return "";
-    } else {
-        const std::string link = "/proc/self/fd/" + std::to_string(folder);
-        const ssize_t length = ::readlink(link.c_str(), base, sizeof base - 1);
-        if (length < 0) return "";
-    }
-    return std::string(base) + '/' + path;
-}
-
 std::string path_of(int descriptor) {
     char path[PATH_MAX] = "";
     const std::string link = "/proc/self/fd/" + std::to_string(descriptor);
     return ::readlink(link.c_str(), path, sizeof path - 1) < 0 ? "" : path;
+}
+
+// The absolute path, with neither links nor dots resolved, except for the way through an open folder.
+std::string absolute(int folder, const char* path) {
+    constexpr const char* OPEN = "/proc/self/fd/";
+    if (std::strncmp(path, OPEN, std::strlen(OPEN)) == 0) {
+        char* rest = nullptr;
+        const long descriptor = std::strtol(path + std::strlen(OPEN), &rest, 10);
+        return path_of(int(descriptor)) + rest;
+    }
+    if (path[0] == '/') return path;
+    char base[PATH_MAX] = "";
+    if (folder == AT_FDCWD && ::getcwd(base, sizeof base) == nullptr) return "";
+    return (folder == AT_FDCWD ? std::string(base) : path_of(folder)) + '/' + path;
+}
+
+// Puts a folder where somebody else might, by system calls, which are not counted.
+void make_folder() {
+    static const std::string place = variable("FILE_FAULT_BECOMES_FOLDER");
+    if (place.empty()) return;
+    ::syscall(SYS_renameat, AT_FDCWD, place.c_str(), AT_FDCWD, (place + ".was").c_str());
+    ::syscall(SYS_mkdirat, AT_FDCWD, place.c_str(), 0700);
 }
 
 // Counts a call. Returns whether it is the one that fails.
@@ -64,6 +74,7 @@ bool is_chosen(const char* call, const std::string& path) {
     const long number = ++calls;
     const std::string line = std::to_string(number) + ' ' + call + ' ' + path + '\n';
     ::syscall(SYS_write, log, line.data(), line.size());
+    if (number == chosen) make_folder();
     return number == chosen;
 }
 

@@ -116,13 +116,16 @@ TEST_F(AnothersFile, IsRefusedBeforehand) {
 TEST_F(AnothersFile, LetsWhatIsFinishedTakeANameBesideIt) {
     const Unprivileged unprivileged;
     for (const std::string name : {"out-1.exr", "out-2.exr"}) {
-        EXPECT_EQ(error_of([&] { write_file_atomically(file_, name); }),
+        EXPECT_EQ(error_of([&] { write_finished_work(file_, name); }),
                   "cannot write \"" + file_.string() +
-                      "\": no file can be put in its place (Operation not permitted); what was to be written "
-                      "is in \"" +
+                      "\": no file can be put in its place (Operation not permitted); choose another place; "
+                      "what was to be written is in \"" +
                       (directory_ / name).string() + '"');
         EXPECT_EQ(read_file(directory_ / name), name);
     }
+    EXPECT_EQ(error_of([&] { write_file_atomically(file_, "current"); }),
+              "cannot write \"" + file_.string() +
+                  "\": no file can be put in its place (Operation not permitted); choose another place");
     EXPECT_EQ(read_file(file_), "old");
     EXPECT_EQ(directory_.size(), 3);
 }
