@@ -48,11 +48,21 @@ TEST_F(PlyAttributes, TextureCoordinatesHaveFourNames) {
         EXPECT_EQ(mesh.uv0, (std::vector<vec2>{vec2(0.5f, 0.25f), vec2(1e30f, -1e30f), vec2(0, 1)}));
         EXPECT_TRUE(mesh.uv1.empty());
         EXPECT_TRUE(mesh.colors.empty());
-        expect_error(ascii(properties, {"0 0", "0 nan", "0 0"}),
-                     "m.ply:13: vertex 1 needs \"" + u + "\" from -1e30 to 1e30, found nan");
-        expect_error(ascii(properties, {"0 0", "-1.5e30 0", "0 0"}),
-                     "m.ply:13: vertex 1 needs \"" + v + "\" from -1e30 to 1e30, found -1.5e+30");
     }
+}
+
+TEST_F(PlyAttributes, TextureCoordinatesThatAreNotFiniteAreZero) {
+    const std::string properties = "property float u\nproperty double v\n";
+    EXPECT_EQ(load(ascii(properties, {"0.5 0.25", "0.5 nan", "1 1"})).uv0,
+              (std::vector<vec2>{vec2(0.5f, 0.25f), vec2(0), vec2(1)}));
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_EQ(folder_.without_folder(warnings_[0]),
+              "m.ply: the texture coordinates of 1 vertex are not finite, or beyond 1e30; 0 is used there");
+    EXPECT_EQ(load(ascii(properties, {"inf 0.25", "0.5 -1.5e30", "1 1"})).uv0,
+              (std::vector<vec2>{vec2(0), vec2(0), vec2(1)}));
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_EQ(folder_.without_folder(warnings_[0]),
+              "m.ply: the texture coordinates of 2 vertices are not finite, or beyond 1e30; 0 is used there");
 }
 
 TEST_F(PlyAttributes, TextureCoordinatesAreTheFirstCompletePair) {
@@ -94,8 +104,18 @@ TEST_F(PlyAttributes, FloatsAreLinearColours) {
               (std::vector<vec4>{vec4(0, 0.5f, 1, 1), vec4(0.25f, 0.125f, 0.75f, 1), vec4(1)}));
     for (const std::string word : {"255", "-0.5", "1.01", "nan", "inf"}) {
         expect_error(ascii(FLOATS, {"0 0 0", "0 " + word + " 0", "0 0 0"}),
-                     "m.ply:14: vertex 1 needs \"green\" from 0 to 1, found " + word);
+                     "m.ply: vertex 1, which a face uses, needs a colour from 0 to 1, found " + word +
+                         "; write numbers from 0 to 255 as uchar");
     }
+    EXPECT_EQ(load(ascii(FLOATS, {"-1e-6 0.5 1.000001", "0 0 0", "1 1 1"})).colors[0], vec4(0, 0.5f, 1, 1));
+}
+
+TEST_F(PlyAttributes, ColoursMayBeCalledDiffuse) {
+    const std::string properties =
+        "property uchar diffuse_red\nproperty uchar diffuse_green\n"
+        "property uchar diffuse_blue\nproperty uchar diffuse_alpha\n";
+    const TriangleMesh mesh = load(ascii(properties, {"255 0 0 51", "0 255 0 255", "0 0 255 0"}));
+    EXPECT_EQ(mesh.colors, (std::vector<vec4>{vec4(1, 0, 0, 0.2f), vec4(0, 1, 0, 1), vec4(0, 0, 1, 0)}));
 }
 
 TEST_F(PlyAttributes, AlphaIsLinear) {

@@ -14,6 +14,8 @@ TEST_F(Ply, RefusesBadHeaders) {
         expect_error(replaced(good, old, by), message);
     };
     bad("ply", "", "m.ply: the file does not begin with the line \"ply\"; is it a PLY file?");
+    bad("ply\nformat", "plyformat",
+        "m.ply: the file does not begin with the line \"ply\"; is it a PLY file?");
     bad("ply", "plx", "m.ply: the file does not begin with the line \"ply\"; is it a PLY file?");
     bad("end_header", "end_heade",
         "m.ply:9: unknown statement \"end_heade\" (known: format, comment, obj_info, element, property, "
@@ -51,8 +53,13 @@ TEST_F(Ply, RefusesFilesWithoutAMesh) {
     };
     bad("element vertex", "element vertices", no_rows("vertex"));
     bad("element vertex 4", "element vertex 0", no_rows("vertex"));
-    bad(FACE, "", no_rows("face"));
-    bad("element face 2", "element face 0", no_rows("face"));
+    const std::string points =
+        "m.ply: the file has points, but no faces; make a mesh of them, for example with MeshLab";
+    bad(FACE, "", points);
+    bad("element face 2", "element face 0", points);
+    bad("element face 2", "element tristrips 0", points);
+    expect_error(replaced(replaced(good, FACE, ""), "float z\n", "float z\nproperty float f_dc_0\n"),
+                 "m.ply: the file holds Gaussian splats, which have no surface; give a mesh");
     bad("float y", "float Y", "m.ply:3: the element \"vertex\" needs the property \"y\", a number");
     bad("float z", "list uchar float z",
         "m.ply:3: the element \"vertex\" needs the property \"z\", a number");
@@ -70,8 +77,9 @@ TEST_F(Ply, RefusesBadRows) {
     };
     bad("1 1 0", "1 x 0", "m.ply:12: vertex 2 has \"x\" in place of a number of 4 bytes");
     bad("1 1 0", "1 1,5 0", "m.ply:12: vertex 2 has \"1,5\" in place of a number of 4 bytes");
-    bad("1 1 0", "1 inf 0", "m.ply:12: vertex 2 needs a finite y, found inf");
-    bad("1 1 0", "1 1e39 0", "m.ply:12: vertex 2 needs a finite y, found 1e+39");
+    bad("1 1 0", "1 inf 0", "m.ply: vertex 2, which a face uses, needs a finite y, found inf");
+    bad("1 1 0", "1 1e39 0", "m.ply: vertex 2, which a face uses, needs a finite y, found 1e+39");
+    bad("1 1 0", "1 -1.#IND 0", "m.ply: vertex 2, which a face uses, needs a finite y, found nan");
     bad("1 1 0", "1 1", "m.ply:12: vertex 2 has too few numbers; is the file cut off?");
     bad("1 1 0", "1 1 0 0", "m.ply:12: vertex 2 has more numbers than the header announces");
     bad("3 0 1 2", "3 0 1", "m.ply:14: face 0 has too few numbers; is the file cut off?");
@@ -81,14 +89,18 @@ TEST_F(Ply, RefusesBadRows) {
     bad("3 0 2 3", "3 0 2 2.5", "m.ply:15: face 1 has \"2.5\" in place of an integer of 4 bytes");
     bad("3 0 2 3", "3 0 2 2147483648",
         "m.ply:15: face 1 has \"2147483648\" in place of an integer of 4 bytes");
-    bad("3 0 2 3", "2 0 2", "m.ply:15: face 1 has 2 corners; a face needs at least 3");
+    bad("3 0 2 3", "2 0 4", "m.ply:15: face 1 uses vertex 4, but the vertices are 0 to 3");
+    bad("3 0 2 3", "3 0 2 1.#INF", "m.ply:15: face 1 has \"1.#INF\" in place of an integer of 4 bytes");
+    bad(FACE + "end_header\n" + POINTS + "3 0 1 2",
+        replaced(FACE, "face", "tristrips") + "end_header\n" + POINTS + "3 0 1 -2",
+        "m.ply:14: tristrips 0 uses vertex -2, but the vertices are 0 to 3");
     bad("3 0 2 3", "256 0 2", "m.ply:15: face 1 has \"256\" in place of an integer of 1 byte");
     bad("3 0 2 3", "-1 0 2", "m.ply:15: face 1 has \"-1\" in place of an integer of 1 byte");
     bad("\n3 0 2 3", "", "m.ply:14: face 1 is missing or incomplete; is the file cut off?");
     expect_error(replaced(replaced(good, "uchar int", "ushort int"), "3 0 2 3", "1025"),
                  "m.ply:15: face 1 has 1025 corners, but at most 1024 are read; cut it into triangles");
     expect_error(replaced(replaced(good, "uchar int", "char int"), "3 0 2 3", "-128"),
-                 "m.ply:15: face 1 has -128 corners; a face needs at least 3");
+                 "m.ply:15: face 1 has a list of -128 numbers");
     expect_error(replaced(replaced(good, "vertex_indices\n", "vertex_indices\nproperty list char int a\n"),
                           "3 0 1 2", "3 0 1 2 -1"),
                  "m.ply:15: face 0 has a list of -1 numbers");
@@ -96,7 +108,7 @@ TEST_F(Ply, RefusesBadRows) {
     expect_error(binary.substr(0, binary.size() - 4) + bytes_of(int32_t(9), false),
                  "m.ply: face 1 uses vertex 9, but the vertices are 0 to 3");
     expect_error(replaced(binary, bytes_of(1.0f, false), bytes_of(NAN, false)),
-                 "m.ply: vertex 1 needs a finite x, found nan");
+                 "m.ply: vertex 1, which a face uses, needs a finite x, found nan");
 }
 
 TEST_F(Ply, MakesNoRoomForWhatTheFileCannotHold) {

@@ -67,6 +67,12 @@ class Ply : public testing::Test {
         EXPECT_EQ(folder_.without_folder(error_of([&] { load(text); })), message);
     }
 
+    // The only warning, without the folder.
+    std::string warning() {
+        EXPECT_EQ(warnings_.size(), 1u);
+        return warnings_.empty() ? "" : folder_.without_folder(warnings_[0]);
+    }
+
     void expect_square(const TriangleMesh& mesh) {
         EXPECT_EQ(mesh.positions, (std::vector<vec3>{vec3(0), vec3(1, 0, 0), vec3(1, 1, 0), vec3(0, 1, 0)}));
         EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{uvec3(0, 1, 2), uvec3(0, 2, 3)}));

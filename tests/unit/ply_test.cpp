@@ -54,7 +54,7 @@ std::string file_of_types(const std::array<std::string, 5>& names, bool big_endi
                    names[3] + ' ' + names[1] +
                    " lens\nelement nothing 99999999999\nelement face 1\nproperty " + names[2] +
                    " red\nproperty list " + names[3] + ' ' + names[4] + " vertex_index\nproperty list uint " +
-                   names[0] + " texcoord\nelement vertex 3\nproperty " + names[1] + " y\nproperty " +
+                   names[0] + " weights\nelement vertex 3\nproperty " + names[1] + " y\nproperty " +
                    names[0] + " x\nproperty " + names[2] + " z\nproperty list uchar uchar w\n");
     text += put(x) + put(Length(2)) + put(y) + put(y) + put(x) + put(Length(0));
     text +=
@@ -122,10 +122,117 @@ TEST_F(Ply, TakesNormalsFromTheFileOrNot) {
     EXPECT_EQ(load(text, MeshNormals::smooth).normals, std::vector<vec3>(4, vec3(0, 0, 1)));
     // Two components of three are no normal.
     EXPECT_TRUE(load(replaced(text, "float nz", "float nw")).normals.empty());
-    // What is not used may be anything.
-    const std::string nan = replaced(text, "0 0 1 9", "0 nan 1 9");
-    expect_error(nan, "m.ply:14: vertex 0 needs a finite ny, found nan");
-    EXPECT_NO_THROW(load(nan, MeshNormals::flat));
+}
+
+TEST_F(Ply, NormalsThatAreNotFiniteAreNone) {
+    const std::string elements = VERTEX + "property float nx\nproperty double ny\nproperty float nz\n" + FACE;
+    const auto with = [&](const std::string& first, const std::string& second) {
+        return load(header("ascii", elements) + "0 0 0 " + first + "\n1 0 0 " + second +
+                    "\n1 1 0 0 0 0\n0 1 0 3 0 0\n3 0 1 2\n3 0 2 3\n")
+            .normals;
+    };
+    EXPECT_EQ(with("0 nan 1", "0 1 0"), (std::vector<vec3>{vec3(0), vec3(0, 1, 0), vec3(0), vec3(1, 0, 0)}));
+    EXPECT_EQ(warning(), "m.ply: 1 normal is not finite; those of the faces are used there");
+    EXPECT_EQ(with("1.#QNAN 0 1", "0 1e300 -inf"),
+              (std::vector<vec3>{vec3(0), vec3(0), vec3(0), vec3(1, 0, 0)}));
+    EXPECT_EQ(warning(), "m.ply: 2 normals are not finite; those of the faces are used there");
+    with("0 0 0", "0 0 0");
+    EXPECT_TRUE(warnings_.empty());
+}
+
+// They may also be far away: nothing of them is left.
+TEST_F(Ply, VerticesThatNoFaceUsesMayBeAnything) {
+    const std::string elements = replaced(VERTEX, "4", "6") +
+                                 "property float nx\nproperty float ny\nproperty float nz\n"
+                                 "property float u\nproperty float v\nproperty float red\n"
+                                 "property float green\nproperty float blue\n" +
+                                 FACE;
+    const std::string used = " 0 0 1 0.5 0.25 1 0 0\n";
+    const TriangleMesh mesh =
+        load(header("ascii", elements) + "nan 1e39 inf nan nan nan nan nan 7 nan -1\n0 0 0" + used + "1 0 0" +
+             used + "1e30 0 0 0 0 0 0 0 0 0 0\n1 1 0" + used + "0 1 0" + used + "3 1 2 4\n3 1 4 5\n");
+    EXPECT_EQ(mesh.positions, (std::vector<vec3>{vec3(0), vec3(1, 0, 0), vec3(1, 1, 0), vec3(0, 1, 0)}));
+    EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{uvec3(0, 1, 2), uvec3(0, 2, 3)}));
+    EXPECT_EQ(mesh.normals, std::vector<vec3>(4, vec3(0, 0, 1)));
+    EXPECT_EQ(mesh.uv0, std::vector<vec2>(4, vec2(0.5f, 0.25f)));
+    EXPECT_EQ(mesh.colors, std::vector<vec4>(4, vec4(1, 0, 0, 1)));
+    EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(Ply, LeavesOutFacesOfFewerThanThreeCorners) {
+    const std::string start = header("ascii", VERTEX + replaced(FACE, "2", "5")) + POINTS;
+    const std::string small = "2 0 1\n0\n", square = "3 0 1 2\n3 0 2 3\n";
+    TriangleMesh mesh = load(start + small + square + "1 3\n");
+    EXPECT_EQ(warning(), "m.ply: left out 3 faces of fewer than 3 corners");
+    warnings_.clear();
+    expect_square(mesh);
+    mesh = load(replaced(start, "5", "3") + "2 1 1\n" + square);
+    EXPECT_EQ(warning(), "m.ply: left out 1 face of fewer than 3 corners");
+    warnings_.clear();
+    expect_square(mesh);
+    folder_.write("m.ply", replaced(start, "5", "1") + "2 0 1\n");
+    EXPECT_EQ(folder_.without_folder(error_of([&] { load_ply_scene(folder_.path() / "m.ply"); })),
+              "m.ply: the mesh has no triangle with an area; check its positions");
+}
+
+TEST_F(Ply, AcceptsOtherHeaders) {
+    const std::string mark = "\xEF\xBB\xBF";
+    expect_square(load(mark + ascii_square()));
+    expect_square(load(mark + binary_square(true)));
+    for (const std::string& good : {ascii_square(), binary_square(false)}) {
+        expect_square(load(replaced(good, "ply\n", "ply \t\n\n")));
+        expect_square(load(replaced(good, "element face 2", " comment\telement\nelement\tface  2 ")));
+        expect_square(load(replaced(good, "end_header", "comment a\r\nobj_info\r\nend_header\r")));
+        expect_square(load(replaced(good, "ply\n", "ply\r\n")));
+    }
+}
+
+// A square as one strip; then with strips that begin anew, and corners that repeat to turn one around.
+TEST_F(Ply, ReadsStripsOfTriangles) {
+    const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+    const auto area = [](const TriangleMesh& mesh, size_t i) {
+        const uvec3 t = mesh.triangles[i];
+        const vec3 p = mesh.positions[t.x];
+        return 0.5f * cross(mesh.positions[t.y] - p, mesh.positions[t.z] - p).z;
+    };
+    TriangleMesh mesh = load(header("ascii", VERTEX + strips) + POINTS + "4 0 1 3 2\n");
+    ASSERT_EQ(mesh.triangles.size(), 2u);
+    EXPECT_EQ(mesh.triangles[0], uvec3(0, 1, 3));
+    EXPECT_EQ(area(mesh, 0), 0.5f);
+    EXPECT_EQ(area(mesh, 1), 0.5f);  // Counter-clockwise, too.
+    mesh = load(header("ascii", VERTEX + strips) + POINTS + "12 0 1 -1 0 1 2 -1 0 2 2 0 3\n");
+    ASSERT_EQ(mesh.triangles.size(), 2u);
+    EXPECT_EQ(mesh.triangles[0], uvec3(0, 1, 2));
+    EXPECT_EQ(mesh.triangles[1], uvec3(2, 0, 3));
+    EXPECT_TRUE(warnings_.empty());
+
+    std::string binary = header("binary_big_endian", VERTEX + FACE + strips);
+    for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f})
+        binary += bytes_of(x, true);
+    binary = replaced(binary, "face 2", "face 1") + char(3);
+    for (const int32_t i : {0, 1, 2, 4, -1, 0, 2, 3})
+        binary += bytes_of(i, true);
+    expect_square(load(binary));
+}
+
+TEST_F(Ply, WarnsOfLooksThatAreNotRead) {
+    const std::string good = ascii_square();
+    load(replaced(good, "ply\n", "ply\ncomment TextureFile wood 1.png\n"));
+    EXPECT_EQ(warning(), "m.ply: ignored the texture \"wood 1.png\"; name it in a material of a scene file");
+    load(replaced(good, "ply\n", "ply\ncomment TextureFile a\ncomment TextureFile b\ncomment by hand\n"));
+    EXPECT_EQ(warning(),
+              "m.ply: ignored the texture \"a\" and others; name it in a material of a scene file");
+    const auto with_property = [&](const std::string& property, const std::string& first,
+                                   const std::string& second) {
+        return replaced(replaced(replaced(good, "vertex_indices\n", "vertex_indices\n" + property), "3 0 1 2",
+                                 "3 0 1 2 " + first),
+                        "3 0 2 3", "3 0 2 3 " + second);
+    };
+    load(with_property("property uchar red\nproperty uchar green\nproperty uchar blue\n", "1 2 3", "4 5 6"));
+    EXPECT_EQ(warning(), "m.ply: ignored the colours of faces; save them as those of vertices");
+    load(with_property("property list uchar float texcoord\n", "6 0 0 1 0 1 1", "0"));
+    EXPECT_EQ(warning(),
+              "m.ply: ignored the texture coordinates of faces (texcoord); save them as those of vertices");
 }
 
 TEST_F(Ply, IsAShapeOfAScene) {

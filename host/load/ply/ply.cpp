@@ -2,12 +2,14 @@
 #include "load/ply/ply.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "load/ply/ply_polygons.h"
 #include "load/ply/ply_rows.h"
 #include "load/ply/ply_vertex.h"
 #include "load/quote.h"
@@ -18,22 +20,12 @@
 namespace candela {
 namespace {
 
-// What the rows of a file hold, as they stand.
-struct PlyPolygons {
-    std::vector<glm::dvec3> positions;
-    std::vector<vec3> normals;
-    std::vector<vec2> uvs;
-    std::vector<vec4> colors;
-    std::vector<uint32_t> corners;  // Of all polygons, one after the other.
-    std::vector<uint32_t> sizes;    // Corners of each polygon.
-    bool floats = false;            // The file's coordinates have 32 bits.
-};
+// The elements that hold indices of vertices. The models of Stanford's archive have strips.
+constexpr std::string_view FACE = "face", STRIPS = "tristrips";
 
-const PlyElement& require_element(const PlyHeader& header, std::string_view name, const std::string& file) {
+bool has_rows(const PlyHeader& header, std::string_view name) {
     const PlyElement* element = header.find(name);
-    if (element && element->rows > 0) return *element;
-    throw Error(file + ": the file has no rows of the element " + quote(name) +
-                "; a mesh needs vertices and faces");
+    return element != nullptr && element->rows > 0;
 }
 
 const PlyProperty* find_indices(const PlyElement& face) {
@@ -47,15 +39,27 @@ void check_header(const PlyHeader& header, const std::string& file) {
         throw Error(file + ':' + std::to_string(element.line) + ": the element " + quote(element.name) +
                     " needs " + needs);
     };
-    const PlyElement& vertex = require_element(header, "vertex", file);
+    if (!has_rows(header, "vertex"))
+        throw Error(file +
+                    ": the file has no rows of the element \"vertex\"; a mesh needs vertices and faces");
+    const PlyElement& vertex = *header.find("vertex");
+    if (!has_rows(header, FACE) && !has_rows(header, STRIPS)) {
+        throw Error(file + (vertex.find("f_dc_0") != nullptr
+                                ? ": the file holds Gaussian splats, which have no surface; give a mesh"
+                                : ": the file has points, but no faces; make a mesh of them, for example "
+                                  "with MeshLab"));
+    }
     for (const std::string_view name : {"x", "y", "z"}) {
         const PlyProperty* property = vertex.find(name);
         if (!property || property->length) fail(vertex, "the property " + quote(name) + ", a number");
     }
-    const PlyElement& face = require_element(header, "face", file);
-    const PlyProperty* indices = find_indices(face);
-    if (!indices || !indices->length || !is_integer(indices->type))
-        fail(face, "the property \"vertex_indices\", a list of integers");
+    for (const std::string_view name : {FACE, STRIPS}) {
+        if (!has_rows(header, name)) continue;
+        const PlyElement& element = *header.find(name);
+        const PlyProperty* indices = find_indices(element);
+        if (!indices || !indices->length || !is_integer(indices->type))
+            fail(element, "the property \"vertex_indices\", a list of integers");
+    }
 }
 
 template <class Rows>
@@ -73,6 +77,10 @@ class BodyReader {
             warnings.push_back(position_.file + ": ignored " + std::to_string(bytes) +
                                (bytes == 1 ? " byte" : " bytes") + " after the last row");
         }
+        if (small_faces_ > 0) {
+            warnings.push_back(position_.file + ": left out " + std::to_string(small_faces_) +
+                               (small_faces_ == 1 ? " face" : " faces") + " of fewer than 3 corners");
+        }
         return std::move(polygons_);
     }
 
@@ -85,8 +93,8 @@ class BodyReader {
                         " do not fit into the remaining " + std::to_string(rows_.bytes_left()) +
                         " bytes; is the file cut off?");
         }
-        const bool is_vertex = element.name == "vertex";
-        const PlyProperty* indices = element.name == "face" ? find_indices(element) : nullptr;
+        const bool is_vertex = element.name == "vertex", is_strip = element.name == STRIPS;
+        const PlyProperty* indices = is_strip || element.name == FACE ? find_indices(element) : nullptr;
         if (is_vertex) begin_vertices(element);
         if (indices) begin_faces(element, *indices);
         position_.element = element.name;
@@ -97,7 +105,7 @@ class BodyReader {
             } else {
                 for (const PlyProperty& property : element.properties) {
                     if (&property == indices) {
-                        read_face(property);
+                        is_strip ? read_strips(property) : read_face(property);
                     } else {
                         skip(property);
                     }
@@ -131,7 +139,7 @@ class BodyReader {
             if (field == PLY_SKIPPED) {
                 skip(property);
             } else {
-                v[field] = vertex_number(property, field, rows_.next(property.type), position_);
+                v[field] = vertex_number(property.type, field, rows_.next(property.type));
             }
         }
         const auto three = [&](size_t first) { return dvec3(v[first], v[first + 1], v[first + 2]); };
@@ -142,28 +150,56 @@ class BodyReader {
     }
 
     void read_face(const PlyProperty& indices) {
-        const uint64_t vertices = header_.find("vertex")->rows;
-        const double corners = rows_.next(*indices.length);
-        if (corners < 3.0)
-            position_.fail("has " + number_text(corners, 10) + " corners; a face needs at least 3");
+        const double corners = read_length(indices);
         if (corners > double(MOST_CORNERS)) {
             position_.fail("has " + number_text(corners, 10) + " corners, but at most " +
                            std::to_string(MOST_CORNERS) + " are read; cut it into triangles");
         }
-        for (double i = 0.0; i < corners; ++i) {
-            const double index = rows_.next(indices.type);
-            if (!(index >= 0.0 && index < double(vertices))) {
-                position_.fail("uses vertex " + number_text(index, 10) + ", but the vertices are 0 to " +
-                               std::to_string(vertices - 1));
-            }
-            polygons_.corners.push_back(uint32_t(index));
+        for (double i = 0.0; i < corners; ++i)
+            polygons_.corners.push_back(vertex_at(rows_.next(indices.type)));
+        if (corners < 3.0) {
+            polygons_.corners.resize(polygons_.corners.size() - size_t(corners));
+            ++small_faces_;
+        } else {
+            polygons_.sizes.push_back(uint32_t(corners));
         }
-        polygons_.sizes.push_back(uint32_t(corners));
+    }
+
+    // Strips of triangles, with -1 between two of them. Every second triangle of a strip runs clockwise.
+    void read_strips(const PlyProperty& indices) {
+        const double numbers = read_length(indices);
+        std::array<uint32_t, 3> t{};  // The last corners.
+        size_t corners = 0;           // Of the strip so far.
+        for (double i = 0.0; i < numbers; ++i) {
+            const double index = rows_.next(indices.type);
+            if (index == -1.0) {
+                corners = 0;
+                continue;
+            }
+            t = {t[1], t[2], vertex_at(index)};
+            // Repeated corners turn a strip around.
+            if (++corners < 3 || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+            polygons_.sizes.push_back(3);
+            for (const size_t corner : corners % 2 == 1 ? std::array{0, 1, 2} : std::array{1, 0, 2})
+                polygons_.corners.push_back(t[corner]);
+        }
+    }
+
+    double read_length(const PlyProperty& list) {
+        const double length = rows_.next(*list.length);
+        if (length < 0.0) position_.fail("has a list of " + number_text(length, 10) + " numbers");
+        return length;
+    }
+
+    uint32_t vertex_at(double index) const {
+        const uint64_t vertices = header_.find("vertex")->rows;
+        if (index >= 0.0 && index < double(vertices)) return uint32_t(index);
+        position_.fail("uses vertex " + number_text(index, 10) + ", but the vertices are 0 to " +
+                       std::to_string(vertices - 1));
     }
 
     void skip(const PlyProperty& property) {
-        const double numbers = property.length ? rows_.next(*property.length) : 1.0;
-        if (numbers < 0.0) position_.fail("has a list of " + number_text(numbers, 10) + " numbers");
+        const double numbers = property.length ? read_length(property) : 1.0;
         for (double i = 0.0; i < numbers; ++i)
             rows_.next(property.type);
     }
@@ -173,33 +209,28 @@ class BodyReader {
     Rows rows_;
     PlyPosition& position_;
     PlyPolygons polygons_;
+    size_t small_faces_ = 0;  // Of fewer than 3 corners.
 };
 
-// The rows of a file, checked.
-PlyPolygons read_polygons(const std::filesystem::path& file, MeshNormals normals,
-                          std::vector<std::string>& warnings) {
-    const std::string bytes = read_file(file);
-    PlyPosition position{file.string(), 0, "", 0};
-    const PlyHeader header = read_ply_header(bytes, position.file);
-    check_header(header, position.file);
-    const PlyVertexFields fields =
-        find_vertex_fields(*header.find("vertex"), normals == MeshNormals::file, position.file, warnings);
-    const std::string_view body = std::string_view(bytes).substr(header.size);
-    const auto read = [&](auto rows) {
-        PlyPolygons polygons = BodyReader(header, fields, rows, position).read(warnings);
-        polygons.floats = header.find("vertex")->find("x")->type == PlyType::float32;
-        return polygons;
-    };
-    if (header.format == PlyFormat::ascii) position.line = header.lines;
-    return header.format == PlyFormat::ascii ? read(PlyAsciiRows(body, position))
-                                             : read(PlyBinaryRows(body, header.format, position));
+// Warns of what the file says about its look beyond the vertices, which is not read.
+void warn_of_looks(const PlyHeader& header, const std::string& file, std::vector<std::string>& warnings) {
+    const PlyElement* face = header.find(FACE);
+    const auto has = [&](const char* name) { return face != nullptr && face->find(name) != nullptr; };
+    if (has("red") && has("green") && has("blue"))
+        warnings.push_back(file + ": ignored the colours of faces; save them as those of vertices");
+    if (has("texcoord")) {
+        warnings.push_back(file +
+                           ": ignored the texture coordinates of faces (texcoord); save them as those of "
+                           "vertices");
+    }
+    if (!header.textures.empty()) {
+        warnings.push_back(file + ": ignored the texture " + quote(header.textures.front()) +
+                           (header.textures.size() == 1 ? "" : " and others") +
+                           "; name it in a material of a scene file");
+    }
 }
 
-}  // namespace
-
-TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
-                      std::vector<std::string>& warnings) {
-    PlyPolygons polygons = read_polygons(file, normals, warnings);
+TriangleMesh mesh_of(PlyPolygons polygons) {
     TriangleMesh mesh{.normals = std::move(polygons.normals),
                       .uv0 = std::move(polygons.uvs),
                       .colors = std::move(polygons.colors)};
@@ -210,8 +241,31 @@ TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
         add_polygon(mesh, rest.first(size));
         rest = rest.subspan(size);
     }
+    return mesh;
+}
+
+}  // namespace
+
+TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
+                      std::vector<std::string>& warnings) {
+    const std::string bytes = read_file(file);
+    PlyPosition position{file.string(), 0, "", 0};
+    const PlyHeader header = read_ply_header(bytes, position.file);
+    check_header(header, position.file);
+    warn_of_looks(header, position.file, warnings);
+    const PlyElement& vertex = *header.find("vertex");
+    const PlyVertexFields fields =
+        find_vertex_fields(vertex, normals == MeshNormals::file, position.file, warnings);
+    const std::string_view body = std::string_view(bytes).substr(header.size);
+    const auto read = [&](auto rows) { return BodyReader(header, fields, rows, position).read(warnings); };
+    if (header.format == PlyFormat::ascii) position.line = header.lines;
+    PlyPolygons polygons = header.format == PlyFormat::ascii
+                               ? read(PlyAsciiRows(body, position))
+                               : read(PlyBinaryRows(body, header.format, position));
+    finish_vertices(polygons, position.file, warnings);
+    TriangleMesh mesh = mesh_of(std::move(polygons));
     if (normals == MeshNormals::smooth) smooth_normals(mesh);
-    const size_t coarse = polygons.floats ? count_coarse_triangles(mesh) : 0;
+    const size_t coarse = vertex.find("x")->type == PlyType::float32 ? count_coarse_triangles(mesh) : 0;
     if (is_too_coarse(coarse, mesh.triangles.size())) {
         warnings.push_back(
             file.string() + ": " + std::to_string(coarse) + " of " + std::to_string(mesh.triangles.size()) +

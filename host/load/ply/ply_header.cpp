@@ -57,25 +57,32 @@ class HeaderReader {
 
     // Binary rows may begin with any byte, even of a line's end: so the first line says how lines end.
     void find_line_end() {
-        constexpr std::string_view MAGIC = "ply";
-        for (const std::string_view end : {"\r\n", "\n", "\r"}) {
-            if (!bytes_.starts_with(MAGIC) || !bytes_.substr(MAGIC.size()).starts_with(end)) continue;
-            line_end_ = end;
-            rest_ = bytes_.substr(MAGIC.size() + end.size());
-            header_.lines = 1;
-            return;
-        }
-        throw Error(file_ + ": the file does not begin with the line \"ply\"; is it a PLY file?");
+        constexpr std::string_view BYTE_ORDER_MARK = "\xEF\xBB\xBF";
+        if (rest_.starts_with(BYTE_ORDER_MARK)) rest_.remove_prefix(BYTE_ORDER_MARK.size());
+        const size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
+        const bool is_ply = trimmed(rest_.substr(0, length)) == "ply";
+        rest_.remove_prefix(length);
+        if (!is_ply || rest_.empty())
+            throw Error(file_ + ": the file does not begin with the line \"ply\"; is it a PLY file?");
+        line_end_ = rest_.starts_with('\n') || rest_.starts_with("\r\n") ? '\n' : '\r';
+        next_line();
     }
 
-    // Returns false after the last.
-    bool read_statement() {
+    // Cuts the next line off. Before a line feed, a carriage return belongs to the line's end.
+    std::string_view next_line() {
         const size_t length = rest_.find(line_end_);
         if (length == std::string_view::npos)
             throw Error(file_ + ": the header has no line \"end_header\"; is the file cut off?");
         std::string_view line = rest_.substr(0, length);
-        rest_.remove_prefix(length + line_end_.size());
+        rest_.remove_prefix(length + 1);
+        if (line.ends_with('\r')) line.remove_suffix(1);
         ++header_.lines;
+        return line;
+    }
+
+    // Returns false after the last.
+    bool read_statement() {
+        std::string_view line = next_line();
         const std::string_view statement = next_word(line);
         if (statement == "end_header") return false;
         if (statement == "format") {
@@ -84,7 +91,9 @@ class HeaderReader {
             read_element(line);
         } else if (statement == "property") {
             read_property(line);
-        } else if (statement != "comment" && statement != "obj_info") {
+        } else if (statement == "comment") {
+            read_comment(line);
+        } else if (!statement.empty() && statement != "obj_info") {
             fail("unknown statement " + quote(statement) +
                  " (known: format, comment, obj_info, element, property, end_header)");
         }
@@ -133,6 +142,11 @@ class HeaderReader {
         element.properties.push_back(std::move(property));
     }
 
+    // MeshLab names images in comments.
+    void read_comment(std::string_view rest) {
+        if (next_word(rest) == "TextureFile") header_.textures.emplace_back(trimmed(rest));
+    }
+
     PlyType type_of(std::string_view name) const {
         if (const auto type = find_name(TYPES, name)) return *type;
         fail("unknown type " + quote(name) +
@@ -150,7 +164,7 @@ class HeaderReader {
     std::string_view bytes_;
     std::string_view rest_;  // What follows the lines read so far.
     const std::string& file_;
-    std::string_view line_end_;
+    char line_end_ = '\n';
     bool has_format_ = false;
     PlyHeader header_;
 };

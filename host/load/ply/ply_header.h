@@ -35,17 +35,19 @@ struct PlyElement {
 
 struct PlyHeader {
     PlyFormat format = PlyFormat::ascii;
-    std::vector<PlyElement> elements;  // In the order of the file.
-    size_t size = 0;                   // Bytes up to the first row.
+    std::vector<PlyElement> elements;   // In the order of the file.
+    std::vector<std::string> textures;  // Images that comments name.
+    size_t size = 0;                    // Bytes up to the first row.
     uint64_t lines = 0;
 
     const PlyElement* find(std::string_view element) const;  // Null if there is none.
 };
 
-// Reads the header at the front of `bytes`; `file` is the name in messages. All lines end as the first does.
-// Throws Error `file:line: cause` for what the format does not allow, and `file: cause` if the bytes do not
-// begin with a header, or end within it.
-// Ref: Turk, "The PLY Polygon File Format" (1994).
+// Reads the header at the front of `bytes`; `file` is the name in messages. The first line says whether lines
+// end with a line feed, perhaps after a carriage return, or with a carriage return alone. A byte order mark
+// and empty lines are skipped. Throws Error `file:line: cause` for what the format does not allow, and `file:
+// cause` if the bytes do not begin with a header, or end within it. Ref: Turk, "The PLY Polygon File Format"
+// (1994).
 PlyHeader read_ply_header(std::string_view bytes, const std::string& file);
 
 }  // namespace candela

@@ -2,6 +2,7 @@
 #include "load/ply/ply_rows.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "load/quote.h"
@@ -41,6 +42,9 @@ double PlyAsciiRows::next(PlyType type) {
     if (word.empty()) position_.fail("has too few numbers; is the file cut off?");
     const auto number = parse_number(word);
     if (number && fits(*number, type)) return *number;
+    // How older programs for Windows write infinity and NaN: 1.#INF, -1.#IND, 1.#QNAN.
+    if (!is_integer(type) && word.find(".#") != std::string_view::npos)
+        return std::numeric_limits<double>::quiet_NaN();
     const size_t size = size_of(type);
     position_.fail("has " + quote(word) + " in place of " +
                    (is_integer(type) ? "an integer of " : "a number of ") + std::to_string(size) +

@@ -40,13 +40,11 @@ float decoded_byte(uint8_t code) {
     return decoded[code];
 }
 
-double color_number(const PlyProperty& property, size_t field, double number, const PlyPosition& position) {
-    if (property.type == PlyType::uint8)
-        return field == PLY_ALPHA ? number / 255.0 : double(decoded_byte(uint8_t(number)));
-    if (property.type == PlyType::uint16)
-        return field == PLY_ALPHA ? number / 65535.0 : double(srgb_decode(float(number / 65535.0)));
-    if (number >= 0.0 && number <= 1.0) return number;
-    position.fail("needs " + quote(property.name) + " from 0 to 1, found " + number_text(number, 6));
+double color_number(PlyType type, bool alpha, double number) {
+    if (type == PlyType::uint8) return alpha ? number / 255.0 : double(decoded_byte(uint8_t(number)));
+    if (type == PlyType::uint16)
+        return alpha ? number / 65535.0 : double(srgb_decode(float(number / 65535.0)));
+    return number;
 }
 
 }  // namespace
@@ -66,27 +64,29 @@ PlyVertexFields find_vertex_fields(const PlyElement& vertex, bool with_normals, 
                                   NameList{"texture_s", "texture_t"}})
         result.has_uvs = result.has_uvs || take(names, PLY_U);
 
-    NameList colors{"red", "green", "blue"};
-    if (!has_all(vertex, colors)) return result;
-    if (has_all(vertex, {"alpha"})) colors.emplace_back("alpha");
-    const auto odd = std::ranges::find_if_not(
-        colors, [&](std::string_view name) { return may_be_color(vertex.find(name)->type); });
-    if (odd == colors.end()) {
-        result.has_colors = take(colors, PLY_RED);
-    } else {
-        warnings.push_back(file + ": ignored the colours of vertices, because the property " + quote(*odd) +
-                           " is neither uchar nor ushort, float or double");
+    // In files of older programs, "diffuse_red".
+    for (const std::string prefix : {"", "diffuse_"}) {
+        const std::array names{prefix + "red", prefix + "green", prefix + "blue", prefix + "alpha"};
+        NameList colors(names.begin(), names.begin() + 3);
+        if (!has_all(vertex, colors)) continue;
+        if (has_all(vertex, {names[3]})) colors.emplace_back(names[3]);
+        const auto odd = std::ranges::find_if_not(
+            colors, [&](std::string_view name) { return may_be_color(vertex.find(name)->type); });
+        if (odd == colors.end()) {
+            result.has_colors = take(colors, PLY_RED);
+        } else {
+            warnings.push_back(file + ": ignored the colours of vertices, because the property " +
+                               quote(*odd) + " is neither uchar nor ushort, float or double");
+        }
+        break;
     }
     return result;
 }
 
-double vertex_number(const PlyProperty& property, size_t field, double number, const PlyPosition& position) {
-    if (field >= PLY_RED) return color_number(property, field, number, position);
-    const bool is_uv = field >= PLY_U;
-    if (std::abs(number) <= (is_uv ? MAX_UV : double(std::numeric_limits<float>::max()))) return number;
-    const std::string range =
-        is_uv ? quote(property.name) + " from -1e30 to 1e30" : "a finite " + property.name;
-    position.fail("needs " + range + ", found " + number_text(number, 6));
+double vertex_number(PlyType type, size_t field, double number) {
+    if (field >= PLY_RED) return color_number(type, field == PLY_ALPHA, number);
+    const double most = field >= PLY_U ? MAX_UV : double(std::numeric_limits<float>::max());
+    return field < PLY_NX || std::abs(number) <= most ? number : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace candela

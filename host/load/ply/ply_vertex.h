@@ -24,16 +24,16 @@ struct PlyVertexFields {
     bool has_colors = false;
 };
 
-// Finds positions, colours (red green blue, and alpha), texture coordinates under the first of the names
-// (u v), (s t), (texture_u texture_v), (texture_s texture_t), and normals if they are asked for. What is
-// incomplete or a list is skipped. `warnings` gets colours of a type that they cannot have; `file` is the
-// name in messages.
+// Finds positions, colours (red green blue, and alpha; or diffuse_red and so on), texture coordinates under
+// the first of the names (u v), (s t), (texture_u texture_v), (texture_s texture_t), and normals if they are
+// asked for. What is incomplete or a list is skipped. `warnings` gets colours of a type that they cannot
+// have; `file` is the name in messages.
 PlyVertexFields find_vertex_fields(const PlyElement& vertex, bool with_normals, const std::string& file,
                                    std::vector<std::string>& warnings);
 
-// A number of a property as candela uses it: colours linear, in [0, 1]. Integers stand for 0 to 1, and those
-// of red, green and blue for sRGB, as Blender and MeshLab write them. Throws Error as PlyPosition::fail()
-// does for a number that is not finite or out of range.
-double vertex_number(const PlyProperty& property, size_t field, double number, const PlyPosition& position);
+// A number of a property of that type as candela uses it: colours linear. Integers stand for 0 to 1, and
+// those of red, green and blue for sRGB, as Blender and MeshLab write them. NaN for normals and texture
+// coordinates that are not finite or too large.
+double vertex_number(PlyType type, size_t field, double number);
 
 }  // namespace candela
