@@ -2,6 +2,7 @@
 // is decoded. Version 3.1 lacks DWA compression there; such chunks are decoded through the C++ interface,
 // from a file made of what has been checked.
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <new>
 #include <stdexcept>
@@ -35,6 +36,12 @@ constexpr uint64_t EXPANSION_SLACK = 1024;
 
 constexpr const char* TOO_LARGE_CHUNKS =
     "it has more channels or longer lines than can be read together; write fewer";
+
+// Takes the bytes of a chunk as its pixels.
+exr_result_t copy_chunk(exr_decode_pipeline_t* decoder) {
+    std::memcpy(decoder->unpacked_buffer, decoder->packed_buffer, decoder->chunk.unpacked_size);
+    return EXR_ERR_SUCCESS;
+}
 
 // A file whose values are read.
 class ExrPixels : public ExrFile {
@@ -92,6 +99,10 @@ void ExrPixels::decode(const Chunk& chunk, Image& image, const ImageLimits& limi
         out.decode_to_ptr = reinterpret_cast<uint8_t*>(values);
     }
     check(exr_decoding_choose_default_routines(context(), PART, &decoder_));
+    // What compression would not make smaller is stored as it is. Version 3.1 of the library decompresses B44
+    // nevertheless.
+    if (info.compression != EXR_COMPRESSION_NONE && info.packed_size == info.unpacked_size)
+        decoder_.decompress_fn = copy_chunk;
     check(exr_decoding_run(context(), PART, &decoder_));
 }
 
