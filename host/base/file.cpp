@@ -209,6 +209,12 @@ class Descriptor {
     int file_ = -1;
 };
 
+// Throws Error if these bytes, the first ones of a file, are what Git LFS puts in the place of one.
+void refuse_pointer(const fs::path& path, std::string_view start) {
+    if (start.starts_with("version https://git-lfs.github.com/spec/"))
+        fail_to_read(path, "it is a pointer of Git LFS, not the file itself; run `git lfs pull`");
+}
+
 }  // namespace
 
 std::string quoted(const fs::path& path) {
@@ -240,6 +246,7 @@ std::string read_file(const fs::path& path, const ReadProgress& progress) {
     std::string bytes;
     if (!file.is_open() || !file.read_all(bytes, SIZE_MAX, progress))
         fail_to_read(path, describe(errno) + "; check the file and its disk");
+    refuse_pointer(path, bytes);
     return bytes;
 }
 
@@ -251,6 +258,7 @@ FileStart read_file_start(const fs::path& path, size_t most) {
         fail_to_read(path, "it is a pipe, and is to be read more than once; give the name of a file");
     if (!file.is_open() || !file.read_all(start.bytes, most))
         fail_to_read(path, describe(errno) + "; check the file and its disk");
+    refuse_pointer(path, start.bytes);
     start.size = file.size();
     return start;
 }

@@ -19,7 +19,8 @@ void check_readable(const std::filesystem::path& path);
 // Called while a file is read: `done` bytes are there, of `of`, which is 0 for a pipe.
 using ReadProgress = std::function<void(size_t done, size_t of)>;
 
-// Returns the bytes of a file or pipe. Throws Error as check_readable() does, or if reading breaks off.
+// Returns the bytes of a file or pipe. Throws Error as check_readable() does, if reading breaks off, or if
+// Git LFS has put a pointer in the place of the file.
 std::string read_file(const std::filesystem::path& path, const ReadProgress& progress = {});
 
 // The first bytes of a regular file, `most` at most. Throws Error as read_file() does, and for a pipe.

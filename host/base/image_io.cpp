@@ -1,4 +1,4 @@
-// Formats by their extensions, PNG files, and what the readers share. No other file includes stb_image_write.
+// Formats, PNG files, and what the readers share. No other file includes stb_image_write.
 #include "base/image_io.h"
 
 #include <algorithm>
@@ -14,18 +14,7 @@
 #include "base/image_io_parts.h"
 
 namespace candela {
-namespace {
-
 namespace fs = std::filesystem;
-
-std::string describe_unknown(const fs::path& path, const std::string& supported) {
-    const std::string extension = extension_of(path);
-    return "image file " + quoted(path) + " has " +
-           (extension.empty() ? "no extension" : "the unknown extension \"" + extension + '"') +
-           " (supported: " + supported + ')';
-}
-
-}  // namespace
 
 std::string lower_case(std::string_view text) {
     std::string lower(text);
@@ -49,14 +38,18 @@ ImageFormat image_format(const fs::path& path) {
     const std::string extension = extension_of(path);
     if (extension == ".exr") return ImageFormat::exr;
     if (extension == ".png") return ImageFormat::png;
-    throw Error(describe_unknown(path, ".exr, .png"), ExitCode::usage);
+    throw Error("image file " + quoted(path) + " has " +
+                    (extension.empty() ? "no extension" : "the unknown extension \"" + extension + '"') +
+                    " (supported: .exr, .png)",
+                ExitCode::usage);
 }
 
 Image read_image(const fs::path& path, const ImageLimits& limits) {
-    const std::string extension = extension_of(path);
-    if (extension == ".exr") return read_exr(path, limits);
-    if (extension == ".hdr" || extension == ".pic") return read_hdr(path, limits);
-    throw Error(describe_unknown(path, ".exr, .hdr"));
+    const std::string bytes = read_file(path);
+    if (bytes.starts_with(EXR_MAGIC)) return decode_exr(bytes, path, limits);
+    if (bytes.starts_with(HDR_MAGIC)) return decode_hdr(bytes, path, limits);
+    throw Error("cannot read " + quoted(path) +
+                ": it is neither an OpenEXR image nor a Radiance picture; give an .exr or .hdr image");
 }
 
 void write_png(const fs::path& path, uint32_t width, uint32_t height, std::span<const uint8_t> rgb8,

@@ -58,16 +58,16 @@ Image decode_exr(std::string_view bytes, const std::filesystem::path& name, cons
 // Reads a Radiance picture, flat or in either of the format's run-length encodings, as the channels R, G and
 // B. Mantissas m and exponent e stand for m 2^(e - 136) exactly, divided by what the header's lines EXPOSURE
 // and COLORCORR say the file was multiplied by. Colours are taken as they are, whatever the line PRIMARIES
-// says. Throws Error if the file is missing, no Radiance picture, damaged or incomplete, has XYZ colours or
-// rows in another order than -Y +X, or exceeds the limits.
+// says. Throws Error if the file is missing, no Radiance picture, damaged or incomplete, has XYZ colours, or
+// exceeds the limits.
 // Ref: Ward, "Real Pixels", Graphics Gems II (1991); "Radiance File Formats" (1994), "Picture File Format".
 Image read_hdr(const std::filesystem::path& path, const ImageLimits& limits = {});
 
 // read_hdr() for the bytes of a file; `name` is what messages call it.
 Image decode_hdr(std::string_view bytes, const std::filesystem::path& name, const ImageLimits& limits = {});
 
-// read_exr() or read_hdr(), as the extension of `path` says: .exr, .hdr or .pic, whatever its case. Throws
-// Error as these do, and for any other extension.
+// read_exr() or read_hdr(), as the first bytes of the file say. Throws Error as these do, and for any other
+// file.
 Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
 
 // Writes 8-bit RGB, row-major from the top, 3 * width * height bytes, without loss. Throws Error if the file

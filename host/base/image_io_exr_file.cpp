@@ -59,8 +59,7 @@ mat4 to_glm(const float* numbers) {
 }  // namespace
 
 ExrFile::ExrFile(const ExrBytes& file, const fs::path& path) : bytes_(file.bytes), path_(path) {
-    constexpr std::string_view MAGIC("\x76\x2f\x31\x01", 4);
-    if (!bytes_.starts_with(MAGIC)) fail("it is not an OpenEXR file; give an .exr image");
+    if (!bytes_.starts_with(EXR_MAGIC)) fail("it is not an OpenEXR file; give an .exr image");
     exr_context_initializer_t wishes = EXR_DEFAULT_CONTEXT_INITIALIZER;
     wishes.error_handler_fn = take_message;
     wishes.alloc_fn = allocate;

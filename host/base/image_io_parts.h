@@ -11,6 +11,9 @@
 
 namespace candela {
 
+// The first bytes of OpenEXR files and of Radiance pictures.
+inline constexpr std::string_view EXR_MAGIC("\x76\x2f\x31\x01"), HDR_MAGIC("#?");
+
 // Pixels along either side of an image that is read; more can only be a damaged header.
 inline constexpr uint32_t MAX_IMAGE_SIDE = 1 << 20;
 

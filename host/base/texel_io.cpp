@@ -33,8 +33,8 @@ constexpr std::array<TexelFormat, 5> TEXEL_FORMATS{
     {{{"a PNG image", 0, "\x89PNG\r\n\x1a\n"sv}, decode_png_texels, {".png", ".apng"}},
      {{"a JPEG image", 0, "\xff\xd8\xff"sv}, decode_jpeg_texels, {".jpg", ".jpeg", ".jpe", ".jfif"}},
      {{"a WebP image", 8, "WEBP"sv}, decode_webp_texels, {".webp"}},
-     {{"a Radiance picture", 0, "#?"sv}, decode_hdr_texels, {".hdr", ".pic"}},
-     {{"an OpenEXR image", 0, "\x76\x2f\x31\x01"sv}, decode_exr_texels, {".exr"}}}};
+     {{"a Radiance picture", 0, HDR_MAGIC}, decode_hdr_texels, {".hdr", ".pic"}},
+     {{"an OpenEXR image", 0, EXR_MAGIC}, decode_exr_texels, {".exr"}}}};
 
 // What people take for textures, and is not read.
 constexpr std::array<Signature, 19> OTHER_KINDS{{{"a GIF image", 0, "GIF8"sv},
@@ -58,11 +58,10 @@ constexpr std::array<Signature, 19> OTHER_KINDS{{{"a GIF image", 0, "GIF8"sv},
                                                  {"a PNM image", 0, "P6"sv}}};
 
 // The same for texts, in lower case: the first of their words.
-constexpr std::array<Signature, 5> OTHER_TEXTS{{{"an SVG drawing", 0, "<svg"sv},
+constexpr std::array<Signature, 4> OTHER_TEXTS{{{"an SVG drawing", 0, "<svg"sv},
                                                 {"an XML document, perhaps an SVG drawing", 0, "<?xml"sv},
                                                 {"a web page", 0, "<!doctype html"sv},
-                                                {"a web page", 0, "<html"sv},
-                                                {"a pointer of Git LFS", 0, "version https://git-lfs"sv}}};
+                                                {"a web page", 0, "<html"sv}}};
 
 bool matches(std::string_view bytes, const Signature& signature) {
     return bytes.size() >= signature.offset && bytes.substr(signature.offset).starts_with(signature.bytes);
@@ -78,8 +77,6 @@ std::string lower_start(std::string_view bytes) {
 [[noreturn]] void fail_unknown(const TexelSource& source) {
     if (source.bytes.empty()) source.fail("the file is empty; write it again");
     const auto refuse = [&](const Signature& kind) {
-        if (kind.bytes == "version https://git-lfs")
-            source.fail("it is a pointer of Git LFS, not the image itself; run `git lfs pull`");
         source.fail("it is " + std::string(kind.name) + "; convert it to " + source.limits.formats);
     };
     for (const Signature& kind : OTHER_KINDS) {

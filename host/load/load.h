@@ -16,10 +16,11 @@ struct LoadOptions {
     LoadProgress progress = no_progress;
 };
 
-// Reads a scene and the files that it names. The extension, in upper or lower case, chooses the format: glTF,
-// OBJ or PLY; otherwise JSON. Throws Error, beginning with the place, for whatever the format or the meaning
-// of a value forbids, and Error (usage) for options of glTF if no such file is read. What is odd but usable
-// goes to Scene::warnings.
+// Reads a scene and the files that it names. The first bytes of a file say its format where they are
+// unmistakable: binary glTF, PLY, and JSON with the "asset" of glTF. Otherwise its extension does, in upper
+// or lower case: glTF, OBJ or PLY; else JSON. Throws Error, beginning with the place, for whatever the format
+// or the meaning of a value forbids, and Error (usage) for options of glTF if no such file is read. What is
+// odd but usable goes to Scene::warnings.
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace candela

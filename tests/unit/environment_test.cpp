@@ -151,8 +151,10 @@ TEST_F(EnvironmentFile, SaysWhyAFileCannotBeUsed) {
     EXPECT_EQ(error_of([&] { load(); }),
               "cannot read \"" + path_.string() + "\": the file does not exist; check the name");
     path_ = directory_ / "sky.png";
-    EXPECT_EQ(error_of([&] { load(); }), "image file \"" + path_.string() +
-                                             "\" has the unknown extension \".png\" (supported: .exr, .hdr)");
+    write_quickly(path_, "\x89PNG\r\n");
+    EXPECT_EQ(error_of([&] { load(); }),
+              "cannot read \"" + path_.string() +
+                  "\": it is neither an OpenEXR image nor a Radiance picture; give an .exr or .hdr image");
 }
 
 // The centre of a texel, as Environment says.

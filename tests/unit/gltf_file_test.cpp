@@ -257,12 +257,5 @@ TEST_F(GltfFileTest, MembersThatAreNullAreAbsent) {
     expect_error(file, "#/bufferViews/0: the key \"byteLength\" is missing here; add it");
 }
 
-TEST_F(GltfFileTest, KnowsItsExtensionInUpperAndLowerCase) {
-    for (const char* name : {"a.gltf", "a.GLTF", "b.x.glb", "c.Glb"})
-        EXPECT_TRUE(is_gltf(name)) << name;
-    for (const char* name : {"a.json", "glb", "a.glb.obj", ".gltf2"})
-        EXPECT_FALSE(is_gltf(name)) << name;
-}
-
 }  // namespace
 }  // namespace candela

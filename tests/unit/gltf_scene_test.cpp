@@ -150,7 +150,7 @@ TEST_F(GltfScene, ANativeScenePassesOptionsAndErrorsOn) {
               "that the file has");
     folder_.write("scene.json", R"({"scene": "m.obj"})");
     EXPECT_EQ(folder_.without_folder(error_of([&] { load_scene(folder_.path() / "scene.json"); })),
-              "scene.json:1:11: \"scene\": expected the name of a glTF file, .gltf or .glb, found \"m.obj\"");
+              "scene.json:1:11: cannot read \"m.obj\": the file does not exist; check the name");
 }
 
 TEST_F(GltfScene, OtherFormatsRefuseItsOptions) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/image_io.h"
 #include "gltf_fixture.h"
 #include "scene/geometry.h"
 #include "scene_fixture.h"
@@ -13,6 +14,13 @@ namespace candela {
 namespace {
 
 const std::string OBJ_TRIANGLE = "v 10 0 0\nv 11 0 0\nv 10 2 0\n";
+
+std::string replaced_all(const std::string& text, char old, const std::string& by) {
+    std::string result;
+    for (const char c : text)
+        result += c == old ? by : std::string(1, c);
+    return result;
+}
 
 class Load : public testing::Test {
   protected:
@@ -94,6 +102,46 @@ TEST_F(Load, MessagesNameTheFile) {
 TEST_F(Load, AnyOtherExtensionIsJson) {
     for (const char* name : {"a.json", "a.scene", "a", "obj"})
         EXPECT_EQ(load(name, scene_of(R"({"type": "sphere", "emission": 1})")).shapes.size(), 1u);
+}
+
+TEST_F(Load, WhatAFileHoldsDecidesBeforeItsName) {
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for (const char* name : {"m.obj", "m.json", "m", "m.ply.txt"})
+        EXPECT_EQ(triangle_count(load(name, ply)), 1u) << name;
+    EXPECT_EQ(triangle_count(load("m.obj", "\xEF\xBB\xBF" + ply)), 1u);
+    EXPECT_EQ(triangle_count(load("m.obj", replaced_all(ply, '\n', "\r\n"))), 1u);
+
+    GltfFile file;
+    file.push("meshes", {{"primitives", {{{"attributes", {{"POSITION", file.add_corner()}}}}}}});
+    file.root["nodes"] = {{{"mesh", 0}}};
+    folder_.write("m.bin", file.bytes);
+    const std::string text = file.document("m.bin");
+    for (const char* name : {"m.json", "m", "m.GLB", "m.vrm"})
+        EXPECT_EQ(triangle_count(load(name, text)), 1u) << name;
+    const std::string binary = glb_of(glb_chunk("JSON", text + std::string(3 - (text.size() + 3) % 4, ' ')));
+    for (const char* name : {"m.vrm", "m.obj", "m.ply", "m.json", "m"})
+        EXPECT_EQ(triangle_count(load(name, binary)), 1u) << name;
+}
+
+TEST_F(Load, APointerOfGitLfsIsNamedAsOne) {
+    const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0123\nsize 12345\n";
+    const auto message = [](const std::string& name) {
+        return "cannot read \"" + name +
+               "\": it is a pointer of Git LFS, not the file itself; run `git lfs pull`";
+    };
+    for (const std::string name : {"m.obj", "m.ply", "m.glb", "m.gltf", "m.json", "m"})
+        EXPECT_EQ(folder_.without_folder(error_of([&] { load(name, pointer); })), message(name));
+    folder_.write("sky.exr", pointer);
+    EXPECT_EQ(folder_.without_folder(error_of([&] { read_exr_header(folder_.path() / "sky.exr"); })),
+              message("sky.exr"));
+    GltfFile file;
+    file.push("meshes", {{"primitives", {{{"attributes", {{"POSITION", file.add_corner()}}}}}}});
+    file.root["nodes"] = {{{"mesh", 0}}};
+    folder_.write("m.bin", pointer);
+    EXPECT_EQ(folder_.without_folder(error_of([&] { load("m.gltf", file.document("m.bin")); })),
+              "m.gltf#/buffers/0/uri: " + message("m.bin"));
 }
 
 // Its second node shows the mesh again. A file is read in pieces of 64 KiB.

@@ -129,8 +129,6 @@ TEST(TexelIo, SaysWhatAFileIsInstead) {
              {"<HTML><head>", "a web page"}}) {
         EXPECT_EQ(texel_error(bytes), "it is " + kind + remedy);
     }
-    EXPECT_EQ(texel_error("version https://git-lfs.github.com/spec/v1\n"),
-              "it is a pointer of Git LFS, not the image itself; run `git lfs pull`");
     EXPECT_EQ(texel_error(""), "the file is empty; write it again");
     for (const std::string& bytes : {"\x89"s, "\xff"s, "RIFF\1\1\1\1WAVE"s, "   "s, "an image"s, "\0\0\0\0"s})
         EXPECT_EQ(texel_error(bytes),

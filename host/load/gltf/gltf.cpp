@@ -5,7 +5,6 @@
 #include <iterator>
 #include <optional>
 
-#include "base/image_io_parts.h"
 #include "base/text.h"
 #include "load/gltf/extensions.h"
 #include "load/gltf/gltf_file.h"
@@ -51,11 +50,6 @@ void warn_of_units(File& file, const GltfOptions& options, const Scene& scene) {
 }
 
 }  // namespace
-
-bool is_gltf(const std::filesystem::path& path) {
-    const std::string extension = extension_of(path);
-    return extension == ".gltf" || extension == ".glb";
-}
 
 void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene,
                     const LoadProgress& progress) {

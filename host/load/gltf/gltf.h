@@ -48,9 +48,6 @@ inline constexpr const char* GLTF_OPTIONS_ALONE =
 // The picture of a file whose camera says nothing of it.
 inline constexpr uvec2 GLTF_FILM_SIZE{1280, 720};
 
-// Whether a file's extension, in upper or lower case, is one of glTF.
-bool is_gltf(const std::filesystem::path& path);
-
 // Reads a scene and the buffers that it names, with progress in bytes and then in meshes; load_images() reads
 // its images. A file without cameras gets one; add_studio() lights one without light. Throws Error with the
 // JSON pointer of what is wrong. What is odd but usable goes to Scene::warnings.

@@ -47,7 +47,6 @@ IntegratorSettings read_integrator(const Node& node) {
 void read_base(const Node& node, const std::filesystem::path& folder, const GltfOptions& gltf, Scene& scene,
                const LoadProgress& progress) {
     const std::filesystem::path path = folder / node.file_name();
-    if (!is_gltf(path)) node.fail_expected("the name of a glTF file, .gltf or .glb");
     try {
         add_gltf_scene(path, gltf, scene, progress);
     } catch (const Error& error) {
@@ -55,23 +54,16 @@ void read_base(const Node& node, const std::filesystem::path& folder, const Gltf
     }
 }
 
-}  // namespace
-
-Scene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf,
-                      const LoadProgress& progress) {
-    return parse_scene(read_file(path), path.string(), path.parent_path(), gltf, progress);
-}
-
-Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder,
-                  const GltfOptions& gltf, const LoadProgress& progress) {
-    const json::Document document{file, json::parse(text, file)};
+Scene scene_of(const json::Document& document, const std::filesystem::path& folder, const GltfOptions& gltf,
+               const LoadProgress& progress) {
     const Node root(document);
     root.allow_only({"$schema", "scene", "cameras", "film", "integrator", "materials", "objects", "shapes",
                      "lights", "environment"});
 
     Scene scene;
     const auto base = root.find("scene");
-    if (!base && gltf != GltfOptions{}) throw Error(file + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
+    if (!base && gltf != GltfOptions{})
+        throw Error(document.file + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
     if (base) scene.film.size = GLTF_FILM_SIZE;
     if (const auto film = root.find("film")) scene.film = read_film(*film);
     if (const auto cameras = base ? root.find("cameras") : root.require("cameras")) {
@@ -107,6 +99,22 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::fil
         scene.warnings.push_back(shapes->place() + ": the scene has no light: the image will be black");
     }
     return scene;
+}
+
+}  // namespace
+
+Scene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf,
+                      const LoadProgress& progress) {
+    const std::string file = path.string();
+    const json::Document document{file, json::parse(read_file(path), file)};
+    const Node root(document);
+    if (root.is_object() && root.find("asset")) return load_gltf_scene(path, gltf, progress);
+    return scene_of(document, path.parent_path(), gltf, progress);
+}
+
+Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder,
+                  const GltfOptions& gltf, const LoadProgress& progress) {
+    return scene_of({file, json::parse(text, file)}, folder, gltf, progress);
 }
 
 }  // namespace candela
