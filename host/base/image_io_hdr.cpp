@@ -28,7 +28,8 @@ class HdrReader {
 
     Image read(const ImageLimits& limits) {
         read_header();
-        const uvec2 size = read_size();
+        const Order order = read_order();
+        const uvec2 size = order.size();
         check_pixel_count(path_, size.x, size.y, limits.max_pixels);
         Image image;
         image.full = size;
@@ -37,22 +38,50 @@ class HdrReader {
         check_bytes(size);
         for (Channel& channel : image.channels)
             channel.values.reserve(image.pixel_count());
-        std::vector<Rgbe> row(size.x);
-        for (row_ = 1; row_ <= size.y; ++row_) {
+        std::vector<Rgbe> row(order.length);
+        for (row_ = 1; row_ <= order.rows; ++row_) {
             read_row(row);
             append(row, image);
+        }
+        if (!order.is_usual()) {
+            for (Channel& channel : image.channels)
+                channel.values = order.sorted(channel.values);
         }
         return image;
     }
 
   private:
+    // Which way rows follow each other, and pixels in them: a row may also be a column of the picture.
+    struct Order {
+        size_t rows, length;                // As the file has them.
+        bool columns, rightwards, upwards;  // Along the rows or across them.
+
+        uvec2 size() const { return columns ? uvec2(rows, length) : uvec2(length, rows); }
+        bool is_usual() const { return !columns && rightwards && !upwards; }
+
+        // The values from the top left, row by row of the picture.
+        std::vector<float> sorted(const std::vector<float>& values) const {
+            const uvec2 extent = size();
+            std::vector<float> result(values.size());
+            for (size_t y = 0, i = 0; y < extent.y; ++y) {
+                for (size_t x = 0; x < extent.x; ++x, ++i) {
+                    const size_t from_left = rightwards ? x : extent.x - 1 - x;
+                    const size_t from_top = upwards ? extent.y - 1 - y : y;
+                    result[i] =
+                        values[columns ? from_left * length + from_top : from_top * length + from_left];
+                }
+            }
+            return result;
+        }
+    };
+
     [[noreturn]] void fail(const std::string& reason) const {
         throw Error("cannot read " + quoted(path_) + ": " + reason);
     }
     [[noreturn]] void fail_damaged(const std::string& what) const {
         fail("the file is damaged or incomplete (" + what + "); write it again");
     }
-    std::string row_name() const { return "row " + std::to_string(row_) + " from the top"; }
+    std::string row_name() const { return "row " + std::to_string(row_); }
 
     uint8_t byte() {
         if (at_ == bytes_.size()) fail_damaged("it ends in " + row_name());
@@ -62,19 +91,26 @@ class HdrReader {
     std::string_view line() {
         const size_t end = bytes_.find('\n', at_);
         if (end == std::string_view::npos) fail_damaged("it ends in its header");
-        const std::string_view text = bytes_.substr(at_, end - at_);
+        std::string_view text = bytes_.substr(at_, end - at_);
         at_ = end + 1;
+        if (text.ends_with('\r')) text.remove_suffix(1);  // Of programs for Windows.
         return text;
     }
 
-    // Lines of the form NAME=VALUE and others, which are comments, up to an empty one.
+    static std::string_view without_blanks_at_end(std::string_view text) {
+        return text.substr(0, text.find_last_not_of(" \t") + 1);
+    }
+
+    // Lines of the form NAME=VALUE and others, which are comments, up to an empty one. A line that begins
+    // with a blank tells of another file, from which this one was made.
     void read_header() {
-        if (!bytes_.starts_with("#?")) fail("it is not a Radiance picture; give an .hdr image");
+        if (!bytes_.starts_with(HDR_MAGIC)) fail("it is not a Radiance picture; give an .hdr image");
         for (std::string_view text = line(); !text.empty(); text = line()) {
             const size_t equals = text.find('=');
             if (equals == std::string_view::npos) continue;
-            const std::string_view name = text.substr(0, equals);
-            const std::string_view value = text.substr(equals + 1);
+            const std::string_view name = without_blanks_at_end(text.substr(0, equals));
+            std::string_view value = without_blanks_at_end(text.substr(equals + 1));
+            value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
             if (name == "FORMAT" && value != "32-bit_rle_rgbe") {
                 fail("its format is \"" + std::string(value) + R"("; convert it to "32-bit_rle_rgbe")");
             } else if (name == "EXPOSURE") {
@@ -106,26 +142,26 @@ class HdrReader {
         return factors;
     }
 
-    uvec2 read_size() {
+    // Reads the line that says how many rows of how many pixels follow, such as "-Y 480 +X 640": rows along
+    // x, against y, which points upwards.
+    Order read_order() {
         const std::string text(line());
         std::istringstream stream(text);
-        std::string first;
-        std::string second;
-        int64_t height = 0;
-        int64_t width = 0;
-        stream >> first >> height >> second >> width;
-        const auto is_axis = [](const std::string& name) {
-            return name == "-X" || name == "+X" || name == "-Y" || name == "+Y";
+        std::string across;
+        std::string along;
+        int64_t rows = 0;
+        int64_t length = 0;
+        stream >> across >> rows >> along >> length;
+        const auto is_axis = [](const std::string& name, char axis) {
+            return name == std::string{'-', axis} || name == std::string{'+', axis};
         };
-        if (stream.fail() || !is_axis(first) || !is_axis(second) || height < 1 || height > MAX_IMAGE_SIDE ||
-            width < 1 || width > MAX_IMAGE_SIDE) {
+        const bool columns = is_axis(across, 'X') && is_axis(along, 'Y');
+        if (stream.fail() || !(columns || (is_axis(across, 'Y') && is_axis(along, 'X'))) || rows < 1 ||
+            rows > MAX_IMAGE_SIDE || length < 1 || length > MAX_IMAGE_SIDE) {
             fail_damaged('"' + text + "\" is no size");
         }
-        if (first != "-Y" || second != "+X") {
-            fail("its pixels run as \"" + text +
-                 R"(" says; turn the image so that it says "-Y HEIGHT +X WIDTH")");
-        }
-        return {uint32_t(width), uint32_t(height)};
+        return {size_t(rows), size_t(length), columns, (columns ? across : along) == "+X",
+                (columns ? along : across) == "+Y"};
     }
 
     // In the older encoding, sixteen bytes can stand for a row of any length. No real picture is like that:
