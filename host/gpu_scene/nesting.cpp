@@ -2,18 +2,18 @@
 #include "gpu_scene/nesting.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <tuple>
 #include <vector>
 
-#include "base/hash.h"
 #include "base/text.h"
 #include "gpu_scene/material_record.h"
+#include "gpu_scene/mesh_solids.h"
 #include "scene/geometry.h"
 
 namespace candela {
@@ -25,7 +25,12 @@ struct Solid {
     Interior inside;
     size_t shape;        // The first, of several.
     bool walls = false;  // Quads and disks of one medium: all that are no boxes.
+    // Of a box, twice its volume and its surface.
+    double volume2 = 0.0, area = 0.0;
 };
+
+// The parts of the meshes that enclose media, by mesh.
+using MeshSolids = std::map<uint32_t, std::vector<MeshSolid>>;
 
 // For each shape that is the side of a box, the first side of that box. Quads of one material that share
 // corners belong together, and six or more of them are taken for a box.
@@ -79,8 +84,49 @@ std::vector<Solid> find_solids(const Scene& scene) {
         }
         if (place == solids.end()) place = solids.insert(place, {{}, *inside, i, wall});
         place->box.extend(bounds_of(shape));
+        if (!boxes[i]) continue;
+        const auto& c = std::get<Quad>(shape.geometry).corners;
+        const dvec3 start = std::get<Quad>(scene.shapes[place->shape].geometry).corners[0];
+        const dvec3 area = 0.5 * glm::cross(c[2] - c[0], c[3] - c[1]);
+        place->volume2 += 2.0 / 3.0 * dot(c[0] - start, area);
+        place->area += length(area);
     }
     return solids;
+}
+
+// Of the parts of a mesh, the least thickness: volume over half the surface, as of a pane.
+double least_thickness(const TriangleMesh& mesh, const std::vector<MeshSolid>& parts,
+                       const Transform& transform) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const MeshSolid& part : parts) {
+        if (!part.closed) continue;
+        double area = 0.0;
+        for (const uint32_t i : part.triangles) {
+            const uvec3 t = mesh.triangles[i];
+            const dvec3 a(mesh.positions[t.x]);
+            area += 0.5 * length(glm::cross(transform.vector(dvec3(mesh.positions[t.y]) - a),
+                                            transform.vector(dvec3(mesh.positions[t.z]) - a)));
+        }
+        const double volume = std::abs(part.volume * determinant(transform.linear()));
+        if (area > 0.0) least = std::min(least, 2.0 * volume / area);
+    }
+    return least;
+}
+
+double thickness(const Scene& scene, const Solid& solid, const MeshSolids& parts) {
+    const auto* instance = std::get_if<MeshInstance>(&scene.shapes[solid.shape].geometry);
+    if (instance != nullptr)
+        return least_thickness(scene.meshes[instance->mesh], parts.at(instance->mesh), instance->transform);
+    return solid.area > 0.0 ? std::abs(solid.volume2) / solid.area : std::numeric_limits<double>::infinity();
+}
+
+// How far it is across the scene and to its cameras.
+double reach_of(const Scene& scene) {
+    DoubleBox box = bounds(scene);
+    for (const Camera& camera : scene.cameras)
+        box.extend(camera.position);
+    const dvec3 extent = box.extent();
+    return std::max({extent.x, extent.y, extent.z});
 }
 
 bool overlap(const DoubleBox& a, const DoubleBox& b) {
@@ -102,40 +148,87 @@ void for_each_overlap(const std::vector<Solid>& solids, const Each& each) {
     }
 }
 
-// Whether each edge of each triangle is also that of another one, in the opposite direction; vertices at the
-// same place are one. The sum of hashes, each with its sign, is zero then, and otherwise only by a chance of
-// 2^-64.
-bool is_closed(const TriangleMesh& mesh) {
-    uint64_t sum = 0;
-    for (const uvec3 t : mesh.triangles) {
-        for (const auto& [from, to] : {std::pair(t.x, t.y), std::pair(t.y, t.z), std::pair(t.z, t.x)}) {
-            const std::array<vec3, 2> there{mesh.positions[from] + 0.0f,
-                                            mesh.positions[to] + 0.0f};  // No -0.
-            const std::array<vec3, 2> back{there[1], there[0]};
-            sum += hash_words(std::as_bytes(std::span(there)), FNV1A64_BASIS);
-            sum -= hash_words(std::as_bytes(std::span(back)), FNV1A64_BASIS);
+MeshSolids find_parts(const Scene& scene, const std::vector<Solid>& solids) {
+    MeshSolids parts;
+    for (const Solid& solid : solids) {
+        const auto* instance = std::get_if<MeshInstance>(&scene.shapes[solid.shape].geometry);
+        if (instance != nullptr && !parts.contains(instance->mesh))
+            parts[instance->mesh] = find_mesh_solids(scene.meshes[instance->mesh]);
+    }
+    return parts;
+}
+
+// Whether closed parts of a mesh, other than cavities, have boxes that overlap; true if there are so many
+// parts that it would take long to find out.
+bool parts_overlap(const std::vector<MeshSolid>& parts) {
+    constexpr uint64_t MOST_PAIRS = 1u << 24u;
+    std::vector<Box> boxes;
+    for (const MeshSolid& part : parts) {
+        if (part.closed && part.volume > 0.0) boxes.push_back(part.box);
+    }
+    std::ranges::sort(boxes, {}, [](const Box& box) { return box.lo.x; });
+    uint64_t pairs = 0;
+    for (size_t i = 0; i < boxes.size(); ++i) {
+        for (size_t j = i + 1; j < boxes.size() && boxes[j].lo.x < boxes[i].hi.x; ++j) {
+            const bool apart =
+                glm::any(glm::greaterThanEqual(max(boxes[i].lo, boxes[j].lo), min(boxes[i].hi, boxes[j].hi)));
+            if (!apart || ++pairs > MOST_PAIRS) return true;
         }
     }
-    return sum == 0;
+    return false;
 }
+
+// Finds solids that are so thin that rays from across the scene may miss a side of them. Returns the warning
+// about them, if there are any.
+std::optional<std::string> warn_of_thin(const Scene& scene, const std::vector<Solid>& solids,
+                                        const MeshSolids& parts) {
+    constexpr double STEPS = 16.0;
+    const double reach = reach_of(scene);
+    const Solid* thinnest = nullptr;
+    double least = STEPS * 0x1p-23 * reach;
+    size_t count = 0;
+    for (const Solid& solid : solids) {
+        const double d = thickness(scene, solid, parts);
+        if (d >= STEPS * 0x1p-23 * reach) continue;
+        ++count;
+        if (d >= least) continue;
+        least = d;
+        thinnest = &solid;
+    }
+    if (thinnest == nullptr) return std::nullopt;
+    return concat(
+        name_of_shape(scene, thinnest->shape), ": the solid is ", number_text(least, 3),
+        " m thick, less than 16 steps of 32-bit coordinates over the ", number_text(reach, 3),
+        " m of the scene and its cameras, so that rays may miss one of its sides; make it thicker, or "
+        "use a thin wall",
+        count == 1 ? "" : concat(" (and ", count - 1, " more)"));
+}
+
+}  // namespace
 
 std::string name_of_shape(const Scene& scene, size_t i) {
     const std::string& material = scene.materials[scene.shapes[i].material].name;
     return "shape " + std::to_string(i) + (material.empty() ? "" : concat(" (material \"", material, "\")"));
 }
 
-}  // namespace
-
 Nesting find_nesting(const Scene& scene) {
     Nesting result;
     std::vector<Solid> solids = find_solids(scene);
     std::ranges::sort(solids, {}, [](const Solid& solid) { return solid.box.lo.x; });
     for_each_overlap(solids, [&](size_t, size_t) { return !(result.nested = true); });
+    const MeshSolids parts = find_parts(scene, solids);
+    for (const auto& [mesh, mesh_parts] : parts)
+        result.nested = result.nested || parts_overlap(mesh_parts);
+    // Where rays miss a side, a path that knows which medium it is in gains no light.
+    if (const auto warning = warn_of_thin(scene, solids, parts)) {
+        result.nested = true;
+        result.warnings.push_back(*warning);
+    }
 
     for (const Solid& solid : solids) {
         const auto* instance = std::get_if<MeshInstance>(&scene.shapes[solid.shape].geometry);
         if (instance == nullptr || !(result.nested || solid.inside.medium != Medium{})) continue;
-        if (!is_closed(scene.meshes[instance->mesh])) {
+        if (!std::ranges::all_of(parts.at(instance->mesh), &MeshSolid::closed)) {
             result.warnings.push_back(name_of_shape(scene, solid.shape) +
                                       ": the mesh is not closed, so that rays may leave the medium inside "
                                       "without passing its surface, and "

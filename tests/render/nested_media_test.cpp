@@ -116,6 +116,49 @@ TEST_F(NestedMediaTest, AMediumWithinItselfChangesNothing) {
     expect_share(scene, 4096, sky_seen_through({{1.5, left_after(ABSORPTION, 2.0)}}));
 }
 
+// Two balls that overlap, as one mesh and as two: the same bits.
+TEST_F(NestedMediaTest, PartsOfAMeshAreSolidsOfTheirOwn) {
+    const auto picture = [&](bool one_mesh) {
+        Scene scene = scene_with_camera(dvec3(0, 0, 5), dvec3(0), 0.6f);
+        scene.environment = constant_environment(vec3(1));
+        const uint32_t material = add_material(scene, tint(ABSORPTION));
+        TriangleMesh balls = transformed(sphere_mesh(8, 12), [](vec3 p) { return p + vec3(0.4f, 0, 0.1f); });
+        const TriangleMesh other =
+            transformed(sphere_mesh(8, 12), [](vec3 p) { return p - vec3(0.4f, 0, 0); });
+        if (!one_mesh) {
+            add_shape(scene, balls, material);
+            add_shape(scene, other, material);
+        } else {
+            const auto first = uint32_t(balls.positions.size());
+            balls.positions.insert(balls.positions.end(), other.positions.begin(), other.positions.end());
+            for (const uvec3 t : other.triangles)
+                balls.triangles.push_back(first + t);
+            add_shape(scene, balls, material);
+        }
+        return image_of(render(scene, independent_settings(16, Estimator::mis, 1), 16));
+    };
+    const Image one = picture(true), two = picture(false);
+    for (size_t c = 0; c < 3; ++c)
+        EXPECT_EQ(plane(one, "", c), plane(two, "", c));
+}
+
+// Where both sides of a pane have the same distance in floats, rays may miss one of them; but no light comes
+// from nowhere.
+TEST_F(NestedMediaTest, AVeryThinPaneGivesNoLight) {
+    for (const float thickness : {1e-6f, 1e-7f, 1e-9f}) {
+        Scene scene = scene_with_camera(dvec3(0.013, 5, 0.021), dvec3(0.013, 0, 0.021), 0.02f);
+        scene.cameras[0].up = vec3(0, 0, 1);
+        scene.environment = constant_environment(vec3(1));
+        add_slab(scene, glass(1.5f, -glm::log(vec3(0.6f, 0.7f, 0.8f)) / thickness), 0, thickness);
+        const Image picture =
+            image_of(render(scene, independent_settings(8, Estimator::mis, 1), samples(64)));
+        for (size_t c = 0; c < 3; ++c) {
+            for (const float value : plane(picture, "", c))
+                EXPECT_LE(value, 1.0f + 1e-5f) << thickness;
+        }
+    }
+}
+
 TEST_F(NestedMediaTest, ASlabOfGlassInWater) {
     Scene scene = seen_along(dvec3(0, 4, 0), dvec3(0));
     add_slab(scene, glass(1.33f, ABSORPTION), -1, 1);
