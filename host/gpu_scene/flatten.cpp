@@ -139,6 +139,9 @@ class Flattener {
         const vec3 radius(frame_.length(sphere.radius), 0.0f, 0.0f);
         const double area = 4.0 * double(PI) * double(radius.x) * double(radius.x);
         const double error = sphere_error(center, radius.x);
+        constexpr double COARSE = 0.03;  // Of the radius.
+        ++flat_.spheres;
+        flat_.coarse_spheres += error > COARSE * double(radius.x);
         // All around and from pole to pole; where the poles get too much, that only makes the choice of
         // lights worse.
         const uint light = add_light(shape, LIGHT_SPHERE, center, radius, vec3(0.0f), area, error,

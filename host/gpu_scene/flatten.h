@@ -26,6 +26,8 @@ struct FlatScene {
     uint64_t triangles = 0;                                 // Of meshes; and of these,
     uint64_t coarse = 0;                                    // as count_coarse_triangles() says.
     uint64_t flattened = 0;           // Triangles that are left out: rounded to floats, they have no area.
+    uint64_t spheres = 0;             // And of these,
+    uint64_t coarse_spheres = 0;      // those that rounding moves by more than 3 % of their radius.
     uint32_t id_count = 0;            // Ids that the surfaces have: one for each triangle, sphere and disk.
     std::vector<LightRecord> lights;  // Those that emit; pmf is 0 until assign_probabilities().
     std::vector<double> powers;       // Power of each light over pi, by its luminance [W],

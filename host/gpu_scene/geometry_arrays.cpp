@@ -174,8 +174,7 @@ void put_instances(GpuScene& gpu, const Instances& instances, const TwoLevelTree
     }
 }
 
-void warn_of_small_triangles(GpuScene& gpu, const FlatScene& flat,
-                             const std::map<uint32_t, MeshTree>& trees) {
+void warn_of_small_shapes(GpuScene& gpu, const FlatScene& flat, const std::map<uint32_t, MeshTree>& trees) {
     uint64_t triangles = flat.triangles, coarse = flat.coarse, flattened = flat.flattened;
     for (const auto& [mesh, tree] : trees) {
         triangles += tree.flat.triangles;
@@ -188,6 +187,13 @@ void warn_of_small_triangles(GpuScene& gpu, const FlatScene& flat,
             " triangles are smaller than 16 steps of 32-bit coordinates in a scene of this "
             "size, " +
             number_text(gpu.frame.unit, 3) + " m: they look rough; render what is far apart by itself");
+    }
+    if (is_too_coarse(flat.coarse_spheres, flat.spheres)) {
+        gpu.warnings.push_back(
+            std::to_string(flat.coarse_spheres) + " of " + std::to_string(flat.spheres) +
+            " spheres are too small for 32-bit coordinates in a scene of this size, " +
+            number_text(gpu.frame.unit, 3) +
+            " m: rounding moves them by more than 3 % of their radius; render what is far apart by itself");
     }
     if (flattened > 0) {
         gpu.warnings.push_back("left out " + std::to_string(flattened) +
@@ -204,7 +210,7 @@ SceneTree append_geometry(GpuScene& gpu, const Scene& scene, const FlatScene& fl
     gpu.id_count = flat.id_count;
     const std::map<uint32_t, MeshTree> trees = build_mesh_trees(gpu, scene, instancing);
     const Instances instances = place_instances(gpu, scene, instancing, trees);
-    warn_of_small_triangles(gpu, flat, trees);
+    warn_of_small_shapes(gpu, flat, trees);
 
     std::vector<Box> boxes = boxes_of(flat.primitives);
     for (const PlacedInstance& placed : instances.placed)

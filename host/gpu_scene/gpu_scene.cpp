@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "gpu_scene/alias_table.h"
 #include "gpu_scene/append.h"
+#include "gpu_scene/coplanar_lights.h"
 #include "gpu_scene/environment_map.h"
 #include "gpu_scene/flatten.h"
 #include "gpu_scene/geometry_arrays.h"
@@ -152,6 +153,7 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const InstancingRule
     Nesting nesting = find_nesting(scene);
     gpu.nested_media = nesting.nested;
     gpu.warnings = std::move(nesting.warnings);
+    if (const auto warning = warn_of_coplanar_lights(scene)) gpu.warnings.push_back(*warning);
     for (const Shape& shape : scene.shapes) {
         if (shape.emission && has_layers(scene.materials[shape.material]))
             gpu.principled |= PRINCIPLED_HAS_COATED_EMISSION;

@@ -116,5 +116,23 @@ TEST(SceneFrame, TooLargeASceneForItsDetailsIsAWarning) {
             "2.05e+03 m: they look rough; render what is far apart by itself"});
 }
 
+// A small ball 0.5 units from the middle, which rounding moves by 2^-24 times four times that.
+TEST(SceneFrame, TooLargeASceneForItsBallsIsAWarning) {
+    const auto warnings = [](double radius) {
+        Scene scene;
+        add_shape(scene, Quad{{dvec3(-64, 0, 0), dvec3(64, 0, 0), dvec3(64, 1, 0), dvec3(-64, 1, 0)}},
+                  add_material(scene, DiffuseMaterial{}));
+        add_shape(scene, Sphere{dvec3(64, 0, 0), radius}, 0);
+        return build_gpu_scene(scene).warnings;
+    };
+    constexpr double ERROR = 4.0 * 64.0 * 0x1p-24;
+    EXPECT_TRUE(warnings(ERROR / 0.029).empty());
+    EXPECT_EQ(
+        warnings(ERROR / 0.031),
+        std::vector<std::string>{
+            "1 of 1 spheres are too small for 32-bit coordinates in a scene of this size, 256 m: rounding "
+            "moves them by more than 3 % of their radius; render what is far apart by itself"});
+}
+
 }  // namespace
 }  // namespace candela
