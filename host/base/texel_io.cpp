@@ -29,16 +29,17 @@ struct TexelFormat {
     std::array<std::string_view, 4> extensions;
 };
 
-constexpr std::array<TexelFormat, 5> TEXEL_FORMATS{
+constexpr std::array<TexelFormat, 7> TEXEL_FORMATS{
     {{{"a PNG image", 0, "\x89PNG\r\n\x1a\n"sv}, decode_png_texels, {".png", ".apng"}},
      {{"a JPEG image", 0, "\xff\xd8\xff"sv}, decode_jpeg_texels, {".jpg", ".jpeg", ".jpe", ".jfif"}},
      {{"a WebP image", 8, "WEBP"sv}, decode_webp_texels, {".webp"}},
      {{"a Radiance picture", 0, HDR_MAGIC}, decode_hdr_texels, {".hdr", ".pic"}},
-     {{"an OpenEXR image", 0, EXR_MAGIC}, decode_exr_texels, {".exr"}}}};
+     {{"an OpenEXR image", 0, EXR_MAGIC}, decode_exr_texels, {".exr"}},
+     {{"a BMP image", 0, "BM"sv}, decode_bmp_texels, {".bmp", ".dib"}},
+     {{"a Targa image", 0, {}}, decode_targa_texels, {".tga", ".icb", ".vda", ".vst"}}}};
 
 // What people take for textures, and is not read.
-constexpr std::array<Signature, 19> OTHER_KINDS{{{"a GIF image", 0, "GIF8"sv},
-                                                 {"a BMP image", 0, "BM"sv},
+constexpr std::array<Signature, 16> OTHER_KINDS{{{"a GIF image", 0, "GIF8"sv},
                                                  {"a TIFF image", 0, "II*\0"sv},
                                                  {"a TIFF image", 0, "MM\0*"sv},
                                                  {"a TIFF image", 0, "II+\0"sv},
@@ -53,8 +54,6 @@ constexpr std::array<Signature, 19> OTHER_KINDS{{{"a GIF image", 0, "GIF8"sv},
                                                  {"a JPEG 2000 image", 0, "\xff\x4f\xff\x51"sv},
                                                  {"a JPEG XL image", 4, "JXL \r\n\x87\n"sv},
                                                  {"a JPEG XL image", 0, "\xff\x0a"sv},
-                                                 {"a Targa image", 0, "\0\0\x02\0\0\0\0\0"sv},
-                                                 {"a Targa image", 0, "\0\0\x0a\0\0\0\0\0"sv},
                                                  {"a PNM image", 0, "P6"sv}}};
 
 // The same for texts, in lower case: the first of their words.
@@ -92,7 +91,9 @@ std::string lower_start(std::string_view bytes) {
 
 const TexelFormat& find_format(const TexelSource& source) {
     for (const TexelFormat& format : TEXEL_FORMATS) {
-        if (matches(source.bytes, format.signature)) return format;
+        const Signature& signature = format.signature;
+        if (signature.bytes.empty() ? is_targa(source.bytes) : matches(source.bytes, signature))
+            return format;
     }
     fail_unknown(source);
 }

@@ -1,5 +1,5 @@
-// Files of the images that are textures: PNG, JPEG, WebP, Radiance HDR and OpenEXR, told apart by their first
-// bytes.
+// Files of the images that are textures: PNG, JPEG, WebP, Radiance HDR, OpenEXR, BMP and Targa, told apart by
+// their first bytes.
 #pragma once
 
 #include <cstdint>
@@ -27,12 +27,14 @@ struct TexelLimits {
 //   Radiance  as read_hdr(), as halves.
 //   OpenEXR   as read_exr(): R, G and B, or Y, each with A or without, as halves. Its colours, premultiplied
 //             by convention, are divided by alpha wherever that is above 0.
+//   BMP       without compression.
+//   Targa     with run lengths or without, from left to right. Its alpha counts if the header says so.
 // Of halves, values above 65504 become 65504; what is negative or not finite becomes 0. Colour profiles and
 // the orientation that a camera notes are ignored.
 // `warnings` gets what is odd but usable, each beginning with the path. Throws Error if the file cannot be
 // read, is of another kind, damaged or incomplete, or exceeds the limits. Takes no more memory than the
 // file's bytes may stand for, where its format has a bound on that (PNG, Huffman-coded JPEG, Radiance, most
-// kinds of OpenEXR). Any number of threads may call it.
+// kinds of OpenEXR, BMP, Targa). Any number of threads may call it.
 TexelImage read_texels(const std::filesystem::path& path, std::vector<std::string>& warnings,
                        const TexelLimits& limits = {});
 

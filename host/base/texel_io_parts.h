@@ -36,5 +36,10 @@ TexelImage decode_jpeg_texels(const TexelSource& source);
 TexelImage decode_webp_texels(const TexelSource& source);
 TexelImage decode_hdr_texels(const TexelSource& source);
 TexelImage decode_exr_texels(const TexelSource& source);
+TexelImage decode_bmp_texels(const TexelSource& source);
+TexelImage decode_targa_texels(const TexelSource& source);
+
+// Whether a file begins as Targa files do, which have no signature.
+bool is_targa(std::string_view bytes);
 
 }  // namespace candela

@@ -126,6 +126,14 @@ void webp(std::string_view bytes) {
     texels(bytes, "fuzz.webp");
 }
 
+void targa(std::string_view bytes) {
+    texels(bytes, "fuzz.tga");
+}
+
+void bmp(std::string_view bytes) {
+    texels(bytes, "fuzz.bmp");
+}
+
 void checkpoint(std::string_view bytes) {
     for (const Image& image : parse_images(bytes)) {
         Checkpoint checkpoint = checkpoint_of(image, "fuzz.exr", false);

@@ -19,6 +19,8 @@ void exr(std::string_view bytes);
 void png(std::string_view bytes);  // With checksums that are right, whatever they are.
 void jpeg(std::string_view bytes);
 void webp(std::string_view bytes);
+void targa(std::string_view bytes);
+void bmp(std::string_view bytes);
 // Images as text, see parse_images(): what the commands do with images that OpenEXR has read without
 // complaint.
 void checkpoint(std::string_view bytes);  // Whatever its checksum says, and what is done with it.
@@ -30,7 +32,7 @@ struct Target {
     std::string_view name;  // Its inputs are in corpora/NAME.
     void (*run)(std::string_view bytes);
 };
-inline constexpr std::array<Target, 15> TARGETS{{{"scene", scene},
+inline constexpr std::array<Target, 17> TARGETS{{{"scene", scene},
                                                  {"gltf", gltf},
                                                  {"glb", glb},
                                                  {"obj", obj},
@@ -41,6 +43,8 @@ inline constexpr std::array<Target, 15> TARGETS{{{"scene", scene},
                                                  {"png", png},
                                                  {"jpeg", jpeg},
                                                  {"webp", webp},
+                                                 {"targa", targa},
+                                                 {"bmp", bmp},
                                                  {"checkpoint", checkpoint},
                                                  {"merge", merge},
                                                  {"compare", compare},
