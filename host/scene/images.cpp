@@ -28,15 +28,18 @@ std::filesystem::path identity_of(const std::filesystem::path& path) {
     return real.empty() ? path.lexically_normal() : real;
 }
 
-// The mean of some thousand texels all over the image.
+// The mean of some thousand texels all over the image. They follow a sequence that agrees with no pattern of
+// rows and columns. Ref: Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences" (2018).
 vec4 mean_codes(const TexelImage& image) {
     constexpr size_t MOST = 4096;
+    constexpr double STEP_X = 0.7548776662466927, STEP_Y = 0.5698402909980532;
     const size_t count = size_t(image.size.x) * image.size.y;
-    const size_t step = std::max<size_t>(1, count / MOST);
+    const size_t taken = std::min(count, MOST);
     vec4 sum(0.0f);
-    size_t taken = 0;
-    for (size_t i = 0; i < count; i += step, ++taken)
-        sum += texel_codes(image, i);
+    for (size_t i = 0; i < taken; ++i) {
+        const glm::dvec2 p = fract(double(i) * glm::dvec2(STEP_X, STEP_Y)) * glm::dvec2(image.size);
+        sum += texel_codes(image, count <= MOST ? i : size_t(p.y) * image.size.x + size_t(p.x));
+    }
     return sum / float(taken);
 }
 

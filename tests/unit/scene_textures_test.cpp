@@ -1,5 +1,6 @@
 // Textures of a scene file: what their keys say, and what is refused.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -268,6 +269,20 @@ TEST_F(SceneTextures, AreMadeSmallerOnDemand) {
     EXPECT_EQ(code_of(image, R"({"image": "a.png"})"), std::lround(255.0f * srgb_encode(0.5f)));
     const std::vector<std::pair<size_t, size_t>> expected{{1, 1}, {1, 1}, {1, 2}, {2, 2}};
     EXPECT_EQ(progress, expected);
+}
+
+// Each 16th column and row is black, so that 12 % of the texels are: the mean is 0.44 0.44 0.88.
+TEST_F(SceneTextures, AreJudgedByTheirMeanWhateverTheirPattern) {
+    constexpr uint32_t SIDE = 256;
+    PngPicture picture{.size = uvec2(SIDE), .bits = 8, .color = png_rgb};
+    for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
+        const bool is_black = i % 16 == 0 || i / SIDE % 16 == 0;
+        for (const uint16_t code : std::array<uint16_t, 3>{128, 128, 255})
+            picture.samples.push_back(is_black ? uint16_t(0) : code);
+    }
+    folder_.write("ribs.png", encode_png(picture));
+    const Scene scene = folder_.load(material(R"({"type": "mirror", "normal_map": {"image": "ribs.png"}})"));
+    EXPECT_EQ(scene.warnings.size(), 1u);  // That the scene is empty.
 }
 
 TEST_F(SceneTextures, WarnOfANormalMapThatIsNoneAndOfOpacityWithoutAlpha) {
