@@ -24,6 +24,9 @@ void LoadingOptions::add_to(CLI::App& app) {
               concat("a whole number from 1 to ", MAX_IMAGE_SIDE),
               "Shrink images on surfaces to so many pixels along the longer side (default: never)")
         ->type_name("SIZE");
+    add_choice(app, "--missing-images", missing_images, IF_MISSING_NAMES,
+               "What takes the place of images that glTF and MTL files name and that do not exist (default: "
+               "white)");
     app.option_defaults()->group("glTF files");
     app.add_option("--scene", gltf.scene, "Scene by name or index (default: the file's)")->type_name("NAME");
     add_value(app, "--time", gltf.time, parse_number, "a number of seconds, such as 1.5",
@@ -83,6 +86,7 @@ Scene load_with_progress(const std::string& file, const LoadingOptions& given, P
         LoadingLine line(style);
         LoadOptions options{.gltf = given.gltf};
         options.progress = [&line](const char* what, size_t done, size_t of) { line.update(what, done, of); };
+        options.images.if_missing = given.missing_images;
         if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
         scene = load_scene(file, options);
     }

@@ -78,6 +78,7 @@ inline constexpr const char* SCENE_FILES = "Scene file (.json, .gltf, .glb, .obj
 // How scene files are read.
 struct LoadingOptions {
     std::optional<uint32_t> texture_limit;  // Texels along a side of an image.
+    IfMissing missing_images = IfMissing::white;
     GltfOptions gltf;
 
     // Declares them on `app`; this object must not move.

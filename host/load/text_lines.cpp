@@ -11,12 +11,17 @@ namespace candela {
 namespace {
 
 constexpr const char* BLANKS = " \t";
+constexpr std::string_view BYTE_ORDER_MARK = "\xEF\xBB\xBF";
 
 }  // namespace
 
 void refuse_byte_order_mark(std::string_view text, const std::string& file) {
-    if (!text.starts_with("\xEF\xBB\xBF")) return;
+    if (!text.starts_with(BYTE_ORDER_MARK)) return;
     throw Error(file + ":1: the file begins with a byte order mark; save it without one");
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+    return text.starts_with(BYTE_ORDER_MARK) ? text.substr(BYTE_ORDER_MARK.size()) : text;
 }
 
 std::string_view next_word(std::string_view& line) {

@@ -12,6 +12,9 @@ namespace candela {
 // Throws Error if `text`, the contents of `file`, begins with a byte order mark.
 void refuse_byte_order_mark(std::string_view text, const std::string& file);
 
+// `text` without the byte order mark at its beginning, if there is one.
+std::string_view without_byte_order_mark(std::string_view text);
+
 // Cuts the next word off `line` and returns it; empty at its end. Words are separated by spaces and tabs.
 std::string_view next_word(std::string_view& line);
 

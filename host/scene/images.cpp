@@ -11,6 +11,7 @@
 
 #include "base/color.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/parallel.h"
 #include "base/printable.h"
 #include "base/shrink_image.h"
@@ -163,6 +164,74 @@ void check_bump_map(Scene& scene, Material& material) {
     scene.warnings.push_back(what + " and is read as one; to say so, name it as norm");
 }
 
+// Whether an image that may be missing is.
+bool is_lost(const ImageFile& file, const ImageOptions& options) {
+    if (std::max(file.if_missing, options.if_missing) == IfMissing::error) return false;
+    if (!file.image.texels.empty() || !file.bytes.empty()) return false;
+    std::error_code ignored;
+    return std::filesystem::status(file.path, ignored).type() == std::filesystem::file_type::not_found;
+}
+
+// Lets materials do without lost images, which become a white texel.
+void drop_lost_images(Scene& scene, const std::vector<bool>& lost) {
+    const auto drop = [&](auto& texture) {
+        if (texture && lost[texture->image]) texture.reset();
+    };
+    const auto drop_map = [&](auto& map) {
+        if (map && lost[map->texture.image]) map.reset();
+    };
+    for (Material& material : scene.materials) {
+        if (auto* principled = std::get_if<PrincipledMaterial>(&material.model)) {
+            const std::optional<Texture>& texture = principled->emission.texture;
+            if (texture && lost[texture->image]) principled->emission = vec3(0.0f);
+            drop(principled->anisotropy_map);
+            drop_map(principled->coat_normal_map);
+        }
+        std::visit([&](auto& model) { for_each_value(model, [&](auto& value) { drop(value.texture); }); },
+                   material.model);
+        drop(material.opacity.value.texture);
+        drop_map(material.normal_map);
+        drop_map(material.bump_map);
+    }
+    for (Shape& shape : scene.shapes) {
+        if (!shape.emission) continue;
+        const std::optional<Texture>& texture = shape.emission->radiance.texture;
+        if (texture && lost[texture->image]) shape.emission.reset();
+    }
+}
+
+// Drops images that may be missing and are, with one warning.
+void drop_missing_images(Scene& scene, const ImageOptions& options) {
+    constexpr size_t MOST_LISTED = 10;
+    std::vector<bool> lost(scene.images.size());
+    size_t count = 0;
+    std::string names, place;
+    for (size_t i = 0; i < lost.size(); ++i) {
+        ImageFile& file = scene.images[i];
+        if (!is_lost(file, options)) continue;
+        file.image = {.size = uvec2(1),
+                      .channels = 1,
+                      .type = TexelType::unorm8,
+                      .texels = {std::byte(255)},
+                      .gamma = {}};
+        if (file.glossiness) {  // The copy of an image that is lost, too.
+            file.image = roughness_of(file.image, *file.glossiness);
+            continue;
+        }
+        lost[i] = true;
+        if (count == 0) place = file.place;
+        if (count < MOST_LISTED) names += (count == 0 ? "" : ", ") + quoted(file.path);
+        ++count;
+    }
+    if (count == 0) return;
+    drop_lost_images(scene, lost);
+    if (count > MOST_LISTED) names += ", ...";
+    const std::string which = count == 1
+                                  ? concat("the image ", names, " does not exist; white takes its place")
+                                  : concat(count, " images do not exist; white takes their place: ", names);
+    scene.warnings.push_back(place + ": " + which);
+}
+
 // Replaces ALPHA_OR_RED in the texture of an opacity.
 void choose_channel(const Scene& scene, Texture& texture) {
     if (texture.channel != ALPHA_OR_RED) return;
@@ -181,11 +250,16 @@ void check_opacity(Scene& scene, const Material& material) {
 
 }  // namespace
 
-uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place) {
+uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place,
+                   IfMissing if_missing) {
     const std::filesystem::path real = identity_of(path);
     const auto known = std::ranges::find(scene.images, real, &ImageFile::real_path);
-    if (known != scene.images.end()) return uint32_t(known - scene.images.begin());
-    scene.images.push_back({.path = path, .real_path = real, .place = place, .image = {}});
+    if (known != scene.images.end()) {
+        known->if_missing = std::max(known->if_missing, if_missing);
+        return uint32_t(known - scene.images.begin());
+    }
+    scene.images.push_back(
+        {.path = path, .real_path = real, .place = place, .if_missing = if_missing, .image = {}});
     scene.files.push_back(path);
     return uint32_t(scene.images.size() - 1);
 }
@@ -200,6 +274,7 @@ uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view
 }
 
 void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& progress) {
+    drop_missing_images(scene, options);
     std::vector<std::vector<std::string>> warnings(scene.images.size());
     std::vector<TexelCodes> codes(scene.images.size(), TexelCodes::linear);
     for_each_srgb_texture(scene, [&](const Texture& texture) { codes[texture.image] = TexelCodes::encoded; });

@@ -13,8 +13,10 @@
 namespace candela {
 
 // The index of an image file in scene.images, which it joins if it is not there yet; load_images() reads it.
-// `place` is what messages about it begin with.
-uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place);
+// `place` is what messages about it begin with. It is an error if it is missing and any of those who add it
+// say so.
+uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place,
+                   IfMissing if_missing = IfMissing::error);
 
 // The same for an image file that is within another one: these are its bytes, and messages call it `name`,
 // which no other has.
@@ -24,12 +26,14 @@ uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view
 struct ImageOptions {
     // Images with more texels along a side are made smaller.
     uint32_t texture_limit = UINT32_MAX;
+    IfMissing if_missing = IfMissing::white;  // Error: for all images.
 };
 
 // Reads all images that have not been read, on all cores. An image that a PNG file says has another gamma
 // than sRGB's is converted for textures of sRGB; others take it as it is. Chooses the channel of opacities
 // that wait for their image (ALPHA_OR_RED), and turns bump maps of mesh files into normal maps where they are
-// some. Throws Error if one cannot be read; what is odd but usable goes to scene.warnings.
+// some. Where an image may be missing and is, its textures go: factors remain, and emission ends. Throws
+// Error if one cannot be read; what is odd but usable goes to scene.warnings.
 void load_images(Scene& scene, const ImageOptions& options = {}, const LoadProgress& progress = no_progress);
 
 }  // namespace candela

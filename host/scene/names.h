@@ -34,6 +34,8 @@ inline constexpr Choices<Terminator, 2> TERMINATOR_NAMES{
 inline constexpr Choices<Fresnel, 2> FRESNEL_NAMES{
     {{"schlick", Fresnel::schlick}, {"exact", Fresnel::exact}}};
 
+inline constexpr Choices<IfMissing, 2> IF_MISSING_NAMES{
+    {{"white", IfMissing::white}, {"error", IfMissing::error}}};
 inline constexpr Choices<Wrap, 3> WRAP_NAMES{
     {{"repeat", Wrap::repeat}, {"mirror", Wrap::mirror}, {"clamp", Wrap::clamp}}};
 

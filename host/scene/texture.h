@@ -14,6 +14,9 @@ namespace candela {
 // No texture coordinate is further from 0, so that no transform of one leaves the range of floats.
 inline constexpr double MAX_UV = 1e30;
 
+// What becomes of an image file that does not exist.
+enum class IfMissing { white, error };
+
 // An image file that textures look up, or one within a scene file.
 struct ImageFile {
     std::filesystem::path path;
@@ -24,6 +27,7 @@ struct ImageFile {
     // A glTF file names it: a gamma of its own does not count, and only some formats are advised.
     bool of_gltf = false;
     std::string place{};  // Where the scene names it first, for messages.
+    IfMissing if_missing = IfMissing::error;  // White: nobody wrote the file that names it for candela.
     TexelImage image{};
 };
 

@@ -115,6 +115,20 @@ TEST_F(Info, AStudioLightsAFileAsIsAskedFor) {
     EXPECT_CONTAINS(wrong.err, "--studio: cannot use \"night\"; expected auto|off|default");
 }
 
+TEST_F(Info, MissingImagesAreAnErrorOnRequest) {
+    write("m.mtl", "newmtl a\nmap_Kd no.png\n");
+    const std::string scene = write("m.obj",
+                                    "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\n"
+                                    "f 1/1 2/1 3/1\n");
+    const ProcessResult white = candela({"info", scene});
+    EXPECT_EQ(white.exit_code, 0);
+    EXPECT_CONTAINS(white.err, "no.png\" does not exist; white takes its place\n");
+    const ProcessResult strict = candela({"info", scene, "--missing-images", "error"});
+    EXPECT_EQ(strict.exit_code, 1);
+    EXPECT_CONTAINS(strict.err, "no.png\": the file does not exist; check the name");
+    EXPECT_CONTAINS(candela({"info", scene, "--missing-images", "x"}).err, "expected white|error");
+}
+
 TEST_F(Info, WarningsGoToStderrAndIntoTheJson) {
     const std::string scene = write("empty.json", R"({
         "cameras": { "main": { "position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40 } }, "shapes": [] })");

@@ -81,7 +81,8 @@ void scene(std::string_view bytes) {
 
 void obj(std::string_view bytes) {
     const MemoryFile file(bytes);
-    load_obj(file.path(), MeshNormals::file);
+    std::vector<std::string> warnings;
+    load_obj(file.path(), MeshNormals::file, warnings);
     load_obj_parts(file.path(), MeshNormals::smooth);
 }
 

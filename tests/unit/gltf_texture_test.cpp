@@ -1,6 +1,7 @@
 // Textures of glTF files: their images, samplers and transforms; and which material a primitive has.
 // Ref: Khronos, "glTF 2.0 Specification", section 3.8; KHR_texture_transform; EXT_texture_webp;
 // KHR_materials_variants.
+#include <algorithm>
 #include <cmath>
 
 #include "gltf_fixture.h"
@@ -63,6 +64,45 @@ TEST_F(GltfTexture, SamplersSayWhatLiesBetweenAndBeyondTexels) {
     const Scene without =
         expect_warning(file, "#/textures/0/sampler: the file has no samplers; the texture repeats");
     EXPECT_EQ(texture_of(without).value().wrap_u, Wrap::repeat);
+}
+
+TEST_F(GltfTexture, ImagesMayBeMissing) {
+    GltfFile file = textured();
+    file.root["images"] = {{{"uri", "a.png"}}, {{"uri", "b.png"}}};
+    file.root["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    Json& material = file.root["materials"][0];
+    material["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.25, 0.125, 1};
+    material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 0}};
+    material["pbrMetallicRoughness"]["roughnessFactor"] = 0.75;
+    material["normalTexture"] = {{"index", 1}};
+    material["emissiveTexture"] = {{"index", 1}};
+    material["emissiveFactor"] = {1, 1, 1};
+    folder_.write("m.gltf", file.gltf());
+    const Scene scene = load_scene(folder_.path() / "m.gltf");
+    const auto& read = std::get<PrincipledMaterial>(scene.materials.at(0).model);
+    EXPECT_EQ(read.base_color, vec3(0.5f, 0.25f, 0.125f));
+    EXPECT_EQ(read.roughness, 0.75f);
+    EXPECT_EQ(read.metalness, 1.0f);
+    EXPECT_EQ(read.emission, vec3(0));  // It is not white.
+    EXPECT_FALSE(scene.materials[0].normal_map);
+    const std::string expected =
+        "m.gltf#/images/0/uri: 2 images do not exist; white takes their place: \"a.png\", \"b.png\"";
+    EXPECT_TRUE(std::ranges::any_of(scene.warnings, [&](const std::string& warning) {
+        return folder_.without_folder(warning) == expected;
+    }));
+    const LoadOptions strict{.images = {.if_missing = IfMissing::error}};
+    EXPECT_EQ(folder_.without_folder(error_of([&] { load_scene(folder_.path() / "m.gltf", strict); })),
+              "m.gltf#/images/0/uri: cannot read \"a.png\": the file does not exist; check the name");
+    // Glossiness is in the alpha of white.
+    file.root["materials"] = {
+        {{"extensions",
+          {{"KHR_materials_pbrSpecularGlossiness",
+            {{"glossinessFactor", 0.75}, {"specularGlossinessTexture", {{"index", 0}}}}}}}}};
+    folder_.write("m.gltf", file.gltf());
+    const Scene old = load_scene(folder_.path() / "m.gltf");
+    const auto roughness = std::get<PrincipledMaterial>(old.materials.at(0).model).roughness;
+    ASSERT_TRUE(roughness.texture);
+    EXPECT_NEAR(texel_codes(old.images.at(roughness.texture->image).image, 0).x, 0.25f, 1.0f / 255.0f);
 }
 
 TEST_F(GltfTexture, ReadsTwoSetsOfCoordinates) {

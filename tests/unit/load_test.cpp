@@ -74,7 +74,7 @@ TEST_F(Load, AnObjFileKeepsItsMaterialsAndLamps) {
     EXPECT_EQ(scene.files.size(), 2u);
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_EQ(folder_.without_folder(scene.warnings[0]),
-              "m.obj: 1 face before the first usemtl; shown in grey");
+              "m.obj: 1 face has no material (usemtl); shown in grey");
 }
 
 TEST_F(Load, APlyFileIsAScene) {

@@ -130,19 +130,50 @@ TEST_F(ObjTextures, ABlueBumpMapIsANormalMap) {
         "read as one; to say so, name it as norm");
 }
 
-TEST_F(ObjTextures, ImagesMustBeThere) {
-    const auto error = [&](const std::string& library) {
-        return folder_.without_folder(error_of([&] { load(library); }));
+TEST_F(ObjTextures, ImagesMayBeMissing) {
+    const std::string library =
+        "newmtl a\nKd 0.5 0.25 0.125\nmap_Kd no.png\nmap_Ke gone/e.png\nd 0.5\nmap_d no.png\nnorm n.png\n";
+    const Scene scene = load(library);
+    const Material& read = material(scene);
+    EXPECT_EQ(std::get<DiffuseMaterial>(read.model).reflectance, vec3(0.5f, 0.25f, 0.125f));
+    EXPECT_EQ(read.opacity.value, 0.5f);
+    EXPECT_FALSE(read.normal_map);
+    EXPECT_FALSE(scene.shapes.at(0).emission);  // It is not white.
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(
+        folder_.without_folder(scene.warnings[0]),
+        "m.mtl:3: 3 images do not exist; white takes their place: \"no.png\", \"n.png\", \"gone/e.png\"");
+    const auto error = [&](const std::string& text, const ImageOptions& options) {
+        folder_.write("m.mtl", text);
+        return folder_.without_folder(error_of([&] { folder_.load(scene_of(SHAPE), options); }));
     };
-    EXPECT_EQ(error("newmtl a\nKd 1\nmap_Kd no.png\n"),
+    EXPECT_EQ(error(library, {.if_missing = IfMissing::error}),
               "m.mtl:3: cannot read \"no.png\": the file does not exist; check the name");
     folder_.write("a.png", "no image");
-    EXPECT_EQ(error("newmtl a\nnorm a.png\n").substr(0, 9), "m.mtl:2: ");
+    EXPECT_EQ(error("newmtl a\nnorm a.png\n", {}).substr(0, 9), "m.mtl:2: ");
     // With a material of the scene, nobody asks for them.
     EXPECT_NO_THROW(folder_.load(scene_of(R"({"type": "obj", "file": "m.obj", "material": "white"})")));
+    // A scene that names such an image itself means it.
+    folder_.write("m.mtl", "newmtl a\nmap_Kd no.png\n");
+    EXPECT_THROW(
+        folder_.load(R"({"materials": {"m": {"type": "diffuse", "reflectance": {"image": "no.png"}}}, )" +
+                     GOOD_CAMERA + R"(, "shapes": [)" + SHAPE + "]}"),
+        Error);
 }
 
-TEST_F(ObjTextures, EachPartNeedsTextureCoordinates) {
+TEST_F(ObjTextures, ImagesMayBeNamedByOtherComputers) {
+    write_image("my wall.png", png_rgb);
+    for (const char* name : {"\"my wall.png\"", "C:\\textures\\my wall.png", "/gone/my wall.png",
+                             "my wall.png # 1", "..\\tex\\my wall.png"}) {
+        SCOPED_TRACE(name);
+        const Scene scene = load(std::string("newmtl a\nmap_Kd -clamp on ") + name + "\n");
+        EXPECT_EQ(scene.images.at(0).image.size, uvec2(1));
+        EXPECT_EQ(scene.images[0].path, folder_.path() / "my wall.png");
+        EXPECT_EQ(scene.warnings.size(), 1u);  // There is no light.
+    }
+}
+
+TEST_F(ObjTextures, EachPartHasTextureCoordinatesIfItNeedsThem) {
     write_image("a.png", png_rgb);
     const std::string library = "newmtl a\nmap_Kd a.png\nnewmtl b\nKd 1\n";
     write_faces("usemtl b\nf 1 2 3\nusemtl a\nf 1/1 2/2 3/3\nf 3 2 1\n");
@@ -150,10 +181,14 @@ TEST_F(ObjTextures, EachPartNeedsTextureCoordinates) {
     EXPECT_TRUE(scene.meshes.at(0).uv0.empty());
     EXPECT_EQ(scene.meshes.at(1).uv0.size(), 6u);
     write_faces("usemtl b\nf 1/1 2/2 3/3\nusemtl a\nf 1 2 3\n");
-    folder_.write("m.mtl", library);
-    folder_.expect_error(scene_of(std::string("@") + SHAPE),
-                         "the material \"m.obj/a\" has textures, but the mesh has no texture coordinates; "
-                         "export it with them, or use a material without textures");
+    const Scene none = load(library);
+    EXPECT_EQ(none.meshes.at(1).uv0, std::vector<vec2>(3, vec2(0)));
+    ASSERT_EQ(none.warnings.size(), 2u);  // The other: there is no light.
+    EXPECT_EQ(folder_.without_folder(none.warnings[0]),
+              "scene.json:3:36: m.obj: the material \"a\" has textures, but its faces have no texture "
+              "coordinates: they show the corner (0, 0) of each image");
+    folder_.write("m.mtl", "newmtl a\nKd 0\nmap_Ke a.png\n");
+    EXPECT_EQ(folder_.load(scene_of(SHAPE)).meshes.at(0).uv0.size(), 3u);
 }
 
 TEST_F(ObjTextures, AreInASceneOfItsOwn) {

@@ -109,7 +109,7 @@ uint32_t read_image(File& file, Scene& scene, const Node& reference) {
             return add_image_bytes(scene, name, {begin, bytes.size()}, image.place());
         }
         if (const auto data = inline_data(*uri)) return add_image_bytes(scene, name, *data, uri->place());
-        return add_image(scene, file_of(*uri, file.folder()), uri->place());
+        return add_image(scene, file_of(*uri, file.folder()), uri->place(), IfMissing::white);
     };
     const uint32_t added = add();
     scene.images[added].of_gltf = true;  // Section 3.8.3: colour profiles do not count.

@@ -76,8 +76,11 @@ void read_whole(const Node& node, ShapeList& shapes, Load load) {
 void read_obj(const Node& node, ShapeList& shapes) {
     node.allow_only({"file", "normals"}, SHAPE_KEYS);
     if (!node.find("material") && !node.find("emission")) return read_obj_with_materials(node, shapes);
-    read_whole(node, shapes, [](const Node&, const std::filesystem::path& path, MeshNormals normals) {
-        return load_obj(path, normals);
+    read_whole(node, shapes, [&](const Node& file, const std::filesystem::path& path, MeshNormals normals) {
+        std::vector<std::string> warnings;
+        TriangleMesh mesh = load_obj(path, normals, warnings);
+        warn(file, warnings, shapes.scene());
+        return mesh;
     });
 }
 

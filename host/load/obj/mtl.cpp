@@ -4,15 +4,18 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/image_io_parts.h"
 #include "base/text.h"
+#include "load/obj/counted_warnings.h"
 #include "load/obj/mtl_ignored.h"
 #include "load/quote.h"
 #include "load/text_lines.h"
@@ -20,15 +23,28 @@
 namespace candela {
 namespace {
 
-// The textures that are read; the others are ignored.
-constexpr std::array<std::string_view, 12> READ{"map_Kd", "map_Ks", "map_Ke",   "map_Ns",
-                                                "map_d",  "map_Pr", "map_Pm",   "norm",
-                                                "map_Kn", "bump",   "map_bump", "map_Bump"};
-constexpr std::array<std::string_view, 3> NOT_READ{"disp", "decal", "refl"};
+// Statements that are read, or ignored without a word.
+constexpr std::array<std::string_view, 33> KNOWN{
+    "newmtl", "Ka",     "Kd",     "Ks",       "Ke",       "Tf",       "Ns",     "Ni",     "illum",
+    "d",      "Tr",     "Pr",     "Pm",       "Ps",       "Pc",       "Pcr",    "aniso",  "anisor",
+    "map_Ka", "map_Kd", "map_Ks", "map_Ke",   "map_Ns",   "map_d",    "map_Pr", "map_Pm", "norm",
+    "map_Kn", "bump",   "refl",   "map_bump", "map_refl", "sharpness"};
+constexpr std::array<std::string_view, 13> TEXTURES{"map_Kd",   "map_Ks", "map_Ke",  "map_Ns", "map_d",
+                                                    "map_Pr",   "map_Pm", "norm",    "map_Kn", "bump",
+                                                    "map_bump", "refl",   "map_refl"};
+constexpr std::array<std::string_view, 2> OTHER_TEXTURES{"disp", "decal"};
 
 template <size_t N>
 bool is_one_of(const std::array<std::string_view, N>& names, std::string_view name) {
     return std::ranges::find(names, name) != names.end();
+}
+
+// A command as the format spells it.
+std::string_view spelled(std::string_view command) {
+    if (is_one_of(KNOWN, command)) return command;
+    const std::string lower = lower_case(command);
+    const auto* const known = std::ranges::find(KNOWN, lower, [](auto name) { return lower_case(name); });
+    return known == KNOWN.end() ? command : *known;
 }
 
 class Reader {
@@ -36,16 +52,16 @@ class Reader {
     explicit Reader(std::string file) : file_(std::move(file)) {}
 
     MtlLibrary read(std::string_view text) {
-        refuse_byte_order_mark(text, file_);
+        text = without_byte_order_mark(text);
+        by_blender_ = text.starts_with("# Blender");
         for_each_line(text, [this](uint64_t line, std::string_view command, std::string_view rest) {
             line_ = line;
-            if (!command.empty() && !command.starts_with('#')) read_line(command, rest);
+            if (!command.empty() && !command.starts_with('#')) read_line(spelled(command), rest);
         });
         finish();
-        if (library_.materials.empty()) {
-            throw Error(file_ + ": the file has no materials (lines \"newmtl name\"); is it an MTL file?");
-        }
-        std::ranges::copy(ignored_.warnings(file_), std::back_inserter(library_.warnings));
+        if (library_.materials.empty()) library_.warnings.push_back(file_ + ": the file has no materials");
+        std::ranges::move(warnings_.texts(), std::back_inserter(library_.warnings));
+        std::ranges::move(ignored_.warnings(file_), std::back_inserter(library_.warnings));
         return std::move(library_);
     }
 
@@ -54,13 +70,17 @@ class Reader {
 
     [[noreturn]] void fail(const std::string& cause) const { throw Error(place() + ": " + cause); }
 
+    void warn(const std::string& kind, const std::string& what) {
+        warnings_.add(kind, place() + ": " + what);
+    }
+
     void read_line(std::string_view command, std::string_view rest) {
         if (command == "newmtl") {
             finish();
             current_.emplace();
             current_->name = trimmed(rest);
             current_->line = line_;
-            if (current_->name.empty()) fail("newmtl needs the name of the material");
+            current_->by_blender = by_blender_;
         } else if (!current_) {
             fail(quote(command) + " stands before the first newmtl; is it an MTL file?");
         } else {
@@ -69,33 +89,63 @@ class Reader {
     }
 
     void read_statement(MtlStatements& s, std::string_view command, std::string_view rest) {
+        constexpr double NONE = -std::numeric_limits<double>::infinity();
+        constexpr double MOST = std::numeric_limits<double>::infinity();
         if (command == "Kd") {
-            s.kd = colour(command, rest);
+            set(s.kd, colour(command, rest));
         } else if (command == "Ks") {
-            s.ks = colour(command, rest);
+            set(s.ks, colour(command, rest));
         } else if (command == "Ke") {
-            s.ke = colour(command, rest);
+            set(s.ke, colour(command, rest));
+        } else if (command == "Ka" || command == "Tf") {
+            // Spectra do not matter here.
+            std::string_view words = rest;
+            if (parse_number(next_word(words))) set(command == "Ka" ? s.ka : s.tf, colour(command, rest));
         } else if (command == "Ns") {
-            s.ns = number(command, rest);
-            if (s.ns < 0.0) fail("Ns, an exponent, must not be negative");
+            set(s.ns, number(command, rest, 0.0, MOST));
         } else if (command == "Ni") {
-            s.ni = number(command, rest);
-            s.ni_line = line_;
+            set(s.ni, number(command, rest, NONE, MOST));
         } else if (command == "illum") {
             s.illum = illumination(next_word(rest));
         } else if (command == "d") {
-            s.d = number(command, rest);
+            set(s.d, number(command, rest, NONE, MOST));
         } else if (command == "Tr") {
-            s.tr = number(command, rest);
-        } else if (command == "Pr") {
-            s.pr = share(command, rest);
-        } else if (command == "Pm") {
-            s.pm = share(command, rest);
-        } else if (is_one_of(READ, command)) {
+            set(s.tr, number(command, rest, NONE, MOST));
+        } else if (command.starts_with('P')) {
+            read_share(s, command, rest);
+        } else if (command == "aniso" || command == "anisor") {
+            if (command == "aniso" && number(command, rest, NONE, MOST).value_or(0.0) != 0.0)
+                ignored_.add(command, "brushed metal is not supported");
+        } else {
+            read_other(s, command, rest);
+        }
+    }
+
+    // Statements of the PBR extension, from 0 to 1.
+    void read_share(MtlStatements& s, std::string_view command, std::string_view rest) {
+        using Member = std::optional<double> MtlStatements::*;
+        constexpr std::array<std::pair<std::string_view, Member>, 5> SHARES{{{"Pr", &MtlStatements::pr},
+                                                                             {"Pm", &MtlStatements::pm},
+                                                                             {"Ps", &MtlStatements::ps},
+                                                                             {"Pc", &MtlStatements::pc},
+                                                                             {"Pcr", &MtlStatements::pcr}}};
+        for (const auto& [name, member] : SHARES) {
+            if (command == name) return set(s.*member, number(command, rest, 0.0, 1.0));
+        }
+        ignored_.add(command, "unknown statements");
+    }
+
+    void read_other(MtlStatements& s, std::string_view command, std::string_view rest) {
+        // Blender writes its metalness in a texture of that name.
+        const bool is_reflection = command == "refl" || command == "map_refl";
+        if (is_reflection && by_blender_) {
+            read_texture(s, "map_Pm", rest);
+        } else if (is_one_of(TEXTURES, command) && !is_reflection) {
             read_texture(s, command, rest);
-        } else if (command.starts_with("map_") || is_one_of(NOT_READ, command)) {
+        } else if (is_one_of(OTHER_TEXTURES, command) || is_reflection ||
+                   (command.starts_with("map_") && command != "map_Ka")) {
             ignored_.add(command, "textures of these kinds are not supported");
-        } else if (command != "Ka" && command != "Tf" && command != "sharpness") {
+        } else if (command != "map_Ka" && command != "sharpness") {
             ignored_.add(command, "unknown statements");
         }
     }
@@ -104,64 +154,86 @@ class Reader {
         MtlTexture texture = parse_mtl_texture(command, rest, place());
         for (const std::string& option : texture.ignored)
             ignored_.add(option, "options of textures that are not supported");
+        if (texture.file.empty()) {
+            return warn(std::string(command) + " without a file",
+                        std::string(command) + " names no file, and is ignored");
+        }
         if (command == "map_Kn") command = "norm";
-        if (command == "map_bump" || command == "map_Bump") command = "bump";
+        if (command == "map_bump") command = "bump";
         s.textures[std::string(command)] = std::move(texture);
     }
 
-    double share(std::string_view command, std::string_view rest) const {
-        const double value = number(command, rest);
-        if (value >= 0.0 && value <= 1.0) return value;
-        fail(std::string(command) + " needs a number from 0 to 1, found " + number_text(value, 6));
+    // Keeps what was stated before where there is nothing.
+    template <class Value>
+    static void set(std::optional<Value>& value, const std::optional<Value>& stated) {
+        if (stated) value = stated;
     }
 
-    double number(std::string_view command, std::string_view rest) const {
+    // A word's number. Nothing, with a warning, if it is missing or not finite.
+    std::optional<double> finite(std::string_view command, std::string_view word) {
+        const auto value = parse_number(word);
+        if (!value && !word.empty() && !word.starts_with('#') && word.find(".#") == std::string_view::npos)
+            fail(std::string(command) + " needs a number, found " + quote(word));
+        if (value && parse_finite(word)) return value;
+        warn(std::string(command) + " without a number",
+             std::string(command) + " has no finite number, and is ignored");
+        return std::nullopt;
+    }
+
+    std::optional<double> number(std::string_view command, std::string_view rest, double least, double most) {
         std::string_view word = next_word(rest);
         if (command == "d" && word == "-halo") word = next_word(rest);
-        if (const auto value = parse_finite(word)) return *value;
-        fail(std::string(command) + " needs a finite number, found " + quote(word));
+        const auto value = finite(command, word);
+        if (!value || (*value >= least && *value <= most)) return value;
+        const double nearest = std::clamp(*value, least, most);
+        warn(std::string(command) + " out of range",
+             concat(command, ' ', number_text(*value, 6), " is read as ", number_text(nearest, 6)));
+        return nearest;
     }
 
     // One number for grey, or three; what follows the three is ignored.
-    dvec3 colour(std::string_view command, std::string_view rest) const {
+    std::optional<dvec3> colour(std::string_view command, std::string_view rest) {
         std::vector<double> values;
         for (std::string_view word = next_word(rest);
              values.size() < 3 && !word.empty() && !word.starts_with('#'); word = next_word(rest)) {
-            const auto value = parse_finite(word);
-            if (!value || *value < 0.0) {
-                fail(std::string(command) + " needs finite numbers of at least 0, found " + quote(word));
-            }
-            values.push_back(*value);
+            auto value = finite(command, word);
+            if (!value) return std::nullopt;
+            if (*value < 0.0)
+                warn(std::string(command) + " below 0", std::string(command) + " is negative; 0 is taken");
+            values.push_back(std::max(*value, 0.0));
         }
         if (values.size() == 1) return dvec3(values[0]);
-        if (values.size() == 3) return {values[0], values[1], values[2]};
+        if (values.size() == 3) return dvec3(values[0], values[1], values[2]);
         fail(std::string(command) + " needs one or three numbers, found " + std::to_string(values.size()));
     }
 
-    uint32_t illumination(std::string_view word) const {
-        constexpr uint32_t LAST = 10;
-        const char* end = word.data() + word.size();
-        uint32_t value = 0;
-        const auto [stop, error] = std::from_chars(word.data(), end, value);
-        if (error == std::errc() && stop == end && value <= LAST) return value;
-        fail("illum needs a whole number from 0 to 10, found " + quote(word));
+    uint32_t illumination(std::string_view word) {
+        constexpr double LAST = 10.0;
+        constexpr uint32_t USUAL = 2;
+        const auto value = parse_finite(word);
+        if (value && *value >= 0.0 && *value <= LAST && std::trunc(*value) == *value) return uint32_t(*value);
+        warn("illum", "illum " + quote(word) + " is not a whole number from 0 to 10, and is read as 2");
+        return USUAL;
     }
 
-    // Adds the material that ends here, if there is one.
+    // Adds the material that ends here, if there is one that faces may name.
     void finish() {
         if (!current_) return;
         const MtlStatements s = *std::exchange(current_, std::nullopt);
+        if (s.name.empty()) return;
         if (!library_.materials.contains(s.name)) {
             library_.materials.emplace(s.name, mtl_material(s, file_, ignored_));
         } else {
-            library_.warnings.push_back(file_ + ':' + std::to_string(s.line) + ": material " + quote(s.name) +
-                                        " is defined again; the first definition counts");
+            warnings_.add("again", concat(file_, ':', s.line, ": material ", quote(s.name),
+                                          " is defined again; the first definition counts"));
         }
     }
 
     std::string file_;
     uint64_t line_ = 0;
+    bool by_blender_ = false;
     std::optional<MtlStatements> current_;
+    CountedWarnings warnings_;
     MtlIgnored ignored_;
     MtlLibrary library_;
 };

@@ -1,4 +1,4 @@
-// One function per model.
+// From statements to models, one function for each.
 #include "load/obj/mtl_material.h"
 
 #include <algorithm>
@@ -6,8 +6,8 @@
 #include <set>
 #include <utility>
 
-#include "base/error.h"
 #include "base/text.h"
+#include "load/obj/named_file.h"
 #include "load/quote.h"
 #include "scene/images.h"
 #include "scene/material_textures.h"
@@ -17,14 +17,30 @@ namespace {
 
 using Model = decltype(Material::model);
 
-constexpr double GREY = 0.5;  // The reflectance where a file states no colour ...
-constexpr double DULL = 0.5;  // ... and the roughness where it states none.
+constexpr double GREY = 0.5;          // The reflectance where a file states no colour ...
+constexpr double DULL = 0.5;          // ... the roughness where it states none ...
+constexpr double COMMON_GLASS = 1.5;  // ... and the index of refraction.
+constexpr double SHEEN_ROUGHNESS = 0.5;
+constexpr double MOST_NS = 1000.0;  // The greatest exponent that the format foresees: a mirror.
+constexpr double ROUNDING = 2e-6;   // Of a sum of two numbers of six digits, as most programs write them.
+
+double largest_of(dvec3 v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+double mean_of(dvec3 v) {
+    return (v.x + v.y + v.z) / 3.0;
+}
 
 class Converter {
   public:
     Converter(const MtlStatements& statements, const std::string& file, MtlIgnored& ignored)
         : s_(statements), file_(file), ignored_(ignored) {
         ke_ = s_.ke.value_or(dvec3(find("map_Ke") ? 1.0 : 0.0));
+        ks_ = s_.ks.value_or(dvec3(find("map_Ks") ? 1.0 : 0.0));
+        kd_ = s_.kd.value_or(dvec3(find("map_Kd") ? 1.0 : 0.0));
+        opacity_ = stated_opacity();
+        is_glass_ = is_glass();
     }
 
     MtlMaterial convert() {
@@ -38,8 +54,9 @@ class Converter {
     }
 
   private:
-    void warn(const std::string& what) {
-        result_.warnings.push_back(concat(file_, ':', s_.line, ": material ", quote(s_.name), ": ", what));
+    void warn(const std::string& kind, const std::string& what) {
+        result_.warnings.push_back(
+            {kind, concat(file_, ':', s_.line, ": material ", quote(s_.name), ": ", what)});
     }
 
     const MtlTexture* find(std::string_view statement) const {
@@ -54,7 +71,7 @@ class Converter {
         texture.image = uint32_t(result_.images.size());
         texture.encoding = encoding;
         texture.channel = stated.channel.value_or(0);
-        result_.images.push_back({std::filesystem::path(file_).parent_path() / stated.file, stated.place});
+        result_.images.push_back({std::filesystem::path(file_).parent_path(), stated.file, stated.place});
         used_.insert(statement);
         return texture;
     }
@@ -64,115 +81,175 @@ class Converter {
         return {vec3(factor), use(statement, TextureEncoding::srgb)};
     }
 
-    Textured<float> number_of(float factor, const std::string& statement) {
-        if (!find(statement) || factor == 0.0f) return factor;
-        return {factor, use(statement, TextureEncoding::linear)};
+    Textured<float> number_of(double factor, const std::string& statement) {
+        if (!find(statement) || factor == 0.0) return float(factor);
+        return {float(factor), use(statement, TextureEncoding::linear)};
     }
 
-    bool is_glass() const { return s_.illum == 4 || s_.illum == 6 || s_.illum == 7; }
+    // Light is reflected as by a mirror.
+    bool reflects() const { return s_.illum == 3 || s_.illum == 5 || s_.illum == 8; }
 
-    bool is_metal() const { return s_.pm ? *s_.pm >= 0.5 : find("map_Pm") != nullptr; }
+    // Light is refracted, in files that mean it: Maya writes 4 for all materials, and Blender 6 for metals
+    // that are not opaque.
+    bool is_glass() const {
+        if (s_.by_blender || (s_.illum != 4 && s_.illum != 6 && s_.illum != 7)) return false;
+        const bool filters = s_.tf && *s_.tf != dvec3(0.0) && *s_.tf != max(*s_.tf, dvec3(1.0));
+        const bool passes = kd_ == dvec3(0.0) || filters || opacity_ < 1.0;
+        return s_.ni.value_or(COMMON_GLASS) > 1.0 && passes;
+    }
+
+    // Whether statements of the PBR extension decide.
+    bool states_pbr() const { return s_.pr || s_.pm || s_.ps || s_.pc || find("map_Pr") || find("map_Pm"); }
+
+    // What cannot be a sum of diffuse light and reflection is a metal, as Blender writes it.
+    bool must_be_metal() const {
+        return reflects() && kd_ != dvec3(0.0) && ks_ != dvec3(0.0) && largest_of(kd_ + ks_) > 1.0 + ROUNDING;
+    }
 
     Model find_model() {
-        if (is_glass()) return glass();
-        if (s_.pm && *s_.pm > 0.0 && *s_.pm < 1.0) {
-            warn("Pm " + number_text(*s_.pm, 6) + " is read as " +
-                 (is_metal() ? "1, a metal" : "0, no metal"));
-        }
-        if (is_metal()) return metal();
-        if (s_.pr) ignored_.add("Pr", NO_METAL);
-        if (find("map_Pr")) ignored_.add("map_Pr", NO_METAL);
-        if (s_.illum == 3 || s_.illum == 5) return mirror();
-        if (s_.illum >= 8) {
-            warn("illum " + std::to_string(s_.illum) + " is not supported; the material is read as illum 2");
+        if (is_glass_) return glass();
+        if (states_pbr() || s_.by_blender || must_be_metal()) return principled();
+        if (s_.illum >= 9) {
+            warn("illum",
+                 "illum " + std::to_string(s_.illum) + " is not supported; the material is read as illum 2");
         }
         return opaque();
     }
 
-    Model glass() const {
-        constexpr double COMMON_GLASS = 1.5;
-        const auto ior = float(s_.ni.value_or(COMMON_GLASS));
-        if (!(ior > 0.0f)) {
-            throw Error(file_ + ':' + std::to_string(s_.ni_line) + ": Ni of the glass " + quote(s_.name) +
-                        " must be above 0");
-        }
-        return DielectricMaterial{.ior = ior};
+    Model glass() {
+        const bool is_black = s_.tf == dvec3(0.0);
+        if (is_black) warn("black glass", "Tf 0 would let no light through the glass, and is ignored");
+        const dvec3 tf = is_black ? dvec3(1.0) : min(s_.tf.value_or(dvec3(1.0)), dvec3(1.0));
+        const bool is_rough = s_.pr.value_or(0.0) > 0.0 || find("map_Pr");
+        if (tf == dvec3(1.0) && !is_rough)
+            return DielectricMaterial{.ior = float(s_.ni.value_or(COMMON_GLASS))};
+        PrincipledMaterial m{.base_color = vec3(tf), .ior = ior()};
+        m.roughness = number_of(s_.pr.value_or(is_rough ? 1.0 : 0.0), "map_Pr");
+        m.transmission = 1.0f;
+        m.inside.emplace();
+        return m;
     }
 
-    Model metal() {
+    float ior() const {
+        constexpr double MOST = 1e6;
+        const double ni = s_.ni.value_or(COMMON_GLASS);
+        return float(ni > 1.0 ? std::min(ni, MOST) : COMMON_GLASS);
+    }
+
+    Model principled() {
         dvec3 none(0.0);
         dvec3 kd = s_.kd ? *s_.kd : default_kd(false);
         limit(none, kd, "Kd");
-        const Textured<vec3> reflectance = colour_of(kd, "map_Kd");
-        if (!s_.pr && !find("map_Pr"))
-            warn("the metal has no roughness (Pr); " + number_text(DULL, 6) + " is taken");
-        const double roughness = s_.pr.value_or(find("map_Pr") ? 1.0 : DULL);
-        const auto alpha = float(roughness * roughness);
-        if (alpha < MIN_ALPHA) {
-            warn("Pr " + number_text(roughness, 6) + " is read as " +
-                 number_text(std::sqrt(double(MIN_ALPHA)), 6) + ", the least roughness of a metal");
-            return ConductorMaterial{reflectance, MIN_ALPHA};
-        }
-        if (find("map_Pr")) {
-            warn(
-                "map_Pr is taken for alpha, the square of roughness: the metal looks rougher than it should");
-        }
-        return ConductorMaterial{reflectance, number_of(alpha, "map_Pr")};
+        PrincipledMaterial m{.base_color = colour_of(kd, "map_Kd"), .ior = ior()};
+        m.metalness = metalness();
+        m.roughness = roughness();
+        // Twice Ks is what Blender calls the tint of the reflection; what others mean by Ks is not said.
+        if (s_.ks && (s_.by_blender || !states_pbr())) m.specular = float(std::min(1.0, 2.0 * mean_of(ks_)));
+        if (s_.ps) m.sheen_color = vec3(float(*s_.ps));
+        m.sheen_roughness = float(SHEEN_ROUGHNESS);
+        m.coat = float(s_.pc.value_or(0.0));
+        m.coat_roughness = float(s_.pcr.value_or(0.0));
+        m.transmission = transmission();
+        if (m.transmission.factor > 0.0f) m.inside.emplace();
+        return m;
     }
 
-    Model mirror() {
-        dvec3 none(0.0);
-        dvec3 ks = s_.ks.value_or(dvec3(1.0));
-        limit(none, ks, "Ks");
-        return MirrorMaterial{colour_of(ks, "map_Ks")};
+    // Without the PBR extension, Blender writes it as Ka.
+    Textured<float> metalness() {
+        if (s_.pm || find("map_Pm")) return number_of(s_.pm.value_or(1.0), "map_Pm");
+        if (states_pbr() || !(reflects() || s_.illum == 6)) return 0.0f;
+        const dvec3 ka = s_.ka.value_or(dvec3(0.0));
+        const bool is_grey = ka == dvec3(ka.x) && ka.x > 0.0;
+        return is_grey ? float(std::min(ka.x, 1.0)) : 1.0f;
+    }
+
+    Textured<float> roughness() {
+        if (s_.pr || find("map_Pr")) return number_of(s_.pr.value_or(1.0), "map_Pr");
+        if (s_.by_blender && find("map_Ns")) return number_of(1.0, "map_Ns");  // It holds roughness.
+        if (states_pbr() && !s_.by_blender) {
+            warn("no Pr", "it has no roughness (Pr); " + number_text(DULL, 6) + " is taken");
+            return float(DULL);
+        }
+        const double ns = s_.ns.value_or(reflects() ? MOST_NS : 0.0);
+        return float(1.0 - std::sqrt(std::min(ns, MOST_NS) / MOST_NS));  // As Blender converts it.
+    }
+
+    // With the PBR extension, Blender writes it as Tf. 3ds Max, which writes a Tf of 1 for all materials,
+    // writes Tr beside it.
+    float transmission() {
+        if (!states_pbr() || !s_.tf || s_.tr || s_.illum > 2 || s_.ni.value_or(1.0) <= 1.0) return 0.0f;
+        const double share = std::min(1.0, mean_of(*s_.tf));
+        if (share > 0.0 && !s_.by_blender) {
+            warn("Tf", "Tf beside Pr or Pm is read as a share of " + number_text(share, 6) +
+                           " of the light that passes, as through glass");
+        }
+        return float(share);
     }
 
     Model opaque() {
-        const dvec3 stated = s_.ks.value_or(dvec3(find("map_Ks") ? 1.0 : 0.0));
-        const bool has_highlight = s_.illum >= 2 && stated != dvec3(0.0);
-        dvec3 ks = has_highlight ? stated : dvec3(0.0);
+        const bool has_highlight = s_.illum >= 2 && ks_ != dvec3(0.0);
+        dvec3 ks = has_highlight ? ks_ : dvec3(0.0);
         dvec3 kd = s_.kd ? *s_.kd : default_kd(has_highlight);
-        limit(kd, ks, has_highlight ? "Kd + Ks" : "Kd");
+        limit(kd, ks, !has_highlight ? "Kd" : kd == dvec3(0.0) ? "Ks" : "Kd + Ks");
+        if (has_highlight && reflects() && kd == dvec3(0.0)) return MirrorMaterial{colour_of(ks, "map_Ks")};
         const Textured<vec3> diffuse = colour_of(kd, "map_Kd");
         if (!has_highlight) return DiffuseMaterial{diffuse};
-        if (s_.ns > double(MAX_PHONG_EXPONENT)) {
-            warn("Ns " + number_text(s_.ns, 6) + " is read as " + number_text(double(MAX_PHONG_EXPONENT), 6) +
-                 ", the greatest exponent");
-        }
-        return PhongMaterial{diffuse, colour_of(ks, "map_Ks"),
-                             number_of(std::min(float(s_.ns), MAX_PHONG_EXPONENT), "map_Ns")};
+        return PhongMaterial{diffuse, colour_of(ks, "map_Ks"), number_of(exponent(), "map_Ns")};
+    }
+
+    double exponent() {
+        constexpr auto MOST = double(MAX_PHONG_EXPONENT);
+        if (reflects() && s_.ns.value_or(MOST_NS) >= MOST_NS) return MOST;
+        const double ns = s_.ns.value_or(1.0);
+        if (ns <= MOST) return ns;
+        warn("Ns",
+             "Ns " + number_text(ns, 6) + " is read as " + number_text(MOST, 6) + ", the greatest exponent");
+        return MOST;
     }
 
     // A lamp or a shiny thing may well reflect nothing diffusely; anything else was meant to be seen.
     dvec3 default_kd(bool has_highlight) {
         if (find("map_Kd")) return dvec3(1.0);
         if (has_highlight || vec3(ke_) != vec3(0.0f)) return dvec3(0.0);
-        warn("it has no colour (Kd); grey of " + number_text(GREY, 6) + " is taken");
+        warn("no Kd", "it has no colour (Kd); grey of " + number_text(GREY, 6) + " is taken");
         return dvec3(GREY);
     }
 
     // Scales kd and ks by one factor so that they add up to at most 1; `what` names the sum in messages.
     void limit(dvec3& kd, dvec3& ks, const char* what) {
-        constexpr double ROUNDING = 2e-6;  // Of two numbers of six digits, as most programs write them.
-        const dvec3 sum = kd + ks;
-        const double largest = std::max({sum.x, sum.y, sum.z});
+        const double largest = largest_of(kd + ks);
         if (largest <= 1.0) return;
         kd /= largest;
         ks /= largest;
         if (largest <= 1.0 + ROUNDING) return;
-        warn(std::string(what) + " is " + number_text(largest, 6) + " in a channel; it is scaled to 1");
+        warn("above 1",
+             std::string(what) + " is " + number_text(largest, 6) + " in a channel; it is scaled to 1");
+    }
+
+    // May be out of range.
+    double stated_opacity() const {
+        // Where both are given, d counts: Tr is not in the specification.
+        if (s_.d || s_.tr) return s_.d ? *s_.d : 1.0 - *s_.tr;
+        return is_opacity_of_maya() ? mean_of(*s_.tf) : 1.0;
+    }
+
+    // Maya writes no d, but Tf, 1 for what is opaque.
+    bool is_opacity_of_maya() const {
+        return s_.illum == 4 && s_.tf && largest_of(*s_.tf) <= 1.0 && *s_.tf != dvec3(1.0) &&
+               s_.ni.value_or(COMMON_GLASS) <= 1.0;
     }
 
     Textured<float> opacity() {
-        // Where both are given, d counts: Tr is not in the specification.
-        const double stated = s_.d ? *s_.d : 1.0 - s_.tr.value_or(0.0);
-        const double d = is_glass() ? 1.0 : std::clamp(stated, 0.0, 1.0);
-        if (d != stated && !is_glass()) {
-            warn((s_.d ? "d " + number_text(*s_.d, 6) : "Tr " + number_text(*s_.tr, 6)) +
-                 " is not from 0 to 1; the material is taken to be " + (d > 0.0 ? "opaque" : "transparent"));
+        const double d = is_glass_ ? 1.0 : std::clamp(opacity_, 0.0, 1.0);
+        if (d != opacity_ && !is_glass_) {
+            warn("opacity", (s_.d ? "d " + number_text(*s_.d, 6) : "Tr " + number_text(*s_.tr, 6)) +
+                                " is not from 0 to 1; the material is taken to be " +
+                                (d > 0.0 ? "opaque" : "transparent"));
+        } else if (!s_.d && !s_.tr && d < 1.0) {
+            warn("Maya", "Tf is read as an opacity of " + number_text(d, 6) + ", since Ni is not above 1");
         }
-        if (d == 0.0) warn("nothing is seen of it: d is 0, or Tr is 1");
-        Textured<float> result = number_of(float(d), "map_d");
+        if (d == 0.0) warn("invisible", "nothing is seen of it: d is 0, or Tr is 1");
+        Textured<float> result = number_of(d, "map_d");
         if (result.texture && !find("map_d")->channel) {
             // The name of the colours, once more, means their alpha, and no hole where they are red.
             const MtlTexture* colours = find("map_Kd");
@@ -199,21 +276,19 @@ class Converter {
     }
 
     void note_ignored() {
-        if (find("map_Pm") && (!s_.pm || *s_.pm > 0.0))
-            ignored_.add("map_Pm", "a material is a metal or none, as a whole");
         for (const auto& [statement, texture] : s_.textures) {
-            if (used_.contains(statement) || statement.starts_with("map_P")) continue;
+            if (used_.contains(statement)) continue;
             ignored_.add(statement,
                          "their materials have no use for them: illum or Pm says so, or a factor of 0");
         }
     }
 
-    static constexpr std::string_view NO_METAL = "the roughness of what is no metal is not supported";
-
     const MtlStatements& s_;
     const std::string& file_;
     MtlIgnored& ignored_;
-    dvec3 ke_;
+    dvec3 kd_, ks_, ke_;  // As stated; 1 where there is only a texture.
+    double opacity_ = 1.0;
+    bool is_glass_ = false;
     std::set<std::string, std::less<>> used_;  // Statements that name textures.
     MtlMaterial result_{};
 };
@@ -226,8 +301,11 @@ MtlMaterial mtl_material(const MtlStatements& statements, const std::string& fil
 
 void add_images(MtlMaterial& material, Scene& scene) {
     std::vector<uint32_t> indices;
-    for (const MtlImage& image : material.images)
-        indices.push_back(add_image(scene, image.file, image.place));
+    for (const MtlImage& image : material.images) {
+        const auto found = find_named_file(image.folder, image.file);
+        indices.push_back(
+            add_image(scene, found.value_or(image.folder / image.file), image.place, IfMissing::white));
+    }
     for_each_texture(material.material, [&](Texture& texture) { texture.image = indices[texture.image]; });
     if (material.emission.texture)
         material.emission.texture->image = indices[material.emission.texture->image];

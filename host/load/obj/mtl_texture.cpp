@@ -17,6 +17,14 @@ namespace {
 constexpr double MOST_TRANSFORM = 1e6;  // So that no coordinate leaves the range of floats.
 constexpr double MOST_MULTIPLIER = 1e3;
 
+constexpr std::array<std::string_view, 13> OPTIONS{"-s",      "-o",      "-clamp", "-imfchan", "-bm",
+                                                   "-mm",     "-t",      "-boost", "-texres",  "-type",
+                                                   "-blendu", "-blendv", "-cc"};
+
+bool is_known(std::string_view word) {
+    return std::ranges::find(OPTIONS, word) != OPTIONS.end();
+}
+
 // `-s` is an option; `-wall.png` is a file, and so is `-5`.
 bool is_option(std::string_view word) {
     constexpr std::string_view LETTERS = "abcdefghijklmnopqrstuvwxyz";
@@ -31,20 +39,36 @@ class OptionReader {
     }
 
     MtlTexture read() {
-        while (true) {
-            std::string_view after = rest_;
-            option_ = next_word(after);
-            if (!is_option(option_)) break;
-            rest_ = after;
-            read_option();
-        }
-        result_.file = trimmed(rest_);
-        if (result_.file.empty()) fail(std::string(command_) + " needs the name of a file");
+        read_options(is_option);
+        read_name();
+        read_options(is_known);  // Some programs write them after the name.
         std::ranges::replace(result_.file, '\\', '/');
         return std::move(result_);
     }
 
   private:
+    void read_options(bool (*is_one)(std::string_view)) {
+        for (std::string_view after = rest_;; after = rest_) {
+            option_ = next_word(after);
+            if (!is_one(option_)) return;
+            rest_ = after;
+            read_option();
+        }
+    }
+
+    // Cuts off what stands before the next known option.
+    void read_name() {
+        std::string_view after = rest_;
+        size_t length = rest_.size();
+        for (std::string_view word = next_word(after); !word.empty(); word = next_word(after)) {
+            if (!is_known(word)) continue;
+            length = size_t(word.data() - rest_.data());
+            break;
+        }
+        result_.file = trimmed(rest_.substr(0, length));
+        rest_.remove_prefix(length);
+    }
+
     [[noreturn]] void fail(const std::string& cause) const { throw Error(result_.place + ": " + cause); }
 
     [[noreturn]] void fail_value(const std::string& needs, std::string_view found) const {
@@ -92,9 +116,8 @@ class OptionReader {
         } else if (option_ == "-cc") {
             changes = is_on();
         } else {
-            fail("unknown option " + quote(option_) + " of " + std::string(command_) +
-                 " (known: -s, -o, -clamp, -imfchan, -bm, -mm, -t, -boost, -texres, -type, -blendu, "
-                 "-blendv, -cc)");
+            for (std::string_view after = rest_; parse_number(next_word(after)); after = rest_)
+                next_word(rest_);
         }
         if (changes) result_.ignored.emplace_back(option_);
     }

@@ -13,7 +13,7 @@ namespace candela {
 
 // What follows a command such as map_Kd: options, and the name of a file.
 struct MtlTexture {
-    std::string file;   // Relative to the folder of the MTL file; its parts are separated by slashes.
+    std::string file;   // Relative to the folder of the MTL file, with slashes; empty if none is named.
     std::string place;  // Of the statement, as `file:line`.
     Texture texture{};  // Where it is looked up; image, encoding and channel are still to be set.
     std::optional<uint32_t> channel;   // -imfchan: 0 .. 3.
@@ -27,8 +27,9 @@ struct MtlTexture {
 //   -imfchan r|g|b|m|l|z        which channel is a number; m is alpha, l is read as r, z is ignored;
 //   -bm x                       the multiplier;
 //   -mm, -t, -boost, -texres, -type, -blendu, -blendv, -cc   ignored.
-// The file's name is all that follows the options, with spaces; backslashes become slashes. Throws Error
-// `place: cause` for an unknown option, a value that is malformed or out of range, and a missing name.
+// An unknown option is ignored, with the numbers that follow it. The file's name is all that stands before,
+// between or after the options, with spaces; backslashes become slashes. Throws Error `place: cause` for a
+// value that is malformed or out of range.
 // Ref: Alias|Wavefront, "MTL material format" (1995).
 MtlTexture parse_mtl_texture(std::string_view command, std::string_view rest, const std::string& place);
 

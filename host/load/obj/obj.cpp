@@ -2,11 +2,11 @@
 #include "load/obj/obj.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <span>
 #include <utility>
 
-#include "base/error.h"
 #include "base/file.h"
 
 namespace candela {
@@ -99,26 +99,18 @@ TriangleMesh build_mesh(ObjFile& obj, MeshNormals normals) {
     return mesh;
 }
 
-void require_name(const ObjName& statement, const char* what, const std::filesystem::path& file) {
-    if (statement.name.empty())
-        throw Error(file.string() + ':' + std::to_string(statement.line) + ": " + what);
-}
-
 }  // namespace
 
-TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals) {
+TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals,
+                      std::vector<std::string>& warnings) {
     ObjFile obj = parse_obj(read_file(file), file.string());
+    std::ranges::move(obj.warnings, std::back_inserter(warnings));
     return build_mesh(obj, normals);
 }
 
 ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals) {
     ObjFile obj = parse_obj(read_file(file), file.string());
-    for (const ObjName& library : obj.libraries)
-        require_name(library, "mtllib needs the name of a file", file);
-    for (const ObjName& use : std::span(obj.uses).subspan(1))
-        require_name(use, "usemtl needs the name of a material", file);
-
-    ObjParts result{std::move(obj.libraries), {}};
+    ObjParts result{std::move(obj.libraries), {}, std::move(obj.warnings)};
     std::map<std::string_view, uint32_t> indices;  // Of the parts, by name; empty for no material.
     std::vector<uint32_t> part_of;                 // For each triangle.
     std::vector<bool> has_uvs;                     // For each part: whether a corner has some.

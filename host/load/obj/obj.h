@@ -16,12 +16,13 @@ namespace candela {
 // are cut into triangles; corners with the same indices share a vertex; unused vertices are dropped. A corner
 // without texture coordinates has (0, 0), and a mesh all of whose corners lack them has none. With
 // MeshNormals::file, a corner without a normal gets one of length zero, and a file without normals gives a
-// mesh without. Throws Error as read_file() and parse_obj() do.
-TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals);
+// mesh without. `warnings` gets what is odd but usable. Throws Error as read_file() and parse_obj() do.
+TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals,
+                      std::vector<std::string>& warnings);
 
 // The faces of one material.
 struct ObjPart {
-    std::optional<ObjName> material;  // The `usemtl` of its first face; none: the faces precede any `usemtl`.
+    std::optional<ObjName> material;  // The `usemtl` of its first face; none: without one, or without a name.
     uint64_t faces = 0;
     TriangleMesh mesh;  // Has at least one triangle.
 };
@@ -29,10 +30,11 @@ struct ObjPart {
 struct ObjParts {
     std::vector<ObjName> libraries;  // What each `mtllib` names, in the order of the file.
     std::vector<ObjPart> parts;      // One for each material in use, in the order of first use.
+    std::vector<std::string> warnings;
 };
 
 // Reads a file as load_obj() does, but into one mesh per material; smooth normals are averaged across them.
-// Does not read the libraries. Throws Error for `usemtl` and `mtllib` without a name, too.
+// Does not read the libraries.
 ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals);
 
 // A file with the materials that it names.
@@ -43,9 +45,11 @@ struct ObjShape {
 };
 
 // Reads a file as load_obj_parts() does, and its libraries. Adds the materials to the scene as
-// `name`/material, unless a shape of that name has already done so, and the files to Scene::files. Where only
-// some faces have a material, the others are grey, with a warning. Throws Error `file:line: cause` for a
-// library that is missing, a material that is not in it, and as load_mtl() does.
+// `name`/material, unless a shape of that name has already done so, and the files to Scene::files. Faces are
+// grey, or have the colours of their vertices, where their material is not in any library, with a warning,
+// and where they have none, with a warning if others have one. A missing library is a warning, too; where the
+// images or texture coordinates of a texture are missing, see ImageFile and SceneBuilder. Throws Error as
+// load_mtl() does.
 ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, const std::string& name,
                         SceneBuilder& builder);
 

@@ -1,13 +1,17 @@
 // Two passes over the lines of an OBJ file: one counts what faces may refer to, the other reads.
 #include "load/obj/obj_file.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "base/error.h"
+#include "load/obj/counted_warnings.h"
+#include "load/obj/obj_colors.h"
 #include "load/quote.h"
 #include "load/text_lines.h"
 #include "scene/polygon.h"
@@ -19,12 +23,9 @@ namespace {
 // What the corner of a face refers to, in the order of `1/2/3`.
 struct Kind {
     std::string_view command;
-    const char* singular;
-    const char* plural;
+    const char* name;
 };
-constexpr std::array<Kind, 3> KINDS{{{"v", "vertex", "vertices"},
-                                     {"vt", "texture coordinate", "texture coordinates"},
-                                     {"vn", "normal", "normals"}}};
+constexpr std::array<Kind, 3> KINDS{{{"v", "vertex"}, {"vt", "texture coordinate"}, {"vn", "normal"}}};
 constexpr size_t POSITION = 0;
 constexpr size_t UV = 1;
 constexpr size_t NORMAL = 2;
@@ -37,16 +38,61 @@ bool is_end(std::string_view word) {
     return word.empty() || word.starts_with('#');
 }
 
+bool is_face(std::string_view command) {
+    return command == "f" || command == "fo";
+}
+
+std::optional<size_t> kind_of(std::string_view command) {
+    for (size_t i = 0; i < KINDS.size(); ++i) {
+        if (KINDS[i].command == command) return i;
+    }
+    return std::nullopt;
+}
+
+// The number that a word is, infinite or NaN if no float can hold it; none if it is something else. A word
+// such as -1.#IND is what older programs of Windows write for NaN.
+std::optional<double> number_of(std::string_view word) {
+    if (word.find(".#") != std::string_view::npos) return std::numeric_limits<double>::quiet_NaN();
+    const std::optional<double> number = parse_number(word);
+    if (number && !parse_finite(word)) return std::numeric_limits<double>::quiet_NaN();
+    return number;
+}
+
+// for_each_line(), but a backslash at the end of a line joins it with the next one. It does not where it may
+// end a name or a comment.
+template <class Visit>
+void for_each_statement(std::string_view text, Visit visit) {
+    std::string joined;
+    for (uint64_t number = 1; !text.empty();) {
+        const uint64_t first = number++;
+        std::string_view line = next_line(text);
+        std::string_view rest = line;
+        const std::string_view command = next_word(rest);
+        if ((is_face(command) || kind_of(command)) && trimmed(line).ends_with('\\')) {
+            joined = trimmed(line);
+            while (joined.ends_with('\\')) {
+                joined.back() = ' ';
+                if (text.empty()) break;
+                joined += trimmed(next_line(text));
+                ++number;
+            }
+            line = joined;
+        }
+        const std::string_view first_word = next_word(line);
+        visit(first, first_word, line);
+    }
+}
+
 class ObjReader {
   public:
-    ObjReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+    ObjReader(std::string_view text, const std::string& file)
+        : text_(without_byte_order_mark(text)), file_(file) {}
 
     ObjFile read() {
-        refuse_byte_order_mark(text_, file_);
         uint64_t faces = 0;
-        for_each_line(text_, [&](uint64_t, std::string_view command, std::string_view) {
+        for_each_statement(text_, [&](uint64_t, std::string_view command, std::string_view) {
             if (const auto kind = kind_of(command)) ++totals_[*kind];
-            if (command == "f") ++faces;
+            if (is_face(command)) ++faces;
         });
         obj_.positions.reserve(size_t(totals_[POSITION]));
         obj_.uvs.reserve(size_t(totals_[UV]));
@@ -55,74 +101,79 @@ class ObjReader {
         if (totals_[UV] > 0) obj_.corner_uvs.reserve(3 * faces);
         obj_.sizes.reserve(faces);
         obj_.use_of.reserve(faces);
-        for_each_line(text_, [this](uint64_t line, std::string_view command, std::string_view rest) {
+        for_each_statement(text_, [this](uint64_t line, std::string_view command, std::string_view rest) {
             line_ = line;
             read_line(command, rest);
         });
         if (faces == 0)
             throw Error(file_ + ": the file has no faces (lines \"f 1 2 3\"); is it a Wavefront OBJ file?");
+        if (!all_finite_) leave_out_faces_that_are_not_finite();
+        if (obj_.sizes.empty()) {
+            throw Error(
+                file_ +
+                ": each face has fewer than three corners, or a vertex that is not finite; export the "
+                "file again");
+        }
         if (!has_uvs_) {
             obj_.uvs = {};
             obj_.corner_uvs = {};
         }
+        obj_.warnings = warnings_.texts();
+        std::optional<std::string> warning;
+        obj_.colors = colors_.linear(obj_.positions.size(), warning);
+        if (warning) obj_.warnings.push_back(file_ + ": " + *warning);
         return std::move(obj_);
     }
 
   private:
-    static std::optional<size_t> kind_of(std::string_view command) {
-        for (size_t i = 0; i < KINDS.size(); ++i) {
-            if (KINDS[i].command == command) return i;
-        }
-        return std::nullopt;
-    }
+    std::string place() const { return file_ + ':' + std::to_string(line_); }
 
-    [[noreturn]] void fail(const std::string& cause) const {
-        throw Error(file_ + ':' + std::to_string(line_) + ": " + cause);
-    }
+    [[noreturn]] void fail(const std::string& cause) const { throw Error(place() + ": " + cause); }
+
+    void warn(const std::string& what) { warnings_.add(what, place() + ": " + what); }
 
     void read_line(std::string_view command, std::string_view rest) {
-        if (command == "f") {
+        if (is_face(command)) {
             read_face(rest);
         } else if (command == "mtllib") {
             obj_.libraries.push_back({std::string(trimmed(rest)), line_});
         } else if (command == "usemtl") {
             obj_.uses.push_back({std::string(trimmed(rest)), line_});
+        } else if (command == "#MRGB") {
+            colors_.add_mrgb(trimmed(rest));
+        } else if (command == "l" || command == "p") {
+            warn("lines and points have no surface, and are left out");
+        } else if (command == "curv" || command == "curv2" || command == "surf") {
+            warn("curves and surfaces are left out; export the model as a mesh");
         } else if (const auto kind = kind_of(command)) {
             ++counts_[*kind];
             if (*kind == POSITION) read_vertex(rest);
             if (*kind == UV) read_uv(rest);
-            if (*kind == NORMAL) obj_.normals.emplace_back(read_numbers(rest, KINDS[*kind]));
+            if (*kind == NORMAL) read_normal(rest);
         }
     }
 
     void read_vertex(std::string_view rest) {
-        const vec3 white(1.0f);
         obj_.positions.push_back(read_numbers(rest, KINDS[POSITION]));
-        const std::optional<vec3> color = rest.empty() ? std::nullopt : read_color(rest);
-        if (color && obj_.colors.empty()) {
-            obj_.colors.reserve(size_t(totals_[POSITION]));
-            obj_.colors.resize(obj_.positions.size() - 1, white);
-        }
-        if (color || !obj_.colors.empty()) obj_.colors.push_back(color.value_or(white));
+        all_finite_ = all_finite_ && is_finite(obj_.positions.back());
+        if (!rest.empty()) read_color(rest);
     }
 
     // The colour after a position. One number is the w of a rational curve.
-    std::optional<vec3> read_color(std::string_view rest) const {
+    void read_color(std::string_view rest) {
         std::array<std::string_view, 3> words;
         for (std::string_view& word : words) {
             word = next_word(rest);
-            if (is_end(word)) return std::nullopt;
+            if (is_end(word)) return;
         }
         vec3 color;
         for (glm::length_t i = 0; i < 3; ++i) {
-            const std::optional<double> number = parse_finite(words[size_t(i)]);
-            if (!number || *number < 0.0 || *number > 1.0) {
-                fail("the colour of a vertex needs three numbers from 0 to 1, found " +
-                     quote(words[size_t(i)]) + "; scale the colours, or leave them out");
-            }
+            const std::optional<double> number = number_of(words[size_t(i)]);
+            if (!number) fail("the colour of a vertex needs three numbers, found " + quote(words[size_t(i)]));
             color[i] = float(*number);
         }
-        return color;
+        if (!is_finite(color)) return warn("the colour of a vertex is not finite; white takes its place");
+        colors_.add(obj_.positions.size() - 1, color);
     }
 
     void read_uv(std::string_view rest) {
@@ -133,12 +184,27 @@ class ObjReader {
                 if (i == 0) fail("a texture coordinate needs one to three numbers; is the file cut off?");
                 break;
             }
-            const std::optional<double> number = parse_finite(word);
-            if (!number || std::abs(*number) > MAX_UV)
-                fail("a texture coordinate needs finite numbers from -1e30 to 1e30, found " + quote(word));
-            uv[i] = float(*number);
+            const std::optional<double> number = number_of(word);
+            if (!number) fail("a texture coordinate needs numbers, found " + quote(word));
+            if (std::abs(*number) <= MAX_UV) {
+                uv[i] = float(*number);
+            } else {
+                warn("a texture coordinate is not from -1e30 to 1e30; 0 takes its place");
+            }
         }
         obj_.uvs.push_back(uv);
+    }
+
+    void read_normal(std::string_view rest) {
+        const glm::dvec3 normal = read_numbers(rest, KINDS[NORMAL]);
+        if (!is_finite(normal)) warn("a normal is not finite; that of the triangle takes its place");
+        obj_.normals.emplace_back(is_finite(normal) ? normal : glm::dvec3(0.0));
+    }
+
+    // Whether no number is NaN, as those are that floats cannot hold.
+    template <class Vector>
+    static bool is_finite(Vector v) {
+        return !glm::any(glm::isnan(v));
     }
 
     // Cuts three numbers off `rest`.
@@ -147,42 +213,47 @@ class ObjReader {
         for (glm::length_t i = 0; i < 3; ++i) {
             const std::string_view word = next_word(rest);
             if (word.empty())
-                fail("a " + std::string(kind.singular) + " needs three numbers; is the file cut off?");
-            const std::optional<double> number = parse_finite(word);
-            if (!number)
-                fail("a " + std::string(kind.singular) + " needs three finite numbers, found " + quote(word));
+                fail("a " + std::string(kind.name) + " needs three numbers; is the file cut off?");
+            const std::optional<double> number = number_of(word);
+            if (!number) fail("a " + std::string(kind.name) + " needs three numbers, found " + quote(word));
             numbers[i] = *number;
         }
         return numbers;
     }
 
     void read_face(std::string_view rest) {
+        const size_t begin = obj_.corners.size();
         uint32_t corners = 0;
-        for (std::string_view corner = next_word(rest); !corner.empty(); corner = next_word(rest)) {
+        for (std::string_view corner = next_word(rest); !is_end(corner); corner = next_word(rest)) {
             const Indices read = read_corner(corner);
             if (corners++ >= MOST_CORNERS) continue;
             obj_.corners.push_back({read[POSITION], read[NORMAL]});
             if (totals_[UV] > 0) obj_.corner_uvs.push_back(read[UV]);
             has_uvs_ = has_uvs_ || read[UV] != ObjCorner::NONE;
         }
-        if (corners < 3)
-            fail(face() + " has " + std::to_string(corners) + " corners; a face needs at least 3");
+        ++faces_;
+        if (corners < 3) {
+            obj_.corners.resize(begin);
+            if (totals_[UV] > 0) obj_.corner_uvs.resize(begin);
+            return warn("a face with fewer than three corners is left out");
+        }
         if (corners > MOST_CORNERS) {
-            fail(face() + " has " + std::to_string(corners) + " corners, but at most " +
-                 std::to_string(MOST_CORNERS) + " are read; cut it into triangles");
+            fail("face " + std::to_string(faces_) + " has " + std::to_string(corners) +
+                 " corners, but at most " + std::to_string(MOST_CORNERS) +
+                 " are read; cut it into triangles");
         }
         obj_.sizes.push_back(corners);
         obj_.use_of.push_back(uint32_t(obj_.uses.size() - 1));
     }
 
-    // `corner` is v, v/vt, v//vn or v/vt/vn.
-    Indices read_corner(std::string_view corner) const {
+    // `corner` is v, v/vt, v//vn or v/vt/vn; slashes at its end are ignored.
+    Indices read_corner(std::string_view corner) {
         Indices indices{ObjCorner::NONE, ObjCorner::NONE, ObjCorner::NONE};
         std::string_view rest = corner;
         for (size_t kind = 0; kind < KINDS.size(); ++kind) {
             const size_t slash = rest.find('/');
-            const bool may_be_empty = KINDS[kind].command == "vt" && slash != std::string_view::npos;
-            if (slash != 0 || !may_be_empty) indices[kind] = read_index(rest.substr(0, slash), kind, corner);
+            const std::string_view word = rest.substr(0, slash);
+            if (!word.empty() || kind == POSITION) indices[kind] = read_index(word, kind, corner);
             if (slash == std::string_view::npos) return indices;
             rest.remove_prefix(slash + 1);
         }
@@ -190,17 +261,25 @@ class ObjReader {
     }
 
     // The index in `word`, counted from 0. Negative ones count backwards from the last element so far.
-    uint32_t read_index(std::string_view word, size_t kind, std::string_view corner) const {
+    uint32_t read_index(std::string_view word, size_t kind, std::string_view corner) {
         int64_t index = 0;
         const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), index);
         if (error != std::errc() || stop != word.data() + word.size()) fail_malformed(corner);
         if (index != 0 && index >= -counts_[kind] && index <= totals_[kind])
             return uint32_t(index > 0 ? index - 1 : counts_[kind] + index);
-        const std::string use = face() + " uses " + KINDS[kind].singular + ' ' + std::to_string(index);
-        const std::string plural = KINDS[kind].plural;
+        if (kind == POSITION) fail_range(index);
+        warn(kind == NORMAL
+                 ? "a corner has a normal that the file lacks; that of the triangle takes its place"
+                 : "a corner has texture coordinates that the file lacks; (0, 0) takes their place");
+        return ObjCorner::NONE;
+    }
+
+    // Fails for the index of a vertex that the file lacks.
+    [[noreturn]] void fail_range(int64_t index) const {
+        const std::string use = face() + " uses vertex " + std::to_string(index);
         if (index == 0) fail(use + "; indices count from 1, or backwards from -1");
-        if (index > 0) fail(use + ", but the file has " + std::to_string(totals_[kind]) + ' ' + plural);
-        fail(use + ", but only " + std::to_string(counts_[kind]) + ' ' + plural + " stand before it");
+        if (index > 0) fail(use + ", but the file has " + std::to_string(totals_[POSITION]) + " vertices");
+        fail(use + ", but only " + std::to_string(counts_[POSITION]) + " vertices stand before it");
     }
 
     [[noreturn]] void fail_malformed(std::string_view corner) const {
@@ -208,14 +287,47 @@ class ObjReader {
     }
 
     // The current face, counted from 1.
-    std::string face() const { return "face " + std::to_string(obj_.sizes.size() + 1); }
+    std::string face() const { return "face " + std::to_string(faces_ + 1); }
+
+    // A vertex may come after the faces that use it.
+    void leave_out_faces_that_are_not_finite() {
+        size_t kept = 0, kept_corners = 0, begin = 0;
+        const size_t faces = obj_.sizes.size();
+        for (size_t face = 0; face < faces; ++face) {
+            const size_t end = begin + obj_.sizes[face];
+            const auto finite = [&](const ObjCorner& corner) {
+                return is_finite(obj_.positions[corner.position]);
+            };
+            if (std::all_of(&obj_.corners[begin], &obj_.corners[begin] + obj_.sizes[face], finite)) {
+                for (size_t i = begin; i < end; ++i, ++kept_corners) {
+                    obj_.corners[kept_corners] = obj_.corners[i];
+                    if (totals_[UV] > 0) obj_.corner_uvs[kept_corners] = obj_.corner_uvs[i];
+                }
+                obj_.sizes[kept] = obj_.sizes[face];
+                obj_.use_of[kept++] = obj_.use_of[face];
+            }
+            begin = end;
+        }
+        obj_.corners.resize(kept_corners);
+        if (totals_[UV] > 0) obj_.corner_uvs.resize(kept_corners);
+        obj_.sizes.resize(kept);
+        obj_.use_of.resize(kept);
+        for (size_t i = kept; i < faces; ++i) {
+            const std::string what = "a face with a vertex that is not finite is left out";
+            warnings_.add(what, file_ + ": " + what);
+        }
+    }
 
     std::string_view text_;
     const std::string& file_;
     std::array<int64_t, 3> totals_{};  // Of each kind, in the whole file.
     std::array<int64_t, 3> counts_{};  // Of each kind, so far.
     uint64_t line_ = 0;
-    bool has_uvs_ = false;  // Whether a corner has texture coordinates.
+    uint64_t faces_ = 0;      // So far.
+    bool has_uvs_ = false;    // Whether a corner has texture coordinates.
+    bool all_finite_ = true;  // All positions so far.
+    CountedWarnings warnings_;
+    ObjColors colors_;
     ObjFile obj_;
 };
 

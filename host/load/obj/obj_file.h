@@ -25,7 +25,7 @@ struct ObjCorner {
 };
 
 struct ObjFile {
-    std::vector<glm::dvec3> positions;  // Numbers that floats can hold.
+    std::vector<glm::dvec3> positions;  // Numbers that floats can hold, or NaN; faces use none of the latter.
     std::vector<vec3> colors;           // Empty, or linear and in [0, 1] for each position.
     std::vector<vec2> uvs;              // Texture coordinates, v upwards, each within +-MAX_UV.
     std::vector<vec3> normals;          // Of any length.
@@ -38,13 +38,19 @@ struct ObjFile {
     std::vector<ObjName> libraries;
     std::vector<ObjName> uses{{}};
     std::vector<uint32_t> use_of;  // For each face, an index into `uses`.
+
+    std::vector<std::string> warnings;  // `file:line: ...` of the first of each kind, or `file: ...`.
 };
 
-// Reads the text of a file; `file` is its name in messages. Three numbers after a position are its colour,
-// white where only others have one; the w of texture coordinates and groups are ignored. Throws Error
-// `file:line: cause` for a vertex or normal without three finite numbers, a colour out of range, a texture
-// coordinate that is not finite or greater than MAX_UV, a face with fewer than 3 or more than MOST_CORNERS
-// corners, a malformed index or one that is out of range, and Error `file: cause` if there is no face at all.
+// Reads the text of a file; `file` is its name in messages. Groups and the w of texture coordinates are
+// ignored. With a warning,
+//   left out are faces with fewer than 3 corners or with vertices that are not finite, lines, points, curves
+//   and surfaces;
+//   corners have no normal, and texture coordinates (0, 0), where theirs are not in the file or not finite;
+//   colours are read as ObjColors::linear() does.
+// Throws Error `file:line: cause` for a vertex or normal without three numbers, a colour or texture
+// coordinate that is not a number, a face with more than MOST_CORNERS corners, a malformed index, and a
+// vertex that is not in the file, and Error `file: cause` if no face is left.
 ObjFile parse_obj(std::string_view text, const std::string& file);
 
 }  // namespace candela

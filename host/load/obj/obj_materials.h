@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "load/obj/mtl.h"
@@ -9,13 +10,18 @@
 
 namespace candela {
 
-// Reads the libraries that the OBJ file `obj` names, each relative to the file's folder, and merges them: the
-// first definition of a name counts. A name with spaces is one library if there is such a file, else several.
-// Throws Error `file:line: cause` for a library that is missing, and as load_mtl() does.
-MtlLibrary load_mtl_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& names);
+struct ObjLibraries {
+    MtlLibrary materials;   // Of all libraries; the first definition of a name counts.
+    bool all_there = true;  // Whether none is missing.
+};
 
-// The material that the OBJ file `obj` calls by this name. Throws Error `file:line: cause` if there is none.
-const MtlMaterial& find_mtl_material(const MtlLibrary& library, const std::filesystem::path& obj,
-                                     const ObjName& name);
+// Reads the libraries that the OBJ file `obj` names. A name is relative to the folder of `obj`, perhaps in
+// quotation marks; with spaces, it is one library if there is such a file, else several. Where a folder does
+// not exist here, the name alone is looked up beside `obj`. A missing library is a warning. Throws Error as
+// load_mtl() does.
+ObjLibraries load_mtl_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& names);
+
+// What to say of a material that no library has.
+std::string unknown_material(const MtlLibrary& library, const ObjName& name);
 
 }  // namespace candela

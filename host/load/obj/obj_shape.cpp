@@ -2,9 +2,13 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/text.h"
+#include "load/obj/counted_warnings.h"
 #include "load/obj/obj.h"
 #include "load/obj/obj_materials.h"
+#include "load/quote.h"
 #include "scene/default_view.h"
+#include "scene/material_textures.h"
 
 namespace candela {
 namespace {
@@ -14,37 +18,75 @@ std::string name_of(const std::string& shape, const ObjPart& part) {
     return part.material ? shape + '/' + part.material->name : shape + " (no material)";
 }
 
-// Adds the materials of all parts to the scene; returns warnings.
-std::vector<std::string> add_materials(const std::filesystem::path& file, const ObjParts& obj,
-                                       const std::string& name, SceneBuilder& builder) {
-    MtlLibrary library = load_mtl_libraries(file, obj.libraries);
-    std::ranges::copy(library.files, std::back_inserter(builder.scene().files));
-    std::vector<std::string> warnings = std::move(library.warnings);
-    for (const ObjPart& part : obj.parts) {
-        if (!part.material) {
-            const bool has_colors = !part.mesh.colors.empty();
-            if (obj.parts.size() > 1) {
-                warnings.push_back(file.string() + ": " + std::to_string(part.faces) +
-                                   (part.faces == 1 ? " face" : " faces") +
-                                   " before the first usemtl; shown in " +
-                                   (has_colors ? "the colours of their vertices" : "grey"));
-            }
-            builder.add_file_appearance(name_of(name, part), default_material(has_colors), std::nullopt);
-            continue;
-        }
-        MtlMaterial material = find_mtl_material(library, file, *part.material);
-        std::ranges::copy(material.warnings, std::back_inserter(warnings));
-        add_images(material, builder.scene());
-        const bool emits = material.emission.factor != vec3(0.0f);
-        builder.add_file_appearance(name_of(name, part), material.material,
-                                    emits ? std::optional(Emission{material.emission}) : std::nullopt);
-    }
-    return warnings;
+// Whether a mesh of that look needs texture coordinates.
+bool needs_uvs(const Material& material, const Textured<vec3>& emission) {
+    bool needs = emission.texture.has_value();
+    for_each_texture(material, [&](const Texture&) { needs = true; });
+    return needs;
 }
 
-bool has_material(const ObjPart& part) {
-    return part.material.has_value();
-}
+class MaterialAdder {
+  public:
+    MaterialAdder(const std::filesystem::path& file, const std::string& name, SceneBuilder& builder)
+        : file_(file), name_(name), builder_(builder) {}
+
+    // Adds the materials of all parts to the scene; returns warnings.
+    std::vector<std::string> add(const ObjParts& obj) {
+        libraries_ = load_mtl_libraries(file_, obj.libraries);
+        std::ranges::copy(libraries_.materials.files, std::back_inserter(builder_.scene().files));
+        for (const ObjPart& part : obj.parts) {
+            if (part.material) {
+                add_named(part);
+            } else {
+                add_default(part, obj.parts.size() > 1);
+            }
+        }
+        std::vector<std::string> warnings = std::move(libraries_.materials.warnings);
+        std::ranges::move(warnings_.texts(), std::back_inserter(warnings));
+        return warnings;
+    }
+
+  private:
+    void add_default(const ObjPart& part, bool others_have_some) {
+        const bool has_colors = !part.mesh.colors.empty();
+        if (others_have_some) {
+            const std::string count = concat(part.faces, part.faces == 1 ? " face has" : " faces have");
+            const char* shown = has_colors ? "the colours of their vertices" : "grey";
+            warnings_.add("none",
+                          concat(file_.string(), ": ", count, " no material (usemtl); shown in ", shown));
+        }
+        builder_.add_file_appearance(name_of(name_, part), default_material(has_colors), std::nullopt);
+    }
+
+    void add_named(const ObjPart& part) {
+        const auto found = libraries_.materials.materials.find(part.material->name);
+        if (found == libraries_.materials.materials.end()) {
+            const std::string place = concat(file_.string(), ':', part.material->line, ": ");
+            if (libraries_.all_there)
+                warnings_.add("unknown", place + unknown_material(libraries_.materials, *part.material));
+            const Material grey = default_material(!part.mesh.colors.empty());
+            return builder_.add_file_appearance(name_of(name_, part), grey, std::nullopt);
+        }
+        MtlMaterial material = found->second;
+        for (const MtlWarning& warning : material.warnings)
+            warnings_.add(warning.kind, warning.text);
+        add_images(material, builder_.scene());
+        const bool emits = material.emission.factor != vec3(0.0f);
+        if (part.mesh.uv0.empty() && needs_uvs(material.material, material.emission)) {
+            warnings_.add("uvs", concat(file_.string(), ": the material ", quote(part.material->name),
+                                        " has textures, but its faces have no texture coordinates: they show "
+                                        "the corner (0, 0) of each image"));
+        }
+        builder_.add_file_appearance(name_of(name_, part), material.material,
+                                     emits ? std::optional(Emission{material.emission}) : std::nullopt);
+    }
+
+    const std::filesystem::path& file_;
+    const std::string& name_;
+    SceneBuilder& builder_;
+    ObjLibraries libraries_;
+    CountedWarnings warnings_;
+};
 
 }  // namespace
 
@@ -52,13 +94,21 @@ ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, 
                         SceneBuilder& builder) {
     ObjParts obj = load_obj_parts(file, normals);
     builder.scene().files.push_back(file);
-    ObjShape shape{.has_materials = std::ranges::any_of(obj.parts, has_material)};
+    ObjShape shape{.has_materials = std::ranges::any_of(
+                       obj.parts, [](const ObjPart& part) { return part.material.has_value(); })};
     const auto is_there = [&](const ObjPart& part) {
         return builder.find_file_appearance(name_of(name, part)) != nullptr;
     };
-    if (!std::ranges::all_of(obj.parts, is_there)) shape.warnings = add_materials(file, obj, name, builder);
+    if (!std::ranges::all_of(obj.parts, is_there)) {
+        shape.warnings = std::move(obj.warnings);
+        std::ranges::move(MaterialAdder(file, name, builder).add(obj), std::back_inserter(shape.warnings));
+    }
     for (ObjPart& part : obj.parts) {
         const Appearance& appearance = *builder.find_file_appearance(name_of(name, part));
+        const Textured<vec3> none = vec3(0.0f);
+        if (part.mesh.uv0.empty() && needs_uvs(builder.scene().materials[appearance.material],
+                                               appearance.emission ? appearance.emission->radiance : none))
+            part.mesh.uv0.resize(part.mesh.positions.size(), vec2(0.0f));
         shape.parts.push_back({appearance, std::move(part.mesh)});
     }
     return shape;

@@ -1,0 +1,28 @@
+// Warnings about a file, each kind once.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace candela {
+
+class CountedWarnings {
+  public:
+    // Of the warnings of a kind, the first has its text shown; the others are counted.
+    void add(const std::string& kind, const std::string& text);
+
+    // In the order in which their kinds came: `text`, or `text (12 times)`.
+    std::vector<std::string> texts() const;
+
+  private:
+    struct Entry {
+        std::string kind;
+        std::string text;
+        size_t count = 1;
+    };
+
+    std::vector<Entry> entries_;
+};
+
+}  // namespace candela
