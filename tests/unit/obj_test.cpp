@@ -253,7 +253,7 @@ TEST_F(Obj, ReadsTheFormsOfManyPrograms) {
         expect_warnings(text + face, {});
     }
     EXPECT_EQ(load(text + "vn 0 \\\n0 \\\n1\nf 1//1 2//1 3//1").normals[0], vec3(0, 0, 1));
-    EXPECT_EQ(load("\xEF\xBB\xBFv 0 0 0 \\\n# C:\\models\\\nv 1 0 0\nv 0 1 0\nf 1 2 3").positions.size(), 3u);
+    EXPECT_EQ(load("\xEF\xBB\xBFv 0 0 0 \\\n# a\nv 1 0 0\nv 0 1 0\nf 1 2 3").positions.size(), 3u);
     EXPECT_EQ(load("# C:\\models\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\ng C:\\a\\\nf 1 2 3").triangles.size(), 1u);
     expect_error("v 0 0 0\nv 1 0 \\\n0\nv 0 1 0\n\nf 1 2 \\\n3 x",
                  "m.obj:6: face 1 has the malformed corner \"x\"; write 1, 1/2, 1//3 or 1/2/3");

@@ -92,7 +92,8 @@ class Converter {
     // Light is refracted, in files that mean it: Maya writes 4 for all materials, and Blender 6 for metals
     // that are not opaque.
     bool is_glass() const {
-        if (s_.by_blender || (s_.illum != 4 && s_.illum != 6 && s_.illum != 7)) return false;
+        const bool is_metal = s_.pm.value_or(0.0) > 0.0;
+        if (s_.by_blender || is_metal || (s_.illum != 4 && s_.illum != 6 && s_.illum != 7)) return false;
         const bool filters = s_.tf && *s_.tf != dvec3(0.0) && *s_.tf != max(*s_.tf, dvec3(1.0));
         const bool passes = kd_ == dvec3(0.0) || filters || opacity_ < 1.0;
         return s_.ni.value_or(COMMON_GLASS) > 1.0 && passes;

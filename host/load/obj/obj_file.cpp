@@ -5,83 +5,22 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "base/error.h"
 #include "load/obj/counted_warnings.h"
 #include "load/obj/obj_colors.h"
+#include "load/obj/obj_statements.h"
 #include "load/quote.h"
-#include "load/text_lines.h"
 #include "scene/polygon.h"
 #include "scene/texture.h"
 
 namespace candela {
 namespace {
 
-// What the corner of a face refers to, in the order of `1/2/3`.
-struct Kind {
-    std::string_view command;
-    const char* name;
-};
-constexpr std::array<Kind, 3> KINDS{{{"v", "vertex"}, {"vt", "texture coordinate"}, {"vn", "normal"}}};
-constexpr size_t POSITION = 0;
-constexpr size_t UV = 1;
-constexpr size_t NORMAL = 2;
-
 // The indices of a corner, one of each kind.
-using Indices = std::array<uint32_t, KINDS.size()>;
-
-// Whether a statement ends before this word.
-bool is_end(std::string_view word) {
-    return word.empty() || word.starts_with('#');
-}
-
-bool is_face(std::string_view command) {
-    return command == "f" || command == "fo";
-}
-
-std::optional<size_t> kind_of(std::string_view command) {
-    for (size_t i = 0; i < KINDS.size(); ++i) {
-        if (KINDS[i].command == command) return i;
-    }
-    return std::nullopt;
-}
-
-// The number that a word is, infinite or NaN if no float can hold it; none if it is something else. A word
-// such as -1.#IND is what older programs of Windows write for NaN.
-std::optional<double> number_of(std::string_view word) {
-    if (word.find(".#") != std::string_view::npos) return std::numeric_limits<double>::quiet_NaN();
-    const std::optional<double> number = parse_number(word);
-    if (number && !parse_finite(word)) return std::numeric_limits<double>::quiet_NaN();
-    return number;
-}
-
-// for_each_line(), but a backslash at the end of a line joins it with the next one. It does not where it may
-// end a name or a comment.
-template <class Visit>
-void for_each_statement(std::string_view text, Visit visit) {
-    std::string joined;
-    for (uint64_t number = 1; !text.empty();) {
-        const uint64_t first = number++;
-        std::string_view line = next_line(text);
-        std::string_view rest = line;
-        const std::string_view command = next_word(rest);
-        if ((is_face(command) || kind_of(command)) && trimmed(line).ends_with('\\')) {
-            joined = trimmed(line);
-            while (joined.ends_with('\\')) {
-                joined.back() = ' ';
-                if (text.empty()) break;
-                joined += trimmed(next_line(text));
-                ++number;
-            }
-            line = joined;
-        }
-        const std::string_view first_word = next_word(line);
-        visit(first, first_word, line);
-    }
-}
+using Indices = std::array<uint32_t, OBJ_KINDS.size()>;
 
 class ObjReader {
   public:
@@ -90,18 +29,18 @@ class ObjReader {
 
     ObjFile read() {
         uint64_t faces = 0;
-        for_each_statement(text_, [&](uint64_t, std::string_view command, std::string_view) {
-            if (const auto kind = kind_of(command)) ++totals_[*kind];
-            if (is_face(command)) ++faces;
+        for_each_obj_statement(text_, [&](uint64_t, std::string_view command, std::string_view) {
+            if (const auto kind = obj_kind_of(command)) ++totals_[*kind];
+            if (is_obj_face(command)) ++faces;
         });
-        obj_.positions.reserve(size_t(totals_[POSITION]));
-        obj_.uvs.reserve(size_t(totals_[UV]));
-        obj_.normals.reserve(size_t(totals_[NORMAL]));
+        obj_.positions.reserve(size_t(totals_[OBJ_POSITION]));
+        obj_.uvs.reserve(size_t(totals_[OBJ_UV]));
+        obj_.normals.reserve(size_t(totals_[OBJ_NORMAL]));
         obj_.corners.reserve(3 * faces);
-        if (totals_[UV] > 0) obj_.corner_uvs.reserve(3 * faces);
+        if (totals_[OBJ_UV] > 0) obj_.corner_uvs.reserve(3 * faces);
         obj_.sizes.reserve(faces);
         obj_.use_of.reserve(faces);
-        for_each_statement(text_, [this](uint64_t line, std::string_view command, std::string_view rest) {
+        for_each_obj_statement(text_, [this](uint64_t line, std::string_view command, std::string_view rest) {
             line_ = line;
             read_line(command, rest);
         });
@@ -133,7 +72,7 @@ class ObjReader {
     void warn(const std::string& what) { warnings_.add(what, place() + ": " + what); }
 
     void read_line(std::string_view command, std::string_view rest) {
-        if (is_face(command)) {
+        if (is_obj_face(command)) {
             read_face(rest);
         } else if (command == "mtllib") {
             obj_.libraries.push_back({std::string(trimmed(rest)), line_});
@@ -145,16 +84,16 @@ class ObjReader {
             warn("lines and points have no surface, and are left out");
         } else if (command == "curv" || command == "curv2" || command == "surf") {
             warn("curves and surfaces are left out; export the model as a mesh");
-        } else if (const auto kind = kind_of(command)) {
+        } else if (const auto kind = obj_kind_of(command)) {
             ++counts_[*kind];
-            if (*kind == POSITION) read_vertex(rest);
-            if (*kind == UV) read_uv(rest);
-            if (*kind == NORMAL) read_normal(rest);
+            if (*kind == OBJ_POSITION) read_vertex(rest);
+            if (*kind == OBJ_UV) read_uv(rest);
+            if (*kind == OBJ_NORMAL) read_normal(rest);
         }
     }
 
     void read_vertex(std::string_view rest) {
-        obj_.positions.push_back(read_numbers(rest, KINDS[POSITION]));
+        obj_.positions.push_back(read_numbers(rest, OBJ_KINDS[OBJ_POSITION]));
         all_finite_ = all_finite_ && is_finite(obj_.positions.back());
         if (!rest.empty()) read_color(rest);
     }
@@ -164,11 +103,11 @@ class ObjReader {
         std::array<std::string_view, 3> words;
         for (std::string_view& word : words) {
             word = next_word(rest);
-            if (is_end(word)) return;
+            if (is_obj_end(word)) return;
         }
         vec3 color;
         for (glm::length_t i = 0; i < 3; ++i) {
-            const std::optional<double> number = number_of(words[size_t(i)]);
+            const std::optional<double> number = obj_number(words[size_t(i)]);
             if (!number) fail("the colour of a vertex needs three numbers, found " + quote(words[size_t(i)]));
             color[i] = float(*number);
         }
@@ -180,11 +119,11 @@ class ObjReader {
         vec2 uv(0.0f);
         for (glm::length_t i = 0; i < 2; ++i) {
             const std::string_view word = next_word(rest);
-            if (is_end(word)) {
+            if (is_obj_end(word)) {
                 if (i == 0) fail("a texture coordinate needs one to three numbers; is the file cut off?");
                 break;
             }
-            const std::optional<double> number = number_of(word);
+            const std::optional<double> number = obj_number(word);
             if (!number) fail("a texture coordinate needs numbers, found " + quote(word));
             if (std::abs(*number) <= MAX_UV) {
                 uv[i] = float(*number);
@@ -196,7 +135,7 @@ class ObjReader {
     }
 
     void read_normal(std::string_view rest) {
-        const glm::dvec3 normal = read_numbers(rest, KINDS[NORMAL]);
+        const glm::dvec3 normal = read_numbers(rest, OBJ_KINDS[OBJ_NORMAL]);
         if (!is_finite(normal)) warn("a normal is not finite; that of the triangle takes its place");
         obj_.normals.emplace_back(is_finite(normal) ? normal : glm::dvec3(0.0));
     }
@@ -208,13 +147,13 @@ class ObjReader {
     }
 
     // Cuts three numbers off `rest`.
-    glm::dvec3 read_numbers(std::string_view& rest, const Kind& kind) const {
+    glm::dvec3 read_numbers(std::string_view& rest, const ObjKind& kind) const {
         glm::dvec3 numbers;
         for (glm::length_t i = 0; i < 3; ++i) {
             const std::string_view word = next_word(rest);
             if (word.empty())
                 fail("a " + std::string(kind.name) + " needs three numbers; is the file cut off?");
-            const std::optional<double> number = number_of(word);
+            const std::optional<double> number = obj_number(word);
             if (!number) fail("a " + std::string(kind.name) + " needs three numbers, found " + quote(word));
             numbers[i] = *number;
         }
@@ -224,17 +163,17 @@ class ObjReader {
     void read_face(std::string_view rest) {
         const size_t begin = obj_.corners.size();
         uint32_t corners = 0;
-        for (std::string_view corner = next_word(rest); !is_end(corner); corner = next_word(rest)) {
+        for (std::string_view corner = next_word(rest); !is_obj_end(corner); corner = next_word(rest)) {
             const Indices read = read_corner(corner);
             if (corners++ >= MOST_CORNERS) continue;
-            obj_.corners.push_back({read[POSITION], read[NORMAL]});
-            if (totals_[UV] > 0) obj_.corner_uvs.push_back(read[UV]);
-            has_uvs_ = has_uvs_ || read[UV] != ObjCorner::NONE;
+            obj_.corners.push_back({read[OBJ_POSITION], read[OBJ_NORMAL]});
+            if (totals_[OBJ_UV] > 0) obj_.corner_uvs.push_back(read[OBJ_UV]);
+            has_uvs_ = has_uvs_ || read[OBJ_UV] != ObjCorner::NONE;
         }
         ++faces_;
         if (corners < 3) {
             obj_.corners.resize(begin);
-            if (totals_[UV] > 0) obj_.corner_uvs.resize(begin);
+            if (totals_[OBJ_UV] > 0) obj_.corner_uvs.resize(begin);
             return warn("a face with fewer than three corners is left out");
         }
         if (corners > MOST_CORNERS) {
@@ -250,10 +189,10 @@ class ObjReader {
     Indices read_corner(std::string_view corner) {
         Indices indices{ObjCorner::NONE, ObjCorner::NONE, ObjCorner::NONE};
         std::string_view rest = corner;
-        for (size_t kind = 0; kind < KINDS.size(); ++kind) {
+        for (size_t kind = 0; kind < OBJ_KINDS.size(); ++kind) {
             const size_t slash = rest.find('/');
             const std::string_view word = rest.substr(0, slash);
-            if (!word.empty() || kind == POSITION) indices[kind] = read_index(word, kind, corner);
+            if (!word.empty() || kind == OBJ_POSITION) indices[kind] = read_index(word, kind, corner);
             if (slash == std::string_view::npos) return indices;
             rest.remove_prefix(slash + 1);
         }
@@ -267,8 +206,8 @@ class ObjReader {
         if (error != std::errc() || stop != word.data() + word.size()) fail_malformed(corner);
         if (index != 0 && index >= -counts_[kind] && index <= totals_[kind])
             return uint32_t(index > 0 ? index - 1 : counts_[kind] + index);
-        if (kind == POSITION) fail_range(index);
-        warn(kind == NORMAL
+        if (kind == OBJ_POSITION) fail_range(index);
+        warn(kind == OBJ_NORMAL
                  ? "a corner has a normal that the file lacks; that of the triangle takes its place"
                  : "a corner has texture coordinates that the file lacks; (0, 0) takes their place");
         return ObjCorner::NONE;
@@ -278,8 +217,9 @@ class ObjReader {
     [[noreturn]] void fail_range(int64_t index) const {
         const std::string use = face() + " uses vertex " + std::to_string(index);
         if (index == 0) fail(use + "; indices count from 1, or backwards from -1");
-        if (index > 0) fail(use + ", but the file has " + std::to_string(totals_[POSITION]) + " vertices");
-        fail(use + ", but only " + std::to_string(counts_[POSITION]) + " vertices stand before it");
+        if (index > 0)
+            fail(use + ", but the file has " + std::to_string(totals_[OBJ_POSITION]) + " vertices");
+        fail(use + ", but only " + std::to_string(counts_[OBJ_POSITION]) + " vertices stand before it");
     }
 
     [[noreturn]] void fail_malformed(std::string_view corner) const {
@@ -301,7 +241,7 @@ class ObjReader {
             if (std::all_of(&obj_.corners[begin], &obj_.corners[begin] + obj_.sizes[face], finite)) {
                 for (size_t i = begin; i < end; ++i, ++kept_corners) {
                     obj_.corners[kept_corners] = obj_.corners[i];
-                    if (totals_[UV] > 0) obj_.corner_uvs[kept_corners] = obj_.corner_uvs[i];
+                    if (totals_[OBJ_UV] > 0) obj_.corner_uvs[kept_corners] = obj_.corner_uvs[i];
                 }
                 obj_.sizes[kept] = obj_.sizes[face];
                 obj_.use_of[kept++] = obj_.use_of[face];
@@ -309,7 +249,7 @@ class ObjReader {
             begin = end;
         }
         obj_.corners.resize(kept_corners);
-        if (totals_[UV] > 0) obj_.corner_uvs.resize(kept_corners);
+        if (totals_[OBJ_UV] > 0) obj_.corner_uvs.resize(kept_corners);
         obj_.sizes.resize(kept);
         obj_.use_of.resize(kept);
         for (size_t i = kept; i < faces; ++i) {
