@@ -6,8 +6,9 @@ usage: fit_sheen_albedo.py            Fits and writes; seconds.
                                       prints the worst errors, and exits 1 if a bound is broken.
 Needs Python 3.9, numpy and scipy.
 
-The albedo Es(alpha, cos_o) is the integral of f cos_i over the upper hemisphere. A polynomial is fitted to its log
-for the least greatest error, by a linear programme.
+The albedo Es(alpha, cos_o) is the integral of f cos_i over the upper hemisphere. Two polynomials are fitted to its log
+for the least greatest error, by linear programmes: one for each side of the cosine 1/2, where the lobe's masking has a
+kink.
 Ref: Conty Estevez and Kulla 2017, Production Friendly Microfacet Sheen BRDF; KHR_materials_sheen.
 """
 import re
@@ -19,10 +20,11 @@ from scipy.optimize import linprog
 
 FILE = Path(__file__).with_name("sheen_albedo.glsl")
 LEAST_ALPHA, LEAST_COSINE = 0.07**2, 1e-4
-BELOW, ABOVE, ABOVE_ONE = 3e-4, 0.01, 0.02  # Es - BELOW <= fit <= Es + ABOVE, or Es (1 + ABOVE_ONE) where Es > 1.
-K0, K1 = 0.1, 0.9  # The shape of x, chosen for the least error.
-# The highest power of y at each power of x; fewer terms leave no room for rounding.
-DEGREES = (4, 5, 3, 3, 1, 1, 1, 0, 0)
+BELOW, ABOVE, ABOVE_ONE = 3e-4, 0.002, 0.02  # Es - BELOW <= fit <= Es + ABOVE, or Es (1 + ABOVE_ONE) where Es > 1.
+SPLIT = 0.5  # The cosine between the two polynomials.
+K0, K1 = 0.2, 0.8  # The shape of x below SPLIT, chosen for the least error.
+# The highest power of y at each power of x, below and above SPLIT; fewer terms leave no room for rounding.
+DEGREES = ((6, 6, 5, 5, 4, 3, 2, 1, 1), (5, 5, 4, 3, 2))
 
 
 def albedo(alpha, cos_o, n=64, m=48):
@@ -61,10 +63,12 @@ def bounds(es):
     return es - BELOW, np.where(es > 1, es * (1 + ABOVE_ONE), es + ABOVE)
 
 
-def variables(alpha, cos_o):
-    """As in the shader; both within [-1, 1]."""
-    root, c = np.sqrt(np.sqrt(alpha)), np.sqrt(cos_o)
-    return 2 * c / (c + K0 + K1 * root) - 1, 2 * root - 1.2
+def variables(alpha, cos_o, above):
+    """As in the shader, for cosines below or above SPLIT; all within [-1, 1]."""
+    root = np.sqrt(np.sqrt(alpha))
+    third = np.cbrt(cos_o)
+    x = 4 * cos_o - 3 if above else 2 * third / (third + K0 + K1 * root) - 1
+    return x, 2 * root - 1.2
 
 
 SHADER = """\
@@ -74,15 +78,17 @@ SHADER = """\
 #define BSDF_SHEEN_ALBEDO_GLSL
 
 // For alpha in [0.0049, 1], as of sheen_alpha, and the cosine of wo in [1e-4, 1]; less is taken as 1e-4. Not below
-// Es - 0.0003, not above Es + 0.01 or, where Es is above 1, 1.02 Es (up to 2.9, at grazing angles).
+// Es - 0.0003, not above Es + 0.002 or, where Es is above 1, 1.02 Es (up to 2.9, at grazing angles).
 // Ref: Conty Estevez and Kulla 2017, Production Friendly Microfacet Sheen BRDF.
 float sheen_albedo(float alpha, float cos_o) {
     float root = sqrt(sqrt(alpha));
-    float c = sqrt(max(cos_o, %g));
-    float x = 2.0 * c / (c + %g + %g * root) - 1.0;
     float y = 2.0 * root - 1.2;
-%s    return exp(%s);
-}
+    if (cos_o < %g) {
+        float third = pow(max(cos_o, %g), 1.0 / 3.0);
+        float x = 2.0 * third / (third + %g + %g * root) - 1.0;
+%s    }
+    float x = 4.0 * cos_o - 3.0;
+%s}
 
 #endif
 """
@@ -95,35 +101,51 @@ def horner(factors, x):
     return text
 
 
-def fit():
-    a, c, es = grid(40, 80, 0.5)
-    x, y = variables(a, c)
-    terms = [(i, j) for i, degree in enumerate(DEGREES) for j in range(degree + 1)]
+def polynomial(alpha, cos_o, es, above):
+    """The lines of the shader that evaluate the fit on one side of SPLIT."""
+    side = cos_o >= SPLIT if above else cos_o <= SPLIT
+    alpha, cos_o, es = alpha[side], cos_o[side], es[side]
+    x, y = variables(alpha, cos_o, above)
+    degrees = DEGREES[above]
+    terms = [(i, j) for i, degree in enumerate(degrees) for j in range(degree + 1)]
     columns = np.stack([x**i * y**j for i, j in terms], 1)
     low, high = np.log(np.maximum(bounds(es), 1e-8))  # Any value below is as good.
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    columns, goal, one = columns / half[:, None], middle / half, np.ones((len(a), 1))
+    columns, goal, one = columns / half[:, None], middle / half, np.ones((len(es), 1))
     found = linprog(np.append(np.zeros(len(terms)), 1), A_ub=np.block([[columns, -one], [-columns, -one]]),
                     b_ub=np.append(goal, -goal), bounds=(None, None)).x
     print(f"{len(terms)} terms, {found[-1]:.3f} of the tolerance, greatest coefficient {abs(found[:-1]).max():.4g}")
     value = dict(zip(terms, found))
     number = lambda v: f"{v:.7g}" if "." in f"{v:.7g}" else f"{v:.7g}.0"
-    lines = [horner([number(value[i, j]) for j in range(degree + 1)], "y") for i, degree in enumerate(DEGREES)]
-    body = "".join(f"    float p{i} = {line};\n" for i, line in enumerate(lines))
-    FILE.write_text(SHADER % (LEAST_COSINE, K0, K1, body, horner([f"p{i}" for i in range(len(DEGREES))], "x")))
+    indent = "    " if above else "        "
+    lines = [horner([number(value[i, j]) for j in range(degree + 1)], "y") for i, degree in enumerate(degrees)]
+    return "".join(f"{indent}float p{i} = {line};\n" for i, line in enumerate(lines)) + \
+        f"{indent}return exp({horner([f'p{i}' for i in range(len(degrees))], 'x')});\n"
+
+
+def fit():
+    a, c, es = grid(60, 120, 0.5)
+    below, above = polynomial(a, c, es, False), polynomial(a, c, es, True)
+    FILE.write_text(SHADER % (SPLIT, LEAST_COSINE, K0, K1, below, above))
 
 
 def check():
     """Runs the shader's own lines as Python, in 32-bit floats."""
     single = np.float32
-    body = re.search(r"\{(.*?)\n\}", FILE.read_text(), re.S)[1]
-    body = re.sub(r"(?<![\w.])(\d+\.?\d*(?:e-?\d+)?)", r"single(\1)", body.replace("float ", "").replace(";", ""))
-    body = "\n".join(line.strip().replace("return", "fit =") for line in body.splitlines())
     a, c, es = grid(61, 97, 0.37)
-    names = dict(single=single, sqrt=np.sqrt, max=np.maximum, exp=np.exp, alpha=single(a), cos_o=single(c))
-    exec(body, names)
-    assert names["fit"].dtype == single
-    error = names["fit"].astype(float) - es
+    lines = FILE.read_text().splitlines()
+    begin, branch, end = (next(i for i, line in enumerate(lines) if line.startswith(start))
+                          for start in ("float sheen", "    if (cos_o", "    }"))
+    fits = []
+    for body in (lines[begin + 1:branch] + lines[branch + 1:end], lines[begin + 1:branch] + lines[end + 1:-3]):
+        body = re.sub(r"(?<![\w.])(\d+\.?\d*(?:e-?\d+)?)", r"single(\1)", "\n".join(body))
+        body = "\n".join(line.strip() for line in body.replace("float ", "").replace(";", "").splitlines())
+        names = dict(single=single, sqrt=np.sqrt, max=np.maximum, exp=np.exp, pow=np.power, alpha=single(a),
+                     cos_o=single(c))
+        exec(body.replace("return", "fit ="), names)
+        assert names["fit"].dtype == single
+        fits.append(names["fit"].astype(float))
+    error = np.where(c < SPLIT, *fits) - es
     low, high = bounds(es)
     print(f"Es <= 1: fit - Es from {error[es <= 1].min():.6f} to {error[es <= 1].max():.6f}")
     print(f"Es > 1: fit - Es at least {error[es > 1].min():.6f}, fit / Es at most {1 + (error / es)[es > 1].max():.6f}")

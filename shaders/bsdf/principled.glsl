@@ -11,6 +11,8 @@
 //                 refraction          base_color (1 - max Fd) D G
 //                 diffuse             base_color, diffuse_transmission_color           1 - <max Fd>
 //
+// Within a solid, light meets the facets of the part that transmits, and the diffuse base of the rest without any.
+//
 // What a layer leaves to those below is the last column, a function of wo alone: what it does not scatter itself. (By
 // facets, as glTF's own sample code has it, light would be gained at grazing angles.) Light that is scattered more than
 // once among facets is what they lose to shadowing, <1 - s>; it leaves the surface as from a diffuse one.

@@ -155,19 +155,21 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     // Weights.
     float dielectric = above * (1.0 - metalness);
     float opaque = dielectric * (1.0 - transmission);
-    p.r_0 = dielectric * d_0;
-    p.r_edge = dielectric * d_edge;
+    float bounded = s.inside ? dielectric * transmission : dielectric;  // By facets.
+    p.r_0 = bounded * d_0;
+    p.r_edge = bounded * d_edge;
     p.r_schlick = vec3(0.0);
     p.r_total = 0.0;
     if (principled_has(PRINCIPLED_HAS_SPECULAR)) p.r_total = dielectric * transmission * (1.0 - r.specular);
-    p.again = opaque * mean.most_lost * d_0;
+    p.again = s.inside ? vec3(0.0) : opaque * mean.most_lost * d_0;
     if (principled_has(PRINCIPLED_HAS_METAL)) {
         float metal = above * metalness;
         p.r_0 += metal * m_0;
         p.r_schlick = metal * m_edge;
         p.again += metal * mean.lost * metal_again(m_0, m_edge, p.alpha);
     }
-    float below = opaque * max(1.0 - mean.most + mean.most_lost * (1.0 - max_component(d_0)), 0.0);
+    float below = max(1.0 - mean.most + mean.most_lost * (1.0 - max_component(d_0)), 0.0);
+    below = s.inside ? opaque : opaque * below;
     float diffuse_transmission = principled_has(PRINCIPLED_HAS_DIFFUSE_TRANSMISSION) ? r.diffuse_transmission : 0.0;
     p.base_color = s.base_color;
     p.roughness = r.diffuse_roughness;

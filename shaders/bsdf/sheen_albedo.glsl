@@ -4,23 +4,32 @@
 #define BSDF_SHEEN_ALBEDO_GLSL
 
 // For alpha in [0.0049, 1], as of sheen_alpha, and the cosine of wo in [1e-4, 1]; less is taken as 1e-4. Not below
-// Es - 0.0003, not above Es + 0.01 or, where Es is above 1, 1.02 Es (up to 2.9, at grazing angles).
+// Es - 0.0003, not above Es + 0.002 or, where Es is above 1, 1.02 Es (up to 2.9, at grazing angles).
 // Ref: Conty Estevez and Kulla 2017, Production Friendly Microfacet Sheen BRDF.
 float sheen_albedo(float alpha, float cos_o) {
     float root = sqrt(sqrt(alpha));
-    float c = sqrt(max(cos_o, 0.0001));
-    float x = 2.0 * c / (c + 0.1 + 0.9 * root) - 1.0;
     float y = 2.0 * root - 1.2;
-    float p0 = -1.740261 + y * (-0.2679827 + y * (0.9267457 + y * (-0.3810334 + y * -0.5435759)));
-    float p1 = -6.184101 + y * (0.5166736 + y * (-3.088712 + y * (1.360517 + y * (-0.3495358 + y * 0.755673))));
-    float p2 = -16.94263 + y * (-5.006292 + y * (-4.911532 + y * 3.094647));
-    float p3 = -42.83049 + y * (-23.18077 + y * (-2.624551 + y * 1.606244));
-    float p4 = -70.0253 + y * -43.46301;
-    float p5 = -55.19219 + y * -39.27348;
-    float p6 = -1.468262 + y * -13.86499;
-    float p7 = 24.71947;
-    float p8 = 10.25721;
-    return exp(p0 + x * (p1 + x * (p2 + x * (p3 + x * (p4 + x * (p5 + x * (p6 + x * (p7 + x * p8))))))));
+    if (cos_o < 0.5) {
+        float third = pow(max(cos_o, 0.0001), 1.0 / 3.0);
+        float x = 2.0 * third / (third + 0.2 + 0.8 * root) - 1.0;
+        float p0 = -1.42585 + y * (-0.7106937 + y * (1.268805 + y * (-0.8695419 + y * (-1.057506 + y * (0.01292088 + y * 0.3240773)))));
+        float p1 = -6.938262 + y * (-1.201968 + y * (-3.840206 + y * (-3.65386 + y * (-4.031104 + y * (3.215608 + y * 0.5395442)))));
+        float p2 = -22.22717 + y * (-12.6245 + y * (-21.52559 + y * (-12.60833 + y * (-8.780803 + y * 6.326009))));
+        float p3 = -63.41077 + y * (-44.69743 + y * (-64.11949 + y * (-23.72931 + y * (-8.195437 + y * 4.07241))));
+        float p4 = -135.6762 + y * (-39.54245 + y * (-103.513 + y * (-22.92899 + y * -2.257631)));
+        float p5 = -180.891 + y * (105.2934 + y * (-86.49208 + y * -8.936269));
+        float p6 = -133.3527 + y * (295.6726 + y * -29.18062);
+        float p7 = -40.72878 + y * 276.1798;
+        float p8 = 0.4225596 + y * 92.25047;
+        return exp(p0 + x * (p1 + x * (p2 + x * (p3 + x * (p4 + x * (p5 + x * (p6 + x * (p7 + x * p8))))))));
+    }
+    float x = 4.0 * cos_o - 3.0;
+    float p0 = -3.234428 + y * (5.017167 + y * (-6.650707 + y * (7.915075 + y * (-6.463943 + y * 2.039048))));
+    float p1 = -1.342129 + y * (3.060612 + y * (-3.199032 + y * (-0.577869 + y * (3.260721 + y * -1.42011))));
+    float p2 = -0.3948435 + y * (0.8016475 + y * (0.7943635 + y * (-3.118801 + y * 2.039121)));
+    float p3 = -0.2331014 + y * (0.4399099 + y * (0.113381 + y * -0.4205305));
+    float p4 = -0.06533543 + y * (0.1976969 + y * -0.1555293);
+    return exp(p0 + x * (p1 + x * (p2 + x * (p3 + x * p4))));
 }
 
 #endif

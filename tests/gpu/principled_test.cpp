@@ -16,7 +16,7 @@ namespace {
 constexpr double ROUNDING = 1e-4;
 
 // What sheen leaves to the layers below is a fit: bsdf/sheen_albedo.glsl.
-constexpr double SHEEN_FIT = 0.01;
+constexpr double SHEEN_FIT = 0.002;
 
 PrincipledParameters parameters_of(const PrincipledMaterial& m, bool inside) {
     return {.base_color = dvec3(m.base_color.factor),

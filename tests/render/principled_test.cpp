@@ -1,6 +1,8 @@
 // The principled material in whole pictures: estimators agree, white bodies are invisible, without roughness
 // it is the mirror and the glass that there were before, emission lies under its layers, culled sides are not
 // there.
+#include <random>
+
 #include "estimator_fixture.h"
 
 namespace candela {
@@ -49,6 +51,62 @@ TEST_F(PrincipledPictureTest, WhiteBodiesAreInvisible) {
     for (size_t i = 0; i < bodies.size(); ++i) {
         SCOPED_TRACE(i);
         expect_invisible(sphere_of(bodies[i]), Estimator::bsdf, 512);
+    }
+}
+
+// 64 bodies of random materials beside each other, each a block of the picture: opaque, thin, solid, smooth
+// and rough.
+TEST_F(PrincipledPictureTest, RandomWhiteBodiesAreInvisible) {
+    constexpr int ROW = 8;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    const auto often = [&](float value) { return unit(random) < 0.5f ? value : 0.0f; };
+    Scene scene = scene_with_camera(dvec3(0, 0, 10), dvec3(0), 0.4f);
+    scene.cameras[0].ortho_height = 2.0 * ROW;
+    scene.environment = constant_environment(vec3(1));
+    for (int i = 0; i < ROW * ROW; ++i) {
+        PrincipledMaterial m{.base_color = vec3(1),
+                             .metalness = unit(random) < 0.3f ? unit(random) : 0.0f,
+                             .roughness = often(unit(random)),
+                             .ior = 1.0f + 1.2f * unit(random),
+                             .anisotropy = often(unit(random)),
+                             .transmission = i % 4 > 0 ? unit(random) : 0.0f,
+                             .diffuse_transmission = often(unit(random)),
+                             .coat = often(unit(random)),
+                             .coat_roughness = often(unit(random)),
+                             .fuzz = often(0.5f)};
+        if (i % 4 > 1) m.inside = CLEAR;
+        add_shape(scene, Sphere{dvec3(2 * (i % ROW) + 1 - ROW, 2 * (i / ROW) + 1 - ROW, 0), 0.9},
+                  add_material(scene, m));
+    }
+    const uint32_t block = 8;
+    RenderSettings s = independent_settings(ROW * block, Estimator::bsdf, 9);
+    s.rr_depth = 64;
+    const Image image = image_of(render(scene, s, samples(1024)));
+    for (int i = 0; i < ROW * ROW; ++i) {
+        double sum = 0.0, variance = 0.0;
+        for (uint32_t p = 0; p < block * block; ++p) {
+            const size_t pixel = (i / ROW * block + p / block) * s.size.x + i % ROW * block + p % block;
+            sum += double(plane(image, "", 1)[pixel]);
+            variance += double(plane(image, "Variance", 1)[pixel]);
+        }
+        const double mean = sum / (block * block), error = std::sqrt(variance) / (block * block);
+        EXPECT_LE(error, 8.0 * largest_error()) << "body " << i;  // Of a 64th of the picture.
+        const double beyond =
+            std::max(0.0, std::abs(mean - 1.0) - 0x1p-12);  // Hundreds of vertices in glass.
+        if (beyond == 0.0) continue;
+        EXPECT_GT(normal_p_value(beyond / error), sidak_level(TEST_ALPHA, ROW * ROW))
+            << "body " << i << ": " << mean << ", z = " << beyond / error;
+    }
+}
+
+// What sheen leaves is a fit, at most 0.0023 off (bsdf/sheen_albedo.glsl): so much light is lost.
+TEST_F(PrincipledPictureTest, WhiteClothIsNearlyInvisible) {
+    for (const float roughness : {0.1f, 0.5f, 0.86f, 1.0f}) {
+        const PrincipledMaterial cloth{
+            .base_color = vec3(1), .roughness = 0.5f, .sheen_color = vec3(1), .sheen_roughness = roughness};
+        RenderSettings s = independent_settings(32, Estimator::bsdf, 9);
+        expect_mean(image_of(render(sphere_of(cloth), s, samples(512))), glm::dvec3(1.0), 0.0023);
     }
 }
 

@@ -152,11 +152,14 @@ void PrincipledReference::find_diffuse_parts() {
     // What the dielectric over an opaque base does not reflect again joins the light that reaches the base.
     const double dielectric = (1 - p_.metalness) * (1 - p_.transmission);
     const double glass = (1 - p_.metalness) * p_.transmission;
-    again_up_ = p_.metalness * shares_.metal_lost * metal_again + glass * shares_.glass_lost * up +
-                dielectric * shares_.dielectric_lost * dielectric_f0_;
+    again_up_ = p_.metalness * shares_.metal_lost * metal_again + glass * shares_.glass_lost * up;
     again_down_ = glass * shares_.glass_lost * (1 - up) * p_.base_color;
-    diffuse_ = dielectric * (1 - shares_.dielectric_reflected +
-                             shares_.dielectric_lost * (1 - max_channel(dielectric_f0_)));
+    // Nothing lies between the inside of a volume and the opaque base.
+    diffuse_ = dielectric;
+    if (p_.inside) return;
+    again_up_ += dielectric * shares_.dielectric_lost * dielectric_f0_;
+    diffuse_ *=
+        1 - shares_.dielectric_reflected + shares_.dielectric_lost * (1 - max_channel(dielectric_f0_));
 }
 
 // Sheen (KHR_materials_sheen, "Albedo-scaling technique", of wo alone), coat (KHR_materials_clearcoat, by
@@ -236,8 +239,8 @@ double PrincipledReference::greatest_transmitting_fresnel(double cosine) const {
 // What all kinds of specular reflection together multiply facets' reflection by.
 dvec3 PrincipledReference::specular_fresnel(double cosine) const {
     const dvec3 schlick = p_.base_color + (dvec3(1) - p_.base_color) * std::pow(1 - cosine, 5);
-    const dvec3 dielectric =
-        mix(film_or_dielectric_fresnel(cosine), transmitting_fresnel(cosine), p_.transmission);
+    const dvec3 opaque = p_.inside ? dvec3(0) : film_or_dielectric_fresnel(cosine);
+    const dvec3 dielectric = mix(opaque, transmitting_fresnel(cosine), p_.transmission);
     return mix(dielectric, mix(schlick, film_metal_, film_), p_.metalness);
 }
 
