@@ -8,7 +8,7 @@ set -eu
 cd "$(dirname "$0")/.."
 repetitions=${1:-50}
 windows='View\.|ViewControls|ViewUsage|Presenter'
-signals='Interrupt|CheckpointTest|AdaptiveCli.AResumed|AnInterrupted|OneFailing'
+signals='Interrupt|CheckpointTest|AdaptiveCli.AResumed|AnInterrupted|ChangedPlaces|cli.Kills'
 intervals='Progressive|TimeLimit|ByTheClock|CpuTime|IsTimed'
 devices='DeviceFailure|SteadyRenderer'
 tests=${2:-$windows|$signals|$intervals|$devices}

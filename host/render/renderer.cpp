@@ -67,7 +67,8 @@ PixelRect largest_part(const vk::DeviceLimits& limits, const RenderSettings& set
         return wanted <= allowed ? wanted : uint32_t(allowed / TILE * TILE);
     };
     const uint32_t width = most(all.width(), limits.max_image_dimension_2d);
-    const uint32_t height = most(all.height(), pixels / ((width + TILE - 1) / TILE * TILE));
+    const uint64_t filled_width = uint64_t{(width + TILE - 1) / TILE} * TILE;
+    const uint32_t height = most(all.height(), pixels / filled_width);
     return {all.x0, all.y0, all.x0 + width, all.y0 + height};
 }
 
