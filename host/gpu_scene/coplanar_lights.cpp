@@ -22,9 +22,15 @@ struct FlatPiece {
     dvec3 n{};  // Of unit length.
 };
 
-// Calls visit(piece) for all flat pieces of a shape that have an area.
+// Whether two boxes overlap or touch.
+bool meet(const DoubleBox& a, const DoubleBox& b) {
+    return glm::all(glm::lessThanEqual(max(a.lo, b.lo), min(a.hi, b.hi)));
+}
+
+// Calls visit(piece) for the flat pieces of a shape that have an area; of a mesh, only for those that may
+// reach into the box `within`.
 template <class Visit>
-void for_each_piece(const Scene& scene, size_t shape, const Visit& visit) {
+void for_each_piece(const Scene& scene, size_t shape, const DoubleBox& within, const Visit& visit) {
     const auto add = [&](std::vector<dvec3> corners) {
         FlatPiece piece{shape, std::move(corners)};
         const dvec3 scaled =
@@ -52,7 +58,8 @@ void for_each_piece(const Scene& scene, size_t shape, const Visit& visit) {
             const auto corner = [&](uint32_t i) {
                 return instance->transform.point(mesh.origin + dvec3(mesh.positions[i]));
             };
-            add({corner(t.x), corner(t.y), corner(t.z)});
+            const dvec3 a = corner(t.x), b = corner(t.y), c = corner(t.z);
+            if (meet(within, {min(a, min(b, c)), max(a, max(b, c))})) add({a, b, c});
         }
     }
 }
@@ -84,11 +91,12 @@ bool share_an_area(const FlatPiece& a, const FlatPiece& b, double tolerance) {
 }
 
 std::vector<FlatPiece> find_lights(const Scene& scene) {
-    constexpr size_t MOST_LIGHTS = 1000;
+    constexpr size_t MOST_LIGHTS = 100;
+    const DoubleBox everywhere{dvec3(-double(INFINITE)), dvec3(double(INFINITE))};
     std::vector<FlatPiece> lights;
     for (size_t i = 0; i < scene.shapes.size() && lights.size() < MOST_LIGHTS; ++i) {
         if (!scene.shapes[i].emission) continue;
-        for_each_piece(scene, i, [&](FlatPiece&& piece) {
+        for_each_piece(scene, i, everywhere, [&](FlatPiece&& piece) {
             if (lights.size() < MOST_LIGHTS) lights.push_back(std::move(piece));
         });
     }
@@ -102,21 +110,23 @@ std::optional<std::string> warn_of_coplanar_lights(const Scene& scene) {
     if (lights.empty()) return std::nullopt;
     const dvec3 extent = bounds(scene).extent();
     const double tolerance = 0x1p-22 * std::max({extent.x, extent.y, extent.z});  // Four steps of floats.
-    const auto near = [&](const DoubleBox& a, const DoubleBox& b) {
-        return glm::all(glm::lessThanEqual(max(a.lo, b.lo), min(a.hi, b.hi) + tolerance));
-    };
+    for (FlatPiece& light : lights)
+        light.box = {light.box.lo - tolerance, light.box.hi + tolerance};
     std::map<size_t, size_t> hidden;  // By the shape of the light, the first shape in whose plane it is.
     const ShapeBounds bounds_of(scene);
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         const DoubleBox box = bounds_of(scene.shapes[i]);
         std::vector<const FlatPiece*> close;
+        DoubleBox around;
         for (const FlatPiece& light : lights) {
-            if (light.shape != i && near(light.box, box)) close.push_back(&light);
+            if (light.shape == i || !meet(light.box, box)) continue;
+            close.push_back(&light);
+            around.extend(light.box);
         }
         if (close.empty()) continue;
-        for_each_piece(scene, i, [&](const FlatPiece& piece) {
+        for_each_piece(scene, i, around, [&](const FlatPiece& piece) {
             for (const FlatPiece* light : close) {
-                if (near(light->box, piece.box) &&
+                if (meet(light->box, piece.box) &&
                     (lies_in_plane(*light, piece, tolerance) || lies_in_plane(piece, *light, tolerance)) &&
                     share_an_area(*light, piece, tolerance)) {
                     hidden.try_emplace(light->shape, i);

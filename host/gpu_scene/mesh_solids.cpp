@@ -16,7 +16,7 @@ namespace {
 // Finds vertices at places that differ by no more than `tolerance` along any axis.
 class Welder {
   public:
-    explicit Welder(const std::vector<vec3>& positions, double tolerance)
+    Welder(const std::vector<vec3>& positions, double tolerance)
         : positions_(positions), tolerance_(tolerance), side_(CELL * tolerance) {}
 
     // The first of the vertices asked for that is at the place of this one.
