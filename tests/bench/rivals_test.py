@@ -16,7 +16,8 @@ from unittest import mock
 RIVALS = Path(__file__).resolve().parent / "rivals"
 sys.path.insert(0, str(RIVALS))
 
-import exr  # noqa: E402 (needs the path)
+import compare as comparison  # noqa: E402 (needs the path)
+import exr  # noqa: E402
 import pictures  # noqa: E402
 import renderers  # noqa: E402
 import scene_file  # noqa: E402
@@ -167,10 +168,36 @@ class Runs(unittest.TestCase):
         known = "cornell-box, suzannes, many-lights, sky, textured, principled"
         self.assertIn(f"unknown scene teapot (known: {known})", compare(CANDELA, "teapot"))
         self.assertIn("cannot run /no/candela: build it, or give", compare("/no/candela"))
-        self.assertIn("cannot run /no/blender: install Blender", compare(CANDELA, "--blender", "/no/blender"))
+        remedy = "install Blender, or name it by --blender: its program, or a Python with the module bpy, or use --without"
+        self.assertIn(f"cannot run /no/blender: {remedy} Cycles", compare(CANDELA, "--blender", "/no/blender"))
         missing = compare(CANDELA, "--without", "Cycles", "--tracer", "/no/tracer", "sky")
         self.assertIn("cannot run /no/tracer: build the target `tracer` with -DCANDELA_EMBREE=ON", missing)
         self.assertIn("--runs, --seconds and --reference must be above 0", compare(CANDELA, "--seconds", "0"))
+
+    def test_blender_is_a_program_or_a_python(self):
+        # A stand-in, which prints its arguments as the version of Blender.
+        figures = '{"version": "\'"$*"\'", "one": {"cpu": 1, "wall": 1}, "all": {"cpu": 2, "wall": 2}}'
+        job = renderers.Job(Path("s.json"), depth=5, width=16, threads=1)
+        words = f"{RIVALS / 'render_with_cycles.py'} -- s.json a.exr 16 2 5 0 1"
+        with tempfile.TemporaryDirectory() as folder:
+            program = "-b --factory-startup --python-exit-code 1 -P "
+            for name, options in (("blender", program), ("blender-5.0", program), ("python3.11", "")):
+                path = Path(folder, name)
+                path.write_text(f"#!/bin/sh\necho '{figures}'\n", encoding="utf-8")
+                path.chmod(0o755)
+                cycles = renderers.Cycles(path)
+                self.assertEqual(cycles.render(job, 2, 0, "a.exr"), {"cpu": 2, "wall": 2, "rays": None})
+                self.assertEqual(cycles.version, f"Cycles of Blender {options}{words}")
+
+    def test_converged_pictures_are_kept_for_each_version(self):
+        job = renderers.Job(ROOT / "scenes/cornell-box.json", depth=1, width=16, threads=1)
+        renderer = mock.Mock()
+        renderer.name = "Cycles"
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(exr, "read"):
+            for version, renderings in (("3.4.1", 1), ("3.4.1", 1), ("5.0.1", 2), ("3.4.1", 2)):
+                renderer.version = f"Cycles of Blender {version}"
+                self.assertEqual(comparison.converged(renderer, job, 0.5, 4, Path(folder))[1], 8)
+                self.assertEqual(renderer.render.call_count, renderings)
 
     def test_a_program_that_fails_is_quoted(self):
         with self.assertRaisesRegex(SystemExit, "(?s)candela nonsense\nended with 2:.*nonsense"):

@@ -12,6 +12,7 @@ usage: compare.py CANDELA [SCENE...], e.g. compare.py build/release/candela corn
 
 import argparse
 import hashlib
+import importlib.util
 import json
 import os
 import statistics
@@ -20,7 +21,7 @@ from pathlib import Path
 
 import exr
 import pictures
-from renderers import BLENDER_SCRIPT, Candela, Cycles, Job, Tracer, find, run
+from renderers import BLENDER_REMEDY, Candela, Cycles, Job, Tracer, find, run, run_in_blender
 
 ROOT = Path(__file__).resolve().parents[3]
 SCENES_FOLDER = ROOT / "tests" / "bench" / "scenes"
@@ -35,8 +36,6 @@ SCENES = {
 }
 # What the tracer does not know.
 BEYOND_THE_TRACER = {"textured": "textures", "principled": "principled materials"}
-# Scenes that Cycles renders a second time, with microfacets that lose light: its default, and less work than candela's.
-LOSSY_TOO = {"principled"}
 MADE_BY_BLENDER = {
     "suzanne.ply": "make_suzanne.py",
     "textured.json": "make_textured.py",
@@ -58,7 +57,9 @@ def arguments():
     parser.add_argument("--threads", type=int, default=os.cpu_count(),
                         help="of the rivals; candela's driver takes all cores (default: all cores)")
     parser.add_argument("--tracer", help="the program (default: beside candela)")
-    parser.add_argument("--blender", default="blender", help="the program (default: blender)")
+    parser.add_argument("--blender", default=sys.executable if importlib.util.find_spec("bpy") else "blender",
+                        help="the program, or a Python that has the module bpy (default: this Python if it has, else "
+                        "blender)")
     parser.add_argument("--without", action="append", choices=["Cycles", "tracer"], default=[], help="leave it out")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "rivals",
                         help="folder for pictures; converged ones are kept there (default: build/rivals)")
@@ -79,8 +80,7 @@ def make_scenes(blender):
         run([sys.executable, SCENES_FOLDER / "make_many_lights.py"])
     for made, script in MADE_BY_BLENDER.items():
         if not (SCENES_FOLDER / "made" / made).exists():
-            program = find(blender, f"install Blender 3.4, or name it by --blender: it makes {made}")
-            run([program, *BLENDER_SCRIPT, SCENES_FOLDER / script])
+            run_in_blender(find(blender, f"{BLENDER_REMEDY}; it makes {made}"), SCENES_FOLDER / script)
 
 
 def renderers(options):
@@ -103,7 +103,7 @@ def seconds_per_sample(renderer, job, work):
 
 def converged(renderer, job, pace, seconds, work):
     """The renderer's picture after that CPU time, and its samples per pixel; kept in the folder `work`."""
-    told = f"{job.scene.read_text(encoding='utf-8')} {job.depth} {job.width} {seconds}"
+    told = f"{job.scene.read_text(encoding='utf-8')} {job.depth} {job.width} {seconds} {renderer.version}"
     stem = f"{job.scene.stem}-{renderer.name}-{hashlib.sha256(told.encode()).hexdigest()[:8]}"
     picture, figures = work / f"{stem}.exr", work / f"{stem}.json"
     if not figures.exists():
@@ -137,8 +137,6 @@ def measure_scene(name, chosen, options):
     path, depth = SCENES[name]
     if name in BEYOND_THE_TRACER:
         chosen = [renderer for renderer in chosen if not isinstance(renderer, Tracer)]
-    if name in LOSSY_TOO:
-        chosen = chosen + [Cycles(r.blender, "GGX") for r in chosen if isinstance(r, Cycles)]
     job = Job(path, depth, options.size, options.threads)
     paces = [seconds_per_sample(renderer, job, options.work) for renderer in chosen]
     reference_seconds = options.reference * options.seconds

@@ -7,9 +7,8 @@ import bpy
 # How Blender calls candela's encodings.
 COLOR_SPACES = {"srgb": "sRGB", "linear": "Non-Color"}
 TEXTURE_KEYS = {"image", "factor", "encoding", "cutoff"}
-# Of principled materials. Sheen has another model in Blender, without a roughness.
 PRINCIPLED_KEYS = {"type", "base_color", "metalness", "roughness", "ior", "anisotropy", "transmission", "thin_walled"}
-PRINCIPLED_KEYS |= {"coat", "coat_roughness", "sheen_color", "sheen_roughness", "normal_map", "opacity"}
+PRINCIPLED_KEYS |= {"coat", "coat_roughness", "fuzz", "fuzz_roughness", "normal_map", "opacity"}
 
 
 class Graph:
@@ -99,6 +98,11 @@ def rgb(value):
     return value if isinstance(value, list) else [value] * 3
 
 
+def f0(ior):
+    """What a surface reflects of light that falls straight on it."""
+    return ((ior - 1) / (ior + 1)) ** 2
+
+
 def diffuse(graph, material):
     return graph.node("BsdfDiffuse", graph.color(material["reflectance"]), 0, graph.normal(material)).outputs[0]
 
@@ -113,59 +117,84 @@ def diffuse_transmission(graph, material):
 
 def dielectric(graph, material):
     assert material["fresnel"] == "exact", "Cycles knows Fresnel's equations alone"
-    return graph.node("BsdfGlass", (1, 1, 1, 1), 0, material["ior"], distribution="SHARP").outputs[0]
+    return graph.node("BsdfGlass", (1, 1, 1, 1), 0, material["ior"], distribution="GGX").outputs[0]
 
 
 def conductor(graph, material):
     """GGX with Schlick's Fresnel term, but at the angle to the shading normal instead of to the facet's: Cycles' node
-    has none of its own. Cycles multiplies the shadowing of both directions, as if they were independent."""
+    has none of its own."""
     normal = graph.normal(material)
     facing = graph.node("LayerWeight", 0.5, normal).outputs["Facing"]  # 1 - cosine, where "blend" is a half.
     schlick = graph.math("POWER", facing, 5)
     color = graph.node("MixRGB", schlick, graph.color(material["reflectance"]), (1, 1, 1, 1)).outputs[0]
     alpha = graph.number(material["alpha"])
     roughness = graph.math("SQRT", alpha, None) if isinstance(material["alpha"], dict) else math.sqrt(alpha)
-    return graph.node("BsdfGlossy", color, roughness, normal, distribution="GGX").outputs[0]
+    node = graph.node("BsdfGlossy", color, roughness, distribution="GGX")
+    graph.set(node.inputs["Normal"], normal)
+    return node.outputs[0]
 
 
-def principled(graph, material):
-    """Blender's Principled BSDF. It says how much of the light the dielectric reflects by "Specular", how it refracts
-    by "IOR"; its roughness is the geometric mean of those along and across; its coat has a quarter of the weight."""
-    unknown = set(material) - PRINCIPLED_KEYS
-    assert not unknown, f"cycles_materials.py knows no {unknown} of principled materials"
-    metalness, transmission = material.get("metalness", 0), material.get("transmission", 0)
-    assert transmission == 0 or not material.get("thin_walled", True), "Blender's transmission bounds solids"
-    ior, roughness = material.get("ior", 1.5), graph.number(material.get("roughness", 0.5))
-    values = {
+def inputs_of_blender_3(graph, material):
+    """It says how much of the light the dielectric reflects by "Specular", how it refracts by "IOR"; its coat has a
+    quarter of the weight; its sheen is another and fainter model than candela's fuzz, without a roughness."""
+    return {
         "Base Color": graph.color(material.get("base_color", 0.8)),
-        "Metallic": metalness,
-        "Specular": graph.beyond(((ior - 1) / (ior + 1)) ** 2 / 0.08),
-        "IOR": ior,
-        "Transmission": transmission,
-        "Normal": graph.normal(material),
+        "Specular": graph.beyond(f0(material.get("ior", 1.5)) / 0.08),
+        "Transmission": material.get("transmission", 0),
+        "Clearcoat": graph.beyond(4 * material.get("coat", 0)),
+        "Clearcoat Roughness": material.get("coat_roughness", 0),
+        "Sheen": material.get("fuzz", 0),
+        "Sheen Tint": 0,
     }
+
+
+def inputs_of_blender_4(graph, material, transmission):
+    """Light that passes the surface gets the root of the colour."""
+    color = material.get("base_color", 0.8)
+    return {
+        "Base Color": graph.color([c * c for c in rgb(color)] if transmission else color),
+        "Transmission Weight": transmission,
+        "Coat Weight": material.get("coat", 0),
+        "Coat Roughness": material.get("coat_roughness", 0),
+        "Sheen Weight": material.get("fuzz", 0),
+        "Sheen Roughness": material.get("fuzz_roughness", 0.5),
+    }
+
+
+def principled_node(graph, material, inputs):
+    """The roughness is the geometric mean of those along and across. "MULTI_GGX" keeps the light that microfacets throw
+    at each other."""
+    roughness = graph.number(material.get("roughness", 0.5))
+    values = {"Metallic": material.get("metalness", 0), "IOR": material.get("ior", 1.5)}
+    values["Normal"] = graph.normal(material)
     if "anisotropy" in material:
         across = roughness**2
         along = across + (1 - across) * material["anisotropy"] ** 2
         assert across >= 0.1 * along, "more anisotropy than Blender's"
         values["Anisotropic"] = (1 - across / along) / 0.9
         roughness = (across * along) ** 0.25
-    values["Roughness"] = roughness
-    if "coat" in material:
-        values |= {"Clearcoat": graph.beyond(4 * material["coat"]), "Clearcoat Roughness": material["coat_roughness"]}
-    if "sheen_color" in material:
-        values |= {"Sheen": material["sheen_color"][0], "Sheen Tint": 0}
-    node = graph.node("BsdfPrincipled", distribution=graph.distribution)
-    for name, value in values.items():
+    node = graph.node("BsdfPrincipled", distribution="MULTI_GGX")
+    for name, value in (values | inputs | {"Roughness": roughness}).items():
         graph.set(node.inputs[name], value)
     return node.outputs[0]
 
 
-def reflecting(name, material, folder, distribution):
-    """A material of a scene; `distribution` is that of principled ones: "MULTI_GGX", or "GGX", which loses the light
-    that microfacets throw at each other."""
+def principled(graph, material):
+    """Blender's Principled BSDF."""
+    unknown = set(material) - PRINCIPLED_KEYS
+    assert not unknown, f"cycles_materials.py knows no {unknown} of principled materials"
+    transmission = material.get("transmission", 0)
+    assert transmission == 0 or not material.get("thin_walled", True), "Blender's transmission bounds solids"
+    if bpy.app.version < (4, 0):
+        return principled_node(graph, material, inputs_of_blender_3(graph, material))
+    parts = [t for t, share in ((0, 1 - transmission), (1, transmission)) if share > 0]
+    nodes = [principled_node(graph, material, inputs_of_blender_4(graph, material, t)) for t in parts]
+    return nodes[0] if len(nodes) == 1 else graph.node("MixShader", transmission, *nodes).outputs[0]
+
+
+def reflecting(name, material, folder):
+    """A material of a scene."""
     graph = Graph(name, folder)
-    graph.distribution = distribution
     return graph.finish(graph.cut(material, MODELS[material["type"]](graph, material)))
 
 

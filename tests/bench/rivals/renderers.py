@@ -15,8 +15,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 # Bounces that always survive. In all three, roulette begins after the second scattering: Cycles cannot begin earlier.
 RR_DEPTH = 1
-# Blender without windows or the user's settings; it fails if the script does.
-BLENDER_SCRIPT = ["-b", "--factory-startup", "--python-exit-code", "1", "-P"]
+BLENDER_REMEDY = "install Blender, or name it by --blender: its program, or a Python with the module bpy"
 
 
 @dataclass
@@ -81,17 +80,25 @@ class Tracer:
 
 
 class Cycles:
-    def __init__(self, blender, distribution="MULTI_GGX"):
-        self.distribution = distribution  # Of principled materials' microfacets, as Blender calls it.
-        self.name = "Cycles" if distribution == "MULTI_GGX" else f"Cycles-{distribution}"
-        self.blender = find(blender, "install Blender 3.4, name it by --blender, or use --without Cycles")
-        self.version = "Cycles of " + run([self.blender, "--version"]).splitlines()[0]
+    name = "Cycles"
+
+    def __init__(self, blender):
+        self.blender = find(blender, f"{BLENDER_REMEDY}, or use --without Cycles")
+        self.version = None  # Known after the first run.
 
     def render(self, job, spp, seed, output):
-        settings = [job.width, spp, job.depth, seed, job.threads, self.distribution]
-        words = [*BLENDER_SCRIPT, HERE / "cycles.py", "--", job.scene, output, *settings]
-        figures = last_json(run([self.blender, *words]))
+        settings = [job.width, spp, job.depth, seed, job.threads]
+        figures = last_json(run_in_blender(self.blender, HERE / "render_with_cycles.py", job.scene, output, *settings))
+        self.version = f"Cycles of Blender {figures['version']}"
         return without_start(figures["one"], figures["all"], spp) | {"rays": None}
+
+
+def run_in_blender(blender, script, *words):
+    """Standard output of a script in Blender: the program without windows or the user's settings, which fails if the
+    script does, or a Python with the module `bpy`, which is Blender without the program."""
+    python = Path(blender).name.startswith("python")
+    options = [] if python else ["-b", "--factory-startup", "--python-exit-code", "1", "-P"]
+    return run([blender, *options, script, "--", *words])
 
 
 def find(program, remedy):

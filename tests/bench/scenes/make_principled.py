@@ -1,5 +1,5 @@
-"""Makes made/principled.json with its mesh and images: `blender -b --factory-startup -P make_principled.py`, with
-Blender 3.4, whose Python has NumPy.
+"""Makes made/principled.json with its mesh and images: `python3 make_principled.py` with NumPy, which Blender's Python
+has, too: `blender -b --factory-startup -P make_principled.py`.
 
 Forty balls on a floor, each of another principled material that Blender's Principled BSDF can express, too: plastics,
 metals, glass, lacquers, cloth and mixtures, seven of them with images. Seeds are fixed: the scene is always the same.
@@ -125,8 +125,8 @@ def materials():
         plastic(marble, polish, coat=0.5, coat_roughness=0.1),
         {"base_color": [0.3, 0.35, 0.6], "metalness": 0.6, "roughness": 0.4, "coat": 1, "coat_roughness": 0.04},
         # Cloth, and mixtures.
-        plastic(weave, 0.8, sheen_color=[0.4, 0.4, 0.4], sheen_roughness=0.5),
-        plastic([0.1, 0.05, 0.2], 1, sheen_color=[0.5, 0.5, 0.5], sheen_roughness=0.4),
+        plastic(weave, 0.8, fuzz=0.4, fuzz_roughness=0.5),
+        plastic([0.1, 0.05, 0.2], 1, fuzz=0.5, fuzz_roughness=0.4),
         {"base_color": [0.7, 0.5, 0.3], "metalness": 0.5, "roughness": 0.3},
         glass([0.9, 0.8, 0.7], 0.3, 1.4) | {"transmission": 0.5},
         glass([0.7, 0.9, 0.85], 0.1, 1.5) | {"transmission": 0.8},

@@ -1,4 +1,5 @@
-"""Makes made/suzanne.ply: `blender -b --factory-startup -P make_suzanne.py`, with Blender 3.4.
+"""Makes made/suzanne.ply: `blender -b --factory-startup -P make_suzanne.py`, or `python3 make_suzanne.py` with the
+module bpy.
 
 Suzanne is a mesh that comes with Blender; three steps of Catmull and Clark's subdivision make 62 976 triangles with
 smooth normals. Blender's +Z, up, becomes +Y.

@@ -1,5 +1,5 @@
-"""Makes made/textured.json with its meshes and images: `blender -b --factory-startup -P make_textured.py`, with
-Blender 3.4, whose Python has NumPy.
+"""Makes made/textured.json with its meshes and images: `python3 make_textured.py` with NumPy, which Blender's Python
+has, too: `blender -b --factory-startup -P make_textured.py`.
 
 A loggia that is open to the sky on two sides: planks, bricks, cloth, pottery, metals, and a plant whose leaves are cut
 out of cards by the alpha of their images. Seeds are fixed: the scene is always the same.

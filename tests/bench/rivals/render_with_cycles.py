@@ -1,9 +1,11 @@
-"""Renders a candela scene with Cycles, Blender 3.4's path tracer:
+"""Renders a candela scene with Cycles, Blender's path tracer:
 
-    blender -b --factory-startup -P cycles.py -- SCENE OUT.exr WIDTH SPP MAX_DEPTH SEED THREADS DISTRIBUTION
+    blender -b --factory-startup -P render_with_cycles.py -- SCENE OUT.exr WIDTH SPP MAX_DEPTH SEED THREADS
+    python3 render_with_cycles.py -- SCENE ...    # The same with the module bpy instead of the program.
 
-Renders with one sample per pixel, twice, and then with SPP, and writes the last picture. Its last line is JSON: CPU
-time and wall time [s] of the second rendering and of the last, each with preparing the scene.
+Renders with one sample per pixel, twice, and then with SPP, and writes the last picture. Its last line is JSON:
+Blender's version, and CPU time and wall time [s] of the second rendering and of the last, each with preparing the
+scene. Tested with Blender 3.4 and 5.0. (As `cycles.py`, the script would take the place of Blender's module `cycles`.)
 """
 
 import json
@@ -42,13 +44,14 @@ def blender_mesh(name, made, to_blender):
         coordinates = [c for triangle in made.triangles for i in triangle for c in made.uvs[i]]
         mesh.uv_layers.new().data.foreach_set("uv", coordinates)
         # Blender's own averages would show a crease where coordinates break off, for there each point has two vertices.
-        mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
+        if bpy.app.version < (4, 1):  # Since then they need no switch.
+            mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
         mesh.normals_split_custom_set_from_vertices([to_blender(n) for n in made.normals])
     return mesh
 
 
-def add_shapes(scene, folder, to_blender, distribution):
-    materials = {name: reflecting(name, m, folder, distribution) for name, m in scene["materials"].items()}
+def add_shapes(scene, folder, to_blender):
+    materials = {name: reflecting(name, m, folder) for name, m in scene["materials"].items()}
     for i, shape in enumerate(scene["shapes"]):
         mesh = blender_mesh(f"shape {i}", scene_file.mesh(shape, folder), to_blender)
         if "emission" in shape:
@@ -84,7 +87,7 @@ def add_environment(environment, folder):
     if "file" in environment:
         image = world.node_tree.nodes.new("ShaderNodeTexEnvironment")
         image.image = bpy.data.images.load(str((folder / environment["file"]).resolve()))
-        image.image.colorspace_settings.name = "Linear"
+        image.image.colorspace_settings.name = "Linear" if bpy.app.version < (4, 0) else "Linear Rec.709"
         image.interpolation = "Closest"  # As candela's texels.
         world.node_tree.links.new(image.outputs["Color"], background.inputs["Color"])
 
@@ -125,19 +128,19 @@ def render(spp):
     return {"cpu": usage.ru_utime + usage.ru_stime - cpu, "wall": time.perf_counter() - wall}
 
 
-def main(path, output, width, spp, depth, seed, threads, distribution):
+def main(path, output, width, spp, depth, seed, threads):
     scene, folder = scene_file.read_scene(path), Path(path).resolve().parent
     environment = scene.get("environment", {})
     to_blender = ToBlender(environment.get("rotation", 0))
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    add_shapes(scene, folder, to_blender, distribution)
+    add_shapes(scene, folder, to_blender)
     add_camera(next(iter(scene["cameras"].values())), to_blender)
     add_environment(environment, folder)
     set_up(int(width), int(depth), int(seed), int(threads))
     render(1)  # Warms up.
     one, all_samples = render(1), render(int(spp))
     bpy.data.images["Render Result"].save_render(output, scene=bpy.context.scene)
-    print(json.dumps({"one": one, "all": all_samples}))
+    print(json.dumps({"version": bpy.app.version_string, "one": one, "all": all_samples}))
 
 
 main(*sys.argv[sys.argv.index("--") + 1 :])
