@@ -1,8 +1,10 @@
-"""Builds five scenes in Blender 3.4, exports each as .glb, .gltf with files beside it and .gltf with all within, and
+"""Builds five scenes in Blender, exports each as .glb, .gltf with files beside it and .gltf with all within, and
 renders it with Cycles:
 
     blender -b --factory-startup -P blender_scenes.py -- FOLDER SPP
+    python3 blender_scenes.py -- FOLDER SPP    # The same with the module bpy instead of the program.
 
+Tested with Blender 3.4 and 5.0.
 FOLDER gets NAME.glb, NAME/NAME.gltf, NAME-embedded.gltf and, unless SPP is 0, NAME-cycles.exr. The world is black: glTF
 has none.
 """
@@ -14,10 +16,15 @@ from pathlib import Path
 import bpy
 
 WIDTH, HEIGHT = 320, 180
+# What inputs of the Principled BSDF were called before Blender 4.
+OLD_NAMES = {"Emission Color": "Emission", "Specular IOR Level": "Specular", "Transmission Weight": "Transmission"}
 
 
 def reset():
     bpy.ops.wm.read_factory_settings(use_empty=True)
+    exporter = bpy.context.preferences.addons["io_scene_gltf2"].preferences
+    if hasattr(exporter, "allow_embedded_format"):
+        exporter.allow_embedded_format = True  # Blender 3.4 always does.
     world = bpy.data.worlds.new("world")
     world.use_nodes = True
     world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0
@@ -32,19 +39,19 @@ def principled(name, color, metallic=0.0, roughness=0.5, **inputs):
     bsdf.distribution = "MULTI_GGX"
     values = {"Base Color": (*color, 1), "Metallic": metallic, "Roughness": roughness, **inputs}
     for key, value in values.items():
-        bsdf.inputs[key].default_value = value
+        bsdf.inputs[key if key in bsdf.inputs else OLD_NAMES[key]].default_value = value
     return material
 
 
 def matte(name, color):
-    """Rough metal, of which Blender and glTF say the same. Of plastic they do not: Blender's diffuse part is
-    Disney's, it loses nothing to the reflection above it, and without specular reflection it has none at grazing angles
-    either, where the exported file has."""
-    return principled(name, color, 1, 0.6)
+    """Plastic, of which glTF and Blender since version 4 say the same. Blender 3.4 does not: its diffuse part is
+    Disney's, and loses nothing to the reflection above it."""
+    return principled(name, color, 0, 0.6)
 
 
 def emitting(name, color, strength):
-    return principled(name, (0, 0, 0), 0, 1, Emission=(*color, 1), **{"Emission Strength": strength, "Specular": 0})
+    light = {"Emission Color": (*color, 1), "Emission Strength": strength, "Specular IOR Level": 0}
+    return principled(name, (0, 0, 0), 0, 1, **light)
 
 
 def last(material=None, smooth=False):
@@ -183,10 +190,13 @@ def textures():
 def glass():
     floor(matte("floor", (0.55, 0.55, 0.6)))
     output = bpy.data.node_groups.new("glTF Material Output", "ShaderNodeTree")
-    output.inputs.new("NodeSocketFloat", "Thickness")
+    if bpy.app.version < (4, 0):
+        output.inputs.new("NodeSocketFloat", "Thickness")
+    else:
+        output.interface.new_socket("Thickness", in_out="INPUT", socket_type="NodeSocketFloat")
     for i, rough in enumerate((0.0, 0.3)):
         bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=48, radius=0.7, location=(1.8 * i - 0.9, 0, 0.75))
-        material = principled(f"glass {rough}", (1, 1, 1), roughness=rough, Transmission=1.0, IOR=1.45)
+        material = principled(f"glass {rough}", (1, 1, 1), 0, rough, **{"Transmission Weight": 1, "IOR": 1.45})
         group = material.node_tree.nodes.new("ShaderNodeGroup")
         group.node_tree = output
         group.inputs["Thickness"].default_value = 1.0  # A solid, not a thin wall.
