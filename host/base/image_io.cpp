@@ -52,11 +52,11 @@ ImageFormat image_format(const fs::path& path) {
     throw Error(describe_unknown(path, ".exr, .png"), ExitCode::usage);
 }
 
-Image read_image(const fs::path& path, const ImageLimits& limits) {
-    const std::string extension = extension_of(path);
-    if (extension == ".exr") return read_exr(path, limits);
-    if (extension == ".hdr" || extension == ".pic") return read_hdr(path, limits);
-    throw Error(describe_unknown(path, ".exr, .hdr"));
+Image decode_image(std::string_view bytes, const fs::path& name, const ImageLimits& limits) {
+    const std::string extension = extension_of(name);
+    if (extension == ".exr") return decode_exr(bytes, name, limits);
+    if (extension == ".hdr" || extension == ".pic") return decode_hdr(bytes, name, limits);
+    throw Error(describe_unknown(name, ".exr, .hdr"));
 }
 
 void write_png(const fs::path& path, uint32_t width, uint32_t height, std::span<const uint8_t> rgb8) {

@@ -155,8 +155,4 @@ TexelImage decode_texels(std::string_view bytes, const fs::path& name, std::vect
     }
 }
 
-TexelImage read_texels(const fs::path& path, std::vector<std::string>& warnings, const TexelLimits& limits) {
-    return decode_texels(read_file(path), path, warnings, limits);
-}
-
 }  // namespace candela

@@ -24,6 +24,15 @@ void LoadingOptions::add_to(CLI::App& app) {
               concat("a whole number from 1 to ", MAX_IMAGE_SIDE),
               "Shrink images on surfaces to so many pixels along the longer side (default: never)")
         ->type_name("SIZE");
+    app.option_defaults()->group("Files that the scene names");
+    app.add_option(
+           "--allow-folder", folders,
+           "Read what is in this folder, too, if a file names it (default: only what is in the folder "
+           "of SCENE); repeat it for several")
+        ->type_name("DIR")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
+    app.add_flag("--allow-any-folder", any_folder, "Read whatever file is named, if you trust the scene");
     app.option_defaults()->group("glTF files");
     app.add_option("--scene", gltf.scene, "Scene by name or index (default: the file's)")->type_name("NAME");
     add_value(app, "--time", gltf.time, parse_number, "a number of seconds, such as 1.5",
@@ -80,6 +89,8 @@ Scene load_with_progress(const std::string& file, const LoadingOptions& given, P
         LoadingLine line(style);
         LoadOptions options{.gltf = given.gltf};
         options.progress = [&line](const char* what, size_t done, size_t of) { line.update(what, done, of); };
+        options.reach = {.folders = {given.folders.begin(), given.folders.end()},
+                         .anywhere = given.any_folder};
         if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
         scene = load_scene(file, options);
     }

@@ -78,6 +78,8 @@ inline constexpr const char* SCENE_FILES = "Scene file (.json, .gltf, .glb, .obj
 // How scene files are read.
 struct LoadingOptions {
     std::optional<uint32_t> texture_limit;  // Texels along a side of an image.
+    std::vector<std::string> folders;       // From which files may be read besides the scene's.
+    bool any_folder = false;                // Whether they may be read from anywhere.
     GltfOptions gltf;
 
     // Declares them on `app`; this object must not move.

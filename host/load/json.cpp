@@ -114,7 +114,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
         const Place place = next_token();
         Open& object = open_.back();
         if (!object.keys.insert(key).second) {
-            fail(file_, place, "duplicate key " + quote(key) + "; keep one of the two");
+            fail(file_, place, "duplicate key " + shown(quote(key)) + "; keep one of the two");
         }
         std::get<Object>(object.value.data).push_back({std::move(key), place, {}});
         return true;

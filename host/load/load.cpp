@@ -23,7 +23,7 @@ void refuse(const std::filesystem::path& file, const GltfOptions& options) {
 }
 
 Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options) {
-    return load_gltf_scene(file, options.gltf, options.progress);
+    return load_gltf_scene(file, options.gltf, options.progress, options.reach);
 }
 
 }  // namespace
@@ -33,14 +33,15 @@ Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) 
     constexpr std::array<std::pair<std::string_view, Loader>, 4> LOADERS{
         {{".glb", &load_gltf},
          {".gltf", &load_gltf},
-         {".obj",
-          [](const auto& file, const auto& all) { return refuse(file, all.gltf), load_obj_scene(file); }},
+         {".obj", [](const auto& file,
+                     const auto& all) { return refuse(file, all.gltf), load_obj_scene(file, all.reach); }},
          {".ply",
           [](const auto& file, const auto& all) { return refuse(file, all.gltf), load_ply_scene(file); }}}};
     const auto loader =
         std::ranges::find(LOADERS, extension_of(path), [](const auto& known) { return known.first; });
-    Scene scene = loader == LOADERS.end() ? load_json_scene(path, options.gltf, options.progress)
-                                          : loader->second(path, options);
+    Scene scene = loader == LOADERS.end()
+                      ? load_json_scene(path, options.gltf, options.progress, options.reach)
+                      : loader->second(path, options);
     load_images(scene, options.images, options.progress);
     add_studio(scene);
     return scene;

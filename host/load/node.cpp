@@ -57,7 +57,7 @@ void Node::fail(const std::string& message) const {
 
 void Node::fail_expected(const std::string& what) const {
     const std::string subject = key_.empty() ? std::string("the scene") : quote(key_);
-    fail(subject + ": expected " + what + ", found " + json::describe(*value_));
+    fail(subject + ": expected " + what + ", found " + shown(json::describe(*value_)));
 }
 
 void Node::fail_unknown(const std::string& what, std::string_view name, std::span<const std::string> known,

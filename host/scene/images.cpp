@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -160,22 +161,33 @@ void check_opacity(Scene& scene, const Material& material) {
 
 }  // namespace
 
+uint32_t add_image_file(Scene& scene, ImageFile file) {
+    const auto [known, is_new] =
+        scene.image_indices.try_emplace(file.real_path.string(), uint32_t(scene.images.size()));
+    if (is_new) scene.images.push_back(std::move(file));
+    return known->second;
+}
+
 uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place) {
-    const std::filesystem::path real = identity_of(path);
-    const auto known = std::ranges::find(scene.images, real, &ImageFile::real_path);
-    if (known != scene.images.end()) return uint32_t(known - scene.images.begin());
-    scene.images.push_back({.path = path, .real_path = real, .place = place, .image = {}});
-    scene.files.push_back(path);
-    return uint32_t(scene.images.size() - 1);
+    const size_t before = scene.images.size();
+    const uint32_t index =
+        add_image_file(scene, {.path = path, .real_path = identity_of(path), .place = place, .image = {}});
+    if (scene.images.size() > before) scene.files.push_back(path);
+    return index;
 }
 
 uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view bytes,
                          const std::string& place) {
-    const auto known = std::ranges::find(scene.images, std::filesystem::path(name), &ImageFile::real_path);
-    if (known != scene.images.end()) return uint32_t(known - scene.images.begin());
-    scene.images.push_back(
-        {.path = name, .real_path = name, .bytes = std::string(bytes), .place = place, .image = {}});
-    return uint32_t(scene.images.size() - 1);
+    ImageFile file{.path = name,
+                   .real_path = concat('#', std::hash<std::string_view>()(bytes), '/', bytes.size()),
+                   .bytes = std::string(bytes),
+                   .place = place,
+                   .image = {}};
+    const auto known = scene.image_indices.find(file.real_path.string());
+    // Of other bytes that have the same hash.
+    if (known != scene.image_indices.end() && scene.images[known->second].bytes != bytes)
+        file.real_path = name;
+    return add_image_file(scene, std::move(file));
 }
 
 void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& progress) {
@@ -188,8 +200,8 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
         ImageFile& file = scene.images[i];
         if (!file.image.texels.empty()) return;
         try {
-            TexelImage image = file.bytes.empty() ? read_texels(file.path, warnings[i])
-                                                  : decode_texels(file.bytes, file.path, warnings[i]);
+            if (file.bytes.empty()) file.bytes = scene.reach.read(file.path);
+            TexelImage image = decode_texels(file.bytes, file.path, warnings[i]);
             file.bytes = {};
             if (!file.has_gamma) image.gamma.reset();
             if (file.glossiness) image = roughness_of(image, *file.glossiness);

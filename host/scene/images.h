@@ -16,10 +16,13 @@ namespace candela {
 // `place` is what messages about it begin with.
 uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place);
 
-// The same for an image file that is within another one: these are its bytes, and messages call it `name`,
-// which no other has.
+// The same for an image file that is within another one: these are its bytes, and messages call it `name`.
+// Images of the same bytes are one.
 uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view bytes,
                          const std::string& place);
+
+// The index of an image in scene.images, which it joins unless one of its real_path has been added.
+uint32_t add_image_file(Scene& scene, ImageFile file);
 
 struct ImageOptions {
     // Images with more texels along a side are made smaller.

@@ -81,22 +81,26 @@ void scene(std::string_view bytes) {
 
 void obj(std::string_view bytes) {
     const MemoryFile file(bytes);
-    load_obj(file.path(), MeshNormals::file);
-    load_obj_parts(file.path(), MeshNormals::smooth);
+    load_obj(file.path(), MeshNormals::file, FileReach(file.path()));
+    load_obj_parts(file.path(), MeshNormals::smooth, FileReach(file.path()));
 }
 
 void mtl(std::string_view bytes) {
-    load_mtl(MemoryFile(bytes).path());
+    const MemoryFile file(bytes);
+    load_mtl(file.path(), FileReach(file.path()));
 }
 
 void ply(std::string_view bytes) {
     std::vector<std::string> warnings;
-    load_ply(MemoryFile(bytes).path(), MeshNormals::file, warnings);
+    const MemoryFile file(bytes);
+    load_ply(file.path(), MeshNormals::file, FileReach(file.path()), warnings);
 }
 
 void gltf(std::string_view bytes) {
     Scene scene;
-    add_gltf_scene(MemoryFile(bytes).path(), {.animation = "all", .time = 0.5}, scene);
+    const MemoryFile file(bytes);
+    scene.reach = FileReach(file.path());
+    add_gltf_scene(file.path(), {.animation = "all", .time = 0.5}, scene);
     complete_gltf_scene("fuzz.gltf", scene);
     // Images are other targets, and are not read here.
     if (scene.images.empty()) build_gpu_scene(scene);

@@ -36,7 +36,7 @@ class EnvironmentFile : public testing::Test {
     }
     Environment load() {
         warnings_.clear();
-        return load_environment(path_, warnings_);
+        return load_environment(path_, FileReach(path_), warnings_);
     }
     // Warnings and errors begin with the file's name.
     std::string named(const std::string& text) const { return path_.string() + ": " + text; }
@@ -151,6 +151,7 @@ TEST_F(EnvironmentFile, SaysWhyAFileCannotBeUsed) {
     EXPECT_EQ(error_of([&] { load(); }),
               "cannot read \"" + path_.string() + "\": the file does not exist; check the name");
     path_ = directory_ / "sky.png";
+    write_quickly(path_, "");
     EXPECT_EQ(error_of([&] { load(); }), "image file \"" + path_.string() +
                                              "\" has the unknown extension \".png\" (supported: .exr, .hdr)");
 }
@@ -166,7 +167,7 @@ vec3 texel_direction(uvec2 size, uint32_t x, uint32_t y) {
 TEST(Sky, HasItsSunWhereItsMakerSays) {
     std::vector<std::string> warnings;
     const fs::path path = fs::path(CANDELA_SCENES) / "sky.hdr";
-    const Environment sky = load_environment(path, warnings);
+    const Environment sky = load_environment(path, FileReach(path), warnings);
     EXPECT_TRUE(warnings.empty());
     EXPECT_EQ(sky.size, uvec2(1024, 512));
     EXPECT_LE(fs::file_size(path), 2u << 20);

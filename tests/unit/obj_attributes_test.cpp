@@ -21,11 +21,11 @@ class ObjAttributes : public testing::Test {
     }
 
     TriangleMesh load(const std::string& text, MeshNormals normals = MeshNormals::file) {
-        return load_obj(write(text), normals);
+        return load_obj(write(text), normals, reach_);
     }
 
     std::vector<ObjPart> parts(const std::string& text) {
-        return load_obj_parts(write(text), MeshNormals::file).parts;
+        return load_obj_parts(write(text), MeshNormals::file, reach_).parts;
     }
 
     void expect_error(const std::string& text, const std::string& message) {
@@ -42,6 +42,7 @@ class ObjAttributes : public testing::Test {
     }
 
     SceneFolder folder_;
+    FileReach reach_{folder_.path() / "m.obj"};
 };
 
 TEST_F(ObjAttributes, TextureCoordinatesKeepTheDirectionOfTheFile) {

@@ -11,7 +11,6 @@
 
 #include "base/color.h"
 #include "base/error.h"
-#include "base/file.h"
 #include "base/texel_io.h"
 #include "base/text.h"
 #include "load/gltf/uri.h"
@@ -51,7 +50,7 @@ std::string image_bytes(File& file, const Node& reference) {
     }
     const Node uri = image.require("uri");
     if (auto data = inline_data(uri)) return std::move(*data);
-    return read_file(file_of(uri, file.folder()));
+    return file.read_named(uri);
 }
 
 // RGBD if there is an alpha: the colour over it.

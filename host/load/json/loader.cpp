@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "load/json/loader_parts.h"
+#include "load/quote.h"
 #include "scene/geometry.h"
 #include "scene/names.h"
 
@@ -44,8 +45,9 @@ IntegratorSettings read_integrator(const Node& node) {
 // Reads the glTF file that the scene adds to.
 void read_base(const Node& node, const std::filesystem::path& folder, const GltfOptions& gltf, Scene& scene,
                const LoadProgress& progress) {
-    const std::filesystem::path path = folder / node.file_name();
+    const std::filesystem::path path = find_file(node, folder, scene.reach);
     if (!is_gltf(path)) node.fail_expected("the name of a glTF file, .gltf or .glb");
+    const HiddenValues hidden(scene.reach);
     try {
         add_gltf_scene(path, gltf, scene, progress);
     } catch (const Error& error) {
@@ -56,18 +58,20 @@ void read_base(const Node& node, const std::filesystem::path& folder, const Gltf
 }  // namespace
 
 Scene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf,
-                      const LoadProgress& progress) {
-    return parse_scene(read_file(path), path.string(), path.parent_path(), gltf, progress);
+                      const LoadProgress& progress, const ReachOptions& reach) {
+    return parse_scene(read_file(path), path.string(), path.parent_path(), gltf, progress,
+                       FileReach(path, reach));
 }
 
 Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder,
-                  const GltfOptions& gltf, const LoadProgress& progress) {
+                  const GltfOptions& gltf, const LoadProgress& progress, const FileReach& reach) {
     const json::Document document{file, json::parse(text, file)};
     const Node root(document);
     root.allow_only({"$schema", "scene", "cameras", "film", "integrator", "materials", "objects", "shapes",
                      "lights", "environment"});
 
     Scene scene;
+    scene.reach = reach;
     const auto base = root.find("scene");
     if (!base && gltf != GltfOptions{}) throw Error(file + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
     if (base) scene.film.size = GLTF_FILM_SIZE;

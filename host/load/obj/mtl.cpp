@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "base/text.h"
 #include "load/obj/mtl_ignored.h"
 #include "load/quote.h"
@@ -62,7 +61,7 @@ class Reader {
             current_->line = line_;
             if (current_->name.empty()) fail("newmtl needs the name of the material");
         } else if (!current_) {
-            fail(quote(command) + " stands before the first newmtl; is it an MTL file?");
+            fail(shown(quote(command)) + " stands before the first newmtl; is it an MTL file?");
         } else {
             read_statement(*current_, command, rest);
         }
@@ -112,14 +111,14 @@ class Reader {
     double share(std::string_view command, std::string_view rest) const {
         const double value = number(command, rest);
         if (value >= 0.0 && value <= 1.0) return value;
-        fail(std::string(command) + " needs a number from 0 to 1, found " + number_text(value, 6));
+        fail(std::string(command) + " needs a number from 0 to 1, found " + shown(number_text(value, 6)));
     }
 
     double number(std::string_view command, std::string_view rest) const {
         std::string_view word = next_word(rest);
         if (command == "d" && word == "-halo") word = next_word(rest);
         if (const auto value = parse_finite(word)) return *value;
-        fail(std::string(command) + " needs a finite number, found " + quote(word));
+        fail(std::string(command) + " needs a finite number, found " + shown(quote(word)));
     }
 
     // One number for grey, or three; what follows the three is ignored.
@@ -129,7 +128,8 @@ class Reader {
              values.size() < 3 && !word.empty() && !word.starts_with('#'); word = next_word(rest)) {
             const auto value = parse_finite(word);
             if (!value || *value < 0.0) {
-                fail(std::string(command) + " needs finite numbers of at least 0, found " + quote(word));
+                fail(std::string(command) + " needs finite numbers of at least 0, found " +
+                     shown(quote(word)));
             }
             values.push_back(*value);
         }
@@ -144,7 +144,7 @@ class Reader {
         uint32_t value = 0;
         const auto [stop, error] = std::from_chars(word.data(), end, value);
         if (error == std::errc() && stop == end && value <= LAST) return value;
-        fail("illum needs a whole number from 0 to 10, found " + quote(word));
+        fail("illum needs a whole number from 0 to 10, found " + shown(quote(word)));
     }
 
     // Adds the material that ends here, if there is one.
@@ -168,8 +168,8 @@ class Reader {
 
 }  // namespace
 
-MtlLibrary load_mtl(const std::filesystem::path& file) {
-    return Reader(file.string()).read(read_file(file));
+MtlLibrary load_mtl(const std::filesystem::path& file, const FileReach& reach) {
+    return Reader(file.string()).read(reach.read(file));
 }
 
 }  // namespace candela

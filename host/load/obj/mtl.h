@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_reach.h"
 #include "load/obj/mtl_material.h"
 
 namespace candela {
@@ -17,9 +18,9 @@ struct MtlLibrary {
 };
 
 // Reads a library; mtl_material() says how. The first definition of a name counts. Unknown statements and
-// some textures are ignored with a warning; Ka, Tf and sharpness without. Throws Error as read_file() and
-// parse_mtl_texture() do, `file:line: cause` for a number that is malformed or out of range and for a
+// some textures are ignored with a warning; Ka, Tf and sharpness without. Throws Error as FileReach::read()
+// and parse_mtl_texture() do, `file:line: cause` for a number that is malformed or out of range and for a
 // statement before the first newmtl, and `file: cause` if there is no material. Does not look for images.
-MtlLibrary load_mtl(const std::filesystem::path& file);
+MtlLibrary load_mtl(const std::filesystem::path& file, const FileReach& reach);
 
 }  // namespace candela

@@ -226,8 +226,11 @@ MtlMaterial mtl_material(const MtlStatements& statements, const std::string& fil
 
 void add_images(MtlMaterial& material, Scene& scene) {
     std::vector<uint32_t> indices;
-    for (const MtlImage& image : material.images)
+    for (const MtlImage& image : material.images) {
+        if (!scene.reach.holds(image.file))
+            throw Error(image.place + ": " + scene.reach.refusal(image.file.string()));
         indices.push_back(add_image(scene, image.file, image.place));
+    }
     for_each_texture(material.material, [&](Texture& texture) { texture.image = indices[texture.image]; });
     if (material.emission.texture)
         material.emission.texture->image = indices[material.emission.texture->image];

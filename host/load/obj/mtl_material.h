@@ -63,7 +63,8 @@ struct MtlMaterial {
 // Ref: Alias|Wavefront, "MTL material format" (1995); Exocortex, "PBR extension to MTL" (2014).
 MtlMaterial mtl_material(const MtlStatements& statements, const std::string& file, MtlIgnored& ignored);
 
-// Adds the images of a material to the scene, so that its textures look them up there.
+// Adds the images of a material to the scene, so that its textures look them up there. Throws Error
+// for one that is out of reach.
 void add_images(MtlMaterial& material, Scene& scene);
 
 }  // namespace candela

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file.h"
 
 namespace candela {
 namespace {
@@ -106,13 +105,13 @@ void require_name(const ObjName& statement, const char* what, const std::filesys
 
 }  // namespace
 
-TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals) {
-    ObjFile obj = parse_obj(read_file(file), file.string());
+TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach) {
+    ObjFile obj = parse_obj(reach.read(file), file.string());
     return build_mesh(obj, normals);
 }
 
-ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals) {
-    ObjFile obj = parse_obj(read_file(file), file.string());
+ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach) {
+    ObjFile obj = parse_obj(reach.read(file), file.string());
     for (const ObjName& library : obj.libraries)
         require_name(library, "mtllib needs the name of a file", file);
     for (const ObjName& use : std::span(obj.uses).subspan(1))

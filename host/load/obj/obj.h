@@ -16,8 +16,8 @@ namespace candela {
 // are cut into triangles; corners with the same indices share a vertex; unused vertices are dropped. A corner
 // without texture coordinates has (0, 0), and a mesh all of whose corners lack them has none. With
 // MeshNormals::file, a corner without a normal gets one of length zero, and a file without normals gives a
-// mesh without. Throws Error as read_file() and parse_obj() do.
-TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals);
+// mesh without. Throws Error as FileReach::read() and parse_obj() do.
+TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach);
 
 // The faces of one material.
 struct ObjPart {
@@ -33,7 +33,7 @@ struct ObjParts {
 
 // Reads a file as load_obj() does, but into one mesh per material; smooth normals are averaged across them.
 // Does not read the libraries. Throws Error for `usemtl` and `mtllib` without a name, too.
-ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals);
+ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach);
 
 // A file with the materials that it names.
 struct ObjShape {
@@ -49,7 +49,8 @@ struct ObjShape {
 ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, const std::string& name,
                         SceneBuilder& builder);
 
-// Reads a file as a scene of its own, as load_obj_shape() does; see add_default_view().
-Scene load_obj_scene(const std::filesystem::path& file);
+// Reads a file as a scene of its own, as load_obj_shape() does; see add_default_view(). `reach` is what it
+// may name besides what is in its folder.
+Scene load_obj_scene(const std::filesystem::path& file, const ReachOptions& reach = {});
 
 }  // namespace candela

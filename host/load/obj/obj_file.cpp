@@ -118,7 +118,7 @@ class ObjReader {
             const std::optional<double> number = parse_finite(words[size_t(i)]);
             if (!number || *number < 0.0 || *number > 1.0) {
                 fail("the colour of a vertex needs three numbers from 0 to 1, found " +
-                     quote(words[size_t(i)]) + "; scale the colours, or leave them out");
+                     shown(quote(words[size_t(i)])) + "; scale the colours, or leave them out");
             }
             color[i] = float(*number);
         }
@@ -135,7 +135,8 @@ class ObjReader {
             }
             const std::optional<double> number = parse_finite(word);
             if (!number || std::abs(*number) > MAX_UV)
-                fail("a texture coordinate needs finite numbers from -1e30 to 1e30, found " + quote(word));
+                fail("a texture coordinate needs finite numbers from -1e30 to 1e30, found " +
+                     shown(quote(word)));
             uv[i] = float(*number);
         }
         obj_.uvs.push_back(uv);
@@ -150,7 +151,8 @@ class ObjReader {
                 fail("a " + std::string(kind.singular) + " needs three numbers; is the file cut off?");
             const std::optional<double> number = parse_finite(word);
             if (!number)
-                fail("a " + std::string(kind.singular) + " needs three finite numbers, found " + quote(word));
+                fail("a " + std::string(kind.singular) + " needs three finite numbers, found " +
+                     shown(quote(word)));
             numbers[i] = *number;
         }
         return numbers;
@@ -196,7 +198,7 @@ class ObjReader {
         if (error != std::errc() || stop != word.data() + word.size()) fail_malformed(corner);
         if (index != 0 && index >= -counts_[kind] && index <= totals_[kind])
             return uint32_t(index > 0 ? index - 1 : counts_[kind] + index);
-        const std::string use = face() + " uses " + KINDS[kind].singular + ' ' + std::to_string(index);
+        const std::string use = face() + " uses " + KINDS[kind].singular + ' ' + shown(std::to_string(index));
         const std::string plural = KINDS[kind].plural;
         if (index == 0) fail(use + "; indices count from 1, or backwards from -1");
         if (index > 0) fail(use + ", but the file has " + std::to_string(totals_[kind]) + ' ' + plural);
@@ -204,7 +206,7 @@ class ObjReader {
     }
 
     [[noreturn]] void fail_malformed(std::string_view corner) const {
-        fail(face() + " has the malformed corner " + quote(corner) + "; write 1, 1/2, 1//3 or 1/2/3");
+        fail(face() + " has the malformed corner " + shown(quote(corner)) + "; write 1, 1/2, 1//3 or 1/2/3");
     }
 
     // The current face, counted from 1.

@@ -18,13 +18,13 @@ constexpr const char* REMEDY = "give the shape a \"material\" in the scene";
     throw Error(obj.string() + ':' + std::to_string(line) + ": " + cause);
 }
 
-bool is_there(const std::filesystem::path& path) {
-    std::error_code ignored;
-    return std::filesystem::exists(path, ignored);
-}
-
 // The files that one `mtllib` stands for: its name as a whole, or word by word.
-std::vector<std::filesystem::path> find_libraries(const std::filesystem::path& obj, const ObjName& name) {
+std::vector<std::filesystem::path> find_libraries(const std::filesystem::path& obj, const ObjName& name,
+                                                  const FileReach& reach) {
+    const auto is_there = [&](const std::filesystem::path& path) {
+        std::error_code ignored;
+        return reach.holds(path) && std::filesystem::exists(path, ignored);
+    };
     const std::filesystem::path folder = obj.parent_path();
     const std::filesystem::path whole = folder / name.name;
     if (is_there(whole)) return {whole};
@@ -35,22 +35,25 @@ std::vector<std::filesystem::path> find_libraries(const std::filesystem::path& o
     if (std::none_of(paths.begin(), paths.end(), is_there)) paths = {whole};
     const auto missing = std::find_if_not(paths.begin(), paths.end(), is_there);
     if (missing == paths.end()) return paths;
+    if (!reach.holds(*missing)) fail(obj, name.line, reach.refusal(name.name));
     fail(obj, name.line,
          "the material library " + quote(missing->string()) + " does not exist; put it there, or " + REMEDY);
 }
 
 }  // namespace
 
-MtlLibrary load_mtl_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& names) {
+MtlLibrary load_mtl_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& names,
+                              const FileReach& reach) {
     MtlLibrary all;
+    const HiddenValues hidden(reach);
     for (const ObjName& name : names) {
-        for (const std::filesystem::path& path : find_libraries(obj, name)) {
+        for (const std::filesystem::path& path : find_libraries(obj, name, reach)) {
             if (std::find(all.files.begin(), all.files.end(), path) == all.files.end())
                 all.files.push_back(path);
         }
     }
     for (const std::filesystem::path& path : all.files) {
-        MtlLibrary library = load_mtl(path);
+        MtlLibrary library = load_mtl(path, reach);
         all.materials.merge(library.materials);  // Keeps those that are already there.
         std::move(library.warnings.begin(), library.warnings.end(), std::back_inserter(all.warnings));
     }

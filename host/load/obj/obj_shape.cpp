@@ -17,7 +17,7 @@ std::string name_of(const std::string& shape, const ObjPart& part) {
 // Adds the materials of all parts to the scene; returns warnings.
 std::vector<std::string> add_materials(const std::filesystem::path& file, const ObjParts& obj,
                                        const std::string& name, SceneBuilder& builder) {
-    MtlLibrary library = load_mtl_libraries(file, obj.libraries);
+    MtlLibrary library = load_mtl_libraries(file, obj.libraries, builder.scene().reach);
     std::ranges::copy(library.files, std::back_inserter(builder.scene().files));
     std::vector<std::string> warnings = std::move(library.warnings);
     for (const ObjPart& part : obj.parts) {
@@ -50,7 +50,7 @@ bool has_material(const ObjPart& part) {
 
 ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, const std::string& name,
                         SceneBuilder& builder) {
-    ObjParts obj = load_obj_parts(file, normals);
+    ObjParts obj = load_obj_parts(file, normals, builder.scene().reach);
     builder.scene().files.push_back(file);
     ObjShape shape{.has_materials = std::ranges::any_of(obj.parts, has_material)};
     const auto is_there = [&](const ObjPart& part) {
@@ -64,8 +64,9 @@ ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, 
     return shape;
 }
 
-Scene load_obj_scene(const std::filesystem::path& file) {
+Scene load_obj_scene(const std::filesystem::path& file, const ReachOptions& reach) {
     Scene scene;
+    scene.reach = FileReach(file, reach);
     SceneBuilder builder(scene);
     ObjShape shape = load_obj_shape(file, MeshNormals::file, file.filename().string(), builder);
     scene.warnings = std::move(shape.warnings);

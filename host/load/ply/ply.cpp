@@ -145,16 +145,16 @@ class BodyReader {
         const uint64_t vertices = header_.find("vertex")->rows;
         const double corners = rows_.next(*indices.length);
         if (corners < 3.0)
-            position_.fail("has " + number_text(corners, 10) + " corners; a face needs at least 3");
+            position_.fail("has " + shown(number_text(corners, 10)) + " corners; a face needs at least 3");
         if (corners > double(MOST_CORNERS)) {
-            position_.fail("has " + number_text(corners, 10) + " corners, but at most " +
+            position_.fail("has " + shown(number_text(corners, 10)) + " corners, but at most " +
                            std::to_string(MOST_CORNERS) + " are read; cut it into triangles");
         }
         for (double i = 0.0; i < corners; ++i) {
             const double index = rows_.next(indices.type);
             if (!(index >= 0.0 && index < double(vertices))) {
-                position_.fail("uses vertex " + number_text(index, 10) + ", but the vertices are 0 to " +
-                               std::to_string(vertices - 1));
+                position_.fail("uses vertex " + shown(number_text(index, 10)) +
+                               ", but the vertices are 0 to " + std::to_string(vertices - 1));
             }
             polygons_.corners.push_back(uint32_t(index));
         }
@@ -163,7 +163,7 @@ class BodyReader {
 
     void skip(const PlyProperty& property) {
         const double numbers = property.length ? rows_.next(*property.length) : 1.0;
-        if (numbers < 0.0) position_.fail("has a list of " + number_text(numbers, 10) + " numbers");
+        if (numbers < 0.0) position_.fail("has a list of " + shown(number_text(numbers, 10)) + " numbers");
         for (double i = 0.0; i < numbers; ++i)
             rows_.next(property.type);
     }
@@ -176,9 +176,9 @@ class BodyReader {
 };
 
 // The rows of a file, checked.
-PlyPolygons read_polygons(const std::filesystem::path& file, MeshNormals normals,
+PlyPolygons read_polygons(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach,
                           std::vector<std::string>& warnings) {
-    const std::string bytes = read_file(file);
+    const std::string bytes = reach.read(file);
     PlyPosition position{file.string(), 0, "", 0};
     const PlyHeader header = read_ply_header(bytes, position.file);
     check_header(header, position.file);
@@ -197,9 +197,9 @@ PlyPolygons read_polygons(const std::filesystem::path& file, MeshNormals normals
 
 }  // namespace
 
-TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
+TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach,
                       std::vector<std::string>& warnings) {
-    PlyPolygons polygons = read_polygons(file, normals, warnings);
+    PlyPolygons polygons = read_polygons(file, normals, reach, warnings);
     TriangleMesh mesh{.normals = std::move(polygons.normals),
                       .uv0 = std::move(polygons.uvs),
                       .colors = std::move(polygons.colors)};
@@ -224,7 +224,7 @@ TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
 Scene load_ply_scene(const std::filesystem::path& file) {
     Scene scene;
     SceneBuilder builder(scene);
-    TriangleMesh mesh = load_ply(file, MeshNormals::file, scene.warnings);
+    TriangleMesh mesh = load_ply(file, MeshNormals::file, FileReach(file), scene.warnings);
     const std::string name = file.filename().string();
     builder.add_file_appearance(name, default_material(!mesh.colors.empty()), std::nullopt);
     builder.add_mesh(file.string(), *builder.find_file_appearance(name), Transform(), std::move(mesh));

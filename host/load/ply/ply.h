@@ -12,12 +12,12 @@ namespace candela {
 // Reads the elements "vertex" (x y z, and what find_vertex_fields() finds) and "face" (vertex_indices or
 // vertex_index) of a file in any of the three formats, in the units of the file; all else is skipped.
 // Polygons are cut into triangles. Normals may have any length, and one of length zero stands for none. Bytes
-// after the last element are ignored, with a warning that says how many. Throws Error as read_file() and
-// read_ply_header() do, and `file: cause`, or `file:line: cause` in a header or an ASCII file, if the file
-// lacks these elements, ends early, or has rows that do not match the header, a number of a vertex as
+// after the last element are ignored, with a warning that says how many. Throws Error as FileReach::read()
+// and read_ply_header() do, and `file: cause`, or `file:line: cause` in a header or an ASCII file, if the
+// file lacks these elements, ends early, or has rows that do not match the header, a number of a vertex as
 // vertex_number() does, a face with fewer than 3 or more than MOST_CORNERS corners, or an index that is out
 // of range.
-TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
+TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach,
                       std::vector<std::string>& warnings);
 
 // Reads a file as a scene of its own, of default_material(); see add_default_view(). Throws Error as

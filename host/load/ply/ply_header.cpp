@@ -85,7 +85,7 @@ class HeaderReader {
         } else if (statement == "property") {
             read_property(line);
         } else if (statement != "comment" && statement != "obj_info") {
-            fail("unknown statement " + quote(statement) +
+            fail("unknown statement " + shown(quote(statement)) +
                  " (known: format, comment, obj_info, element, property, end_header)");
         }
         return true;

@@ -42,7 +42,7 @@ double PlyAsciiRows::next(PlyType type) {
     const auto number = parse_number(word);
     if (number && fits(*number, type)) return *number;
     const size_t size = size_of(type);
-    position_.fail("has " + quote(word) + " in place of " +
+    position_.fail("has " + shown(quote(word)) + " in place of " +
                    (is_integer(type) ? "an integer of " : "a number of ") + std::to_string(size) +
                    (size == 1 ? " byte" : " bytes"));
 }

@@ -46,7 +46,7 @@ double color_number(const PlyProperty& property, size_t field, double number, co
     if (property.type == PlyType::uint16)
         return field == PLY_ALPHA ? number / 65535.0 : double(srgb_decode(float(number / 65535.0)));
     if (number >= 0.0 && number <= 1.0) return number;
-    position.fail("needs " + quote(property.name) + " from 0 to 1, found " + number_text(number, 6));
+    position.fail("needs " + quote(property.name) + " from 0 to 1, found " + shown(number_text(number, 6)));
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ double vertex_number(const PlyProperty& property, size_t field, double number, c
     if (std::abs(number) <= (is_uv ? MAX_UV : double(std::numeric_limits<float>::max()))) return number;
     const std::string range =
         is_uv ? quote(property.name) + " from -1e30 to 1e30" : "a finite " + property.name;
-    position.fail("needs " + range + ", found " + number_text(number, 6));
+    position.fail("needs " + range + ", found " + shown(number_text(number, 6)));
 }
 
 }  // namespace candela
