@@ -90,10 +90,8 @@ void Node::allow_only(std::initializer_list<std::string_view> keys,
 }
 
 std::optional<Node> Node::find(std::string_view key) const {
-    for (const json::Member& member : object()) {
-        if (member.key == key) return child(member.key, member.value);
-    }
-    return std::nullopt;
+    const json::Member* member = object().find(key);
+    return member == nullptr ? std::nullopt : std::optional(child(member->key, member->value));
 }
 
 Node Node::require(std::string_view key) const {

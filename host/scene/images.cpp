@@ -110,10 +110,27 @@ bool points_up(vec4 mean) {
     return mean.z > 0.6f && std::abs(mean.x - 0.5f) < FAR && std::abs(mean.y - 0.5f) < FAR;
 }
 
+// The mean codes of a scene's images, each computed once.
+class MeanCodes {
+  public:
+    explicit MeanCodes(const Scene& scene) : scene_(scene) {}
+
+    vec4 of(uint32_t image) {
+        const auto [known, is_new] = means_.try_emplace(image);
+        if (is_new) known->second = mean_codes(scene_.images[image].image);
+        return known->second;
+    }
+
+  private:
+    const Scene& scene_;
+    std::map<uint32_t, vec4> means_;
+};
+
 // `what` is what the messages call the map.
-void check_normal_map(Scene& scene, const Material& material, const NormalMap& map, const char* what) {
+void check_normal_map(Scene& scene, MeanCodes& means, const Material& material, const NormalMap& map,
+                      const char* what) {
     const ImageFile& file = scene.images[map.texture.image];
-    const vec4 mean = mean_codes(file.image);
+    const vec4 mean = means.of(map.texture.image);
     if (points_up(mean)) return;
     scene.warnings.push_back(concat(file.place, ": the ", what, " of the material \"", material.name, "\", ",
                                     file.path.string(), ", has a mean of ", number_text(double(mean.x), 2),
@@ -128,10 +145,10 @@ bool is_blue(vec4 mean) {
 }
 
 // Many files name normal maps as bump maps.
-void check_bump_map(Scene& scene, Material& material) {
+void check_bump_map(Scene& scene, MeanCodes& means, Material& material) {
     const BumpMap bump = *material.bump_map;
     const ImageFile& file = scene.images[bump.texture.image];
-    const vec4 mean = mean_codes(file.image);
+    const vec4 mean = means.of(bump.texture.image);
     if (!is_blue(mean)) return;
     const std::string what = concat(file.place, ": the bump map of the material \"", material.name, "\", ",
                                     file.path.string(), ", has the colours of a normal map");
@@ -217,12 +234,13 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
             scene.warnings.push_back(scene.images[i].place + ": " + warning);
     }
     convert_gammas(scene);
+    MeanCodes means(scene);
     for (Material& material : scene.materials) {
-        if (material.normal_map) check_normal_map(scene, material, *material.normal_map, "normal map");
+        if (material.normal_map) check_normal_map(scene, means, material, *material.normal_map, "normal map");
         const auto* principled = std::get_if<PrincipledMaterial>(&material.model);
         if (principled != nullptr && principled->coat_normal_map)
-            check_normal_map(scene, material, *principled->coat_normal_map, "coat's normal map");
-        if (material.bump_map) check_bump_map(scene, material);
+            check_normal_map(scene, means, material, *principled->coat_normal_map, "coat's normal map");
+        if (material.bump_map) check_bump_map(scene, means, material);
         if (!material.opacity.value.texture) continue;
         choose_channel(scene, *material.opacity.value.texture);
         check_opacity(scene, material);

@@ -13,7 +13,8 @@
 namespace candela {
 
 // Reads all faces of a file as one mesh, in the units of the file; groups and materials are ignored. Polygons
-// are cut into triangles; corners with the same indices share a vertex; unused vertices are dropped. A corner
+// are cut into triangles; corners with the same indices share a vertex, unless
+// many others lie there; unused vertices are dropped. A corner
 // without texture coordinates has (0, 0), and a mesh all of whose corners lack them has none. With
 // MeshNormals::file, a corner without a normal gets one of length zero, and a file without normals gives a
 // mesh without. Throws Error as FileReach::read() and parse_obj() do.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <string>
+#include <unordered_set>
 
 #include "base/error.h"
 #include "load/quote.h"
@@ -46,10 +47,11 @@ MtlLibrary load_mtl_libraries(const std::filesystem::path& obj, const std::vecto
                               const FileReach& reach) {
     MtlLibrary all;
     const HiddenValues hidden(reach);
+    std::unordered_set<std::string> known_names, known_files;
     for (const ObjName& name : names) {
+        if (!known_names.insert(name.name).second) continue;
         for (const std::filesystem::path& path : find_libraries(obj, name, reach)) {
-            if (std::find(all.files.begin(), all.files.end(), path) == all.files.end())
-                all.files.push_back(path);
+            if (known_files.insert(path.string()).second) all.files.push_back(path);
         }
     }
     for (const std::filesystem::path& path : all.files) {

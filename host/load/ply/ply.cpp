@@ -142,7 +142,7 @@ class BodyReader {
     }
 
     void read_face(const PlyProperty& indices) {
-        const uint64_t vertices = header_.find("vertex")->rows;
+        const uint64_t vertices = vertices_;
         const double corners = rows_.next(*indices.length);
         if (corners < 3.0)
             position_.fail("has " + shown(number_text(corners, 10)) + " corners; a face needs at least 3");
@@ -169,6 +169,7 @@ class BodyReader {
     }
 
     const PlyHeader& header_;
+    uint64_t vertices_ = header_.find("vertex")->rows;
     const PlyVertexFields& fields_;
     Rows rows_;
     PlyPosition& position_;

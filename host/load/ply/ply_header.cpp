@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <unordered_set>
 #include <utility>
 
 #include "base/error.h"
@@ -112,8 +113,10 @@ class HeaderReader {
         const auto [stop, error] = std::from_chars(count.data(), end, element.rows);
         if (element.name.empty() || error != std::errc() || stop != end)
             fail("an element needs a name and a number of rows, as \"element vertex 8\"");
-        if (header_.find(element.name)) fail("element " + quote(element.name) + " is declared twice");
+        if (!elements_.insert(element.name).second)
+            fail("element " + quote(element.name) + " is declared twice");
         header_.elements.push_back(std::move(element));
+        properties_.clear();
     }
 
     void read_property(std::string_view rest) {
@@ -129,7 +132,8 @@ class HeaderReader {
         property.type = type_of(type);
         property.name = next_word(rest);
         if (property.name.empty()) fail("a property needs a type and a name, as \"property float x\"");
-        if (element.find(property.name)) fail("property " + quote(property.name) + " is declared twice");
+        if (!properties_.insert(property.name).second)
+            fail("property " + quote(property.name) + " is declared twice");
         element.properties.push_back(std::move(property));
     }
 
@@ -152,6 +156,8 @@ class HeaderReader {
     const std::string& file_;
     std::string_view line_end_;
     bool has_format_ = false;
+    std::unordered_set<std::string> elements_,
+        properties_;  // The names of all, and those of the last element.
     PlyHeader header_;
 };
 
