@@ -12,6 +12,7 @@
 
 #include "base/color.h"
 #include "base/error.h"
+#include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "base/shrink_image.h"
 #include "base/texel_io.h"
@@ -216,13 +217,17 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
     parallel_for(scene.images.size(), [&](size_t i) {
         ImageFile& file = scene.images[i];
         if (!file.image.texels.empty()) return;
-        try {
+        const auto load = [&] {
             if (file.bytes.empty()) file.bytes = scene.reach.read(file.path);
             TexelImage image = decode_texels(file.bytes, file.path, warnings[i]);
             file.bytes = {};
             if (!file.has_gamma) image.gamma.reset();
             if (file.glossiness) image = roughness_of(image, *file.glossiness);
             file.image = shrink(std::move(image), options.texture_limit, codes[i]);
+        };
+        try {
+            with_memory_for(
+                "the image", [&] { return file.path.string(); }, load);
         } catch (const Error& error) {
             throw Error(file.place + ": " + error.what(), error.code());
         }

@@ -1,6 +1,7 @@
 // Names that no two things share.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -9,8 +10,7 @@
 
 namespace candela {
 
-// The names in use. Both functions take the same time, whatever names there are: so does a file in which a
-// hundred thousand things have one name.
+// The names in use. Nothing searches them: a hundred thousand things of a file may have one name.
 class UniqueNames {
   public:
     void note(const std::string& name) { taken_.insert(name); }

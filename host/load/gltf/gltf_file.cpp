@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory_limit.h"
 #include "base/text.h"
 #include "load/gltf/uri.h"
 #include "load/quote.h"
@@ -77,9 +78,11 @@ std::filesystem::path File::named(const Node& uri) const {
 std::string File::read_named(const Node& uri, uint64_t most) const {
     const std::filesystem::path path = named(uri);
     try {
-        return reach_.read(path, most, note_bytes());
+        return with_memory_for(
+            "the bytes of the file", [&] { return path.string(); },
+            [&] { return reach_.read(path, most, note_bytes()); });
     } catch (const Error& error) {
-        uri.fail(error.what());
+        throw Error(uri.place() + ": " + error.what(), error.code());
     }
 }
 

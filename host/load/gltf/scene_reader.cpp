@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/memory_limit.h"
 #include "base/text.h"
 #include "load/gltf/animation.h"
 #include "load/gltf/image_light.h"
@@ -72,12 +73,17 @@ void SceneReader::read() {
 
     const std::optional<Node> scene = chosen_scene();
     if (scene) {
-        if (auto light = read_image_light(file_, *scene)) scene_.environment = std::move(light);
+        auto light = with_memory_for(
+            "the image-based light", [&] { return scene->place(); },
+            [&] { return read_image_light(file_, *scene); });
+        if (light) scene_.environment = std::move(light);
     }
     const std::vector<uint32_t> nodes = nodes_below(root_nodes(scene));
     primitives_ = count_primitives(nodes);
-    for (const uint32_t i : nodes)
-        read_node(i);
+    for (const uint32_t i : nodes) {
+        with_memory_for(
+            "what the node shows", [&] { return file_.element("nodes", i).place(); }, [&] { read_node(i); });
+    }
 }
 
 std::optional<Node> SceneReader::chosen_scene() const {

@@ -1,5 +1,6 @@
 // Shapes that are read from files of their own.
 #include "base/error.h"
+#include "base/memory_limit.h"
 #include "load/json/loader_parts.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
@@ -21,9 +22,10 @@ template <class Read>
 auto read_from(const Node& file, const Scene& scene, Read read) {
     const HiddenValues hidden(scene.reach);
     try {
-        return read();
+        return with_memory_for(
+            "the mesh", [&] { return file.string(); }, read);
     } catch (const Error& error) {
-        file.fail(error.what());
+        throw Error(file.place() + ": " + error.what(), error.code());
     }
 }
 
