@@ -7,6 +7,7 @@
 
 #include "base/compare.h"
 #include "base/image_io.h"
+#include "base/memory_limit.h"
 #include "base/texel_io.h"
 #include "cli/report_curve.h"
 #include "film/checkpoint.h"
@@ -21,6 +22,7 @@
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
 #include "render/adaptive.h"
+#include "scene/images.h"
 #include "support/png_writer.h"
 
 namespace candela::fuzz {
@@ -108,6 +110,19 @@ void gltf(std::string_view bytes) {
 
 void glb(std::string_view bytes) {
     gltf(with_lengths(bytes));
+}
+
+void cost(std::string_view bytes) {
+    constexpr uint64_t MOST_BYTES = uint64_t(128) << 20;
+    const MemoryFile file(bytes);
+    set_memory_limit(memory_in_use() + MOST_BYTES);
+    const LimitedMemory limited;
+    const auto name = [] { return std::string("fuzz.gltf"); };
+    with_memory_for("the scene", name, [&] {
+        Scene scene = load_gltf_scene(file.path());
+        load_images(scene);
+        build_gpu_scene_freeing_images(scene);
+    });
 }
 
 void hdr(std::string_view bytes) {
