@@ -129,7 +129,8 @@ std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
 
 }  // namespace candela
 
-// Where these are inlined, GCC takes malloc() and delete for a mismatch.
+// All forms, since sanitizers have some of their own, which do not know of these. Where they are inlined, GCC
+// takes malloc() and delete for a mismatch.
 [[gnu::noinline]] void* operator new(size_t size) {
     candela::check_limit(size);
     return candela::counted(std::malloc(std::max<size_t>(size, 1)));
@@ -139,6 +140,26 @@ std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
     candela::check_limit(size);
     const auto step = size_t(alignment);
     return candela::counted(std::aligned_alloc(step, (std::max<size_t>(size, 1) + step - 1) / step * step));
+}
+
+[[gnu::noinline]] void* operator new(size_t size, const std::nothrow_t&) noexcept {
+    try {
+        return ::operator new(size);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
+}
+
+[[gnu::noinline]] void* operator new[](size_t size) {
+    return ::operator new(size);
+}
+
+[[gnu::noinline]] void* operator new[](size_t size, std::align_val_t alignment) {
+    return ::operator new(size, alignment);
+}
+
+[[gnu::noinline]] void* operator new[](size_t size, const std::nothrow_t& nothrow) noexcept {
+    return ::operator new(size, nothrow);
 }
 
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
@@ -154,5 +175,21 @@ std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
 }
 
 [[gnu::noinline]] void operator delete(void* memory, size_t, std::align_val_t) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete[](void* memory) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete[](void* memory, size_t) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete[](void* memory, std::align_val_t) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete[](void* memory, size_t, std::align_val_t) noexcept {
     candela::release(memory);
 }
