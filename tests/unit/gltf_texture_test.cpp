@@ -211,12 +211,12 @@ TEST_F(GltfTexture, MessagesAboutImagesNameThem) {
     EXPECT_EQ(message(),
               "cannot read \"m.gltf#/images/0\": its first bytes are not those of an image that can be read; "
               "give PNG, JPEG or WebP");
-    file.root["images"][0] = {{"uri", "a.bmp"}};
-    folder_.write("a.bmp", "BM");
+    file.root["images"][0] = {{"uri", "a.tif"}};
+    folder_.write("a.tif", std::string("MM\0*", 4));
     folder_.write("m.gltf", file.gltf());
     EXPECT_EQ(
         message(),
-        "m.gltf#/images/0/uri: cannot read \"a.bmp\": it is a BMP image; convert it to PNG, JPEG or WebP");
+        "m.gltf#/images/0/uri: cannot read \"a.tif\": it is a TIFF image; convert it to PNG, JPEG or WebP");
 }
 
 // What is odd in an image within the file names the file once, and advises nothing that glTF cannot say.
