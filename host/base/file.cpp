@@ -2,6 +2,7 @@
 // file it has opened nor what a mount or a sticky directory forbids.
 #include "base/file.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -190,11 +191,12 @@ class Descriptor {
     }
 
     // Appends the remaining bytes, at most `most`. Returns false, with errno, if reading fails.
-    bool read_all(std::string& bytes, size_t most = SIZE_MAX, const ReadProgress& progress = {}) const {
+    bool read_all(std::string& bytes, uint64_t most = UINT64_MAX, const ReadProgress& progress = {}) const {
         bytes.reserve(std::min<uint64_t>(size(), most));
         std::array<char, 65536> buffer;
         while (true) {
-            const ssize_t count = ::read(file_, buffer.data(), std::min(buffer.size(), most - bytes.size()));
+            const ssize_t count =
+                ::read(file_, buffer.data(), std::min<uint64_t>(buffer.size(), most - bytes.size()));
             if (count == 0) return true;
             if (count > 0) {
                 bytes.append(buffer.data(), size_t(count));
@@ -209,9 +211,11 @@ class Descriptor {
     int file_ = -1;
 };
 
+constexpr std::string_view START_OF_POINTER = "version https://git-lfs.github.com/spec/";
+
 // Throws Error if these bytes, the first ones of a file, are what Git LFS puts in the place of one.
 void refuse_pointer(const fs::path& path, std::string_view start) {
-    if (start.starts_with("version https://git-lfs.github.com/spec/"))
+    if (start.starts_with(START_OF_POINTER))
         fail_to_read(path, "it is a pointer of Git LFS, not the file itself; run `git lfs pull`");
 }
 
@@ -244,9 +248,33 @@ std::string read_file(const fs::path& path, const ReadProgress& progress) {
     check_readable(path);
     const Descriptor file(path, O_RDONLY);
     std::string bytes;
-    if (!file.is_open() || !file.read_all(bytes, SIZE_MAX, progress))
+    if (!file.is_open() || !file.read_all(bytes, UINT64_MAX, progress))
         fail_to_read(path, describe(errno) + "; check the file and its disk");
     refuse_pointer(path, bytes);
+    return bytes;
+}
+
+std::string read_finite_file(const fs::path& path, const fs::path& real, uint64_t most,
+                             const ReadProgress& progress) {
+    check_readable(path);
+    constexpr const char* NO_FILE = "it is not a regular file; a file may name no other kind";
+    std::error_code ignored;
+    if (!fs::is_regular_file(real, ignored)) fail_to_read(path, NO_FILE);
+    const Descriptor file(real, O_RDONLY | O_NONBLOCK | O_NOFOLLOW);
+    if (file.is_open() && !file.is_regular()) fail_to_read(path, NO_FILE);
+    const uint64_t size = file.is_open() ? file.size() : 0;
+    const uint64_t wanted = std::max<uint64_t>(most, START_OF_POINTER.size());
+    std::string bytes;
+    // One byte more than there should be shows that there are more.
+    if (!file.is_open() || !file.read_all(bytes, std::min(wanted, size + 1), progress))
+        fail_to_read(path, describe(errno) + "; check the file and its disk");
+    if (bytes.size() != std::min(wanted, size)) {
+        fail_to_read(path,
+                     "it holds another number of bytes than its size says; is it a file of the system, or "
+                     "still being written?");
+    }
+    refuse_pointer(path, bytes);
+    bytes.resize(std::min(bytes.size(), size_t(most)));
     return bytes;
 }
 

@@ -23,6 +23,13 @@ using ReadProgress = std::function<void(size_t done, size_t of)>;
 // Git LFS has put a pointer in the place of the file.
 std::string read_file(const std::filesystem::path& path, const ReadProgress& progress = {});
 
+// Returns the first `most` bytes of a regular file, and no more than the system says that it holds: pipes,
+// devices and sockets are refused before they are opened, and a file that the kernel makes up while it is
+// read, as those in /proc, after its first byte. `real` is the same file without symbolic links, and is
+// opened; messages name `path`. Throws Error otherwise, and as read_file() does.
+std::string read_finite_file(const std::filesystem::path& path, const std::filesystem::path& real,
+                             uint64_t most = UINT64_MAX, const ReadProgress& progress = {});
+
 // The first bytes of a regular file, `most` at most. Throws Error as read_file() does, and for a pipe.
 struct FileStart {
     std::string bytes;

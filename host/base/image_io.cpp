@@ -44,11 +44,10 @@ ImageFormat image_format(const fs::path& path) {
                 ExitCode::usage);
 }
 
-Image read_image(const fs::path& path, const ImageLimits& limits) {
-    const std::string bytes = read_file(path);
-    if (bytes.starts_with(EXR_MAGIC)) return decode_exr(bytes, path, limits);
-    if (bytes.starts_with(HDR_MAGIC)) return decode_hdr(bytes, path, limits);
-    throw Error("cannot read " + quoted(path) +
+Image decode_image(std::string_view bytes, const fs::path& name, const ImageLimits& limits) {
+    if (bytes.starts_with(EXR_MAGIC)) return decode_exr(bytes, name, limits);
+    if (bytes.starts_with(HDR_MAGIC)) return decode_hdr(bytes, name, limits);
+    throw Error("cannot read " + quoted(name) +
                 ": it is neither an OpenEXR image nor a Radiance picture; give an .exr or .hdr image");
 }
 

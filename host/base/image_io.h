@@ -66,9 +66,8 @@ Image read_hdr(const std::filesystem::path& path, const ImageLimits& limits = {}
 // read_hdr() for the bytes of a file; `name` is what messages call it.
 Image decode_hdr(std::string_view bytes, const std::filesystem::path& name, const ImageLimits& limits = {});
 
-// read_exr() or read_hdr(), as the first bytes of the file say. Throws Error as these do, and for any other
-// file.
-Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
+// decode_exr() or decode_hdr(), as the first bytes say. Throws Error as these do, and for any other file.
+Image decode_image(std::string_view bytes, const std::filesystem::path& name, const ImageLimits& limits = {});
 
 // Writes 8-bit RGB, row-major from the top, 3 * width * height bytes, without loss. Throws Error if the file
 // cannot be written or the picture is larger than the encoder's limit of 2^30 bytes. The file appears whole

@@ -22,6 +22,7 @@
 #include "base/image_io.h"
 #include "base/image_io_exr_file.h"
 #include "base/image_io_parts.h"
+#include "base/memory_limit.h"
 
 namespace candela {
 namespace {
@@ -236,14 +237,14 @@ Image ExrPixels::read(const ImageLimits& limits) {
 }  // namespace
 
 Image decode_exr(std::string_view bytes, const fs::path& name, const ImageLimits& limits) {
+    const uint64_t before = memory_in_use();
     try {
         const ExrBytes file{bytes};
         return ExrPixels(file, name).read(limits);
-    } catch (const std::bad_alloc&) {
-        throw Error(
-            "cannot read " + quoted(name) +
-                ": there is not enough memory for its pixels; use a smaller image or a larger machine",
-            ExitCode::out_of_memory);
+    } catch (const std::bad_alloc& error) {
+        throw Error("cannot read " + quoted(name) + ": there is not enough memory for its pixels" +
+                        shortage_text(error, before) + "; use a smaller image or a larger machine",
+                    ExitCode::out_of_memory);
     }
 }
 

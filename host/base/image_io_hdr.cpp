@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/image_io.h"
 #include "base/image_io_parts.h"
+#include "base/memory_limit.h"
 
 namespace candela {
 namespace {
@@ -256,13 +257,13 @@ class HdrReader {
 }  // namespace
 
 Image decode_hdr(std::string_view bytes, const fs::path& name, const ImageLimits& limits) {
+    const uint64_t before = memory_in_use();
     try {
         return HdrReader(bytes, name).read(limits);
-    } catch (const std::bad_alloc&) {
-        throw Error(
-            "cannot read " + quoted(name) +
-                ": there is not enough memory for its pixels; use a smaller image or a larger machine",
-            ExitCode::out_of_memory);
+    } catch (const std::bad_alloc& error) {
+        throw Error("cannot read " + quoted(name) + ": there is not enough memory for its pixels" +
+                        shortage_text(error, before) + "; use a smaller image or a larger machine",
+                    ExitCode::out_of_memory);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/image_io_parts.h"
+#include "base/memory_limit.h"
 #include "base/texel_io_parts.h"
 
 namespace candela {
@@ -141,18 +142,14 @@ TexelImage decode_texels(std::string_view bytes, const fs::path& name, std::vect
     const TexelSource source{bytes, name, limits, warnings};
     const TexelFormat& format = find_format(source);
     check_extension(source, format);
+    const uint64_t before = memory_in_use();
     try {
         return format.decode(source);
-    } catch (const std::bad_alloc&) {
-        throw Error(
-            "cannot read " + quoted(name) +
-                ": there is not enough memory for its pixels; use a smaller image or a larger machine",
-            ExitCode::out_of_memory);
+    } catch (const std::bad_alloc& error) {
+        throw Error("cannot read " + quoted(name) + ": there is not enough memory for its pixels" +
+                        shortage_text(error, before) + "; use a smaller image or a larger machine",
+                    ExitCode::out_of_memory);
     }
-}
-
-TexelImage read_texels(const fs::path& path, std::vector<std::string>& warnings, const TexelLimits& limits) {
-    return decode_texels(read_file(path), path, warnings, limits);
 }
 
 }  // namespace candela

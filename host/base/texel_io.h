@@ -19,7 +19,8 @@ struct TexelLimits {
     const char* formats = "PNG, JPEG, WebP, Radiance HDR or OpenEXR";
 };
 
-// Reads an image of one of these kinds, whatever its extension:
+// Reads an image of one of these kinds from the bytes of a file, whatever its extension; `name` is what
+// messages call it:
 //   PNG       of any colour type and depth; 16 bits stay 16, fewer than 8 become 8, colours of a palette
 //             become RGB, and transparent colours an alpha channel. Of an animation, the default image.
 //   JPEG      grey or of three colours, baseline or progressive, of 8 bits.
@@ -31,14 +32,10 @@ struct TexelLimits {
 //   Targa     with run lengths or without, from left to right. Its alpha counts if the header says so.
 // Of halves, values above 65504 become 65504; what is negative or not finite becomes 0. Colour profiles and
 // the orientation that a camera notes are ignored.
-// `warnings` gets what is odd but usable, each beginning with the path. Throws Error if the file cannot be
-// read, is of another kind, damaged or incomplete, or exceeds the limits. Takes no more memory than the
-// file's bytes may stand for, where its format has a bound on that (PNG, Huffman-coded JPEG, Radiance, most
-// kinds of OpenEXR, BMP, Targa). Any number of threads may call it.
-TexelImage read_texels(const std::filesystem::path& path, std::vector<std::string>& warnings,
-                       const TexelLimits& limits = {});
-
-// read_texels() for the bytes of a file; `name` is what messages call it.
+// `warnings` gets what is odd but usable, each beginning with the name. Throws Error if the file is of
+// another kind, damaged or incomplete, or exceeds the limits. Takes no more memory than the file's bytes may
+// stand for, where its format has a bound on that (PNG, Huffman-coded JPEG, Radiance, most kinds of OpenEXR,
+// BMP, Targa). Any number of threads may call it.
 TexelImage decode_texels(std::string_view bytes, const std::filesystem::path& name,
                          std::vector<std::string>& warnings, const TexelLimits& limits = {});
 

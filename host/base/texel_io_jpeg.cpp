@@ -167,6 +167,9 @@ TexelImage JpegDecoder::decode() {
     check_colors();
     const uvec2 size(jpeg_.image_width, jpeg_.image_height);
     const bool grey = jpeg_.jpeg_color_space == JCS_GRAYSCALE;
+    // Of images in several scans, all coefficients are kept: two bytes for each channel of a pixel at most.
+    const MemoryCharge coefficients(
+        jpeg_has_multiple_scans(&jpeg_) != 0 ? 2 * uint64_t(jpeg_.num_components) * size.x * size.y : 0);
     attempt([&] {
         jpeg_.out_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;
         jpeg_.dct_method = JDCT_ISLOW;

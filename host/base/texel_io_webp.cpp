@@ -45,6 +45,7 @@ TexelImage decode_webp_texels(const TexelSource& source) {
     config.output.u.RGBA = {.rgba = reinterpret_cast<uint8_t*>(image.texels.data()),
                             .stride = int(size.x * image.channels),
                             .size = image.texels.size()};
+    const MemoryCharge inside(uint64_t{4} * size.x * size.y);  // Of libwebp, for images without loss.
     check_webp(source, WebPDecode(bytes, source.bytes.size(), &config));
     return image;
 }

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/memory_limit.h"
 #include "base/text.h"
 #include "cli/arguments.h"
 #include "cli/console.h"
@@ -27,6 +28,18 @@ void LoadingOptions::add_to(CLI::App& app) {
     add_choice(app, "--missing-images", missing_images, IF_MISSING_NAMES,
                "What takes the place of images that glTF and MTL files name and that do not exist (default: "
                "white)");
+    app.option_defaults()->group("What the scene may reach and cost");
+    app.add_option(
+           "--allow-folder", folders,
+           "Read what is in this folder, too, if a file names it (default: only what is in the folder "
+           "of SCENE); repeat it for several")
+        ->type_name("DIR")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
+    app.add_flag("--allow-any-folder", any_folder, "Read whatever file is named, if you trust the scene");
+    add_value(app, "--memory-limit", memory_limit, parse_memory_size, "a size such as 500M, 1.5GB or 4GiB",
+              "Take no more memory than 500M, 1.5GB or 4GiB (default: three quarters of the machine's)")
+        ->type_name("SIZE");
     app.option_defaults()->group("glTF files");
     app.add_option("--scene", gltf.scene, "Scene by name or index (default: the file's)")->type_name("NAME");
     add_value(app, "--time", gltf.time, parse_number, "a number of seconds, such as 1.5",
@@ -81,14 +94,19 @@ class LoadingLine {
 
 Scene load_with_progress(const std::string& file, const LoadingOptions& given, ProgressStyle style) {
     Scene scene;
+    set_memory_limit(given.memory_limit.value_or(default_memory_limit()));
     {
         const InterruptGuard guard(OnSignal::quit);
+        const LimitedMemory limited;
         LoadingLine line(style);
         LoadOptions options{.gltf = given.gltf};
         options.progress = [&line](const char* what, size_t done, size_t of) { line.update(what, done, of); };
         options.images.if_missing = given.missing_images;
+        options.reach = {.folders = {given.folders.begin(), given.folders.end()},
+                         .anywhere = given.any_folder};
         if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
-        scene = load_scene(file, options);
+        scene = with_memory_for(
+            "the scene", [&] { return file; }, [&] { return load_scene(file, options); });
     }
     print_warnings(scene.warnings);
     return scene;
@@ -98,9 +116,12 @@ GpuScene build_with_progress(Scene& scene, ProgressStyle style) {
     GpuScene gpu_scene;
     {
         const InterruptGuard guard(OnSignal::quit);
+        const LimitedMemory limited;
         ProgressLine line(style, 0.0);
         if (line.is_live()) line.print("building the tree", 0.0);
-        gpu_scene = build_gpu_scene_freeing_images(scene);
+        gpu_scene = with_memory_for(
+            "the tree and the records of what it shows", [] { return std::string("the scene"); },
+            [&] { return build_gpu_scene_freeing_images(scene); });
     }
     print_warnings(gpu_scene.warnings);
     return gpu_scene;

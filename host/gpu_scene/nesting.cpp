@@ -68,6 +68,7 @@ std::vector<Solid> find_solids(const Scene& scene) {
     const ShapeBounds bounds_of(scene);
     const std::vector<std::optional<size_t>> boxes = find_boxes(scene);
     std::map<size_t, size_t> known_boxes;  // Solids, by their first sides.
+    std::vector<size_t> known_walls;       // Solids, one for each medium.
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         const Shape& shape = scene.shapes[i];
         const std::optional<Interior> inside = interior(scene.materials[shape.material].model);
@@ -76,8 +77,13 @@ std::vector<Solid> find_solids(const Scene& scene) {
                                         std::holds_alternative<Disk>(shape.geometry));
         auto place = solids.end();
         if (wall) {
-            place =
-                std::ranges::find_if(solids, [&](const Solid& s) { return s.walls && s.inside == *inside; });
+            const auto known = std::ranges::find_if(
+                known_walls, [&](size_t solid) { return solids[solid].inside == *inside; });
+            if (known != known_walls.end()) {
+                place = solids.begin() + std::ptrdiff_t(*known);
+            } else {
+                known_walls.push_back(solids.size());
+            }
         } else if (boxes[i]) {
             const auto [known, is_new] = known_boxes.try_emplace(*boxes[i], solids.size());
             if (!is_new) place = solids.begin() + std::ptrdiff_t(known->second);
@@ -138,14 +144,18 @@ bool contains(const DoubleBox& outer, const DoubleBox& inner) {
 }
 
 // Calls each(i, j) for each two of the solids, which are sorted by their boxes' least x, whose boxes overlap,
-// until it returns false.
+// until it returns false. Gives up, and returns false, where that would take seconds.
 template <class Each>
-void for_each_overlap(const std::vector<Solid>& solids, const Each& each) {
+bool for_each_overlap(const std::vector<Solid>& solids, const Each& each) {
+    constexpr size_t MOST_LOOKS = size_t(1) << 26;
+    size_t looks = 0;
     for (size_t i = 0; i < solids.size(); ++i) {
         for (size_t j = i + 1; j < solids.size() && solids[j].box.lo.x < solids[i].box.hi.x; ++j) {
-            if (overlap(solids[i].box, solids[j].box) && !each(i, j)) return;
+            if (++looks > MOST_LOOKS) return false;
+            if (overlap(solids[i].box, solids[j].box) && !each(i, j)) return true;
         }
     }
+    return true;
 }
 
 MeshSolids find_parts(const Scene& scene, const std::vector<Solid>& solids) {
@@ -215,7 +225,8 @@ Nesting find_nesting(const Scene& scene) {
     Nesting result;
     std::vector<Solid> solids = find_solids(scene);
     std::ranges::sort(solids, {}, [](const Solid& solid) { return solid.box.lo.x; });
-    for_each_overlap(solids, [&](size_t, size_t) { return !(result.nested = true); });
+    if (!for_each_overlap(solids, [&](size_t, size_t) { return !(result.nested = true); }))
+        result.nested = true;  // Perhaps; kernels only take longer.
     const MeshSolids parts = find_parts(scene, solids);
     for (const auto& [mesh, mesh_parts] : parts)
         result.nested = result.nested || parts_overlap(mesh_parts);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -107,10 +108,23 @@ void pack_texels(const TexelImage& image, std::span<uvec4> words) {
     });
 }
 
+TextureTable::TextureKey TextureTable::key_of(const Texture& texture) {
+    TextureKey key{texture.image,
+                   uint32_t(texture.encoding),
+                   uint32_t(texture.filter),
+                   uint32_t(texture.wrap_u),
+                   uint32_t(texture.wrap_v),
+                   texture.uv_set,
+                   texture.channel};
+    for (size_t i = 0; i < 6; ++i)
+        key[7 + i] = std::bit_cast<uint32_t>(texture.rows[i / 3][glm::length_t(i % 3)]);
+    return key;
+}
+
 uint32_t TextureTable::add(const std::optional<Texture>& texture) {
     if (!texture) return TEXTURE_NONE;
-    const auto known = std::ranges::find(textures_, *texture);
-    if (known != textures_.end()) return uint32_t(known - textures_.begin());
+    const auto [known, is_new] = indices_.try_emplace(key_of(*texture), uint32_t(records_.size()));
+    if (!is_new) return known->second;
     const ImageFile& file = images_[texture->image];
     const TexelImage& image = file.image;
     if (std::max(image.size.x, image.size.y) > MAX_IMAGE_SIDE) {
@@ -128,7 +142,6 @@ uint32_t TextureTable::add(const std::optional<Texture>& texture) {
                 "smaller images (--texture-limit)");
         }
     }
-    textures_.push_back(*texture);
     // Rows of the image run from the top, v upwards.
     const vec3 row_v = texture->rows[1];
     records_.push_back({.first = *first,
@@ -137,7 +150,7 @@ uint32_t TextureTable::add(const std::optional<Texture>& texture) {
                         .row_u = texture->rows[0],
                         .row_v = vec3(-row_v.x, -row_v.y, 1.0f - row_v.z)});
     traits_ |= traits_of(*texture, image);
-    return uint32_t(textures_.size() - 1);
+    return known->second;
 }
 
 std::vector<uvec4> TextureTable::records() const {

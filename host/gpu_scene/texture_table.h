@@ -1,9 +1,11 @@
 // Textures and their images -> records and texels.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,10 +34,13 @@ class TextureTable {
     std::vector<uvec4> texels(const std::function<void(size_t)>& packed = [](size_t) {}) const;
 
   private:
+    using TextureKey = std::array<uint32_t, 13>;  // All bits of a texture.
+    static TextureKey key_of(const Texture& texture);
+
     const std::vector<ImageFile>& images_;
     std::vector<std::optional<uint32_t>> firsts_;  // Word of each image's first tile, if a texture uses it.
     uint64_t words_ = 0;
-    std::vector<Texture> textures_;
+    std::map<TextureKey, uint32_t> indices_;  // Of the records.
     std::vector<TextureRecord> records_;
     uint32_t traits_ = 0;
 };

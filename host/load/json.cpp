@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <numeric>
 #include <unordered_set>
 #include <utility>
 
@@ -105,8 +106,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     bool number_float(number_float_t value, const string_t&) override { return add(value); }
     bool string(string_t& value) override { return add(std::move(value)); }
     bool binary(binary_t&) override { return false; }  // Never occurs in text.
-    bool start_object(size_t) override { return open(Object()); }
-    bool start_array(size_t) override { return open(Array()); }
+    bool start_object(size_t) override { return open<Object>(); }
+    bool start_array(size_t) override { return open<Array>(); }
     bool end_object() override { return close(); }
     bool end_array() override { return close(); }
 
@@ -114,7 +115,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
         const Place place = next_token();
         Open& object = open_.back();
         if (!object.keys.insert(key).second) {
-            fail(file_, place, "duplicate key " + quote(key) + "; keep one of the two");
+            fail(file_, place, "duplicate key " + shown(quote(key)) + "; keep one of the two");
         }
         std::get<Object>(object.value.data).push_back({std::move(key), place, {}});
         return true;
@@ -158,20 +159,23 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     }
 
     template <class Container>
-    bool open(Container&& empty) {
+    bool open() {
         const Place place = next_token();
         if (open_.size() == MOST_NESTING) {
             fail(file_, place,
                  "arrays and objects are nested deeper than " + std::to_string(MOST_NESTING) +
                      "; nest them less");
         }
-        open_.push_back({{place, std::forward<Container>(empty)}, {}});
+        Value& value = open_.emplace_back().value;
+        value.place = place;
+        value.data.emplace<Container>();
         return true;
     }
 
     bool close() {
         next_token();
         Value value = std::move(open_.back().value);
+        if (auto* object = std::get_if<Object>(&value.data)) object->sort_keys();
         open_.pop_back();
         attach(std::move(value));
         return true;
@@ -251,6 +255,24 @@ void append_pointer(const Value* value, Place place, std::string& pointer) {
 }
 
 }  // namespace
+
+const Member* Object::find(std::string_view key) const {
+    if (by_key_.empty()) {
+        const auto found = std::ranges::find(*this, key, &Member::key);
+        return found == end() ? nullptr : &*found;
+    }
+    const auto key_of = [this](uint32_t i) -> std::string_view { return (*this)[i].key; };
+    const auto found = std::ranges::lower_bound(by_key_, key, {}, key_of);
+    return found != by_key_.end() && key_of(*found) == key ? &(*this)[*found] : nullptr;
+}
+
+void Object::sort_keys() {
+    constexpr size_t FEW = 16;
+    if (size() <= FEW) return;
+    by_key_.resize(size());
+    std::iota(by_key_.begin(), by_key_.end(), 0u);
+    std::ranges::sort(by_key_, {}, [this](uint32_t i) -> std::string_view { return (*this)[i].key; });
+}
 
 Value parse(std::string_view text, const std::string& file) {
     check_encoding(text, file);

@@ -19,7 +19,18 @@ struct Place {
 struct Value;
 struct Member;
 using Array = std::vector<Value>;
-using Object = std::vector<Member>;  // In the order of the file; no two keys are equal.
+
+// In the order of the file; no two keys are equal.
+class Object : public std::vector<Member> {
+  public:
+    // The member with that key, or null.
+    const Member* find(std::string_view key) const;
+    // Lets find() be fast even if there are many; to be called when all members are there.
+    void sort_keys();
+
+  private:
+    std::vector<uint32_t> by_key_;  // The members' indices; empty if they are few.
+};
 
 struct Value {
     Place place;  // Of the first character.

@@ -53,17 +53,17 @@ Format format_of(const std::filesystem::path& path) {
 Scene load(const std::filesystem::path& path, const LoadOptions& options) {
     switch (format_of(path)) {
         case Format::gltf:
-            return load_gltf_scene(path, options.gltf, options.progress);
+            return load_gltf_scene(path, options.gltf, options.progress, options.reach);
         case Format::obj:
             refuse(path, options.gltf);
-            return load_obj_scene(path);
+            return load_obj_scene(path, options.reach);
         case Format::ply:
             refuse(path, options.gltf);
             return load_ply_scene(path);
         case Format::json:
             break;
     }
-    return load_json_scene(path, options.gltf, options.progress);
+    return load_json_scene(path, options.gltf, options.progress, options.reach);
 }
 
 }  // namespace

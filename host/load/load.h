@@ -14,6 +14,7 @@ struct LoadOptions {
     ImageOptions images{};
     GltfOptions gltf{};  // Also for a glTF file that a JSON scene names.
     LoadProgress progress = no_progress;
+    ReachOptions reach{};  // What the files may name besides what is in the folder of `path`.
 };
 
 // Reads a scene and the files that it names. The first bytes of a file say its format where they are

@@ -58,7 +58,7 @@ void Node::fail(const std::string& message) const {
 
 void Node::fail_expected(const std::string& what) const {
     const std::string subject = key_.empty() ? std::string("the scene") : quote(key_);
-    fail(subject + ": expected " + what + ", found " + json::describe(*value_));
+    fail(subject + ": expected " + what + ", found " + shown(json::describe(*value_)));
 }
 
 void Node::fail_unknown(const std::string& what, std::string_view name, std::span<const std::string> known,
@@ -86,13 +86,11 @@ void Node::allow_only(std::initializer_list<std::string_view> keys,
 }
 
 std::optional<Node> Node::find(std::string_view key) const {
-    for (const json::Member& member : object()) {
-        if (member.key != key) continue;
-        const Node node = child(member.key, member.value);
-        if (node.is_null() && document_->nulls_are_absent) return std::nullopt;
-        return node;
-    }
-    return std::nullopt;
+    const json::Member* member = object().find(key);
+    if (member == nullptr) return std::nullopt;
+    const Node node = child(member->key, member->value);
+    if (node.is_null() && document_->nulls_are_absent) return std::nullopt;
+    return node;
 }
 
 Node Node::require(std::string_view key) const {

@@ -4,6 +4,23 @@
 #include <nlohmann/json.hpp>
 
 namespace candela {
+namespace {
+
+thread_local bool hidden = false;
+
+}  // namespace
+
+HiddenValues::HiddenValues(const FileReach& reach) : were_hidden_(hidden) {
+    hidden = !reach.is_anywhere();
+}
+
+HiddenValues::~HiddenValues() {
+    hidden = were_hidden_;
+}
+
+std::string shown(std::string text) {
+    return hidden ? "(not shown)" : text;
+}
 
 std::string quote(std::string_view text) {
     std::string escaped;

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/memory_limit.h"
 #include "gpu_scene/media_at.h"
 #include "render/kernels.h"
 #include "vk/transfer.h"
@@ -42,6 +43,23 @@ std::string gibibytes(uint64_t bytes) {
     return text;
 }
 
+// Throws Error if the process would exceed its limit. While the picture is written, the host holds it as it
+// was accumulated and as channels, which takes 1.3 times as much as on the device; and the memory of a CPU
+// device is the host's.
+void check_host_memory(const vk::Device& device, const GpuScene& scene, const RenderSettings& settings) {
+    const uint64_t on_device = device_bytes(scene, settings);
+    const uint64_t picture = on_device - scene.bytes();
+    const uint64_t needed = 3 * picture / 2 + (device.info().type == vk::DeviceType::cpu ? on_device : 0);
+    if (memory_in_use() + needed <= memory_limit()) return;
+    throw Error("rendering a picture of " + std::to_string(settings.crop.width()) + "x" +
+                    std::to_string(settings.crop.height()) + " needs " + gibibytes(needed) + ", where " +
+                    gibibytes(memory_in_use()) + " are in use and --memory-limit allows " +
+                    gibibytes(memory_limit()) +
+                    "; use a smaller picture (--size, --crop) or scene, or raise the "
+                    "limit",
+                ExitCode::out_of_memory);
+}
+
 const vk::Device& check_memory(const vk::Device& device, const GpuScene& scene,
                                const RenderSettings& settings) {
     const uint64_t needed = device_bytes(scene, settings);
@@ -53,6 +71,7 @@ const vk::Device& check_memory(const vk::Device& device, const GpuScene& scene,
                         gibibytes(available) + "; use a smaller picture (--size, --crop) or scene",
                     ExitCode::out_of_memory);
     }
+    check_host_memory(device, scene, settings);
     return device;
 }
 

@@ -59,9 +59,11 @@ dvec3 latitude_longitude_direction(glm::dvec2 uv) {
     return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
-Environment load_environment(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+Environment load_environment(const std::filesystem::path& file, const FileReach& reach,
+                             std::vector<std::string>& warnings) {
     const std::string name = file.string();
-    const Image image = read_image(file, {.max_pixels = MAX_TEXELS, .channels = {"R", "G", "B", "Y"}});
+    const Image image =
+        decode_image(reach.read(file), file, {.max_pixels = MAX_TEXELS, .channels = {"R", "G", "B", "Y"}});
     check_complete(image, name);
     const RgbPlanes colours = find_colours(image, name);
 

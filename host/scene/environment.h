@@ -19,6 +19,7 @@ dvec3 latitude_longitude_direction(glm::dvec2 uv);
 // finite becomes black. For such texels, a shape other than 2:1 and an image without any light, appends a
 // text to `warnings` that begins with the file's name. Throws Error if the file cannot be read, lacks these
 // channels, is a crop of a larger picture or has more than 2^26 texels.
-Environment load_environment(const std::filesystem::path& file, std::vector<std::string>& warnings);
+Environment load_environment(const std::filesystem::path& file, const FileReach& reach,
+                             std::vector<std::string>& warnings);
 
 }  // namespace candela

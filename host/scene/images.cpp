@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "base/printable.h"
 #include "base/shrink_image.h"
@@ -131,10 +133,27 @@ std::string map_text(const ImageFile& file, const char* what, const Material& ma
                   printable(material.name, MOST_NAME_BYTES), '"', name);
 }
 
+// The mean codes of a scene's images, each computed once.
+class MeanCodes {
+  public:
+    explicit MeanCodes(const Scene& scene) : scene_(scene) {}
+
+    vec4 of(uint32_t image) {
+        const auto [known, is_new] = means_.try_emplace(image);
+        if (is_new) known->second = mean_codes(scene_.images[image].image);
+        return known->second;
+    }
+
+  private:
+    const Scene& scene_;
+    std::map<uint32_t, vec4> means_;
+};
+
 // `what` is what the messages call the map.
-void check_normal_map(Scene& scene, const Material& material, const NormalMap& map, const char* what) {
+void check_normal_map(Scene& scene, MeanCodes& means, const Material& material, const NormalMap& map,
+                      const char* what) {
     const ImageFile& file = scene.images[map.texture.image];
-    const vec4 mean = mean_codes(file.image);
+    const vec4 mean = means.of(map.texture.image);
     if (points_up(mean)) return;
     scene.warnings.push_back(concat(map_text(file, what, material), " has a mean of ",
                                     number_text(double(mean.x), 2), ' ', number_text(double(mean.y), 2), ' ',
@@ -149,10 +168,10 @@ bool is_blue(vec4 mean) {
 }
 
 // Many files name normal maps as bump maps.
-void check_bump_map(Scene& scene, Material& material) {
+void check_bump_map(Scene& scene, MeanCodes& means, Material& material) {
     const BumpMap bump = *material.bump_map;
     const ImageFile& file = scene.images[bump.texture.image];
-    const vec4 mean = mean_codes(file.image);
+    const vec4 mean = means.of(bump.texture.image);
     if (!is_blue(mean)) return;
     const std::string what = map_text(file, "bump map", material) + " has the colours of a normal map";
     if (!bump.multiplier) {
@@ -164,10 +183,11 @@ void check_bump_map(Scene& scene, Material& material) {
     scene.warnings.push_back(what + " and is read as one; to say so, name it as norm");
 }
 
-// Whether an image that may be missing is.
-bool is_lost(const ImageFile& file, const ImageOptions& options) {
+// Whether an image that may be missing is, or is out of reach: nothing shall tell whether that one exists.
+bool is_lost(const Scene& scene, const ImageFile& file, const ImageOptions& options) {
     if (std::max(file.if_missing, options.if_missing) == IfMissing::error) return false;
     if (!file.image.texels.empty() || !file.bytes.empty()) return false;
+    if (!scene.reach.holds(file.path)) return true;
     std::error_code ignored;
     return std::filesystem::status(file.path, ignored).type() == std::filesystem::file_type::not_found;
 }
@@ -200,15 +220,15 @@ void drop_lost_images(Scene& scene, const std::vector<bool>& lost) {
     }
 }
 
-// Drops images that may be missing and are, with one warning.
+// Drops images that may be missing and are, with one warning, and another one for those out of reach.
 void drop_missing_images(Scene& scene, const ImageOptions& options) {
     constexpr size_t MOST_LISTED = 10;
     std::vector<bool> lost(scene.images.size());
-    size_t count = 0;
-    std::string names, place;
+    size_t count = 0, outside = 0;
+    std::string names, place, refusal;
     for (size_t i = 0; i < lost.size(); ++i) {
         ImageFile& file = scene.images[i];
-        if (!is_lost(file, options)) continue;
+        if (!is_lost(scene, file, options)) continue;
         file.image = {.size = uvec2(1),
                       .channels = 1,
                       .type = TexelType::unorm8,
@@ -219,12 +239,20 @@ void drop_missing_images(Scene& scene, const ImageOptions& options) {
             continue;
         }
         lost[i] = true;
+        if (!scene.reach.holds(file.path)) {
+            if (outside++ == 0) refusal = file.place + ": " + scene.reach.refusal(file.path.string());
+            continue;
+        }
         if (count == 0) place = file.place;
         if (count < MOST_LISTED) names += (count == 0 ? "" : ", ") + quoted(file.path);
         ++count;
     }
+    if (count + outside > 0) drop_lost_images(scene, lost);
+    if (outside > 0) {
+        const std::string times = outside == 1 ? "" : concat(" (", outside, " times)");
+        scene.warnings.push_back(refusal + "; white takes its place" + times);
+    }
     if (count == 0) return;
-    drop_lost_images(scene, lost);
     if (count > MOST_LISTED) names += ", ...";
     const std::string which = count == 1
                                   ? concat("the image ", names, " does not exist; white takes its place")
@@ -250,27 +278,39 @@ void check_opacity(Scene& scene, const Material& material) {
 
 }  // namespace
 
+uint32_t add_image_file(Scene& scene, ImageFile file) {
+    const auto [known, is_new] =
+        scene.image_indices.try_emplace(file.real_path.string(), uint32_t(scene.images.size()));
+    if (is_new) scene.images.push_back(std::move(file));
+    return known->second;
+}
+
 uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place,
                    IfMissing if_missing) {
-    const std::filesystem::path real = identity_of(path);
-    const auto known = std::ranges::find(scene.images, real, &ImageFile::real_path);
-    if (known != scene.images.end()) {
-        known->if_missing = std::max(known->if_missing, if_missing);
-        return uint32_t(known - scene.images.begin());
-    }
-    scene.images.push_back(
-        {.path = path, .real_path = real, .place = place, .if_missing = if_missing, .image = {}});
-    scene.files.push_back(path);
-    return uint32_t(scene.images.size() - 1);
+    const size_t before = scene.images.size();
+    const uint32_t index = add_image_file(scene, {.path = path,
+                                                  .real_path = identity_of(path),
+                                                  .place = place,
+                                                  .if_missing = if_missing,
+                                                  .image = {}});
+    if (scene.images.size() > before) scene.files.push_back(path);
+    IfMissing& strictest = scene.images[index].if_missing;
+    strictest = std::max(strictest, if_missing);
+    return index;
 }
 
 uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view bytes,
                          const std::string& place) {
-    const auto known = std::ranges::find(scene.images, std::filesystem::path(name), &ImageFile::real_path);
-    if (known != scene.images.end()) return uint32_t(known - scene.images.begin());
-    scene.images.push_back(
-        {.path = name, .real_path = name, .bytes = std::string(bytes), .place = place, .image = {}});
-    return uint32_t(scene.images.size() - 1);
+    ImageFile file{.path = name,
+                   .real_path = concat('#', std::hash<std::string_view>()(bytes), '/', bytes.size()),
+                   .bytes = std::string(bytes),
+                   .place = place,
+                   .image = {}};
+    const auto known = scene.image_indices.find(file.real_path.string());
+    // Of other bytes that have the same hash.
+    if (known != scene.image_indices.end() && scene.images[known->second].bytes != bytes)
+        file.real_path = name;
+    return add_image_file(scene, std::move(file));
 }
 
 void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& progress) {
@@ -283,15 +323,19 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
     parallel_for(scene.images.size(), [&](size_t i) {
         ImageFile& file = scene.images[i];
         if (!file.image.texels.empty()) return;
-        try {
+        const auto load = [&] {
+            if (file.bytes.empty()) file.bytes = scene.reach.read(file.path);
             TexelLimits limits;
             if (file.of_gltf) limits.formats = "PNG, JPEG or WebP";
-            TexelImage image = file.bytes.empty() ? read_texels(file.path, warnings[i], limits)
-                                                  : decode_texels(file.bytes, file.path, warnings[i], limits);
+            TexelImage image = decode_texels(file.bytes, file.path, warnings[i], limits);
             file.bytes = {};
             if (file.of_gltf) image.gamma.reset();
             if (file.glossiness) image = roughness_of(image, *file.glossiness);
             file.image = shrink(std::move(image), options.texture_limit, codes[i]);
+        };
+        try {
+            with_memory_for(
+                "the image", [&] { return file.path.string(); }, load);
         } catch (const Error& error) {
             throw Error(at_place(file, error.what()), error.code());
         }
@@ -303,12 +347,13 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
             scene.warnings.push_back(at_place(scene.images[i], warning));
     }
     convert_gammas(scene);
+    MeanCodes means(scene);
     for (Material& material : scene.materials) {
-        if (material.normal_map) check_normal_map(scene, material, *material.normal_map, "normal map");
+        if (material.normal_map) check_normal_map(scene, means, material, *material.normal_map, "normal map");
         const auto* principled = std::get_if<PrincipledMaterial>(&material.model);
         if (principled != nullptr && principled->coat_normal_map)
-            check_normal_map(scene, material, *principled->coat_normal_map, "coat's normal map");
-        if (material.bump_map) check_bump_map(scene, material);
+            check_normal_map(scene, means, material, *principled->coat_normal_map, "coat's normal map");
+        if (material.bump_map) check_bump_map(scene, means, material);
         if (!material.opacity.value.texture) continue;
         choose_channel(scene, *material.opacity.value.texture);
         check_opacity(scene, material);

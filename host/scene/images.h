@@ -18,10 +18,13 @@ namespace candela {
 uint32_t add_image(Scene& scene, const std::filesystem::path& path, const std::string& place,
                    IfMissing if_missing = IfMissing::error);
 
-// The same for an image file that is within another one: these are its bytes, and messages call it `name`,
-// which no other has.
+// The same for an image file that is within another one: these are its bytes, and messages call it `name`.
+// Images of the same bytes are one.
 uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view bytes,
                          const std::string& place);
+
+// The index of an image in scene.images, which it joins unless one of its real_path has been added.
+uint32_t add_image_file(Scene& scene, ImageFile file);
 
 struct ImageOptions {
     // Images with more texels along a side are made smaller.
@@ -32,8 +35,8 @@ struct ImageOptions {
 // Reads all images that have not been read, on all cores. An image that a PNG file says has another gamma
 // than sRGB's is converted for textures of sRGB; others take it as it is. Chooses the channel of opacities
 // that wait for their image (ALPHA_OR_RED), and turns bump maps of mesh files into normal maps where they are
-// some. Where an image may be missing and is, its textures go: factors remain, and emission ends. Throws
-// Error if one cannot be read; what is odd but usable goes to scene.warnings.
+// some. Where an image may be missing and is, or is out of reach, its textures go: factors remain, and
+// emission ends. Throws Error if one cannot be read; what is odd but usable goes to scene.warnings.
 void load_images(Scene& scene, const ImageOptions& options = {}, const LoadProgress& progress = no_progress);
 
 }  // namespace candela

@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "base/file_reach.h"
 #include "base/math.h"
 #include "scene/texture.h"
 #include "scene/transform.h"
@@ -293,12 +295,14 @@ struct Scene {
     std::vector<Camera> cameras;  // At least one; the first is the default.
     Film film;
     IntegratorSettings integrator;
-    std::vector<ImageFile> images;  // That textures look up.
+    std::vector<ImageFile> images;                            // That textures look up.
+    std::unordered_map<std::string, uint32_t> image_indices;  // By real_path, of those that files name.
     std::vector<Material> materials;
     std::vector<TriangleMesh> meshes;
     std::vector<Shape> shapes;
     std::vector<Light> lights;                 // Besides shapes that emit and the environment.
     std::optional<Environment> environment;    // None: black.
+    FileReach reach;                           // What may be read for it.
     std::vector<std::filesystem::path> files;  // Read besides a JSON scene file: meshes, materials, images.
     std::vector<std::string> warnings;         // What the loader found odd but usable, each with its place.
     std::vector<std::pair<std::string, std::string>>

@@ -163,10 +163,9 @@ void SceneBuilder::add_file_appearance(const std::string& name, Material materia
 
 uint32_t SceneBuilder::add_material(Material material) {
     std::vector<Material>& materials = scene_.materials;
-    const std::string name = material.name;
-    const auto is_taken = [&](const Material& other) { return other.name == material.name; };
-    for (int i = 2; std::any_of(materials.begin(), materials.end(), is_taken); ++i)
-        material.name = concat(name, " (", i, ')');
+    for (; named_ < materials.size(); ++named_)
+        material_names_.note(materials[named_].name);
+    material.name = material_names_.choose(material.name);
     materials.push_back(std::move(material));
     return uint32_t(materials.size() - 1);
 }

@@ -9,6 +9,7 @@
 
 #include "scene/scene.h"
 #include "scene/transform.h"
+#include "scene/unique_names.h"
 
 namespace candela {
 
@@ -90,6 +91,8 @@ class SceneBuilder {
     std::map<std::string, Appearance, std::less<>> file_appearances_;
     std::map<uint32_t, std::map<double, uint32_t>> at_scale_;  // By material and scale.
     std::optional<uint32_t> black_;
+    UniqueNames material_names_;  // Of the first `named_` of scene_.materials.
+    size_t named_ = 0;
     std::vector<std::optional<Box>> mesh_boxes_;  // Of meshes that have several instances.
 };
 

@@ -57,7 +57,7 @@ std::vector<CompiledKernel> compile(const vk::Device& device, const Arguments& a
         accesses = {SceneAccess::texel_buffers, SceneAccess::storage_buffers};
     std::vector<CompiledKernel> all;
     for (const std::string& file : arguments.scenes) {
-        const Scene scene = load_scene(file);
+        const Scene scene = load_scene(file, {.reach = {.anywhere = true}});
         const auto kernels =
             compile_scene_kernels(device, std::filesystem::path(file).stem().string(), scene,
                                   scene.cameras.front(), arguments.render.settings(scene), accesses);

@@ -87,8 +87,8 @@ class HostileText : public CliTest {
         for (int i = 0; i < channels; ++i)
             image.add(HARM + std::to_string(i), 1.0f);
         image.attributes["candela.identity"] = "1";
-        for (const char* key : {"seed", "sampler", "estimator", "maxDepth", "rrDepth", "camera", "frame",
-                                "device", "driver", "version"})
+        for (const char* key : {"seed", "sampler", "estimator", "terminator", "maxDepth", "rrDepth", "camera",
+                                "frame", "device", "driver", "version"})
             image.attributes[std::string("candela.") + key] = "x";
         image.attributes["candela.samples"] = samples;
         image.attributes["samplesPerPixel"] = 1.0f;
@@ -134,7 +134,8 @@ TEST_F(HostileText, OfSceneFilesIsEscapedAndCut) {
     expect_harmless_error({"info", scene({{HARM + large_, 1}})}, "unknown key");
     expect_harmless_error({"info", scene({{"cameras", {{HARM + large_, 1}}}})}, "expected an object");
     expect_harmless_error({"info", scene({{"film", HARM + large_}})}, "expected an object { ... }, found \"");
-    expect_harmless_error({"info", scene({{"environment", {{"file", HARM + large_}}}})}, "has no extension");
+    expect_harmless_error({"info", scene({{"environment", {{"file", HARM + large_}}}})},
+                          "it is not in the folder of the file that is opened");
     expect_harmless_error({"info", write("b.json", "{\"" + large_ + "\": 1, \"" + large_ + "\": 2}")},
                           "duplicate key");
     expect_harmless_error({"info", file(HARM + ".json")}, "the file does not exist");
@@ -149,9 +150,8 @@ TEST_F(HostileText, OfMeshFilesIsEscapedAndCounted) {
     }
     write("a.mtl", mtl);
     const ProcessResult info = expect_harmless_run({"info", write("a.obj", obj)}, 0, "a.mtl");
-    EXPECT_CONTAINS(info.err, "2997 more like the last");
-    expect_harmless_error({"info", write("b.obj", "v 0 0 \x1B[31m\x9B" + large_)},
-                          "needs three finite numbers");
+    EXPECT_CONTAINS(info.err, "(3000 times)");
+    expect_harmless_error({"info", write("b.obj", "v 0 0 \x1B[31m\x9B" + large_)}, "needs three numbers");
     expect_harmless_error({"info", write("a.ply", "ply\nformat \x1B[31m\u009B" + large_ + "\n")},
                           "unknown format");
     expect_harmless_error({"info", write("b.ply", "ply\n\x1B[31m\u202E" + large_ + "\n")},

@@ -12,8 +12,9 @@ class Instances : public CliTest {
   protected:
     // Renders 40x30 pixels to a file and reads it.
     Image rendered(const std::string& name, const Words& arguments) const {
-        const ProcessResult result =
-            candela(Words{"render", INSTANCES, "--size", "40x30", "--quiet", "-o", file(name)} + arguments);
+        const ProcessResult result = candela(Words{"render", INSTANCES, "--allow-folder", CANDELA_SCENES,
+                                                   "--size", "40x30", "--quiet", "-o", file(name)} +
+                                             arguments);
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_EQ(result.err, "");
         return read_exr(file(name));
@@ -25,7 +26,7 @@ class Instances : public CliTest {
 };
 
 TEST_F(Instances, InfoTellsWhatTheyShare) {
-    const ProcessResult info = candela({"info", INSTANCES, "--json"});
+    const ProcessResult info = candela({"info", INSTANCES, "--allow-folder", CANDELA_SCENES, "--json"});
     ASSERT_EQ(info.exit_code, 0) << info.err;
     const auto sharing = nlohmann::json::parse(info.out)["sharing"];
     EXPECT_EQ(sharing["instances"], 3);
@@ -33,7 +34,7 @@ TEST_F(Instances, InfoTellsWhatTheyShare) {
     EXPECT_EQ(sharing["triangles_stored"], 30720);
     EXPECT_EQ(sharing["triangles_seen"], 3 * 30720);
     EXPECT_GT(sharing["bytes_saved"], 0);
-    EXPECT_CONTAINS(candela({"info", INSTANCES}).out, "3 of 1 meshes: ");
+    EXPECT_CONTAINS(candela({"info", INSTANCES, "--allow-any-folder"}).out, "3 of 1 meshes: ");
 }
 
 TEST_F(Instances, PartsMakeTheWhole) {

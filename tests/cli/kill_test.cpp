@@ -9,6 +9,7 @@
 #include <thread>
 #include <tuple>
 
+#include "base/file.h"
 #include "base/texel_io.h"
 #include "cli/cli_fixture.h"
 #include "film/checkpoint.h"
@@ -61,7 +62,7 @@ class Kills : public CliTest {
         std::vector<std::string> warnings;
         const std::map<std::string, std::function<void(const std::string&)>> readers = {
             {"a.exr", [](const std::string& path) { read_exr(path); }},
-            {"a.png", [&](const std::string& path) { read_texels(path, warnings); }},
+            {"a.png", [&](const std::string& path) { decode_texels(read_file(path), path, warnings); }},
             {"r.json", [](const std::string& path) { std::ignore = nlohmann::json::parse(read_file(path)); }},
             {"state.exr", [](const std::string& path) { load_checkpoint(path); }}};
         size_t files = 0;

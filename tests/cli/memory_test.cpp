@@ -44,8 +44,9 @@ TEST_F(LittleMemory, IsAnErrorWhereAMeshDoesNotFit) {
         "vertical_fov": 40}}, "shapes": [{"type": "ply", "file": "a.ply", "emission": 1}]})";
     const ProcessResult result = run({"info", file("a.json")});
     EXPECT_EQ(result.exit_code, 5) << result.err;
-    EXPECT_CONTAINS(result.err,
-                    "candela: error: the computer has too little memory; use a smaller picture or scene");
+    EXPECT_CONTAINS(
+        result.err,
+        "a.ply: there is not enough memory for the mesh; make it smaller, or use a larger machine");
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST_F(View, AGlbFileIsAScene) {
 
 TEST_F(View, InstancesAreShown) {
     const std::string scene = std::string(CANDELA_SCENES) + "/../tests/bench/scenes/instances.json";
-    const Words settings{"--size", "80x60"};
+    const Words settings{"--size", "80x60", "--allow-folder", CANDELA_SCENES};
     const ProcessResult result =
         view(settings + Words{"--frames", "4", "--screenshot", "a.exr"}, scene).finish();
     EXPECT_EQ(result.exit_code, 0) << result.err;

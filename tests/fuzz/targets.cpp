@@ -7,6 +7,7 @@
 
 #include "base/compare.h"
 #include "base/image_io.h"
+#include "base/memory_limit.h"
 #include "base/texel_io.h"
 #include "cli/report_curve.h"
 #include "film/checkpoint.h"
@@ -21,6 +22,7 @@
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
 #include "render/adaptive.h"
+#include "scene/images.h"
 #include "support/png_writer.h"
 
 namespace candela::fuzz {
@@ -82,22 +84,26 @@ void scene(std::string_view bytes) {
 void obj(std::string_view bytes) {
     const MemoryFile file(bytes);
     std::vector<std::string> warnings;
-    load_obj(file.path(), MeshNormals::file, warnings);
-    load_obj_parts(file.path(), MeshNormals::smooth);
+    load_obj(file.path(), MeshNormals::file, FileReach(file.path()), warnings);
+    load_obj_parts(file.path(), MeshNormals::smooth, FileReach(file.path()));
 }
 
 void mtl(std::string_view bytes) {
-    load_mtl(MemoryFile(bytes).path());
+    const MemoryFile file(bytes);
+    load_mtl(file.path(), FileReach(file.path()));
 }
 
 void ply(std::string_view bytes) {
     std::vector<std::string> warnings;
-    load_ply(MemoryFile(bytes).path(), MeshNormals::file, warnings);
+    const MemoryFile file(bytes);
+    load_ply(file.path(), MeshNormals::file, FileReach(file.path()), warnings);
 }
 
 void gltf(std::string_view bytes) {
     Scene scene;
-    add_gltf_scene(MemoryFile(bytes).path(), {.animation = "all", .time = 0.5}, scene);
+    const MemoryFile file(bytes);
+    scene.reach = FileReach(file.path());
+    add_gltf_scene(file.path(), {.animation = "all", .time = 0.5}, scene);
     complete_gltf_scene("fuzz.gltf", scene);
     // Images are other targets, and are not read here.
     if (scene.images.empty()) build_gpu_scene(scene);
@@ -105,6 +111,19 @@ void gltf(std::string_view bytes) {
 
 void glb(std::string_view bytes) {
     gltf(with_lengths(bytes));
+}
+
+void cost(std::string_view bytes) {
+    constexpr uint64_t MOST_BYTES = uint64_t(128) << 20;
+    const MemoryFile file(bytes);
+    set_memory_limit(memory_in_use() + MOST_BYTES);
+    const LimitedMemory limited;
+    const auto name = [] { return std::string("fuzz.gltf"); };
+    with_memory_for("the scene", name, [&] {
+        Scene scene = load_gltf_scene(file.path());
+        load_images(scene);
+        build_gpu_scene_freeing_images(scene);
+    });
 }
 
 void hdr(std::string_view bytes) {

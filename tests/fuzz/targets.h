@@ -13,6 +13,8 @@ void ply(std::string_view bytes);
 // Posed at a moment; their tree and their records.
 void gltf(std::string_view bytes);
 void glb(std::string_view bytes);  // With lengths that are right, whatever they are.
+// A glTF file with its images, its tree and its records, within 128 MiB; more is an Error.
+void cost(std::string_view bytes);
 void hdr(std::string_view bytes);
 void exr(std::string_view bytes);
 // Images of textures.
@@ -32,9 +34,10 @@ struct Target {
     std::string_view name;  // Its inputs are in corpora/NAME.
     void (*run)(std::string_view bytes);
 };
-inline constexpr std::array<Target, 17> TARGETS{{{"scene", scene},
+inline constexpr std::array<Target, 18> TARGETS{{{"scene", scene},
                                                  {"gltf", gltf},
                                                  {"glb", glb},
+                                                 {"cost", cost},
                                                  {"obj", obj},
                                                  {"mtl", mtl},
                                                  {"ply", ply},

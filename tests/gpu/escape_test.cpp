@@ -99,8 +99,11 @@ TriangleMesh thorny_mesh() {
 ClosedMesh knot() {
     constexpr float TUBE = 0.62f;
     std::vector<std::string> warnings;
-    ClosedMesh knot{
-        "knot", load_ply(CANDELA_SCENES "/knot.ply", MeshNormals::file, warnings), {}, 0.4f * TUBE};
+    ClosedMesh knot{"knot",
+                    load_ply(CANDELA_SCENES "/knot.ply", MeshNormals::file,
+                             FileReach(CANDELA_SCENES "/knot.ply"), warnings),
+                    {},
+                    0.4f * TUBE};
     for (size_t i = 0; i < knot.mesh.positions.size(); i += 7)
         knot.points.push_back(knot.mesh.positions[i] - 0.5f * TUBE * knot.mesh.normals[i]);
     return knot;

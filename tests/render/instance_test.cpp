@@ -78,7 +78,8 @@ class InstanceTest : public RenderTest, public testing::WithParamInterface<const
 TEST_P(InstanceTest, CutScenesHaveTheSamePicture) {
     const std::filesystem::path name = std::string(GetParam()) + ".json";
     const std::filesystem::path file = std::filesystem::path(CANDELA_SCENES) / name;
-    const Scene scene = load_scene(exists(file) ? file : std::filesystem::path(CANDELA_REFERENCES) / name);
+    const Scene scene = load_scene(exists(file) ? file : std::filesystem::path(CANDELA_REFERENCES) / name,
+                                   {.reach = {.folders = {CANDELA_SCENES}}});
     Scene cut = scene;
     cut_into_instances(cut);
     expect_same_picture(scene, cut, 256, 0.01);

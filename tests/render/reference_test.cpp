@@ -149,7 +149,8 @@ TEST_P(ReferenceTest, AnIndependentRendererMakesTheSamePicture) {
     const auto [name, spp, same] = GetParam();
     const Image reference =
         read_exr(fs::path(CANDELA_REFERENCES) / (std::string(same ? same : name) + ".exr"));
-    const Scene scene = load_scene(scene_file(name));
+    // Some show meshes and skies of the gallery.
+    const Scene scene = load_scene(scene_file(name), {.reach = {.folders = {CANDELA_SCENES}}});
     RenderSettings settings = independent_settings(reference.full.x, Estimator::mis, 1);
     settings.max_depth = scene.integrator.max_depth.value_or(DEPTH_SAFETY_LIMIT);
     settings.terminator = scene.integrator.terminator;

@@ -36,7 +36,7 @@ class EnvironmentFile : public testing::Test {
     }
     Environment load() {
         warnings_.clear();
-        return load_environment(path_, warnings_);
+        return load_environment(path_, FileReach(path_), warnings_);
     }
     // Warnings and errors begin with the file's name.
     std::string named(const std::string& text) const { return path_.string() + ": " + text; }
@@ -168,7 +168,7 @@ vec3 texel_direction(uvec2 size, uint32_t x, uint32_t y) {
 TEST(Sky, HasItsSunWhereItsMakerSays) {
     std::vector<std::string> warnings;
     const fs::path path = fs::path(CANDELA_SCENES) / "sky.hdr";
-    const Environment sky = load_environment(path, warnings);
+    const Environment sky = load_environment(path, FileReach(path), warnings);
     EXPECT_TRUE(warnings.empty());
     EXPECT_EQ(sky.size, uvec2(1024, 512));
     EXPECT_LE(fs::file_size(path), 2u << 20);

@@ -288,5 +288,14 @@ TEST(Exr, ReportsAnAttributeThatOpenExrRefuses) {
     EXPECT_EQ(directory.size(), 0);
 }
 
+TEST(Exr, RefusesMoreChannelsThanAnyProgramWrites) {
+    // Of 300 000 bytes, in a file that ends before them.
+    const std::string file = std::string("\x76\x2f\x31\x01\x02\0\0\0", 8) +
+                             std::string("a\0int\0\4\0\0\0\0\0\0\0", 14) +
+                             std::string("channels\0chlist\0\xe0\x93\x04\0", 20);
+    EXPECT_EQ(error_of([&] { decode_exr(file, "a.exr"); }),
+              "cannot read \"a.exr\": it has thousands of channels; write fewer");
+}
+
 }  // namespace
 }  // namespace candela

@@ -14,8 +14,9 @@ class GltfAccessor : public Gltf {
     void with_accessor(const GltfFile& made, const auto& use) {
         GltfFile made_so = made;
         made_so.root["extras"] = made.root["accessors"].size() - 1;
+        const std::filesystem::path path = folder_.path() / "m.gltf";
         folder_.write("m.gltf", made_so.gltf());
-        gltf::File file(folder_.path() / "m.gltf");
+        gltf::File file(path, FileReach(path), no_progress);
         use(gltf::Accessor(file, file.root().require("extras"), {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT4"}));
     }
 
@@ -173,7 +174,8 @@ TEST_F(GltfAccessor, RefusesSparseElementsThatAreNotThere) {
     file.add<float>("SCALAR", {1, 2, 3}, {{"sparse", sparse_of(indices, 5121, values, 2)}});
     Json& sparse = file.root["accessors"][0]["sparse"];
     expect_refused(file,
-                   "#/accessors/0/sparse/indices: number 1 replaces element 3 of 3; is the file damaged?");
+                   "#/accessors/0/sparse/indices: number 1 replaces an element that the accessor, which has "
+                   "3, lacks; is the file damaged?");
     sparse["count"] = 4;
     expect_refused(file,
                    "#/accessors/0/sparse/count: \"count\": expected a whole number from 1 to 3, found 4");
@@ -194,7 +196,8 @@ TEST_F(GltfAccessor, RefusesSparseElementsThatAreNotThere) {
                    "5125, found 5120");
     sparse["indices"]["componentType"] = 5121;
     expect_refused(file,
-                   "#/accessors/0/sparse/indices: number 1 replaces element 255 of 2; is the file damaged?");
+                   "#/accessors/0/sparse/indices: number 1 replaces an element that the accessor, which has "
+                   "2, lacks; is the file damaged?");
     sparse.erase("values");
     sparse["count"] = 1;
     expect_refused(file, "#/accessors/0/sparse: the key \"values\" is missing here; add it");

@@ -47,7 +47,9 @@ GltfFile rich_file() {
 
 Scene load_bytes(const std::string& bytes) {
     Scene scene;
-    add_gltf_scene(fuzz::MemoryFile(bytes).path(), {.time = 0.5}, scene);
+    const fuzz::MemoryFile file(bytes);
+    scene.reach = FileReach(file.path());
+    add_gltf_scene(file.path(), {.time = 0.5}, scene);
     return scene;
 }
 

@@ -148,8 +148,28 @@ TEST_F(GltfFileTest, DecodesTheNamesOfFiles) {
         SCOPED_TRACE(uri);
         expect_corner(load_text(naming(uri)));
     }
-    // In the folder above, too, as RFC 3986 has it.
-    expect_corner(load_text(naming("../two%20words.bin"), {}, "sub/m.gltf"));
+    // In the folder above, too, as RFC 3986 has it, if that is allowed.
+    folder_.write("sub/m.gltf", naming("../two%20words.bin"));
+    Scene scene;
+    scene.reach = FileReach(folder_.path() / "sub/m.gltf", {.folders = {folder_.path()}});
+    add_gltf_scene(folder_.path() / "sub/m.gltf", {}, scene);
+    expect_corner(scene);
+}
+
+TEST_F(GltfFileTest, NamesNoFileOutsideOfItsFolder) {
+    std::filesystem::create_directory(folder_.path() / "sub");
+    folder_.write("secret.bin", corner_file().bytes);
+    std::filesystem::create_symlink(folder_.path() / "secret.bin", folder_.path() / "sub/link.bin");
+    for (const std::string uri : {"../secret.bin", "%2e%2e/secret.bin", R"(..\secret.bin)", "..%5csecret.bin",
+                                  "x/../../secret.bin", "link.bin", "../none.bin"}) {
+        expect_text_error(
+            naming(uri),
+            "sub/m.gltf#/buffers/0/uri: cannot read \"" + uri +
+                "\": with links followed, it is not in the folder of the file that is opened, "
+                "\"sub\"; if you trust that file, allow the folder of this one (--allow-folder DIR), "
+                "or all (--allow-any-folder)",
+            "sub/m.gltf");
+    }
 }
 
 TEST_F(GltfFileTest, ReadsOnlyFilesThatAreNamedRelativeToIt) {

@@ -143,6 +143,7 @@ class Gltf : public testing::Test {
                     const std::string& name = "m.gltf") {
         folder_.write(name, text);
         Scene scene;
+        scene.reach = FileReach(folder_.path() / name);
         add_gltf_scene(folder_.path() / name, options, scene);
         return scene;
     }

@@ -96,7 +96,7 @@ TEST_F(GltfNode, RotationsOfItsInstancesAreDividedByTheirLengths) {
     const Scene scene = expect_warning(
         file,
         "#/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/ROTATION: the rotation of instance 1 is a "
-        "quaternion of length 4.24264, not 1; all are divided by their lengths, and one of length 0 counts "
+        "quaternion of another length than 1; all are divided by their lengths, and one of length 0 counts "
         "as "
         "none");
     ASSERT_EQ(scene.shapes.size(), 3u);

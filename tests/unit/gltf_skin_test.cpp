@@ -298,8 +298,9 @@ TEST_F(GltfSkin, RefusesSkinsThatAreNoneOrDamaged) {
     GltfFile file = two_joints();
     Json& skin = file.root["skins"][0];
     skin["joints"] = {1};
-    expect_error(
-        file, "#/meshes/0/primitives/0/attributes/JOINTS_0: vertex 0 follows joint 1 of a skin that has 1");
+    expect_error(file,
+                 "#/meshes/0/primitives/0/attributes/JOINTS_0: vertex 0 follows a joint that the skin, which "
+                 "has 1, lacks");
     skin["joints"] = Json::array();
     expect_error(file, "#/skins/0/joints: a skin needs at least one joint; export it again");
     skin["joints"] = {1, 3};

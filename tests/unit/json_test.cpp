@@ -135,5 +135,22 @@ TEST(Json, DescribesValuesForMessages) {
     EXPECT_EQ(description("{}"), "an object");
 }
 
+TEST(Json, FindsEachOfManyKeysAndNoOther) {
+    for (const int count : {1, 16, 17, 1000}) {
+        std::string text = "{";
+        for (int i = 0; i < count; ++i)
+            text += (i == 0 ? "\"k" : ", \"k") + std::to_string(7 * i % count) + "\": " + std::to_string(i);
+        const json::Value value = json::parse(text + "}", "f");
+        const auto& object = std::get<json::Object>(value.data);
+        for (int i = 0; i < count; ++i) {
+            const json::Member* member = object.find("k" + std::to_string(7 * i % count));
+            ASSERT_NE(member, nullptr);
+            EXPECT_EQ(std::get<double>(member->value.data), double(i));
+        }
+        for (const char* other : {"", "k", "k1000", "kk", "l"})
+            EXPECT_EQ(object.find(other), nullptr) << other;
+    }
+}
+
 }  // namespace
 }  // namespace candela

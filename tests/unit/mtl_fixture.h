@@ -15,7 +15,7 @@ class Mtl : public testing::Test {
   protected:
     MtlLibrary load(const std::string& text) {
         folder_.write("m.mtl", text);
-        return load_mtl(folder_.path() / "m.mtl");
+        return load_mtl(folder_.path() / "m.mtl", FileReach(folder_.path() / "m.obj"));
     }
 
     // The one material of a file, whose statements are `text`, from line 2 on.

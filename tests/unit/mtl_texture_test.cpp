@@ -13,7 +13,7 @@ class MtlTextures : public testing::Test {
     // The one material of a file, whose statements are `text`, from line 2 on.
     MtlMaterial material(const std::string& text) {
         folder_.write("m.mtl", "newmtl a\n" + text);
-        MtlLibrary library = load_mtl(folder_.path() / "m.mtl");
+        MtlLibrary library = load_mtl(folder_.path() / "m.mtl", FileReach(folder_.path() / "m.obj"));
         library_warnings_ = library.warnings;
         return library.materials.at("a");
     }

@@ -23,11 +23,11 @@ class ObjAttributes : public testing::Test {
 
     TriangleMesh load(const std::string& text, MeshNormals normals = MeshNormals::file) {
         warnings_.clear();
-        return load_obj(write(text), normals, warnings_);
+        return load_obj(write(text), normals, reach_, warnings_);
     }
 
     std::vector<ObjPart> parts(const std::string& text) {
-        return load_obj_parts(write(text), MeshNormals::file).parts;
+        return load_obj_parts(write(text), MeshNormals::file, reach_).parts;
     }
 
     void expect_error(const std::string& text, const std::string& message) {
@@ -54,6 +54,7 @@ class ObjAttributes : public testing::Test {
 
     SceneFolder folder_;
     std::vector<std::string> warnings_;
+    FileReach reach_{folder_.path() / "m.obj"};
 };
 
 TEST_F(ObjAttributes, TextureCoordinatesKeepTheDirectionOfTheFile) {

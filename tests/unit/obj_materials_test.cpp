@@ -225,6 +225,23 @@ TEST_F(ObjMaterials, MayLieInMissingLibraries) {
     expect_error("mtllib m.mtl\nusemtl red\nf 1 2 3\n", "m.mtl:2: Kd needs a number, found \"x\"");
 }
 
+// Whether they exist is not told.
+TEST_F(ObjMaterials, MayLieInLibrariesOutOfReach) {
+    std::filesystem::create_directory(folder_.path() / "in");
+    folder_.write("m.mtl", "newmtl red\nKd 1 0 0\n");
+    const std::filesystem::path file = folder_.path() / "in/m.obj";
+    for (const std::string name : {"../m.mtl", "../none.mtl"}) {
+        folder_.write("in/m.obj", std::string(FOUR_CORNERS) + "mtllib " + name + "\nusemtl red\nf 1 2 3\n");
+        const Scene scene = load_scene(file);
+        EXPECT_EQ(reflectance(scene, 0), vec3(0.5f));
+        EXPECT_EQ(folder_.without_folder(scene.warnings.at(0)),
+                  "in/m.obj:5: " + folder_.without_folder(FileReach(file).refusal(name)) +
+                      "; its materials are shown in grey");
+        EXPECT_EQ(reflectance(load_scene(file, {.reach = {.folders = {folder_.path()}}}), 0),
+                  name == "../m.mtl" ? vec3(1, 0, 0) : vec3(0.5f));
+    }
+}
+
 TEST_F(ObjMaterials, LieInLibrariesThatOtherComputersName) {
     folder_.write("the clay.mtl", "newmtl red\nKd 1 0 0\n");
     folder_.write("n.mtl", "newmtl blue\nKd 0 0 1\n");

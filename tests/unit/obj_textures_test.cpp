@@ -161,6 +161,39 @@ TEST_F(ObjTextures, ImagesMayBeMissing) {
         Error);
 }
 
+// Whether they exist is not told.
+TEST_F(ObjTextures, ImagesOutOfReachAreAsGoodAsMissing) {
+    std::filesystem::create_directory(folder_.path() / "in");
+    folder_.write("in/m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n");
+    write_image("there.png", png_rgb);
+    std::filesystem::create_symlink("../there.png", folder_.path() / "in/link.png");
+    const std::filesystem::path file = folder_.path() / "in/m.obj";
+    for (const std::string name :
+         {"../there.png", "../none.png", "..\\none.png", "\"../there.png\"", "link.png"}) {
+        SCOPED_TRACE(name);
+        const std::string path = "in/" + (name == "link.png"                        ? name
+                                          : name.find("there") != std::string::npos ? "../there.png"
+                                                                                    : "../none.png");
+        folder_.write("in/m.mtl", "newmtl a\nKd 0.5\nmap_Kd " + name + "\nmap_Ke " + name + "\n");
+        const Scene scene = load_scene(file);
+        EXPECT_EQ(std::get<DiffuseMaterial>(material(scene).model).reflectance, vec3(0.5f));
+        EXPECT_FALSE(scene.shapes.at(0).emission);
+        const std::string refusal =
+            "in/m.mtl:3: cannot read \"" + path + "\": with links followed, it is not ";
+        EXPECT_EQ(folder_.without_folder(scene.warnings.at(0)).substr(0, refusal.size()), refusal);
+        EXPECT_TRUE(scene.warnings[0].ends_with("(--allow-any-folder); white takes its place"));
+        const LoadOptions strict{.images = {.if_missing = IfMissing::error}};
+        const std::string error = error_of([&] { load_scene(file, strict); });
+        EXPECT_EQ(folder_.without_folder(error).substr(0, refusal.size()), refusal);
+    }
+    folder_.write("in/there.png", "no image");  // A name alone is one in the folder.
+    EXPECT_NE(error_of([&] {
+                  folder_.write("in/m.mtl", "newmtl a\nmap_Kd ../there.png\n");
+                  load_scene(file);
+              }),
+              "");
+}
+
 TEST_F(ObjTextures, ImagesMayBeNamedByOtherComputers) {
     write_image("my wall.png", png_rgb);
     for (const char* name : {"\"my wall.png\"", "C:\\textures\\my wall.png", "/gone/my wall.png",

@@ -23,7 +23,7 @@ class PlyAttributes : public testing::Test {
     TriangleMesh load(const std::string& text, MeshNormals normals = MeshNormals::file) {
         folder_.write("m.ply", text);
         warnings_.clear();
-        return load_ply(folder_.path() / "m.ply", normals, warnings_);
+        return load_ply(folder_.path() / "m.ply", normals, FileReach(folder_.path() / "m.ply"), warnings_);
     }
 
     void expect_error(const std::string& text, const std::string& message) {

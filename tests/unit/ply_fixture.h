@@ -59,7 +59,9 @@ class Ply : public testing::Test {
     TriangleMesh load(const std::string& text, MeshNormals normals = MeshNormals::file) {
         folder_.write("m.ply", text);
         warnings_.clear();
-        return placed(load_ply(folder_.path() / "m.ply", normals, warnings_), Transform());
+        return placed(
+            load_ply(folder_.path() / "m.ply", normals, FileReach(folder_.path() / "m.ply"), warnings_),
+            Transform());
     }
 
     void expect_error(const std::string& text, const std::string& message) {

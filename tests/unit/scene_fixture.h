@@ -34,7 +34,8 @@ class SceneFolder {
     Scene load(const std::string& text, const ImageOptions& images = {},
                const LoadProgress& progress = no_progress) {
         write("scene.json", text);
-        return load_scene(folder_ / "scene.json", {.images = images, .progress = progress});
+        return load_scene(folder_ / "scene.json",
+                          {.images = images, .progress = progress, .reach = {.anywhere = true}});
     }
 
     // Loads a scene that has an error at its '@', and checks the message after `scene.json:line:column: `.

@@ -80,7 +80,7 @@ TEST(TexelIo, TheFirstBytesSayWhatAFileIs) {
             const std::filesystem::path path = directory / ("a" + extension);
             write_quickly(path, sample.bytes);
             std::vector<std::string> warnings;
-            EXPECT_EQ(read_texels(path, warnings).size, SIZE);
+            EXPECT_EQ(decode_texels(read_file(path), path, warnings).size, SIZE);
             const std::string own = sample.extension == std::string(".jpeg") ? ".jpg" : sample.extension;
             const std::string lower = extension == ".JPG" || extension == ".jpeg" ? ".jpg" : extension;
             if (lower.empty() || lower == ".data" || lower == own) {
@@ -131,17 +131,6 @@ TEST(TexelIo, SaysWhatAFileIsInstead) {
         EXPECT_EQ(texel_error(bytes),
                   "its first bytes are not those of an image that can be read; give PNG, "
                   "JPEG, WebP, Radiance HDR or OpenEXR");
-}
-
-TEST(TexelIo, SaysWhatIsNoFile) {
-    const TemporaryDirectory directory;
-    std::vector<std::string> warnings;
-    EXPECT_EQ(error_of([&] { read_texels(directory.path(), warnings); }),
-              "cannot read \"" + directory.path().string() +
-                  "\": it is a directory; give the name of a file in it");
-    EXPECT_EQ(
-        error_of([&] { read_texels(directory / "a.png", warnings); }),
-        "cannot read \"" + (directory / "a.png").string() + "\": the file does not exist; check the name");
 }
 
 TEST(TexelIo, RefusesMorePixelsThanAllowedBeforeItReadsThem) {

@@ -3,6 +3,7 @@
 #include "gpu_scene/triangle_pairs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -100,6 +101,23 @@ TEST(TrianglePairs, OppositeWindingsStayApart) {
                             .normals = {},
                             .triangles = {uvec3(0, 1, 2), uvec3(0, 3, 2)}};
     EXPECT_EQ(pair_triangles(mesh).size(), 2u);
+}
+
+// To look at all of them for each would take minutes.
+TEST(TrianglePairs, OfAHundredThousandTrianglesAroundAVertexTakeNoTime) {
+    constexpr uint32_t MANY = 100'000;
+    TriangleMesh mesh{.positions = {vec3(0.0f)}};
+    for (uint32_t i = 0; i <= MANY; ++i) {
+        const float angle = 1.5f * float(i) / float(MANY);
+        mesh.positions.emplace_back(std::cos(angle), std::sin(angle), 0.0f);
+        if (i > 0) mesh.triangles.emplace_back(0, i, i + 1);
+    }
+    std::vector<int> uses(MANY);
+    for (const TrianglePair& pair : pair_triangles(mesh)) {
+        ++uses[pair.first];
+        if (pair.second != pair.first) ++uses[pair.second];
+    }
+    EXPECT_EQ(std::ranges::count(uses, 1), MANY);
 }
 
 }  // namespace

@@ -145,8 +145,8 @@ void Accessor::read_sparse(File& file, const Node& sparse) {
             return double(value);
         });
         if (!(index >= 0.0 && index < double(count_))) {
-            indices.fail(concat("number ", i, " replaces element ", number_text(index, 10), " of ", count_,
-                                "; is the file damaged?"));
+            indices.fail(concat("number ", i, " replaces an element that the accessor, which has ", count_,
+                                ", lacks; is the file damaged?"));
         }
         sparse_->indices.push_back(uint32_t(index));
     }

@@ -1,5 +1,6 @@
 // Accessors: typed arrays in the buffers of a glTF file. All that they state is checked before any byte is
-// read.
+// read. Messages tell of their places alone, not of their values: buffers may be in other files, whose
+// contents are not for whoever reads the messages.
 #pragma once
 
 #include <cstddef>

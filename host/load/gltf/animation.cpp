@@ -51,8 +51,9 @@ void check_rotations(File& file, const Node& output, const Sampler& sampler) {
         const float* q = sampler.value(key);
         const double size = length(glm::dvec4(q[0], q[1], q[2], q[3]));
         if (std::abs(size - 1.0) <= ROTATION_TOLERANCE) continue;
-        file.warn(output, concat("the rotation of key ", key, " is a quaternion of length ",
-                                 number_text(size, 6), ", not 1; all are divided by their lengths"));
+        file.warn(output,
+                  concat("the rotation of key ", key,
+                         " is a quaternion of another length than 1; all are divided by their lengths"));
         return;
     }
 }

@@ -53,7 +53,7 @@ void warn_of_units(File& file, const GltfOptions& options, const Scene& scene) {
 
 void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene,
                     const LoadProgress& progress) {
-    File file(path, progress);
+    File file(path, scene.reach, progress);
     check_extensions(file);
     scene.files.push_back(path);
     gltf::SceneReader(file, scene, options, progress).read();
@@ -77,8 +77,9 @@ void complete_gltf_scene(const std::string& name, Scene& scene) {
 }
 
 Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options,
-                      const LoadProgress& progress) {
+                      const LoadProgress& progress, const ReachOptions& reach) {
     Scene scene;
+    scene.reach = FileReach(path, reach);
     scene.film.size = GLTF_FILM_SIZE;
     add_gltf_scene(path, options, scene, progress);
     complete_gltf_scene(path.string(), scene);

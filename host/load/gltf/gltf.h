@@ -50,12 +50,14 @@ inline constexpr uvec2 GLTF_FILM_SIZE{1280, 720};
 
 // Reads a scene and the buffers that it names, with progress in bytes and then in meshes; load_images() reads
 // its images. A file without cameras gets one; add_studio() lights one without light. Throws Error with the
-// JSON pointer of what is wrong. What is odd but usable goes to Scene::warnings.
+// JSON pointer of what is wrong. What is odd but usable goes to Scene::warnings. `reach` is what the file may
+// name besides what is in its folder.
 Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options = {},
-                      const LoadProgress& progress = no_progress);
+                      const LoadProgress& progress = no_progress, const ReachOptions& reach = {});
 
 // Adds what a file holds to a scene, as load_gltf_scene() does, but neither camera nor studio. Materials that
-// the scene has already take the place of the file's of the same name.
+// the scene has already take the place of the file's of the same name. Both it and what it names must be
+// within scene.reach.
 void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene,
                     const LoadProgress& progress = no_progress);
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/memory_limit.h"
 #include "base/text.h"
 #include "load/gltf/uri.h"
 #include "load/gltf/values.h"
@@ -97,8 +97,9 @@ void check_version(const Node& root) {
 
 }  // namespace
 
-File::File(const std::filesystem::path& path, LoadProgress progress)
-    : progress_(std::move(progress)), path_(path), bytes_(read(path)) {
+File::File(const std::filesystem::path& path, const FileReach& reach, LoadProgress progress)
+    : reach_(reach), progress_(std::move(progress)), path_(path) {
+    bytes_ = reach_.read(path, UINT64_MAX, note_bytes());
     document_.file = path.string();
     document_.places = json::Document::Places::pointers;
     document_.nulls_are_absent = true;  // Some programs write null for what they do not know.
@@ -111,10 +112,26 @@ File::File(const std::filesystem::path& path, LoadProgress progress)
     if (!root().is_object()) root().fail_expected("an object { ... }, as every glTF file is");
     check_version(root());
     buffers_.resize(count("buffers"));
+    images_.resize(count("images"));
 }
 
-std::string File::read(const std::filesystem::path& path) const {
-    return read_file(path, [this](size_t done, size_t of) { progress_("bytes", done, of); });
+ReadProgress File::note_bytes() const {
+    return [this](size_t done, size_t of) { progress_("bytes", done, of); };
+}
+
+std::filesystem::path File::named(const Node& uri) const {
+    return file_of(uri, path_.parent_path(), reach_);
+}
+
+std::string File::read_named(const Node& uri, uint64_t most) const {
+    const std::filesystem::path path = named(uri);
+    try {
+        return with_memory_for(
+            "the bytes of the file", [&] { return path.string(); },
+            [&] { return reach_.read(path, most, note_bytes()); });
+    } catch (const Error& error) {
+        throw Error(uri.place() + ": " + error.what(), error.code());
+    }
 }
 
 // Finds the chunks; returns that of the JSON document.
@@ -198,13 +215,8 @@ std::span<const std::byte> File::buffer_bytes(uint32_t i) {
         if (!buffers_[i]) {
             buffers_[i] = inline_data(*uri);
             if (!buffers_[i]) {
-                const std::filesystem::path path = file_of(*uri, folder());
-                try {
-                    buffers_[i] = read(path);
-                } catch (const Error& error) {
-                    uri->fail(error.what());
-                }
-                files_.push_back(path);
+                buffers_[i] = read_named(*uri, length);
+                files_.push_back(named(*uri));
             }
             buffer_bytes_read_ += buffers_[i]->size();
         }

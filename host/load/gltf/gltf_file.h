@@ -10,6 +10,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "base/file_reach.h"
 #include "load/node.h"
 #include "scene/load_progress.h"
 
@@ -20,14 +21,17 @@ namespace candela::gltf {
 class File {
   public:
     // Throws Error if the file cannot be read, is cut off, or is of another version than 2. Tells of the
-    // bytes of each file that it reads.
-    explicit File(const std::filesystem::path& path, LoadProgress progress = no_progress);
+    // bytes of each file that it reads. This file and those that it names must be within `reach`.
+    File(const std::filesystem::path& path, const FileReach& reach, LoadProgress progress);
     File(const File&) = delete;
     File& operator=(const File&) = delete;
 
     Node root() const { return Node(document_); }
     const std::filesystem::path& path() const { return path_; }
-    std::filesystem::path folder() const { return path_.parent_path(); }
+    // The file that a relative URI names, as file_of() finds it.
+    std::filesystem::path named(const Node& uri) const;
+    // Its first `most` bytes, or all. Throws Error at the place of `uri` if it cannot be read.
+    std::string read_named(const Node& uri, uint64_t most = UINT64_MAX) const;
 
     // How many elements a top-level array has, such as "meshes"; 0 if it is missing.
     size_t count(std::string_view array) const;
@@ -43,6 +47,9 @@ class File {
     // The bytes that a bufferView stands for; valid as long as this file. Throws Error if they are not there.
     std::span<const std::byte> view_bytes(const Node& view);
 
+    // The index in Scene::images of the file's image `i`, once it has one.
+    std::optional<uint32_t>& image_index(uint32_t i) { return images_[i]; }
+
     // How many bytes have been read so far: the file, and the buffers that are used.
     size_t bytes_read() const { return bytes_.size() + buffer_bytes_read_; }
 
@@ -55,10 +62,11 @@ class File {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
-    std::string read(const std::filesystem::path& path) const;
+    ReadProgress note_bytes() const;
     std::string_view split_glb();
     std::span<const std::byte> buffer_bytes(uint32_t index);
 
+    FileReach reach_;
     LoadProgress progress_;
     std::filesystem::path path_;
     std::string bytes_;                      // Of the file.
@@ -66,6 +74,7 @@ class File {
     json::Document document_;
     std::vector<std::optional<std::string>> buffers_;  // What was read for each.
     size_t buffer_bytes_read_ = 0;
+    std::vector<std::optional<uint32_t>> images_;
     std::vector<std::filesystem::path> files_;
     std::vector<std::string> warnings_;
     std::unordered_set<std::string> warned_;  // The same, to be found.

@@ -11,7 +11,6 @@
 
 #include "base/color.h"
 #include "base/error.h"
-#include "base/file.h"
 #include "base/texel_io.h"
 #include "base/text.h"
 #include "load/gltf/uri.h"
@@ -51,11 +50,7 @@ std::string image_bytes(File& file, const Node& reference) {
     }
     const Node uri = image.require("uri");
     if (auto data = inline_data(uri)) return std::move(*data);
-    try {
-        return read_file(file_of(uri, file.folder()));
-    } catch (const Error& error) {
-        uri.fail(error.what());
-    }
+    return file.read_named(uri);
 }
 
 // RGBD if there is an alpha: the colour over it.
@@ -65,15 +60,21 @@ Face read_face(File& file, const Node& reference) {
         decode_texels(image_bytes(file, reference), reference.place(), warnings, {.formats = "PNG or JPEG"});
     if (image.size.x != image.size.y)
         reference.fail(concat("the face of a cube is square, not ", image.size.x, " by ", image.size.y));
-    Face face{.size = image.size.x, .radiance = {}};
-    const size_t count = size_t(image.size.x) * image.size.y;
-    face.radiance.reserve(count);
-    for (size_t i = 0; i < count; ++i) {
+    // No more than the environment shows of it; each of fewer texels is the mean of those in its place.
+    const uint32_t size = std::min(image.size.x, MOST_LINES / 2);
+    Face face{.size = size, .radiance = std::vector<vec3>(size_t{size} * size)};
+    std::vector<uint32_t> counts(face.radiance.size());
+    const auto place = [&](size_t i) { return i * size / image.size.x; };
+    for (size_t i = 0; i < size_t{image.size.x} * image.size.y; ++i) {
         constexpr float LEAST = 1.0f / 255.0f;
         const vec4 codes = texel_codes(image, i);
         const vec3 color(srgb_decode(codes.x), srgb_decode(codes.y), srgb_decode(codes.z));
-        face.radiance.push_back(color / std::max(codes.w, LEAST));
+        const size_t texel = place(i / image.size.x) * size + place(i % image.size.x);
+        face.radiance[texel] += color / std::max(codes.w, LEAST);
+        ++counts[texel];
     }
+    for (size_t i = 0; i < counts.size(); ++i)
+        face.radiance[i] /= float(counts[i]);
     return face;
 }
 

@@ -42,8 +42,9 @@ void check_rotations(File& file, const Node& attributes, const InstanceAttribute
         const double size = length(four(rotations.numbers, i));
         if (std::abs(size - 1.0) <= ROTATION_TOLERANCE) continue;
         file.warn(attributes.require("ROTATION"),
-                  concat("the rotation of instance ", i, " is a quaternion of length ", number_text(size, 6),
-                         ", not 1; all are divided by their lengths, and one of length 0 counts as none"));
+                  concat("the rotation of instance ", i,
+                         " is a quaternion of another length than 1; all are divided by their lengths, and "
+                         "one of length 0 counts as none"));
         return;
     }
 }

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "load/gltf/texture.h"
 #include "load/gltf/values.h"
+#include "scene/images.h"
 
 namespace candela::gltf {
 namespace {
@@ -133,10 +134,7 @@ class MaterialReader {
         ImageFile copy = scene_.images[image];
         copy.glossiness = glossiness;
         copy.real_path += concat("#roughness/", glossiness);
-        const auto known = std::ranges::find(scene_.images, copy.real_path, &ImageFile::real_path);
-        if (known != scene_.images.end()) return uint32_t(known - scene_.images.begin());
-        scene_.images.push_back(std::move(copy));
-        return uint32_t(scene_.images.size() - 1);
+        return add_image_file(scene_, std::move(copy));
     }
 
     void read_surface(PrincipledMaterial& m) {

@@ -31,8 +31,8 @@ std::vector<uint32_t> read_corners(File& file, const Node& primitive, uint32_t v
     std::vector<uint32_t> corners = accessor.integers();
     const auto wrong = std::ranges::find_if(corners, [&](uint32_t i) { return i >= vertices; });
     if (wrong != corners.end()) {
-        accessor.node().fail(concat("index ", wrong - corners.begin(), " is ", *wrong,
-                                    ", but the primitive's vertices are 0 to ", vertices - 1,
+        accessor.node().fail(concat("index ", wrong - corners.begin(),
+                                    " is not one of the primitive's vertices, which are 0 to ", vertices - 1,
                                     "; is the file damaged?"));
     }
     const uint32_t restart = accessor.component() == Component::uint8    ? UINT8_MAX
@@ -253,8 +253,8 @@ class PrimitiveReader {
                 for (size_t k = 4 * size_t(rows_[i]); k < 4 * (size_t(rows_[i]) + 1); ++k) {
                     if (!(weight[k] > 0.0f) || !std::isfinite(weight[k])) continue;
                     if (joint[k] >= deformation_.joints.size()) {
-                        joints->fail(concat("vertex ", rows_[i], " follows joint ", joint[k],
-                                            " of a skin that has ", deformation_.joints.size()));
+                        joints->fail(concat("vertex ", rows_[i], " follows a joint that the skin, which has ",
+                                            deformation_.joints.size(), ", lacks"));
                     }
                     blended[i] += double(weight[k]) * deformation_.joints[joint[k]];
                     sums[i] += double(weight[k]);

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/memory_limit.h"
 #include "base/text.h"
 #include "load/gltf/animation.h"
 #include "load/gltf/image_light.h"
@@ -85,8 +86,11 @@ SceneReader::SceneReader(File& file, Scene& scene, const GltfOptions& options, c
       options_(options),
       progress_(progress),
       builder_(scene),
-      units_(units_of(file, options)),
-      known_materials_(scene.materials.size()) {
+      units_(units_of(file, options)) {
+    for (uint32_t i = 0; i < scene.materials.size(); ++i)
+        known_materials_.try_emplace(scene.materials[i].name, i);
+    for (const Camera& camera : scene.cameras)
+        camera_names_.note(camera.name);
     if (options.variant) variant_ = find_variant(file, *options.variant);
 }
 
@@ -96,13 +100,18 @@ void SceneReader::read() {
 
     const std::optional<Node> scene = chosen_scene();
     if (scene) {
-        if (auto light = read_image_light(file_, *scene)) scene_.environment = std::move(light);
+        auto light = with_memory_for(
+            "the image-based light", [&] { return scene->place(); },
+            [&] { return read_image_light(file_, *scene); });
+        if (light) scene_.environment = std::move(light);
     }
     NodeTrees trees(file_, root_nodes(scene), scene.has_value(), nodes_);
     trees.place();
     primitives_ = count_primitives(trees.shown());
-    for (const uint32_t i : trees.shown())
-        read_node(i);
+    for (const uint32_t i : trees.shown()) {
+        with_memory_for(
+            "what the node shows", [&] { return file_.element("nodes", i).place(); }, [&] { read_node(i); });
+    }
 }
 
 std::optional<Node> SceneReader::chosen_scene() const {
@@ -175,7 +184,9 @@ void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
     if (const auto skin = node.find("skin")) {
         if (const auto instances = extension_of(node, "EXT_mesh_gpu_instancing"))
             file_.warn(*instances, "the mesh has a skin, and is shown once");
-        const std::vector<glm::dmat4> joints = joint_matrices(file_, file_.resolve("skins", *skin), nodes_);
+        const auto [known, is_new] = joints_.try_emplace(file_.index("skins", *skin));
+        if (is_new) known->second = joint_matrices(file_, file_.resolve("skins", *skin), nodes_);
+        const std::vector<glm::dmat4>& joints = known->second;
         // The node's transform moves nothing here, and yet says which side is the front (3.7.4).
         const bool mirrors = determinant(glm::dmat3(posed.world)) < 0.0;
         for (const Node& primitive : primitives.elements()) {
@@ -246,9 +257,7 @@ uint32_t SceneReader::material_for(MaterialUse use) {
 uint32_t SceneReader::read_file_material(uint32_t index) {
     const Node node = file_.element("materials", index);
     const std::string name = name_of(node, concat("material ", index));
-    for (size_t i = 0; i < known_materials_; ++i) {
-        if (scene_.materials[i].name == name) return uint32_t(i);
-    }
+    if (const auto known = known_materials_.find(name); known != known_materials_.end()) return known->second;
     Material material = read_material(file_, scene_, node);
     material.name = name;
     return builder_.add_material(std::move(material));
@@ -296,18 +305,11 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
         return;
     }
     result.name =
-        unique_camera_name(name_of(node, name_of(camera, concat("camera ", scene_.cameras.size()))));
+        camera_names_.choose(name_of(node, name_of(camera, concat("camera ", scene_.cameras.size()))));
     result.position = position_of(node, posed.world);
     result.look_at = result.position - normalize(backwards);
     result.up = vec3(normalize(up));
     scene_.cameras.push_back(result);
-}
-
-std::string SceneReader::unique_camera_name(const std::string& name) const {
-    std::string unique = name;
-    for (int i = 2; std::ranges::find(scene_.cameras, unique, &Camera::name) != scene_.cameras.end(); ++i)
-        unique = concat(name, " (", i, ')');
-    return unique;
 }
 
 }  // namespace candela::gltf

@@ -3,6 +3,8 @@
 
 #include <map>
 #include <optional>
+#include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "load/gltf/primitive.h"
 #include "scene/load_progress.h"
 #include "scene/scene_builder.h"
+#include "scene/unique_names.h"
 
 namespace candela::gltf {
 
@@ -49,7 +52,6 @@ class SceneReader {
     uint32_t material_for(MaterialUse use);
     uint32_t read_file_material(uint32_t index);
     void read_camera(const Node& node, const Node& camera, const PosedNode& posed);
-    std::string unique_camera_name(const std::string& name) const;
 
     File& file_;
     Scene& scene_;
@@ -58,11 +60,13 @@ class SceneReader {
     SceneBuilder builder_;
     LightUnits units_;
     std::optional<uint32_t> variant_;
-    size_t known_materials_;  // Those of the scene before this file's.
+    std::unordered_map<std::string, uint32_t> known_materials_;  // Those of the scene before this file's.
+    UniqueNames camera_names_;
     std::vector<PosedNode> nodes_;
     size_t primitives_ = 0;                                              // That are shown.
     size_t done_ = 0;                                                    // Of them.
     std::map<MaterialUse, uint32_t> materials_;                          // Indices into scene_.materials.
+    std::map<uint32_t, std::vector<glm::dmat4>> joints_;                 // Of skins.
     std::map<StandingMesh, std::vector<std::optional<size_t>>> shapes_;  // Of each primitive.
 };
 

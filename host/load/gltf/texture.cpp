@@ -99,21 +99,19 @@ uint32_t read_image(File& file, Scene& scene, const Node& reference) {
         image.fail("an image has either a uri or a bufferView; export the file again");
     const std::string name = concat(file.path().string(), "#/images/", index);
     const auto add = [&] {
-        // Data in line are decoded once.
-        const auto known =
-            std::ranges::find(scene.images, std::filesystem::path(name), &ImageFile::real_path);
-        if (known != scene.images.end()) return uint32_t(known - scene.images.begin());
         if (view) {
             const std::span<const std::byte> bytes = file.view_bytes(file.resolve("bufferViews", *view));
             const auto* begin = reinterpret_cast<const char*>(bytes.data());
             return add_image_bytes(scene, name, {begin, bytes.size()}, image.place());
         }
         if (const auto data = inline_data(*uri)) return add_image_bytes(scene, name, *data, uri->place());
-        return add_image(scene, file_of(*uri, file.folder()), uri->place(), IfMissing::white);
+        return add_image(scene, file.named(*uri), uri->place(), IfMissing::white);
     };
-    const uint32_t added = add();
-    scene.images[added].of_gltf = true;  // Section 3.8.3: colour profiles do not count.
-    return added;
+    std::optional<uint32_t>& known = file.image_index(index);
+    if (known) return *known;
+    known = add();
+    scene.images[*known].of_gltf = true;  // Section 3.8.3: colour profiles do not count.
+    return *known;
 }
 
 std::optional<Texture> read_texture(File& file, Scene& scene, const Node& info, TextureEncoding encoding,

@@ -105,7 +105,7 @@ std::optional<std::string> inline_data(const Node& uri) {
     return bytes;
 }
 
-std::filesystem::path file_of(const Node& uri, const std::filesystem::path& folder) {
+std::filesystem::path file_of(const Node& uri, const std::filesystem::path& folder, const FileReach& reach) {
     const std::string& text = uri.file_name();
     if (text.empty()) uri.fail("the URI is empty; name a file");
     const auto is_absolute = [](const std::string& name) {
@@ -126,10 +126,15 @@ std::filesystem::path file_of(const Node& uri, const std::filesystem::path& fold
         std::ranges::replace(with_slashes, '\\', '/');
         names.push_back(with_slashes);
     }
-    std::error_code ignored;
-    const auto found = std::ranges::find_if(
-        names, [&](const std::string& name) { return std::filesystem::exists(folder / name, ignored); });
+    const auto is_within_reach = [&](const std::string& name) { return reach.holds(folder / name); };
+    // Whether there is a file elsewhere must not show.
+    const auto is_there = [&](const std::string& name) {
+        std::error_code ignored;
+        return is_within_reach(name) && std::filesystem::exists(folder / name, ignored);
+    };
+    const auto found = std::ranges::find_if(names, is_there);
     if (found != names.end()) return folder / *found;
+    if (!std::ranges::all_of(names, is_within_reach)) uri.fail(reach.refusal(text));
     if (!decoded) uri.fail("a % in a URI is followed by two hexadecimal digits; write % itself as %25");
     return folder / *decoded;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/file_reach.h"
 #include "load/node.h"
 
 namespace candela::gltf {
@@ -16,7 +17,7 @@ std::optional<std::string> inline_data(const Node& uri);
 
 // The file that a relative URI names, in `folder`: percent-encoded characters are decoded, unless there is a
 // file of the undecoded name alone. Throws Error at the place of `uri` for absolute paths, for URIs with a
-// scheme (`https:`), and for bad encoding.
-std::filesystem::path file_of(const Node& uri, const std::filesystem::path& folder);
+// scheme (`https:`), for bad encoding, and for files that are out of reach.
+std::filesystem::path file_of(const Node& uri, const std::filesystem::path& folder, const FileReach& reach);
 
 }  // namespace candela::gltf

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "load/json/loader_parts.h"
+#include "load/quote.h"
 #include "scene/geometry.h"
 #include "scene/names.h"
 
@@ -46,7 +47,8 @@ IntegratorSettings read_integrator(const Node& node) {
 // Reads the glTF file that the scene adds to.
 void read_base(const Node& node, const std::filesystem::path& folder, const GltfOptions& gltf, Scene& scene,
                const LoadProgress& progress) {
-    const std::filesystem::path path = folder / node.file_name();
+    const std::filesystem::path path = find_file(node, folder, scene.reach);
+    const HiddenValues hidden(scene.reach);
     try {
         add_gltf_scene(path, gltf, scene, progress);
     } catch (const Error& error) {
@@ -55,12 +57,13 @@ void read_base(const Node& node, const std::filesystem::path& folder, const Gltf
 }
 
 Scene scene_of(const json::Document& document, const std::filesystem::path& folder, const GltfOptions& gltf,
-               const LoadProgress& progress) {
+               const LoadProgress& progress, const FileReach& reach) {
     const Node root(document);
     root.allow_only({"$schema", "scene", "cameras", "film", "integrator", "materials", "objects", "shapes",
                      "lights", "environment"});
 
     Scene scene;
+    scene.reach = reach;
     const auto base = root.find("scene");
     if (!base && gltf != GltfOptions{})
         throw Error(document.file + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
@@ -104,17 +107,17 @@ Scene scene_of(const json::Document& document, const std::filesystem::path& fold
 }  // namespace
 
 Scene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf,
-                      const LoadProgress& progress) {
+                      const LoadProgress& progress, const ReachOptions& reach) {
     const std::string file = path.string();
     const json::Document document{file, json::parse(read_file(path), file)};
     const Node root(document);
-    if (root.is_object() && root.find("asset")) return load_gltf_scene(path, gltf, progress);
-    return scene_of(document, path.parent_path(), gltf, progress);
+    if (root.is_object() && root.find("asset")) return load_gltf_scene(path, gltf, progress, reach);
+    return scene_of(document, path.parent_path(), gltf, progress, FileReach(path, reach));
 }
 
 Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder,
-                  const GltfOptions& gltf, const LoadProgress& progress) {
-    return scene_of({file, json::parse(text, file)}, folder, gltf, progress);
+                  const GltfOptions& gltf, const LoadProgress& progress, const FileReach& reach) {
+    return scene_of({file, json::parse(text, file)}, folder, gltf, progress, reach);
 }
 
 }  // namespace candela

@@ -8,15 +8,16 @@ namespace candela {
 namespace {
 
 // Loads the image that `file` names; its warnings and errors get the place of `file` in front.
-Environment load(const Node& file, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
+Environment load(const Node& file, const std::filesystem::path& folder, Scene& scene) {
+    const std::filesystem::path path = find_file(file, folder, scene.reach);
     try {
         std::vector<std::string> odd;
-        Environment environment = load_environment(folder / file.file_name(), odd);
+        Environment environment = load_environment(path, scene.reach, odd);
         for (const std::string& warning : odd)
-            warnings.push_back(file.place() + ": " + warning);
+            scene.warnings.push_back(file.place() + ": " + warning);
         return environment;
     } catch (const Error& error) {
-        file.fail(error.what());
+        throw Error(file.place() + ": " + error.what(), error.code());
     }
 }
 
@@ -43,7 +44,7 @@ Environment read_environment(const Node& node, const std::filesystem::path& fold
     }
     Environment environment;
     if (file) {
-        environment = load(*file, folder, scene.warnings);
+        environment = load(*file, folder, scene);
         scene.files.push_back(folder / file->string());
     }
     if (radiance) environment.radiance = {vec3(radiance->rgb())};

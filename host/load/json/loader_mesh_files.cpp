@@ -1,8 +1,10 @@
 // Shapes that are read from files of their own.
 #include "base/error.h"
+#include "base/memory_limit.h"
 #include "load/json/loader_parts.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
+#include "load/quote.h"
 
 namespace candela {
 namespace {
@@ -17,11 +19,13 @@ MeshNormals normals_of(const Node& node) {
 
 // Calls a function that reads what `file` names; its errors get the place of `file`.
 template <class Read>
-auto read_from(const Node& file, Read read) {
+auto read_from(const Node& file, const Scene& scene, Read read) {
+    const HiddenValues hidden(scene.reach);
     try {
-        return read();
+        return with_memory_for(
+            "the mesh", [&] { return file.string(); }, read);
     } catch (const Error& error) {
-        file.fail(error.what());
+        throw Error(file.place() + ": " + error.what(), error.code());
     }
 }
 
@@ -35,8 +39,9 @@ void read_obj_with_materials(const Node& node, ShapeList& shapes) {
     const Node file = node.require("file");
     const Transform transform = ShapeList::transform_of(node);
     const MeshNormals normals = normals_of(node);
-    const std::filesystem::path path = shapes.path_of(file.file_name());
-    ObjShape obj = read_from(file, [&] { return load_obj_shape(path, normals, file.string(), shapes); });
+    const std::filesystem::path path = shapes.path_of(file);
+    ObjShape obj =
+        read_from(file, shapes.scene(), [&] { return load_obj_shape(path, normals, file.string(), shapes); });
     if (!obj.has_materials) {
         node.fail(
             "the shape has neither material nor emission, and no face of its file has a material "
@@ -65,8 +70,8 @@ void read_whole(const Node& node, ShapeList& shapes, Load load) {
     const Transform transform = ShapeList::transform_of(node);
     const Node file = node.require("file");
     const MeshNormals normals = normals_of(node);
-    const std::filesystem::path path = shapes.path_of(file.file_name());
-    TriangleMesh mesh = read_from(file, [&] { return load(file, path, normals); });
+    const std::filesystem::path path = shapes.path_of(file);
+    TriangleMesh mesh = read_from(file, shapes.scene(), [&] { return load(file, path, normals); });
     shapes.scene().files.push_back(path);
     shapes.add_mesh(node.place(), appearance, transform, std::move(mesh));
 }
@@ -78,7 +83,7 @@ void read_obj(const Node& node, ShapeList& shapes) {
     if (!node.find("material") && !node.find("emission")) return read_obj_with_materials(node, shapes);
     read_whole(node, shapes, [&](const Node& file, const std::filesystem::path& path, MeshNormals normals) {
         std::vector<std::string> warnings;
-        TriangleMesh mesh = load_obj(path, normals, warnings);
+        TriangleMesh mesh = load_obj(path, normals, shapes.scene().reach, warnings);
         warn(file, warnings, shapes.scene());
         return mesh;
     });
@@ -88,7 +93,7 @@ void read_ply(const Node& node, ShapeList& shapes) {
     node.allow_only({"file", "normals"}, SHAPE_KEYS);
     read_whole(node, shapes, [&](const Node& file, const std::filesystem::path& path, MeshNormals normals) {
         std::vector<std::string> warnings;
-        TriangleMesh mesh = load_ply(path, normals, warnings);
+        TriangleMesh mesh = load_ply(path, normals, shapes.scene().reach, warnings);
         warn(file, warnings, shapes.scene());
         return mesh;
     });

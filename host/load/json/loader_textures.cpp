@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "scene/images.h"
 #include "scene/names.h"
 
@@ -58,12 +59,22 @@ std::vector<std::string_view> keys_with(std::span<const std::string_view> more_k
 
 }  // namespace
 
+std::filesystem::path find_file(const Node& name, const std::filesystem::path& folder,
+                                const FileReach& reach) {
+    const std::string& file = name.file_name();
+    try {
+        return reach.find(folder, file);
+    } catch (const Error& error) {
+        name.fail(error.what());
+    }
+}
+
 Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncoding encoding,
                      std::span<const std::string_view> more_keys) {
     node.allow_only({}, keys_with(more_keys));
     const Node image = node.require("image");
     Texture texture{.encoding = encoding};
-    texture.image = add_image(folder.scene, folder.path / image.file_name(), image.place());
+    texture.image = add_image(folder.scene, find_file(image, folder.path, folder.scene.reach), image.place());
     if (const auto value = node.find("encoding")) texture.encoding = value->choice(ENCODING_NAMES);
     if (const auto value = node.find("wrap")) read_wrap(*value, texture);
     if (const auto value = node.find("filter")) texture.filter = value->choice(FILTER_NAMES);

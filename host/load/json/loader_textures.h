@@ -8,6 +8,10 @@
 
 namespace candela {
 
+// The file that `name` names, in `folder`. Throws Error at its place if it is out of reach.
+std::filesystem::path find_file(const Node& name, const std::filesystem::path& folder,
+                                const FileReach& reach);
+
 // Where the images of a scene file are.
 struct ImageFolder {
     std::filesystem::path path;  // To which the names of images are relative.

@@ -28,7 +28,8 @@ class ShapeList : public SceneBuilder {
     // defines; the scene must outlive the list.
     ShapeList(std::filesystem::path folder, Scene& scene);
 
-    std::filesystem::path path_of(const std::string& file) const { return folder_ / file; }
+    // The file that a node names. Throws Error if it is out of reach.
+    std::filesystem::path path_of(const Node& file) { return find_file(file, folder_, scene().reach); }
 
     // The material and emission that a shape's node names. An emitter without a material gets a black one,
     // zero emission is none, and what states none takes its material's. Throws Error if the node has neither,

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "base/image_io_parts.h"
 #include "base/text.h"
 #include "load/obj/counted_warnings.h"
@@ -82,7 +81,7 @@ class Reader {
             current_->line = line_;
             current_->by_blender = by_blender_;
         } else if (!current_) {
-            fail(quote(command) + " stands before the first newmtl; is it an MTL file?");
+            fail(shown(quote(command)) + " stands before the first newmtl; is it an MTL file?");
         } else {
             read_statement(*current_, command, rest);
         }
@@ -173,7 +172,7 @@ class Reader {
     std::optional<double> finite(std::string_view command, std::string_view word) {
         const auto value = parse_number(word);
         if (!value && !word.empty() && !word.starts_with('#') && word.find(".#") == std::string_view::npos)
-            fail(std::string(command) + " needs a number, found " + quote(word));
+            fail(std::string(command) + " needs a number, found " + shown(quote(word)));
         if (value && parse_finite(word)) return value;
         warn(std::string(command) + " without a number",
              std::string(command) + " has no finite number, and is ignored");
@@ -187,7 +186,7 @@ class Reader {
         if (!value || (*value >= least && *value <= most)) return value;
         const double nearest = std::clamp(*value, least, most);
         warn(std::string(command) + " out of range",
-             concat(command, ' ', number_text(*value, 6), " is read as ", number_text(nearest, 6)));
+             concat(command, ' ', shown(number_text(*value, 6)), " is read as ", number_text(nearest, 6)));
         return nearest;
     }
 
@@ -212,7 +211,8 @@ class Reader {
         constexpr uint32_t USUAL = 2;
         const auto value = parse_finite(word);
         if (value && *value >= 0.0 && *value <= LAST && std::trunc(*value) == *value) return uint32_t(*value);
-        warn("illum", "illum " + quote(word) + " is not a whole number from 0 to 10, and is read as 2");
+        warn("illum",
+             "illum " + shown(quote(word)) + " is not a whole number from 0 to 10, and is read as 2");
         return USUAL;
     }
 
@@ -240,8 +240,8 @@ class Reader {
 
 }  // namespace
 
-MtlLibrary load_mtl(const std::filesystem::path& file) {
-    return Reader(file.string()).read(read_file(file));
+MtlLibrary load_mtl(const std::filesystem::path& file, const FileReach& reach) {
+    return Reader(file.string()).read(reach.read(file));
 }
 
 }  // namespace candela

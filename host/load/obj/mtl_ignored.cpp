@@ -11,8 +11,7 @@ namespace candela {
 void MtlIgnored::add(std::string_view statement, std::string_view reason) {
     auto place = std::ranges::find(statements_, reason, [](const auto& entry) { return entry.first; });
     if (place == statements_.end()) place = statements_.insert(place, {std::string(reason), {}});
-    std::vector<std::string>& known = place->second;
-    if (std::ranges::find(known, statement) == known.end()) known.emplace_back(statement);
+    if (known_.emplace(reason, statement).second) place->second.emplace_back(statement);
 }
 
 std::vector<std::string> MtlIgnored::warnings(const std::string& file) const {

@@ -1,6 +1,7 @@
 // What candela ignores in a material library.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,7 @@ class MtlIgnored {
 
   private:
     std::vector<std::pair<std::string, std::vector<std::string>>> statements_;  // By reason.
+    std::set<std::pair<std::string, std::string>> known_;                       // The same, to be found.
 };
 
 }  // namespace candela

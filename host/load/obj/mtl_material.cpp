@@ -303,9 +303,8 @@ MtlMaterial mtl_material(const MtlStatements& statements, const std::string& fil
 void add_images(MtlMaterial& material, Scene& scene) {
     std::vector<uint32_t> indices;
     for (const MtlImage& image : material.images) {
-        const auto found = find_named_file(image.folder, image.file);
-        indices.push_back(
-            add_image(scene, found.value_or(image.folder / image.file), image.place, IfMissing::white));
+        const NamedFile named = find_named_file(image.folder, image.file, scene.reach);
+        indices.push_back(add_image(scene, named.path, image.place, IfMissing::white));
     }
     for_each_texture(material.material, [&](Texture& texture) { texture.image = indices[texture.image]; });
     if (material.emission.texture)

@@ -64,8 +64,8 @@ struct MtlMaterial {
 // Ref: Alias|Wavefront, "MTL material format" (1995); Exocortex, "PBR extension to MTL" (2014).
 MtlMaterial mtl_material(const MtlStatements& statements, const std::string& file, MtlIgnored& ignored);
 
-// Adds the images of a material to the scene, so that its textures look them up there. A missing one is white
-// unless the user wants an error.
+// Adds the images of a material to the scene, so that its textures look them up there. One that is missing or
+// out of reach is white unless the user wants an error.
 void add_images(MtlMaterial& material, Scene& scene);
 
 }  // namespace candela

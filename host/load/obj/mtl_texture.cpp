@@ -73,7 +73,7 @@ class OptionReader {
 
     [[noreturn]] void fail_value(const std::string& needs, std::string_view found) const {
         fail("the option " + std::string(option_) + " of " + std::string(command_) + " needs " + needs +
-             ", found " + quote(found));
+             ", found " + shown(quote(found)));
     }
 
     void read_option() {

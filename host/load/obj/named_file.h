@@ -2,14 +2,20 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
+
+#include "base/file_reach.h"
 
 namespace candela {
 
+struct NamedFile {
+    std::filesystem::path path;  // The file, or where its name leads if it is not there.
+    bool is_there = false;       // False for files out of reach, whether they exist or not.
+};
+
 // The file that an OBJ or MTL file in `folder` calls by this name, as programs write names: relative or
 // absolute, with backslashes, in quotation marks, before a comment. Of a folder that does not exist here,
-// such as C:\models, the name alone is looked up in `folder`. Nothing if there is no such file.
-std::optional<std::filesystem::path> find_named_file(const std::filesystem::path& folder, std::string name);
+// such as C:\models, or that is out of reach, the name alone is looked up in `folder`.
+NamedFile find_named_file(const std::filesystem::path& folder, std::string name, const FileReach& reach);
 
 }  // namespace candela

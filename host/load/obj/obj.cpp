@@ -7,8 +7,6 @@
 #include <span>
 #include <utility>
 
-#include "base/file.h"
-
 namespace candela {
 namespace {
 
@@ -27,7 +25,11 @@ class Vertices {
         const bool with_uvs = !obj_.corner_uvs.empty();
         const uint32_t uv = with_uvs ? obj_.corner_uvs[i] : NONE;
         uint32_t& newest = newest_[corner.position];
-        for (uint32_t v = newest; v != NONE; v = vertices_[v].next) {
+        // A file may give one position to any number of vertices.
+        constexpr int MOST_LOOKED_AT = 64;
+        int looked_at = 0;
+        for (uint32_t v = newest; v != NONE && looked_at < MOST_LOOKED_AT;
+             v = vertices_[v].next, ++looked_at) {
             if (vertices_[v].corner.normal == corner.normal && (!with_uvs || uvs_[v] == uv)) return v;
         }
         vertices_.push_back({corner, newest});
@@ -101,15 +103,15 @@ TriangleMesh build_mesh(ObjFile& obj, MeshNormals normals) {
 
 }  // namespace
 
-TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals,
+TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach,
                       std::vector<std::string>& warnings) {
-    ObjFile obj = parse_obj(read_file(file), file.string());
+    ObjFile obj = parse_obj(reach.read(file), file.string());
     std::ranges::move(obj.warnings, std::back_inserter(warnings));
     return build_mesh(obj, normals);
 }
 
-ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals) {
-    ObjFile obj = parse_obj(read_file(file), file.string());
+ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach) {
+    ObjFile obj = parse_obj(reach.read(file), file.string());
     ObjParts result{std::move(obj.libraries), {}, std::move(obj.warnings)};
     std::map<std::string_view, uint32_t> indices;  // Of the parts, by name; empty for no material.
     std::vector<uint32_t> part_of;                 // For each triangle.

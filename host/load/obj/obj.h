@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_reach.h"
 #include "load/obj/obj_file.h"
 #include "scene/mesh.h"
 #include "scene/scene_builder.h"
@@ -13,11 +14,12 @@
 namespace candela {
 
 // Reads all faces of a file as one mesh, in the units of the file; groups and materials are ignored. Polygons
-// are cut into triangles; corners with the same indices share a vertex; unused vertices are dropped. A corner
-// without texture coordinates has (0, 0), and a mesh all of whose corners lack them has none. With
-// MeshNormals::file, a corner without a normal gets one of length zero, and a file without normals gives a
-// mesh without. `warnings` gets what is odd but usable. Throws Error as read_file() and parse_obj() do.
-TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals,
+// are cut into triangles; corners with the same indices share a vertex, unless many others lie there; unused
+// vertices are dropped. A corner without texture coordinates has (0, 0), and a mesh all of whose corners lack
+// them has none. With MeshNormals::file, a corner without a normal gets one of length zero, and a file
+// without normals gives a mesh without. `warnings` gets what is odd but usable. Throws Error as
+// FileReach::read() and parse_obj() do.
+TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach,
                       std::vector<std::string>& warnings);
 
 // The faces of one material.
@@ -35,7 +37,7 @@ struct ObjParts {
 
 // Reads a file as load_obj() does, but into one mesh per material; smooth normals are averaged across them.
 // Does not read the libraries.
-ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals);
+ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach);
 
 // A file with the materials that it names.
 struct ObjShape {
@@ -47,13 +49,14 @@ struct ObjShape {
 // Reads a file as load_obj_parts() does, and its libraries. Adds the materials to the scene as
 // `name`/material, unless a shape of that name has already done so, and the files to Scene::files. Faces are
 // grey, or have the colours of their vertices, where their material is not in any library, with a warning,
-// and where they have none, with a warning if others have one. A missing library is a warning, too; where the
-// images or texture coordinates of a texture are missing, see ImageFile and SceneBuilder. Throws Error as
-// load_mtl() does.
+// and where they have none, with a warning if others have one. A library that is missing or out of reach is a
+// warning, too; where the images or texture coordinates of a texture are missing, see ImageFile and
+// SceneBuilder. Throws Error as load_mtl() does.
 ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, const std::string& name,
                         SceneBuilder& builder);
 
-// Reads a file as a scene of its own, as load_obj_shape() does; see add_default_view().
-Scene load_obj_scene(const std::filesystem::path& file);
+// Reads a file as a scene of its own, as load_obj_shape() does; see add_default_view(). `reach` is what it
+// may name besides what is in its folder.
+Scene load_obj_scene(const std::filesystem::path& file, const ReachOptions& reach = {});
 
 }  // namespace candela

@@ -8,6 +8,7 @@
 
 #include "base/color.h"
 #include "base/text.h"
+#include "load/quote.h"
 
 namespace candela {
 namespace {
@@ -60,8 +61,8 @@ std::vector<vec3> ObjColors::linear(size_t count, std::optional<std::string>& wa
         for (vec3& code : codes)
             code /= BYTE;
     } else if (least_ < -ROUNDING || greatest_ > 1.0f + ROUNDING) {
-        warning = concat("left out the numbers after positions, from ", number_text(double(least_), 6),
-                         " to ", number_text(double(greatest_), 6),
+        warning = concat("left out the numbers after positions, from ", shown(number_text(double(least_), 6)),
+                         " to ", shown(number_text(double(greatest_), 6)),
                          ": colours would be from 0 to 1, or whole numbers from 0 to 255");
         return {};
     }

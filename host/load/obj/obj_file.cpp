@@ -108,7 +108,9 @@ class ObjReader {
         vec3 color;
         for (glm::length_t i = 0; i < 3; ++i) {
             const std::optional<double> number = obj_number(words[size_t(i)]);
-            if (!number) fail("the colour of a vertex needs three numbers, found " + quote(words[size_t(i)]));
+            if (!number) {
+                fail("the colour of a vertex needs three numbers, found " + shown(quote(words[size_t(i)])));
+            }
             color[i] = float(*number);
         }
         if (!is_finite(color)) return warn("the colour of a vertex is not finite; white takes its place");
@@ -124,7 +126,7 @@ class ObjReader {
                 break;
             }
             const std::optional<double> number = obj_number(word);
-            if (!number) fail("a texture coordinate needs numbers, found " + quote(word));
+            if (!number) fail("a texture coordinate needs numbers, found " + shown(quote(word)));
             if (std::abs(*number) <= MAX_UV) {
                 uv[i] = float(*number);
             } else {
@@ -154,7 +156,8 @@ class ObjReader {
             if (word.empty())
                 fail("a " + std::string(kind.name) + " needs three numbers; is the file cut off?");
             const std::optional<double> number = obj_number(word);
-            if (!number) fail("a " + std::string(kind.name) + " needs three numbers, found " + quote(word));
+            if (!number)
+                fail("a " + std::string(kind.name) + " needs three numbers, found " + shown(quote(word)));
             numbers[i] = *number;
         }
         return numbers;
@@ -215,7 +218,7 @@ class ObjReader {
 
     // Fails for the index of a vertex that the file lacks.
     [[noreturn]] void fail_range(int64_t index) const {
-        const std::string use = face() + " uses vertex " + std::to_string(index);
+        const std::string use = face() + " uses vertex " + shown(std::to_string(index));
         if (index == 0) fail(use + "; indices count from 1, or backwards from -1");
         if (index > 0)
             fail(use + ", but the file has " + std::to_string(totals_[OBJ_POSITION]) + " vertices");
@@ -223,7 +226,7 @@ class ObjReader {
     }
 
     [[noreturn]] void fail_malformed(std::string_view corner) const {
-        fail(face() + " has the malformed corner " + quote(corner) + "; write 1, 1/2, 1//3 or 1/2/3");
+        fail(face() + " has the malformed corner " + shown(quote(corner)) + "; write 1, 1/2, 1//3 or 1/2/3");
     }
 
     // The current face, counted from 1.

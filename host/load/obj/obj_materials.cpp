@@ -5,6 +5,7 @@
 #include <iterator>
 #include <optional>
 #include <string>
+#include <unordered_set>
 
 #include "base/text.h"
 #include "load/obj/counted_warnings.h"
@@ -17,6 +18,12 @@ namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
+// A library that is not there: its name, and where that leads.
+struct Lost {
+    std::string name;
+    std::filesystem::path path;
+};
+
 // Cuts the next name off `text`: a word, or what is in quotation marks.
 std::string_view next_name(std::string_view& text) {
     text = trimmed(text);
@@ -28,61 +35,67 @@ std::string_view next_name(std::string_view& text) {
 }
 
 // Adds the files that one `mtllib` stands for: its name as a whole, or one name after the other. Returns the
-// first of them that does not exist.
-std::optional<std::string> find_libraries(const std::filesystem::path& folder, const std::string& names,
-                                          Paths& paths) {
-    if (const auto whole = find_named_file(folder, names)) {
-        paths.push_back(*whole);
+// first of them that is not there.
+std::optional<Lost> find_libraries(const std::filesystem::path& folder, const std::string& names,
+                                   const FileReach& reach, Paths& paths) {
+    const NamedFile whole = find_named_file(folder, names, reach);
+    if (whole.is_there) {
+        paths.push_back(whole.path);
         return std::nullopt;
     }
     Paths found;
-    std::optional<std::string> missing;
+    std::optional<Lost> lost;
     std::string_view rest = names;
     for (std::string_view name = next_name(rest); !name.empty(); name = next_name(rest)) {
-        if (const auto path = find_named_file(folder, std::string(name))) {
-            found.push_back(*path);
-        } else if (!missing) {
-            missing = name;
+        const NamedFile named = find_named_file(folder, std::string(name), reach);
+        if (named.is_there) {
+            found.push_back(named.path);
+        } else if (!lost) {
+            lost = {std::string(name), named.path};
         }
     }
-    if (found.empty()) return names;
+    if (found.empty()) return Lost{names, whole.path};
     std::ranges::move(found, std::back_inserter(paths));
-    return missing;
+    return lost;
 }
 
 }  // namespace
 
-ObjLibraries load_mtl_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& names) {
+ObjLibraries load_mtl_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& names,
+                                const FileReach& reach) {
     ObjLibraries all;
     Paths paths;
-    CountedWarnings missing;
+    CountedWarnings warnings;
+    std::unordered_set<std::string> known_names, known_files;
     for (const ObjName& name : names) {
-        if (name.name.empty()) continue;
-        const auto lost = find_libraries(obj.parent_path(), name.name, paths);
+        if (name.name.empty() || !known_names.insert(name.name).second) continue;
+        const auto lost = find_libraries(obj.parent_path(), name.name, reach, paths);
         if (!lost) continue;
         all.all_there = false;
-        missing.add("missing", concat(obj.string(), ':', name.line, ": the material library ", quote(*lost),
-                                      " does not exist; its materials are shown in grey"));
+        const bool is_outside = !reach.holds(lost->path);
+        const std::string what = is_outside ? reach.refusal(lost->name)
+                                            : "the material library " + quote(lost->name) + " does not exist";
+        warnings.add(is_outside ? "outside" : "missing",
+                     concat(obj.string(), ':', name.line, ": ", what, "; its materials are shown in grey"));
     }
-    all.materials.warnings = missing.texts();
+    all.materials.warnings = warnings.texts();
+    const HiddenValues hidden(reach);
     for (const std::filesystem::path& path : paths) {
-        if (std::ranges::find(all.materials.files, path) != all.materials.files.end()) continue;
+        if (!known_files.insert(path.string()).second) continue;
         all.materials.files.push_back(path);
-        MtlLibrary library = load_mtl(path);
+        MtlLibrary library = load_mtl(path, reach);
         all.materials.materials.merge(library.materials);  // Keeps those that are already there.
         std::ranges::move(library.warnings, std::back_inserter(all.materials.warnings));
     }
     return all;
 }
 
-std::string unknown_material(const MtlLibrary& library, const ObjName& name) {
-    const std::string unknown = "unknown material " + quote(name.name);
-    if (library.files.empty())
-        return unknown + ": the file names no library (\"mtllib pot.mtl\"); shown in grey";
+std::string materials_of(const MtlLibrary& library) {
+    if (library.files.empty()) return ": the file names no library (\"mtllib pot.mtl\"); shown in grey";
     std::vector<std::string> defined;
     for (const auto& [known, material] : library.materials)
         defined.push_back(known);
-    return unknown + " (defined: " + joined(defined) + "); shown in grey";
+    return " (defined: " + joined(defined) + "); shown in grey";
 }
 
 }  // namespace candela

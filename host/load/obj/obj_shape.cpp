@@ -32,7 +32,8 @@ class MaterialAdder {
 
     // Adds the materials of all parts to the scene; returns warnings.
     std::vector<std::string> add(const ObjParts& obj) {
-        libraries_ = load_mtl_libraries(file_, obj.libraries);
+        libraries_ = load_mtl_libraries(file_, obj.libraries, builder_.scene().reach);
+        known_ = materials_of(libraries_.materials);
         std::ranges::copy(libraries_.materials.files, std::back_inserter(builder_.scene().files));
         for (const ObjPart& part : obj.parts) {
             if (part.material) {
@@ -62,8 +63,10 @@ class MaterialAdder {
         const auto found = libraries_.materials.materials.find(part.material->name);
         if (found == libraries_.materials.materials.end()) {
             const std::string place = concat(file_.string(), ':', part.material->line, ": ");
-            if (libraries_.all_there)
-                warnings_.add("unknown", place + unknown_material(libraries_.materials, *part.material));
+            if (libraries_.all_there) {
+                warnings_.add("unknown",
+                              concat(place, "unknown material ", quote(part.material->name), known_));
+            }
             const Material grey = default_material(!part.mesh.colors.empty());
             return builder_.add_file_appearance(name_of(name_, part), grey, std::nullopt);
         }
@@ -85,6 +88,7 @@ class MaterialAdder {
     const std::string& name_;
     SceneBuilder& builder_;
     ObjLibraries libraries_;
+    std::string known_;  // What they define, for messages.
     CountedWarnings warnings_;
 };
 
@@ -92,7 +96,7 @@ class MaterialAdder {
 
 ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, const std::string& name,
                         SceneBuilder& builder) {
-    ObjParts obj = load_obj_parts(file, normals);
+    ObjParts obj = load_obj_parts(file, normals, builder.scene().reach);
     builder.scene().files.push_back(file);
     ObjShape shape{.has_materials = std::ranges::any_of(
                        obj.parts, [](const ObjPart& part) { return part.material.has_value(); })};
@@ -114,8 +118,9 @@ ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, 
     return shape;
 }
 
-Scene load_obj_scene(const std::filesystem::path& file) {
+Scene load_obj_scene(const std::filesystem::path& file, const ReachOptions& reach) {
     Scene scene;
+    scene.reach = FileReach(file, reach);
     SceneBuilder builder(scene);
     ObjShape shape = load_obj_shape(file, MeshNormals::file, file.filename().string(), builder);
     scene.warnings = std::move(shape.warnings);

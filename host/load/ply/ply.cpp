@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "base/text.h"
 #include "load/ply/ply_polygons.h"
 #include "load/ply/ply_rows.h"
@@ -152,7 +151,7 @@ class BodyReader {
     void read_face(const PlyProperty& indices) {
         const double corners = read_length(indices);
         if (corners > double(MOST_CORNERS)) {
-            position_.fail("has " + number_text(corners, 10) + " corners, but at most " +
+            position_.fail("has " + shown(number_text(corners, 10)) + " corners, but at most " +
                            std::to_string(MOST_CORNERS) + " are read; cut it into triangles");
         }
         for (double i = 0.0; i < corners; ++i)
@@ -187,15 +186,14 @@ class BodyReader {
 
     double read_length(const PlyProperty& list) {
         const double length = rows_.next(*list.length);
-        if (length < 0.0) position_.fail("has a list of " + number_text(length, 10) + " numbers");
+        if (length < 0.0) position_.fail("has a list of " + shown(number_text(length, 10)) + " numbers");
         return length;
     }
 
     uint32_t vertex_at(double index) const {
-        const uint64_t vertices = header_.find("vertex")->rows;
-        if (index >= 0.0 && index < double(vertices)) return uint32_t(index);
-        position_.fail("uses vertex " + number_text(index, 10) + ", but the vertices are 0 to " +
-                       std::to_string(vertices - 1));
+        if (index >= 0.0 && index < double(vertices_)) return uint32_t(index);
+        position_.fail("uses vertex " + shown(number_text(index, 10)) + ", but the vertices are 0 to " +
+                       std::to_string(vertices_ - 1));
     }
 
     void skip(const PlyProperty& property) {
@@ -205,6 +203,7 @@ class BodyReader {
     }
 
     const PlyHeader& header_;
+    uint64_t vertices_ = header_.find("vertex")->rows;
     const PlyVertexFields& fields_;
     Rows rows_;
     PlyPosition& position_;
@@ -224,7 +223,7 @@ void warn_of_looks(const PlyHeader& header, const std::string& file, std::vector
                            "vertices");
     }
     if (!header.textures.empty()) {
-        warnings.push_back(file + ": ignored the texture " + quote(header.textures.front()) +
+        warnings.push_back(file + ": ignored the texture " + shown(quote(header.textures.front())) +
                            (header.textures.size() == 1 ? "" : " and others") +
                            "; name it in a material of a scene file");
     }
@@ -246,9 +245,9 @@ TriangleMesh mesh_of(PlyPolygons polygons) {
 
 }  // namespace
 
-TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
+TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach,
                       std::vector<std::string>& warnings) {
-    const std::string bytes = read_file(file);
+    const std::string bytes = reach.read(file);
     PlyPosition position{file.string(), 0, "", 0};
     const PlyHeader header = read_ply_header(bytes, position.file);
     check_header(header, position.file);
@@ -278,7 +277,7 @@ TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
 Scene load_ply_scene(const std::filesystem::path& file) {
     Scene scene;
     SceneBuilder builder(scene);
-    TriangleMesh mesh = load_ply(file, MeshNormals::file, scene.warnings);
+    TriangleMesh mesh = load_ply(file, MeshNormals::file, FileReach(file), scene.warnings);
     const std::string name = file.filename().string();
     builder.add_file_appearance(name, default_material(!mesh.colors.empty()), std::nullopt);
     builder.add_mesh(file.string(), *builder.find_file_appearance(name), Transform(), std::move(mesh));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_reach.h"
 #include "scene/mesh.h"
 
 namespace candela {
@@ -13,10 +14,10 @@ namespace candela {
 // vertex_indices or vertex_index) of a file in any of the three formats, in the units of the file; all else
 // is skipped. Polygons are cut into triangles. Normals may have any length, and one of length zero stands for
 // none. `warnings` gets what is odd but usable, each beginning with the file's name. Throws Error as
-// read_file(), read_ply_header() and finish_vertices() do, and `file: cause`, or `file:line: cause` in a
-// header or an ASCII file, if the file lacks vertices or faces, ends early, or has rows that do not match the
-// header, a face with more than MOST_CORNERS corners, or an index that is out of range.
-TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals,
+// FileReach::read(), read_ply_header() and finish_vertices() do, and `file: cause`, or `file:line: cause` in
+// a header or an ASCII file, if the file lacks vertices or faces, ends early, or has rows that do not match
+// the header, a face with more than MOST_CORNERS corners, or an index that is out of range.
+TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach,
                       std::vector<std::string>& warnings);
 
 // Reads a file as a scene of its own, of default_material(); see add_default_view(). Throws Error as

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <unordered_set>
 #include <utility>
 
 #include "base/error.h"
@@ -94,7 +95,7 @@ class HeaderReader {
         } else if (statement == "comment") {
             read_comment(line);
         } else if (!statement.empty() && statement != "obj_info") {
-            fail("unknown statement " + quote(statement) +
+            fail("unknown statement " + shown(quote(statement)) +
                  " (known: format, comment, obj_info, element, property, end_header)");
         }
         return true;
@@ -121,8 +122,10 @@ class HeaderReader {
         const auto [stop, error] = std::from_chars(count.data(), end, element.rows);
         if (element.name.empty() || error != std::errc() || stop != end)
             fail("an element needs a name and a number of rows, as \"element vertex 8\"");
-        if (header_.find(element.name)) fail("element " + quote(element.name) + " is declared twice");
+        if (!elements_.insert(element.name).second)
+            fail("element " + quote(element.name) + " is declared twice");
         header_.elements.push_back(std::move(element));
+        properties_.clear();
     }
 
     void read_property(std::string_view rest) {
@@ -138,7 +141,8 @@ class HeaderReader {
         property.type = type_of(type);
         property.name = next_word(rest);
         if (property.name.empty()) fail("a property needs a type and a name, as \"property float x\"");
-        if (element.find(property.name)) fail("property " + quote(property.name) + " is declared twice");
+        if (!properties_.insert(property.name).second)
+            fail("property " + quote(property.name) + " is declared twice");
         element.properties.push_back(std::move(property));
     }
 
@@ -166,6 +170,8 @@ class HeaderReader {
     const std::string& file_;
     char line_end_ = '\n';
     bool has_format_ = false;
+    std::unordered_set<std::string> elements_;    // The names of all.
+    std::unordered_set<std::string> properties_;  // Those of the last element.
     PlyHeader header_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "load/quote.h"
 
 namespace candela {
 namespace {
@@ -67,7 +68,7 @@ class Finisher {
         const glm::dvec3 p = polygons_.positions[i];
         for (glm::length_t axis = 0; axis < 3; ++axis) {
             if (std::abs(p[axis]) <= double(std::numeric_limits<float>::max())) continue;
-            fail(i, concat("a finite ", "xyz"[axis], ", found ", number_text(p[axis], 6)));
+            fail(i, concat("a finite ", "xyz"[axis], ", found ", shown(number_text(p[axis], 6))));
         }
     }
 
@@ -76,7 +77,7 @@ class Finisher {
         vec4& color = polygons_.colors[i];
         for (glm::length_t c = 0; c < 4; ++c) {
             if (!(color[c] >= -ROUNDING && color[c] <= 1.0f + ROUNDING)) {
-                fail(i, concat("a colour from 0 to 1, found ", number_text(color[c], 6),
+                fail(i, concat("a colour from 0 to 1, found ", shown(number_text(color[c], 6)),
                                "; write numbers from 0 to 255 as uchar"));
             }
         }

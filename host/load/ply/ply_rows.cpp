@@ -46,7 +46,7 @@ double PlyAsciiRows::next(PlyType type) {
     if (!is_integer(type) && word.find(".#") != std::string_view::npos)
         return std::numeric_limits<double>::quiet_NaN();
     const size_t size = size_of(type);
-    position_.fail("has " + quote(word) + " in place of " +
+    position_.fail("has " + shown(quote(word)) + " in place of " +
                    (is_integer(type) ? "an integer of " : "a number of ") + std::to_string(size) +
                    (size == 1 ? " byte" : " bytes"));
 }

@@ -53,7 +53,7 @@ class Candela:
 
     def render(self, job, spp, seed, output):
         options = ["--size", f"{job.width}x{job.width}", "--max-depth", job.depth, "--rr-depth", RR_DEPTH]
-        options += ["--seed", seed, "--aov", "none", "--quiet", "--report", "-"]
+        options += ["--seed", seed, "--aov", "none", "--quiet", "--report", "-", "--allow-any-folder"]
         one, all_samples = (
             json.loads(run([self.program, "render", job.scene, "-o", output, "--spp", n, *options])) for n in (1, spp)
         )

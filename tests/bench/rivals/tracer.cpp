@@ -241,7 +241,7 @@ void write(const Settings& settings, const std::vector<vec3>& picture) {
 }
 
 void render(const Settings& settings) {
-    const Scene scene = load_scene(settings.scene);
+    const Scene scene = load_scene(settings.scene, {.reach = {.anywhere = true}});
     const Camera& camera = scene.cameras.front();
     if (camera.lens.radius > 0.0f)
         throw Error(settings.scene + ": the tracer's camera has no lens; set its radius to 0");

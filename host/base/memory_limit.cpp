@@ -1,0 +1,195 @@
+// Replaces the operators new and delete of the program, and of the libraries in C++ that it has loaded.
+#include "base/memory_limit.h"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include "base/text.h"
+
+namespace candela {
+namespace {
+
+constexpr uint64_t NO_LIMIT = UINT64_MAX;
+// What is left for error messages when nothing else is, and how large its parts may be.
+constexpr uint64_t RESERVE = uint64_t(1) << 20;
+constexpr size_t SMALL = 1024;
+
+std::atomic<uint64_t> in_use = 0;
+std::atomic<uint64_t> limit = NO_LIMIT;
+std::atomic<uint32_t> holders = 0;  // Of LimitedMemory.
+
+void check_limit(uint64_t bytes) {
+    if (holders.load(std::memory_order_relaxed) == 0) return;
+    const uint64_t used = in_use.load(std::memory_order_relaxed);
+    const uint64_t most = limit.load(std::memory_order_relaxed);
+    if (most == NO_LIMIT || used + bytes <= most) return;
+    if (bytes > SMALL || used + bytes > most + RESERVE) throw LimitReached(bytes, used);
+}
+
+void* counted(void* memory) {
+    if (memory == nullptr) throw std::bad_alloc();
+    in_use.fetch_add(::malloc_usable_size(memory), std::memory_order_relaxed);
+    return memory;
+}
+
+void release(void* memory) {
+    if (memory == nullptr) return;
+    in_use.fetch_sub(::malloc_usable_size(memory), std::memory_order_relaxed);
+    std::free(memory);
+}
+
+std::string size_text(uint64_t bytes) {
+    constexpr uint64_t GIBI = uint64_t(1) << 30;
+    const bool large = bytes >= GIBI;
+    return number_text(double(bytes) / double(large ? GIBI : GIBI >> 10), 3) + (large ? " GiB" : " MiB");
+}
+
+}  // namespace
+
+uint64_t memory_in_use() {
+    return in_use.load(std::memory_order_relaxed);
+}
+
+void set_memory_limit(uint64_t bytes) {
+    limit = bytes;
+}
+
+uint64_t memory_limit() {
+    return limit;
+}
+
+uint64_t default_memory_limit() {
+    uint64_t bytes = uint64_t(::sysconf(_SC_PHYS_PAGES)) * uint64_t(::sysconf(_SC_PAGESIZE));
+    std::ifstream groups("/proc/self/cgroup");
+    std::string group;
+    while (std::getline(groups, group) && !group.starts_with("0::/")) {
+    }
+    if (!groups) return bytes / 4 * 3;
+    // The limits of the groups above hold, too; where there is none, the file says "max".
+    for (std::filesystem::path path = "/sys/fs/cgroup" + group.substr(3); path.has_relative_path();
+         path = path.parent_path()) {
+        uint64_t allowed = 0;
+        if (std::ifstream(path / "memory.max") >> allowed) bytes = std::min(bytes, allowed);
+    }
+    return bytes / 4 * 3;
+}
+
+std::optional<uint64_t> parse_memory_size(const std::string& text) {
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    std::string unit(end, text.data() + text.size());
+    if (error != std::errc()) return std::nullopt;
+    double factor = 1.0;
+    if (!unit.empty()) {
+        constexpr std::string_view PREFIXES = "kMGT";
+        const size_t prefix = PREFIXES.find(unit[0] == 'K' ? 'k' : unit[0]);
+        unit.erase(0, 1);
+        if (prefix == std::string_view::npos || (!unit.empty() && unit != "B" && unit != "iB"))
+            return std::nullopt;
+        factor = std::pow(unit == "iB" ? 1024.0 : 1000.0, double(prefix) + 1.0);
+    }
+    const double bytes = std::floor(number * factor);
+    if (!(bytes >= 1.0 && bytes <= 0x1p63)) return std::nullopt;
+    return uint64_t(bytes);
+}
+
+LimitedMemory::LimitedMemory() {
+    ++holders;
+}
+
+LimitedMemory::~LimitedMemory() {
+    --holders;
+}
+
+MemoryCharge::MemoryCharge(uint64_t bytes) : bytes_(bytes) {
+    check_limit(bytes);
+    in_use += bytes;
+}
+
+MemoryCharge::~MemoryCharge() {
+    in_use -= bytes_;
+}
+
+std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
+    const auto* reached = dynamic_cast<const LimitReached*>(&error);
+    if (reached == nullptr) return "";
+    const uint64_t needed = std::max(reached->needed(), before);
+    return ", which takes at least " + size_text(needed - before) + ", where " + size_text(before) +
+           " are in use and --memory-limit allows " + size_text(limit);
+}
+
+}  // namespace candela
+
+// All forms, since sanitizers have some of their own, which do not know of these. Where they are inlined, GCC
+// takes malloc() and delete for a mismatch.
+[[gnu::noinline]] void* operator new(size_t size) {
+    candela::check_limit(size);
+    return candela::counted(std::malloc(std::max<size_t>(size, 1)));
+}
+
+[[gnu::noinline]] void* operator new(size_t size, std::align_val_t alignment) {
+    candela::check_limit(size);
+    const auto step = size_t(alignment);
+    return candela::counted(std::aligned_alloc(step, (std::max<size_t>(size, 1) + step - 1) / step * step));
+}
+
+[[gnu::noinline]] void* operator new(size_t size, const std::nothrow_t&) noexcept {
+    try {
+        return ::operator new(size);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
+}
+
+[[gnu::noinline]] void* operator new[](size_t size) {
+    return ::operator new(size);
+}
+
+[[gnu::noinline]] void* operator new[](size_t size, std::align_val_t alignment) {
+    return ::operator new(size, alignment);
+}
+
+[[gnu::noinline]] void* operator new[](size_t size, const std::nothrow_t& nothrow) noexcept {
+    return ::operator new(size, nothrow);
+}
+
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete(void* memory, size_t, std::align_val_t) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete[](void* memory) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete[](void* memory, size_t) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete[](void* memory, std::align_val_t) noexcept {
+    candela::release(memory);
+}
+
+[[gnu::noinline]] void operator delete[](void* memory, size_t, std::align_val_t) noexcept {
+    candela::release(memory);
+}
