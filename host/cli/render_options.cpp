@@ -147,8 +147,9 @@ void RenderOptions::add_sampling_options(CLI::App& app) {
     add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
                "How direct light is sampled; mis has the least noise, bsdf misses lights without a surface");
     add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
-    add_choice(app, "--terminator", terminator, TERMINATOR_NAMES,
-               "Where light ends on meshes with smooth normals: smooth as they are, or flat as their triangles");
+    add_choice(
+        app, "--terminator", terminator, TERMINATOR_NAMES,
+        "Where light ends on meshes with smooth normals: smooth as they are, or flat as their triangles");
 }
 
 void RenderOptions::add_message_options(CLI::App& app) {

@@ -66,12 +66,12 @@ Identity make_identity(const GpuScene& scene, const Camera& camera, const Render
     hash = add_to_hash(hash, pack(make_parameters(scene, camera, fixed)));
     hash = add_to_hash(hash, make_constants(scene, camera, fixed).values);
     hash = add_to_hash(hash, std::array<uint32_t, 2>{settings.crop.x1, settings.crop.y1});
-    return {.settings = {size_text(settings.size), crop_text(settings.crop), std::to_string(settings.seed),
-                         name_of(settings.sampler, SAMPLER_NAMES),
-                         name_of(settings.estimator, ESTIMATOR_NAMES),
-                         name_of(settings.terminator, TERMINATOR_NAMES), std::to_string(settings.max_depth),
-                         std::to_string(settings.rr_depth), camera_text(camera), frame_text(scene.frame)},
-            .hash = hash};
+    return {
+        .settings = {size_text(settings.size), crop_text(settings.crop), std::to_string(settings.seed),
+                     name_of(settings.sampler, SAMPLER_NAMES), name_of(settings.estimator, ESTIMATOR_NAMES),
+                     name_of(settings.terminator, TERMINATOR_NAMES), std::to_string(settings.max_depth),
+                     std::to_string(settings.rr_depth), camera_text(camera), frame_text(scene.frame)},
+        .hash = hash};
 }
 
 }  // namespace candela

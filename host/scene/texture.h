@@ -26,7 +26,7 @@ struct ImageFile {
     std::optional<float> glossiness{};
     // A glTF file names it: a gamma of its own does not count, and only some formats are advised.
     bool of_gltf = false;
-    std::string place{};  // Where the scene names it first, for messages.
+    std::string place{};                      // Where the scene names it first, for messages.
     IfMissing if_missing = IfMissing::error;  // White: nobody wrote the file that names it for candela.
     TexelImage image{};
 };

@@ -134,16 +134,17 @@ TEST_F(CheckpointTest, AFullDiskKeepsTheOldCheckpointAndTheRendering) {
     std::filesystem::remove(file("b.png"));
     const std::string disk = file("disk");
     std::filesystem::create_directory(disk);
-    const std::string script = "mount -t tmpfs -o size=" + std::to_string(size / 1024 + 8) +
-                               "k none \"$0\" && cp \"$1\" \"$0\" && old=$1 && shift || exit; \"$@\"; code=$?; "
-                               "cmp \"$old\" \"$0/state.exr\" && test \"$(ls -A \"$0\")\" = state.exr && exit $code";
+    const std::string script =
+        "mount -t tmpfs -o size=" + std::to_string(size / 1024 + 8) +
+        "k none \"$0\" && cp \"$1\" \"$0\" && old=$1 && shift || exit; \"$@\"; code=$?; "
+        "cmp \"$old\" \"$0/state.exr\" && test \"$(ls -A \"$0\")\" = state.exr && exit $code";
     const ProcessResult result =
         run_process(Words{"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script, disk, state_} +
                         call(arguments + Words{disk + "/state.exr", "--spp", "200"}),
                     options());
     EXPECT_EQ(result.exit_code, 1) << result.err;  // The last one is not where it was asked for.
-    EXPECT_CONTAINS(result.err, "candela: error: cannot write \"" + disk + "/state.exr\": " +
-                                    std::generic_category().message(ENOSPC) +
+    EXPECT_CONTAINS(result.err, "candela: error: cannot write \"" + disk +
+                                    "/state.exr\": " + std::generic_category().message(ENOSPC) +
                                     "; free some space or choose another place");
     EXPECT_CONTAINS(result.err, "rendered 200 spp");
     EXPECT_TRUE(std::filesystem::exists(file("b.png")));
