@@ -8,10 +8,10 @@ namespace {
 using namespace std::string_literals;
 using Values = std::vector<uint32_t>;
 
-std::string little(uint32_t number, size_t count) {
+std::string little(uint64_t number, size_t count) {
     std::string bytes;
-    for (size_t i = 0; i < count; ++i)
-        bytes += char(number >> (8 * i) & 0xFFu);
+    for (size_t i = 0; i < count; ++i, number >>= 8)
+        bytes += char(number & 0xFFu);
     return bytes;
 }
 
