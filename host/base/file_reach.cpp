@@ -59,7 +59,7 @@ std::string FileReach::refusal(const std::string& name) const {
 }
 
 fs::path FileReach::find(const fs::path& folder, const std::string& name) const {
-    const fs::path path = folder / name;
+    fs::path path = folder / name;
     if (!holds(path)) throw Error(refusal(name));
     return path;
 }

@@ -80,7 +80,9 @@ struct TargaHeader {
     }
     size_t pixel_bytes() const { return (bits + 7) / 8; }
     // Where the pixels begin.
-    size_t offset() const { return SIZE + name_bytes + has_palette * colors * ((color_bits + 7) / 8); }
+    size_t offset() const {
+        return SIZE + name_bytes + size_t{has_palette} * colors * ((color_bits + 7) / 8);
+    }
 
     uint32_t name_bytes, has_palette, type, packed;
     bool known_type;

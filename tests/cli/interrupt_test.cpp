@@ -56,16 +56,6 @@ class Interrupt : public CliTest {
         return terminal;
     }
 
-    // A glTF file whose buffer comes from the pipe m.bin.
-    std::string piped_scene() const {
-        return write("m.gltf", R"({
-            "asset": {"version": "2.0"},
-            "buffers": [{"uri": "m.bin", "byteLength": 36}],
-            "bufferViews": [{"buffer": 0, "byteLength": 36}],
-            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
-            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-            "nodes": [{"mesh": 0}]})");
-    }
     // A signal in the middle of rendering ends it with what there is.
     void expect_partial_image(int signal) const {
         Process process(endless(), on_terminal());
@@ -150,8 +140,8 @@ TEST_F(Interrupt, ATerminalGetsALiveLineWithRateAndTimeLeft) {
 }
 
 TEST_F(Interrupt, WhileASceneIsLoadedNothingIsWritten) {
-    const EndlessPipe pipe(file("m.bin"));
-    const Words words = call({"render", piped_scene(), "-o", file("a.png")});
+    const EndlessPipe pipe(file("m.gltf"));
+    const Words words = call({"render", file("m.gltf"), "-o", file("a.png")});
     const std::string message = "candela: error: interrupted while the scene was loaded\n";
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         Process process(words + Words{"--progress", "json"}, options());

@@ -62,25 +62,22 @@ TEST_F(View, ThePanelChangesThePicture) {
 
     auto scene = nlohmann::json::parse(read_file(DEPTH_OF_FIELD), nullptr, true, true);
     scene["environment"]["file"] = std::string(CANDELA_SCENES) + "/dusk.hdr";
-    view({"--size", "310x380", "--spp", "1"}, write("dusk.json", scene.dump()));
+    const Words allowed{"--size", "310x380", "--spp", "1", "--allow-folder", CANDELA_SCENES};
+    view(allowed, write("dusk.json", scene.dump()));
     // The panel alone changes nothing.
-    expect_same_rgb(picture_at_rest("dusk", size, 1),
-                    rendered({"--size", "310x380", "--spp", "1"}, file("dusk.json")));
+    expect_same_rgb(picture_at_rest("dusk", size, 1), rendered(allowed, file("dusk.json")));
     scene["environment"]["rotation"] = -180;
-    expect_same_rgb(slide_left("dusk", "345"),
-                    rendered({"--size", "310x380", "--spp", "1"}, write("turned.json", scene.dump())));
+    expect_same_rgb(slide_left("dusk", "345"), rendered(allowed, write("turned.json", scene.dump())));
     // The second entry of "camera".
     xdotool({"mousemove", "150", "207", "click", "1", "mousemove", "60", "248", "click", "1"});
-    expect_same_rgb(
-        picture_at_rest("dusk", size, 1),
-        rendered({"--size", "310x380", "--spp", "1", "--camera", "pinhole"}, file("turned.json")));
+    expect_same_rgb(picture_at_rest("dusk", size, 1),
+                    rendered(allowed + Words{"--camera", "pinhole"}, file("turned.json")));
     expect_clean_end();
 
     scene["environment"] = {{"radiance", {1, 1, 1}}};
     view({"--size", "310x380", "--spp", "1"}, write("even.json", scene.dump()));
     scene["environment"] = {{"radiance", {0.01, 0.01, 0.01}}};
-    expect_same_rgb(slide_left("even", "368"),
-                    rendered({"--size", "310x380", "--spp", "1"}, write("dark.json", scene.dump())));
+    expect_same_rgb(slide_left("even", "368"), rendered(allowed, write("dark.json", scene.dump())));
     expect_clean_end();
 }
 

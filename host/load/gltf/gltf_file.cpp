@@ -97,8 +97,8 @@ void check_version(const Node& root) {
 
 }  // namespace
 
-File::File(const std::filesystem::path& path, const FileReach& reach, LoadProgress progress)
-    : reach_(reach), progress_(std::move(progress)), path_(path) {
+File::File(const std::filesystem::path& path, FileReach reach, LoadProgress progress)
+    : reach_(std::move(reach)), progress_(std::move(progress)), path_(path) {
     bytes_ = reach_.read(path, UINT64_MAX, note_bytes());
     document_.file = path.string();
     document_.places = json::Document::Places::pointers;

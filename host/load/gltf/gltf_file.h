@@ -22,7 +22,7 @@ class File {
   public:
     // Throws Error if the file cannot be read, is cut off, or is of another version than 2. Tells of the
     // bytes of each file that it reads. This file and those that it names must be within `reach`.
-    File(const std::filesystem::path& path, const FileReach& reach, LoadProgress progress);
+    File(const std::filesystem::path& path, FileReach reach, LoadProgress progress);
     File(const File&) = delete;
     File& operator=(const File&) = delete;
 
