@@ -11,15 +11,16 @@
 #include "scene/interaction.glsl"
 #include "scene/material.glsl"
 
+// surface_at() fills all but horizon and frame, which surface_turn() adds, and wo, which surface_add_layers() adds.
 struct ShadedSurface {
     Interaction s;  // Its shading normal may come from a normal map or a bump map.
     MaterialRecord material;
     Bsdf bsdf;
     vec3 unbent;   // The shading normal of the shape itself.
-    vec3 horizon;  // The normal that says on which side of the surface a direction is; surface_turn() sets it,
+    vec3 horizon;  // The normal that says on which side of the surface a direction is.
     bool bent;     // Shaded as integrator/bent_normal.glsl says.
-    Frame frame;   // and this: around the shading normal.
-    vec3 wo;       // Towards the viewer, in that frame; surface_add_layers() sets it.
+    Frame frame;   // Around the shading normal.
+    vec3 wo;       // Towards the viewer, in that frame.
 };
 
 // The ratio of the indices of refraction where media nest. A boundary within one medium is glass between equal indices,
