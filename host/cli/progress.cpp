@@ -10,6 +10,11 @@
 #include "cli/console.h"
 
 namespace candela {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 Progress::Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit,
                    ProgressStyle style)
@@ -46,7 +51,6 @@ std::string Progress::text() const {
 }
 
 std::string Progress::json_text(const std::string& state) const {
-    using Json = nlohmann::ordered_json;
     return Json{{"state", state},
                 {"spp", spp_done()},
                 {"target_spp", spp_},

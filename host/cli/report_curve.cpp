@@ -9,9 +9,13 @@
 #include "base/error.h"
 
 namespace candela {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 Curve curve_of_report(std::string_view text, const std::string& path) {
-    using Json = nlohmann::ordered_json;
     const auto refuse = [&](const std::string& why) {
         throw Error("cannot plot \"" + path + "\": " + why +
                     "; give a report of candela render --reference REF.exr --report FILE");

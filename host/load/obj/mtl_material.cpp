@@ -21,8 +21,8 @@ constexpr double GREY = 0.5;          // The reflectance where a file states no 
 constexpr double DULL = 0.5;          // ... the roughness where it states none ...
 constexpr double COMMON_GLASS = 1.5;  // ... and the index of refraction.
 constexpr double SHEEN_ROUGHNESS = 0.5;
-constexpr double MOST_NS = 1000.0;  // The greatest exponent that the format foresees: a mirror.
-constexpr double ROUNDING = 2e-6;   // Of a sum of two numbers of six digits, as most programs write them.
+constexpr double MOST_NS = 1000.0;     // The greatest exponent that the format foresees: a mirror.
+constexpr double SUM_ROUNDING = 2e-6;  // Of a sum of two numbers of six digits, as most programs write them.
 
 double largest_of(dvec3 v) {
     return std::max({v.x, v.y, v.z});
@@ -104,7 +104,8 @@ class Converter {
 
     // What cannot be a sum of diffuse light and reflection is a metal, as Blender writes it.
     bool must_be_metal() const {
-        return reflects() && kd_ != dvec3(0.0) && ks_ != dvec3(0.0) && largest_of(kd_ + ks_) > 1.0 + ROUNDING;
+        return reflects() && kd_ != dvec3(0.0) && ks_ != dvec3(0.0) &&
+               largest_of(kd_ + ks_) > 1.0 + SUM_ROUNDING;
     }
 
     Model find_model() {
@@ -222,7 +223,7 @@ class Converter {
         if (largest <= 1.0) return;
         kd /= largest;
         ks /= largest;
-        if (largest <= 1.0 + ROUNDING) return;
+        if (largest <= 1.0 + SUM_ROUNDING) return;
         warn("above 1",
              std::string(what) + " is " + number_text(largest, 6) + " in a channel; it is scaled to 1");
     }
