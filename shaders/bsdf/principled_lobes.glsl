@@ -102,13 +102,9 @@ float principled_sheen(inout Principled p, PrincipledSurface s, vec3 wo, float a
     return above * (1.0 - max_component(s.record.sheen_color) * albedo);
 }
 
-// The lobes of the base under layers that leave `above`.
-void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float above) {
+// The facets of the base: how rough they are, and between which indices of refraction.
+void principled_base_facets(inout Principled p, PrincipledSurface s, float transmission) {
     PrincipledRecord r = s.record;
-    float metalness = principled_has(PRINCIPLED_HAS_METAL) ? r.metalness : 0.0;
-    float transmission = PRINCIPLED_TRANSMITS ? r.transmission : 0.0;
-
-    // Facets.
     float alpha = square(r.roughness);
     p.alpha = vec2(alpha);
     if (principled_has(PRINCIPLED_HAS_ANISOTROPY)) p.alpha.x = mix(alpha, 1.0, square(r.anisotropy));
@@ -120,63 +116,88 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     p.alpha = max(p.alpha, LEAST_ALPHA);
     p.eta = vec3(s.eta);
     if (principled_has(PRINCIPLED_HAS_DISPERSION) && p.refracts) p.eta *= s.spread;
+}
 
-    // The reflectance of facets: d_0 + d_edge t of the dielectric, m_0 + m_edge S of the metal.
+// The reflectance of facets: d_0 + d_edge t of the dielectric, m_0 + m_edge S of the metal.
+struct BaseReflectance {
+    vec3 d_0;
+    vec3 d_edge;
+    vec3 m_0;
+    vec3 m_edge;
+    vec3 most_0;  // The greatest channel of the dielectric, if the index were that of red, of green and of blue light:
+    vec3 most_edge;      // most_0 + most_edge t.
+    float smooth_share;  // The greatest channel that the dielectric without a film reflects to the mirror direction.
+};
+
+BaseReflectance principled_base_reflectance(Principled p, PrincipledSurface s, vec3 wo) {
+    PrincipledRecord r = s.record;
+    BaseReflectance f;
     vec3 root = (p.eta - 1.0) / (p.eta + 1.0);
     vec3 f0 = root * root;
-    vec3 d_0 = f0, d_edge = 1.0 - f0;
-    vec3 most_0 = f0;  // The greatest channel, if the index were that of red, of green and of blue light.
+    f.d_0 = f0;
+    f.d_edge = 1.0 - f0;
+    f.most_0 = f0;
     if (principled_has(PRINCIPLED_HAS_SPECULAR)) {
-        d_0 = r.specular * min(f0 * r.specular_color, 1.0);
-        d_edge = max(r.specular - d_0, 0.0);
-        most_0 = r.specular * min(f0 * max_component(r.specular_color), 1.0);
+        f.d_0 = r.specular * min(f0 * r.specular_color, 1.0);
+        f.d_edge = max(r.specular - f.d_0, 0.0);
+        f.most_0 = r.specular * min(f0 * max_component(r.specular_color), 1.0);
     }
-    vec3 most_edge = (principled_has(PRINCIPLED_HAS_SPECULAR) ? r.specular : 1.0) - most_0;
-    float smooth_share = max_component(d_0 + d_edge * fresnel_edge(s.eta, wo.z));
-    vec3 m_0 = s.base_color, m_edge = 1.0 - s.base_color;
+    f.most_edge = (principled_has(PRINCIPLED_HAS_SPECULAR) ? r.specular : 1.0) - f.most_0;
+    f.smooth_share = max_component(f.d_0 + f.d_edge * fresnel_edge(s.eta, wo.z));
+    f.m_0 = s.base_color;
+    f.m_edge = 1.0 - s.base_color;
     if (principled_has(PRINCIPLED_HAS_IRIDESCENCE) && !s.inside && r.iridescence > 0.0) {
         float thickness = r.thickness + r.thickness_range;
-        vec3 film = fresnel_film(wo.z, r.iridescence_ior, thickness, d_0);
-        d_0 = mix(d_0, film, r.iridescence);
-        most_0 = mix(most_0, vec3(max_component(film)), r.iridescence);
-        most_edge *= 1.0 - r.iridescence;
-        d_edge *= 1.0 - r.iridescence;
+        vec3 film = fresnel_film(wo.z, r.iridescence_ior, thickness, f.d_0);
+        f.d_0 = mix(f.d_0, film, r.iridescence);
+        f.most_0 = mix(f.most_0, vec3(max_component(film)), r.iridescence);
+        f.most_edge *= 1.0 - r.iridescence;
+        f.d_edge *= 1.0 - r.iridescence;
         if (principled_has(PRINCIPLED_HAS_METAL)) {
-            m_0 = mix(m_0, fresnel_film(wo.z, r.iridescence_ior, thickness, m_0), r.iridescence);
-            m_edge *= 1.0 - r.iridescence;
+            f.m_0 = mix(f.m_0, fresnel_film(wo.z, r.iridescence_ior, thickness, f.m_0), r.iridescence);
+            f.m_edge *= 1.0 - r.iridescence;
         }
     }
-    FacetMeans mean = FacetMeans(principled_edge(p, wo.z), schlick_weight(wo.z), 0.0, 0.0, 0.0, vec3(0.0));
-    mean.most = min(most_0.y + most_edge.y * mean.edge.y, 1.0);
-    if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal) {
-        mean = principled_measure(p, most_0, most_edge, wo, s.random.xy);
-    }
+    return f;
+}
 
-    // Weights.
+// What the facets lose and leave, by the means over those that wo sees.
+FacetMeans principled_base_means(Principled p, PrincipledSurface s, BaseReflectance f, vec3 wo) {
+    FacetMeans mean = FacetMeans(principled_edge(p, wo.z), schlick_weight(wo.z), 0.0, 0.0, 0.0, vec3(0.0));
+    mean.most = min(f.most_0.y + f.most_edge.y * mean.edge.y, 1.0);
+    if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal) {
+        mean = principled_measure(p, f.most_0, f.most_edge, wo, s.random.xy);
+    }
+    return mean;
+}
+
+// The weights of the base's lobes under layers that leave `above`.
+void principled_base_weights(inout Principled p, PrincipledSurface s, BaseReflectance f, FacetMeans mean, float above,
+                             float metalness, float transmission, float diffuse_transmission) {
+    PrincipledRecord r = s.record;
     float dielectric = above * (1.0 - metalness);
     float opaque = dielectric * (1.0 - transmission);
     float bounded = s.inside ? dielectric * transmission : dielectric;  // By facets.
-    p.r_0 = bounded * d_0;
-    p.r_edge = bounded * d_edge;
+    p.r_0 = bounded * f.d_0;
+    p.r_edge = bounded * f.d_edge;
     p.r_schlick = vec3(0.0);
     p.r_total = 0.0;
     if (principled_has(PRINCIPLED_HAS_SPECULAR)) p.r_total = dielectric * transmission * (1.0 - r.specular);
-    p.again = s.inside ? vec3(0.0) : opaque * mean.most_lost * d_0;
+    p.again = s.inside ? vec3(0.0) : opaque * mean.most_lost * f.d_0;
     if (principled_has(PRINCIPLED_HAS_METAL)) {
         float metal = above * metalness;
-        p.r_0 += metal * m_0;
-        p.r_schlick = metal * m_edge;
-        p.again += metal * mean.lost * metal_again(m_0, m_edge, p.alpha);
+        p.r_0 += metal * f.m_0;
+        p.r_schlick = metal * f.m_edge;
+        p.again += metal * mean.lost * metal_again(f.m_0, f.m_edge, p.alpha);
     }
-    float below = max(1.0 - mean.most + mean.most_lost * (1.0 - max_component(d_0)), 0.0);
+    float below = max(1.0 - mean.most + mean.most_lost * (1.0 - max_component(f.d_0)), 0.0);
     below = s.inside ? opaque : opaque * below;
-    float diffuse_transmission = principled_has(PRINCIPLED_HAS_DIFFUSE_TRANSMISSION) ? r.diffuse_transmission : 0.0;
     p.base_color = s.base_color;
     p.roughness = r.diffuse_roughness;
     p.diffuse = vec3(below * (1.0 - diffuse_transmission));
     p.through = below * diffuse_transmission * r.diffuse_transmission_color;
-    p.t_0 = 1.0 - most_0;
-    p.t_edge = most_edge;
+    p.t_0 = 1.0 - f.most_0;
+    p.t_edge = f.most_edge;
     p.transmit = dielectric * transmission * s.base_color;
     if (PRINCIPLED_TRANSMITS) {
         vec3 lost = dielectric * transmission * mean.glass_lost;
@@ -187,14 +208,11 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
         p.again += back * lost;
         p.through += (1.0 - back) * lost * s.base_color;
     }
-    if (principled_has(PRINCIPLED_HAS_COAT_DARKENING)) {
-        // What the metal and the dielectric send up at normal incidence.
-        vec3 base = p.t_0 * ((1.0 - transmission) * (1.0 - diffuse_transmission)) * s.base_color;
-        float roughness = mix(mix(1.0, r.roughness, transmission), r.roughness, smooth_share);
-        principled_darken(p, s, wo, mix(d_0 + base, m_0, metalness), mix(roughness, r.roughness, metalness));
-    }
+}
 
-    // Choices: about the albedo of each. What facets scatter is not 0 where none of those measured does.
+// The probabilities of choosing the base's lobes, not yet normalised: about the albedo of each. What facets scatter is
+// not 0 where none of those measured does.
+void principled_base_choices(inout Principled p, PrincipledSurface s, FacetMeans mean) {
     const float UNMEASURED = 1e-3;
     vec3 edge = mean.edge + UNMEASURED;
     vec3 facets = p.r_0 + p.r_edge * edge + p.r_schlick * (mean.schlick + UNMEASURED);
@@ -202,6 +220,25 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     p.pmf.y = dot(p.hue, facets);
     p.pmf.z += dot(p.hue, p.diffuse * s.base_color + p.again);
     p.pmf.w = dot(p.hue, p.through);
+}
+
+// The lobes of the base under layers that leave `above`.
+void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float above) {
+    PrincipledRecord r = s.record;
+    float metalness = principled_has(PRINCIPLED_HAS_METAL) ? r.metalness : 0.0;
+    float transmission = PRINCIPLED_TRANSMITS ? r.transmission : 0.0;
+    float diffuse_transmission = principled_has(PRINCIPLED_HAS_DIFFUSE_TRANSMISSION) ? r.diffuse_transmission : 0.0;
+    principled_base_facets(p, s, transmission);
+    BaseReflectance f = principled_base_reflectance(p, s, wo);
+    FacetMeans mean = principled_base_means(p, s, f, wo);
+    principled_base_weights(p, s, f, mean, above, metalness, transmission, diffuse_transmission);
+    if (principled_has(PRINCIPLED_HAS_COAT_DARKENING)) {
+        // What the metal and the dielectric send up at normal incidence.
+        vec3 base = p.t_0 * ((1.0 - transmission) * (1.0 - diffuse_transmission)) * s.base_color;
+        float roughness = mix(mix(1.0, r.roughness, transmission), r.roughness, f.smooth_share);
+        principled_darken(p, s, wo, mix(f.d_0 + base, f.m_0, metalness), mix(roughness, r.roughness, metalness));
+    }
+    principled_base_choices(p, s, mean);
 }
 
 // What fuzz, coat and sheen leave to what lies under them.
