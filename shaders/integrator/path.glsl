@@ -35,8 +35,7 @@ struct Path {
     float eta_scale;  // Product of the squared relative indices of refraction, by which beta was divided.
     float pdf_bsdf;   // Density with which `ray` was sampled [1/sr].
     bool delta;       // Light samples could not have found `ray`: the camera sent it, or scattering was ideal.
-    vec3 p;           // The last vertex, where `ray` begins but for an offset: see path_lit_point,
-    vec3 ns;          // and its shading normal.
+    LitPoint lit;     // The last vertex: see path_lit_point.
     uvec2 media;      // Around `ray`: see medium/medium.glsl.
     uint depth;       // Scattering vertices so far.
 };
@@ -59,7 +58,7 @@ struct ShadowRay {
 
 // A path that begins with a camera ray within these media, and an estimate that holds nothing yet.
 Path path_begin(Ray ray, uvec2 media) {
-    return Path(ray, vec3(1.0), 1.0, 0.0, true, ray.o, vec3(0.0), NESTED_MEDIA ? media : MEDIA_NONE, 0u);
+    return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u);
 }
 
 Estimate estimate_begin() {
@@ -74,13 +73,17 @@ ShadowRay shadow_none() {
 // they leave. If some surface is lit from both sides, this is the point of the surface itself, since the side is only
 // known after the light is sampled. Otherwise it is the origin of the path's next ray, so that no other point has to be
 // kept.
-LitPoint lit_point(Interaction s) {
-    return LitPoint(LIT_FROM_BEHIND ? s.p + s.lift : interaction_spawn_origin(s, true), s.ns);
+LitPoint lit_point(ShadedSurface x) {
+    Vertex v = interaction_vertex(x.s);
+    vec3 p = LIT_FROM_BEHIND ? v.p + v.lift : vertex_spawn_origin(v, true);
+    return lit_on_surface(p, x.horizon, LIT_FROM_BEHIND && material_transmits(x.material));
 }
 
 // The lit point of the path's last vertex.
 LitPoint path_lit_point(Path path) {
-    return LitPoint(LIT_FROM_BEHIND ? path.p : path.ray.o, path.ns);
+    LitPoint lit = path.lit;
+    if (!LIT_FROM_BEHIND) lit.p = path.ray.o;
+    return lit;
 }
 
 // Weight of the emission that the path's ray has hit, and that a light sample would find with the density pdf_light
@@ -128,7 +131,7 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
     bool viewers_side = true;
     if (LIT_FROM_BEHIND) {
         viewers_side = dot(light.wi, x.horizon) > 0.0;
-        ray.o = interaction_spawn_origin(x.s, viewers_side);
+        ray.o = vertex_spawn_origin(interaction_vertex(x.s), viewers_side);
         if (light.t_max < FLOAT_MAX) ray.d += lit.p - ray.o;
         if (!viewers_side) media = media_beyond(path.media, x.material.medium, x.s.front);
     }
@@ -148,7 +151,7 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
 
 // Continues the path in the direction that the BSDF sampled; returns whether the path goes on. A direction carries
 // nothing if the horizon and the shading normal disagree about its side.
-bool path_scatter(inout Path path, ShadedSurface x, BsdfSample scattered) {
+bool path_scatter(inout Path path, ShadedSurface x, LitPoint lit, BsdfSample scattered) {
     vec3 wi = frame_to_world(x.frame, scattered.wi);
     path.beta *= scattered.weight;
     bool viewers_side = surface_reflects(x, wi, scattered.wi.z);
@@ -157,10 +160,9 @@ bool path_scatter(inout Path path, ShadedSurface x, BsdfSample scattered) {
     path.eta_scale *= square(scattered.eta);
     path.pdf_bsdf = scattered.pdf;
     path.delta = scattered.delta;
-    path.p = x.s.p + x.s.lift;
-    path.ns = x.s.ns;
+    path.lit = lit;
     if (!viewers_side) path.media = media_beyond(path.media, x.material.medium, x.s.front);
-    path.ray = Ray(interaction_spawn_origin(x.s, viewers_side), wi);
+    path.ray = Ray(vertex_spawn_origin(interaction_vertex(x.s), viewers_side), wi);
     return true;
 }
 
@@ -213,7 +215,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     uvec2 choice = sampler_pair(random, pair + PAIR_CHOICE);
 
     // Choose a point on a light, before the lobes of a principled material take room.
-    LitPoint lit = lit_point(x.s);
+    LitPoint lit = lit_point(x);
     LightSample light;
     if (ESTIMATOR != ESTIMATOR_BSDF) light = sample_light(lit, random, pair, choice.x);
     surface_add_layers(x, path.ray, path.beta);
@@ -224,7 +226,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
 
     // Scatter.
     vec2 u = unit_float(sampler_pair(random, pair + PAIR_BSDF));
-    if (!path_scatter(path, x, surface_sample_f(x, unit_float(choice.y), u))) return false;
+    if (!path_scatter(path, x, lit, surface_sample_f(x, unit_float(choice.y), u))) return false;
     if (path.depth >= parameters.rr_depth && !path_survives(path, unit_float(choice.x))) return false;
     ++path.depth;
     return true;

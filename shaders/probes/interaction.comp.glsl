@@ -26,7 +26,7 @@ void main() {
     bool viewers_side = item(2u).w == 0u;
     vec3 wi = item_floats(2u).xyz;
     if (dot(wi, s.n) > 0.0 != viewers_side) wi = -wi;
-    Ray next = Ray(interaction_spawn_origin(s, viewers_side), wi);
+    Ray next = Ray(vertex_spawn_origin(interaction_vertex(s), viewers_side), wi);
     put(next.o);
     put(next.d);
     put(bvh_intersect(next).t);

@@ -14,7 +14,7 @@ void main() {
     if (past_end()) return;
     vec3 from = item_floats(0u).xyz;
     light_prepare();
-    LitPoint lit = LitPoint(from, vec3(0.0, 0.0, 1.0));
+    LitPoint lit = lit_anywhere(from);
     LightSample s = light_sample_li(lit, item(1u).xy, item(0u).w);
     put(s.wi);
     put(s.Li);

@@ -7,6 +7,7 @@
 #include "scene/scene_data.glsl"
 #include "scene/smooth.glsl"
 #include "scene/traversal.glsl"
+#include "scene/vertex.glsl"
 
 // In the frame of the scene. Both normals are unit vectors on the viewer's side of the surface; the geometric normal alone
 // decides which side that is.
@@ -99,10 +100,8 @@ Interaction interaction_at(Ray ray, Hit hit) {
     return s;
 }
 
-// The origin of a ray that leaves the surface on the viewer's side, or on the other.
-vec3 interaction_spawn_origin(Interaction s, bool viewers_side) {
-    if (SMOOTH && viewers_side) return (s.p + s.lift) + s.error * s.n;
-    return s.p + (viewers_side ? s.error : -s.error) * s.n;
+Vertex interaction_vertex(Interaction s) {
+    return Vertex(s.p, s.n, s.error, s.lift);
 }
 
 #endif

@@ -29,6 +29,7 @@ LIST = "shaders/scene/list.glsl"
 TRIANGLE = "shaders/scene/triangle.glsl"
 PRIMITIVE = "shaders/scene/primitive.glsl"
 INTERACTION = "shaders/scene/interaction.glsl"
+VERTEX = "shaders/scene/vertex.glsl"
 SMOOTH = "shaders/scene/smooth.glsl"
 SURFACE = "shaders/integrator/surface.glsl"
 INSTANCE = "shaders/scene/instance.glsl"
@@ -90,7 +91,8 @@ GROUPS = [
         ("light through a sheet absorbed by the medium before it", PATH,
          "if (!viewers_side) media = media_beyond(path.media, x.material.medium, x.s.front);", ""),
         ("light through a sheet looked for from the viewer's side", PATH,
-         "ray.o = interaction_spawn_origin(x.s, viewers_side);", "ray.o = interaction_spawn_origin(x.s, true);"),
+         "ray.o = vertex_spawn_origin(interaction_vertex(x.s), viewers_side);",
+         "ray.o = vertex_spawn_origin(interaction_vertex(x.s), true);"),
     ]),
     (BSDFS, [
         ("a sheet's sides chosen otherwise than the density says", "shaders/bsdf/diffuse_transmission.glsl",
@@ -130,8 +132,7 @@ GROUPS = [
         ("light begins at flat triangles", SMOOTH, "return 0.5 * MARGIN * sum;", "return 0.0;"),
         ("light begins above the side that is hollow", SMOOTH, "max(side * dot(e1,", "max(-side * dot(e1,"),
         ("light samples begin at the triangle, BSDF samples above it", PATH,
-         "return LitPoint(LIT_FROM_BEHIND ? s.p + s.lift : interaction_spawn_origin(s, true), s.ns);",
-         "return LitPoint(s.p + s.error * s.n, s.ns);"),
+         "vec3 p = LIT_FROM_BEHIND ? v.p + v.lift : vertex_spawn_origin(v, true);", "vec3 p = v.p + v.error * v.n;"),
         ("the horizon is that of the triangle", SURFACE, "x.horizon = x.unbent;", ""),
         ("the back of a shading normal is black", SURFACE, "x.unbent = facing_normal(x.s.wo, x.s.n, x.unbent);", ""),
     ]),
@@ -145,8 +146,8 @@ GROUPS = [
         ("sums without compensation", "shaders/base/math.glsl", "(t - sum) - y", "0.0 * ((t - sum) - y)"),
     ]),
     (GEOMETRY, [
-        ("rays leave on the wrong side", INTERACTION, "viewers_side ? s.error : -s.error",
-         "viewers_side ? -s.error : s.error"),
+        ("rays leave on the wrong side", VERTEX, "viewers_side ? v.error : -v.error",
+         "viewers_side ? -v.error : v.error"),
         ("child boxes rounded inwards", "host/bvh/quantise.cpp",
          "std::ceil(steps(x)));\n        while (decode(q) < x)", "steps(x));\n        while (decode(q + 1) < x)"),
         ("a single child left to visit is forgotten", TRAVERSAL, "down && siblings",
@@ -181,9 +182,9 @@ GROUPS = [
         ("depths left in the frame", RENDERER, "values[i + 3] *= float(frame_.unit);", ""),
         ("the bound on a triangle's points halved", "host/gpu_scene/ray_error.cpp", "3.0 * max(abs(lo)",
          "1.5 * max(abs(lo)"),
-        ("rays begin on their surfaces", INTERACTION, "(viewers_side ? s.error : -s.error) * s.n", "0.0 * s.n"),
-        ("rays begin beside their points, along another axis", INTERACTION,
-         "(viewers_side ? s.error : -s.error) * s.n", "(viewers_side ? s.error : -s.error) * s.n.yzx"),
+        ("rays begin on their surfaces", VERTEX, "(viewers_side ? v.error : -v.error) * v.n", "0.0 * v.n"),
+        ("rays begin beside their points, along another axis", VERTEX,
+         "(viewers_side ? v.error : -v.error) * v.n", "(viewers_side ? v.error : -v.error) * v.n.yzx"),
     ]),
     (TEXTURES, [
         ("columns of a tile of texels for its rows", TEXTURE, "t.first + 4u * tile + within.y), within.x",
