@@ -66,7 +66,7 @@ struct LightSample {
     vec3 Li_met;
 };
 
-// sampler: the arguments that determine a pair of random words. The result is a uvec2.
+// sampler: the arguments that determine three random words. The result is a uvec3.
 struct SampleOfPair {
     uint32_t pixel;  // x | y << 16
     uint32_t n;

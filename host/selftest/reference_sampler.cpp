@@ -77,29 +77,49 @@ uint32_t sobol(uint32_t index, uint32_t dimension) {
     return x;
 }
 
+// The remainders of long divisions by x^2 + x + 1, one after the other: b x + a gives the digits b and a.
+uint32_t trinomial(uint32_t index) {
+    uint32_t x = 0;
+    for (int digits = 0; digits < 32; digits += 2) {
+        uint32_t quotient = 0;
+        for (int power = 31; power >= 2; --power) {
+            if ((index >> power & 1u) == 0) continue;
+            index ^= 0b111u << (power - 2);
+            quotient |= 1u << (power - 2);
+        }
+        x |= index << (30 - digits);
+        index = quotient;
+    }
+    return x;
+}
+
 // Digit k is bit 31 - k. Laine and Karras' function works on the digits in reversed order, where "before" is
 // "below".
 uint32_t owen_scramble(uint32_t x, uint32_t seed) {
     return reverse_bits(laine_karras(reverse_bits(x), seed));
 }
 
-uvec2 independent_pair(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair) {
+uvec3 independent_triple(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair) {
     const uvec4 hash = pcg4d(uvec4(pixel, n, pair, seed));
-    return {hash.x, hash.y};
+    return {hash.x, hash.y, hash.z};
 }
 
-uvec2 stratified_pair(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair) {
-    const uint32_t cell = permute_64(n % 64, pcg4d(uvec4(pixel, n / 64, pair, 0xFFFFFFFFu - seed)).x);
-    const uvec2 jitter = independent_pair(pixel, n, seed, pair);
-    constexpr uint32_t CELL = 1u << 29;  // An eighth of 2^32.
-    return {cell % 8 * CELL + jitter.x / 8, cell / 8 * CELL + jitter.y / 8};
+uvec3 stratified_triple(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair) {
+    const uvec4 orders = pcg4d(uvec4(pixel, n / 64, pair, 0xFFFFFFFFu - seed));
+    const uint32_t cell = permute_64(n % 64, orders.x), interval = permute_64(n % 64, orders.y);
+    const uvec3 jitter = independent_triple(pixel, n, seed, pair);
+    constexpr uint32_t CELL = 1u << 29;      // An eighth of 2^32,
+    constexpr uint32_t INTERVAL = 1u << 26;  // and a 64th.
+    return {cell % 8 * CELL + jitter.x / 8, cell / 8 * CELL + jitter.y / 8,
+            interval * INTERVAL + jitter.z / 64};
 }
 
 // Burley 2020: the index is shuffled and each dimension is scrambled, each with its own seed.
-uvec2 sobol_pair(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair) {
+uvec3 sobol_triple(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair) {
     const uvec3 seeds = pcg3d(uvec3(pixel, pair, seed));
     const uint32_t index = owen_scramble(n, seeds.x);
-    return {owen_scramble(sobol(index, 0), seeds.y), owen_scramble(sobol(index, 1), seeds.z)};
+    return {owen_scramble(sobol(index, 0), seeds.y), owen_scramble(sobol(index, 1), seeds.z),
+            owen_scramble(trinomial(index), pcg3d(seeds).x)};
 }
 
 }  // namespace candela::reference

@@ -43,14 +43,14 @@ std::vector<SampleOfPair> samples_of_pairs() {
     return samples;
 }
 
-uvec2 reference_pair(uint32_t sampler, const SampleOfPair& s) {
+uvec3 reference_triple(uint32_t sampler, const SampleOfPair& s) {
     switch (sampler) {
         case SAMPLER_INDEPENDENT:
-            return reference::independent_pair(s.pixel, s.n, s.seed, s.pair);
+            return reference::independent_triple(s.pixel, s.n, s.seed, s.pair);
         case SAMPLER_STRATIFIED:
-            return reference::stratified_pair(s.pixel, s.n, s.seed, s.pair);
+            return reference::stratified_triple(s.pixel, s.n, s.seed, s.pair);
         default:
-            return reference::sobol_pair(s.pixel, s.n, s.seed, s.pair);
+            return reference::sobol_triple(s.pixel, s.n, s.seed, s.pair);
     }
 }
 
@@ -81,16 +81,16 @@ Evidence test_integer_functions(const vk::Device& device) {
 
 Evidence test_sampler(const vk::Device& device, uint32_t sampler) {
     const std::vector<SampleOfPair> samples = samples_of_pairs();
-    const std::vector<uvec2> results =
-        probe<uvec2>(device, kernels::sampler, samples, sampler_constants(sampler));
+    const std::vector<uvec3> results =
+        probe<uvec3>(device, kernels::sampler, samples, sampler_constants(sampler));
     Evidence evidence;
     for (size_t i = 0; i < samples.size(); ++i) {
         const SampleOfPair& s = samples[i];
-        const uvec2 expected = reference_pair(sampler, s);
+        const uvec3 expected = reference_triple(sampler, s);
         evidence.expect(results[i] == expected, [&] {
             return concat("sampler ", sampler, ", pixel ", s.pixel, ", n ", s.n, ", seed ", s.seed, ", pair ",
-                          s.pair, ": ", results[i].x, ' ', results[i].y, " instead of ", expected.x, ' ',
-                          expected.y);
+                          s.pair, ": ", results[i].x, ' ', results[i].y, ' ', results[i].z, " instead of ",
+                          expected.x, ' ', expected.y, ' ', expected.z);
         });
     }
     return evidence;

@@ -9,7 +9,7 @@ namespace candela {
 // Hashes, permutations, and the conversion of words to floats.
 Evidence test_integer_functions(const vk::Device& device);
 
-// Pairs of words of a sampler (SAMPLER_*).
+// The three words of a sampler (SAMPLER_*).
 Evidence test_sampler(const vk::Device& device, uint32_t sampler);
 
 }  // namespace candela

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::array ALL_SAMPLERS{SAMPLER_INDEPENDENT, SAMPLER_STRATIFIED, SAMPLER_SOBOL};
 
-// A pair of words as a point of the unit square; exact.
-glm::dvec2 to_square(uvec2 words) {
-    return glm::dvec2(words) * 0x1p-32;
+// Three words as a point of the unit cube; exact.
+glm::dvec3 to_cube(uvec3 words) {
+    return glm::dvec3(words) * 0x1p-32;
 }
 
 // Two sets of points that must be independent of each other, point by point.
@@ -44,7 +44,7 @@ class SamplerStatisticsTest : public SamplerTest {
 
     // Samples first, ..., first + count - 1 of these pixels, one after the other, or of what `to` relates to
     // them.
-    std::vector<glm::dvec2> points(uint32_t sampler, uint32_t first, uint32_t count,
+    std::vector<glm::dvec3> points(uint32_t sampler, uint32_t first, uint32_t count,
                                    const Relation& to) const {
         std::vector<SampleOfPair> samples;
         for (uint32_t n = first; n < first + count; ++n) {
@@ -53,22 +53,22 @@ class SamplerStatisticsTest : public SamplerTest {
                     samples.push_back({x | y << 16, n, 5 + to.seeds, PAIR + to.pairs});
             }
         }
-        std::vector<glm::dvec2> points;
-        for (const uvec2 words : pairs(sampler, samples))
-            points.push_back(to_square(words));
+        std::vector<glm::dvec3> points;
+        for (const uvec3 words : triples(sampler, samples))
+            points.push_back(to_cube(words));
         return points;
     }
 };
 
 // For independent uniform u and v, 12 (u - 1/2) (v - 1/2) has the mean 0 and the variance 1.
-double correlation_z(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>& b, int i, int k) {
+double correlation_z(const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b, int i, int k) {
     double sum = 0.0;
     for (size_t j = 0; j < a.size(); ++j)
         sum += 12.0 * (a[j][i] - 0.5) * (b[j][k] - 0.5);
     return sum / std::sqrt(double(a.size()));
 }
 
-double joint_uniformity(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>& b, int i, int k) {
+double joint_uniformity(const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b, int i, int k) {
     constexpr size_t CELLS = 16;
     std::vector<double> counts(CELLS * CELLS);
     for (size_t j = 0; j < a.size(); ++j)
@@ -80,19 +80,24 @@ double joint_uniformity(const std::vector<glm::dvec2>& a, const std::vector<glm:
 TEST_F(SamplerStatisticsTest, SamplesOfPixelsSeedsAndPairsAreIndependent) {
     const std::array<uint32_t, 3> indices{0, 5, 63};
     const double level =
-        sidak_level(CHI_SQUARED_ALPHA, ALL_SAMPLERS.size() * indices.size() * RELATIONS.size() * 4 * 2);
+        sidak_level(CHI_SQUARED_ALPHA, ALL_SAMPLERS.size() * indices.size() * (RELATIONS.size() * 9 + 3) * 2);
     for (const uint32_t sampler : ALL_SAMPLERS) {
         for (const uint32_t n : indices) {
-            const std::vector<glm::dvec2> base = points(sampler, n, 1, {});
+            const std::vector<glm::dvec3> base = points(sampler, n, 1, {});
+            const auto expect_independent = [&](const char* name, const std::vector<glm::dvec3>& other, int i,
+                                                int k) {
+                EXPECT_GT(normal_p_value(correlation_z(base, other, i, k)), level)
+                    << "sampler " << sampler << ", n " << n << ", " << name << ' ' << i << ' ' << k;
+                EXPECT_GT(joint_uniformity(base, other, i, k), level)
+                    << "sampler " << sampler << ", n " << n << ", " << name << ' ' << i << ' ' << k;
+            };
+            for (const auto& [i, k] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)})
+                expect_independent("words of one sample", base, i, k);
             for (const Relation& relation : RELATIONS) {
-                const std::vector<glm::dvec2> other = points(sampler, n, 1, relation);
-                for (const int i : {0, 1}) {
-                    for (const int k : {0, 1}) {
-                        EXPECT_GT(normal_p_value(correlation_z(base, other, i, k)), level)
-                            << "sampler " << sampler << ", n " << n << ", " << relation.name;
-                        EXPECT_GT(joint_uniformity(base, other, i, k), level)
-                            << "sampler " << sampler << ", n " << n << ", " << relation.name;
-                    }
+                const std::vector<glm::dvec3> other = points(sampler, n, 1, relation);
+                for (const int i : {0, 1, 2}) {
+                    for (const int k : {0, 1, 2})
+                        expect_independent(relation.name, other, i, k);
                 }
             }
         }
@@ -105,7 +110,7 @@ TEST_F(SamplerStatisticsTest, SamplesOfPixelsSeedsAndPairsAreIndependent) {
 TEST_F(SamplerStatisticsTest, ErrorsOfPixelsSeedsAndPairsAreIndependent) {
     const double level = sidak_level(CHI_SQUARED_ALPHA, ALL_SAMPLERS.size() * RELATIONS.size());
     const auto errors = [&](uint32_t sampler, const Relation& relation) {
-        const std::vector<glm::dvec2> at = points(sampler, 0, 16, relation);
+        const std::vector<glm::dvec3> at = points(sampler, 0, 16, relation);
         std::vector<double> sums(PIXELS);
         for (size_t j = 0; j < at.size(); ++j)
             sums[j % PIXELS] += at[j].x * at[j].y - 0.25;
@@ -140,8 +145,8 @@ TEST_F(SamplerStatisticsTest, SobolPairsAreShuffledAgainstEachOther) {
     const std::vector<double> binomial{1, 8, 28, 56, 70, 56, 28, 8, 1};
     for (const Relation& relation : relations) {
         std::vector<std::array<uint32_t, 4>> alike(PIXELS);
-        const std::vector<glm::dvec2> a = points(SAMPLER_SOBOL, 0, 2 * COUPLES, {});
-        const std::vector<glm::dvec2> b = points(SAMPLER_SOBOL, 0, 2 * COUPLES, relation);
+        const std::vector<glm::dvec3> a = points(SAMPLER_SOBOL, 0, 2 * COUPLES, {});
+        const std::vector<glm::dvec3> b = points(SAMPLER_SOBOL, 0, 2 * COUPLES, relation);
         for (size_t j = 0; j < a.size(); ++j) {
             if (j / PIXELS % 2 != 0) continue;  // Sample 2 m speaks for its couple.
             for (const size_t axes : {0u, 1u, 2u, 3u})
@@ -169,7 +174,7 @@ double error_slope(const std::function<std::vector<uvec2>(const std::vector<Samp
         std::vector<double> sums(scrambles);
         const std::vector<uvec2> words = pairs(samples);
         for (uint32_t i = 0; i < words.size(); ++i) {
-            const glm::dvec2 at = to_square(words[i]);
+            const glm::dvec2 at = glm::dvec2(words[i]) * 0x1p-32;
             sums[i >> k] += 1.0 / (1.0 + at.x + at.y);
         }
         RunningMoments squares;

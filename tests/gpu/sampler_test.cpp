@@ -16,7 +16,7 @@ TEST_F(SamplerTest, IntegerFunctionsMatchTheReference) {
     expect_holds(test_integer_functions(device()));
 }
 
-TEST_F(SamplerTest, PairsMatchTheReference) {
+TEST_F(SamplerTest, WordsMatchTheReference) {
     for (const uint32_t sampler : {SAMPLER_INDEPENDENT, SAMPLER_STRATIFIED, SAMPLER_SOBOL})
         expect_holds(test_sampler(device(), sampler));
 }
@@ -72,18 +72,48 @@ TEST_F(SamplerTest, TheFirstSobolPointsOfEveryPairAreANet) {
     }
 }
 
+// The choice goes with the point: every way to cut the cube into 2^(k-1) equal boxes, by halves along each
+// axis, has 2 of 2^k points in each box.
+TEST_F(SamplerTest, TheThirdSobolWordIsSpreadOverThePointsOfThePair) {
+    for (const SampleOfPair& set : FEW_SETS) {
+        const std::vector<uvec3> points = triples(SAMPLER_SOBOL, first_samples(set, 1024));
+        for (uint32_t k = 1; k <= 10; ++k) {
+            for (size_t first = 0; first < points.size(); first += size_t{1} << k) {
+                for (uint32_t a = 0; a < k; ++a) {
+                    for (uint32_t b = 0; a + b < k; ++b) {
+                        std::vector<int> counts(size_t{1} << (k - 1));
+                        for (const uvec3 p : std::span(points).subspan(first, size_t{1} << k)) {
+                            const uint32_t c = k - 1 - a - b;
+                            const uint64_t box = (uint64_t{p.x} >> (32 - a) << b | uint64_t{p.y} >> (32 - b))
+                                                     << c |
+                                                 uint64_t{p.z} >> (32 - c);
+                            ++counts[box];
+                        }
+                        ASSERT_EQ(counts, std::vector<int>(counts.size(), 2))
+                            << first << ' ' << k << ' ' << a << ' ' << b;
+                    }
+                }
+            }
+        }
+    }
+}
+
 TEST_F(SamplerTest, Every64StratifiedPointsFillTheGridInAnOrderOfTheirOwn) {
     for (const SampleOfPair& set : FEW_SETS) {
-        const std::vector<uvec2> points = first_points(SAMPLER_STRATIFIED, set, 64 * 32);
+        const std::vector<uvec3> points = triples(SAMPLER_STRATIFIED, first_samples(set, 64 * 32));
         std::set<std::vector<uint32_t>> orders;
         for (size_t first = 0; first < points.size(); first += 64) {
-            std::vector<uint32_t> order;
-            for (size_t i = first; i < first + 64; ++i)
-                order.push_back(points[i].x >> 29 | points[i].y >> 29 << 3);
-            EXPECT_EQ(std::set(order.begin(), order.end()).size(), 64u);
-            orders.insert(order);
+            std::vector<uint32_t> cells, intervals;
+            for (size_t i = first; i < first + 64; ++i) {
+                cells.push_back(points[i].x >> 29 | points[i].y >> 29 << 3);
+                intervals.push_back(points[i].z >> 26);
+            }
+            for (const std::vector<uint32_t>& order : {cells, intervals}) {
+                EXPECT_EQ(std::set(order.begin(), order.end()).size(), 64u);
+                orders.insert(order);
+            }
         }
-        EXPECT_EQ(orders.size(), 32u);
+        EXPECT_EQ(orders.size(), 64u);
     }
 }
 
