@@ -5,7 +5,6 @@
 #include <bit>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include <glm/packing.hpp>
@@ -307,12 +306,6 @@ bool lets_rays_pass(const Scene& scene, const Shape& shape) {
     const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
     return instance != nullptr && material.vertex_colors &&
            std::ranges::any_of(scene.meshes[instance->mesh].colors, [](vec4 c) { return c.w < 1.0f; });
-}
-
-void assign_probabilities(FlatScene& flat) {
-    const double total = std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0);
-    for (size_t i = 0; i < flat.lights.size(); ++i)
-        flat.lights[i].pmf = float(flat.powers[i] / total);
 }
 
 Box bounds(const Primitive& p) {

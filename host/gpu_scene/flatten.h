@@ -29,7 +29,7 @@ struct FlatScene {
     uint64_t spheres = 0;             // And of these,
     uint64_t coarse_spheres = 0;      // those that rounding moves by more than 3 % of their radius.
     uint32_t id_count = 0;            // Ids that the surfaces have: one for each triangle, sphere and disk.
-    std::vector<LightRecord> lights;  // Those that emit; pmf is 0 until assign_probabilities().
+    std::vector<LightRecord> lights;  // Those that emit; pmf is 0 until group_lights().
     std::vector<double> powers;       // Power of each light over pi, by its luminance [W],
     std::vector<LightSurface> light_surfaces;  // and what it belongs to.
 };
@@ -48,9 +48,6 @@ bool has_shading_normals(const Scene& scene);
 
 // Whether some rays may pass the shape: its material, or the colours of its vertices, are not opaque.
 bool lets_rays_pass(const Scene& scene, const Shape& shape);
-
-// Sets the probability of choosing each light: its share of the total power, which is not 0.
-void assign_probabilities(FlatScene& flat);
 
 // The least box around a primitive.
 Box bounds(const Primitive& primitive);

@@ -9,12 +9,12 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "gpu_scene/alias_table.h"
 #include "gpu_scene/append.h"
 #include "gpu_scene/coplanar_lights.h"
 #include "gpu_scene/environment_map.h"
 #include "gpu_scene/flatten.h"
 #include "gpu_scene/geometry_arrays.h"
+#include "gpu_scene/light_groups.h"
 #include "gpu_scene/material_arrays.h"
 #include "gpu_scene/nesting.h"
 #include "gpu_scene/punctual_lights.h"
@@ -174,7 +174,6 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const InstancingRule
     if (scene.environment) {
         EnvironmentMap map = build_environment_map(*scene.environment);
         const bool is_light = add_environment_light(flat, map, tree.bounds);
-        if (is_light) gpu.environment_light = uint32_t(flat.lights.size() - 1);
         gpu.environment = scene.environment->visible ? ENVIRONMENT_VISIBLE : ENVIRONMENT_HIDDEN;
         gpu.even_sky = map.even;
         gpu.environment_size = scene.environment->size;
@@ -185,14 +184,14 @@ GpuScene build(const Scene& scene, const SceneFrame& frame, const InstancingRule
         }
         append_alias(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS], map.alias);
     }
-    assign_probabilities(flat);
+    gpu.light_groups = group_lights(flat);
     gpu.light_count = uint32_t(flat.lights.size());
 
     for (const LightRecord& light : flat.lights) {
         append(gpu.arrays[ARRAY_LIGHTS], pack(light));
         gpu.lights_present |= 1u << light.kind;
     }
-    if (gpu.light_count > 0) append_alias(gpu.arrays[ARRAY_LIGHT_ALIAS], build_alias_table(flat.powers));
+    append_alias(gpu.arrays[ARRAY_LIGHT_ALIAS], light_alias_tables(gpu.light_groups, flat.powers));
     return gpu;
 }
 

@@ -40,7 +40,7 @@ struct GpuScene {
     uint32_t id_count = 0;                 // Triangles, spheres and disks; modulo 2^32.
     uint32_t light_count = 0;
     uint32_t material_count = 0;
-    uint32_t environment_light = 0;     // Index of the environment among the lights; 0 if it is not one.
+    LightGroups light_groups{};
     uvec2 environment_size{0};          // Texels.
     float environment_rotation = 0.0f;  // [rad]
 

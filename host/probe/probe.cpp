@@ -17,8 +17,7 @@ constexpr size_t GUARANTEED_TEXELS = 65536;
 
 Parameters parameters_of(const GpuScene& scene) {
     Parameters parameters{};
-    parameters.light_count = scene.light_count;
-    parameters.environment_light = scene.environment_light;
+    parameters.lights = scene.light_groups;
     parameters.environment_size = scene.environment_size;
     parameters.environment_turn = {std::cos(scene.environment_rotation),
                                    std::sin(scene.environment_rotation)};

@@ -12,7 +12,8 @@
 namespace candela::kernels {
 
 extern const std::span<const uint32_t> any_hit, bsdf, closest_hit, environment, escape, exponential, frame,
-    hash, interaction, light_sample, math, octahedral, records, sampler, spawn, texture, traversal, warp;
+    hash, interaction, light_choice, light_sample, math, octahedral, records, sampler, spawn, texture,
+    traversal, warp;
 
 }  // namespace candela::kernels
 
@@ -44,11 +45,25 @@ struct BsdfResult {
     float pdf_of_wi;
 };
 
+// light_choice: random bits for the choice of a light at a lit point, and a light that may be another.
+struct LightChoiceItem {
+    vec3 p{0};
+    uint32_t choice = 0;
+    vec3 n{0};  // 0: none.
+    uint32_t light = 0;
+};
+
+struct LightChoice {
+    uint32_t chosen;
+    float pmf;
+    float pmf_of_light;  // Of LightChoiceItem::light.
+};
+
 // light_sample: random bits for a light sample from a reference point.
 struct LightItem {
     vec3 from{0};
-    uint32_t fill = 0;  // Its low 8 bits are used.
-    uvec2 u{0};
+    uint32_t choice = 0;  // Of the light,
+    uvec2 u{0};           // and of the point on it.
     uvec2 unused{0};
 };
 

@@ -15,7 +15,7 @@ std::vector<LightItem> random_light_items(vec3 from, size_t count, uint32_t seed
     Random random(seed);
     std::vector<LightItem> items(count, {.from = from});
     for (LightItem& item : items) {
-        item.fill = random.bits();
+        item.choice = random.bits();
         item.u.x = random.bits();
         item.u.y = random.bits();
     }

@@ -91,7 +91,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 229> words;
+    std::array<uint, 231> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -107,8 +107,10 @@ Records filled(Fields& fields) {
                     .seed = fields.u(),
                     .max_depth = fields.u(),
                     .rr_depth = fields.u(),
-                    .light_count = fields.u(),
-                    .environment_light = fields.u(),
+                    .lights = {.placed = fields.u(),
+                               .suns = fields.u(),
+                               .sun_share = fields.u(),
+                               .sky_share = fields.u()},
                     .environment_size = fields.u2(),
                     .environment_turn = fields.f2(),
                     .lens_x = fields.f3(),

@@ -117,8 +117,8 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
 }
 
 // A sample of a light for the surface, as lit; layers above what emits leave a fraction of its radiance.
-LightSample sample_light(LitPoint lit, Sampler random, uint pair, uint fill) {
-    LightSample light = light_sample_li(lit, sampler_pair(random, pair + PAIR_LIGHT), fill);
+LightSample sample_light(LitPoint lit, Sampler random, uint pair) {
+    LightSample light = light_sample_li(lit, sampler_triple(random, pair + PAIR_LIGHT));
     if (HAS_COATED_EMISSION) light.Li *= emitted_share(light, lit);
     return light;
 }
@@ -217,7 +217,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     // Choose a point on a light, before the lobes of a principled material take room.
     LitPoint lit = lit_point(x);
     LightSample light;
-    if (ESTIMATOR != ESTIMATOR_BSDF) light = sample_light(lit, random, pair, choice.x);
+    if (ESTIMATOR != ESTIMATOR_BSDF) light = sample_light(lit, random, pair);
     surface_add_layers(x, path.ray, path.beta);
     if (path.depth == 0u && is_principled(x.material)) estimate.albedo = bsdf_albedo(x.bsdf);
 

@@ -1,34 +1,16 @@
-// Chooses a light by its power and a point on it; one line per kind of light.
+// A point on a light that is chosen for a lit point; one line per kind of light.
 #ifndef LIGHT_LIGHT_SAMPLER_GLSL
 #define LIGHT_LIGHT_SAMPLER_GLSL
 
 #include "base/sampler.glsl"
 #include "light/area.glsl"
+#include "light/choice.glsl"
 #include "light/directional.glsl"
 #include "light/environment.glsl"
 #include "light/point.glsl"
 #include "light/sphere.glsl"
 #include "light/spot.glsl"
 #include "scene/material.glsl"
-
-// The light of a scene that has only one; an invocation reads it once.
-LightRecord only_light;
-
-// Must run before an invocation's first light sample.
-void light_prepare() {
-    if (ONE_LIGHT) only_light = scene_light(0u);
-}
-
-// The light at that place in the table of lights.
-LightRecord light_at(uint i) {
-    if (ONE_LIGHT) return only_light;
-    return scene_light(i);
-}
-
-// Probability with which light_sample_li chooses light i for that point.
-float light_pmf(uint i, LitPoint lit) {
-    return ONE_LIGHT ? 1.0 : light_at(i).pmf;
-}
 
 // The attributes of light i at surface coordinates b; on a sphere, at the unit normal n.
 Attributes light_attributes(uint i, LightRecord l, vec2 b, vec3 n) {
@@ -63,25 +45,16 @@ void light_apply_textures(inout LightSample s, LitPoint lit) {
     if ((TEXTURED & TEXTURED_OPACITY) != 0u) s.Li *= material_opacity(scene_light_textures(s.light).material, at);
 }
 
-// A sample of a point on one of the lights, from 2 x 32 random bits. If there are several lights, the first word also
-// chooses the light. What that leaves of the word is uniform again, so that the points on a light are as well spread as
-// the sampler's; the 8 low bits of `fill`, which are random too, make up for the bits that it has lost. The scene has
+// A sample of a point on one of the lights, from 3 x 32 random bits: u.xy chooses the point, u.z the light. The scene has
 // at least one light; light_prepare comes first.
-// Ref: Walker 1977, An Efficient Method for Generating Discrete Random Variables with General Distributions.
-LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
-    uint i = 0u;
-    if (!ONE_LIGHT) {
-        uvec2 column = warp_alias_column(u.x, scene_parameters().light_count);
-        AliasChoice choice = warp_alias_choice(column, scene_light_alias(column.x));
-        i = choice.i;
-        u.x = uint(choice.rest * 16777216.0) << 8u | (fill & 255u);
-    }
+LightSample light_sample_li(LitPoint lit, uvec3 u) {
+    uint i = light_choose(lit, u.z);
     LightRecord l = light_at(i);
     LightSample s;
     if (is_light(l, LIGHT_ENVIRONMENT)) {
-        s = environment_light_sample_li(u);
+        s = environment_light_sample_li(u.xy);
     } else if (is_light(l, LIGHT_SPHERE)) {
-        s = sphere_light_sample_li(l, lit.p, unit_float(u));
+        s = sphere_light_sample_li(l, lit.p, unit_float(u.xy));
     } else if (is_light(l, LIGHT_POINT)) {
         s = point_light_sample_li(l, lit.p);
     } else if (is_light(l, LIGHT_SPOT)) {
@@ -89,11 +62,11 @@ LightSample light_sample_li(LitPoint lit, uvec2 u, uint fill) {
     } else if (is_light(l, LIGHT_DIRECTIONAL)) {
         s = directional_light_sample_li(l);
     } else {
-        s = area_light_sample_li(l, lit.p, unit_float(u));
+        s = area_light_sample_li(l, lit.p, unit_float(u.xy));
     }
     s.pdf *= light_pmf(i, lit);
     s.light = i;
-    s.u = unit_float(u);
+    s.u = unit_float(u.xy);
     if ((TEXTURED & (TEXTURED_EMISSION | TEXTURED_OPACITY)) != 0u && light_has_surface(l)) {
         light_apply_textures(s, lit);
     }
@@ -112,8 +85,8 @@ float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light
 // Density [1/sr] with which light_sample_li finds a direction to that texel of the environment; 0 if the environment is
 // not one of the lights.
 float environment_pdf_li(EnvironmentTexel texel, LitPoint lit) {
-    if ((LIGHTS & 1u << LIGHT_ENVIRONMENT) == 0u) return 0.0;
-    return light_pmf(scene_parameters().environment_light, lit) * texel.pdf;
+    if (!SKY_IS_LIGHT) return 0.0;
+    return light_pmf(sky_light(), lit) * texel.pdf;
 }
 
 #endif

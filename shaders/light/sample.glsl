@@ -28,24 +28,6 @@ float light_end_error(float error, float distance) {
     return error + 8.0 / 16777216.0 * distance;
 }
 
-// A point that is lit: what the choice of a light may depend on. In the frame of the scene.
-struct LitPoint {
-    vec3 p;           // Where rays to the lights begin.
-    vec3 n;           // Unit normal on the viewer's side: what is below its horizon does not light that side.
-    bool both_sides;  // Light from either side of n is scattered.
-    bool any_normal;  // Light from everywhere is scattered alike, and n is 0.
-};
-
-// A point on a surface with that horizon.
-LitPoint lit_on_surface(vec3 p, vec3 horizon, bool both_sides) {
-    return LitPoint(p, horizon, both_sides, false);
-}
-
-// A point without a normal, as within a medium.
-LitPoint lit_anywhere(vec3 p) {
-    return LitPoint(p, vec3(0.0), true, true);
-}
-
 // A point on a light, as seen from a point that is lit.
 struct LightSample {
     vec3 wi;      // Unit direction from the lit point.

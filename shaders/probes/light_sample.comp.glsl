@@ -1,4 +1,4 @@
-// For selftest/lights.h: item (reference point, 8 random bits; 2 x 32 more). A light sample from there; whether its
+// For selftest/lights.h: item (reference point, 32 random bits for the light; 2 x 32 for the point). A light sample from there; whether its
 // shadow ray is blocked; and what a ray in its direction hits: which light, its radiance, and the density with which
 // light samples find it.
 #version 460
@@ -15,7 +15,7 @@ void main() {
     vec3 from = item_floats(0u).xyz;
     light_prepare();
     LitPoint lit = lit_anywhere(from);
-    LightSample s = light_sample_li(lit, item(1u).xy, item(0u).w);
+    LightSample s = light_sample_li(lit, uvec3(item(1u).xy, item(0u).w));
     put(s.wi);
     put(s.Li);
     put(s.pdf);

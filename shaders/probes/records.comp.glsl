@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 229u
+#define RESULT_WORDS 231u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -17,8 +17,10 @@ void put_parameters(Parameters p) {
     put(p.seed);
     put(p.max_depth);
     put(p.rr_depth);
-    put(p.light_count);
-    put(p.environment_light);
+    put(p.lights.placed);
+    put(p.lights.suns);
+    put(p.lights.sun_share);
+    put(p.lights.sky_share);
     put(p.environment_size);
     put(p.environment_turn);
     put(p.lens_x);

@@ -1,11 +1,14 @@
-// Records of a light (4 words of uvec4), of a texel of the environment (1 word), and of the entries of alias
-// tables (two to a word).
+// Records of a light (4 words of uvec4), of the groups of lights (1 word), of a texel of the environment (1
+// word), and of the entries of alias tables (two to a word).
 //
 //   LightRecord                   EnvironmentTexel                 AliasEntry
 //     0: p.xyz, kind                0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
 //     1: e1.xyz, error |                                                entry 2i + 1: threshold, alias
 //     2: e2.xyz, pmf
 //     3: radiance.rgb, pdf_area
+//
+//   LightGroups
+//     0: placed, suns, sun_share, sky_share
 #ifndef SHARED_LIGHT_H
 #define SHARED_LIGHT_H
 
@@ -17,6 +20,7 @@ namespace candela {
 #endif
 
 const uint LIGHT_WORDS = 4u;
+const uint LIGHT_GROUPS_WORDS = 1u;
 const uint ENVIRONMENT_TEXEL_WORDS = 1u;
 const uint ALIAS_WORDS = 1u;  // Of two entries.
 
@@ -45,6 +49,16 @@ struct LightRecord {
     float error;     // How far from a point of it, along its normal, rays towards it must end; >= 0.
 };
 
+// How the choice among lights is divided. Their table has first those with a place in the scene, then the
+// suns, which are the directional ones, then the sky, if it is one. Each of the first two groups has an alias
+// table of its own; that of the suns is behind the other.
+struct LightGroups {
+    uint placed;
+    uint suns;
+    uint sun_share;  // Probability of choosing some sun, in units of 2^-31,
+    uint sky_share;  // and of the sky. The others have the rest.
+};
+
 // A piece of the sky in latitude and longitude.
 struct EnvironmentTexel {
     vec3 radiance;  // [W/(m^2 sr)], constant over the texel.
@@ -64,6 +78,10 @@ struct AliasEntry {
 inline std::array<uvec4, LIGHT_WORDS> pack(const LightRecord& l) {
     return {word(l.p, l.kind), word(l.e1, floatBitsToUint(l.error) | l.two_sided << 31),
             word(l.e2, floatBitsToUint(l.pmf)), word(l.radiance, floatBitsToUint(l.pdf_area))};
+}
+
+inline std::array<uvec4, LIGHT_GROUPS_WORDS> pack(const LightGroups& g) {
+    return {uvec4(g.placed, g.suns, g.sun_share, g.sky_share)};
 }
 
 inline std::array<uvec4, ENVIRONMENT_TEXEL_WORDS> pack(const EnvironmentTexel& t) {
@@ -89,6 +107,10 @@ LightRecord light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     l.radiance = uintBitsToFloat(d.xyz);
     l.pdf_area = uintBitsToFloat(d.w);
     return l;
+}
+
+LightGroups light_groups_unpack(uvec4 a) {
+    return LightGroups(a.x, a.y, a.z, a.w);
 }
 
 EnvironmentTexel environment_texel_unpack(uvec4 a) {

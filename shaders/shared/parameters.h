@@ -1,14 +1,15 @@
-// Record of everything that stays the same while an image is rendered, 9 words of uvec4 in a uniform buffer;
+// Record of everything that stays the same while an image is rendered, 10 words of uvec4 in a uniform buffer;
 // and the push constants of one dispatch.
 //
 //   0: position.xyz, seed         5: lens_x.xyz, focal_distance
 //   1: right.xyz, max_depth       6: lens_y.xyz, blades
 //   2: up.xyz, rr_depth           7: environment_size.xy, environment_turn.xy
-//   3: forward.xyz, light_count   8: first_sample, environment_light, camera_media.xy
-//   4: full_size.xy, crop.xy
+//   3: forward.xyz, first_sample  8: camera_media.xy
+//   4: full_size.xy, crop.xy       9: lights
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
 
+#include "shared/light.h"
 #include "shared/types.h"
 
 #ifdef __cplusplus
@@ -16,7 +17,7 @@
 namespace candela {
 #endif
 
-const uint PARAMETERS_WORDS = 9u;
+const uint PARAMETERS_WORDS = 10u;
 
 struct Parameters {
     // The pinhole ray through film position s in [-1, 1]^2 (x to the right, y up) has the direction
@@ -32,8 +33,7 @@ struct Parameters {
     uint seed;
     uint max_depth;  // Scattering vertices at most, <= DEPTH_SAFETY_LIMIT.
     uint rr_depth;   // Bounces that always survive.
-    uint light_count;
-    uint environment_light;  // Index of the environment among the lights; 0 if it is not one.
+    LightGroups lights;
     uvec2 environment_size;  // Texels.
     vec2 environment_turn;   // Cosine and sine of the environment's rotation about +Y.
     vec3 lens_x;             // The point (x, y) of an aperture of radius 1 is position + x lens_x + y lens_y.
@@ -60,13 +60,14 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         word(p.position, p.seed),
         word(p.right, p.max_depth),
         word(p.up, p.rr_depth),
-        word(p.forward, p.light_count),
+        word(p.forward, p.first_sample),
         uvec4(p.full_size.x, p.full_size.y, p.crop.x, p.crop.y),
         word(p.lens_x, floatBitsToUint(p.focal_distance)),
         word(p.lens_y, p.blades),
         uvec4(p.environment_size.x, p.environment_size.y, floatBitsToUint(p.environment_turn.x),
               floatBitsToUint(p.environment_turn.y)),
-        uvec4(p.first_sample, p.environment_light, p.camera_media.x, p.camera_media.y),
+        uvec4(p.camera_media.x, p.camera_media.y, 0, 0),
+        pack(p.lights)[0],
     };
 }
 
@@ -82,7 +83,7 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     p.up = uintBitsToFloat(w[2].xyz);
     p.rr_depth = w[2].w;
     p.forward = uintBitsToFloat(w[3].xyz);
-    p.light_count = w[3].w;
+    p.first_sample = w[3].w;
     p.full_size = w[4].xy;
     p.crop = w[4].zw;
     p.lens_x = uintBitsToFloat(w[5].xyz);
@@ -91,9 +92,8 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     p.blades = w[6].w;
     p.environment_size = w[7].xy;
     p.environment_turn = uintBitsToFloat(w[7].zw);
-    p.first_sample = w[8].x;
-    p.environment_light = w[8].y;
-    p.camera_media = w[8].zw;
+    p.camera_media = w[8].xy;
+    p.lights = light_groups_unpack(w[9]);
     return p;
 }
 

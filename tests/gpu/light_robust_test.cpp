@@ -85,7 +85,7 @@ class LightRobustnessTest : public LightTest {
         std::vector<LightItem> items(3000);
         for (LightItem& item : items) {
             item.from = reference(p, e1, e2);
-            item.fill = bits();
+            item.choice = bits();
             item.u.x = bits();
             item.u.y = bits();
         }

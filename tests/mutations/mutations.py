@@ -2,6 +2,7 @@
 what occurs there once, and what it becomes."""
 
 PATH = "shaders/integrator/path.glsl"
+LIGHT_CHOICE = "shaders/light/choice.glsl"
 LIGHT_SAMPLER = "shaders/light/light_sampler.glsl"
 AREA = "shaders/light/area.glsl"
 SPHERE = "shaders/light/sphere.glsl"
@@ -45,6 +46,7 @@ RENDER = "shaders/kernels/render.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
 RENDERER = "host/render/renderer.cpp"
 FLATTEN = "host/gpu_scene/flatten.cpp"
+LIGHT_GROUPS = "host/gpu_scene/light_groups.cpp"
 PUNCTUAL_LIGHTS = "host/gpu_scene/punctual_lights.cpp"
 MATERIAL_ARRAYS = "host/gpu_scene/material_arrays.cpp"
 GEOMETRY_ARRAYS = "host/gpu_scene/geometry_arrays.cpp"
@@ -110,13 +112,16 @@ GROUPS = [
         ("Schlick's angle on the wrong side of the glass", FRESNEL, "eta >= 1.0 ? cos_o : cos_t", "cos_o"),
     ]),
     (LIGHTS, [
-        ("lights off by one", LIGHT_SAMPLER, "i = choice.i;",
-         "i = (choice.i + 1u) % scene_parameters().light_count;"),
+        ("lights off by one", LIGHT_CHOICE, "groups.placed + groups.suns : i;",
+         "groups.placed + groups.suns : (i + 1u) % max(groups.placed, 1u);"),
+        ("what the choice of sky or suns leaves not stretched", LIGHT_CHOICE, "bits = light_stretch(rest,",
+         "light_stretch(rest,"),
+        ("the sky chosen twice as often as its probability says", LIGHT_CHOICE, "bits >> 1u < sky;", "bits >> 2u < sky;"),
+        ("probabilities without the share of suns and sky", LIGHT_GROUPS, " * (double(group_share) / WHOLE)", ""),
         ("surfaces taken for the first of the lights", PATH, "light_at(s.light)", "light_at(0u)"),
         ("lights chosen with a wrong probability", WARP, "column.y < entry.threshold",
          "column.y < entry.threshold / 2u"),
-        ("what the choice of a light leaves not used again", LIGHT_SAMPLER, "u.x = uint(choice.rest * 16777216.0) << 8u",
-         "u.x = u.x"),
+        ("one word chooses the light and the point on it", LIGHT_SAMPLER, "light_choose(lit, u.z)", "light_choose(lit, u.x)"),
         ("cosine missing from an area light's density", AREA, "distance_squared / abs(cos_light)", "distance_squared"),
         ("emission from the back", AREA, "front || l.two_sided != 0u", "true"),
         ("shadow rays end on the light", AREA,

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gpu_scene/light_groups.h"
 #include "probe/random.h"
 #include "support/scene_builders.h"
 
@@ -131,7 +132,7 @@ TEST(Flatten, EveryPrimitiveHasARecordOfNormalsIfOneIsSmooth) {
 TEST(Flatten, ProbabilitiesAreSharesOfAllPowers) {
     const Emission white{.radiance = vec3(1), .two_sided = false};
     FlatScene flat = flatten_shapes({shape(BALL, 0, white), shape(ELLIPSE, 0, white)});
-    assign_probabilities(flat);
+    group_lights(flat);
     const double sum = flat.powers[0] + flat.powers[1];
     for (const size_t i : {0u, 1u})
         EXPECT_NEAR(flat.lights[i].pmf, flat.powers[i] / sum, 1e-7);

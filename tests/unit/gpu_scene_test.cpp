@@ -188,7 +188,8 @@ TEST(GpuScene, TheSkyIsALightAndChosenByThePowerThatFallsOntoTheScene) {
     const double pmf = 2.0 * M_PI / (2.0 * M_PI + 10.0);
     EXPECT_NEAR(light_probabilities(gpu)[1], pmf, 1e-6);
     EXPECT_NEAR(light(gpu, 0).pmf, 1.0 - pmf, 1e-6);
-    EXPECT_EQ(gpu.environment_light, 1u);
+    EXPECT_EQ(gpu.light_groups.placed, 1u);
+    EXPECT_EQ(gpu.light_groups.suns, 0u);
     EXPECT_NEAR(light(gpu, 1).pmf, pmf, 1e-6);
     for (const uint32_t i : {0u, 1u, 2u}) {
         EXPECT_EQ(texel(gpu, i).radiance, radiance[i]);

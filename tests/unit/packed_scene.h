@@ -40,13 +40,20 @@ inline AliasEntry entry(const std::vector<uvec4>& table, uint32_t i) {
 // The probability of each light as a shader draws it: column i is kept for fractions below its threshold /
 // 2^32.
 inline std::vector<double> light_probabilities(const GpuScene& gpu) {
+    const LightGroups& groups = gpu.light_groups;
+    const double suns = groups.sun_share * 0x1p-31, sky = groups.sky_share * 0x1p-31;
     std::vector<double> probability(gpu.light_count);
-    for (uint32_t i = 0; i < gpu.light_count; ++i) {
-        const AliasEntry e = entry(gpu.arrays[ARRAY_LIGHT_ALIAS], i);
-        const double kept = double(e.threshold) * 0x1p-32;
-        probability[i] += kept / gpu.light_count;
-        probability[e.alias] += (1.0 - kept) / gpu.light_count;
-    }
+    const auto add_table = [&](uint32_t first, uint32_t count, double share) {
+        for (uint32_t i = 0; i < count; ++i) {
+            const AliasEntry e = entry(gpu.arrays[ARRAY_LIGHT_ALIAS], first + i);
+            const double kept = double(e.threshold) * 0x1p-32;
+            probability[first + i] += share * kept / count;
+            probability[first + e.alias] += share * (1.0 - kept) / count;
+        }
+    };
+    add_table(0, groups.placed, 1.0 - suns - sky);
+    add_table(groups.placed, groups.suns, suns);
+    if (gpu.light_count > groups.placed + groups.suns) probability.back() = sky;
     return probability;
 }
 

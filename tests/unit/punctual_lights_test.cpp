@@ -45,7 +45,7 @@ TEST(PunctualLights, AreChosenByTheirPower) {
     constexpr int STEPS = 20000;
     for (int i = 0; i < STEPS; ++i)
         mean += falloff(std::acos((i + 0.5) / STEPS)) / (2.0 * STEPS);
-    const std::vector<double> powers{5.0, 4.0 * 0.5, 4.0 * 2.0 * 0.7152, 4.0 * 3.0 * mean};
+    const std::vector<double> powers{5.0, 4.0 * 2.0 * 0.7152, 4.0 * 3.0 * mean, 4.0 * 0.5};
     double total = 0.0;
     for (const double power : powers)
         total += power;
@@ -63,11 +63,25 @@ TEST(PunctualLights, AreChosenByTheirPower) {
     }
 }
 
+// A sun beside a lamp of 10^12 times its power: the probability is that of the choice, a unit of a share.
+TEST(PunctualLights, EveryGroupIsChosenNowAndThen) {
+    Scene scene = scene_of_shapes({emitter(SQUARE, vec3(1e12f))});
+    scene.lights = {{"sun", DirectionalLight{.irradiance = vec3(2)}}};
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
+    EXPECT_EQ(gpu.light_groups.sun_share, 1u);
+    EXPECT_EQ(light(gpu, 1).pmf, 0x1p-31f);
+    scene = scene_of_shapes({emitter(SQUARE, vec3(1))});
+    scene.lights = {{"sun", DirectionalLight{.irradiance = vec3(2e12f)}}};
+    const GpuScene bright = build_gpu_scene(scene, SceneFrame{});
+    EXPECT_EQ(bright.light_groups.sun_share, (1u << 31) - 1u);
+    EXPECT_EQ(light(bright, 0).pmf, 0x1p-31f);
+}
+
 // Where lengths are eight times shorter, an intensity has a sixty-fourth of its number.
 TEST(PunctualLights, AreInTheFrameOfTheScene) {
     const GpuScene gpu =
         build_gpu_scene(scene_of_lights(), SceneFrame{.origin = dvec3(10, 20, 30), .unit = 8.0});
-    const LightRecord sun = light(gpu, 1), bulb = light(gpu, 2), lamp = light(gpu, 3);
+    const LightRecord bulb = light(gpu, 1), lamp = light(gpu, 2), sun = light(gpu, 3);
     EXPECT_EQ(sun.kind, LIGHT_DIRECTIONAL);
     EXPECT_EQ(sun.e1, vec3(0, 0, 1));
     EXPECT_EQ(sun.radiance, vec3(4));

@@ -1,0 +1,87 @@
+// See light_groups.h.
+#include "gpu_scene/light_groups.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "gpu_scene/alias_table.h"
+
+namespace candela {
+namespace {
+
+constexpr uint32_t WHOLE = 1u << 31u;  // In the unit of LightGroups' shares.
+
+double sum(std::span<const double> powers) {
+    return std::accumulate(powers.begin(), powers.end(), 0.0);
+}
+
+// The share of a group with that power, of what is left for it and the others; it leaves at least 1 to each
+// of them, and takes at least 1 itself.
+uint32_t share(double power, double others_power, uint32_t left, uint32_t others) {
+    if (power == 0.0) return 0;
+    if (others == 0) return left;
+    const auto part = uint32_t(std::floor(double(left) * (power / (power + others_power)) + 0.5));
+    return std::clamp(part, 1u, left - others);
+}
+
+int rank(const LightRecord& light) {
+    return light.kind == LIGHT_ENVIRONMENT ? 2 : light.kind == LIGHT_DIRECTIONAL ? 1 : 0;
+}
+
+// Sorts lights and their powers by rank, otherwise in the order in which they are.
+void sort_by_rank(std::vector<LightRecord>& lights, std::vector<double>& powers) {
+    std::vector<uint32_t> order(lights.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, {}, [&](uint32_t i) { return rank(lights[i]); });
+    const std::vector<LightRecord> old_lights = std::move(lights);
+    const std::vector<double> old_powers = std::move(powers);
+    lights.clear();
+    powers.clear();
+    for (const uint32_t i : order) {
+        lights.push_back(old_lights[i]);
+        powers.push_back(old_powers[i]);
+    }
+}
+
+}  // namespace
+
+LightGroups group_lights(FlatScene& flat) {
+    if (!std::ranges::is_sorted(flat.lights, {}, rank)) sort_by_rank(flat.lights, flat.powers);
+    const auto count = [&](int of_rank) { return uint32_t(std::ranges::count(flat.lights, of_rank, rank)); };
+    LightGroups groups{.placed = count(0), .suns = count(1), .sun_share = 0, .sky_share = 0};
+    const std::span<const double> powers = flat.powers;
+    const double placed = sum(powers.first(groups.placed));
+    const double suns = sum(powers.subspan(groups.placed, groups.suns));
+    const double sky = sum(powers.subspan(groups.placed + groups.suns));
+    const uint32_t any_placed = groups.placed > 0, any_suns = groups.suns > 0;
+    groups.sky_share = share(sky, suns + placed, WHOLE, any_suns + any_placed);
+    groups.sun_share = share(suns, placed, WHOLE - groups.sky_share, any_placed);
+    for (uint32_t i = 0; i < flat.lights.size(); ++i) {
+        LightRecord& light = flat.lights[i];
+        uint32_t group_share = WHOLE - groups.sun_share - groups.sky_share;
+        double group_power = placed;
+        if (rank(light) == 1) {
+            group_share = groups.sun_share;
+            group_power = suns;
+        } else if (rank(light) == 2) {
+            group_share = groups.sky_share;
+            group_power = sky;
+        }
+        light.pmf = float(powers[i] / group_power * (double(group_share) / WHOLE));
+    }
+    return groups;
+}
+
+std::vector<AliasEntry> light_alias_tables(const LightGroups& groups, std::span<const double> powers) {
+    std::vector<AliasEntry> tables;
+    for (const std::span<const double> group :
+         {powers.first(groups.placed), powers.subspan(groups.placed, groups.suns)}) {
+        if (group.empty()) continue;
+        const std::vector<AliasEntry> table = build_alias_table(group);
+        tables.insert(tables.end(), table.begin(), table.end());
+    }
+    return tables;
+}
+
+}  // namespace candela
