@@ -2,7 +2,6 @@
 #include "gpu_scene/gpu_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <numeric>
 #include <span>
@@ -119,27 +118,6 @@ void check_emitters(const Scene& scene) {
                            " are possible; let fewer copies of a mesh emit, or simpler ones"));
     }
 }
-
-}  // namespace
-
-SceneFrame frame_around(const DoubleBox& box) {
-    if (box.is_empty()) return {};
-    const dvec3 extent = box.extent();
-    const double size = std::max({extent.x, extent.y, extent.z});
-    SceneFrame frame{.origin = box.centroid()};
-    if (size > 0.0) {
-        int exponent = 0;
-        std::frexp(size, &exponent);
-        frame.unit = std::ldexp(1.0, exponent);
-    }
-    return frame;
-}
-
-SceneFrame choose_frame(const Scene& scene) {
-    return frame_around(bounds(scene));
-}
-
-namespace {
 
 // `packed(i)` is called when the texels of image i have been copied.
 GpuScene build(const Scene& scene, const SceneFrame& frame, const InstancingRule& rule,

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "gpu_scene/choose_frame.h"
 #include "gpu_scene/instancing.h"
-#include "scene/frame.h"
 #include "scene/scene.h"
 #include "shared/kernel_constants.h"
 #include "shared/parameters.h"
@@ -73,13 +73,6 @@ struct GpuScene {
 
 // The record of an instance of the scene.
 Instance instance_at(const GpuScene& scene, const InstancePlace& place);
-
-// The frame for a scene: its origin is the centre of the box around all shapes, its unit the least power of
-// two that is greater than the box's longest side. It depends on no camera.
-SceneFrame choose_frame(const Scene& scene);
-
-// The same for a box.
-SceneFrame frame_around(const DoubleBox& box);
 
 // Flattens the shapes into primitives, builds the BVH and packs everything. Throws Error if the scene has
 // more primitives than a BVH can address.

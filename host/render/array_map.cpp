@@ -20,11 +20,15 @@ uint32_t available_buffers(const vk::DeviceInfo& device) {
     return device.limits.max_per_stage_descriptor_storage_buffers - 1;
 }
 
-// Where all arrays are texel buffers, a probe has one more, for its items, of the 16 that Vulkan promises.
-static_assert(ARRAY_COUNT + 1 <= 16);
+// Where all of them are texel buffers, a probe has one more, for its items, of the 16 that Vulkan promises.
+static_assert(BUFFER_COUNT + 1 <= 16);
 
-uint64_t bytes_of(const GpuScene& scene, uint32_t array) {
-    return scene.arrays[array].size() * sizeof(uvec4);
+// Words of each of the scene's buffers.
+std::array<uint64_t, BUFFER_COUNT> buffer_sizes(const GpuScene& scene) {
+    std::array<uint64_t, BUFFER_COUNT> sizes{};
+    for (const SceneArray& array : SCENE_ARRAYS)
+        sizes[array.buffer] += scene.arrays[array.number].size();
+    return sizes;
 }
 
 [[noreturn]] void fail_too_long(const vk::DeviceInfo& device, const std::string& arrays, uint64_t bytes) {
@@ -36,17 +40,20 @@ uint64_t bytes_of(const GpuScene& scene, uint32_t array) {
                 ExitCode::out_of_memory);
 }
 
-// Throws Error if these arrays together are too long for one storage buffer.
-void check_range(const vk::DeviceInfo& device, const GpuScene& scene, std::span<const uint32_t> arrays) {
+// Throws Error if these buffers together are too long for one storage buffer.
+void check_range(const vk::DeviceInfo& device, const GpuScene& scene, std::span<const uint32_t> buffers) {
     uint64_t bytes = 0;
+    bool one = true;
     std::string names;
-    for (const uint32_t array : arrays) {
-        if (bytes_of(scene, array) == 0) continue;
-        bytes += bytes_of(scene, array);
-        names += (names.empty() ? "" : ", ") + to_text(SCENE_ARRAYS[array]);
+    for (const uint32_t buffer : buffers) {
+        for (const SceneArray& array : SCENE_ARRAYS) {
+            if (array.buffer != buffer || scene.arrays[array.number].empty()) continue;
+            bytes += scene.arrays[array.number].size() * sizeof(uvec4);
+            one = names.empty();
+            names += (one ? "" : ", ") + to_text(array);
+        }
     }
     if (bytes <= device.limits.max_storage_buffer_range) return;
-    const bool one = arrays.size() == 1;
     fail_too_long(device,
                   (one ? "the scene's array " + names + " needs" : "the scene's arrays " + names + " need"),
                   bytes);
@@ -55,28 +62,34 @@ void check_range(const vk::DeviceInfo& device, const GpuScene& scene, std::span<
 }  // namespace
 
 ArrayMap map_arrays(const vk::DeviceInfo& device, const GpuScene& scene, SceneAccess wanted) {
+    const std::array<uint64_t, BUFFER_COUNT> sizes = buffer_sizes(scene);
     std::vector<uint32_t> stored;
-    for (uint32_t i = 0; i < ARRAY_COUNT; ++i) {
-        const bool too_long = scene.arrays[i].size() > device.limits.max_texel_buffer_elements;
+    for (uint32_t i = 0; i < BUFFER_COUNT; ++i) {
+        const bool too_long = sizes[i] > device.limits.max_texel_buffer_elements;
         if (wanted == SceneAccess::storage_buffers || (wanted == SceneAccess::automatic && too_long))
             stored.push_back(i);
     }
-    std::ranges::stable_sort(stored, std::greater(), [&](uint32_t i) { return scene.arrays[i].size(); });
+    std::ranges::stable_sort(stored, std::greater(), [&](uint32_t i) { return sizes[i]; });
 
     ArrayMap map;
     map.slots.fill(NO_SLOT);
     const uint32_t available = available_buffers(device);
     const bool shared = stored.size() > available;
     const size_t alone = shared ? available - 1 : stored.size();
-    uint64_t start = 0;
+    std::array<uint64_t, BUFFER_COUNT> ends{};  // Of the arrays so far, in the buffer where they lie.
+    uint64_t shared_end = 0;
     for (size_t i = 0; i < stored.size(); ++i) {
         map.slots[stored[i]] = uint32_t(std::min(i, alone));
         if (i < alone) {
             check_range(device, scene, {&stored[i], 1});
         } else {
-            map.starts[stored[i]] = uint32_t(start);
-            start += scene.arrays[stored[i]].size();
+            ends[stored[i]] = shared_end;
+            shared_end += sizes[stored[i]];
         }
+    }
+    for (const SceneArray& array : SCENE_ARRAYS) {
+        map.starts[array.number] = uint32_t(ends[array.buffer]);
+        ends[array.buffer] += scene.arrays[array.number].size();
     }
     if (shared) {
         map.shared_slot = uint32_t(alone);
@@ -102,7 +115,7 @@ std::string to_text(const SceneArray& array) {
 
 const char* to_text(const ArrayMap& map) {
     const auto stored = std::ranges::count_if(map.slots, [](uint32_t slot) { return slot != NO_SLOT; });
-    return stored == 0 ? "texel" : stored == ARRAY_COUNT ? "storage" : "mixed";
+    return stored == 0 ? "texel" : stored == BUFFER_COUNT ? "storage" : "mixed";
 }
 
 }  // namespace candela

@@ -2,7 +2,7 @@
 // device.
 #include <algorithm>
 
-#include "gpu_scene/media_at.h"
+#include "render/media_at.h"
 #include "render/renderer.h"
 #include "shared/primitive.h"
 

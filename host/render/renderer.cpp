@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "base/memory_limit.h"
-#include "gpu_scene/media_at.h"
 #include "render/kernels.h"
+#include "render/media_at.h"
 #include "vk/transfer.h"
 
 namespace candela {

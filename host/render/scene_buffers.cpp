@@ -14,14 +14,31 @@ namespace {
 // The words that follow the parameters in their buffer: the arrays' starts, four to a word.
 constexpr uint32_t STARTS_WORDS = (ARRAY_COUNT + 3) / 4;
 
-// Words of each storage buffer.
-std::vector<size_t> storage_sizes(const GpuScene& scene, const ArrayMap& map) {
-    std::vector<size_t> sizes(map.storage_buffers);
-    for (uint32_t i = 0; i < ARRAY_COUNT; ++i) {
-        if (map.slots[i] != NO_SLOT)
-            sizes[map.slots[i]] = std::max(sizes[map.slots[i]], map.starts[i] + scene.arrays[i].size());
+// What the device's buffers are made from: bytes of each texel buffer, one for each of the scene's buffers,
+// and of each storage buffer.
+struct Sizes {
+    std::array<uint64_t, BUFFER_COUNT> texel{};
+    std::vector<uint64_t> storage;
+};
+
+Sizes device_sizes(const GpuScene& scene, const ArrayMap& map) {
+    Sizes sizes{.storage = std::vector<uint64_t>(map.storage_buffers)};
+    for (const SceneArray& array : SCENE_ARRAYS) {
+        const uint32_t slot = map.slots[array.buffer];
+        uint64_t& size = slot == NO_SLOT ? sizes.texel[array.buffer] : sizes.storage[slot];
+        const uint64_t end = map.starts[array.number] + scene.arrays[array.number].size();
+        size = std::max(size, end * sizeof(uvec4));
     }
     return sizes;
+}
+
+// The names of the arrays in a buffer, for messages.
+std::string names_in(uint32_t buffer) {
+    std::string names;
+    for (const SceneArray& array : SCENE_ARRAYS) {
+        if (array.buffer == buffer) names += (names.empty() ? "" : ", ") + to_text(array);
+    }
+    return names;
 }
 
 }  // namespace
@@ -32,21 +49,18 @@ SceneBuffers::SceneBuffers(const vk::Device& device, const GpuScene& scene, cons
     : map_(map),
       parameters_(device, (PARAMETERS_WORDS + STARTS_WORDS) * sizeof(uvec4), vk::BufferUsage::uniform,
                   "parameters") {
-    for (const size_t words : storage_sizes(scene, map))
-        storage_.emplace_back(device, words * sizeof(uvec4), vk::BufferUsage::storage,
+    const Sizes sizes = device_sizes(scene, map);
+    for (const uint64_t bytes : sizes.storage)
+        storage_.emplace_back(device, bytes, vk::BufferUsage::storage,
                               "storage " + std::to_string(storage_.size()));
+    for (uint32_t i = 0; i < BUFFER_COUNT; ++i)
+        texels_.emplace_back(device, sizes.texel[i], vk::BufferUsage::texel, names_in(i));
     std::array<uvec4, STARTS_WORDS> starts{};
     for (const SceneArray& array : SCENE_ARRAYS) {
-        const uint32_t i = array.number;
-        const auto bytes = std::as_bytes(std::span(scene.arrays[i]));
-        const bool texel = map.slots[i] == NO_SLOT;
-        texels_.emplace_back(device, texel ? bytes.size() : 0, vk::BufferUsage::texel, to_text(array));
-        if (texel) {
-            vk::upload(texels_.back(), bytes);
-        } else {
-            vk::upload(storage_[map.slots[i]], bytes, map.starts[i] * sizeof(uvec4));
-        }
-        starts[i / 4][int(i % 4)] = map.starts[i];
+        const uint32_t slot = map.slots[array.buffer], start = map.starts[array.number];
+        vk::upload(slot == NO_SLOT ? texels_[array.buffer] : storage_[slot],
+                   std::as_bytes(std::span(scene.arrays[array.number])), start * sizeof(uvec4));
+        starts[array.number / 4][int(array.number % 4)] = start;
     }
     vk::upload(parameters_, std::as_bytes(std::span(starts)), PARAMETERS_WORDS * sizeof(uvec4));
     set(parameters);
@@ -61,14 +75,14 @@ std::vector<vk::Binding> SceneBuffers::bindings(const KernelConstants& constants
     std::vector<vk::Binding> bindings{
         {BINDING_STORAGE, vk::BindingType::storage_buffer, constants[CONSTANT_STORAGE_BUFFERS]},
         {BINDING_PARAMETERS, vk::BindingType::uniform_buffer}};
-    for (const SceneArray& array : SCENE_ARRAYS)
-        bindings.push_back({array.number, vk::BindingType::texel_buffer});
+    for (uint32_t i = 0; i < BUFFER_COUNT; ++i)
+        bindings.push_back({i, vk::BindingType::texel_buffer});
     return bindings;
 }
 
 void SceneBuffers::bind_to(vk::Kernel& kernel) const {
-    for (const SceneArray& array : SCENE_ARRAYS)
-        kernel.bind(array.number, texels_[array.number]);
+    for (uint32_t i = 0; i < BUFFER_COUNT; ++i)
+        kernel.bind(i, texels_[i]);
     for (uint32_t slot = 0; slot < storage_.size(); ++slot)
         kernel.bind(BINDING_STORAGE, storage_[slot], slot);
     kernel.bind(BINDING_PARAMETERS, parameters_);

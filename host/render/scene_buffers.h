@@ -28,7 +28,7 @@ class SceneBuffers {
 
   private:
     ArrayMap map_;
-    std::vector<vk::Buffer> texels_;   // By number of the array.
+    std::vector<vk::Buffer> texels_;   // By BUFFER_*.
     std::vector<vk::Buffer> storage_;  // By slot.
     vk::Buffer parameters_;
 };

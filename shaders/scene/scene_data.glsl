@@ -1,8 +1,8 @@
 // The only file that declares the buffers of a scene. Every record is read through one function here.
 //
-// An array is a texel buffer, which old software drivers read four times faster, or lies in a storage buffer if it has
-// more words than a device's texel buffers may hold. shared/scene_arrays.h has the arrays and says which of the two a
-// kernel reads.
+// Each buffer holds one array or several. It is a texel buffer, which old software drivers read four times faster, or
+// lies in a storage buffer if it has more words than a device's texel buffers may hold. shared/scene_arrays.h has the
+// arrays and says which of the two a kernel reads.
 #ifndef SCENE_SCENE_DATA_GLSL
 #define SCENE_SCENE_DATA_GLSL
 
@@ -10,53 +10,62 @@
 #include "shared/kernel_constants.h"
 #include "shared/parameters.h"
 
-#define ARRAY(number, name, words) layout(binding = number) uniform usamplerBuffer texels_##name;
-#include "shared/scene_arrays.inc"
-#undef ARRAY
+#define BUFFER(number, name) layout(binding = number) uniform usamplerBuffer texels_##name;
+#include "shared/scene_buffers.inc"
+#undef BUFFER
 
 layout(std430, binding = BINDING_STORAGE) readonly buffer StorageBlock { uvec4 words[]; } storage[STORAGE_BUFFERS];
 layout(std140, binding = BINDING_PARAMETERS) uniform ParametersBlock {
     uvec4 parameter_words[PARAMETERS_WORDS];
-    uvec4 array_starts[(ARRAY_COUNT + 3u) / 4u];  // First word of each array in the storage buffer that several share.
+    uvec4 array_starts[(ARRAY_COUNT + 3u) / 4u];  // First word of each array in its texel or storage buffer.
 };
 
-// READ_n reads n words of an array, from word i on. There is one branch for all of them, since not every driver removes
-// the dead side before it compiles. (An index must be valid even where it is never used.)
-#define TEXEL(name, i) texelFetch(texels_##name, int(i))
-#define STORED(name, i) storage[SLOT_##name < STORAGE_BUFFERS ? SLOT_##name : 0u].words[i]
-#define START(name) (SLOT_##name == SHARED_SLOT ? array_starts[ARRAY_##name / 4u][ARRAY_##name % 4u] : 0u)
+// READ_n reads n words of an array in a buffer, from word i on. There is one branch for all of them, since not every
+// driver removes the dead side before it compiles. (An index must be valid even where it is never used.) The start of a
+// buffer's first array, which has its name, is known unless the buffer shares its storage buffer with others.
+#define TEXEL(buffer, i) texelFetch(texels_##buffer, int(i))
+#define STORED(buffer, i) storage[SLOT_##buffer < STORAGE_BUFFERS ? SLOT_##buffer : 0u].words[i]
+#define START(array) array_starts[ARRAY_##array / 4u][ARRAY_##array % 4u]
+#define TEXEL_START(buffer, array) (ARRAY_##array == ARRAY_##buffer ? 0u : START(array))
+#define STORED_START(buffer, array) \
+    (ARRAY_##array == ARRAY_##buffer && SLOT_##buffer != SHARED_SLOT ? 0u : START(array))
 
-#define READ_1(name, i, a)                \
-    if (SLOT_##name == NO_SLOT) {         \
-        a = TEXEL(name, i);               \
-    } else {                              \
-        a = STORED(name, START(name) + i); \
+#define READ_1(buffer, array, i, a)                \
+    if (SLOT_##buffer == NO_SLOT) {                \
+        uint at = TEXEL_START(buffer, array) + i;  \
+        a = TEXEL(buffer, at);                     \
+    } else {                                       \
+        uint at = STORED_START(buffer, array) + i; \
+        a = STORED(buffer, at);                    \
     }
 
-#define READ_2(name, i, a, b)                                \
-    if (SLOT_##name == NO_SLOT) {                            \
-        a = TEXEL(name, i), b = TEXEL(name, i + 1u);         \
+#define READ_2(buffer, array, i, a, b)                       \
+    if (SLOT_##buffer == NO_SLOT) {                          \
+        uint at = TEXEL_START(buffer, array) + i;            \
+        a = TEXEL(buffer, at), b = TEXEL(buffer, at + 1u);   \
     } else {                                                 \
-        uint at = START(name) + i;                           \
-        a = STORED(name, at), b = STORED(name, at + 1u);     \
+        uint at = STORED_START(buffer, array) + i;           \
+        a = STORED(buffer, at), b = STORED(buffer, at + 1u); \
     }
 
-#define READ_3(name, i, a, b, c)                                                       \
-    if (SLOT_##name == NO_SLOT) {                                                      \
-        a = TEXEL(name, i), b = TEXEL(name, i + 1u), c = TEXEL(name, i + 2u);          \
-    } else {                                                                           \
-        uint at = START(name) + i;                                                     \
-        a = STORED(name, at), b = STORED(name, at + 1u), c = STORED(name, at + 2u);    \
+#define READ_3(buffer, array, i, a, b, c)                                                 \
+    if (SLOT_##buffer == NO_SLOT) {                                                       \
+        uint at = TEXEL_START(buffer, array) + i;                                         \
+        a = TEXEL(buffer, at), b = TEXEL(buffer, at + 1u), c = TEXEL(buffer, at + 2u);    \
+    } else {                                                                              \
+        uint at = STORED_START(buffer, array) + i;                                        \
+        a = STORED(buffer, at), b = STORED(buffer, at + 1u), c = STORED(buffer, at + 2u); \
     }
 
-#define READ_4(name, i, a, b, c, d)                                                      \
-    if (SLOT_##name == NO_SLOT) {                                                        \
-        a = TEXEL(name, i), b = TEXEL(name, i + 1u);                                     \
-        c = TEXEL(name, i + 2u), d = TEXEL(name, i + 3u);                                \
-    } else {                                                                             \
-        uint at = START(name) + i;                                                       \
-        a = STORED(name, at), b = STORED(name, at + 1u);                                 \
-        c = STORED(name, at + 2u), d = STORED(name, at + 3u);                            \
+#define READ_4(buffer, array, i, a, b, c, d)                      \
+    if (SLOT_##buffer == NO_SLOT) {                               \
+        uint at = TEXEL_START(buffer, array) + i;                 \
+        a = TEXEL(buffer, at), b = TEXEL(buffer, at + 1u);        \
+        c = TEXEL(buffer, at + 2u), d = TEXEL(buffer, at + 3u);   \
+    } else {                                                      \
+        uint at = STORED_START(buffer, array) + i;                \
+        a = STORED(buffer, at), b = STORED(buffer, at + 1u);      \
+        c = STORED(buffer, at + 2u), d = STORED(buffer, at + 3u); \
     }
 
 Parameters scene_parameters() {
@@ -70,7 +79,7 @@ struct NodeWords {
 
 NodeWords scene_node_words(uint i) {
     NodeWords w;
-    READ_4(NODES, i * BVH_NODE_WORDS, w.a, w.b, w.c, w.d);
+    READ_4(NODES, NODES, i * BVH_NODE_WORDS, w.a, w.b, w.c, w.d);
     return w;
 }
 
@@ -83,103 +92,103 @@ Instance scene_instance(uint i) {
 // Primitive at that position in leaf order.
 Primitive scene_primitive(uint i) {
     uvec4 a, b, c;
-    READ_3(PRIMITIVES, i * PRIMITIVE_WORDS, a, b, c);
+    READ_3(PRIMITIVES, PRIMITIVES, i * PRIMITIVE_WORDS, a, b, c);
     return primitive_unpack(a, b, c);
 }
 
 // Surface of the primitive at that position in leaf order.
 Surface scene_surface(uint i) {
     uvec4 a;
-    READ_1(SURFACES, i * SURFACE_WORDS, a);
+    READ_1(SURFACES, SURFACES, i * SURFACE_WORDS, a);
     return surface_unpack(a);
 }
 
 // Shading normals of the triangles at that position in leaf order, at each vertex; zeros unless they are smooth.
 uvec4 scene_normals(uint i) {
     uvec4 a;
-    READ_1(NORMALS, i * NORMALS_WORDS, a);
+    READ_1(NORMALS, NORMALS, i * NORMALS_WORDS, a);
     return a;
 }
 
 MaterialRecord scene_material(uint i) {
     uvec4 a, b;
-    READ_2(MATERIALS, i * MATERIAL_WORDS, a, b);
+    READ_2(MATERIALS, MATERIALS, i * MATERIAL_WORDS, a, b);
     return material_unpack(a, b);
 }
 
 // The principled material whose record begins at that word of the materials.
 PrincipledRecord scene_principled(uint first) {
     uvec4 w[PRINCIPLED_WORDS];
-    READ_4(MATERIALS, first, w[0], w[1], w[2], w[3]);
-    READ_4(MATERIALS, first + 4u, w[4], w[5], w[6], w[7]);
-    READ_2(MATERIALS, first + 8u, w[8], w[9]);
+    READ_4(MATERIALS, MATERIALS, first, w[0], w[1], w[2], w[3]);
+    READ_4(MATERIALS, MATERIALS, first + 4u, w[4], w[5], w[6], w[7]);
+    READ_2(MATERIALS, MATERIALS, first + 8u, w[8], w[9]);
     return principled_unpack(w);
 }
 
 // The image at that word of the materials.
 PrincipledImage scene_principled_image(uint word) {
     uvec4 a;
-    READ_1(MATERIALS, word, a);
+    READ_1(MATERIALS, MATERIALS, word, a);
     return principled_image_unpack(a);
 }
 
 MediumRecord scene_medium(uint i) {
     uvec4 a;
-    READ_1(MEDIA, (i & MAX_MEDIA - 1u) * MEDIUM_WORDS, a);
+    READ_1(MATERIALS, MEDIA, (i & MAX_MEDIA - 1u) * MEDIUM_WORDS, a);
     return medium_unpack(a);
 }
 
 LightRecord scene_light(uint i) {
     uvec4 a, b, c, d;
-    READ_4(LIGHTS, i * LIGHT_WORDS, a, b, c, d);
+    READ_4(LIGHTS, LIGHTS, i * LIGHT_WORDS, a, b, c, d);
     return light_unpack(a, b, c, d);
 }
 
 // Entry of the alias table that chooses lights.
 AliasEntry scene_light_alias(uint i) {
     uvec4 a;
-    READ_1(LIGHT_ALIAS, i / 2u, a);
+    READ_1(LIGHTS, LIGHT_ALIAS, i / 2u, a);
     return alias_unpack(a, i);
 }
 
 // Texel of the environment, row-major from the top.
 EnvironmentTexel scene_environment_texel(uint i) {
     uvec4 a;
-    READ_1(ENVIRONMENT, i * ENVIRONMENT_TEXEL_WORDS, a);
+    READ_1(ENVIRONMENT, ENVIRONMENT, i * ENVIRONMENT_TEXEL_WORDS, a);
     return environment_texel_unpack(a);
 }
 
 // Entry of the alias table that chooses texels of the environment.
 AliasEntry scene_environment_alias(uint i) {
     uvec4 a;
-    READ_1(ENVIRONMENT_ALIAS, i / 2u, a);
+    READ_1(ENVIRONMENT, ENVIRONMENT_ALIAS, i / 2u, a);
     return alias_unpack(a, i);
 }
 
 // The textures of the material at that place.
 MaterialTextures scene_material_textures(uint i) {
     uvec4 a, b;
-    READ_2(MATERIAL_TEXTURES, i * MATERIAL_TEXTURES_WORDS, a, b);
+    READ_2(MATERIALS, MATERIAL_TEXTURES, i * MATERIAL_TEXTURES_WORDS, a, b);
     return material_textures_unpack(a, b);
 }
 
 // The textures of the light at that place.
 LightTextures scene_light_textures(uint i) {
     uvec4 a;
-    READ_1(LIGHT_TEXTURES, i * LIGHT_TEXTURES_WORDS, a);
+    READ_1(LIGHTS, LIGHT_TEXTURES, i * LIGHT_TEXTURES_WORDS, a);
     return light_textures_unpack(a);
 }
 
 TextureRecord scene_texture(uint i) {
     uvec4 a, b, c;
-    READ_3(TEXTURES, i * TEXTURE_WORDS, a, b, c);
+    READ_3(MATERIALS, TEXTURES, i * TEXTURE_WORDS, a, b, c);
     return texture_unpack(a, b, c);
 }
 
 // A word of the images' tiles.
 uvec4 scene_texels(uint i) {
     uvec4 a;
-    READ_1(TEXELS, i, a);
+    READ_1(TEXELS, TEXELS, i, a);
     return a;
 }
 
@@ -191,13 +200,13 @@ const uint PRIMITIVE_ATTRIBUTE_WORDS = TANGENT_WORD + ((ATTRIBUTES & ATTRIBUTE_T
 
 // Two words of the attributes of the primitive at that position in leaf order, from word `first` on.
 void scene_attributes(uint primitive, const uint first, out uvec4 ab, out uvec4 cd) {
-    READ_2(ATTRIBUTES, primitive * PRIMITIVE_ATTRIBUTE_WORDS + first, ab, cd);
+    READ_2(ATTRIBUTES, ATTRIBUTES, primitive * PRIMITIVE_ATTRIBUTE_WORDS + first, ab, cd);
 }
 
 // The tangents of the primitive at that position in leaf order.
 uvec4 scene_tangents(uint primitive) {
     uvec4 a;
-    READ_1(ATTRIBUTES, primitive * PRIMITIVE_ATTRIBUTE_WORDS + TANGENT_WORD, a);
+    READ_1(ATTRIBUTES, ATTRIBUTES, primitive * PRIMITIVE_ATTRIBUTE_WORDS + TANGENT_WORD, a);
     return a;
 }
 

@@ -1,8 +1,10 @@
-// The arrays of a scene, whose records are words of uvec4, and where a kernel finds them: each is a texel
-// buffer or, if it is too long for one, lies in a storage buffer, of which a device may have few.
+// The arrays of a scene, whose records are words of uvec4, and where a kernel finds them: in buffers, each of
+// which holds one array or several that change together. A buffer is a texel buffer or, if it is too long for
+// one, lies in a storage buffer; a device may have few of either.
 //
-// scene_arrays.inc lists them: both languages get a number ARRAY_NAME for each line, and each kernel a
-// specialization constant SLOT_NAME, the storage buffer that holds the array, or NO_SLOT.
+// scene_arrays.inc lists the arrays, scene_buffers.inc the buffers: both languages get a number ARRAY_NAME or
+// BUFFER_NAME for each line, and each kernel a specialization constant SLOT_NAME for each buffer: the storage
+// buffer in which it lies, or NO_SLOT.
 #ifndef SHARED_SCENE_ARRAYS_H
 #define SHARED_SCENE_ARRAYS_H
 
@@ -24,20 +26,25 @@ const uint NO_SLOT = 0xFFFFFFFFu;
 // Storage buffers that every device has for the arrays: Vulkan promises four, and one is for counters.
 const uint LEAST_STORAGE_BUFFERS = 3u;
 
-#define ARRAY(number, name, words) const uint ARRAY_##name = number;
+#define ARRAY(number, buffer, name, words) const uint ARRAY_##name = number;
 #include "shared/scene_arrays.inc"
 #undef ARRAY
 
+#define BUFFER(number, name) const uint BUFFER_##name = number;
+#include "shared/scene_buffers.inc"
+#undef BUFFER
+
 #ifdef __cplusplus
 
-// What messages call an array, and the length of its records.
+// Which buffer holds an array, what messages call it, and the length of its records.
 struct SceneArray {
     uint number;
+    uint buffer;
     const char* name;
     uint words;
 };
 
-#define ARRAY(number, name, words) {number, #name, words},
+#define ARRAY(number, buffer, name, words) {number, BUFFER_##buffer, #name, words},
 inline constexpr SceneArray SCENE_ARRAYS[]{
 #include "shared/scene_arrays.inc"
 };
@@ -45,10 +52,16 @@ inline constexpr SceneArray SCENE_ARRAYS[]{
 
 inline constexpr uint ARRAY_COUNT = std::size(SCENE_ARRAYS);
 
+#define BUFFER(number, name) +1u
+inline constexpr uint BUFFER_COUNT = 0u
+#include "shared/scene_buffers.inc"
+    ;
+#undef BUFFER
+
 }  // namespace candela
 #else
 
-#define ARRAY(number, name, words) +1u
+#define ARRAY(number, buffer, name, words) +1u
 const uint ARRAY_COUNT = 0u
 #include "shared/scene_arrays.inc"
     ;

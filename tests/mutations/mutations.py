@@ -241,7 +241,7 @@ GROUPS = [
         ("indices of refraction against the air", SURFACE, "if (!NESTED_MEDIA || !bsdf_refracts(x.material)) return;",
          "return;"),
         ("a stated exterior index ignored", MEDIUM, "return own_eta ? eta :", "return"),
-        ("the exterior nearest to the camera's medium first", "host/gpu_scene/media_at.cpp",
+        ("the exterior nearest to the camera's medium first", "host/render/media_at.cpp",
          "p.second.nearest_exit);", "-p.second.nearest_exit);"),
     ]),
     (LAYERED, [
@@ -341,7 +341,7 @@ GROUPS = [
          "record.material = 0;"),
         ("the stack as deep as the deepest mesh alone", GEOMETRY_ARRAYS, "top.instance_levels[i] + tree.bvh.depth",
          "tree.bvh.depth"),
-        ("instances in no medium", "host/gpu_scene/media_at.cpp", "medium_of(instance.material)", "MEDIUM_SAME"),
+        ("instances in no medium", "host/render/media_at.cpp", "medium_of(instance.material)", "MEDIUM_SAME"),
         ("sheared instances in spaces of their own", INSTANCING, "<= double{MAX_INSTANCE_CONDITION}", "<= 1e30"),
     ]),
     (DEVICES, [
@@ -350,7 +350,7 @@ GROUPS = [
         ("an invocation hands on the work group's counts before all are there", RENDER,
          "if (atomicAdd(group_finished, 1u) + 1u <", "if (atomicAdd(group_finished, 1u) + 9u <"),
         ("the first array of the scene decides how all are read", "host/render/array_map.cpp",
-         "scene.arrays[i].size() > device.limits", "scene.arrays[0].size() > device.limits"),
+         "sizes[i] > device.limits", "sizes[0] > device.limits"),
         ("all storage buffers the first one", SCENE_BUFFERS, "storage_[slot], slot)", "storage_[0], slot)"),
         ("arrays that share a storage buffer read from its start", SCENE_BUFFERS, "starts[i / 4][int(i % 4)] = map.starts[i]",
          "starts[i / 4][int(i % 4)] = 0"),

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <random>
+#include <span>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -30,16 +31,32 @@ vk::DeviceInfo device_of(uint32_t texels, uint32_t storage_words, uint32_t stora
     return device;
 }
 
+// The buffer of the device in which an array lies.
+struct Place {
+    bool texel;
+    uint32_t buffer;
+
+    bool operator==(const Place&) const = default;
+};
+
+Place place_of(const ArrayMap& map, const SceneArray& array) {
+    const uint32_t slot = map.slots[array.buffer];
+    return slot == NO_SLOT ? Place{true, array.buffer} : Place{false, slot};
+}
+
 // What a kernel relies on: no two arrays overlap, and none reaches beyond a buffer's range.
-void expect_sound(const ArrayMap& map, const Sizes& sizes, uint32_t storage_words) {
-    for (uint32_t i = 0; i < ARRAY_COUNT; ++i) {
-        if (map.slots[i] == NO_SLOT) continue;
-        EXPECT_LT(map.slots[i], map.storage_buffers);
-        EXPECT_LE(map.starts[i] + sizes[i], storage_words);
-        EXPECT_TRUE(map.slots[i] == map.shared_slot || map.starts[i] == 0);
+void expect_sound(const ArrayMap& map, const Sizes& sizes, uint32_t texels, uint32_t storage_words) {
+    for (const SceneArray& array : SCENE_ARRAYS) {
+        const uint32_t i = array.number;
+        const Place place = place_of(map, array);
+        EXPECT_LT(place.buffer, place.texel ? BUFFER_COUNT : map.storage_buffers);
+        EXPECT_LE(map.starts[i] + sizes[i], place.texel ? texels : storage_words);
+        const bool is_first = std::ranges::none_of(
+            std::span(SCENE_ARRAYS).first(i), [&](const SceneArray& a) { return a.buffer == array.buffer; });
+        EXPECT_TRUE(!is_first || (!place.texel && place.buffer == map.shared_slot) || map.starts[i] == 0);
         for (uint32_t k = 0; k < i; ++k) {
-            if (map.slots[k] != map.slots[i]) continue;
-            EXPECT_EQ(map.slots[i], map.shared_slot);
+            if (place_of(map, SCENE_ARRAYS[k]) != place) continue;
+            EXPECT_TRUE(SCENE_ARRAYS[k].buffer == array.buffer || place.buffer == map.shared_slot);
             EXPECT_TRUE(map.starts[k] + sizes[k] <= map.starts[i] ||
                         map.starts[i] + sizes[i] <= map.starts[k]);
         }
@@ -48,19 +65,21 @@ void expect_sound(const ArrayMap& map, const Sizes& sizes, uint32_t storage_word
 
 const Sizes SIZES{400, 900, 300, 300, 20, 40, 10, 600, 300, 1};
 
-TEST(ArrayMap, EachArrayIsATexelBufferIfThatMayHoldIt) {
+TEST(ArrayMap, EachBufferIsATexelBufferIfThatMayHoldIt) {
     const ArrayMap map = map_arrays(device_of(900, 900, 4), scene_of_sizes(SIZES), SceneAccess::automatic);
     EXPECT_STREQ(to_text(map), "texel");
     EXPECT_EQ(map.shared_slot, NO_SLOT);
     EXPECT_EQ(map.storage_buffers, 1u);
+    expect_sound(map, SIZES, 900, 900);
+    EXPECT_EQ(map.starts[ARRAY_ENVIRONMENT_ALIAS], SIZES[ARRAY_ENVIRONMENT]);
 }
 
 TEST(ArrayMap, LongerOnesHaveStorageBuffersOfTheirOwn) {
     const ArrayMap map = map_arrays(device_of(500, 900, 4), scene_of_sizes(SIZES), SceneAccess::automatic);
     EXPECT_STREQ(to_text(map), "mixed");
-    EXPECT_EQ(map.slots[ARRAY_PRIMITIVES], 0u);
-    EXPECT_EQ(map.slots[ARRAY_ENVIRONMENT], 1u);
-    EXPECT_EQ(std::ranges::count(map.slots, NO_SLOT), ARRAY_COUNT - 2);
+    EXPECT_EQ(map.slots[BUFFER_PRIMITIVES], 0u);
+    EXPECT_EQ(map.slots[BUFFER_ENVIRONMENT], 1u);
+    EXPECT_EQ(std::ranges::count(map.slots, NO_SLOT), BUFFER_COUNT - 2);
     EXPECT_EQ(map.shared_slot, NO_SLOT);
     EXPECT_EQ(map.storage_buffers, 2u);
 }
@@ -69,21 +88,21 @@ TEST(ArrayMap, WhereThereAreFewStorageBuffersAllButTheLongestShareOne) {
     const ArrayMap map =
         map_arrays(device_of(900, 2000, 4), scene_of_sizes(SIZES), SceneAccess::storage_buffers);
     EXPECT_STREQ(to_text(map), "storage");
-    EXPECT_EQ(map.slots[ARRAY_PRIMITIVES], 0u);
-    EXPECT_EQ(map.slots[ARRAY_ENVIRONMENT], 1u);
-    EXPECT_EQ(std::ranges::count(map.slots, 2u), ARRAY_COUNT - 2);
+    EXPECT_EQ(map.slots[BUFFER_PRIMITIVES], 0u);
+    EXPECT_EQ(map.slots[BUFFER_ENVIRONMENT], 1u);
+    EXPECT_EQ(std::ranges::count(map.slots, 2u), BUFFER_COUNT - 2);
     EXPECT_EQ(map.shared_slot, 2u);
     EXPECT_EQ(map.storage_buffers, 3u);
-    expect_sound(map, SIZES, 2000);
+    expect_sound(map, SIZES, 900, 2000);
 }
 
 TEST(ArrayMap, NoneIsSharedWhereThereAreEnough) {
-    const uint32_t enough = ARRAY_COUNT + 1;  // One is for counters.
+    const uint32_t enough = BUFFER_COUNT + 1;  // One is for counters.
     const ArrayMap map =
         map_arrays(device_of(900, 900, enough), scene_of_sizes(SIZES), SceneAccess::storage_buffers);
     EXPECT_EQ(map.shared_slot, NO_SLOT);
-    EXPECT_EQ(map.storage_buffers, ARRAY_COUNT);
-    expect_sound(map, SIZES, 900);
+    EXPECT_EQ(map.storage_buffers, BUFFER_COUNT);
+    expect_sound(map, SIZES, 900, 900);
 }
 
 // MoltenVK takes the lengths of arrays of buffers from the constants' defaults.
@@ -93,7 +112,7 @@ TEST(ArrayMap, OnMoltenVkThereAreAlwaysAsManyAsAKernelSaysByDefault) {
     for (const SceneAccess access : {SceneAccess::texel_buffers, SceneAccess::storage_buffers}) {
         const ArrayMap map = map_arrays(device, scene_of_sizes(SIZES), access);
         EXPECT_EQ(map.storage_buffers, KernelConstants{}[CONSTANT_STORAGE_BUFFERS]);
-        expect_sound(map, SIZES, 3000);
+        expect_sound(map, SIZES, 900, 3000);
     }
 }
 
@@ -112,7 +131,7 @@ TEST(ArrayMap, WhatFitsIntoThreeBuffersByKindFits) {
         if (std::max({sizes[ARRAY_NODES], sizes[ARRAY_PRIMITIVES], others}) > 1000) continue;
         ++fitting;
         const auto access = i % 2 == 0 ? SceneAccess::storage_buffers : SceneAccess::automatic;
-        expect_sound(map_arrays(device_of(100, 1000, 4), scene_of_sizes(sizes), access), sizes, 1000);
+        expect_sound(map_arrays(device_of(100, 1000, 4), scene_of_sizes(sizes), access), sizes, 100, 1000);
     }
     EXPECT_GT(fitting, 50);
 }
@@ -134,11 +153,10 @@ TEST(ArrayMap, WhatIsTooLongIsNamed) {
               "another "
               "device (candela devices lists them)");
     EXPECT_EQ(
-        map_error_of(device_of(500, 1370, 4), SceneAccess::storage_buffers),
-        "the scene's arrays nodes, surfaces, normals, environment_alias, lights, materials, light_alias, "
-        "media "
-        "need 1371 texels (21936 bytes), but a device allows maxTexelBufferElements = 500 and "
-        "maxStorageBufferRange = 21920 bytes; use a smaller scene, or another device (candela devices lists "
+        map_error_of(device_of(500, 1070, 4), SceneAccess::storage_buffers),
+        "the scene's arrays nodes, surfaces, normals, lights, light_alias, materials, media need 1071 texels "
+        "(17136 bytes), but a device allows maxTexelBufferElements = 500 and "
+        "maxStorageBufferRange = 17120 bytes; use a smaller scene, or another device (candela devices lists "
         "them)");
 }
 

@@ -1,5 +1,5 @@
 // Which media the host finds at a point, and when media may lie within each other.
-#include "gpu_scene/media_at.h"
+#include "render/media_at.h"
 
 #include <gtest/gtest.h>
 

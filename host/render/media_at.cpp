@@ -1,5 +1,5 @@
 // See media_at.h.
-#include "gpu_scene/media_at.h"
+#include "render/media_at.h"
 
 #include <algorithm>
 #include <bit>
