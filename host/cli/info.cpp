@@ -61,7 +61,7 @@ Json memory_of(const GpuScene& gpu, RenderSettings settings) {
 Json images_of(const Scene& scene) {
     Json images = Json::array();
     for (const ImageFile& file : scene.images) {
-        const TexelImage& image = file.image;
+        const TexelImage& image = *file.image;
         images.push_back({{"file", file.path.string()},
                           {"width", image.size.x},
                           {"height", image.size.y},

@@ -220,7 +220,7 @@ class Flattener {
         if (!texture) return emission.radiance.factor;
         std::unique_ptr<ImagePyramid>& pyramid = pyramids_[{texture->image, texture->encoding}];
         if (!pyramid)
-            pyramid = std::make_unique<ImagePyramid>(scene_.images[texture->image].image, texture->encoding);
+            pyramid = std::make_unique<ImagePyramid>(*scene_.images[texture->image].image, texture->encoding);
         constexpr int SIDE = 4;
         std::vector<vec2> places;
         for (int i = 0; i < SIDE * SIDE; ++i) {

@@ -184,8 +184,12 @@ GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame, const Inst
 }
 
 GpuScene build_gpu_scene_freeing_images(Scene& scene) {
-    return build(scene, choose_frame(scene), {},
-                 [&](size_t i) { scene.images[i].image.texels = std::vector<std::byte>(); });
+    const auto free = [&](size_t i) {
+        std::shared_ptr<const TexelImage>& image = scene.images[i].image;
+        image = std::make_shared<TexelImage>(
+            TexelImage{image->size, image->channels, image->type, {}, image->gamma});
+    };
+    return build(scene, choose_frame(scene), {}, free);
 }
 
 }  // namespace candela

@@ -82,7 +82,7 @@ GpuScene build_gpu_scene(const Scene& scene);
 GpuScene build_gpu_scene(const Scene& scene, const SceneFrame& frame, const InstancingRule& rule = {});
 
 // build_gpu_scene(), for the last use of the scene's images: each loses its texels as soon as they are
-// packed, so that memory does not hold them all twice.
+// packed, so that memory does not hold them all twice, unless others share them.
 GpuScene build_gpu_scene_freeing_images(Scene& scene);
 
 }  // namespace candela

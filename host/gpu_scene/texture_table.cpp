@@ -126,7 +126,7 @@ uint32_t TextureTable::add(const std::optional<Texture>& texture) {
     const auto [known, is_new] = indices_.try_emplace(key_of(*texture), uint32_t(records_.size()));
     if (!is_new) return known->second;
     const ImageFile& file = images_[texture->image];
-    const TexelImage& image = file.image;
+    const TexelImage& image = *file.image;
     if (std::max(image.size.x, image.size.y) > MAX_IMAGE_SIDE) {
         throw Error(concat(file.place, ": the image ", file.path.string(), " has ", image.size.x, 'x',
                            image.size.y, " pixels, but a texture at most ", MAX_IMAGE_SIDE,
@@ -172,8 +172,8 @@ std::vector<uvec4> TextureTable::texels(const std::function<void(size_t)>& packe
     std::vector<uvec4> words;
     words.reserve(words_);
     for (const auto& [first, i] : in_order) {
-        words.resize(first + texel_words(images_[i].image));
-        pack_texels(images_[i].image, std::span(words).subspan(first));
+        words.resize(first + texel_words(*images_[i].image));
+        pack_texels(*images_[i].image, std::span(words).subspan(first));
         packed(i);
     }
     return words;

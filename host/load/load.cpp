@@ -12,6 +12,7 @@
 #include "load/json/loader.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
+#include "scene/geometry.h"
 
 namespace candela {
 namespace {
@@ -50,29 +51,59 @@ Format format_of(const std::filesystem::path& path) {
     return Format::json;
 }
 
-Scene load(const std::filesystem::path& path, const LoadOptions& options) {
+// Judges the light of a native scene whose images have been read.
+void check_light(Scene& scene, const std::string& place) {
+    const bool is_empty = scene.shapes.empty() && !scene.environment;
+    if (!is_empty && !has_light(scene))
+        scene.warnings.push_back(place + ": the scene has no light: the image will be black");
+}
+
+// `is_last`: no other scene shows the glTF files.
+Scene load(const std::filesystem::path& path, const LoadOptions& options, LoadedFiles& files, bool is_last) {
+    const auto& [images, gltf, progress, reach] = options;
+    const auto read_images = [&](Scene& scene) {
+        if (is_last) files.gltf.clear();
+        load_images(scene, images, progress, files.images);
+    };
+    Scene scene;
     switch (format_of(path)) {
         case Format::gltf:
-            return load_gltf_scene(path, options.gltf, options.progress, options.reach);
-        case Format::obj:
-            refuse(path, options.gltf);
-            return load_obj_scene(path, options.reach);
-        case Format::ply:
-            refuse(path, options.gltf);
-            return load_ply_scene(path);
-        case Format::json:
+            scene = load_gltf_scene(path, gltf, progress, reach, files.gltf);
+            read_images(scene);
+            add_studio(scene, path.string(), gltf.studio);
             break;
+        case Format::obj:
+            refuse(path, gltf);
+            scene = load_obj_scene(path, reach);
+            read_images(scene);
+            break;
+        case Format::ply:
+            refuse(path, gltf);
+            scene = load_ply_scene(path);
+            break;
+        case Format::json: {
+            JsonScene json = load_json_scene(path, gltf, progress, reach, files.gltf);
+            scene = std::move(json.scene);
+            read_images(scene);
+            if (json.is_gltf) {
+                add_studio(scene, json.place, gltf.studio);
+            } else {
+                check_light(scene, json.place);
+            }
+        }
     }
-    return load_json_scene(path, options.gltf, options.progress, options.reach);
+    return scene;
 }
 
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) {
-    Scene scene = load(path, options);
-    load_images(scene, options.images, options.progress);
-    add_studio(scene, options.gltf.studio.value_or(StudioChoice::automatic));
-    return scene;
+    LoadedFiles files;
+    return load(path, options, files, true);
+}
+
+Scene load_scene(const std::filesystem::path& path, const LoadOptions& options, LoadedFiles& files) {
+    return load(path, options, files, false);
 }
 
 }  // namespace candela

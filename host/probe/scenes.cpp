@@ -10,11 +10,11 @@
 namespace candela {
 
 Scene cornell_box() {
-    return parse_scene(embedded::cornell_box_json, "cornell-box.json", {});
+    return parse_scene(embedded::cornell_box_json, "cornell-box.json");
 }
 
 Scene furnace(float albedo) {
-    Scene scene = parse_scene(embedded::furnace_json, "furnace.json", {});
+    Scene scene = parse_scene(embedded::furnace_json, "furnace.json");
     for (Material& material : scene.materials)
         material.model = DiffuseMaterial{vec3(albedo)};
     return scene;

@@ -111,7 +111,7 @@ class GlowMeter {
 
     const ImageGlow& image_glow(const Texture& texture) {
         const auto [known, is_new] = images_.try_emplace(texture.image);
-        if (is_new) known->second = glow_of(scene_.images[texture.image].image, texture.encoding);
+        if (is_new) known->second = glow_of(*scene_.images[texture.image].image, texture.encoding);
         return known->second;
     }
 

@@ -71,16 +71,6 @@ TexelImage in_srgb(const TexelImage& image) {
     return result;
 }
 
-// Of an image whose alpha, times `factor`, is glossiness: one channel, 1 - that.
-TexelImage roughness_of(const TexelImage& image, float factor) {
-    TexelImage result{
-        .size = image.size, .channels = 1, .type = TexelType::unorm8, .texels = {}, .gamma = {}};
-    result.texels.resize(size_t(image.size.x) * image.size.y);
-    for (size_t i = 0; i < result.texels.size(); ++i)
-        result.texels[i] = std::byte(std::lround(255.0f * (1.0f - factor * texel_codes(image, i).w)));
-    return result;
-}
-
 // Calls visit(texture) for each texture of sRGB.
 template <class Visit>
 void for_each_srgb_texture(Scene& scene, const Visit& visit) {
@@ -98,11 +88,11 @@ void for_each_srgb_texture(Scene& scene, const Visit& visit) {
 void convert_gammas(Scene& scene) {
     std::map<uint32_t, uint32_t> copies;
     for_each_srgb_texture(scene, [&](Texture& texture) {
-        if (!scene.images[texture.image].image.gamma) return;
+        if (!scene.images[texture.image].image->gamma) return;
         const auto [copy, is_new] = copies.emplace(texture.image, uint32_t(scene.images.size()));
         if (is_new) {
             ImageFile file = scene.images[texture.image];
-            file.image = in_srgb(file.image);
+            file.image = std::make_shared<TexelImage>(in_srgb(*file.image));
             file.real_path.clear();
             scene.images.push_back(std::move(file));
         }
@@ -140,7 +130,7 @@ class MeanCodes {
 
     vec4 of(uint32_t image) {
         const auto [known, is_new] = means_.try_emplace(image);
-        if (is_new) known->second = mean_codes(scene_.images[image].image);
+        if (is_new) known->second = mean_codes(*scene_.images[image].image);
         return known->second;
     }
 
@@ -186,7 +176,7 @@ void check_bump_map(Scene& scene, MeanCodes& means, Material& material) {
 // Whether an image that may be missing is, or is out of reach: nothing shall tell whether that one exists.
 bool is_lost(const Scene& scene, const ImageFile& file, const ImageOptions& options) {
     if (std::max(file.if_missing, options.if_missing) == IfMissing::error) return false;
-    if (!file.image.texels.empty() || !file.bytes.empty()) return false;
+    if (file.image || !file.bytes.empty()) return false;
     if (!scene.reach.holds(file.path)) return true;
     std::error_code ignored;
     return std::filesystem::status(file.path, ignored).type() == std::filesystem::file_type::not_found;
@@ -229,15 +219,13 @@ void drop_missing_images(Scene& scene, const ImageOptions& options) {
     for (size_t i = 0; i < lost.size(); ++i) {
         ImageFile& file = scene.images[i];
         if (!is_lost(scene, file, options)) continue;
-        file.image = {.size = uvec2(1),
-                      .channels = 1,
-                      .type = TexelType::unorm8,
-                      .texels = {std::byte(255)},
-                      .gamma = {}};
-        if (file.glossiness) {  // The copy of an image that is lost, too.
-            file.image = roughness_of(file.image, *file.glossiness);
-            continue;
-        }
+        const TexelImage white{.size = uvec2(1),
+                               .channels = 1,
+                               .type = TexelType::unorm8,
+                               .texels = {std::byte(255)},
+                               .gamma = {}};
+        file.image = std::make_shared<TexelImage>(file.convert ? file.convert(white) : white);
+        if (file.convert) continue;  // The copy of an image that is lost, too.
         lost[i] = true;
         if (!scene.reach.holds(file.path)) {
             if (outside++ == 0) refusal = file.place + ": " + scene.reach.refusal(file.path.string());
@@ -263,13 +251,13 @@ void drop_missing_images(Scene& scene, const ImageOptions& options) {
 // Replaces ALPHA_OR_RED in the texture of an opacity.
 void choose_channel(const Scene& scene, Texture& texture) {
     if (texture.channel != ALPHA_OR_RED) return;
-    texture.channel = scene.images[texture.image].image.channels % 2 == 0 ? ALPHA : RED;
+    texture.channel = scene.images[texture.image].image->channels % 2 == 0 ? ALPHA : RED;
 }
 
 void check_opacity(Scene& scene, const Material& material) {
     const Texture& texture = *material.opacity.value.texture;
     const ImageFile& file = scene.images[texture.image];
-    if (texture.channel != ALPHA || file.image.channels % 2 == 0) return;
+    if (texture.channel != ALPHA || file.image->channels % 2 == 0) return;
     scene.warnings.push_back(
         concat(file.place, ": the opacity of the material \"", printable(material.name, MOST_NAME_BYTES),
                "\" is the alpha of ", is_within(file) ? "the image" : file.path.string(),
@@ -313,25 +301,35 @@ uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view
     return add_image_file(scene, std::move(file));
 }
 
-void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& progress) {
-    drop_missing_images(scene, options);
-    std::vector<std::vector<std::string>> warnings(scene.images.size());
+void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& progress,
+                 DecodedImages& decoded) {
     std::vector<TexelCodes> codes(scene.images.size(), TexelCodes::linear);
     for_each_srgb_texture(scene, [&](const Texture& texture) { codes[texture.image] = TexelCodes::encoded; });
+    std::vector<DecodedImage*> kept;
+    for (size_t i = 0; i < scene.images.size(); ++i) {
+        ImageFile& file = scene.images[i];
+        kept.push_back(&decoded[concat(file.path.string(), '\n', file.real_path.string(), '\n', int(codes[i]),
+                                       int(file.of_gltf))]);
+        file.image = kept[i]->image;
+    }
+    drop_missing_images(scene, options);
     std::mutex mutex;
     size_t done = 0;
     parallel_for(scene.images.size(), [&](size_t i) {
         ImageFile& file = scene.images[i];
-        if (!file.image.texels.empty()) return;
+        if (file.image) return;
         const auto load = [&] {
+            kept[i]->warnings.clear();  // Of an attempt that failed.
             if (file.bytes.empty()) file.bytes = scene.reach.read(file.path);
             TexelLimits limits;
             if (file.of_gltf) limits.formats = "PNG, JPEG or WebP";
-            TexelImage image = decode_texels(file.bytes, file.path, warnings[i], limits);
+            TexelImage image = decode_texels(file.bytes, file.path, kept[i]->warnings, limits);
             file.bytes = {};
             if (file.of_gltf) image.gamma.reset();
-            if (file.glossiness) image = roughness_of(image, *file.glossiness);
-            file.image = shrink(std::move(image), options.texture_limit, codes[i]);
+            if (file.convert) image = file.convert(image);
+            file.image =
+                std::make_shared<TexelImage>(shrink(std::move(image), options.texture_limit, codes[i]));
+            kept[i]->image = file.image;
         };
         try {
             with_memory_for(
@@ -343,7 +341,8 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
         progress("images", ++done, scene.images.size());
     });
     for (size_t i = 0; i < scene.images.size(); ++i) {
-        for (const std::string& warning : warnings[i])
+        scene.images[i].bytes = {};
+        for (const std::string& warning : kept[i]->warnings)
             scene.warnings.push_back(at_place(scene.images[i], warning));
     }
     convert_gammas(scene);

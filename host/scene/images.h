@@ -4,8 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/load_progress.h"
 #include "scene/scene.h"
@@ -26,6 +29,13 @@ uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view
 // The index of an image in scene.images, which it joins unless one of its real_path has been added.
 uint32_t add_image_file(Scene& scene, ImageFile file);
 
+// Images that have been decoded with one texture_limit, for further scenes.
+struct DecodedImage {
+    std::shared_ptr<const TexelImage> image;
+    std::vector<std::string> warnings;
+};
+using DecodedImages = std::map<std::string, DecodedImage>;
+
 struct ImageOptions {
     // Images with more texels along a side are made smaller.
     uint32_t texture_limit = UINT32_MAX;
@@ -37,6 +47,8 @@ struct ImageOptions {
 // that wait for their image (ALPHA_OR_RED), and turns bump maps of mesh files into normal maps where they are
 // some. Where an image may be missing and is, or is out of reach, its textures go: factors remain, and
 // emission ends. Throws Error if one cannot be read; what is odd but usable goes to scene.warnings.
-void load_images(Scene& scene, const ImageOptions& options = {}, const LoadProgress& progress = no_progress);
+// Images among `decoded` are shared with it, others join it.
+void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& progress,
+                 DecodedImages& decoded);
 
 }  // namespace candela

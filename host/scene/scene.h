@@ -307,8 +307,6 @@ struct Scene {
     std::vector<std::string> warnings;         // What the loader found odd but usable, each with its place.
     std::vector<std::pair<std::string, std::string>>
         attributes;  // What a file says of itself: name and text.
-    // Of a glTF file, which add_studio() lights if nothing else does: what its message begins with.
-    std::optional<std::string> studio_place;
 };
 
 }  // namespace candela

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -22,13 +24,13 @@ struct ImageFile {
     std::filesystem::path path;
     std::filesystem::path real_path{};  // The same for all names of the file.
     std::string bytes{};                // The file, if it is within another one.
-    // The image is to be one of roughness: 1 - this times the alpha of the file.
-    std::optional<float> glossiness{};
+    // From the file's image to this one; none: it is the same.
+    std::function<TexelImage(const TexelImage&)> convert{};
     // A glTF file names it: a gamma of its own does not count, and only some formats are advised.
     bool of_gltf = false;
-    std::string place{};                      // Where the scene names it first, for messages.
-    IfMissing if_missing = IfMissing::error;  // White: nobody wrote the file that names it for candela.
-    TexelImage image{};
+    std::string place{};                        // Where the scene names it first, for messages.
+    IfMissing if_missing = IfMissing::error;    // White: nobody wrote the file that names it for candela.
+    std::shared_ptr<const TexelImage> image{};  // None: it has not been read.
 };
 
 // What lies outside of [0, 1] along an axis of an image.

@@ -89,8 +89,9 @@ Scene texture_scene() {
     uint32_t i = 0;
     for (const Kind kind : KINDS) {
         for (const uvec2 size : SIZES)
-            scene.images.push_back(
-                {.path = {}, .image = random_image(size, kind.channels, kind.type, 100 + i++)});
+            scene.images.push_back({.path = {},
+                                    .image = std::make_shared<TexelImage>(
+                                        random_image(size, kind.channels, kind.type, 100 + i++))});
     }
     Random random(5);
     for (i = 0; i < scene.images.size() * 18; ++i) {
@@ -115,7 +116,7 @@ std::vector<TextureItem> texture_items(const Scene& scene, size_t count) {
     std::vector<TextureItem> items;
     for (size_t i = 0; i < count; ++i) {
         const auto texture = uint32_t(i % scene.materials.size());
-        const uvec2 size = scene.images[texture / 18].image.size;
+        const uvec2 size = scene.images[texture / 18].image->size;
         vec2 uv = 8.0f * vec2(random.unit(), random.unit()) - 4.0f;
         for (int axis = 0; axis < 2; ++axis) {
             const auto n = float(size[axis]);
@@ -143,9 +144,9 @@ TextureReference::TextureReference(const Scene& scene) : scene_(scene) {
     for (const bool is_srgb : {false, true}) {
         for (const ImageFile& file : scene.images) {
             std::vector<dvec4>& texels = texels_[is_srgb].emplace_back();
-            for (uint32_t y = 0; y < file.image.size.y; ++y) {
-                for (uint32_t x = 0; x < file.image.size.x; ++x)
-                    texels.push_back(texel_of(file.image, is_srgb, x, y));
+            for (uint32_t y = 0; y < file.image->size.y; ++y) {
+                for (uint32_t x = 0; x < file.image->size.x; ++x)
+                    texels.push_back(texel_of(*file.image, is_srgb, x, y));
             }
         }
     }
@@ -163,7 +164,7 @@ TextureBounds TextureReference::at(uint32_t i, vec2 uv) const {
     const bool is_srgb = t.encoding == TextureEncoding::srgb;
     const bool nearest = t.filter == TextureFilter::nearest;
     const std::vector<dvec4>& texels = texels_[is_srgb][t.image];
-    const glm::ivec2 n(scene_.images[t.image].image.size);
+    const glm::ivec2 n(scene_.images[t.image].image->size);
     dvec2 x, slack;
     for (int axis = 0; axis < 2; ++axis) {
         const dvec3 terms = dvec3(t.rows[axis]) * dvec3(uv.x, uv.y, 1.0);

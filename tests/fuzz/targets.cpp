@@ -78,7 +78,7 @@ std::string with_lengths(std::string_view file) {
 }  // namespace
 
 void scene(std::string_view bytes) {
-    build_gpu_scene(parse_scene(bytes, "fuzz.json", "/nonexistent"));
+    build_gpu_scene(parse_scene(bytes, "fuzz.json"));
 }
 
 void obj(std::string_view bytes) {
@@ -103,7 +103,8 @@ void gltf(std::string_view bytes) {
     Scene scene;
     const MemoryFile file(bytes);
     scene.reach = FileReach(file.path());
-    add_gltf_scene(file.path(), {.animation = "all", .time = 0.5}, scene);
+    GltfFiles files;
+    add_gltf_scene(file.path(), {.animation = "all", .time = 0.5}, scene, no_progress, files);
     complete_gltf_scene("fuzz.gltf", scene);
     // Images are other targets, and are not read here.
     if (scene.images.empty()) build_gpu_scene(scene);
@@ -121,7 +122,8 @@ void cost(std::string_view bytes) {
     const auto name = [] { return std::string("fuzz.gltf"); };
     with_memory_for("the scene", name, [&] {
         Scene scene = load_gltf_scene(file.path());
-        load_images(scene);
+        DecodedImages decoded;
+        load_images(scene, {}, no_progress, decoded);
         build_gpu_scene_freeing_images(scene);
     });
 }

@@ -1,23 +1,25 @@
 #!/usr/bin/env python3
-"""Renders the models of make_models.py, and says which of their claims do not hold.
+"""Makes the models of make_models.py, renders them, and says which of their claims do not hold.
 
-usage: check_claims.py CANDELA FOLDER [NAME]... [--keep PICTURES]
+usage: check_claims.py CANDELA [NAME]... [--keep FOLDER]
+       check_claims.py --list       prints a line for each model: the label of its test, gltf or slow, and its name
 
-Prints a line per rendering, and one per claim that fails, with the rectangle and the codes there; exits 1 if any fails.
---keep leaves the pictures in a folder.
+Prints a line for each rendering, and one for each claim that fails, with the rectangle and the codes there; exits 1 if
+any fails. --keep leaves models and pictures in a folder. A model is slow if a claim needs more than QUICK_SPP samples per pixel.
 """
 
 import argparse
-import json
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+import make_models
 import png
 from stage import DARK
 
 BLOCK = 4  # Pixels along each side of what is compared.
+QUICK_SPP = 64
 
 
 def means(picture, rect):
@@ -88,29 +90,44 @@ def render(candela, model, picture, claim):
     return None if result.returncode == 0 else f"exit code {result.returncode}: {result.stderr.strip()}"
 
 
+def labels(folder):
+    """The label of each model's test, by name."""
+    spp = {}
+    for claim in make_models.make([], folder):
+        spp[claim["model"]] = max(claim["spp"], spp.get(claim["model"], 0))
+    return {name: "gltf" if most <= QUICK_SPP else "slow" for name, most in spp.items()}
+
+
+def check(candela, names, folder):
+    """Makes, renders and judges models; prints what it found, and returns whether all claims hold."""
+    hold = True
+    for number, claim in enumerate(make_models.make(names, folder)):
+        file = folder / f"{number:02}-{claim['model']}.png"
+        problem = render(candela, folder / claim["file"], file, claim)
+        lines = [problem] if problem else violations(claim, png.read(file.read_bytes()))
+        print(" ".join([claim["model"], *claim["arguments"]]) + (": holds" if not lines else ""), flush=True)
+        for line in lines:
+            print(f"    {line}", flush=True)
+        hold = hold and not lines
+    return hold
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("candela")
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("candela", nargs="?")
     parser.add_argument("names", nargs="*")
     parser.add_argument("--keep", type=Path)
+    parser.add_argument("--list", action="store_true")
     options = parser.parse_args()
-    claims = json.loads((options.folder / "claims.json").read_text(encoding="ascii"))
-    failed = False
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
-        for number, claim in enumerate(claims):
-            if options.names and claim["model"] not in options.names:
-                continue
-            file = folder / f"{number:02}-{claim['model']}.png"
-            problem = render(options.candela, options.folder / claim["file"], file, claim)
-            lines = [problem] if problem else violations(claim, png.read(file.read_bytes()))
-            print(" ".join([claim["model"], *claim["arguments"]]) + (": holds" if not lines else ""), flush=True)
-            for line in lines:
-                print(f"    {line}", flush=True)
-            failed = failed or bool(lines)
-    return 1 if failed else 0
+        if options.list:
+            print("\n".join(f"{label} {name}" for name, label in labels(folder).items()))
+            return 0
+        if options.candela is None:
+            parser.error("say which candela")
+        return 0 if check(options.candela, options.names, folder) else 1
 
 
 if __name__ == "__main__":

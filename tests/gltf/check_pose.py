@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Compares the triangles that candela reads from glTF files, posed by their animations, with a second reader's.
 
-usage: check_pose.py DUMP_GEOMETRY FOLDER_OR_FILE... [--verbose]
+usage: check_pose.py DUMP_GEOMETRY [FOLDER_OR_FILE]... [--verbose]
 
-Needs numpy. DUMP_GEOMETRY is the program of dump_geometry.cpp. The second reader is pose.py: hierarchies, all
+Without a folder or file, it reads the models of make_models.py. Needs numpy. DUMP_GEOMETRY is the program of dump_geometry.cpp. The second reader is pose.py: hierarchies, all
 interpolations, skins and morph targets in double precision. Every file is compared at rest, and at eleven times of each
 of its animations: before, between and after the keys. The tolerances are those of check_geometry.py. Ends with 1 if
 anything differs.
@@ -12,7 +12,10 @@ anything differs.
 import collections
 import struct
 import sys
+import tempfile
+from pathlib import Path
 
+import make_models
 import pose
 import triangles
 
@@ -50,9 +53,8 @@ def poses(dump, file):
             yield f"animation {index} at {time:.6g}", *compare(dump, file, index, time)
 
 
-def main(arguments):
-    verbose = "--verbose" in arguments
-    dump, *paths = [a for a in arguments if a != "--verbose"] or sys.exit(__doc__)
+def compare_files(dump, paths, verbose):
+    """Prints what differs, and how many files were refused, unread and read; returns these and whether any differs."""
     counts, tested, failed = collections.Counter(), collections.Counter(), False
     for file in triangles.files_of(paths):
         done, shown = 0, 0
@@ -80,7 +82,19 @@ def main(arguments):
     print(f"{counts['files']} files in {counts['poses']} poses, {counts['triangles']} triangles in all; "
           f"{counts['refused']} refused by candela, {counts['unread']} with flaws that the second reader cannot take")
     print("files with " + ", ".join(f"{kind}: {count}" for kind, count in sorted(tested.items())))
-    return 1 if failed or not counts["triangles"] else 0
+    return counts, failed
+
+
+def main(arguments):
+    verbose = "--verbose" in arguments
+    dump, *paths = [a for a in arguments if a != "--verbose"] or sys.exit(__doc__)
+    if paths:
+        counts, failed = compare_files(dump, paths, verbose)
+        return 1 if failed or not counts["triangles"] else 0
+    with tempfile.TemporaryDirectory() as folder:
+        make_models.make([], Path(folder))
+        counts, failed = compare_files(dump, [folder], verbose=True)
+        return 1 if failed or counts["refused"] or counts["unread"] else 0
 
 
 if __name__ == "__main__":

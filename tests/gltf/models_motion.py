@@ -203,6 +203,7 @@ def morph_primitives_test(stage):
         attributes = file.attributes(mesh.attributes())
         file.node(mesh=file.mesh(*(file.primitive(attributes, part, material)
                                    for part, material in zip(parts, materials))))
+    stage.flat_terminator()
     stage.tolerate(4, 64)
 
 

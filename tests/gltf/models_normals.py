@@ -67,6 +67,7 @@ def normal_tangent_test(stage):
             stage.tile(left, mapped, uv=turned_uv(quarter, mirrored)[0])
             stage.tile(right, plain, n=32, normal=bump)
         lit_from_upper_left(stage, left)
+    stage.flat_terminator()
     stage.tolerate(5, 64)
 
 
@@ -94,6 +95,7 @@ def normal_tangent_mirror_test(stage):
             stage.tile(left, mapped, uv=uv, tangent=lambda s, t: tangent)
         stage.tile(right, plain, n=32, normal=bump)
         lit_from_upper_left(stage, left)
+    stage.flat_terminator()
     stage.tolerate(5, 64)
 
 

@@ -2,6 +2,19 @@
 
 The view of the first camera is SIZE pixels, orthographic, from +Z; 64 pixels are a metre. Rectangles are
 (left, top, right, bottom) in these pixels; at a multiple of the size they grow alike.
+
+make() returns a model's claims, one dict for each rendering:
+
+    model, file, claim    the file relative to the folder
+    size                  pixels of the picture in which the rectangles are
+    arguments             further arguments of `candela render`
+    spp                   samples per pixel that suffice for the tolerance
+    tolerance             in 8-bit codes of sRGB, for means over blocks of 4 by 4 pixels
+    equal                 pairs of rectangles: no block differs by more than the tolerance
+    differ                pairs of rectangles: some block differs by more than four times the tolerance
+    shown                 rectangles of which some block differs from the backdrop's colour by more than four times
+                          the tolerance
+    colours               rectangles whose blocks must have this colour (codes), within the tolerance
 """
 
 import math
@@ -143,6 +156,12 @@ class Stage:
 
     def tolerate(self, tolerance, spp):
         self.checks[-1].update(tolerance=tolerance, spp=spp)
+
+    def flat_terminator(self):
+        """Lets light end as the tiles themselves face it. Otherwise, flat tiles with bent normals at their vertices are
+        lit as the curved surface that the normals describe, unlike flat tiles with a normal map, and with more noise.
+        """
+        self.checks[-1]["arguments"] += ["--terminator", "flat"]
 
     def equal(self, a, b, by=1):
         self.checks[-1]["equal"].append([inset(a, by), inset(b, by)])

@@ -42,7 +42,7 @@ Texture add_texture(Scene& scene, uvec2 size, const std::function<vec4(uint32_t,
             image.texels.insert(image.texels.end(), bytes.begin(), bytes.end());
         }
     }
-    scene.images.push_back({.path = {}, .image = std::move(image)});
+    scene.images.push_back({.path = {}, .image = std::make_shared<TexelImage>(std::move(image))});
     return {.image = uint32_t(scene.images.size() - 1)};
 }
 

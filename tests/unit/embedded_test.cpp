@@ -53,10 +53,10 @@ TEST(Embedded, SaysWhyBytesAreNoImage) {
 }
 
 TEST(Embedded, AScenesTextIsReadAsItsFileIs) {
-    const Scene scene = parse_scene(embedded::cornell_box_json, "cornell-box.json", {});
+    const Scene scene = parse_scene(embedded::cornell_box_json, "cornell-box.json");
     EXPECT_EQ(scene.shapes.size(), load_scene(CANDELA_SCENES "/cornell-box.json").shapes.size());
     EXPECT_EQ(scene.warnings, std::vector<std::string>{});
-    EXPECT_EQ(error_of([] { parse_scene("{\n  \"light\": 1 }", "own.json", {}); }).rfind("own.json:2:3: ", 0),
+    EXPECT_EQ(error_of([] { parse_scene("{\n  \"light\": 1 }", "own.json"); }).rfind("own.json:2:3: ", 0),
               0u);
 }
 

@@ -109,7 +109,7 @@ TEST_F(GlowTest, ImagesGiveTheirMean) {
     TexelImage image{.size = {2, 2}, .channels = 1, .type = TexelType::unorm8, .texels = {}, .gamma = {}};
     for (const int code : {255, 0, 0, 0})
         image.texels.push_back(std::byte(code));
-    scene_.images.push_back({.path = "a.png", .image = image});
+    scene_.images.push_back({.path = "a.png", .image = std::make_shared<TexelImage>(image)});
     Textured<vec3> radiance(vec3(0.5));
     radiance.texture = Texture{.image = 0, .encoding = TextureEncoding::srgb};
     emit({0, 0, 0}, {0, 0, 1}, {radiance, false});

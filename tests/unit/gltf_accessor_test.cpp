@@ -16,7 +16,8 @@ class GltfAccessor : public Gltf {
         made_so.root["extras"] = made.root["accessors"].size() - 1;
         const std::filesystem::path path = folder_.path() / "m.gltf";
         folder_.write("m.gltf", made_so.gltf());
-        gltf::File file(path, FileReach(path), no_progress);
+        gltf::Contents contents(path, FileReach(path), no_progress);
+        gltf::File file(contents, no_progress);
         use(gltf::Accessor(file, file.root().require("extras"), {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT4"}));
     }
 

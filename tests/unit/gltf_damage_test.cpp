@@ -49,7 +49,8 @@ Scene load_bytes(const std::string& bytes) {
     Scene scene;
     const fuzz::MemoryFile file(bytes);
     scene.reach = FileReach(file.path());
-    add_gltf_scene(file.path(), {.time = 0.5}, scene);
+    GltfFiles files;
+    add_gltf_scene(file.path(), {.time = 0.5}, scene, no_progress, files);
     return scene;
 }
 

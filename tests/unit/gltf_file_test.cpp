@@ -152,7 +152,8 @@ TEST_F(GltfFileTest, DecodesTheNamesOfFiles) {
     folder_.write("sub/m.gltf", naming("../two%20words.bin"));
     Scene scene;
     scene.reach = FileReach(folder_.path() / "sub/m.gltf", {.folders = {folder_.path()}});
-    add_gltf_scene(folder_.path() / "sub/m.gltf", {}, scene);
+    GltfFiles files;
+    add_gltf_scene(folder_.path() / "sub/m.gltf", {}, scene, no_progress, files);
     expect_corner(scene);
 }
 

@@ -144,7 +144,8 @@ class Gltf : public testing::Test {
         folder_.write(name, text);
         Scene scene;
         scene.reach = FileReach(folder_.path() / name);
-        add_gltf_scene(folder_.path() / name, options, scene);
+        GltfFiles files;
+        add_gltf_scene(folder_.path() / name, options, scene, no_progress, files);
         return scene;
     }
     Scene load(const GltfFile& file, const GltfOptions& options = {}) {

@@ -281,9 +281,12 @@ TEST_F(GltfMaterial, GlossinessIsTheOppositeOfRoughness) {
     // Its image is a copy that becomes 1 - glossiness * alpha.
     ASSERT_EQ(scene.images.size(), 3u);
     expect_number(m.roughness, 1.0f, 2, RED);
-    EXPECT_EQ(scene.images[2].glossiness, 0.75f);
+    const TexelImage glossy{
+        .size = {1, 1}, .channels = 2, .texels = {std::byte(9), std::byte(204)}, .gamma = {}};  // Alpha 0.8.
+    ASSERT_TRUE(scene.images[2].convert);
+    EXPECT_EQ(scene.images[2].convert(glossy).texels, std::vector{std::byte(102)});  // 1 - 0.6
     EXPECT_EQ(scene.images[2].path, scene.images[1].path);
-    EXPECT_FALSE(scene.images[1].glossiness);
+    EXPECT_FALSE(scene.images[1].convert);
 }
 
 TEST_F(GltfMaterial, ValuesOutsideOfTheirRangesAreClampedWithAWarning) {

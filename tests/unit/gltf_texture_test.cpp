@@ -102,7 +102,7 @@ TEST_F(GltfTexture, ImagesMayBeMissing) {
     const Scene old = load_scene(folder_.path() / "m.gltf");
     const auto roughness = std::get<PrincipledMaterial>(old.materials.at(0).model).roughness;
     ASSERT_TRUE(roughness.texture);
-    EXPECT_NEAR(texel_codes(old.images.at(roughness.texture->image).image, 0).x, 0.25f, 1.0f / 255.0f);
+    EXPECT_NEAR(texel_codes(*old.images.at(roughness.texture->image).image, 0).x, 0.25f, 1.0f / 255.0f);
 }
 
 TEST_F(GltfTexture, ReadsTwoSetsOfCoordinates) {

@@ -288,8 +288,8 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
 // from: textures that differ in nothing but the channel are one.
 TEST(GpuScene, PrincipledMaterialsHaveRecordsBehindTheOthers) {
     Scene scene;
-    scene.images.emplace_back().image = {
-        .size = {1, 1}, .channels = 4, .texels = std::vector<std::byte>(4), .gamma = {}};
+    scene.images.emplace_back().image = std::make_shared<TexelImage>(
+        TexelImage{.size = {1, 1}, .channels = 4, .texels = std::vector<std::byte>(4), .gamma = {}});
     Texture red, green;
     green.channel = 1;
     scene.materials = {

@@ -48,7 +48,7 @@ TEST_F(ObjTextures, ImagesLieBesideTheLibrary) {
                   "mtllib parts/m.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
     const Scene scene = folder_.load(scene_of(SHAPE));
     ASSERT_EQ(scene.images.size(), 1u);  // Under two names.
-    EXPECT_EQ(scene.images[0].image.size, uvec2(1, 1));
+    EXPECT_EQ(scene.images[0].image->size, uvec2(1, 1));
     EXPECT_EQ(folder_.without_folder(scene.images[0].place), "parts/m.mtl:2");
     EXPECT_NE(std::ranges::find(scene.files, folder_.path() / "parts/my tex/a.png"), scene.files.end());
     EXPECT_EQ(scene.shapes.at(0).emission->radiance.texture->image, 0u);
@@ -125,7 +125,7 @@ TEST_F(ObjTextures, ABlueBumpMapIsANormalMap) {
     EXPECT_FALSE(scene.meshes.at(0).tangents.empty());
     ASSERT_EQ(scene.warnings.size(), 2u);  // The other: there is no light.
     EXPECT_EQ(
-        folder_.without_folder(scene.warnings[1]),
+        folder_.without_folder(scene.warnings[0]),
         "m.mtl:3: the bump map of the material \"m.obj/a\", n.png, has the colours of a normal map and is "
         "read as one; to say so, name it as norm");
 }
@@ -139,7 +139,10 @@ TEST_F(ObjTextures, ImagesMayBeMissing) {
     EXPECT_EQ(read.opacity.value, 0.5f);
     EXPECT_FALSE(read.normal_map);
     EXPECT_FALSE(scene.shapes.at(0).emission);  // It is not white.
-    ASSERT_EQ(scene.warnings.size(), 1u);
+    ASSERT_EQ(scene.warnings.size(), 2u);
+    EXPECT_EQ(
+        folder_.without_folder(scene.warnings[1]),
+        "scene.json:3:11: the scene has no light: the image will be black");  // With that image, it had.
     EXPECT_EQ(
         folder_.without_folder(scene.warnings[0]),
         "m.mtl:3: 3 images do not exist; white takes their place: \"no.png\", \"n.png\", \"gone/e.png\"");
@@ -200,7 +203,7 @@ TEST_F(ObjTextures, ImagesMayBeNamedByOtherComputers) {
                              "my wall.png # 1", "..\\tex\\my wall.png"}) {
         SCOPED_TRACE(name);
         const Scene scene = load(std::string("newmtl a\nmap_Kd -clamp on ") + name + "\n");
-        EXPECT_EQ(scene.images.at(0).image.size, uvec2(1));
+        EXPECT_EQ(scene.images.at(0).image->size, uvec2(1));
         EXPECT_EQ(scene.images[0].path, folder_.path() / "my wall.png");
         EXPECT_EQ(scene.warnings.size(), 1u);  // There is no light.
     }
@@ -230,7 +233,7 @@ TEST_F(ObjTextures, AreInASceneOfItsOwn) {
     const Scene scene = load_scene(folder_.path() / "m.obj");
     EXPECT_EQ(std::get<DiffuseMaterial>(material(scene).model).reflectance.factor, vec3(1));
     EXPECT_EQ(material(scene).opacity.value, 0.5f);
-    EXPECT_EQ(scene.images.at(0).image.channels, 3u);
+    EXPECT_EQ(scene.images.at(0).image->channels, 3u);
     EXPECT_EQ(scene.meshes.at(0).uv0, (std::vector<vec2>{vec2(0, 0), vec2(1, 0), vec2(0, 1)}));
 }
 

@@ -133,7 +133,7 @@ TEST_F(SceneTextures, OfOneFileShareItsImage) {
         "m": {"type": "phong", "diffuse": {"image": "a.png", "factor": 0.5}, "specular": {"image": "./a.png", "factor": 0.5},
               "exponent": {"image": "b.png"}}})"));
     ASSERT_EQ(scene.images.size(), 2u);
-    EXPECT_EQ(scene.images[0].image.size, uvec2(2));
+    EXPECT_EQ(scene.images[0].image->size, uvec2(2));
     EXPECT_EQ(scene.files.size(), 2u);
 }
 
@@ -239,8 +239,8 @@ TEST_F(SceneTextures, OfAnotherGammaAreConvertedForColours) {
     const auto& phong = std::get<PhongMaterial>(scene.materials[0].model);
     EXPECT_EQ(phong.exponent.texture->image, 0u);
     EXPECT_EQ(phong.specular.texture->image, 1u);
-    const vec4 code = texel_codes(scene.images[1].image, 0);
-    EXPECT_EQ(scene.images[1].image.type, TexelType::unorm16);
+    const vec4 code = texel_codes(*scene.images[1].image, 0);
+    EXPECT_EQ(scene.images[1].image->type, TexelType::unorm16);
     EXPECT_EQ(code.x, 0.0f);
     EXPECT_NEAR(code.y, 0.2209164f, 1e-5f);  // sRGB of 0.04.
     EXPECT_EQ(code.z, 1.0f);
@@ -260,8 +260,8 @@ TEST_F(SceneTextures, AreMadeSmallerOnDemand) {
         const Scene scene = folder_.load(material(R"({"type": "phong", "specular": )" + reflectance +
                                                   R"(, "exponent": )" + exponent + "}"),
                                          options, note);
-        EXPECT_EQ(scene.images[0].image.size, uvec2(1));
-        return std::lround(255.0f * texel_codes(scene.images[0].image, 0).x);
+        EXPECT_EQ(scene.images[0].image->size, uvec2(1));
+        return std::lround(255.0f * texel_codes(*scene.images[0].image, 0).x);
     };
     const std::string image = R"({"image": "b.png"})";
     EXPECT_EQ(code_of(image, image), std::lround(255.0f * srgb_encode(0.5f)));

@@ -55,7 +55,7 @@ TEST(TextureTable, TexelsLieInTiles) {
 TEST(TextureTable, HoldsEveryTextureAndImageOnce) {
     std::vector<ImageFile> images(3);
     for (ImageFile& file : images)
-        file.image = counting({4, 4}, 4, TexelType::unorm8);
+        file.image = std::make_shared<TexelImage>(counting({4, 4}, 4, TexelType::unorm8));
     TextureTable table(images);
     EXPECT_EQ(table.add(std::nullopt), TEXTURE_NONE);
     EXPECT_EQ(table.add(Texture{.image = 2}), 0u);
@@ -71,7 +71,9 @@ TEST(TextureTable, HoldsEveryTextureAndImageOnce) {
 
 TEST(TextureTable, RefusesAnImageThatIsTooWide) {
     const std::vector<ImageFile> images{
-        {.path = "wide.png", .place = "a.json:1:2", .image = counting({65536, 1}, 1, TexelType::unorm8)}};
+        {.path = "wide.png",
+         .place = "a.json:1:2",
+         .image = std::make_shared<TexelImage>(counting({65536, 1}, 1, TexelType::unorm8))}};
     TextureTable table(images);
     try {
         table.add(Texture{.image = 0});
@@ -92,10 +94,10 @@ TEST(TextureTable, TheLastUseOfImagesFreesThem) {
     scene.materials[0].model =
         PhongMaterial{{vec3(1), Texture{.image = 1}}, {vec3(1), Texture{.image = 0}}, 1.0f};
     const auto texels = build_gpu_scene(scene).arrays[ARRAY_TEXELS];
-    EXPECT_EQ(texels.size(), texel_words(scene.images[0].image) + texel_words(scene.images[1].image));
+    EXPECT_EQ(texels.size(), texel_words(*scene.images[0].image) + texel_words(*scene.images[1].image));
     EXPECT_EQ(build_gpu_scene_freeing_images(scene).arrays[ARRAY_TEXELS], texels);
     for (const ImageFile& file : scene.images)
-        EXPECT_EQ(file.image.texels.capacity(), 0u);
+        EXPECT_EQ(file.image->texels.capacity(), 0u);
 }
 
 TEST(TextureTable, AttributesAreThoseThatAreLookedUp) {

@@ -187,6 +187,10 @@ std::vector<float> Accessor::floats(std::span<const uint32_t> rows) const {
     return result;
 }
 
+const std::vector<float>& Accessor::kept_floats(File& file) const {
+    return file.contents().keep("floats of " + node_.place(), [&] { return floats(); });
+}
+
 std::vector<uint32_t> Accessor::integers() const {
     if (!is_unsigned(component_) || normalized_) {
         node_.require("componentType").fail("unsigned integers are expected here; export the file again");

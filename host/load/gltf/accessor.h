@@ -41,6 +41,8 @@ class Accessor {
     std::vector<float> floats() const;
     // The same for some elements alone; each of `rows` is below count().
     std::vector<float> floats(std::span<const uint32_t> rows) const;
+    // floats() of all elements, kept with the file's contents for further readings.
+    const std::vector<float>& kept_floats(File& file) const;
     // Elements as whole numbers. Throws Error unless they are unsigned integers that are not normalised.
     std::vector<uint32_t> integers() const;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,8 +25,9 @@ enum class Interpolation { step, linear, cubic };
 
 // The values of a channel at its keys.
 struct Sampler {
-    std::vector<float> times;   // [s], ascending.
-    std::vector<float> values;  // `width` numbers per key; of a cubic spline, in-tangent, value, out-tangent.
+    std::span<const float> times;  // [s], ascending.
+    std::span<const float>
+        values;  // `width` numbers per key; of a cubic spline, in-tangent, value, out-tangent.
     size_t width = 0;
     Interpolation interpolation = Interpolation::linear;
 
@@ -63,15 +65,14 @@ Sampler read_sampler(File& file, const Node& node, size_t width) {
     Sampler sampler;
     sampler.interpolation = read_interpolation(node);
     const Node input = node.require("input");
-    sampler.times = Accessor(file, input, {"SCALAR"}).floats();
+    sampler.times = Accessor(file, input, {"SCALAR"}).kept_floats(file);
     for (size_t i = 0; i < sampler.times.size(); ++i) {
         if (!std::isfinite(sampler.times[i]) || (i > 0 && sampler.times[i] <= sampler.times[i - 1]))
             input.fail(concat("the times of an animation must grow, but that of key ", i, " does not"));
     }
     const Node output = node.require("output");
-    sampler.values = width == 0   ? Accessor(file, output, {"SCALAR"}).floats()
-                     : width == 3 ? Accessor(file, output, {"VEC3"}).floats()
-                                  : Accessor(file, output, {"VEC4"}).floats();
+    const char* const type = width == 0 ? "SCALAR" : width == 3 ? "VEC3" : "VEC4";
+    sampler.values = Accessor(file, output, {type}).kept_floats(file);
     const size_t keys = sampler.times.size() * (sampler.interpolation == Interpolation::cubic ? 3 : 1);
     sampler.width = width == 0 ? sampler.values.size() / keys : width;
     if (sampler.width == 0 || sampler.values.size() != keys * sampler.width) {

@@ -52,8 +52,10 @@ void warn_of_units(File& file, const GltfOptions& options, const Scene& scene) {
 }  // namespace
 
 void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene,
-                    const LoadProgress& progress) {
-    File file(path, scene.reach, progress);
+                    const LoadProgress& progress, GltfFiles& files) {
+    std::shared_ptr<gltf::Contents>& contents = files[path];
+    if (!contents) contents = std::make_shared<gltf::Contents>(path, scene.reach, progress);
+    File file(*contents, progress);
     check_extensions(file);
     scene.files.push_back(path);
     gltf::SceneReader(file, scene, options, progress).read();
@@ -73,15 +75,20 @@ void complete_gltf_scene(const std::string& name, Scene& scene) {
             name +
             ": there is no camera; the scene is seen from the front, a little from the right and above");
     }
-    scene.studio_place = name;
 }
 
 Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options,
                       const LoadProgress& progress, const ReachOptions& reach) {
+    GltfFiles files;
+    return load_gltf_scene(path, options, progress, reach, files);
+}
+
+Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options,
+                      const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files) {
     Scene scene;
     scene.reach = FileReach(path, reach);
     scene.film.size = GLTF_FILM_SIZE;
-    add_gltf_scene(path, options, scene, progress);
+    add_gltf_scene(path, options, scene, progress, files);
     complete_gltf_scene(path.string(), scene);
     return scene;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,6 +12,14 @@
 #include "scene/scene.h"
 
 namespace candela {
+
+namespace gltf {
+class Contents;
+}
+
+// glTF files that have been parsed, with the buffers that were read, by path: for scenes that show them
+// again, such as at another time. The files are taken not to change.
+using GltfFiles = std::map<std::filesystem::path, std::shared_ptr<gltf::Contents>>;
 
 // What the numbers of a file's lights mean.
 enum class LightUnits {
@@ -55,20 +65,23 @@ inline constexpr uvec2 GLTF_FILM_SIZE{1280, 720};
 Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options = {},
                       const LoadProgress& progress = no_progress, const ReachOptions& reach = {});
 
+// The same for a file that may be among `files`, which it joins.
+Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options,
+                      const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files);
+
 // Adds what a file holds to a scene, as load_gltf_scene() does, but neither camera nor studio. Materials that
 // the scene has already take the place of the file's of the same name. Both it and what it names must be
 // within scene.reach.
 void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene,
-                    const LoadProgress& progress = no_progress);
+                    const LoadProgress& progress, GltfFiles& files);
 
-// Adds the camera if it is missing, and asks for the studio; `name` is what the warnings that say so begin
-// with.
+// Adds the camera if it is missing; `name` is what the warning that says so begins with.
 void complete_gltf_scene(const std::string& name, Scene& scene);
 
 // Lights a scene of a glTF file by a studio, once its images have been read. Surfaces that emit are enough in
 // its place if what they send to the sphere around the scene is at least a tenth of what the studio does
 // (Glow::radiance), if half of the scene's area is as bright, or if they are brighter than white.
-// docs/gltf.md says so to users.
-void add_studio(Scene& scene, StudioChoice choice = StudioChoice::automatic);
+// docs/gltf.md says so to users. `name` is what the warnings begin with; no choice is the automatic one.
+void add_studio(Scene& scene, const std::string& name, std::optional<StudioChoice> choice);
 
 }  // namespace candela

@@ -95,11 +95,15 @@ void check_version(const Node& root) {
     }
 }
 
+ReadProgress bytes_of(const LoadProgress& progress) {
+    return [&progress](size_t done, size_t of) { progress("bytes", done, of); };
+}
+
 }  // namespace
 
-File::File(const std::filesystem::path& path, FileReach reach, LoadProgress progress)
-    : reach_(std::move(reach)), progress_(std::move(progress)), path_(path) {
-    bytes_ = reach_.read(path, UINT64_MAX, note_bytes());
+Contents::Contents(const std::filesystem::path& path, FileReach reach, const LoadProgress& progress)
+    : reach_(std::move(reach)), path_(path) {
+    bytes_ = reach_.read(path, UINT64_MAX, bytes_of(progress));
     document_.file = path.string();
     document_.places = json::Document::Places::pointers;
     document_.nulls_are_absent = true;  // Some programs write null for what they do not know.
@@ -107,35 +111,15 @@ File::File(const std::filesystem::path& path, FileReach reach, LoadProgress prog
     if (text.starts_with(BYTE_ORDER_MARK))
         text.remove_prefix(BYTE_ORDER_MARK.size());  // Of careless programs.
     const std::optional<std::string> in_utf8 = mended(text);
-    if (in_utf8) warn(document_.file + ": the text is not UTF-8; other bytes are read as Latin-1");
+    if (in_utf8)
+        warnings_.push_back(document_.file + ": the text is not UTF-8; other bytes are read as Latin-1");
     document_.root = json::parse(in_utf8 ? *in_utf8 : text, document_.file);
     if (!root().is_object()) root().fail_expected("an object { ... }, as every glTF file is");
     check_version(root());
-    buffers_.resize(count("buffers"));
-    images_.resize(count("images"));
-}
-
-ReadProgress File::note_bytes() const {
-    return [this](size_t done, size_t of) { progress_("bytes", done, of); };
-}
-
-std::filesystem::path File::named(const Node& uri) const {
-    return file_of(uri, path_.parent_path(), reach_);
-}
-
-std::string File::read_named(const Node& uri, uint64_t most) const {
-    const std::filesystem::path path = named(uri);
-    try {
-        return with_memory_for(
-            "the bytes of the file", [&] { return path.string(); },
-            [&] { return reach_.read(path, most, note_bytes()); });
-    } catch (const Error& error) {
-        throw Error(uri.place() + ": " + error.what(), error.code());
-    }
 }
 
 // Finds the chunks; returns that of the JSON document.
-std::string_view File::split_glb() {
+std::string_view Contents::split_glb() {
     const std::string name = path_.string();
     std::string_view bytes = bytes_;
     const auto cut_off = [&](const char* what) {
@@ -166,13 +150,37 @@ std::string_view File::split_glb() {
     }
     if (!text) throw Error(name + ": the first chunk of the file is not its JSON document; export it again");
     if (offset < bytes.size()) {
-        warn(concat(name, ": ignored what follows the last chunk, at byte ", offset));
+        warnings_.push_back(concat(name, ": ignored what follows the last chunk, at byte ", offset));
     } else if (length < offset) {
-        warn(concat(name, ": the header states ", length, " bytes, but the chunks have ", offset,
-                    "; all are read"));
+        warnings_.push_back(concat(name, ": the header states ", length, " bytes, but the chunks have ",
+                                   offset, "; all are read"));
     }
     // Filled up with spaces; some programs fill with zeros.
     return text->substr(0, text->find_last_not_of('\0') + 1);
+}
+
+File::File(Contents& contents, LoadProgress progress)
+    : contents_(contents),
+      progress_(std::move(progress)),
+      is_read_(count("buffers")),
+      images_(count("images")) {
+    for (const std::string& warning : contents.warnings())
+        warn(warning);
+}
+
+std::filesystem::path File::named(const Node& uri) const {
+    return file_of(uri, path().parent_path(), contents_.reach());
+}
+
+std::string File::read_named(const Node& uri, uint64_t most) const {
+    const std::filesystem::path path = named(uri);
+    try {
+        return with_memory_for(
+            "the bytes of the file", [&] { return path.string(); },
+            [&] { return contents_.reach().read(path, most, bytes_of(progress_)); });
+    } catch (const Error& error) {
+        throw Error(uri.place() + ": " + error.what(), error.code());
+    }
 }
 
 size_t File::count(std::string_view array) const {
@@ -206,23 +214,32 @@ std::span<const std::byte> File::view_bytes(const Node& view) {
     return bytes.subspan(offset, length);
 }
 
+std::string_view File::named_buffer(uint32_t i, const Node& uri, size_t length) {
+    struct Buffer {
+        std::string bytes;
+        std::optional<std::filesystem::path> file;  // None: the bytes are in the URI.
+    };
+    const auto& buffer = contents_.keep(concat("buffer ", i), [&] {
+        if (auto data = inline_data(uri)) return Buffer{std::move(*data), std::nullopt};
+        return Buffer{read_named(uri, length), named(uri)};
+    });
+    if (!is_read_[i]) {
+        is_read_[i] = true;
+        buffer_bytes_read_ += buffer.bytes.size();
+        if (buffer.file) files_.push_back(*buffer.file);
+    }
+    return buffer.bytes;
+}
+
 std::span<const std::byte> File::buffer_bytes(uint32_t i) {
     const Node buffer = element("buffers", i);
     const size_t length = buffer.require("byteLength").integer(1, UINT32_MAX);
     const auto uri = buffer.find("uri");
     std::string_view bytes;
     if (uri) {
-        if (!buffers_[i]) {
-            buffers_[i] = inline_data(*uri);
-            if (!buffers_[i]) {
-                buffers_[i] = read_named(*uri, length);
-                files_.push_back(named(*uri));
-            }
-            buffer_bytes_read_ += buffers_[i]->size();
-        }
-        bytes = *buffers_[i];
-    } else if (i == 0 && chunk_) {
-        bytes = *chunk_;
+        bytes = named_buffer(i, *uri, length);
+    } else if (i == 0 && contents_.chunk()) {
+        bytes = *contents_.chunk();
     } else {
         check_meshopt(buffer);
         buffer.fail(

@@ -1,12 +1,14 @@
-// A glTF file: its JSON document, its buffers, and the complaints about both.
+// A glTF file: its JSON document and its buffers, and a reading of them with its complaints.
 #pragma once
 
+#include <any>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -16,18 +18,57 @@
 
 namespace candela::gltf {
 
-// Reads .gltf (JSON) and .glb (JSON and a buffer in one file), told apart by their first bytes. Places in
-// messages are JSON pointers: `room.glb#/accessors/3/count`.
-class File {
+// What does not depend on what is shown of a file: its document, its buffers, and what was made of them.
+// Reads .gltf (JSON) and .glb (JSON and a buffer in one file), told apart by their first bytes; a buffer when
+// it is first needed. Places in messages are JSON pointers: `room.glb#/accessors/3/count`.
+class Contents {
   public:
-    // Throws Error if the file cannot be read, is cut off, or is of another version than 2. Tells of the
-    // bytes of each file that it reads. This file and those that it names must be within `reach`.
-    File(const std::filesystem::path& path, FileReach reach, LoadProgress progress);
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
+    // Throws Error if the file cannot be read, is cut off, or is of another version than 2. This file and
+    // those that it names must be within `reach`.
+    Contents(const std::filesystem::path& path, FileReach reach, const LoadProgress& progress);
+    Contents(const Contents&) = delete;
+    Contents& operator=(const Contents&) = delete;
 
     Node root() const { return Node(document_); }
     const std::filesystem::path& path() const { return path_; }
+    const FileReach& reach() const { return reach_; }
+    size_t size() const { return bytes_.size(); }
+    // The buffer of a .glb.
+    const std::optional<std::string_view>& chunk() const { return chunk_; }
+    const std::vector<std::string>& warnings() const { return warnings_; }
+
+    // What make() returned when it was first called for this key; each key is of one type.
+    template <class Make>
+    const auto& keep(const std::string& key, const Make& make) {
+        using Value = decltype(make());
+        std::any& kept = kept_[key];
+        if (!kept.has_value()) kept.emplace<Value>(make());
+        return *std::any_cast<Value>(&kept);
+    }
+
+  private:
+    std::string_view split_glb();
+
+    FileReach reach_;
+    std::filesystem::path path_;
+    std::string bytes_;  // Of the file.
+    std::optional<std::string_view> chunk_;
+    json::Document document_;
+    std::vector<std::string> warnings_;
+    std::unordered_map<std::string, std::any> kept_;
+};
+
+// A reading of a file, from which a scene comes: the same whether it is the first one or not.
+class File {
+  public:
+    // Tells of the bytes of each buffer's file that it is the first to read.
+    File(Contents& contents, LoadProgress progress);
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+
+    Contents& contents() const { return contents_; }
+    Node root() const { return contents_.root(); }
+    const std::filesystem::path& path() const { return contents_.path(); }
     // The file that a relative URI names, as file_of() finds it.
     std::filesystem::path named(const Node& uri) const;
     // Its first `most` bytes, or all. Throws Error at the place of `uri` if it cannot be read.
@@ -44,14 +85,15 @@ class File {
         return element(array, index(array, reference));
     }
 
-    // The bytes that a bufferView stands for; valid as long as this file. Throws Error if they are not there.
+    // The bytes that a bufferView stands for; valid as long as the contents. Throws Error if they are not
+    // there.
     std::span<const std::byte> view_bytes(const Node& view);
 
     // The index in Scene::images of the file's image `i`, once it has one.
     std::optional<uint32_t>& image_index(uint32_t i) { return images_[i]; }
 
-    // How many bytes have been read so far: the file, and the buffers that are used.
-    size_t bytes_read() const { return bytes_.size() + buffer_bytes_read_; }
+    // How many bytes this reading has used so far: the file, and the buffers.
+    size_t bytes_read() const { return contents_.size() + buffer_bytes_read_; }
 
     // Files besides this one that were read for buffers.
     const std::vector<std::filesystem::path>& files() const { return files_; }
@@ -62,17 +104,12 @@ class File {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
-    ReadProgress note_bytes() const;
-    std::string_view split_glb();
     std::span<const std::byte> buffer_bytes(uint32_t index);
+    std::string_view named_buffer(uint32_t index, const Node& uri, size_t length);
 
-    FileReach reach_;
+    Contents& contents_;
     LoadProgress progress_;
-    std::filesystem::path path_;
-    std::string bytes_;                      // Of the file.
-    std::optional<std::string_view> chunk_;  // The buffer of a .glb.
-    json::Document document_;
-    std::vector<std::optional<std::string>> buffers_;  // What was read for each.
+    std::vector<bool> is_read_;  // For each buffer.
     size_t buffer_bytes_read_ = 0;
     std::vector<std::optional<uint32_t>> images_;
     std::vector<std::filesystem::path> files_;

@@ -93,6 +93,39 @@ vec3 cube_radiance(const std::array<Face, FACES>& faces, dvec3 w) {
     return faces[2 * size_t(axis) + (negative ? 1 : 0)].look_up(uv.x, uv.y);
 }
 
+// The environment that a light's cube map makes.
+Environment sky_of(File& file, const Node& light, float intensity) {
+    const Node level = light.require("specularImages")[0];
+    std::array<Face, FACES> faces;
+    for (size_t i = 0; i < FACES; ++i)
+        faces[i] = read_face(file, level[i]);
+
+    glm::dquat rotation(1, 0, 0, 0);
+    if (const auto node = light.find("rotation")) {
+        const std::vector<double> q = node->numbers(4);
+        const glm::dquat given(q[3], q[0], q[1], q[2]);
+        if (length(given) > 0.0) rotation = normalize(given);
+    }
+    Environment environment;
+    const uint32_t lines = std::min(2 * faces[0].size, MOST_LINES);
+    environment.size = {2 * lines, lines};
+    environment.radiance.clear();
+    environment.radiance.reserve(2 * size_t(lines) * lines);
+    for (uint32_t y = 0; y < lines; ++y) {
+        for (uint32_t x = 0; x < 2 * lines; ++x) {
+            const dvec3 w = latitude_longitude_direction({(x + 0.5) / (2.0 * lines), (y + 0.5) / lines});
+            environment.radiance.push_back(intensity * cube_radiance(faces, inverse(rotation) * w));
+        }
+    }
+    return environment;
+}
+
+// Notes that this reading needs the buffer of an image, although its faces may be known.
+void use_buffer(File& file, const Node& reference) {
+    const Node image = file.resolve("images", reference);
+    if (const auto view = image.find("bufferView")) file.view_bytes(file.resolve("bufferViews", *view));
+}
+
 }  // namespace
 
 std::optional<Environment> read_image_light(File& file, const Node& scene) {
@@ -107,30 +140,11 @@ std::optional<Environment> read_image_light(File& file, const Node& scene) {
 
     const Node levels = light.require("specularImages");
     if (levels.size() == 0 || levels[0].size() != FACES) levels.fail("a cube needs six images");
-    std::array<Face, FACES> faces;
-    for (size_t i = 0; i < FACES; ++i)
-        faces[i] = read_face(file, levels[0][i]);
-
-    glm::dquat rotation(1, 0, 0, 0);
-    if (const auto node = light.find("rotation")) {
-        const std::vector<double> q = node->numbers(4);
-        const glm::dquat given(q[3], q[0], q[1], q[2]);
-        if (length(given) > 0.0) rotation = normalize(given);
-    }
+    for (const Node& face : levels[0].elements())
+        use_buffer(file, face);
     constexpr float MOST = 1e30f;
     const float intensity = number_of(file, light, "intensity", 0.0f, MOST, 1.0f);
-    Environment environment;
-    const uint32_t lines = std::min(2 * faces[0].size, MOST_LINES);
-    environment.size = {2 * lines, lines};
-    environment.radiance.clear();
-    environment.radiance.reserve(2 * size_t(lines) * lines);
-    for (uint32_t y = 0; y < lines; ++y) {
-        for (uint32_t x = 0; x < 2 * lines; ++x) {
-            const dvec3 w = latitude_longitude_direction({(x + 0.5) / (2.0 * lines), (y + 0.5) / lines});
-            environment.radiance.push_back(intensity * cube_radiance(faces, inverse(rotation) * w));
-        }
-    }
-    return environment;
+    return file.contents().keep("sky of " + light.place(), [&] { return sky_of(file, light, intensity); });
 }
 
 }  // namespace candela::gltf

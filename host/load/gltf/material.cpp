@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string_view>
 
 #include "base/text.h"
@@ -13,6 +14,16 @@
 
 namespace candela::gltf {
 namespace {
+
+// Of an image whose alpha, times `factor`, is glossiness: one channel, 1 - that.
+TexelImage roughness_of(const TexelImage& image, float factor) {
+    TexelImage result{
+        .size = image.size, .channels = 1, .type = TexelType::unorm8, .texels = {}, .gamma = {}};
+    result.texels.resize(size_t(image.size.x) * image.size.y);
+    for (size_t i = 0; i < result.texels.size(); ++i)
+        result.texels[i] = std::byte(std::lround(255.0f * (1.0f - factor * texel_codes(image, i).w)));
+    return result;
+}
 
 constexpr uint32_t GREEN = 1;
 constexpr uint32_t BLUE = 2;
@@ -132,7 +143,7 @@ class MaterialReader {
     // The copy of an image whose alpha, times `glossiness`, is glossiness.
     uint32_t roughness_image(uint32_t image, float glossiness) {
         ImageFile copy = scene_.images[image];
-        copy.glossiness = glossiness;
+        copy.convert = [glossiness](const TexelImage& whole) { return roughness_of(whole, glossiness); };
         copy.real_path += concat("#roughness/", glossiness);
         return add_image_file(scene_, std::move(copy));
     }

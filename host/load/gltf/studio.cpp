@@ -44,9 +44,8 @@ Lit light_of(const Scene& scene, const Environment& studio) {
 
 }  // namespace
 
-void add_studio(Scene& scene, StudioChoice choice) {
-    if (!scene.studio_place) return;
-    const auto warn = [&](const char* text) { scene.warnings.push_back(*scene.studio_place + ": " + text); };
+void add_studio(Scene& scene, const std::string& name, std::optional<StudioChoice> choice) {
+    const auto warn = [&](const char* text) { scene.warnings.push_back(name + ": " + text); };
     if (choice == StudioChoice::standard) {
         scene.environment = gltf::studio();
         return;

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "load/json/loader_parts.h"
 #include "load/quote.h"
-#include "scene/geometry.h"
 #include "scene/names.h"
 
 namespace candela {
@@ -46,18 +46,19 @@ IntegratorSettings read_integrator(const Node& node) {
 
 // Reads the glTF file that the scene adds to.
 void read_base(const Node& node, const std::filesystem::path& folder, const GltfOptions& gltf, Scene& scene,
-               const LoadProgress& progress) {
+               const LoadProgress& progress, GltfFiles& files) {
     const std::filesystem::path path = find_file(node, folder, scene.reach);
     const HiddenValues hidden(scene.reach);
     try {
-        add_gltf_scene(path, gltf, scene, progress);
+        add_gltf_scene(path, gltf, scene, progress, files);
     } catch (const Error& error) {
         throw Error(node.place() + ": " + error.what(), error.code());
     }
 }
 
-Scene scene_of(const json::Document& document, const std::filesystem::path& folder, const GltfOptions& gltf,
-               const LoadProgress& progress, const FileReach& reach) {
+JsonScene scene_of(const json::Document& document, const std::filesystem::path& folder,
+                   const GltfOptions& gltf, const LoadProgress& progress, const FileReach& reach,
+                   GltfFiles& files) {
     const Node root(document);
     root.allow_only({"$schema", "scene", "cameras", "film", "integrator", "materials", "objects", "shapes",
                      "lights", "environment"});
@@ -79,7 +80,7 @@ Scene scene_of(const json::Document& document, const std::filesystem::path& fold
         for (const Node& material : materials->members())
             scene.materials.push_back(read_material(material, {folder, scene}));
     }
-    if (base) read_base(*base, folder, gltf, scene, progress);
+    if (base) read_base(*base, folder, gltf, scene, progress, files);
     if (root.find("film")) {
         for (Camera& camera : scene.cameras)
             camera.film_size.reset();
@@ -96,28 +97,28 @@ Scene scene_of(const json::Document& document, const std::filesystem::path& fold
 
     if (base) {
         complete_gltf_scene(base->place(), scene);
-    } else if (scene.shapes.empty() && !scene.environment) {
-        scene.warnings.push_back(shapes->place() + ": the scene has no shapes");
-    } else if (!has_light(scene)) {
-        scene.warnings.push_back(shapes->place() + ": the scene has no light: the image will be black");
+        return {std::move(scene), base->place(), true};
     }
-    return scene;
+    if (scene.shapes.empty() && !scene.environment)
+        scene.warnings.push_back(shapes->place() + ": the scene has no shapes");
+    return {std::move(scene), shapes->place(), false};
 }
 
 }  // namespace
 
-Scene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf,
-                      const LoadProgress& progress, const ReachOptions& reach) {
+JsonScene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf,
+                          const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files) {
     const std::string file = path.string();
     const json::Document document{file, json::parse(read_file(path), file)};
     const Node root(document);
-    if (root.is_object() && root.find("asset")) return load_gltf_scene(path, gltf, progress, reach);
-    return scene_of(document, path.parent_path(), gltf, progress, FileReach(path, reach));
+    if (root.is_object() && root.find("asset"))
+        return {load_gltf_scene(path, gltf, progress, reach, files), file, true};
+    return scene_of(document, path.parent_path(), gltf, progress, FileReach(path, reach), files);
 }
 
-Scene parse_scene(std::string_view text, const std::string& file, const std::filesystem::path& folder,
-                  const GltfOptions& gltf, const LoadProgress& progress, const FileReach& reach) {
-    return scene_of({file, json::parse(text, file)}, folder, gltf, progress, reach);
+Scene parse_scene(std::string_view text, const std::string& file) {
+    GltfFiles files;
+    return scene_of({file, json::parse(text, file)}, {}, {}, no_progress, {}, files).scene;
 }
 
 }  // namespace candela
