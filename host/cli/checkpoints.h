@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "cli/interval.h"
 #include "cli/render_options.h"
 #include "film/checkpoint.h"
+#include "session/interval.h"
 
 namespace candela {
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/image.h"
-#include "cli/convergence.h"
 #include "cli/render_options.h"
 #include "film/identity.h"
 #include "render/renderer.h"
+#include "session/convergence.h"
 
 namespace candela {
 

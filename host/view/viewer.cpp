@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/printable.h"
-#include "render/steady_renderer.h"
+#include "session/steady_renderer.h"
 #include "view/pace.h"
 
 namespace candela {

@@ -1,5 +1,5 @@
 // See adaptive.h.
-#include "render/adaptive.h"
+#include "session/adaptive.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // See steady_renderer.h.
-#include "render/steady_renderer.h"
+#include "session/steady_renderer.h"
 
 #include <algorithm>
 #include <thread>

@@ -1,5 +1,5 @@
 // See convergence.h.
-#include "cli/convergence.h"
+#include "session/convergence.h"
 
 #include <algorithm>
 #include <bit>
