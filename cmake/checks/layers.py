@@ -92,14 +92,13 @@ class Checker:
         self.problems.append(f"{name}:{line}: {message}")
 
     def find_includes(self, name, text):
-        """Quoted includes start at host/ or shaders/, as the compilers' search paths do; a header that CMake
-        generates from NAME.h.in is found beside it."""
+        """Quoted includes start at host/ or shaders/, as the compilers' search paths do; CMake generates NAME.h
+        from NAME.h.in."""
         found = []
-        folder = name.rpartition("/")[0]
         for match in INCLUDE.finditer(text):
             line = text.count("\n", 0, match.start()) + 1
             quoted, library = match.groups()
-            candidates = (f"host/{quoted}", f"shaders/{quoted}", f"{folder}/{quoted}.in")
+            candidates = (f"host/{quoted}", f"shaders/{quoted}", f"host/{quoted}.in")
             target = next((candidate for candidate in candidates if candidate in self.files), None)
             if quoted and target is None:
                 self.report(name, line, f'includes "{quoted}", which is neither below host/ nor below shaders/')

@@ -17,8 +17,8 @@ GOOD = {
     "host/load/json.h": "// JSON.\n#pragma once\n#include <nlohmann/json.hpp>\n",
     "host/bvh/bvh.cpp": '// A tree.\n#include "shared/types.h"\n',
     "host/render/renderer.cpp": '// Renders.\n#include "scene/scene.h"\n#include "vk/device.h"\n',
-    "host/cli/options.h": '// Options.\n#pragma once\n#include "version.h"\n',
-    "host/cli/version.h.in": "// The version.\n#pragma once\n",
+    "host/cli/options.h": '// Options.\n#pragma once\n#include "session/version.h"\n',
+    "host/session/version.h.in": "// The version.\n#pragma once\n",
     "host/main.cpp": '// Starts.\n#include "cli/options.h"\nint main() {}\n',
     "shaders/shared/types.h": "// Types.\n#ifndef SHARED_TYPES_H\n#define SHARED_TYPES_H\n"
     '#include "base/math.h"\n#endif\n',

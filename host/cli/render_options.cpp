@@ -188,9 +188,8 @@ RenderJob RenderOptions::job(const Scene& scene) const {
                   .target_error = target_error,
                   .time_limit = time_limit,
                   .write_every = write_every,
-                  .images = images,
-                  .checkpoint = checkpoint,
-                  .messages = messages};
+                  .aovs = images.written_aovs(),
+                  .checkpoint = checkpoint};
     if (adaptive && job.target % 2 != 0) {
         throw Error("--adaptive renders two halves: give an even number of samples per pixel (--spp), not " +
                         std::to_string(job.target),

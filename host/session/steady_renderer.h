@@ -50,6 +50,7 @@ class SteadyRenderer {
     void hold();
     // The states as last copied, or those of the source.
     std::vector<Accumulation>& states() { return source_.states; }
+    const std::vector<Accumulation>& states() const { return source_.states; }
 
     // The device, until render() throws.
     const vk::Device& device() const { return *device_; }

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/image.h"
 #include "gpu_scene/gpu_scene.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
@@ -28,25 +27,15 @@
 
 namespace candela {
 
-// A picture that was rendered in a window.
-struct ViewedPicture {
-    const GpuScene& scene;
-    const Camera& camera;
-    const RenderSettings& settings;
-    const Accumulation& state;
-    double seconds;  // Wall time of rendering it.
-};
-
 struct ViewerOptions {
     vk::DeviceInfo device;  // After choose_presenting_queue().
     std::optional<std::filesystem::path> pipeline_cache_folder;
     std::string name;               // Of the scene, for the title and for files.
+    std::string command_line;       // For the attributes of EXRs.
     uint32_t target = 0;            // Samples per pixel to stop at, above 0.
     bool close_at_target = false;   // Close then, and keep the picture's size whatever the window's.
     std::function<bool()> stopped;  // Asked regularly whether to end.
     std::function<void(const std::string&)> say;  // Gets what happened: "wrote box-1.png".
-    // Adds the attributes of an EXR to its image.
-    std::function<void(Image&, const ViewedPicture&)> add_attributes;
 };
 
 class Viewer {
