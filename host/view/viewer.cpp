@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "base/printable.h"
+#include "base/relative_error.h"
+#include "session/next_look.h"
 #include "session/steady_renderer.h"
 #include "view/pace.h"
 
@@ -162,7 +164,7 @@ void Viewer::begin() {
 // Renders until the picture has all samples, or something stops it. Returns whether it has them.
 bool Viewer::accumulate() {
     while (spp_ < options_.target) {
-        stop_ = scale_ > 1 ? options_.target : next_look(spp_, options_.target);
+        stop_ = scale_ > 1 ? options_.target : next_look(spp_, options_.target, LEAST_ESTIMATED_SPP / 2);
         if (!renderer_->render(stop_, [this](double progress) { return step(progress); })) return false;
         spp_ = stop_;
         if (scale_ > 1 || restart_ || ended()) break;
