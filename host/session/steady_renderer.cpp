@@ -2,7 +2,6 @@
 #include "session/steady_renderer.h"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 namespace candela {
@@ -12,10 +11,6 @@ using Seconds = std::chrono::duration<double>;
 
 // Copying the state may take this share of the time.
 static constexpr double LARGEST_SHARE_OF_HOLDING = 0.05;
-
-// The pause before a device is opened again, which doubles with each attempt: a driver needs a moment to
-// reset it.
-static constexpr Seconds FIRST_PAUSE{0.1};
 
 SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
     : source_(std::move(source)), on_failure_(std::move(on_failure)) {
@@ -73,26 +68,16 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
     }
 }
 
-// Closes the device, or throws the error if it is of another kind or the last allowed failure. While the
-// device is being opened again, any error counts as a failure: a driver that is not ready may report
-// anything.
+// Closes the device; or throws the error, if it is of another kind or the last allowed failure.
 void SteadyRenderer::recover(const Error& error) {
-    if (renderer_) {
-        if (error.code() != ExitCode::device_lost && error.code() != ExitCode::out_of_memory)
-            throw Error(error);
-        cause_ = error;
-        source_.settings.submission_seconds = renderer_->submission_seconds() / 2;
-    }
+    const SampleCounts samples = count_samples(source_.states);
+    const bool again = recovery_.survives(error, renderer_ != nullptr, samples.total);
+    if (renderer_) source_.settings.submission_seconds = renderer_->submission_seconds() / 2;
     renderer_.reset();
     device_.reset();
-
-    const SampleCounts samples = count_samples(source_.states);
-    if (samples.total > samples_at_failure_) failures_in_a_row_ = 0;
-    samples_at_failure_ = samples.total;
-    ++failures_;
-    if (++failures_in_a_row_ == MOST_FAILURES) throw Error(*cause_);
+    if (!again) throw Error(recovery_.cause());
     on_failure_(error, samples.least, source_.settings.submission_seconds);
-    std::this_thread::sleep_for(FIRST_PAUSE * (1u << (failures_in_a_row_ - 1)));
+    recovery_.pause();
 }
 
 }  // namespace candela
