@@ -17,6 +17,14 @@ struct CheckpointOptions {
     bool resume = false;  // From the file, if it exists.
 };
 
+// The scene's camera of that name, or its first. Throws Error (usage) that begins with `place` and lists the
+// names if there is none.
+const Camera& choose_camera(const Scene& scene, const std::optional<std::string>& name,
+                            const std::string& place);
+
+// What the scene proposes for a picture by one of its cameras.
+RenderSettings proposed_settings(const Scene& scene, const Camera& camera);
+
 // What a rendering needs besides the scene.
 struct RenderJob {
     Camera camera;

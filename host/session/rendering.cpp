@@ -19,7 +19,9 @@ std::vector<Accumulation> first_states(const RenderJob& job, std::optional<Check
 }  // namespace
 
 Rendering::Rendering(Source source, RenderJob job, RenderRecord record)
-    : job_(std::move(job)),
+    : scene_(source.scene),
+      device_(source.device),
+      job_(std::move(job)),
       record_(std::move(record)),
       renderer_({.instance = source.instance,
                  .device = source.device,
@@ -35,13 +37,29 @@ Rendering::Rendering(Source source, RenderJob job, RenderRecord record)
       convergence_(job_.target_error, std::move(source.reference)),
       seconds_before_(source.resumed ? source.resumed->header.render_seconds : 0.0),
       planned_(source.resumed ? source.resumed->header.planned : 0) {
-    record_.maker = make_maker(source.device);
-    record_.device_bytes = device_bytes(*source.scene, job_.settings);
     record_.resumed_samples = count_samples(renderer_.states()).total;
-    record_.array_map = renderer_.array_map();
-    record_.pipeline_seconds = renderer_.pipeline_seconds();
+    complete_record();
     if (job_.checkpoint.file) checkpoints_.emplace(*job_.checkpoint.file, job_.checkpoint.every);
     if (job_.write_every) images_.emplace(*job_.write_every);
+}
+
+void Rendering::restart(RenderJob job, RenderRecord record, bool scene_changed) {
+    job_ = std::move(job);
+    record_ = std::move(record);
+    std::optional<Checkpoint> none;
+    renderer_.restart(scene_changed, job_.settings, first_states(job_, none));
+    convergence_ = Convergence(job_.target_error, {});
+    seconds_before_ = 0.0;
+    planned_ = 0;
+    complete_record();
+}
+
+// Notes what the device says.
+void Rendering::complete_record() {
+    record_.maker = make_maker(device_);
+    record_.device_bytes = device_bytes(*scene_, job_.settings);
+    record_.array_map = renderer_.array_map();
+    record_.pipeline_seconds = renderer_.pipeline_seconds();
 }
 
 double Rendering::seconds_of_run() const {
@@ -129,6 +147,7 @@ std::optional<Error> Rendering::run(RenderCallbacks callbacks) {
         failure = error;
     }
     record_.render_seconds = seconds();
+    seconds_before_ = record_.render_seconds;
     record_.cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
     record_.counters = total_counters(renderer_.states());
     record_.device_failures = renderer_.failures();

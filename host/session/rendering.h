@@ -55,6 +55,12 @@ class Rendering {
     // otherwise.
     std::optional<Error> run(RenderCallbacks callbacks);
 
+    // Changes the samples per pixel that run() renders to.
+    void set_target(uint32_t spp) { job_.target = spp; }
+    // Starts over, on the same device, with another job, which asks for no files; if `scene_changed`, with
+    // the source's scene as it is now. Throws Error if that fails, and is then of no more use.
+    void restart(RenderJob job, RenderRecord record, bool scene_changed);
+
     // The image of the samples so far, from which record() takes its hash.
     Image image();
     // Writes the last checkpoint, as finished work, if the job asks for one. Throws Error if that fails.
@@ -67,6 +73,7 @@ class Rendering {
     const vk::Device& device() const { return renderer_.device(); }
 
   private:
+    void complete_record();
     bool render_and_look();
     bool step(double done);
     void keep();
@@ -75,6 +82,8 @@ class Rendering {
     double seconds_of_run() const;
     double seconds() const { return seconds_before_ + seconds_of_run(); }
 
+    const GpuScene* scene_;
+    vk::DeviceInfo device_;
     RenderJob job_;
     RenderRecord record_;
     RenderCallbacks callbacks_;
@@ -83,7 +92,7 @@ class Rendering {
     std::optional<CheckpointWriter> checkpoints_;
     std::optional<Interval> images_;  // From one writing of the images to the next.
     std::chrono::steady_clock::time_point start_;
-    double seconds_before_;  // Of rendering before it was resumed.
+    double seconds_before_;  // Of rendering before this run.
     uint32_t planned_;       // Of an adaptive rendering: see render_pass().
 };
 

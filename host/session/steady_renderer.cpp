@@ -15,17 +15,20 @@ static constexpr double LARGEST_SHARE_OF_HOLDING = 0.05;
 SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
     : source_(std::move(source)), on_failure_(std::move(on_failure)) {
     open();
-    array_map_ = renderer_->array_map();
-    pipeline_seconds_ = renderer_->pipeline_seconds();
-    if (source_.positions) positions_ = renderer_->positions();
+    look_up_positions();
     next_hold_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(source_.hold_seconds));
 }
 
 void SteadyRenderer::open() {
-    device_ = std::make_unique<vk::Device>(*source_.instance, source_.device, source_.pipeline_cache_folder);
+    if (!device_) {
+        device_ =
+            std::make_unique<vk::Device>(*source_.instance, source_.device, source_.pipeline_cache_folder);
+    }
     source_.settings.seed = state().seed;
     renderer_ = std::make_unique<Renderer>(*device_, *source_.scene, *source_.camera, source_.settings);
     renderer_->upload(state());
+    array_map_ = renderer_->array_map();
+    pipeline_seconds_ = renderer_->pipeline_seconds();
     loaded_ = true;
 }
 
@@ -34,6 +37,21 @@ void SteadyRenderer::load() {
     renderer_->reset(*source_.scene, *source_.camera, source_.settings);
     renderer_->upload(state());
     loaded_ = true;
+}
+
+void SteadyRenderer::look_up_positions() {
+    if (source_.positions && positions_.empty()) positions_ = renderer_->positions();
+}
+
+void SteadyRenderer::restart(bool scene_changed, const RenderSettings& settings,
+                             std::vector<Accumulation> states) {
+    source_.settings = settings;
+    source_.states = std::move(states);
+    positions_.clear();
+    selected_ = 0;
+    if (scene_changed) renderer_.reset();  // Before the next one takes memory.
+    renderer_ ? load() : open();
+    look_up_positions();
 }
 
 void SteadyRenderer::select(size_t state) {
@@ -55,6 +73,7 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
         try {
             if (!renderer_) open();
             if (!loaded_) load();
+            look_up_positions();
             const double before = double(std::min(state().least_samples(), target)) / target;
             const bool complete = renderer_->render(target, [&](double done) {
                 if (Clock::now() >= next_hold_) hold();

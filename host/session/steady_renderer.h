@@ -38,6 +38,11 @@ class SteadyRenderer {
     // Throws Error if that fails, or if a state does not fit.
     SteadyRenderer(Source source, OnFailure on_failure);
 
+    // Starts over, on the same device, with other settings and states, and with the camera that the source's
+    // pointer shows now; if `scene_changed`, with the scene that its pointer shows, too. Throws Error if that
+    // fails, and is then of no more use.
+    void restart(bool scene_changed, const RenderSettings& settings, std::vector<Accumulation> states);
+
     // Continues with this one of the states(), as it is there now. At the start, the first is selected.
     void select(size_t state);
 
@@ -66,6 +71,7 @@ class SteadyRenderer {
   private:
     void open();
     void load();
+    void look_up_positions();
     Accumulation& state() { return source_.states[selected_]; }
     void recover(const Error& error);
 
