@@ -21,7 +21,7 @@ MAY_INCLUDE = {
     "host/gpu_scene": ["host/base", "host/scene", "host/bvh", "shaders/shared"],
     "host/film": ["host/base", "shaders/shared"],
     "host/render": ["host/base", "host/scene", "host/gpu_scene", "host/film", "host/vk", "shaders/shared"],
-    "host/session": ["host/base", "host/scene", "host/gpu_scene", "host/film", "host/render", "host/vk",
+    "host/session": ["host/base", "host/scene", "host/load", "host/gpu_scene", "host/film", "host/render", "host/vk",
                      "shaders/shared"],
     "host/probe": ["host/base", "host/scene", "host/load", "host/gpu_scene", "host/render", "host/vk",
                    "shaders/shared"],
@@ -70,6 +70,9 @@ LIBRARIES = {
     "GLFW": (r"GLFW/", ["host/view"]),
     "Dear ImGui": (r"imgui|backends/imgui", ["host/view"]),
 }
+
+# The header of the library candela_session, for programs elsewhere: it hides the rest.
+PUBLIC_HEADER = "host/session/session.h"
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 MAIN = re.compile(r"^\s*void\s+main\s*\(", re.MULTILINE)
@@ -133,6 +136,11 @@ class Checker:
                         where = line if source == name else 1
                         self.report(name, where, f"sees {library} (<{said}>){how}, but {folder}/ must not")
 
+    def check_public(self):
+        for line, said, _ in self.includes.get(PUBLIC_HEADER, []):
+            if not re.fullmatch("[a-z_0-9]+", said):
+                self.report(PUBLIC_HEADER, line, f"includes {said}, but may include only the standard library")
+
     def check_cycles(self, name):
         if name in self.reachable(name):
             self.report(name, 1, "includes itself in the end; break the cycle")
@@ -174,6 +182,7 @@ class Checker:
             self.check_libraries(name, folder)
             self.check_cycles(name)
             self.check_form(name, folder)
+        self.check_public()
         for pattern in ("tests/**/*.cpp", "tests/**/*.h", "tests/**/*.glsl"):
             for path in sorted(self.root.glob(pattern)):
                 self.check_comment(path.relative_to(self.root).as_posix(), path.read_text(encoding="utf-8"))

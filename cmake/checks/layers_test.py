@@ -61,6 +61,8 @@ VIOLATIONS = [
     ("a kernel elsewhere", "shaders/bsdf/a.comp.glsl", "// A.\nvoid main() {}\n", "*.comp.glsl in shaders/kernels/"),
     ("a missing guard", "shaders/bsdf/a.glsl", "// A.\n", "lacks the include guard BSDF_A_GLSL"),
     ("a missing pragma", "host/base/a.h", "// A.\n", "host/base/a.h:1: lacks #pragma once"),
+    ("a public header that shows more", "host/session/session.h", '// A.\n#pragma once\n#include "base/error.h"\n',
+     "host/session/session.h:3: includes base/error.h, but may include only the standard library"),
     ("a cycle", "shaders/bsdf/a.glsl", f'// A.\n{GUARD}#include "bsdf/a.glsl"\n#endif\n', "includes itself in the end"),
     ("an unknown folder", "host/gui/a.cpp", "// A.\n", "the folder host/gui/ is not in the table of layers"),
     ("a file without a comment", "host/base/a.cpp", "int a;\n", "host/base/a.cpp:1: must begin with a comment"),
