@@ -29,6 +29,9 @@ candela_check(readme ${PYTHON3} cmake/checks/readme.py $<TARGET_FILE:candela> RE
 set_tests_properties(readme PROPERTIES LABELS cli COST 100)  # Long, so it begins early: see tests/labels.cmake.
 candela_check(rivals ${PYTHON3} tests/bench/rivals_test.py $<TARGET_FILE:candela>)
 set_tests_properties(rivals PROPERTIES LABELS cli RUN_SERIAL TRUE)
+candela_check(session ${PYTHON3} tests/session/session_test.py $<TARGET_FILE:render_scene> $<TARGET_FILE:candela>
+    scenes)
+set_tests_properties(session PROPERTIES LABELS cli)
 candela_check(submit ${PYTHON3} tests/slurm/submit_test.py)
 candela_check(slurm ${PYTHON3} tests/slurm/slurm_test.py $<TARGET_FILE:candela>)
 set_tests_properties(slurm PROPERTIES LABELS cli COST 100)  # Mostly waits.

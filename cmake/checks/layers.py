@@ -21,6 +21,8 @@ MAY_INCLUDE = {
     "host/gpu_scene": ["host/base", "host/scene", "host/bvh", "shaders/shared"],
     "host/film": ["host/base", "shaders/shared"],
     "host/render": ["host/base", "host/scene", "host/gpu_scene", "host/film", "host/vk", "shaders/shared"],
+    "host/session": ["host/base", "host/scene", "host/load", "host/gpu_scene", "host/film", "host/render", "host/vk",
+                     "shaders/shared"],
     "host/probe": ["host/base", "host/scene", "host/load", "host/gpu_scene", "host/render", "host/vk",
                    "shaders/shared"],
     "host/selftest": ["host/base", "host/scene", "host/gpu_scene", "host/film", "host/render", "host/probe", "host/vk",
@@ -28,7 +30,7 @@ MAY_INCLUDE = {
     "host/bench": ["host/base", "host/scene", "host/bvh", "host/gpu_scene", "host/film", "host/render", "host/probe",
                    "host/vk", "shaders/shared"],
     "host/view": ["host/base", "host/scene", "host/load/quote.h", "host/gpu_scene", "host/film", "host/render",
-                  "host/vk", "shaders/shared"],
+                  "host/session", "host/vk", "shaders/shared"],
     "host/cli": ["host", "shaders/shared"],
     "host": ["host", "shaders/shared"],
     "shaders/shared": ["host/base/math.h"],
@@ -51,8 +53,8 @@ DECLARE_BUFFERS = ("shaders/scene/scene_data.glsl", "shaders/probes/items.glsl",
 # Library -> what its includes look like, and the folders that may see it, directly or through other files.
 LIBRARIES = {
     "GLM": (r"glm/", ["host/base", "host/scene", "host/load", "host/load/gltf", "host/load/json", "host/load/obj",
-                      "host/load/ply", "host/bvh", "host/gpu_scene", "host/film", "host/render", "host/probe", "host/selftest",
-                      "host/bench", "host/view", "host/cli", "host"]),
+                      "host/load/ply", "host/bvh", "host/gpu_scene", "host/film", "host/render", "host/session",
+                      "host/probe", "host/selftest", "host/bench", "host/view", "host/cli", "host"]),
     "stb": (r"stb_", ["host/base"]),
     "OpenEXR": (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex|openexr|half\.h)", ["host/base"]),
     "libpng": (r"png\.h", ["host/base"]),
@@ -62,12 +64,15 @@ LIBRARIES = {
     "tinyobjloader": (r"tiny_obj_loader", []),
     "tinygltf": (r"tiny_gltf", []),
     "CLI11": (r"CLI/", ["host/cli"]),
-    "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/probe", "host/selftest", "host/bench", "host/view",
-                                 "host/cli", "host"]),
+    "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/session", "host/probe", "host/selftest", "host/bench",
+                                 "host/view", "host/cli", "host"]),
     "Embree": (r"embree3/", ["host/bench"]),
     "GLFW": (r"GLFW/", ["host/view"]),
     "Dear ImGui": (r"imgui|backends/imgui", ["host/view"]),
 }
+
+# The header of the library candela_session, for programs elsewhere: it hides the rest.
+PUBLIC_HEADER = "host/session/session.h"
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 MAIN = re.compile(r"^\s*void\s+main\s*\(", re.MULTILINE)
@@ -90,14 +95,13 @@ class Checker:
         self.problems.append(f"{name}:{line}: {message}")
 
     def find_includes(self, name, text):
-        """Quoted includes start at host/ or shaders/, as the compilers' search paths do; a header that CMake
-        generates from NAME.h.in is found beside it."""
+        """Quoted includes start at host/ or shaders/, as the compilers' search paths do; CMake generates NAME.h
+        from NAME.h.in."""
         found = []
-        folder = name.rpartition("/")[0]
         for match in INCLUDE.finditer(text):
             line = text.count("\n", 0, match.start()) + 1
             quoted, library = match.groups()
-            candidates = (f"host/{quoted}", f"shaders/{quoted}", f"{folder}/{quoted}.in")
+            candidates = (f"host/{quoted}", f"shaders/{quoted}", f"host/{quoted}.in")
             target = next((candidate for candidate in candidates if candidate in self.files), None)
             if quoted and target is None:
                 self.report(name, line, f'includes "{quoted}", which is neither below host/ nor below shaders/')
@@ -131,6 +135,11 @@ class Checker:
                         how = "" if source == name else f" through {source}:{line}"
                         where = line if source == name else 1
                         self.report(name, where, f"sees {library} (<{said}>){how}, but {folder}/ must not")
+
+    def check_public(self):
+        for line, said, _ in self.includes.get(PUBLIC_HEADER, []):
+            if not re.fullmatch("[a-z_0-9]+", said):
+                self.report(PUBLIC_HEADER, line, f"includes {said}, but may include only the standard library")
 
     def check_cycles(self, name):
         if name in self.reachable(name):
@@ -173,6 +182,7 @@ class Checker:
             self.check_libraries(name, folder)
             self.check_cycles(name)
             self.check_form(name, folder)
+        self.check_public()
         for pattern in ("tests/**/*.cpp", "tests/**/*.h", "tests/**/*.glsl"):
             for path in sorted(self.root.glob(pattern)):
                 self.check_comment(path.relative_to(self.root).as_posix(), path.read_text(encoding="utf-8"))

@@ -24,7 +24,7 @@
 #include "cli/loading.h"
 #include "cli/vulkan.h"
 #include "probe/scenes.h"
-#include "version.h"
+#include "session/version.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 

@@ -27,45 +27,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* STDOUT = "-";
 
-// From the world to the camera as OpenEXR's standard attributes define its space: left-handed, x to the
-// right, y up, and z forwards, so that what is in front of the camera has positive z.
-glm::dmat4 world_to_camera(const Camera& camera) {
-    using glm::dvec4;
-    const dvec3 forward = normalize(camera.look_at - camera.position);
-    const dvec3 right = normalize(cross(forward, dvec3(camera.up)));
-    const dvec3 up = cross(right, forward);
-    const glm::dmat4 axes =
-        transpose(glm::dmat4(dvec4(right, 0), dvec4(up, 0), dvec4(forward, 0), dvec4(0, 0, 0, 1)));
-    return axes *
-           glm::dmat4(dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0), dvec4(-camera.position, 1));
-}
-
-// From the world to OpenEXR's normalised device coordinates, after the division by w: x to the right and y
-// down, (0,0) and (1,1) the upper left and lower right corners of the display window. The standard leaves z
-// open; here it is the inverse of the depth [1/m], so that the matrix can be inverted; of an orthographic
-// camera, whose w is 1, the depth [m].
-glm::dmat4 world_to_ndc(const Camera& camera, uvec2 size) {
-    using glm::dvec4;
-    if (camera.ortho_height) {
-        const double height = *camera.ortho_height;
-        const double width = height * size.x / size.y;
-        const glm::dmat4 projection(dvec4(1.0 / width, 0, 0, 0), dvec4(0, -1.0 / height, 0, 0),
-                                    dvec4(0, 0, 1, 0), dvec4(0.5, 0.5, 0, 1));
-        return projection * world_to_camera(camera);
-    }
-    const double tan_y = std::tan(0.5 * double(camera.vertical_fov));
-    const double tan_x = tan_y * size.x / size.y;
-    const glm::dmat4 projection(dvec4(0.5 / tan_x, 0, 0, 0), dvec4(0, -0.5 / tan_y, 0, 0),
-                                dvec4(0.5, 0.5, 0, 1), dvec4(0, 0, 1, 0));
-    return projection * world_to_camera(camera);
-}
-
-// The samples that some pixel holds.
-std::string samples_text(const RenderRecord& record) {
-    const SampleRange held{record.settings.first_sample, record.settings.first_sample + record.most_spp};
-    return to_text({&held, 1});
-}
-
 // Marks R G B A and Albedo as 16-bit. A channel that 16 bits cannot hold stays as it is, with a warning: its
 // samples must not be lost.
 void use_half(Image& image) {
@@ -168,20 +129,6 @@ void write_report(const std::string& target, const Json& report) {
 }
 
 }  // namespace
-
-void add_attributes(Image& image, const RenderRecord& record) {
-    image.attributes["worldToCamera"] = mat4(world_to_camera(record.camera));
-    image.attributes["worldToNDC"] = mat4(world_to_ndc(record.camera, record.settings.size));
-    image.attributes["samplesPerPixel"] = float(record.spp);
-    image.attributes["renderTimeSeconds"] = float(record.render_seconds);
-    image.attributes["candela.samples"] = samples_text(record);
-    if (record.adaptive) image.attributes[ADAPTIVE_ATTRIBUTE] = "yes";
-    set_maker(image, record.maker);
-    set_identity(image, record.identity);
-    for (const auto& [name, text] : record.scene_attributes)
-        image.attributes[name] = text;
-    image.attributes["candela.commandLine"] = record.command_line;
-}
 
 void check_outputs(const ImageOutputs& outputs) {
     if (outputs.files.empty()) {

@@ -8,7 +8,7 @@
 
 #include "cli/command.h"
 #include "cli/console.h"
-#include "version.h"
+#include "session/version.h"
 
 namespace candela {
 

@@ -12,13 +12,10 @@
 #include <vector>
 
 #include "cli/attempts.h"
-#include "cli/checkpoints.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
-#include "cli/convergence.h"
 #include "cli/interrupt.h"
-#include "cli/interval.h"
 #include "cli/loading.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -26,10 +23,10 @@
 #include "cli/vulkan.h"
 #include "film/identity.h"
 #include "gpu_scene/gpu_scene.h"
-#include "render/adaptive.h"
-#include "render/make_identity.h"
-#include "render/steady_renderer.h"
-#include "version.h"
+#include "session/checkpoints.h"
+#include "session/convergence.h"
+#include "session/record.h"
+#include "session/rendering.h"
 #include "vk/instance.h"
 
 namespace candela {
@@ -50,101 +47,6 @@ void print_details(const vk::Device& device, const GpuScene& scene, const Render
                  fixed(double(scene.bvh_sah_cost), 2).c_str(), fixed(scene.bvh_seconds, 3).c_str());
     std::fprintf(stderr, "device memory: %s of %s (scene %s)\n", bytes_text(record.device_bytes).c_str(),
                  bytes_text(device.available_memory()).c_str(), bytes_text(scene.bytes()).c_str());
-}
-
-Image collect_image(SteadyRenderer& renderer, const AovSelection& aovs, RenderRecord& record) {
-    const std::span<const Accumulation> states = renderer.states();
-    const SampleCounts counts = count_samples(states);
-    record.samples = counts.total;
-    record.spp = samples_per_pixel(states);
-    record.most_spp = counts.most;
-    Image image = make_image(states, aovs, renderer.positions());
-    record.image_hash = image_hash(image);
-    return image;
-}
-
-// What is done at intervals during a rendering.
-struct Upkeep {
-    std::optional<CheckpointWriter> checkpoints;
-    std::optional<Interval> images;  // From one writing of the outputs to the next.
-    Convergence convergence;
-    Progress progress;
-    double seconds_before = 0.0;  // Of rendering before it was resumed.
-    uint32_t planned = 0;         // Of an adaptive rendering: see render_pass().
-
-    double seconds() const { return seconds_before + progress.seconds(); }
-};
-
-CheckpointHeader checkpoint_header(const RenderRecord& record, double seconds, const Upkeep& upkeep) {
-    return {.identity = record.identity,
-            .maker = record.maker,
-            .render_seconds = seconds,
-            .planned = upkeep.planned};
-}
-
-// Writes a checkpoint and the images if they are due.
-void keep(SteadyRenderer& renderer, const ImageOutputs& outputs, const RenderRecord& record, Upkeep& upkeep) {
-    if (upkeep.checkpoints && upkeep.checkpoints->due()) {
-        renderer.hold();
-        upkeep.checkpoints->write(checkpoint_header(record, upkeep.seconds(), upkeep), renderer.states());
-    }
-    if (upkeep.images && upkeep.images->over()) {
-        renderer.hold();
-        RenderRecord current = record;
-        current.render_seconds = upkeep.seconds();
-        Image image = collect_image(renderer, outputs.written_aovs(), current);
-        write_current_images(outputs, current, std::move(image));
-        upkeep.images->restart();
-    }
-}
-
-// Renders until all samples are there, the error is small enough or `keep_going` returns false; returns false
-// only in the last case. Looks at the error at fixed numbers of samples or, if nobody needs that, only at the
-// end.
-bool render_and_look(SteadyRenderer& renderer, bool adaptive, uint32_t target, Upkeep& upkeep,
-                     const std::function<bool()>& keep_going) {
-    Convergence& convergence = upkeep.convergence;
-    uint32_t held = samples_per_pixel(renderer.states());
-    if (held > 0) convergence.look(renderer.states(), upkeep.seconds());
-    while (held < target && !convergence.reached()) {
-        const uint32_t next = adaptive ? next_pass_end(held, target) : convergence.next(held, target);
-        const auto update = [&](double done) {
-            upkeep.progress.update(done * next / target, convergence.estimate());
-            return keep_going();
-        };
-        const bool complete =
-            adaptive ? render_pass(renderer, next, upkeep.planned, update) : renderer.render(next, update);
-        if (!complete) return false;
-        held = next;
-        convergence.look(renderer.states(), upkeep.seconds());
-        upkeep.progress.update(double(held) / target, convergence.estimate());
-    }
-    return true;
-}
-
-// Renders, with all upkeep, and records times, counters and errors. Returns the Error if the device failed
-// for good.
-std::optional<Error> trace(SteadyRenderer& renderer, const RenderJob& job, const InterruptGuard& guard,
-                           Upkeep& upkeep, RenderRecord& record) {
-    const std::clock_t cpu_start = std::clock();
-    std::optional<Error> failure;
-    try {
-        record.complete = render_and_look(renderer, job.adaptive, job.target, upkeep, [&] {
-            keep(renderer, job.images, record, upkeep);
-            return !guard.interrupted() && !(job.time_limit && upkeep.progress.seconds() >= *job.time_limit);
-        });
-    } catch (const Error& error) {
-        if (count_samples(renderer.states()).total == 0) throw;
-        failure = error;
-    }
-    upkeep.progress.clear();
-    record.render_seconds = upkeep.seconds();
-    record.cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
-    record.counters = total_counters(renderer.states());
-    record.device_failures = renderer.failures();
-    record.convergence = upkeep.convergence.points();
-    record.estimated_error = upkeep.convergence.estimate();
-    return failure;
 }
 
 // `, estimated error 0.0183 (target 0.02)`, or nothing.
@@ -189,66 +91,68 @@ void warn_of_maker(const Maker& before, const Maker& now) {
                   ": the image is right, but not the same bits as if one had made it all");
 }
 
-// Renders on an instance, and writes the files.
-ExitCode render_on(const vk::Instance& instance, const vk::DeviceInfo& device, const GpuScene& scene,
-                   const RenderJob& job, const std::optional<std::string>& report,
-                   std::optional<Image> reference, RenderRecord& record) {
-    std::optional<Checkpoint> resumed = load_to_resume(job, record.identity);
-    record.maker = {.device = device.name, .driver = device.driver, .version = CANDELA_VERSION};
-    record.device_bytes = device_bytes(scene, job.settings);
-    const AovSelection aovs = job.images.written_aovs();
-    SteadyRenderer::Source source{.instance = &instance,
-                                  .device = device,
-                                  .pipeline_cache_folder = pipeline_cache_folder(),
-                                  .scene = &scene,
-                                  .camera = &job.camera,
-                                  .settings = job.settings,
-                                  .states = {empty_state(job.settings)},
-                                  .positions = aovs.needs_positions()};
-    if (job.adaptive) source.states = adaptive_states(job.settings);
-    if (resumed) {
-        warn_of_maker(resumed->header.maker, record.maker);
-        record.render_seconds = resumed->header.render_seconds;
-        record.resumed_samples = count_samples(resumed->states).total;
-        source.states = std::move(resumed->states);
+// The checkpoint that the job asks to continue from, if there is one yet.
+std::optional<Checkpoint> resume(const RenderJob& job, const RenderRecord& record,
+                                 const vk::DeviceInfo& device, const MessageOptions& messages) {
+    std::optional<Checkpoint> checkpoint = load_to_resume(job, record.identity);
+    if (checkpoint) {
+        warn_of_maker(checkpoint->header.maker, make_maker(device));
+    } else if (job.checkpoint.resume && !messages.quiet) {
+        print_note('"' + *job.checkpoint.file + "\" does not exist yet: starting anew");
     }
-    SteadyRenderer renderer(std::move(source), warn_of_device_failure);
-    record.array_map = renderer.array_map();
-    record.pipeline_seconds = renderer.pipeline_seconds();
-    if (job.messages.verbose) print_details(renderer.device(), scene, record);
-    const PixelRect& crop = job.settings.crop;
-    const uint32_t held = samples_per_pixel(renderer.states());
-    Upkeep upkeep{.checkpoints = {},
-                  .images = {},
-                  .convergence = Convergence(job.target_error, std::move(reference)),
-                  .progress = Progress(uint64_t{crop.width()} * crop.height(), job.target,
-                                       double(held) / job.target, job.time_limit,
-                                       job.messages.quiet ? ProgressStyle::none : job.messages.progress),
-                  .seconds_before = record.render_seconds,
-                  .planned = resumed ? resumed->header.planned : 0};
-    if (job.checkpoint.file) upkeep.checkpoints.emplace(*job.checkpoint.file, job.checkpoint.every);
-    if (job.write_every) upkeep.images.emplace(*job.write_every);
+    return checkpoint;
+}
 
-    // Before this line there is nothing to keep, and a signal ends the program at once.
-    const InterruptGuard guard;
-    const std::optional<Error> failure = trace(renderer, job, guard, upkeep, record);
-    const bool interrupted = guard.interrupted() && !record.complete;
-    Image image = collect_image(renderer, aovs, record);
-    print_outcome(job.messages, record, job.target);
+// Writes all files. If one fails, still writes the others, and then throws the Error; or `failure`, if there
+// is one.
+void write_files(Rendering& rendering, const RenderOptions& options, const vk::Instance& instance,
+                 const std::optional<Error>& failure, uint32_t target) {
+    Image image = rendering.image();
+    RenderRecord record = rendering.record();
+    print_outcome(options.messages, record, target);
     record.validation_messages = instance.validation_messages().size();
     Attempts attempts;
-    if (upkeep.checkpoints) {
-        attempts.attempt([&] {
-            upkeep.checkpoints->finish(checkpoint_header(record, record.render_seconds, upkeep),
-                                       renderer.states());
-        });
-    }
-    attempts.attempt([&] { write_outputs(job.images, report, record, std::move(image)); });
+    attempts.attempt([&] { rendering.finish_checkpoint(); });
+    attempts.attempt([&] { write_outputs(options.images, options.report, record, std::move(image)); });
     attempts.attempt([&] {
         if (failure) throw Error(*failure);
     });
     attempts.finish();
-    upkeep.progress.end(record.complete ? "done" : interrupted ? "interrupted" : "time limit");
+}
+
+// Renders on an instance, and writes the files.
+ExitCode render_on(const vk::Instance& instance, const vk::DeviceInfo& device, const GpuScene& scene,
+                   const RenderJob& job, const RenderOptions& options, std::optional<Image> reference,
+                   RenderRecord record) {
+    const MessageOptions& messages = options.messages;
+    std::optional<Checkpoint> resumed = resume(job, record, device, messages);
+    Rendering rendering({.instance = &instance,
+                         .device = device,
+                         .pipeline_cache_folder = pipeline_cache_folder(),
+                         .scene = &scene,
+                         .resumed = std::move(resumed),
+                         .reference = std::move(reference)},
+                        job, std::move(record));
+    if (messages.verbose) print_details(rendering.device(), scene, rendering.record());
+    const PixelRect& crop = job.settings.crop;
+    Progress progress(uint64_t{crop.width()} * crop.height(), job.target,
+                      double(rendering.spp()) / job.target, job.time_limit,
+                      messages.quiet ? ProgressStyle::none : messages.progress);
+
+    // Before this line there is nothing to keep, and a signal ends the program at once.
+    const InterruptGuard guard;
+    const std::optional<Error> failure = rendering.run(
+        {.progress = [&](double done, std::optional<double> error) { progress.update(done, error); },
+         .keep_going = [&] { return !guard.interrupted(); },
+         .warn = print_warning,
+         .device_failed = warn_of_device_failure,
+         .write = [&](const RenderRecord& current,
+                      Image image) { write_current_images(options.images, current, std::move(image)); }});
+    progress.clear();
+    const bool complete = rendering.record().complete;
+    const bool interrupted = guard.interrupted() && !complete;
+    write_files(rendering, options, instance, failure, job.target);
+    progress.end(complete ? "done" : interrupted ? "interrupted" : "time limit");
     return interrupted ? ExitCode::interrupted : ExitCode::done;
 }
 
@@ -282,24 +186,16 @@ ExitCode render(const RenderOptions& options, const std::string& command_line) {
 
     warn_of_unseen_lights(scene, job.settings.estimator);
     const GpuScene gpu_scene = build_with_progress(scene, style);
-    RenderRecord record{.command_line = command_line,
-                        .scene_file = options.scene_file,
-                        .scene_attributes = scene.attributes,
-                        .identity = make_identity(gpu_scene, job.camera, job.settings),
-                        .adaptive = job.adaptive,
-                        .camera = job.camera,
-                        .settings = job.settings,
-                        .primitives = gpu_scene.id_count,
-                        .lights = gpu_scene.light_count,
-                        .load_seconds = load_seconds,
-                        .bvh_seconds = gpu_scene.bvh_seconds,
-                        .target_error = job.target_error,
-                        .reference = options.reference};
+    RenderRecord record = make_record(scene, gpu_scene, job);
+    record.command_line = command_line;
+    record.scene_file = options.scene_file;
+    record.load_seconds = load_seconds;
+    record.reference = options.reference;
 
     const vk::Instance instance(instance_options());
     const vk::DeviceInfo device = vk::select_device(instance.devices(), options.device);
     const ExitCode code =
-        render_on(instance, device, gpu_scene, job, options.report, std::move(reference), record);
+        render_on(instance, device, gpu_scene, job, options, std::move(reference), std::move(record));
     check_validation(instance);
     return code;
 }

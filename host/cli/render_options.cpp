@@ -170,14 +170,7 @@ AovSelection ImageOutputs::written_aovs() const {
 }
 
 const Camera& RenderOptions::choose_camera(const Scene& scene) const {
-    if (!camera) return scene.cameras.front();
-    std::vector<std::string> names;
-    for (const Camera& defined : scene.cameras) {
-        if (defined.name == *camera) return defined;
-        names.push_back(defined.name);
-    }
-    throw Error("--camera: unknown camera \"" + *camera + "\" (defined: " + joined(names) + ")",
-                ExitCode::usage);
+    return candela::choose_camera(scene, camera, "--camera: ");
 }
 
 RenderJob RenderOptions::job(const Scene& scene) const {
@@ -188,9 +181,8 @@ RenderJob RenderOptions::job(const Scene& scene) const {
                   .target_error = target_error,
                   .time_limit = time_limit,
                   .write_every = write_every,
-                  .images = images,
-                  .checkpoint = checkpoint,
-                  .messages = messages};
+                  .aovs = images.written_aovs(),
+                  .checkpoint = checkpoint};
     if (adaptive && job.target % 2 != 0) {
         throw Error("--adaptive renders two halves: give an even number of samples per pixel (--spp), not " +
                         std::to_string(job.target),
@@ -200,21 +192,20 @@ RenderJob RenderOptions::job(const Scene& scene) const {
 }
 
 RenderSettings RenderOptions::settings(const Scene& scene) const {
-    const IntegratorSettings& proposed = scene.integrator;
-    const uvec2 size = picture.size.value_or(choose_camera(scene).film_size.value_or(scene.film.size));
-    const uint32_t depth = max_depth.value_or(proposed.max_depth.value_or(DEPTH_SAFETY_LIMIT));
-    return {.size = size,
-            .crop = picture.crop_within(size),
-            .estimator = estimator.value_or(proposed.estimator),
-            .sampler = sampler.value_or(proposed.sampler),
-            .terminator = terminator.value_or(proposed.terminator),
-            .seed = seed.value_or(proposed.seed),
-            .first_sample = samples ? samples->first : 0,
-            .max_depth = std::min(depth, DEPTH_SAFETY_LIMIT),
-            .rr_depth = rr_depth.value_or(proposed.rr_depth),
-            .aovs = images.written_aovs().needs_layers(),
-            .scene_access = scene_access,
-            .pass_growth = time_limit || write_every ? EVEN_PASS_GROWTH : PASS_GROWTH};
+    RenderSettings result = proposed_settings(scene, choose_camera(scene));
+    result.size = picture.size.value_or(result.size);
+    result.crop = picture.crop_within(result.size);
+    result.estimator = estimator.value_or(result.estimator);
+    result.sampler = sampler.value_or(result.sampler);
+    result.terminator = terminator.value_or(result.terminator);
+    result.seed = seed.value_or(result.seed);
+    result.first_sample = samples ? samples->first : 0;
+    result.max_depth = max_depth.value_or(result.max_depth);
+    result.rr_depth = rr_depth.value_or(result.rr_depth);
+    result.aovs = images.written_aovs().needs_layers();
+    result.scene_access = scene_access;
+    result.pass_growth = time_limit || write_every ? EVEN_PASS_GROWTH : PASS_GROWTH;
+    return result;
 }
 
 }  // namespace candela

@@ -17,6 +17,7 @@
 #include "render/renderer.h"
 #include "scene/names.h"
 #include "scene/scene.h"
+#include "session/job.h"
 
 namespace candela {
 
@@ -46,30 +47,10 @@ struct ImageOutputs {
     AovSelection written_aovs() const;
 };
 
-struct CheckpointOptions {
-    std::optional<std::string> file;
-    double every = 60.0;  // Seconds.
-    bool resume = false;  // From the file, if it exists.
-};
-
 struct MessageOptions {
     ProgressStyle progress = ProgressStyle::automatic;
     bool quiet = false;
     bool verbose = false;
-};
-
-// What a rendering needs, once command line and scene are joined.
-struct RenderJob {
-    Camera camera;
-    RenderSettings settings;
-    uint32_t target = 0;                 // Samples per pixel, unless an error or a time ends it earlier.
-    bool adaptive = false;               // Samples go where the error is.
-    std::optional<double> target_error;  // Relative error of the image.
-    std::optional<double> time_limit;    // Seconds.
-    std::optional<double> write_every;   // Seconds.
-    ImageOutputs images;
-    CheckpointOptions checkpoint;
-    MessageOptions messages;
 };
 
 // What the argument SCENE of a command may name.

@@ -16,7 +16,7 @@
 #include "cli/console.h"
 #include "cli/json_text.h"
 #include "cli/vulkan.h"
-#include "version.h"
+#include "session/version.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 

@@ -15,12 +15,8 @@
 #include "cli/console.h"
 #include "cli/interrupt.h"
 #include "cli/loading.h"
-#include "cli/outputs.h"
 #include "cli/render_options.h"
 #include "cli/vulkan.h"
-#include "film/identity.h"
-#include "render/make_identity.h"
-#include "version.h"
 #include "view/controls.h"
 #include "view/viewer.h"
 #include "vk/device.h"
@@ -90,21 +86,6 @@ vk::DeviceInfo choose_device(const vk::Instance& instance, const Window& window,
     return vk::select_device(devices, wanted);
 }
 
-// The attributes of the image that `candela render` would have made.
-void add_attributes(Image& image, const ViewedPicture& picture, const vk::DeviceInfo& device,
-                    const std::string& command_line) {
-    RenderRecord record;
-    record.command_line = command_line;
-    record.maker = {.device = device.name, .driver = device.driver, .version = CANDELA_VERSION};
-    record.identity = make_identity(picture.scene, picture.camera, picture.settings);
-    record.settings = picture.settings;
-    record.render_seconds = picture.seconds;
-    record.spp = picture.state.least_samples();
-    record.most_spp = picture.state.most_samples();
-    record.camera = picture.camera;
-    add_attributes(image, record);
-}
-
 ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     CommandFiles files;
     files.read("SCENE", arguments.render.scene_file);
@@ -125,22 +106,18 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     vk::Instance::Options instance_wishes = instance_options();
     instance_wishes.extensions = window.instance_extensions();
     const vk::Instance instance(instance_wishes);
-    const vk::DeviceInfo device = choose_device(instance, window, options.device);
     const InterruptGuard guard;
     bool complete = false;
     {
         Viewer viewer(window, instance, std::move(scene), state,
-                      {.device = device,
+                      {.device = choose_device(instance, window, options.device),
                        .pipeline_cache_folder = pipeline_cache_folder(),
                        .name = name,
+                       .command_line = command_line,
                        .target = arguments.frames.value_or(options.spp.value_or(MAX_SPP)),
                        .close_at_target = arguments.frames.has_value(),
                        .stopped = [&guard] { return guard.interrupted(); },
-                       .say = print_note,
-                       .add_attributes =
-                           [&](Image& image, const ViewedPicture& picture) {
-                               add_attributes(image, picture, device, command_line);
-                           }});
+                       .say = print_note});
         complete = viewer.run();
         Attempts attempts;
         for (const std::string& path : arguments.screenshots) {

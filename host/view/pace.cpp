@@ -2,9 +2,6 @@
 #include "view/pace.h"
 
 #include <algorithm>
-#include <bit>
-
-#include "base/relative_error.h"
 
 namespace candela {
 
@@ -16,10 +13,6 @@ uint32_t next_scale(uint32_t scale, double seconds) {
     constexpr double CLEARLY = 0.8;  // So that the scale does not oscillate.
     if (seconds > MOVING_SECONDS) return std::min(2 * scale, COARSEST_SCALE);
     return 4.0 * seconds < CLEARLY * MOVING_SECONDS ? std::max(scale / 2, 1u) : scale;
-}
-
-uint32_t next_look(uint32_t spp, uint32_t target) {
-    return std::min(std::max(std::bit_ceil(spp + 1), LEAST_ESTIMATED_SPP / 2), target);
 }
 
 }  // namespace candela

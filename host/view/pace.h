@@ -1,5 +1,4 @@
-// What the viewer decides from numbers alone: how coarse the picture is while the camera moves, and when to
-// look at the error of a picture at rest.
+// How coarse the picture is while the camera moves.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +22,5 @@ uint32_t next_scale(uint32_t scale, double seconds);
 
 // `size` divided by `scale`, at least 1 in each direction.
 uvec2 scaled_size(uvec2 size, uint32_t scale);
-
-// The samples per pixel at which to look next at a picture that has `spp` of them, on its way to `target`: a
-// power of two, beginning with the first that the estimate of its error needs, and at most `target`.
-uint32_t next_look(uint32_t spp, uint32_t target);
 
 }  // namespace candela

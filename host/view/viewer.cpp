@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 #include <utility>
 
 #include "base/printable.h"
-#include "render/steady_renderer.h"
+#include "base/relative_error.h"
+#include "session/next_look.h"
 #include "view/pace.h"
 
 namespace candela {
@@ -24,10 +24,6 @@ constexpr double IDLE_SECONDS = 0.1;
 
 // The rate is a mean over about this long [s].
 constexpr double RATE_SECONDS = 0.5;
-
-// The pause before a lost device is opened again [s], which doubles with each attempt: a driver needs a
-// moment to reset it.
-constexpr double FIRST_PAUSE = 0.1;
 
 // Settings for the whole of a picture of another size.
 RenderSettings resized(RenderSettings settings, uvec2 size) {
@@ -93,31 +89,23 @@ void Viewer::open() {
     display_ = std::make_unique<Display>(*device_, presenter_->blue_first());
 }
 
-// Closes the device, or throws the error if it is of another kind or the last allowed failure. While the
-// device is being opened again, any error counts as a failure: a driver that is not ready may report
-// anything.
+// Closes the device; or throws the error, if it is of another kind or the last allowed failure.
 void Viewer::recover(const Error& error) {
-    if (renderer_) {
-        if (error.code() != ExitCode::device_lost && error.code() != ExitCode::out_of_memory)
-            throw Error(error);
-        cause_ = error;
-        state_.settings.submission_seconds /= 2;
-    }
+    const uint64_t samples = copy_.state() ? copy_.state()->total_samples() : 0;
+    const bool again = recovery_.survives(error, renderer_ != nullptr, samples);
+    if (renderer_) state_.settings.submission_seconds /= 2;
     renderer_.reset();
     display_.reset();
     presenter_.reset();
     device_.reset();
-    const uint64_t samples = copy_.state() ? copy_.state()->total_samples() : 0;
-    if (samples > samples_at_failure_) failures_ = 0;
-    samples_at_failure_ = samples;
-    if (++failures_ == SteadyRenderer::MOST_FAILURES) {
+    if (!again) {
         save_copy();
-        throw Error(cause_.value_or(error));
+        throw Error(recovery_.cause());
     }
     const uint32_t kept = copy_.state() && !restart_ ? copy_.state()->least_samples() : 0;
     tell(std::string(error.what()) + "; opening the device again, and going on from " + std::to_string(kept) +
          " samples per pixel");
-    std::this_thread::sleep_for(std::chrono::duration<double>(FIRST_PAUSE * (1u << (failures_ - 1))));
+    recovery_.pause();
 }
 
 // Begins the picture that the user wants now or, if only the device has changed, continues the current one.
@@ -132,7 +120,7 @@ void Viewer::begin() {
     }
     if (restart_) {
         copy_.clear();
-        samples_at_failure_ = 0;
+        recovery_.forget_progress();
         render_seconds_ = 0.0;
     }
     begun_ = Clock::now();
@@ -162,7 +150,7 @@ void Viewer::begin() {
 // Renders until the picture has all samples, or something stops it. Returns whether it has them.
 bool Viewer::accumulate() {
     while (spp_ < options_.target) {
-        stop_ = scale_ > 1 ? options_.target : next_look(spp_, options_.target);
+        stop_ = scale_ > 1 ? options_.target : next_look(spp_, options_.target, LEAST_ESTIMATED_SPP / 2);
         if (!renderer_->render(stop_, [this](double progress) { return step(progress); })) return false;
         spp_ = stop_;
         if (scale_ > 1 || restart_ || ended()) break;

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/image.h"
 #include "gpu_scene/gpu_scene.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
+#include "session/recovery.h"
 #include "view/clock.h"
 #include "view/controls.h"
 #include "view/display.h"
@@ -28,25 +28,15 @@
 
 namespace candela {
 
-// A picture that was rendered in a window.
-struct ViewedPicture {
-    const GpuScene& scene;
-    const Camera& camera;
-    const RenderSettings& settings;
-    const Accumulation& state;
-    double seconds;  // Wall time of rendering it.
-};
-
 struct ViewerOptions {
     vk::DeviceInfo device;  // After choose_presenting_queue().
     std::optional<std::filesystem::path> pipeline_cache_folder;
     std::string name;               // Of the scene, for the title and for files.
+    std::string command_line;       // For the attributes of EXRs.
     uint32_t target = 0;            // Samples per pixel to stop at, above 0.
     bool close_at_target = false;   // Close then, and keep the picture's size whatever the window's.
     std::function<bool()> stopped;  // Asked regularly whether to end.
     std::function<void(const std::string&)> say;  // Gets what happened: "wrote box-1.png".
-    // Adds the attributes of an EXR to its image.
-    std::function<void(Image&, const ViewedPicture&)> add_attributes;
 };
 
 class Viewer {
@@ -57,9 +47,8 @@ class Viewer {
 
     // Runs until the window is closed, options.stopped() says so or, if asked for, the target is reached.
     // Returns whether the picture is at rest and has all samples. If the device is lost or out of memory,
-    // opens it again, and a picture at rest continues from its copy on the host, to the same bits. At the
-    // SteadyRenderer::MOST_FAILURES-th failure without progress of the copy, writes the copy to a file and
-    // throws the Error.
+    // opens it again, and a picture at rest continues from its copy on the host, to the same bits. If
+    // Recovery gives up, writes the copy to a file and throws the Error.
     bool run();
 
     // Writes the picture as it is: .png as it is shown, without the panel, or .exr as `candela render` would
@@ -108,9 +97,7 @@ class Viewer {
     std::unique_ptr<vk::Presenter> presenter_;
     std::unique_ptr<Display> display_;
     std::unique_ptr<Renderer> renderer_;
-    std::optional<Error> cause_;       // Of the last failure other than in opening.
-    uint32_t failures_ = 0;            // In a row, without progress of the copy.
-    uint64_t samples_at_failure_ = 0;  // Of the copy, at the last failure.
+    Recovery recovery_;
 
     // The picture in progress: its camera and settings, the samples that every pixel holds at least, at how
     // many the next look is, and how long it has taken so far [s].

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/image_io.h"
+#include "session/record.h"
 #include "view/camera_control.h"
 #include "view/viewer.h"
 
@@ -12,7 +13,13 @@ void Viewer::write_radiance(const std::filesystem::path& path, const Accumulatio
                             const std::vector<float>& positions) {
     const bool placed = !positions.empty();
     Image image = make_image(state, {true, true, placed, placed, true, true}, positions);
-    options_.add_attributes(image, {gpu_scene_, camera_, settings_, state, render_seconds_});
+    RenderRecord record = make_record(scene_, gpu_scene_, {.camera = camera_, .settings = settings_});
+    record.command_line = options_.command_line;
+    record.maker = make_maker(options_.device);
+    record.render_seconds = render_seconds_;
+    record.spp = state.least_samples();
+    record.most_spp = state.most_samples();
+    add_attributes(image, record);
     write_exr(path, image, write_finished_work);
 }
 

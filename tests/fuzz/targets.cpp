@@ -21,8 +21,8 @@
 #include "load/obj/mtl.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
-#include "render/adaptive.h"
 #include "scene/images.h"
+#include "session/adaptive.h"
 #include "support/png_writer.h"
 
 namespace candela::fuzz {

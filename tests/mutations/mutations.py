@@ -147,7 +147,7 @@ GROUPS = [
         ("lens and pixel share their random numbers", RENDER, "PAIR_LENS", "PAIR_PIXEL"),
         ("half a pixel off", RENDER, "vec2(pixel) + unit_float", "vec2(pixel) + 0.5 + unit_float"),
         ("a fold of the Sobol matrix missing", SAMPLER, "i ^= (i >> 4u) & 0x0F0F0F0Fu;", ""),
-        ("adaptive samples steered by those of the same half", "host/render/adaptive.cpp",
+        ("adaptive samples steered by those of the same half", "host/session/adaptive.cpp",
          "plan_extra_samples(states[2 * (1 - h)]", "plan_extra_samples(states[2 * h]"),
         ("sums without compensation", "shaders/base/math.glsl", "(t - sum) - y", "0.0 * ((t - sum) - y)"),
     ]),

@@ -1,5 +1,5 @@
 // Adaptive sampling on a device: limits hold, samples go where the error is, and the expectation stays.
-#include "render/adaptive.h"
+#include "session/adaptive.h"
 
 #include <cmath>
 #include <cstring>

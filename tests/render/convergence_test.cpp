@@ -1,12 +1,12 @@
 // The error that is estimated from one rendering is the one that comparison with a converged image shows.
-#include "cli/convergence.h"
+#include "session/convergence.h"
 
 #include <cmath>
 
 #include "base/relative_error.h"
 #include "load/load.h"
-#include "render/adaptive.h"
 #include "scene/names.h"
+#include "session/adaptive.h"
 #include "steady_fixture.h"
 
 namespace candela {

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "render/steady_renderer.h"
 #include "render_fixture.h"
+#include "session/steady_renderer.h"
 
 namespace candela {
 

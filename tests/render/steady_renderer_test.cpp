@@ -1,6 +1,6 @@
 // A renderer that outlives its device: here, that it copies the state to the host in time. What it does when
 // a device fails is in tests/cli/device_failure_test.cpp.
-#include "render/steady_renderer.h"
+#include "session/steady_renderer.h"
 
 #include "steady_fixture.h"
 

@@ -1,5 +1,5 @@
 // The arithmetic of adaptive sampling: where the passes end, and where extra samples go.
-#include "render/adaptive.h"
+#include "session/adaptive.h"
 
 #include <cmath>
 #include <numeric>

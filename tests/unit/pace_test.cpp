@@ -1,10 +1,7 @@
-// How coarse a moving picture is, and when one at rest is looked at.
+// How coarse a moving picture is.
 #include "view/pace.h"
 
 #include <gtest/gtest.h>
-
-#include "base/relative_error.h"
-#include "film/sample_range.h"
 
 namespace candela {
 namespace {
@@ -34,17 +31,6 @@ TEST(Pace, TheScaleSettles) {
         EXPECT_EQ(next_scale(scale, seconds(scale)), scale) << pixel_seconds;
         EXPECT_TRUE(seconds(scale) <= MOVING_SECONDS || scale == COARSEST_SCALE) << pixel_seconds;
     }
-}
-
-// The stages that the estimate of `render --target-error` compares, from half of its first on.
-TEST(Pace, APictureIsLookedAtAtPowersOfTwo) {
-    EXPECT_EQ(next_look(0, 1000), LEAST_ESTIMATED_SPP / 2);
-    EXPECT_EQ(next_look(LEAST_ESTIMATED_SPP / 2, 1000), LEAST_ESTIMATED_SPP);
-    EXPECT_EQ(next_look(16, 1000), 32u);
-    EXPECT_EQ(next_look(33, 1000), 64u);
-    EXPECT_EQ(next_look(512, 1000), 1000u);
-    EXPECT_EQ(next_look(0, 3), 3u);
-    EXPECT_EQ(next_look(MAX_SPP / 2, MAX_SPP), MAX_SPP);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "render/renderer.h"
+#include "session/recovery.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 
@@ -37,12 +38,17 @@ class SteadyRenderer {
     // Throws Error if that fails, or if a state does not fit.
     SteadyRenderer(Source source, OnFailure on_failure);
 
+    // Starts over, on the same device, with other settings and states, and with the camera that the source's
+    // pointer shows now; if `scene_changed`, with the scene that its pointer shows, too. Throws Error if that
+    // fails, and is then of no more use.
+    void restart(bool scene_changed, const RenderSettings& settings, std::vector<Accumulation> states);
+
     // Continues with this one of the states(), as it is there now. At the start, the first is selected.
     void select(size_t state);
 
     // As Renderer::render(), but `progress` is the share of all samples up to the target. If the device
-    // fails, opens it again and makes submissions half as long. Throws the Error at the MOST_FAILURES-th
-    // failure without progress of any state; the states are then the last copies.
+    // fails, opens it again and makes submissions half as long. Throws the Error if Recovery gives
+    // up; the states are then the last copies.
     bool render(uint32_t target, const std::function<bool(double progress)>& keep_going);
 
     // Copies the selected state from the device to the host. May only be called from keep_going(). render()
@@ -50,6 +56,7 @@ class SteadyRenderer {
     void hold();
     // The states as last copied, or those of the source.
     std::vector<Accumulation>& states() { return source_.states; }
+    const std::vector<Accumulation>& states() const { return source_.states; }
 
     // The device, until render() throws.
     const vk::Device& device() const { return *device_; }
@@ -59,13 +66,12 @@ class SteadyRenderer {
     const ArrayMap& array_map() const { return array_map_; }
     double pipeline_seconds() const { return pipeline_seconds_; }
     // How often the device failed.
-    uint32_t failures() const { return failures_; }
-
-    static constexpr uint32_t MOST_FAILURES = 5;
+    uint32_t failures() const { return recovery_.failures(); }
 
   private:
     void open();
     void load();
+    void look_up_positions();
     Accumulation& state() { return source_.states[selected_]; }
     void recover(const Error& error);
 
@@ -79,10 +85,7 @@ class SteadyRenderer {
     ArrayMap array_map_;
     double pipeline_seconds_ = 0.0;
     std::chrono::steady_clock::time_point next_hold_;
-    std::optional<Error> cause_;  // Of the last failure other than in opening.
-    uint32_t failures_ = 0;
-    uint32_t failures_in_a_row_ = 0;   // Since a state made progress.
-    uint64_t samples_at_failure_ = 0;  // Of all states, at the last failure.
+    Recovery recovery_;
 };
 
 }  // namespace candela

@@ -1,13 +1,13 @@
 // See adaptive.h.
-#include "render/adaptive.h"
+#include "session/adaptive.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
 #include "base/relative_error.h"
 #include "film/sample_range.h"
+#include "session/next_look.h"
 
 namespace candela {
 namespace {
@@ -93,7 +93,7 @@ std::vector<Accumulation> adaptive_states(const RenderSettings& settings) {
 }
 
 uint32_t next_pass_end(uint32_t spp, uint32_t target) {
-    return std::min(std::max(std::bit_ceil(spp + 1), 2 * FIRST_EVEN), target);
+    return next_look(spp, target, 2 * FIRST_EVEN);
 }
 
 uint32_t even_samples(uint32_t half) {

@@ -1,14 +1,15 @@
-// The checkpoints of `candela render`: the one to continue from, and those that are written while rendering.
+// Checkpoints: the one to continue from, and those that are written while rendering.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string>
 
-#include "cli/interval.h"
-#include "cli/render_options.h"
 #include "film/checkpoint.h"
+#include "session/interval.h"
+#include "session/job.h"
 
 namespace candela {
 
@@ -16,10 +17,9 @@ namespace candela {
 // it before any long work.
 void check_checkpoint(const CheckpointOptions& options);
 
-// The checkpoint that --resume continues from. If the file does not exist yet, says so on stderr and returns
-// nothing. Throws Error if it is damaged, belongs to another rendering than `identity` or the job, is
-// adaptive where the job is not or the other way round, or holds more samples per pixel than the job's
-// target.
+// The checkpoint that --resume continues from; nothing if the file does not exist yet. Throws Error if it is
+// damaged, belongs to another rendering than `identity` or the job, is adaptive where the job is not or the
+// other way round, or holds more samples per pixel than the job's target.
 std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& identity);
 
 // Writes checkpoints, the first after one interval.
@@ -32,7 +32,8 @@ class CheckpointWriter {
     bool due() const { return interval_.over(); }
     // A failure is a warning: the rendering continues, the file keeps its old contents, and the next write
     // comes after another interval.
-    void write(const CheckpointHeader& header, std::span<const Accumulation> states);
+    void write(const CheckpointHeader& header, std::span<const Accumulation> states,
+               const std::function<void(const std::string&)>& warn);
     // Writes the last one, as finished work. Throws Error if it is not where it should be.
     void finish(const CheckpointHeader& header, std::span<const Accumulation> states) const;
 

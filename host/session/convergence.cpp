@@ -1,14 +1,14 @@
 // See convergence.h.
-#include "cli/convergence.h"
+#include "session/convergence.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 
 #include "base/error.h"
 #include "base/image_io.h"
 #include "base/relative_error.h"
+#include "session/next_look.h"
 
 namespace candela {
 
@@ -41,7 +41,7 @@ Convergence::Convergence(std::optional<double> target, std::optional<Image> refe
 
 uint32_t Convergence::next(uint32_t spp, uint32_t most) const {
     if (!target_ && !reference_) return most;
-    return std::min(std::bit_ceil(spp + 1), most);
+    return next_look(spp, most);
 }
 
 void Convergence::look(std::span<const Accumulation> states, double seconds) {

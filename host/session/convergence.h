@@ -31,9 +31,8 @@ class Convergence {
     // `target`: relative error to reach.
     Convergence(std::optional<double> target, std::optional<Image> reference);
 
-    // The samples per pixel of the next look(), after `spp`: the next power of two, at most `most`; or `most`
-    // itself if neither target nor reference needs a look. It does not depend on time, so that a rendering
-    // always ends with the same samples.
+    // The samples per pixel of the next look(), after `spp` and at most `most`, as next_look() says; or
+    // `most` itself if neither target nor reference needs a look.
     uint32_t next(uint32_t spp, uint32_t most) const;
     // Measures the image of the states after `seconds` of rendering.
     void look(std::span<const Accumulation> states, double seconds);

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "film/accumulation.h"
-#include "render/steady_renderer.h"
+#include "session/steady_renderer.h"
 
 namespace candela {
 

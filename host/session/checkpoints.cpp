@@ -1,11 +1,10 @@
 // See checkpoints.h.
-#include "cli/checkpoints.h"
+#include "session/checkpoints.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "base/file.h"
-#include "cli/console.h"
 
 namespace candela {
 
@@ -25,10 +24,7 @@ std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& i
     if (!job.checkpoint.resume) return std::nullopt;
     const std::string& path = *job.checkpoint.file;
     std::error_code unreadable;
-    if (!std::filesystem::exists(path, unreadable)) {
-        if (!job.messages.quiet) print_note('"' + path + "\" does not exist yet: starting anew");
-        return std::nullopt;
-    }
+    if (!std::filesystem::exists(path, unreadable)) return std::nullopt;
     Checkpoint checkpoint = load_checkpoint(path);
     const auto refuse = [&](const std::string& why, const std::string& remedy) {
         throw Error("--resume: cannot go on from \"" + path + "\": " + why + "; " + remedy);
@@ -64,11 +60,12 @@ std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& i
 CheckpointWriter::CheckpointWriter(std::filesystem::path path, double every)
     : path_(std::move(path)), interval_(every) {}
 
-void CheckpointWriter::write(const CheckpointHeader& header, std::span<const Accumulation> states) {
+void CheckpointWriter::write(const CheckpointHeader& header, std::span<const Accumulation> states,
+                             const std::function<void(const std::string&)>& warn) {
     try {
         save_checkpoint(path_, header, states);
     } catch (const Error& error) {
-        print_warning(std::string(error.what()) + "; the rendering goes on without this checkpoint");
+        warn(std::string(error.what()) + "; the rendering goes on without this checkpoint");
     }
     interval_.restart();
 }

@@ -1,8 +1,7 @@
 // See steady_renderer.h.
-#include "render/steady_renderer.h"
+#include "session/steady_renderer.h"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 namespace candela {
@@ -13,24 +12,23 @@ using Seconds = std::chrono::duration<double>;
 // Copying the state may take this share of the time.
 static constexpr double LARGEST_SHARE_OF_HOLDING = 0.05;
 
-// The pause before a device is opened again, which doubles with each attempt: a driver needs a moment to
-// reset it.
-static constexpr Seconds FIRST_PAUSE{0.1};
-
 SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
     : source_(std::move(source)), on_failure_(std::move(on_failure)) {
     open();
-    array_map_ = renderer_->array_map();
-    pipeline_seconds_ = renderer_->pipeline_seconds();
-    if (source_.positions) positions_ = renderer_->positions();
+    look_up_positions();
     next_hold_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(source_.hold_seconds));
 }
 
 void SteadyRenderer::open() {
-    device_ = std::make_unique<vk::Device>(*source_.instance, source_.device, source_.pipeline_cache_folder);
+    if (!device_) {
+        device_ =
+            std::make_unique<vk::Device>(*source_.instance, source_.device, source_.pipeline_cache_folder);
+    }
     source_.settings.seed = state().seed;
     renderer_ = std::make_unique<Renderer>(*device_, *source_.scene, *source_.camera, source_.settings);
     renderer_->upload(state());
+    array_map_ = renderer_->array_map();
+    pipeline_seconds_ = renderer_->pipeline_seconds();
     loaded_ = true;
 }
 
@@ -39,6 +37,21 @@ void SteadyRenderer::load() {
     renderer_->reset(*source_.scene, *source_.camera, source_.settings);
     renderer_->upload(state());
     loaded_ = true;
+}
+
+void SteadyRenderer::look_up_positions() {
+    if (source_.positions && positions_.empty()) positions_ = renderer_->positions();
+}
+
+void SteadyRenderer::restart(bool scene_changed, const RenderSettings& settings,
+                             std::vector<Accumulation> states) {
+    source_.settings = settings;
+    source_.states = std::move(states);
+    positions_.clear();
+    selected_ = 0;
+    if (scene_changed) renderer_.reset();  // Before the next one takes memory.
+    renderer_ ? load() : open();
+    look_up_positions();
 }
 
 void SteadyRenderer::select(size_t state) {
@@ -60,6 +73,7 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
         try {
             if (!renderer_) open();
             if (!loaded_) load();
+            look_up_positions();
             const double before = double(std::min(state().least_samples(), target)) / target;
             const bool complete = renderer_->render(target, [&](double done) {
                 if (Clock::now() >= next_hold_) hold();
@@ -73,26 +87,16 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
     }
 }
 
-// Closes the device, or throws the error if it is of another kind or the last allowed failure. While the
-// device is being opened again, any error counts as a failure: a driver that is not ready may report
-// anything.
+// Closes the device; or throws the error, if it is of another kind or the last allowed failure.
 void SteadyRenderer::recover(const Error& error) {
-    if (renderer_) {
-        if (error.code() != ExitCode::device_lost && error.code() != ExitCode::out_of_memory)
-            throw Error(error);
-        cause_ = error;
-        source_.settings.submission_seconds = renderer_->submission_seconds() / 2;
-    }
+    const SampleCounts samples = count_samples(source_.states);
+    const bool again = recovery_.survives(error, renderer_ != nullptr, samples.total);
+    if (renderer_) source_.settings.submission_seconds = renderer_->submission_seconds() / 2;
     renderer_.reset();
     device_.reset();
-
-    const SampleCounts samples = count_samples(source_.states);
-    if (samples.total > samples_at_failure_) failures_in_a_row_ = 0;
-    samples_at_failure_ = samples.total;
-    ++failures_;
-    if (++failures_in_a_row_ == MOST_FAILURES) throw Error(*cause_);
+    if (!again) throw Error(recovery_.cause());
     on_failure_(error, samples.least, source_.settings.submission_seconds);
-    std::this_thread::sleep_for(FIRST_PAUSE * (1u << (failures_in_a_row_ - 1)));
+    recovery_.pause();
 }
 
 }  // namespace candela

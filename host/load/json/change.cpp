@@ -1,0 +1,153 @@
+// See change.h.
+#include "load/json/change.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "load/json/loader_parts.h"
+#include "scene/images.h"
+#include "scene/material_textures.h"
+#include "scene/materials.h"
+#include "scene/scene_builder.h"
+
+namespace candela {
+namespace {
+
+// A material of the change, and the one of the scene whose place it takes.
+struct MaterialChange {
+    Node node;
+    size_t index;
+};
+
+std::vector<MaterialChange> materials_of(const Node& materials, const Scene& scene) {
+    std::vector<std::string> names;
+    for (const Material& material : scene.materials)
+        names.push_back(material.name);
+    std::vector<MaterialChange> changes;
+    for (const Node& node : materials.members()) {
+        const auto found = std::ranges::find(names, node.key());
+        if (found == names.end()) node.fail_unknown("material", node.key(), names, "defined");
+        changes.push_back({node, size_t(found - names.begin())});
+    }
+    return changes;
+}
+
+// Throws Error if a mesh of the material `before` lacks what its new one needs, or would have been read in
+// another way.
+void check_mesh(const Node& node, const Material& before, const Shape& shape, Scene& scene) {
+    const auto* const instance = std::get_if<MeshInstance>(&shape.geometry);
+    if (instance == nullptr) return;
+    const Material& now = scene.materials[shape.material];
+    const bool tangents = needs_tangents(before);
+    if (tangents != needs_tangents(now) || (tangents && tangent_uv_set(before) != tangent_uv_set(now)) ||
+        (before.bump_map && before.bump_map->multiplier)) {
+        node.fail("the meshes of the material \"" + now.name +
+                  "\" were read for its normal map, its anisotropy or the lack of them, or for the heights "
+                  "of their file; change the scene's file, and load it again");
+    }
+    SceneBuilder(scene).complete_mesh(node.place(), {shape.material, material_emission(now)}, instance->mesh);
+}
+
+// Calls visit(texture) for each texture of the scene.
+template <class Visit>
+void for_each_texture_of(Scene& scene, const Visit& visit) {
+    for (Material& material : scene.materials)
+        for_each_texture(material, visit);
+    for (Shape& shape : scene.shapes) {
+        if (shape.emission && shape.emission->radiance.texture) visit(*shape.emission->radiance.texture);
+    }
+}
+
+// Removes the images that no texture looks up, so that the scene takes no more memory with each change.
+void drop_unused_images(Scene& scene) {
+    std::vector<uint32_t> indices(scene.images.size(), 0);
+    for_each_texture_of(scene, [&](const Texture& texture) { indices[texture.image] = 1; });
+    uint32_t count = 0;
+    for (size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] == 0) continue;
+        if (count < i) scene.images[count] = std::move(scene.images[i]);
+        indices[i] = count++;
+    }
+    scene.images.erase(scene.images.begin() + count, scene.images.end());
+    scene.image_indices.clear();
+    for_each_texture_of(scene, [&](Texture& texture) { texture.image = indices[texture.image]; });
+}
+
+// Exchanges the materials of the change with those of the scene.
+void exchange_materials(Scene& scene, Scene& change, const std::vector<MaterialChange>& changes) {
+    for (size_t i = 0; i < changes.size(); ++i)
+        std::swap(scene.materials[changes[i].index], change.materials[i]);
+}
+
+// Gives the scene the materials of the change, which gets those that they replace; throws Error if meshes
+// cannot have them.
+void take_materials(Scene& scene, Scene& change, const std::vector<MaterialChange>& changes) {
+    for_each_texture_of(change, [&](Texture& texture) { texture.image += uint32_t(scene.images.size()); });
+    exchange_materials(scene, change, changes);
+    try {
+        for (size_t i = 0; i < changes.size(); ++i) {
+            for (const Shape& shape : scene.shapes) {
+                if (shape.material == changes[i].index)
+                    check_mesh(changes[i].node, change.materials[i], shape, scene);
+            }
+        }
+    } catch (...) {
+        exchange_materials(scene, change, changes);
+        throw;
+    }
+    std::ranges::move(change.images, std::back_inserter(scene.images));
+    for (size_t i = 0; i < changes.size(); ++i) {
+        const auto before = material_emission(change.materials[i]);
+        for (Shape& shape : scene.shapes) {
+            if (shape.material == changes[i].index && shape.emission == before)
+                shape.emission = material_emission(scene.materials[changes[i].index]);
+        }
+    }
+    drop_unused_images(scene);
+}
+
+// Replaces cameras of the same names; others join the scene's.
+void take_cameras(Scene& scene, Scene& change) {
+    for (Camera& camera : change.cameras) {
+        const auto same = [&](const Camera& known) { return known.name == camera.name; };
+        const auto found = std::ranges::find_if(scene.cameras, same);
+        (found == scene.cameras.end() ? scene.cameras.emplace_back() : *found) = std::move(camera);
+    }
+}
+
+}  // namespace
+
+bool change_scene(Scene& scene, std::string_view text, const std::string& name,
+                  const std::filesystem::path& folder) {
+    const json::Document document{name, json::parse(text, name)};
+    const Node root(document);
+    root.allow_only({"cameras", "materials", "environment"});
+    const auto cameras = root.find("cameras"), materials = root.find("materials"),
+               environment = root.find("environment");
+
+    // All is read into a scene of its own before this one changes; images are read anew.
+    Scene change;
+    change.reach = scene.reach;
+    std::vector<MaterialChange> changes;
+    if (materials) changes = materials_of(*materials, scene);
+    for (const MaterialChange& material : changes)
+        change.materials.push_back(read_material(material.node, {folder, change}));
+    if (cameras) {
+        for (const Node& camera : cameras->members())
+            change.cameras.push_back(read_camera(camera, scene.film));
+    }
+    if (environment) change.environment = read_environment(*environment, folder, change);
+    load_images(change);
+
+    if (materials) take_materials(scene, change, changes);
+    take_cameras(scene, change);
+    if (environment) scene.environment = std::move(change.environment);
+    std::ranges::move(change.files, std::back_inserter(scene.files));
+    std::ranges::move(change.warnings, std::back_inserter(scene.warnings));
+    return materials || environment;
+}
+
+}  // namespace candela

@@ -1,0 +1,99 @@
+// Rendering: a job from its first sample to its last, with what is done at intervals on the way: looks at the
+// error, checkpoints, and images of the samples so far.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "base/error.h"
+#include "base/image.h"
+#include "film/checkpoint.h"
+#include "session/checkpoints.h"
+#include "session/convergence.h"
+#include "session/interval.h"
+#include "session/job.h"
+#include "session/record.h"
+#include "session/steady_renderer.h"
+
+namespace candela {
+
+// What a rendering says and asks on its way, between submissions to the device.
+struct RenderCallbacks {
+    // The share of all samples that are there, in [0, 1], and the last estimate of the error.
+    std::function<void(double done, std::optional<double> error)> progress;
+    // Whether to go on; asked after progress.
+    std::function<bool()> keep_going;
+    std::function<void(const std::string&)> warn;
+    SteadyRenderer::OnFailure device_failed;
+    // Gets the image of the samples so far, every job.write_every seconds.
+    std::function<void(const RenderRecord&, Image)> write;
+};
+
+class Rendering {
+  public:
+    struct Source {
+        const vk::Instance* instance;
+        vk::DeviceInfo device;
+        std::optional<std::filesystem::path> pipeline_cache_folder;
+        const GpuScene* scene;
+        std::optional<Checkpoint> resumed;  // To continue from.
+        std::optional<Image> reference;     // To measure the error against.
+    };
+
+    // Opens the device and prepares everything, as SteadyRenderer does; what `source` points to must outlive
+    // the rendering. `record` is what make_record() says, and what the caller adds for its files.
+    Rendering(Source source, RenderJob job, RenderRecord record);
+    Rendering(const Rendering&) = delete;
+    Rendering& operator=(const Rendering&) = delete;
+
+    // Renders until all samples are there, the error is small enough, the time is over or keep_going()
+    // returns false. If the device fails for good after there are samples, returns the Error; throws it
+    // otherwise.
+    std::optional<Error> run(RenderCallbacks callbacks);
+
+    // Changes the samples per pixel that run() renders to.
+    void set_target(uint32_t spp) { job_.target = spp; }
+    // Starts over, on the same device, with another job, which asks for no files; if `scene_changed`, with
+    // the source's scene as it is now. Throws Error if that fails, and is then of no more use.
+    void restart(RenderJob job, RenderRecord record, bool scene_changed);
+
+    // The image of the samples so far, from which record() takes its hash.
+    Image image();
+    // Writes the last checkpoint, as finished work, if the job asks for one. Throws Error if that fails.
+    void finish_checkpoint() const;
+
+    const RenderRecord& record() const { return record_; }
+    // The samples per pixel that there are.
+    uint32_t spp() const { return samples_per_pixel(renderer_.states()); }
+    // The device, unless run() has returned an Error.
+    const vk::Device& device() const { return renderer_.device(); }
+
+  private:
+    void complete_record();
+    bool render_and_look();
+    bool step(double done);
+    void keep();
+    Image collect_image(RenderRecord& record) const;
+    CheckpointHeader checkpoint_header() const;
+    double seconds_of_run() const;
+    double seconds() const { return seconds_before_ + seconds_of_run(); }
+
+    const GpuScene* scene_;
+    vk::DeviceInfo device_;
+    RenderJob job_;
+    RenderRecord record_;
+    RenderCallbacks callbacks_;
+    SteadyRenderer renderer_;
+    Convergence convergence_;
+    std::optional<CheckpointWriter> checkpoints_;
+    std::optional<Interval> images_;  // From one writing of the images to the next.
+    std::chrono::steady_clock::time_point start_;
+    double seconds_before_;  // Of rendering before this run.
+    uint32_t planned_;       // Of an adaptive rendering: see render_pass().
+};
+
+}  // namespace candela

@@ -1,0 +1,186 @@
+// See session.h.
+#include "session/session.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "base/error.h"
+#include "film/sample_range.h"
+#include "gpu_scene/gpu_scene.h"
+#include "load/json/change.h"
+#include "load/load.h"
+#include "session/rendering.h"
+#include "vk/instance.h"
+
+namespace candela {
+
+class Session::Impl {
+  public:
+    explicit Impl(SessionOptions options)
+        : options_(std::move(options)),
+          instance_({.validation = options_.validation}),
+          device_(vk::select_device(
+              instance_.devices(), options_.device.empty() ? std::nullopt : std::optional(options_.device))) {
+    }
+
+    void load(const SceneFile& file) {
+        LoadOptions options;
+        options.gltf.time = file.time;
+        options.gltf.animation = file.animation;
+        options.reach.folders = file.folders;
+        scene_ = load_scene(file.path, options);
+        folder_ = file.path.parent_path();
+        picture_ = {};
+        pending_ = Pending::scene;
+        warn(std::exchange(scene_.warnings, {}));
+    }
+
+    void change(std::string_view json) {
+        require_scene();
+        const bool scene = change_scene(scene_, json, "change", folder_);
+        pending_ = scene ? Pending::scene : std::max(pending_, Pending::picture);
+        warn(std::exchange(scene_.warnings, {}));
+    }
+
+    void choose(const PictureRequest& picture) {
+        require_scene();
+        job_for(picture, 1);
+        picture_ = picture;
+        pending_ = std::max(pending_, Pending::picture);
+    }
+
+    bool render(uint32_t spp, const std::function<bool(double)>& keep_going) {
+        require_scene();
+        prepare(spp);
+        const std::optional<Error> failure =
+            rendering_->run({.progress = [&](double done, std::optional<double>) { done_ = done; },
+                             .keep_going = [&] { return !keep_going || keep_going(done_); },
+                             .warn = [this](const std::string& warning) { warn({warning}); },
+                             .device_failed =
+                                 [this](const Error& error, uint32_t, double) {
+                                     warn({std::string(error.what()) + "; opening the device again"});
+                                 },
+                             .write = {}});
+        for (const std::vector<std::string> messages = instance_.validation_messages();
+             validation_messages_ < messages.size(); ++validation_messages_)
+            warn({messages[validation_messages_]});
+        if (failure) throw Error(*failure);
+        return rendering_->record().complete;
+    }
+
+    // What was rendered last.
+    Rendering& rendered() const {
+        if (!rendering_) throw Error("there is no picture yet; call render() first");
+        return *rendering_;
+    }
+
+  private:
+    // What has changed since the last rendering.
+    enum class Pending { nothing, picture, scene };
+
+    void require_scene() const {
+        if (scene_.cameras.empty()) throw Error("there is no scene yet; call load() first");
+    }
+
+    void warn(const std::vector<std::string>& warnings) const {
+        for (const std::string& warning : warnings) {
+            if (options_.warn) options_.warn(warning);
+        }
+    }
+
+    RenderJob job_for(const PictureRequest& picture, uint32_t spp) const {
+        if (spp == 0 || spp > MAX_SPP) {
+            throw Error("cannot render " + std::to_string(spp) + " samples per pixel; give 1 to " +
+                        std::to_string(MAX_SPP));
+        }
+        const Camera& camera = choose_camera(scene_, picture.camera, "");
+        RenderSettings settings = proposed_settings(scene_, camera);
+        settings.size = {picture.width.value_or(settings.size.x), picture.height.value_or(settings.size.y)};
+        if (settings.size.x == 0 || settings.size.y == 0)
+            throw Error("a picture without width or height cannot be rendered; give at least 1 for each");
+        settings.crop = {0, 0, settings.size.x, settings.size.y};
+        settings.seed = picture.seed.value_or(settings.seed);
+        settings.aovs = picture.all_layers;
+        const bool all = picture.all_layers;
+        return {
+            .camera = camera, .settings = settings, .target = spp, .aovs = {all, all, all, all, all, all}};
+    }
+
+    // Makes rendering_ one of the scene and the picture as they are now.
+    void prepare(uint32_t spp) {
+        RenderJob job = job_for(picture_, spp);
+        if (rendering_ && pending_ == Pending::nothing) {
+            rendering_->set_target(spp);
+            return;
+        }
+        if (pending_ == Pending::scene) {
+            gpu_scene_ = build_gpu_scene(scene_);
+            warn(gpu_scene_.warnings);
+        }
+        RenderRecord record = make_record(scene_, gpu_scene_, job);
+        std::unique_ptr<Rendering> rendering = std::move(rendering_);  // If this fails, it is of no more use.
+        if (rendering) {
+            rendering->restart(std::move(job), std::move(record), pending_ == Pending::scene);
+        } else {
+            rendering =
+                std::make_unique<Rendering>(Rendering::Source{.instance = &instance_,
+                                                              .device = device_,
+                                                              .pipeline_cache_folder = options_.kernel_cache,
+                                                              .scene = &gpu_scene_,
+                                                              .resumed = {},
+                                                              .reference = {}},
+                                            std::move(job), std::move(record));
+        }
+        rendering_ = std::move(rendering);
+        pending_ = Pending::nothing;
+    }
+
+    SessionOptions options_;
+    vk::Instance instance_;
+    vk::DeviceInfo device_;
+    Scene scene_;
+    std::filesystem::path folder_;
+    PictureRequest picture_;
+    GpuScene gpu_scene_;
+    Pending pending_ = Pending::scene;
+    std::unique_ptr<Rendering> rendering_;
+    double done_ = 0.0;
+    size_t validation_messages_ = 0;  // That warn() has told.
+};
+
+Session::Session(SessionOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+Session::~Session() = default;
+
+void Session::load(const SceneFile& file) {
+    impl_->load(file);
+}
+
+void Session::change(std::string_view json) {
+    impl_->change(json);
+}
+
+void Session::choose(const PictureRequest& picture) {
+    impl_->choose(picture);
+}
+
+bool Session::render(uint32_t spp, const std::function<bool(double)>& keep_going) {
+    return impl_->render(spp, keep_going);
+}
+
+uint32_t Session::width() const {
+    return impl_->rendered().record().settings.crop.width();
+}
+
+uint32_t Session::height() const {
+    return impl_->rendered().record().settings.crop.height();
+}
+
+std::vector<PictureLayer> Session::layers() const {
+    std::vector<PictureLayer> layers;
+    for (Channel& channel : impl_->rendered().image().channels)
+        layers.push_back({std::move(channel.name), std::move(channel.values)});
+    return layers;
+}
+
+}  // namespace candela
