@@ -140,7 +140,8 @@ bool change_scene(Scene& scene, std::string_view text, const std::string& name,
             change.cameras.push_back(read_camera(camera, scene.film));
     }
     if (environment) change.environment = read_environment(*environment, folder, change);
-    load_images(change);
+    DecodedImages decoded;
+    load_images(change, {}, no_progress, decoded);
 
     if (materials) take_materials(scene, change, changes);
     take_cameras(scene, change);
