@@ -38,6 +38,7 @@ if(CANDELA_VIEW)
     endif()
 endif()
 find_program(GLSLANG_VALIDATOR NAMES glslangValidator glslang REQUIRED)
+find_program(SPIRV_OPT NAMES spirv-opt REQUIRED)
 find_path(VOLK_INCLUDE_DIR NAMES volk.c REQUIRED)
 find_path(STB_INCLUDE_DIR NAMES stb_image_write.h PATH_SUFFIXES stb REQUIRED)
 

@@ -48,7 +48,7 @@ class Setup(unittest.TestCase):
         words = result.stdout.split("\n")
         self.assertEqual(words[1], "apt-get update -qq, frontend none")
         self.assertRegex(words[3], r"^  g\+\+ +compiles the program$")
-        self.assertRegex(words[4], r"^  spirv-tools +finds invalid SPIR-V$")
+        self.assertRegex(words[4], r"^  spirv-tools +prepares SPIR-V for lavapipe; finds invalid SPIR-V in tests$")
         self.assertRegex(words[5], r"^apt-get install -y .* g\+\+ spirv-tools, frontend noninteractive$")
         self.assertEqual(words[6:], ["done", ""])
 

@@ -107,6 +107,15 @@ vk::StorageImage make_accumulation(const vk::Device& device, const RenderSetting
     }
 }
 
+std::span<const uint32_t> spirv_of(RenderKernel which, const vk::Device& device,
+                                   const KernelConstants& constants) {
+    if (which == RenderKernel::position) return kernels::position;
+    const bool inlined = device.info().is_lavapipe();
+    if ((constants[CONSTANT_MATERIALS] & 1u << MATERIAL_PRINCIPLED) != 0)
+        return inlined ? kernels::render_layered_inlined : kernels::render_layered;
+    return inlined ? kernels::render_inlined : kernels::render;
+}
+
 }  // namespace
 
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
@@ -147,9 +156,8 @@ vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const Kerne
     std::vector<vk::Binding> bindings = SceneBuffers::bindings(constants);
     bindings.push_back({BINDING_IMAGE, vk::BindingType::storage_image});
     if (render) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
-    const bool layered = (constants[CONSTANT_MATERIALS] & 1u << MATERIAL_PRINCIPLED) != 0;
-    const auto spirv = !render ? kernels::position : layered ? kernels::render_layered : kernels::render;
-    return {device, spirv, bindings, sizeof(Tile), constants.values, render ? "render" : "position"};
+    return {device,           spirv_of(which, device, constants), bindings, sizeof(Tile),
+            constants.values, render ? "render" : "position"};
 }
 
 Accumulation empty_state(const RenderSettings& settings) {
