@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the rules of CONTRIBUTING.md, "Layers": who includes whom, and the form of every source file.
+"""Checks the rules of CONTRIBUTING.md, "Layers": who includes and links whom, and the form of every source file.
 
 usage: layers.py ROOT      Prints one line per violation; exits 1 if there is any.
 """
@@ -7,69 +7,32 @@ import re
 import sys
 from pathlib import Path
 
-# Folder -> folders (or single headers) that its files may include besides itself.
-MAY_INCLUDE = {
-    "host/base": [],
-    "host/scene": ["host/base"],
-    "host/load": ["host/base", "host/scene"],
-    "host/load/gltf": ["host/base", "host/scene", "host/load/json.h", "host/load/node.h", "host/load/quote.h"],
-    "host/load/json": ["host/base", "host/scene", "host/load"],
-    "host/load/obj": ["host/base", "host/scene", "host/load/quote.h", "host/load/text_lines.h"],
-    "host/load/ply": ["host/base", "host/scene", "host/load/quote.h", "host/load/text_lines.h"],
-    "host/bvh": ["host/base", "shaders/shared"],
-    "host/vk": ["host/base/error.h", "host/base/private_file.h"],
-    "host/gpu_scene": ["host/base", "host/scene", "host/bvh", "shaders/shared"],
-    "host/film": ["host/base", "shaders/shared"],
-    "host/render": ["host/base", "host/scene", "host/gpu_scene", "host/film", "host/vk", "shaders/shared"],
-    "host/session": ["host/base", "host/scene", "host/load", "host/gpu_scene", "host/film", "host/render", "host/vk",
-                     "shaders/shared"],
-    "host/probe": ["host/base", "host/scene", "host/load", "host/gpu_scene", "host/render", "host/vk",
-                   "shaders/shared"],
-    "host/selftest": ["host/base", "host/scene", "host/gpu_scene", "host/film", "host/render", "host/probe", "host/vk",
-                      "shaders/shared"],
-    "host/bench": ["host/base", "host/scene", "host/bvh", "host/gpu_scene", "host/film", "host/render", "host/probe",
-                   "host/vk", "shaders/shared"],
-    "host/view": ["host/base", "host/scene", "host/load/quote.h", "host/gpu_scene", "host/film", "host/render",
-                  "host/session", "host/vk", "shaders/shared"],
-    "host/cli": ["host", "shaders/shared"],
-    "host": ["host", "shaders/shared"],
-    "shaders/shared": ["host/base/math.h"],
-    "shaders/base": ["shaders/shared"],
-    "shaders/bsdf": ["shaders/shared", "shaders/base"],
-    "shaders/texture": ["shaders/shared", "shaders/base"],
-    "shaders/scene": ["shaders/shared", "shaders/base", "shaders/texture"],
-    "shaders/medium": ["shaders/shared", "shaders/base", "shaders/scene"],
-    "shaders/light": ["shaders/shared", "shaders/base", "shaders/scene"],
-    "shaders/integrator": ["shaders"],
-    "shaders/kernels": ["shaders"],
-    "shaders/probes": ["shaders"],
-}
-
 # Where kernels are, what several of them share, and the only other files that declare buffers or images.
 KERNEL_FOLDERS = ("shaders/kernels", "shaders/probes")
 KERNEL_BODIES = ("shaders/kernels/render.glsl",)
 DECLARE_BUFFERS = ("shaders/scene/scene_data.glsl", "shaders/probes/items.glsl", *KERNEL_BODIES)
 
-# Library -> what its includes look like, and the folders that may see it, directly or through other files.
+# Library -> what its includes look like. The table of layers says which folders may see it, directly or through other
+# files.
 LIBRARIES = {
-    "GLM": (r"glm/", ["host/base", "host/scene", "host/load", "host/load/gltf", "host/load/json", "host/load/obj",
-                      "host/load/ply", "host/bvh", "host/gpu_scene", "host/film", "host/render", "host/session",
-                      "host/probe", "host/selftest", "host/bench", "host/view", "host/cli", "host"]),
-    "stb": (r"stb_", ["host/base"]),
-    "OpenEXR": (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex|openexr|half\.h)", ["host/base"]),
-    "libpng": (r"png\.h", ["host/base"]),
-    "libjpeg": (r"jpeglib\.h|jerror\.h", ["host/base"]),
-    "libwebp": (r"webp/", ["host/base"]),
-    "nlohmann-json": (r"nlohmann/", ["host/load", "host/cli"]),
-    "tinyobjloader": (r"tiny_obj_loader", []),
-    "tinygltf": (r"tiny_gltf", []),
-    "CLI11": (r"CLI/", ["host/cli"]),
-    "Vulkan": (r"volk|vulkan/", ["host/vk", "host/render", "host/session", "host/probe", "host/selftest", "host/bench",
-                                 "host/view", "host/cli", "host"]),
-    "Embree": (r"embree3/", ["host/bench"]),
-    "GLFW": (r"GLFW/", ["host/view"]),
-    "Dear ImGui": (r"imgui|backends/imgui", ["host/view"]),
+    "GLM": r"glm/",
+    "stb": r"stb_",
+    "OpenEXR": r"(OpenEXR/|Imath/)?(Imf|Imath|Iex|openexr|half\.h)",
+    "libpng": r"png\.h",
+    "libjpeg": r"jpeglib\.h|jerror\.h",
+    "libwebp": r"webp/",
+    "nlohmann-json": r"nlohmann/",
+    "tinyobjloader": r"tiny_obj_loader",
+    "tinygltf": r"tiny_gltf",
+    "CLI11": r"CLI/",
+    "Vulkan": r"volk|vulkan/",
+    "Embree": r"embree3/",
+    "GLFW": r"GLFW/",
+    "Dear ImGui": r"imgui|backends/imgui",
 }
+
+# Who may include a folder that may see one of these may see it, too: our own headers show it.
+SHOWN = ("GLM", "Vulkan")
 
 # The header of the library candela_session, for programs elsewhere: it hides the rest.
 PUBLIC_HEADER = "host/session/session.h"
@@ -77,6 +40,28 @@ PUBLIC_HEADER = "host/session/session.h"
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 MAIN = re.compile(r"^\s*void\s+main\s*\(", re.MULTILINE)
 BINDING = re.compile(r"^\s*layout\s*\([^)]*\bbinding\b", re.MULTILINE)
+ROW = re.compile(r"^\| `((?:host|shaders)[\w/]*)` \|.*\| ([^|]+) \|$", re.MULTILINE)
+LINKS = re.compile(r"^ *candela_library\(([^)]*)\)", re.MULTILINE)
+
+
+def read_layers(text):
+    """The table of layers: folder -> folders and headers that its files may include besides itself; folder -> names of
+    libraries."""
+    may_include, libraries = {}, {}
+    for folder, cell in ROW.findall(text):
+        ours, _, others = cell.partition(";")
+        top = folder.partition("/")[0]
+        names = re.findall("`([^`]+)`", ours)
+        may_include[folder] = [n if n.startswith(("host/", "shaders/")) else f"{top}/{n}" for n in names]
+        if ours.strip() == "everything":
+            may_include[folder] = ["host", "shaders/shared"] if top == "host" else ["shaders"]
+        libraries[folder] = {name for name in LIBRARIES if re.search(rf"\b{name}\b", others)}
+    for name in SHOWN:
+        shown = {folder for folder in libraries if name in libraries[folder]}
+        for folder, allowed in may_include.items():
+            if shown & set(allowed) or "host" in allowed:
+                libraries[folder].add(name)
+    return may_include, libraries
 
 
 class Checker:
@@ -84,6 +69,8 @@ class Checker:
         self.root = root
         self.problems = []
         self.files = {}  # Path below the root -> text.
+        table = root / "CONTRIBUTING.md"
+        self.may_include, self.libraries = read_layers(table.read_text(encoding="utf-8") if table.exists() else "")
         for pattern in ("host/**/*.cpp", "host/**/*.h", "host/**/*.h.in", "shaders/**/*.glsl", "shaders/**/*.h",
                         "shaders/**/*.inc"):
             for path in sorted(root.glob(pattern)):
@@ -119,15 +106,15 @@ class Checker:
         return seen
 
     def check_edges(self, name, folder):
-        allowed = [folder] + MAY_INCLUDE[folder]
+        allowed = [folder] + self.may_include[folder]
         for line, said, target in self.includes[name]:
             if target and not any(target == a or target.startswith(a + "/") for a in allowed):
                 self.report(name, line, f'includes "{said}", but {folder}/ may include only {", ".join(allowed)}')
 
     def check_libraries(self, name, folder):
         """Shaders see no C++ library: the preprocessor hides them there."""
-        for library, (pattern, folders) in LIBRARIES.items():
-            if folder in folders or folder.startswith("shaders/"):
+        for library, pattern in LIBRARIES.items():
+            if library in self.libraries[folder] or folder.startswith("shaders/"):
                 continue
             for source in sorted({name} | self.reachable(name)):
                 for line, said, target in self.includes[source]:
@@ -135,6 +122,28 @@ class Checker:
                         how = "" if source == name else f" through {source}:{line}"
                         where = line if source == name else 1
                         self.report(name, where, f"sees {library} (<{said}>){how}, but {folder}/ must not")
+
+    def check_links(self):
+        """A library links, directly or through others, the folders that it may include, and directly none else."""
+        name = "host/CMakeLists.txt"
+        if not (self.root / name).exists():
+            return
+        text = (self.root / name).read_text(encoding="utf-8")
+        links = {}
+        for match in LINKS.finditer(text):
+            folder, *linked = match[1].split()
+            linked = re.findall(r"candela_(\w+)", " ".join(linked))
+            all_linked = set(linked).union(*(links.get(other, set()) for other in linked))
+            links[folder] = all_linked
+            line = text.count("\n", 0, match.start()) + 1
+            may = self.may_include.get(f"host/{folder}", [])
+            needed = {path.split("/")[1] for path in may if path.startswith("host/")}
+            for other in sorted(set(linked) - needed if "host" not in may else []):
+                self.report(name, line,
+                            f"candela_{folder} links candela_{other}, which host/{folder}/ may not include")
+            for other in sorted(needed - all_linked):
+                self.report(name, line,
+                            f"candela_{folder} does not link candela_{other}, which host/{folder}/ may include")
 
     def check_public(self):
         for line, said, _ in self.includes.get(PUBLIC_HEADER, []):
@@ -175,13 +184,14 @@ class Checker:
     def run(self):
         for name in self.files:
             folder = name.rpartition("/")[0]
-            if folder not in MAY_INCLUDE:
+            if folder not in self.may_include:
                 self.report(name, 1, f"the folder {folder}/ is not in the table of layers")
                 continue
             self.check_edges(name, folder)
             self.check_libraries(name, folder)
             self.check_cycles(name)
             self.check_form(name, folder)
+        self.check_links()
         self.check_public()
         for pattern in ("tests/**/*.cpp", "tests/**/*.h", "tests/**/*.glsl"):
             for path in sorted(self.root.glob(pattern)):

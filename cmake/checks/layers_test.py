@@ -6,9 +6,12 @@ import tempfile
 import unittest
 from pathlib import Path
 
-CHECKER = Path(__file__).with_name("layers.py")
+CHECKER = Path(__file__).resolve().with_name("layers.py")
+TABLE = CHECKER.parents[2] / "CONTRIBUTING.md"
 
 GOOD = {
+    "CONTRIBUTING.md": TABLE.read_text(encoding="utf-8"),
+    "host/CMakeLists.txt": "candela_library(base PNG::PNG)\ncandela_library(scene candela_base)\n",
     "host/base/error.h": "// Errors.\n#pragma once\n",
     "host/base/math.h": "// Math.\n#pragma once\n#include <glm/glm.hpp>\n",
     "host/base/image_io.cpp": "// Files.\n#include <ImfHeader.h>\n#include <stb_image_write.h>\n",
@@ -61,6 +64,14 @@ VIOLATIONS = [
     ("a kernel elsewhere", "shaders/bsdf/a.comp.glsl", "// A.\nvoid main() {}\n", "*.comp.glsl in shaders/kernels/"),
     ("a missing guard", "shaders/bsdf/a.glsl", "// A.\n", "lacks the include guard BSDF_A_GLSL"),
     ("a missing pragma", "host/base/a.h", "// A.\n", "host/base/a.h:1: lacks #pragma once"),
+    ("a library that links what its folder may not include", "host/CMakeLists.txt",
+     "candela_library(base)\ncandela_library(vk candela_base)\n\ncandela_library(scene candela_base candela_vk)\n",
+     "host/CMakeLists.txt:4: candela_scene links candela_vk, which host/scene/ may not include"),
+    ("a library that does not link what its folder may include", "host/CMakeLists.txt",
+     "candela_library(base)\ncandela_library(film nlohmann_json::nlohmann_json)\n",
+     "host/CMakeLists.txt:2: candela_film does not link candela_base, which host/film/ may include"),
+    ("a window system below the window", "host/view/a.cpp", "// A.\n#include <GLFW/glfw3.h>\n",
+     "host/view/a.cpp:2: sees GLFW (<GLFW/glfw3.h>), but host/view/ must not"),
     ("a public header that shows more", "host/session/session.h", '// A.\n#pragma once\n#include "base/error.h"\n',
      "host/session/session.h:3: includes base/error.h, but may include only the standard library"),
     ("a cycle", "shaders/bsdf/a.glsl", f'// A.\n{GUARD}#include "bsdf/a.glsl"\n#endif\n', "includes itself in the end"),

@@ -17,11 +17,11 @@
 #include "cli/loading.h"
 #include "cli/render_options.h"
 #include "cli/vulkan.h"
-#include "view/controls.h"
-#include "view/viewer.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 #include "vk/presenter.h"
+#include "window/controls.h"
+#include "window/viewer.h"
 
 namespace candela {
 namespace {

@@ -7,10 +7,10 @@
 #include <cstdlib>
 
 #include "cli/view_fixture.h"
-#include "view/window.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 #include "vk/transfer.h"
+#include "window/window.h"
 
 namespace candela {
 namespace {

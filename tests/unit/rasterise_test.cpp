@@ -1,7 +1,7 @@
 // Dear ImGui's triangles drawn on the host. Without that library there is nothing to test.
 #ifdef CANDELA_VIEW
 
-#include "view/rasterise.h"
+#include "window/rasterise.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>

@@ -4,7 +4,7 @@
 #include "base/image_io.h"
 #include "session/record.h"
 #include "view/camera_control.h"
-#include "view/viewer.h"
+#include "window/viewer.h"
 
 namespace candela {
 

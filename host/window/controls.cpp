@@ -1,5 +1,5 @@
 // See controls.h.
-#include "view/controls.h"
+#include "window/controls.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // See window.h.
-#include "view/window.h"
+#include "window/window.h"
 
 // Included before GLFW's header, which then declares its functions for Vulkan.
 #include <volk.h>

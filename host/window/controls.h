@@ -3,8 +3,8 @@
 
 #include <set>
 
-#include "view/input.h"
-#include "view/view_state.h"
+#include "window/input.h"
+#include "window/view_state.h"
 
 namespace candela {
 

@@ -1,5 +1,5 @@
 // See viewer.h. One thread does everything: between two submissions to the device it looks after the window.
-#include "view/viewer.h"
+#include "window/viewer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // See gui.h.
-#include "view/gui.h"
+#include "window/gui.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -10,7 +10,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
 
-#include "view/rasterise.h"
+#include "window/rasterise.h"
 
 namespace candela {
 namespace {

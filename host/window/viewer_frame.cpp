@@ -5,9 +5,9 @@
 #include <string>
 
 #include "base/printable.h"
-#include "view/controls.h"
-#include "view/panel.h"
-#include "view/viewer.h"
+#include "window/controls.h"
+#include "window/panel.h"
+#include "window/viewer.h"
 
 namespace candela {
 namespace {

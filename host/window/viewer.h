@@ -16,15 +16,15 @@
 #include "scene/scene.h"
 #include "session/recovery.h"
 #include "view/clock.h"
-#include "view/controls.h"
 #include "view/display.h"
-#include "view/gui.h"
 #include "view/picture_copy.h"
-#include "view/view_state.h"
-#include "view/window.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 #include "vk/presenter.h"
+#include "window/controls.h"
+#include "window/gui.h"
+#include "window/view_state.h"
+#include "window/window.h"
 
 namespace candela {
 

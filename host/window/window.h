@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/math.h"
-#include "view/input.h"
 #include "vk/presenter.h"
+#include "window/input.h"
 
 struct GLFWwindow;
 

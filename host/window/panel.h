@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "view/view_state.h"
+#include "window/view_state.h"
 
 namespace candela {
 

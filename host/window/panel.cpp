@@ -1,5 +1,5 @@
 // See panel.h.
-#include "view/panel.h"
+#include "window/panel.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <imgui.h>
 
 #include "base/printable.h"
-#include "view/controls.h"
+#include "window/controls.h"
 
 namespace candela {
 namespace {

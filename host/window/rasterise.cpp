@@ -1,5 +1,5 @@
 // See rasterise.h.
-#include "view/rasterise.h"
+#include "window/rasterise.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "view/display.h"
-#include "view/window.h"
+#include "window/window.h"
 
 namespace candela {
 
