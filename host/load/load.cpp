@@ -60,21 +60,21 @@ void check_light(Scene& scene, const std::string& place) {
 
 // `is_last`: no other scene shows the glTF files.
 Scene load(const std::filesystem::path& path, const LoadOptions& options, LoadedFiles& files, bool is_last) {
-    const auto& [images, gltf, progress, reach] = options;
+    const GltfOptions& gltf = options.gltf;
     const auto read_images = [&](Scene& scene) {
         if (is_last) files.gltf.clear();
-        load_images(scene, images, progress, files.images);
+        load_images(scene, options.images, options.progress, files.images);
     };
     Scene scene;
     switch (format_of(path)) {
         case Format::gltf:
-            scene = load_gltf_scene(path, gltf, progress, reach, files.gltf);
+            scene = load_gltf_scene(path, gltf, options.progress, options.reach, files.gltf);
             read_images(scene);
             add_studio(scene, path.string(), gltf.studio);
             break;
         case Format::obj:
             refuse(path, gltf);
-            scene = load_obj_scene(path, reach);
+            scene = load_obj_scene(path, options.reach);
             read_images(scene);
             break;
         case Format::ply:
@@ -82,7 +82,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, Loaded
             scene = load_ply_scene(path);
             break;
         case Format::json: {
-            JsonScene json = load_json_scene(path, gltf, progress, reach, files.gltf);
+            JsonScene json = load_json_scene(path, gltf, options.progress, options.reach, files.gltf);
             scene = std::move(json.scene);
             read_images(scene);
             if (json.is_gltf) {
