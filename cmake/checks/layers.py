@@ -72,7 +72,7 @@ class Checker:
         table = root / "CONTRIBUTING.md"
         self.may_include, self.libraries = read_layers(table.read_text(encoding="utf-8") if table.exists() else "")
         for pattern in ("host/**/*.cpp", "host/**/*.h", "host/**/*.h.in", "shaders/**/*.glsl", "shaders/**/*.h",
-                        "shaders/**/*.inc"):
+                        "shaders/**/*.inc", "host/**/*.inc"):
             for path in sorted(root.glob(pattern)):
                 self.files[path.relative_to(root).as_posix()] = path.read_text(encoding="utf-8")
         # File -> list of (line, what the line says, file of ours or None).
@@ -161,11 +161,11 @@ class Checker:
     def check_form(self, name, folder):
         text = self.files[name]
         self.check_comment(name, text)
+        if name.endswith(".inc"):  # A list that is read more than once.
+            return
         if name.startswith("host/"):
             if not name.endswith(".cpp") and not re.search(r"^#pragma once$", text, re.MULTILINE):
                 self.report(name, 1, "lacks #pragma once")
-            return
-        if name.endswith(".inc"):  # A list that is read more than once.
             return
         is_kernel = name.endswith(".comp.glsl")
         stray = not is_kernel and folder == "shaders/kernels" and name not in KERNEL_BODIES

@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace candela {
+#include "base/limits.h"
 
-// The most samples per pixel: counts are stored as 32-bit floats, which are exact up to this number.
-inline constexpr uint32_t MAX_SPP = 1u << 24;
+namespace candela {
 
 // The samples first, first + 1, ..., end - 1; none if first == end. `end` is at most MAX_SPP.
 struct SampleRange {

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/memory_limit.h"
 #include "render/kernels.h"
 #include "render/media_at.h"
@@ -128,6 +129,7 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
                                              : std::tan(0.5f * camera.vertical_fov);
     const float half_x = half_y * float(settings.size.x) / float(settings.size.y);
     const Lens& lens = camera.lens;
+    static_assert(MAX_BOUNCES == DEPTH_SAFETY_LIMIT);
     const float lens_radius = frame.length(double(lens.radius));
     const float cos_lens = std::cos(lens.rotation);
     const float sin_lens = std::sin(lens.rotation);

@@ -21,12 +21,14 @@ void for_each_value(Model& m, const Visit& visit) {
     } else if constexpr (std::is_same_v<Type, DiffuseTransmissionMaterial>) {
         visit(m.reflectance), visit(m.transmittance);
     } else if constexpr (std::is_same_v<Type, PrincipledMaterial>) {
-        visit(m.base_color), visit(m.metalness), visit(m.roughness), visit(m.diffuse_roughness);
-        visit(m.specular), visit(m.specular_color), visit(m.anisotropy), visit(m.transmission);
-        visit(m.diffuse_transmission), visit(m.diffuse_transmission_color);
-        visit(m.coat), visit(m.coat_roughness), visit(m.sheen_color), visit(m.sheen_roughness);
-        visit(m.fuzz), visit(m.fuzz_color), visit(m.fuzz_roughness);
-        visit(m.iridescence), visit(m.iridescence_thickness), visit(m.emission);
+        const auto visit_textured = [&](auto& value) {
+            if constexpr (requires { value.factor; }) visit(value);
+        };
+#define VALUE(kind, name, initial, least, most, needs, text) visit_textured(m.name);
+#define KEY(name, member, text)
+#include "scene/principled_values.inc"
+#undef VALUE
+#undef KEY
     } else {
         static_assert(std::is_same_v<Type, DielectricMaterial>);
     }

@@ -12,6 +12,7 @@
 
 #include "base/file_reach.h"
 #include "base/math.h"
+#include "scene/principled.h"
 #include "scene/texture.h"
 #include "scene/transform.h"
 
@@ -65,13 +66,6 @@ struct IntegratorSettings {
     uint32_t seed = 0;
 };
 
-// What lies between surfaces.
-struct Medium {
-    vec3 absorption{0};  // [1/m], each >= 0 (Beer and Lambert).
-
-    bool operator==(const Medium&) const = default;
-};
-
 // Lambert: f = reflectance / pi on both sides.
 struct DiffuseMaterial {
     Textured<vec3> reflectance{vec3(0.5f)};  // Each in [0, 1].
@@ -104,55 +98,6 @@ struct DiffuseTransmissionMaterial {
     Textured<vec3> reflectance{vec3(0.5f)};    // On the side that light comes from.
     Textured<vec3> transmittance{vec3(0.5f)};  // On the other side.
     std::optional<Medium> inside{};            // Behind the surface; none: the same as in front of it.
-};
-
-// A normal for shading at every point: in the image's red, green and blue, from -1 to 1 (0 to 1 in the file),
-// along the tangent, the bitangent and the normal of the surface.
-struct NormalMap {
-    Texture texture{};
-    float scale = 1.0f;  // Factor of red and green.
-};
-
-// A dielectric or metallic base under layers: what glTF 2.0 says with its extensions, and what OpenPBR 1.1
-// adds. docs/scene-format.md names the keys of each. A value that is 0 by default switches its layer off.
-struct PrincipledMaterial {
-    Textured<vec3> base_color{vec3(0.8f)};  // Each in [0, 1], as are all colours and weights.
-    Textured<float> metalness = 0.0f;
-    Textured<float> roughness = 0.5f;          // Its square is alpha.
-    Textured<float> diffuse_roughness = 0.0f;  // Of the diffuse base (OpenPBR's EON model).
-    float ior = 1.5f;                        // Of the dielectric base, at least 1; 0: it reflects all light.
-    Textured<float> specular = 1.0f;         // Weight of the dielectric's reflection,
-    Textured<vec3> specular_color{vec3(1)};  // and its colour at normal incidence.
-    Textured<float> anisotropy = 0.0f;       // Along the tangent, alpha is mix(alpha, 1, anisotropy^2);
-    float anisotropy_rotation = 0.0f;  // the tangent is turned by this angle towards the bitangent [rad].
-    // Red and green, from -1 to 1: the direction that is turned; blue: a factor of `anisotropy`.
-    std::optional<Texture> anisotropy_map{};
-    Textured<float> transmission = 0.0f;
-    std::optional<Medium> inside{};  // None: the surface is a thin wall, which does not refract.
-    uint32_t priority = 0;           // As in DielectricMaterial.
-    float dispersion = 0.0f;         // 20 / Abbe number, at least 0.
-    Textured<float> diffuse_transmission = 0.0f;
-    Textured<vec3> diffuse_transmission_color{vec3(1)};
-    Textured<float> coat = 0.0f;
-    Textured<float> coat_roughness = 0.0f;
-    float coat_ior = 1.5f;        // At least 1.
-    float coat_darkening = 0.0f;  // Weight of what light loses between coat and base (OpenPBR).
-    std::optional<NormalMap> coat_normal_map{};  // None: the shape's own shading normal.
-    Textured<vec3> sheen_color{vec3(0)};
-    Textured<float> sheen_roughness = 0.0f;
-    Textured<float> fuzz = 0.0f;  // Above all other layers.
-    Textured<vec3> fuzz_color{vec3(1)};
-    Textured<float> fuzz_roughness = 0.5f;
-    Textured<float> iridescence = 0.0f;
-    float iridescence_ior = 1.3f;  // At least 1.
-    // Of the film [nm], at least 0: where the texture is 0, and where it is 1 or there is none.
-    float iridescence_thickness_min = 100.0f;
-    Textured<float> iridescence_thickness = 400.0f;
-    // What shapes of this material emit that state no emission of their own [W/(m^2 sr)], under fuzz,
-    // coat and sheen.
-    Textured<vec3> emission{vec3(0)};
-    bool unlit = false;        // The surface shows base_color in any light and scatters none.
-    bool double_sided = true;  // Otherwise rays pass it from behind, unless it encloses a medium.
 };
 
 enum class Fresnel { schlick, exact };

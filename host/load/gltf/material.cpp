@@ -27,9 +27,6 @@ TexelImage roughness_of(const TexelImage& image, float factor) {
 
 constexpr uint32_t GREEN = 1;
 constexpr uint32_t BLUE = 2;
-constexpr float MAX_IOR = 1e6f;        // Its square fits into floats.
-constexpr float MAX_DISPERSION = 40;   // Of which the index for red is 1, whatever the material's is.
-constexpr float MAX_THICKNESS = 1e6f;  // Of a film [nm].
 
 class MaterialReader {
   public:
@@ -64,6 +61,9 @@ class MaterialReader {
 
     float number(const Node& object, std::string_view key, float lo, float hi, float otherwise) {
         return number_of(file_, object, key, lo, hi, otherwise);
+    }
+    float number(const Node& object, std::string_view key, Range range, float otherwise) {
+        return number(object, key, range.least, range.most, otherwise);
     }
 
     std::optional<Texture> texture(const Node& object, std::string_view key, TextureEncoding encoding,
@@ -152,7 +152,7 @@ class MaterialReader {
         if (const auto ior = extension("KHR_materials_ior"); ior && m.ior != 0.0f) {
             const auto value = ior->find("ior");
             const bool all = value && value->number() == 0.0;
-            m.ior = all ? 0.0f : number(*ior, "ior", 1.0f, MAX_IOR, 1.5f);
+            m.ior = all ? 0.0f : number(*ior, "ior", PRINCIPLED_RANGES.ior, 1.5f);
         }
         if (const auto e = extension("KHR_materials_specular")) {
             m.specular = weight(*e, "specularFactor", 1.0f, "specularTexture", ALPHA);
@@ -161,7 +161,7 @@ class MaterialReader {
             m.specular_color.texture = texture(*e, "specularColorTexture", TextureEncoding::srgb);
         }
         if (const auto e = extension("KHR_materials_anisotropy")) {
-            m.anisotropy = number(*e, "anisotropyStrength", 0.0f, 1.0f, 0.0f);
+            m.anisotropy = number(*e, "anisotropyStrength", PRINCIPLED_RANGES.anisotropy, 0.0f);
             const auto rotation = e->find("anisotropyRotation");
             m.anisotropy_rotation =
                 rotation ? float(std::remainder(rotation->number(), 2.0 * double(PI))) : 0.0f;
@@ -182,7 +182,7 @@ class MaterialReader {
         if (const auto e = extension("KHR_materials_volume"); e && transmits && m.ior != 0.0f)
             read_volume(*e, m);
         if (const auto e = extension("KHR_materials_dispersion"); e && m.inside)
-            m.dispersion = number(*e, "dispersion", 0.0f, MAX_DISPERSION, 0.0f);
+            m.dispersion = number(*e, "dispersion", PRINCIPLED_RANGES.dispersion, 0.0f);
         read_specular_above_one(m);
     }
 
@@ -236,10 +236,11 @@ class MaterialReader {
         }
         if (const auto e = extension("KHR_materials_iridescence")) {
             m.iridescence = weight(*e, "iridescenceFactor", 0.0f, "iridescenceTexture", RED);
-            m.iridescence_ior = number(*e, "iridescenceIor", 1.0f, MAX_IOR, 1.3f);
-            m.iridescence_thickness_min =
-                number(*e, "iridescenceThicknessMinimum", 0.0f, MAX_THICKNESS, 100.0f);
-            m.iridescence_thickness = number(*e, "iridescenceThicknessMaximum", 0.0f, MAX_THICKNESS, 400.0f);
+            m.iridescence_ior = number(*e, "iridescenceIor", PRINCIPLED_RANGES.iridescence_ior, 1.3f);
+            m.iridescence_thickness_min = number(*e, "iridescenceThicknessMinimum",
+                                                 PRINCIPLED_RANGES.iridescence_thickness_min, 100.0f);
+            m.iridescence_thickness =
+                number(*e, "iridescenceThicknessMaximum", PRINCIPLED_RANGES.iridescence_thickness, 400.0f);
             m.iridescence_thickness.texture =
                 texture(*e, "iridescenceThicknessTexture", TextureEncoding::linear, GREEN);
         }

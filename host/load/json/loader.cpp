@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/limits.h"
 #include "load/json/loader_parts.h"
 #include "load/quote.h"
 #include "scene/names.h"
@@ -24,17 +25,15 @@ Film read_film(const Node& node) {
 }
 
 IntegratorSettings read_integrator(const Node& node) {
-    constexpr uint32_t MOST_SAMPLES = 1u << 24;  // The count is kept as a float.
-    constexpr uint32_t MOST_BOUNCES = 4096;      // The safety limit of unlimited paths.
     node.allow_only({"spp", "max_depth", "rr_depth", "estimator", "sampler", "terminator", "seed"});
     IntegratorSettings settings;
-    if (const auto spp = node.find("spp")) settings.spp = spp->integer(1, MOST_SAMPLES);
+    if (const auto spp = node.find("spp")) settings.spp = spp->integer(1, MAX_SPP);
     if (const auto depth = node.find("max_depth")) {
         const bool unlimited = depth->is_string() && depth->string() == "unlimited";
         if (!unlimited && !depth->is_number()) depth->fail_expected("a whole number or \"unlimited\"");
-        if (!unlimited) settings.max_depth = depth->integer(0, MOST_BOUNCES);
+        if (!unlimited) settings.max_depth = depth->integer(0, MAX_BOUNCES);
     }
-    if (const auto depth = node.find("rr_depth")) settings.rr_depth = depth->integer(0, MOST_BOUNCES);
+    if (const auto depth = node.find("rr_depth")) settings.rr_depth = depth->integer(0, MAX_BOUNCES);
     if (const auto estimator = node.find("estimator"))
         settings.estimator = estimator->choice(ESTIMATOR_NAMES);
     if (const auto sampler = node.find("sampler")) settings.sampler = sampler->choice(SAMPLER_NAMES);

@@ -1,5 +1,7 @@
 // Materials in layers: the keys of "principled", and metal and glass under names of their own.
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "base/text.h"
 #include "load/json/loader_parts.h"
@@ -7,46 +9,18 @@
 namespace candela {
 namespace {
 
-constexpr float MAX_IOR = 1e6f;        // Its square fits into floats.
-constexpr float MAX_DISPERSION = 40;   // Of which the index for red is 1, whatever the material's is.
-constexpr float MAX_THICKNESS = 1e6f;  // Of a film [nm]; those that show colours are thinner than 2000.
-
-// Each reads a key into a value, which keeps its default if the key is absent.
-void set_weight(const Node& node, std::string_view key, const ImageFolder& images, Textured<float>& value) {
-    if (const auto found = node.find(key)) value = read_number(*found, images, 0.0f, 1.0f);
-}
-
-void set_color(const Node& node, std::string_view key, const ImageFolder& images, Textured<vec3>& value) {
-    if (const auto found = node.find(key)) value = read_color(*found, images);
-}
-
-void set_number(const Node& node, std::string_view key, float lo, float hi, float& value) {
-    if (const auto found = node.find(key)) value = found->number(lo, hi);
-}
-
-void set_boolean(const Node& node, std::string_view key, bool& value) {
-    if (const auto found = node.find(key)) value = found->boolean();
-}
-
 // Throws Error for a key that has no effect without another, which is absent.
 void check_companions(const Node& node) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 13> COMPANIONS{
-        {{"anisotropy_rotation", "anisotropy"},
-         {"anisotropy_map", "anisotropy"},
-         {"diffuse_transmission_color", "diffuse_transmission"},
-         {"coat_roughness", "coat"},
-         {"coat_ior", "coat"},
-         {"coat_darkening", "coat"},
-         {"coat_normal_map", "coat"},
-         {"sheen_roughness", "sheen_color"},
-         {"fuzz_color", "fuzz"},
-         {"fuzz_roughness", "fuzz"},
-         {"iridescence_ior", "iridescence"},
-         {"iridescence_thickness", "iridescence"},
-         {"iridescence_thickness_min", "iridescence"}}};
+    constexpr auto COMPANIONS = std::to_array<std::pair<std::string_view, std::string_view>>({
+#define VALUE(kind, name, initial, least, most, needs, text) {#name, #needs},
+#define KEY(name, member, text)
+#include "scene/principled_values.inc"
+#undef VALUE
+#undef KEY
+    });
     for (const auto& [key, companion] : COMPANIONS) {
         const auto found = node.find(key);
-        if (!found || node.find(companion)) continue;
+        if (!found || companion == "NONE" || node.find(companion)) continue;
         found->fail(
             concat(key, " has no effect without \"", companion, "\"; add that key, or remove this one"));
     }
@@ -109,59 +83,44 @@ void check_inside(const Node& node, const PrincipledMaterial& material) {
     }
 }
 
-float read_ior(const Node& node) {
-    const double ior = node.number();
-    if (ior != 0.0 && !(ior >= 1.0 && ior <= double(MAX_IOR))) {
+// An index of refraction in a range, or 0.
+float read_index(const Node& node, Range range) {
+    const double index = node.number();
+    if (index != 0.0 && !(index >= double(range.least) && index <= double(range.most)))
         node.fail_expected("a number from 1 to 1e6, or 0 for a surface that reflects all light");
-    }
-    return float(ior);
+    return float(index);
 }
 
 // The thickness where an image is 1 must be stated: the factor of other values, 1, would be one nanometre.
-Textured<float> read_thickness(const Node& node, const ImageFolder& images) {
+Textured<float> read_thickness(const Node& node, const ImageFolder& images, Range range) {
     if (node.is_object()) node.require("factor");
-    return read_number(node, images, 0.0f, MAX_THICKNESS);
+    return read_number(node, images, range.least, range.most);
 }
 
-void read_base(const Node& node, const ImageFolder& images, PrincipledMaterial& m) {
-    set_color(node, "base_color", images, m.base_color);
-    set_weight(node, "metalness", images, m.metalness);
-    set_weight(node, "roughness", images, m.roughness);
-    set_weight(node, "diffuse_roughness", images, m.diffuse_roughness);
-    if (const auto ior = node.find("ior")) m.ior = read_ior(*ior);
-    set_weight(node, "specular", images, m.specular);
-    set_color(node, "specular_color", images, m.specular_color);
-    set_weight(node, "anisotropy", images, m.anisotropy);
-    if (const auto angle = node.find("anisotropy_rotation")) m.anisotropy_rotation = float(angle->angle());
-    if (const auto map = node.find("anisotropy_map"))
-        m.anisotropy_map = read_texture(*map, images, TextureEncoding::linear);
+template <ValueKind kind>
+typename ValueOf<kind>::Type read_value(const Node& node, const ImageFolder& images, Range range) {
+    using enum ValueKind;
+    if constexpr (kind == color) return read_color(node, images);
+    if constexpr (kind == radiance) return read_radiance(node, images);
+    if constexpr (kind == weight) return read_number(node, images, range.least, range.most);
+    if constexpr (kind == thickness) return read_thickness(node, images, range);
+    if constexpr (kind == number) return node.number(range.least, range.most);
+    if constexpr (kind == index) return read_index(node, range);
+    if constexpr (kind == angle) return float(node.angle());
+    if constexpr (kind == flag) return node.boolean();
+    if constexpr (kind == vector_map) return read_texture(node, images, TextureEncoding::linear);
+    if constexpr (kind == normal_map) return read_normal_map(node, images);
 }
 
-void read_transmission(const Node& node, const ImageFolder& images, PrincipledMaterial& m) {
-    set_weight(node, "transmission", images, m.transmission);
-    set_number(node, "dispersion", 0.0f, MAX_DISPERSION, m.dispersion);
-    set_weight(node, "diffuse_transmission", images, m.diffuse_transmission);
-    set_color(node, "diffuse_transmission_color", images, m.diffuse_transmission_color);
-    read_inside(node, true, m);
-    check_inside(node, m);
-}
-
-void read_layers(const Node& node, const ImageFolder& images, PrincipledMaterial& m) {
-    set_weight(node, "coat", images, m.coat);
-    set_weight(node, "coat_roughness", images, m.coat_roughness);
-    set_number(node, "coat_ior", 1.0f, MAX_IOR, m.coat_ior);
-    set_number(node, "coat_darkening", 0.0f, 1.0f, m.coat_darkening);
-    if (const auto map = node.find("coat_normal_map")) m.coat_normal_map = read_normal_map(*map, images);
-    set_color(node, "sheen_color", images, m.sheen_color);
-    set_weight(node, "sheen_roughness", images, m.sheen_roughness);
-    set_weight(node, "fuzz", images, m.fuzz);
-    set_color(node, "fuzz_color", images, m.fuzz_color);
-    set_weight(node, "fuzz_roughness", images, m.fuzz_roughness);
-    set_weight(node, "iridescence", images, m.iridescence);
-    set_number(node, "iridescence_ior", 1.0f, MAX_IOR, m.iridescence_ior);
-    set_number(node, "iridescence_thickness_min", 0.0f, MAX_THICKNESS, m.iridescence_thickness_min);
-    const auto thickness = node.find("iridescence_thickness");
-    if (thickness) m.iridescence_thickness = read_thickness(*thickness, images);
+// Reads the values that are there.
+void read_values(const Node& node, const ImageFolder& images, PrincipledMaterial& m) {
+#define VALUE(kind, name, initial, least, most, needs, text) \
+    if (const auto found = node.find(#name))                 \
+        m.name = read_value<ValueKind::kind>(*found, images, PRINCIPLED_RANGES.name);
+#define KEY(name, member, text)
+#include "scene/principled_values.inc"
+#undef VALUE
+#undef KEY
     if (const auto least = node.find("iridescence_thickness_min");
         least && !m.iridescence_thickness.texture) {
         least->fail(
@@ -173,51 +132,22 @@ void read_layers(const Node& node, const ImageFolder& images, PrincipledMaterial
 }  // namespace
 
 MaterialModel read_principled(const Node& node, const ImageFolder& images) {
-    node.allow_only({"type",
-                     "base_color",
-                     "metalness",
-                     "roughness",
-                     "diffuse_roughness",
-                     "ior",
-                     "specular",
-                     "specular_color",
-                     "anisotropy",
-                     "anisotropy_rotation",
-                     "anisotropy_map",
-                     "transmission",
-                     "thin_walled",
-                     "absorption",
-                     "priority",
-                     "dispersion",
-                     "diffuse_transmission",
-                     "diffuse_transmission_color",
-                     "coat",
-                     "coat_roughness",
-                     "coat_ior",
-                     "coat_darkening",
-                     "coat_normal_map",
-                     "sheen_color",
-                     "sheen_roughness",
-                     "fuzz",
-                     "fuzz_color",
-                     "fuzz_roughness",
-                     "iridescence",
-                     "iridescence_ior",
-                     "iridescence_thickness",
-                     "iridescence_thickness_min",
-                     "emission",
-                     "unlit",
-                     "double_sided"},
-                    MATERIAL_KEYS);
+    node.allow_only(
+        {
+            "type",
+#define VALUE(kind, name, initial, least, most, needs, text) #name,
+#define KEY(name, member, text) #name,
+#include "scene/principled_values.inc"
+#undef VALUE
+#undef KEY
+        },
+        MATERIAL_KEYS);
     PrincipledMaterial material;
-    set_boolean(node, "unlit", material.unlit);
-    set_boolean(node, "double_sided", material.double_sided);
-    if (material.unlit) check_unlit(node);
+    if (const auto unlit = node.find("unlit"); unlit && unlit->boolean()) check_unlit(node);
     check_companions(node);
-    read_base(node, images, material);
-    read_transmission(node, images, material);
-    read_layers(node, images, material);
-    if (const auto emission = node.find("emission")) material.emission = read_radiance(*emission, images);
+    read_values(node, images, material);
+    read_inside(node, true, material);
+    check_inside(node, material);
     return material;
 }
 
@@ -226,7 +156,7 @@ MaterialModel read_rough_conductor(const Node& node, const ImageFolder& images) 
     check_companions(node);
     PrincipledMaterial material;
     material.metalness = 1.0f;
-    read_base(node, images, material);
+    read_values(node, images, material);
     material.base_color = read_color(node.require("reflectance"), images);
     material.roughness = read_number(node.require("roughness"), images, 0.0f, 1.0f);
     return material;
@@ -238,7 +168,7 @@ MaterialModel read_rough_dielectric(const Node& node, const ImageFolder& images)
     PrincipledMaterial material;
     material.base_color = vec3(1.0f);
     material.transmission = 1.0f;
-    material.ior = node.require("ior").number(1.0f, MAX_IOR);
+    material.ior = node.require("ior").number(PRINCIPLED_RANGES.ior.least, PRINCIPLED_RANGES.ior.most);
     material.roughness = read_number(node.require("roughness"), images, 0.0f, 1.0f);
     read_inside(node, false, material);
     return material;

@@ -1,0 +1,14 @@
+// Limits of what users may ask for, which several rooms need.
+#pragma once
+
+#include <cstdint>
+
+namespace candela {
+
+// The most samples per pixel: counts are stored as 32-bit floats, which are exact up to this number.
+inline constexpr uint32_t MAX_SPP = 1u << 24;
+
+// The most bounces of a path: those of unlimited ones end there, too.
+inline constexpr uint32_t MAX_BOUNCES = 4096;
+
+}  // namespace candela

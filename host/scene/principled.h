@@ -1,0 +1,100 @@
+// The principled material of a scene.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "base/math.h"
+#include "scene/texture.h"
+
+namespace candela {
+
+// What lies between surfaces.
+struct Medium {
+    vec3 absorption{0};  // [1/m], each >= 0 (Beer and Lambert).
+
+    bool operator==(const Medium&) const = default;
+};
+
+// A normal for shading at every point: in the image's red, green and blue, from -1 to 1 (0 to 1 in the file),
+// along the tangent, the bitangent and the normal of the surface.
+struct NormalMap {
+    Texture texture{};
+    float scale = 1.0f;  // Factor of red and green.
+};
+
+// The kinds of values in principled_values.inc, and what holds one.
+enum class ValueKind {
+    color,
+    radiance,
+    weight,
+    thickness,
+    number,
+    index,
+    angle,
+    flag,
+    vector_map,
+    normal_map
+};
+
+template <ValueKind>
+struct ValueOf {
+    using Type = float;
+};
+template <>
+struct ValueOf<ValueKind::color> {
+    using Type = Textured<vec3>;
+};
+template <>
+struct ValueOf<ValueKind::radiance> {
+    using Type = Textured<vec3>;
+};
+template <>
+struct ValueOf<ValueKind::weight> {
+    using Type = Textured<float>;
+};
+template <>
+struct ValueOf<ValueKind::thickness> {
+    using Type = Textured<float>;
+};
+template <>
+struct ValueOf<ValueKind::flag> {
+    using Type = bool;
+};
+template <>
+struct ValueOf<ValueKind::vector_map> {
+    using Type = std::optional<Texture>;
+};
+template <>
+struct ValueOf<ValueKind::normal_map> {
+    using Type = std::optional<NormalMap>;
+};
+
+// A dielectric or metallic base under layers: what glTF 2.0 says with its extensions, and what OpenPBR 1.1
+// adds. principled_values.inc and docs/scene-format.md say what each value is. One that is 0 by default
+// switches its layer off. Angles are in radians. An `ior` of 0 reflects all light. Without a medium inside,
+// the surface is a thin wall.
+struct PrincipledMaterial {
+#define VALUE(kind, name, initial, least, most, needs, text) ValueOf<ValueKind::kind>::Type name = initial;
+#define KEY(name, member, text) member
+#include "scene/principled_values.inc"
+#undef VALUE
+#undef KEY
+};
+
+// What a value may be, or what the factor of its image may be.
+struct Range {
+    float least;
+    float most;
+};
+
+struct PrincipledRanges {
+#define VALUE(kind, name, initial, least, most, needs, text) Range name{least, most};
+#define KEY(name, member, text)
+#include "scene/principled_values.inc"
+#undef VALUE
+#undef KEY
+};
+inline constexpr PrincipledRanges PRINCIPLED_RANGES;
+
+}  // namespace candela
