@@ -12,6 +12,7 @@
 #include <jerror.h>
 
 #include "base/image_io_parts.h"
+#include "base/memory_limit.h"
 #include "base/texel_io_parts.h"
 
 namespace candela {

@@ -7,6 +7,7 @@
 #include <webp/decode.h>
 
 #include "base/image_io_parts.h"
+#include "base/memory_limit.h"
 #include "base/texel_io_parts.h"
 
 namespace candela {
