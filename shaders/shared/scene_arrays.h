@@ -52,11 +52,13 @@ inline constexpr SceneArray SCENE_ARRAYS[]{
 
 inline constexpr uint ARRAY_COUNT = std::size(SCENE_ARRAYS);
 
-#define BUFFER(number, name) +1u
-inline constexpr uint BUFFER_COUNT = 0u
+#define BUFFER(number, name) (number),
+inline constexpr uint BUFFERS[]{
 #include "shared/scene_buffers.inc"
-    ;
+};
 #undef BUFFER
+
+inline constexpr uint BUFFER_COUNT = std::size(BUFFERS);
 
 }  // namespace candela
 #else
