@@ -196,6 +196,7 @@ struct Shape {
     std::variant<MeshInstance, Quad, Sphere, Disk> geometry;
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
+    bool states_emission = false;      // Otherwise the emission is its material's, and changes with it.
 };
 
 // Radiance from infinitely far away, as a latitude-longitude map [W/(m^2 sr)], row-major from the top. Its

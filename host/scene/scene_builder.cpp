@@ -158,7 +158,7 @@ const Appearance* SceneBuilder::find_file_appearance(const std::string& name) co
 void SceneBuilder::add_file_appearance(const std::string& name, Material material,
                                        const std::optional<Emission>& emission) {
     material.name = name;
-    file_appearances_[name] = {add_material(std::move(material)), emission};
+    file_appearances_[name] = {add_material(std::move(material)), emission, emission.has_value()};
 }
 
 uint32_t SceneBuilder::add_material(Material material) {

@@ -17,6 +17,7 @@ namespace candela {
 struct Appearance {
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
+    bool states_emission = false;      // Otherwise the emission is the material's.
 };
 
 struct MeshPart {
@@ -49,7 +50,8 @@ class SceneBuilder {
     // Adds a finished geometry in world space.
     template <class Geometry>
     void add(const Appearance& appearance, Geometry&& geometry) {
-        scene_.shapes.push_back({std::forward<Geometry>(geometry), appearance.material, appearance.emission});
+        scene_.shapes.push_back({std::forward<Geometry>(geometry), appearance.material, appearance.emission,
+                                 appearance.states_emission});
     }
     // Adds the parts of a mesh, each as a mesh with one instance. Completes their normals, and leaves out
     // flat triangles with a warning; adds tangents where the material needs them. Throws Error if there are

@@ -23,7 +23,8 @@ const std::string FLOOR = R"({"type": "diffuse", "reflectance": [0.6, 0.5, 0.4]}
 const std::string LAMP = R"({"type": "mirror"})";
 const std::string SKY = R"({"radiance": [0.2, 0.3, 0.4]})";
 
-// A mesh on a floor, under a lamp that emits what its material does, and a sky.
+// A mesh on a floor, under a lamp that emits what its material does, and a sky. Beside the lamp are two of
+// its material that state an emission: one none, the other what the material of some changes has.
 std::string scene_text(const std::string& camera, const std::string& floor, const std::string& lamp,
                        const std::string& sky) {
     return R"({"cameras": {"main": )" + camera + R"(}, "film": {"size": [24, 16]}, "materials": {"floor": )" +
@@ -31,7 +32,9 @@ std::string scene_text(const std::string& camera, const std::string& floor, cons
         {"type": "quad", "material": "floor", "vertices": [[-2, 0, 2], [2, 0, 2], [2, 0, -2], [-2, 0, -2]]},
         {"type": "mesh", "material": "floor", "positions": [[-1, 0, 0], [1, 0, 0], [0, 1, 0]],
          "triangles": [[0, 1, 2]], "uvs": [[0, 0], [1, 0], [0.5, 1]]},
-        {"type": "quad", "material": "lamp", "vertices": [[-1, 2, -1], [1, 2, -1], [1, 2, 1], [-1, 2, 1]]}]})";
+        {"type": "quad", "material": "lamp", "vertices": [[-1, 2, -1], [1, 2, -1], [1, 2, 1], [-1, 2, 1]]},
+        {"type": "sphere", "material": "lamp", "center": [-1, 1, 0], "radius": 0.2, "emission": 0},
+        {"type": "sphere", "material": "lamp", "center": [1, 1, 0], "radius": 0.2, "emission": [1, 2, 3]}]})";
 }
 
 class SessionTest : public testing::Test {

@@ -99,11 +99,10 @@ void take_materials(Scene& scene, Scene& change, const std::vector<MaterialChang
         throw;
     }
     std::ranges::move(change.images, std::back_inserter(scene.images));
-    for (size_t i = 0; i < changes.size(); ++i) {
-        const auto before = material_emission(change.materials[i]);
+    for (const MaterialChange& made : changes) {
         for (Shape& shape : scene.shapes) {
-            if (shape.material == changes[i].index && shape.emission == before)
-                shape.emission = material_emission(scene.materials[changes[i].index]);
+            if (shape.material == made.index && !shape.states_emission)
+                shape.emission = material_emission(scene.materials[made.index]);
         }
     }
     drop_unused_images(scene);

@@ -11,7 +11,7 @@ namespace candela {
 
 // Reads `text`, an object with any of the keys "cameras", "materials" and "environment" of a scene file, and
 // replaces cameras and materials of the same names, and the environment. A camera of a new name joins the
-// others. Shapes that emitted what a material did emit what it does now. Files are relative to `folder` and
+// others. Shapes that state no emission emit what their material does now. Files are relative to `folder` and
 // within scene.reach; images are read anew. Returns whether more than cameras was changed.
 //
 // Throws Error, beginning with `name:line:column:`, for what a scene file may not say either, and where a

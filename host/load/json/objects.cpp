@@ -72,6 +72,7 @@ void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes
         const Appearance appearance = shapes.appearance_of(node, shape);
         shape.material = appearance.material;
         shape.emission = appearance.emission;
+        shape.states_emission = appearance.states_emission;
         const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
         if (instance != nullptr && (node.find("material") || node.find("emission")))
             shapes.complete_mesh(node.place(), appearance, instance->mesh);

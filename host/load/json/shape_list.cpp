@@ -23,22 +23,24 @@ Appearance ShapeList::appearance_of(const Node& node) {
     if (!material && !node.find("emission")) {
         node.fail("the shape has neither material nor emission; add one of them");
     }
-    Appearance appearance{0, emission_of(node)};
+    Appearance appearance{0, emission_of(node), node.find("emission").has_value()};
     appearance.material = material ? index_of(*material) : black();
-    if (!node.find("emission"))
+    if (!appearance.states_emission)
         appearance.emission = material_emission(scene().materials[appearance.material]);
     return appearance;
 }
 
 Appearance ShapeList::appearance_of(const Node& node, const Shape& shape) {
-    Appearance result{shape.material, shape.emission};
+    Appearance result{shape.material, shape.emission, shape.states_emission};
     if (const auto material = node.find("material")) {
-        const bool of_material = shape.emission == material_emission(scene().materials[shape.material]);
         result.material = index_of(*material);
-        if (of_material) result.emission = material_emission(scene().materials[result.material]);
+        if (!result.states_emission) result.emission = material_emission(scene().materials[result.material]);
     }
     const std::optional<Emission> emission = emission_of(node);
-    if (node.find("emission")) result.emission = emission;
+    if (node.find("emission")) {
+        result.emission = emission;
+        result.states_emission = true;
+    }
     return result;
 }
 
