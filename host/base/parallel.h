@@ -37,7 +37,8 @@ void parallel_for(size_t count, const Step& step) {
         }
     };
     {
-        const size_t threads = std::min<size_t>(count, std::max(1u, std::thread::hardware_concurrency()));
+        // One step needs no helper, nor to read from the system how many there could be.
+        const size_t threads = count < 2 ? 1 : std::min<size_t>(count, std::thread::hardware_concurrency());
         const std::vector<std::jthread> helpers = start_helpers(std::max<size_t>(threads, 1) - 1, work);
         work();
     }

@@ -114,7 +114,7 @@ std::optional<std::string> warn_of_coplanar_lights(const Scene& scene) {
         light.box = {light.box.lo - tolerance, light.box.hi + tolerance};
     std::map<size_t, size_t> hidden;  // By the shape of the light, the first shape in whose plane it is.
     const ShapeBounds bounds_of(scene);
-    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+    for (size_t i = 0; i < scene.shapes.size() && !lights.empty(); ++i) {
         const DoubleBox box = bounds_of(scene.shapes[i]);
         std::vector<const FlatPiece*> close;
         DoubleBox around;
@@ -133,6 +133,7 @@ std::optional<std::string> warn_of_coplanar_lights(const Scene& scene) {
                 }
             }
         });
+        std::erase_if(lights, [&](const FlatPiece& light) { return hidden.contains(light.shape); });
     }
     if (hidden.empty()) return std::nullopt;
     const auto [light, other] = *hidden.begin();
