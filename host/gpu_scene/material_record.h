@@ -9,7 +9,7 @@
 
 namespace candela {
 
-// A value of a principled material (PRINCIPLED_*) that an image gives.
+// A value of a principled material that an image gives: its bit in PrincipledImage::values.
 struct PrincipledTexture {
     uint32_t value = 0;
     Texture texture{};

@@ -52,31 +52,34 @@ uint32_t parts_of(const PrincipledMaterial& m) {
     return parts;
 }
 
+constexpr bool bits_differ() {
+    uint seen = 0;
+    for (const uint value : {
+             PRINCIPLED_BASE_COLOR,
+             PRINCIPLED_ANISOTROPY_MAP,
+             PRINCIPLED_THICKNESS,
+#define COLOR(bit, name, word) uint(bit),
+#define WEIGHT(bit, name, word, place) uint(bit),
+#include "shared/principled_record.inc"
+         }) {
+        if ((seen & 1u << value) != 0) return false;
+        seen |= 1u << value;
+    }
+    return true;
+}
+static_assert(bits_differ(), "two values in shared/principled_record.inc have the same bit");
+
 std::vector<PrincipledTexture> textures_of(const PrincipledMaterial& m) {
     std::vector<PrincipledTexture> result;
     const auto add = [&](uint32_t value, const auto& from) {
         if (from.texture) result.push_back({value, *from.texture});
     };
     add(PRINCIPLED_BASE_COLOR, m.base_color);
-    add(PRINCIPLED_SPECULAR_COLOR, m.specular_color);
-    add(PRINCIPLED_DIFFUSE_TRANSMISSION_COLOR, m.diffuse_transmission_color);
-    add(PRINCIPLED_SHEEN_COLOR, m.sheen_color);
     if (m.anisotropy_map) result.push_back({PRINCIPLED_ANISOTROPY_MAP, *m.anisotropy_map});
-    add(PRINCIPLED_METALNESS, m.metalness);
-    add(PRINCIPLED_ROUGHNESS, m.roughness);
-    add(PRINCIPLED_DIFFUSE_ROUGHNESS, m.diffuse_roughness);
-    add(PRINCIPLED_SPECULAR, m.specular);
-    add(PRINCIPLED_TRANSMISSION, m.transmission);
-    add(PRINCIPLED_DIFFUSE_TRANSMISSION, m.diffuse_transmission);
-    add(PRINCIPLED_COAT, m.coat);
-    add(PRINCIPLED_COAT_ROUGHNESS, m.coat_roughness);
-    add(PRINCIPLED_SHEEN_ROUGHNESS, m.sheen_roughness);
-    add(PRINCIPLED_IRIDESCENCE, m.iridescence);
-    add(PRINCIPLED_IRIDESCENCE_THICKNESS, m.iridescence_thickness);
-    add(PRINCIPLED_ANISOTROPY, m.anisotropy);
-    add(PRINCIPLED_FUZZ_COLOR, m.fuzz_color);
-    add(PRINCIPLED_FUZZ, m.fuzz);
-    add(PRINCIPLED_FUZZ_ROUGHNESS, m.fuzz_roughness);
+    add(PRINCIPLED_THICKNESS, m.iridescence_thickness);
+#define COLOR(bit, name, word) add(bit, m.name);
+#define WEIGHT(bit, name, word, place) add(bit, m.name);
+#include "shared/principled_record.inc"
     return result;
 }
 
@@ -99,38 +102,21 @@ double internal_reflectance(double n) {
 
 EncodedPrincipled encode_principled(const PrincipledMaterial& m) {
     EncodedPrincipled result;
-    result.record = {.metalness = m.metalness.factor,
-                     .roughness = m.roughness.factor,
-                     .diffuse_roughness = m.diffuse_roughness.factor,
-                     .specular = m.specular.factor,
-                     .specular_color = m.specular_color.factor,
-                     .transmission = m.transmission.factor,
-                     .diffuse_transmission_color = m.diffuse_transmission_color.factor,
-                     .diffuse_transmission = m.diffuse_transmission.factor,
-                     .coat = m.coat.factor,
-                     .coat_roughness = m.coat_roughness.factor,
-                     .coat_ior = m.coat_ior,
-                     .coat_darkening = m.coat_darkening,
-                     .sheen_color = m.sheen_color.factor,
-                     .sheen_roughness = m.sheen_roughness.factor,
-                     .iridescence = m.iridescence.factor,
-                     .iridescence_ior = m.iridescence_ior,
-                     .thickness = m.iridescence_thickness_min,
-                     .thickness_range = m.iridescence_thickness.factor - m.iridescence_thickness_min,
-                     .anisotropy = m.anisotropy.factor,
-                     .rotation = vec2(std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation)),
-                     .dispersion = m.dispersion,
-                     .coat_normal = TEXTURE_NONE,
-                     .coat_normal_scale = m.coat_normal_map ? m.coat_normal_map->scale : 1.0f,
-                     .images = 0,
-                     .coat_internal = float(internal_reflectance(double(m.coat_ior))),
-                     .fuzz_color = m.fuzz_color.factor,
-                     .fuzz_roughness = m.fuzz_roughness.factor,
-                     .fuzz = m.fuzz.factor};
+    PrincipledRecord& record = result.record;
+#define COLOR(bit, name, word) record.name = m.name.factor;
+#define WEIGHT(bit, name, word, place) record.name = m.name.factor;
+#define NUMBER(name, word, place) record.name = m.name;
+#include "shared/principled_record.inc"
+    record.thickness = m.iridescence_thickness_min;
+    record.thickness_range = m.iridescence_thickness.factor - m.iridescence_thickness_min;
+    record.rotation = vec2(std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation));
+    record.coat_normal = TEXTURE_NONE;
+    record.coat_normal_scale = m.coat_normal_map ? m.coat_normal_map->scale : 1.0f;
+    record.coat_internal = float(internal_reflectance(double(m.coat_ior)));
     // Without a texture the film has its greatest thickness.
     if (!m.iridescence_thickness.texture) {
-        result.record.thickness = m.iridescence_thickness.factor;
-        result.record.thickness_range = 0.0f;
+        record.thickness = m.iridescence_thickness.factor;
+        record.thickness_range = 0.0f;
     }
     result.parts = parts_of(m);
     result.textures = textures_of(m);

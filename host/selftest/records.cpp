@@ -189,34 +189,11 @@ Records filled(Fields& fields) {
     r.texels = fields.u4();
     for (uvec4& word : r.attributes)
         word = fields.u4();
-    r.principled = {.metalness = fields.f(),
-                    .roughness = fields.f(),
-                    .diffuse_roughness = fields.f(),
-                    .specular = fields.f(),
-                    .specular_color = fields.f3(),
-                    .transmission = fields.f(),
-                    .diffuse_transmission_color = fields.f3(),
-                    .diffuse_transmission = fields.f(),
-                    .coat = fields.f(),
-                    .coat_roughness = fields.f(),
-                    .coat_ior = fields.f(),
-                    .coat_darkening = fields.f(),
-                    .sheen_color = fields.f3(),
-                    .sheen_roughness = fields.f(),
-                    .iridescence = fields.f(),
-                    .iridescence_ior = fields.f(),
-                    .thickness = fields.f(),
-                    .thickness_range = fields.f(),
-                    .anisotropy = fields.f(),
-                    .rotation = fields.f2(),
-                    .dispersion = fields.f(),
-                    .coat_normal = fields.u(),
-                    .coat_normal_scale = fields.f(),
-                    .images = fields.u(),
-                    .coat_internal = fields.f(),
-                    .fuzz_color = fields.f3(),
-                    .fuzz_roughness = fields.f(),
-                    .fuzz = fields.f()};
+#define FLOAT(name, word, place) r.principled.name = fields.f();
+#define VEC2(name, word) r.principled.name = fields.f2();
+#define VEC3(name, word) r.principled.name = fields.f3();
+#define UINT(name, word, place) r.principled.name = fields.u();
+#include "shared/principled_record.inc"
     r.principled_image = {.texture = fields.u(), .values = fields.u(), .channels = fields.u2()};
     return r;
 }

@@ -110,34 +110,11 @@ void put_material_textures(MaterialTextures t) {
 }
 
 void put_principled(PrincipledRecord p) {
-    put(p.metalness);
-    put(p.roughness);
-    put(p.diffuse_roughness);
-    put(p.specular);
-    put(p.specular_color);
-    put(p.transmission);
-    put(p.diffuse_transmission_color);
-    put(p.diffuse_transmission);
-    put(p.coat);
-    put(p.coat_roughness);
-    put(p.coat_ior);
-    put(p.coat_darkening);
-    put(p.sheen_color);
-    put(p.sheen_roughness);
-    put(p.iridescence);
-    put(p.iridescence_ior);
-    put(p.thickness);
-    put(p.thickness_range);
-    put(p.anisotropy);
-    put(p.rotation);
-    put(p.dispersion);
-    put(p.coat_normal);
-    put(p.coat_normal_scale);
-    put(p.images);
-    put(p.coat_internal);
-    put(p.fuzz_color);
-    put(p.fuzz_roughness);
-    put(p.fuzz);
+#define FLOAT(name, word, place) put(p.name);
+#define VEC2(name, word) put(p.name);
+#define VEC3(name, word) put(p.name);
+#define UINT(name, word, place) put(p.name);
+#include "shared/principled_record.inc"
 }
 
 void put_texture(TextureRecord t) {

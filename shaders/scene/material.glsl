@@ -78,48 +78,25 @@ float principled_number(vec4 texel, PrincipledImage image, const uint value) {
 void principled_apply(inout PrincipledRecord p, inout vec3 base_color, PrincipledImage image, Attributes at) {
     TextureRecord t = scene_texture(image.texture);
     vec4 texel = texture_at(t, texture_uv(t, at));
-    uint values = image.values;
-    if (principled_gives(values, PRINCIPLED_BASE_COLOR)) base_color *= texel.rgb;
-    if (principled_gives(values, PRINCIPLED_SPECULAR_COLOR)) p.specular_color *= texel.rgb;
-    if (principled_gives(values, PRINCIPLED_DIFFUSE_TRANSMISSION_COLOR)) p.diffuse_transmission_color *= texel.rgb;
-    if (principled_gives(values, PRINCIPLED_SHEEN_COLOR)) p.sheen_color *= texel.rgb;
-    if (principled_gives(values, PRINCIPLED_FUZZ_COLOR)) p.fuzz_color *= texel.rgb;
-    if (principled_gives(values, PRINCIPLED_ANISOTROPY_MAP)) {
+    if (principled_gives(image.values, PRINCIPLED_BASE_COLOR)) base_color *= texel.rgb;
+    if (principled_gives(image.values, PRINCIPLED_ANISOTROPY_MAP)) {
         vec2 d = 2.0 * texel.rg - 1.0;
         float length_squared = dot(d, d);
         if (length_squared > 0.0) d *= inversesqrt(length_squared);
         p.rotation = vec2(d.x * p.rotation.x - d.y * p.rotation.y, d.x * p.rotation.y + d.y * p.rotation.x);
         p.anisotropy *= texel.b;
     }
-    p.metalness *= principled_number(texel, image, PRINCIPLED_METALNESS);
-    p.roughness *= principled_number(texel, image, PRINCIPLED_ROUGHNESS);
-    p.diffuse_roughness *= principled_number(texel, image, PRINCIPLED_DIFFUSE_ROUGHNESS);
-    p.specular *= principled_number(texel, image, PRINCIPLED_SPECULAR);
-    p.transmission *= principled_number(texel, image, PRINCIPLED_TRANSMISSION);
-    p.diffuse_transmission *= principled_number(texel, image, PRINCIPLED_DIFFUSE_TRANSMISSION);
-    p.coat *= principled_number(texel, image, PRINCIPLED_COAT);
-    p.coat_roughness *= principled_number(texel, image, PRINCIPLED_COAT_ROUGHNESS);
-    p.sheen_roughness *= principled_number(texel, image, PRINCIPLED_SHEEN_ROUGHNESS);
-    p.iridescence *= principled_number(texel, image, PRINCIPLED_IRIDESCENCE);
-    p.thickness_range *= principled_number(texel, image, PRINCIPLED_IRIDESCENCE_THICKNESS);
-    p.anisotropy *= principled_number(texel, image, PRINCIPLED_ANISOTROPY);
-    p.fuzz *= principled_number(texel, image, PRINCIPLED_FUZZ);
-    p.fuzz_roughness *= principled_number(texel, image, PRINCIPLED_FUZZ_ROUGHNESS);
+    p.thickness_range *= principled_number(texel, image, PRINCIPLED_THICKNESS);
+#define COLOR(bit, name, word) if (principled_gives(image.values, bit)) p.name *= texel.rgb;
+#define WEIGHT(bit, name, word, place) p.name *= principled_number(texel, image, bit);
+#include "shared/principled_record.inc"
 }
 
 // Colours and weights of half-float images may exceed 1.
 void principled_clamp(inout PrincipledRecord p) {
-    p.specular_color = min(p.specular_color, 1.0);
-    p.diffuse_transmission_color = min(p.diffuse_transmission_color, 1.0);
-    p.sheen_color = min(p.sheen_color, 1.0);
-    p.fuzz_color = min(p.fuzz_color, 1.0);
-    vec4 a = min(vec4(p.metalness, p.roughness, p.diffuse_roughness, p.specular), 1.0);
-    p.metalness = a.x, p.roughness = a.y, p.diffuse_roughness = a.z, p.specular = a.w;
-    a = min(vec4(p.transmission, p.diffuse_transmission, p.coat, p.coat_roughness), 1.0);
-    p.transmission = a.x, p.diffuse_transmission = a.y, p.coat = a.z, p.coat_roughness = a.w;
-    a = min(vec4(p.sheen_roughness, p.iridescence, p.anisotropy, p.fuzz), 1.0);
-    p.sheen_roughness = a.x, p.iridescence = a.y, p.anisotropy = a.z, p.fuzz = a.w;
-    p.fuzz_roughness = min(p.fuzz_roughness, 1.0);
+#define COLOR(bit, name, word) p.name = min(p.name, 1.0);
+#define WEIGHT(bit, name, word, place) p.name = min(p.name, 1.0);
+#include "shared/principled_record.inc"
 }
 
 // The values of the principled material m at a point; its base colour is multiplied by images, too.

@@ -305,8 +305,9 @@ TEST(GpuScene, PrincipledMaterialsHaveRecordsBehindTheOthers) {
     EXPECT_EQ(std::bit_cast<float>(words[5].x), float(first + PRINCIPLED_WORDS + 1) * 0x1p-24f);
     EXPECT_EQ(std::bit_cast<vec4>(words[first]), vec4(0.5f, 0.25f, 0, 1));
     EXPECT_EQ(words[first + 7].z, 1u);
-    const uint32_t values = 1u << PRINCIPLED_METALNESS | 1u << PRINCIPLED_ROUGHNESS;
-    EXPECT_EQ(words[first + PRINCIPLED_WORDS], uvec4(0, values, 1u << 2 * PRINCIPLED_ROUGHNESS, 0));
+    constexpr uint32_t METALNESS = 3, ROUGHNESS = 4;  // Bits in principled_record.inc.
+    EXPECT_EQ(words[first + PRINCIPLED_WORDS],
+              uvec4(0, 1u << METALNESS | 1u << ROUGHNESS, 1u << 2 * ROUGHNESS, 0));
     EXPECT_EQ(gpu.principled, PRINCIPLED_HAS_METAL | PRINCIPLED_HAS_ROUGH | PRINCIPLED_HAS_DIFFUSE |
                                   PRINCIPLED_HAS_IMAGES | PRINCIPLED_HAS_VOLUME);
 }
