@@ -1,7 +1,6 @@
 // Formats, PNG files, and what the readers share. No other file includes stb_image_write.
 #include "base/image_io.h"
 
-#include <algorithm>
 #include <cassert>
 #include <string>
 
@@ -15,17 +14,6 @@
 
 namespace candela {
 namespace fs = std::filesystem;
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    std::ranges::transform(lower, lower.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return lower;
-}
-
-std::string extension_of(const fs::path& path) {
-    return lower_case(path.extension().string());
-}
 
 void check_pixel_count(const fs::path& path, uint64_t width, uint64_t height, uint64_t max_pixels) {
     if (width * height <= max_pixels) return;

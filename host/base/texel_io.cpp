@@ -10,6 +10,7 @@
 #include "base/image_io_parts.h"
 #include "base/memory_limit.h"
 #include "base/texel_io_parts.h"
+#include "base/text.h"
 
 namespace candela {
 namespace {
