@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/image_io.h"
 #include "base/printable.h"
 #include "bench/build.h"
 #include "bench/clocks.h"
@@ -23,6 +22,7 @@
 #include "cli/json_text.h"
 #include "cli/loading.h"
 #include "cli/vulkan.h"
+#include "image/image_io.h"
 #include "probe/scenes.h"
 #include "session/version.h"
 #include "vk/device.h"

@@ -14,11 +14,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
-#include "base/image_io.h"
-#include "base/tonemap.h"
 #include "cli/attempts.h"
 #include "cli/console.h"
 #include "cli/json_text.h"
+#include "image/image_io.h"
+#include "image/tonemap.h"
 
 namespace candela {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/image_io.h"
 #include "base/printable.h"
 #include "cli/loading.h"
+#include "image/image_io.h"
 #include "shared/constants.h"
 
 namespace candela {

@@ -9,10 +9,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "base/tonemap.h"
 #include "cli/arguments.h"
 #include "film/accumulation.h"
 #include "film/sample_range.h"
+#include "image/tonemap.h"
 #include "load/gltf/gltf.h"
 #include "render/renderer.h"
 #include "scene/names.h"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/image_io.h"
 #include "base/printable.h"
 #include "cli/attempts.h"
 #include "cli/command.h"
@@ -17,6 +16,7 @@
 #include "cli/loading.h"
 #include "cli/render_options.h"
 #include "cli/vulkan.h"
+#include "image/image_io.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 #include "vk/presenter.h"

@@ -16,9 +16,9 @@
 #include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "base/printable.h"
-#include "base/shrink_image.h"
-#include "base/texel_io.h"
 #include "base/text.h"
+#include "image/shrink_image.h"
+#include "image/texel_io.h"
 #include "scene/material_textures.h"
 
 namespace candela {

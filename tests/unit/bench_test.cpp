@@ -4,13 +4,13 @@
 #include <map>
 #include <tuple>
 
-#include "base/relative_error.h"
 #include "bench/meshes.h"
 #include "bench/render.h"
 #include "bench/report.h"
 #include "bench/traversal.h"
 #include "bench/triangles.h"
 #include "cli/bench_report.h"
+#include "image/relative_error.h"
 #include "probe/scenes.h"
 #include "scene/geometry.h"
 #include "unit/base_fixture.h"

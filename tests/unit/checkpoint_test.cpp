@@ -8,9 +8,9 @@
 
 #include "accumulation_fixture.h"
 #include "base/file.h"
-#include "base/image_io.h"
 #include "base_fixture.h"
 #include "damage.h"
+#include "image/image_io.h"
 #include "image_fixture.h"
 
 namespace candela {

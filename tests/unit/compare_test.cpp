@@ -1,5 +1,5 @@
 // compare: accepts noise of the stated variance at the stated rate, rejects small but real differences.
-#include "base/compare.h"
+#include "image/compare.h"
 
 #include <cmath>
 #include <limits>

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
-#include "base/image_io.h"
+#include "image/image_io.h"
 #include "load/json/loader.h"
 #include "load/load.h"
 #include "unit/base_fixture.h"

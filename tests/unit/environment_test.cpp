@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "base/image_io.h"
 #include "base_fixture.h"
+#include "image/image_io.h"
 #include "image_fixture.h"
 
 namespace candela {

@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <half.h>
 
-#include "base/image_io.h"
+#include "image/image_io.h"
 
 namespace candela {
 namespace {

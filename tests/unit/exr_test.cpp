@@ -13,8 +13,8 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
-#include "base/image_io.h"
 #include "base_fixture.h"
+#include "image/image_io.h"
 #include "image_fixture.h"
 
 namespace candela {

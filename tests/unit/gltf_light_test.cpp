@@ -2,8 +2,8 @@
 // Ref: Khronos, "glTF 2.0 Specification", section 3.10; KHR_lights_punctual.
 #include <cmath>
 
-#include "base/image_io.h"
 #include "gltf_fixture.h"
+#include "image/image_io.h"
 #include "scene/geometry.h"
 
 namespace candela {

@@ -1,5 +1,5 @@
 // Image files by their extensions, and PNG files: what is written is what another decoder reads.
-#include "base/image_io.h"
+#include "image/image_io.h"
 
 #include <random>
 

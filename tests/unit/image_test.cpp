@@ -1,5 +1,5 @@
 // Image: channels are found by their exact names, and have one value per pixel.
-#include "base/image.h"
+#include "image/image.h"
 
 #include <gtest/gtest.h>
 

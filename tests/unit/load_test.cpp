@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "base/image_io.h"
 #include "gltf_fixture.h"
+#include "image/image_io.h"
 #include "scene/geometry.h"
 #include "scene_fixture.h"
 

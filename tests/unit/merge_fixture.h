@@ -10,11 +10,11 @@
 
 #include <gtest/gtest.h>
 
-#include "base/image_io.h"
 #include "base_fixture.h"
 #include "film/identity.h"
 #include "film/merge.h"
 #include "film/sample_range.h"
+#include "image/image_io.h"
 #include "probe/random.h"
 
 namespace candela {

@@ -1,5 +1,5 @@
 // The relative error of an image: against a reference by hand, and estimated where the truth is known.
-#include "base/relative_error.h"
+#include "image/relative_error.h"
 
 #include <cmath>
 #include <random>

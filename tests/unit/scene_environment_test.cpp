@@ -1,7 +1,7 @@
 // The environment of a scene file: constant or from an image, and what is refused.
 #include <gtest/gtest.h>
 
-#include "base/image_io.h"
+#include "image/image_io.h"
 #include "scene/geometry.h"
 #include "scene_fixture.h"
 

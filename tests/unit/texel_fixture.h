@@ -15,8 +15,8 @@
 #include <jpeglib.h>
 #include <webp/encode.h>
 
-#include "base/texel_io.h"
 #include "base_fixture.h"
+#include "image/texel_io.h"
 
 namespace candela {
 

@@ -6,7 +6,7 @@
 #include <half.h>
 
 #include "base/file.h"
-#include "base/image_io.h"
+#include "image/image_io.h"
 #include "image_fixture.h"
 #include "texel_fixture.h"
 

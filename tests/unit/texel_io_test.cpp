@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
-#include "base/image_io.h"
+#include "image/image_io.h"
 #include "image_fixture.h"
 #include "support/png_writer.h"
 #include "texel_fixture.h"

@@ -1,6 +1,6 @@
 // Tone curves: properties that their publications promise, values computed separately in double precision,
 // and what becomes of inputs that are no colours.
-#include "base/tonemap.h"
+#include "image/tonemap.h"
 
 #include <cmath>
 #include <limits>

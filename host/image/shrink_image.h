@@ -1,7 +1,7 @@
 // Smaller versions of texel images.
 #pragma once
 
-#include "base/texel_image.h"
+#include "image/texel_image.h"
 
 namespace candela {
 

@@ -1,5 +1,5 @@
 // See shrink_image.h.
-#include "base/shrink_image.h"
+#include "image/shrink_image.h"
 
 #include <algorithm>
 #include <cmath>

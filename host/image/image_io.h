@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/image.h"
+#include "image/image.h"
 
 namespace candela {
 

@@ -1,5 +1,5 @@
 // Comparison of two images, pixel by pixel and block by block; every sum is a double.
-#include "base/compare.h"
+#include "image/compare.h"
 
 #include <algorithm>
 #include <array>

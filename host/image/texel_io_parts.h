@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/texel_image.h"
-#include "base/texel_io.h"
+#include "image/texel_image.h"
+#include "image/texel_io.h"
 
 namespace candela {
 

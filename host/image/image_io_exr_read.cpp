@@ -19,10 +19,10 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_io.h"
-#include "base/image_io_exr_file.h"
-#include "base/image_io_parts.h"
 #include "base/memory_limit.h"
+#include "image/image_io.h"
+#include "image/image_io_exr_file.h"
+#include "image/image_io_parts.h"
 
 namespace candela {
 namespace {

@@ -1,5 +1,5 @@
 // Tells the formats of textures apart, and what is none of them. See texel_io.h.
-#include "base/texel_io.h"
+#include "image/texel_io.h"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_io_parts.h"
 #include "base/memory_limit.h"
-#include "base/texel_io_parts.h"
 #include "base/text.h"
+#include "image/image_io_parts.h"
+#include "image/texel_io_parts.h"
 
 namespace candela {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/image.h"
 #include "base/math.h"
+#include "image/image.h"
 
 namespace candela {
 

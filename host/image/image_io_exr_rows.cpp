@@ -8,7 +8,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 
-#include "base/image_io_parts.h"
+#include "image/image_io_parts.h"
 
 namespace candela {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <openexr.h>
 
-#include "base/image.h"
-#include "base/image_io.h"
+#include "image/image.h"
+#include "image/image_io.h"
 
 namespace candela {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/texel_image.h"
+#include "image/texel_image.h"
 
 namespace candela {
 

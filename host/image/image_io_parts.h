@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "base/image.h"
-#include "base/image_io.h"
+#include "image/image.h"
+#include "image/image_io.h"
 
 namespace candela {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "base/image.h"
+#include "image/image.h"
 
 namespace candela {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/image.h"
+#include "image/image.h"
 
 namespace candela {
 

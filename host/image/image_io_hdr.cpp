@@ -12,9 +12,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_io.h"
-#include "base/image_io_parts.h"
 #include "base/memory_limit.h"
+#include "image/image_io.h"
+#include "image/image_io_parts.h"
 
 namespace candela {
 namespace {

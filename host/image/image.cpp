@@ -1,5 +1,5 @@
 // Members of Image: finding and adding channels.
-#include "base/image.h"
+#include "image/image.h"
 
 #include <algorithm>
 #include <cassert>

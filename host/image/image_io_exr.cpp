@@ -19,7 +19,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_io.h"
+#include "image/image_io.h"
 
 namespace candela {
 namespace {

@@ -7,9 +7,9 @@
 
 #include <half.h>
 
-#include "base/image_io.h"
 #include "base/printable.h"
-#include "base/texel_io_parts.h"
+#include "image/image_io.h"
+#include "image/texel_io_parts.h"
 
 namespace candela {
 namespace {

@@ -1,5 +1,5 @@
 // Formats, PNG files, and what the readers share. No other file includes stb_image_write.
-#include "base/image_io.h"
+#include "image/image_io.h"
 
 #include <cassert>
 #include <string>
@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_io_parts.h"
+#include "image/image_io_parts.h"
 
 namespace candela {
 namespace fs = std::filesystem;

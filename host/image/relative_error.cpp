@@ -1,5 +1,5 @@
 // See relative_error.h.
-#include "base/relative_error.h"
+#include "image/relative_error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // The tone curves, each a function from non-negative finite linear Rec.709 to display light, and sRGB
 // encoding.
-#include "base/tonemap.h"
+#include "image/tonemap.h"
 
 #include <cassert>
 #include <cmath>

@@ -6,9 +6,9 @@
 
 #include <webp/decode.h>
 
-#include "base/image_io_parts.h"
 #include "base/memory_limit.h"
-#include "base/texel_io_parts.h"
+#include "image/image_io_parts.h"
+#include "image/texel_io_parts.h"
 
 namespace candela {
 namespace {

@@ -1,5 +1,5 @@
 // See texel_image.h.
-#include "base/texel_image.h"
+#include "image/texel_image.h"
 
 #include <cstring>
 

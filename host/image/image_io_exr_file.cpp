@@ -1,5 +1,5 @@
 // See image_io_exr_file.h.
-#include "base/image_io_exr_file.h"
+#include "image/image_io_exr_file.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_io_parts.h"
 #include "base/printable.h"
+#include "image/image_io_parts.h"
 
 namespace candela {
 

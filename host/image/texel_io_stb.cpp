@@ -14,8 +14,8 @@
 #define STBI_NO_STDIO
 #include <stb_image.h>
 
-#include "base/image_io_parts.h"
-#include "base/texel_io_parts.h"
+#include "image/image_io_parts.h"
+#include "image/texel_io_parts.h"
 
 namespace candela {
 namespace {

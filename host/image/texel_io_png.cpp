@@ -16,9 +16,9 @@
 
 #include <png.h>
 
-#include "base/image_io_parts.h"
-#include "base/texel_io_parts.h"
 #include "base/text.h"
+#include "image/image_io_parts.h"
+#include "image/texel_io_parts.h"
 
 namespace candela {
 namespace {
