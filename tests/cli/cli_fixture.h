@@ -13,7 +13,7 @@
 #include "image/image.h"
 #include "image/image_io.h"
 #include "support/process.h"
-#include "unit/base_fixture.h"
+#include "unit/base/base_fixture.h"
 
 namespace candela {
 

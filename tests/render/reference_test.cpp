@@ -9,7 +9,7 @@
 #include "image/tonemap.h"
 #include "load/load.h"
 #include "render_fixture.h"
-#include "unit/base_fixture.h"
+#include "unit/base/base_fixture.h"
 
 namespace candela {
 namespace {
