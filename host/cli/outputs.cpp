@@ -49,7 +49,7 @@ void write_image(const ImageOutputs& outputs, const std::string& path, const Ima
         write_exr(path, image, write);
     } else {
         write_png(path, image.data.width(), image.data.height(),
-                  develop(image, outputs.tonemap, float(outputs.exposure)), write);
+                  develop(image, outputs.development.tonemap, float(outputs.development.exposure)), write);
     }
 }
 

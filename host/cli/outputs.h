@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/render_options.h"
+#include "cli/image_options.h"
 #include "image/image.h"
 #include "session/record.h"
 

@@ -9,16 +9,16 @@ namespace {
 uint32_t pass_growth(const RenderOptions& options) {
     Scene scene;
     scene.cameras = {Camera{.name = {}, .lens = {}}};
-    return options.settings(scene).pass_growth;
+    return options.job(scene).settings.pass_growth;
 }
 
 TEST(RenderOptions, PicturesThatMayBeTakenAtAnyTimeGrowEvenly) {
     RenderOptions options;
     EXPECT_EQ(pass_growth(options), PASS_GROWTH);
-    options.write_every = 1.0;
+    options.outputs.write_every = 1.0;
     EXPECT_EQ(pass_growth(options), EVEN_PASS_GROWTH);
     options = RenderOptions{};
-    options.time_limit = 1.0;
+    options.stopping.time_limit = 1.0;
     EXPECT_EQ(pass_growth(options), EVEN_PASS_GROWTH);
 }
 
@@ -28,11 +28,11 @@ TEST(RenderOptions, APictureHasTheSizeOfItsCameraUnlessTheCommandLineSaysOtherwi
     scene.cameras = {Camera{.name = "first", .lens = {}},
                      Camera{.name = "second", .lens = {}, .film_size = uvec2(8, 6)}};
     RenderOptions options;
-    EXPECT_EQ(options.settings(scene).size, uvec2(40, 30));
-    options.camera = "second";
-    EXPECT_EQ(options.settings(scene).size, uvec2(8, 6));
-    options.picture.size = uvec2(5, 5);
-    EXPECT_EQ(options.settings(scene).size, uvec2(5, 5));
+    EXPECT_EQ(options.job(scene).settings.size, uvec2(40, 30));
+    options.scene.camera = "second";
+    EXPECT_EQ(options.job(scene).settings.size, uvec2(8, 6));
+    options.rendering.picture.size = uvec2(5, 5);
+    EXPECT_EQ(options.job(scene).settings.size, uvec2(5, 5));
 }
 
 TEST(RenderOptions, AJobIsTheSceneUnlessTheCommandLineSaysOtherwise) {
@@ -48,19 +48,19 @@ TEST(RenderOptions, AJobIsTheSceneUnlessTheCommandLineSaysOtherwise) {
     EXPECT_EQ(job.settings.seed, 3u);
 
     RenderOptions options;
-    options.camera = "second";
-    options.spp = 12;
-    options.seed = 4;
-    options.max_depth = 6;
-    options.picture.size = uvec2(8, 8);
+    options.scene.camera = "second";
+    options.rendering.sampling.spp = 12;
+    options.rendering.sampling.seed = 4;
+    options.rendering.sampling.max_depth = 6;
+    options.rendering.picture.size = uvec2(8, 8);
     job = options.job(scene);
     EXPECT_EQ(job.camera.name, "second");
     EXPECT_EQ(job.target, 12u);
     EXPECT_EQ(job.settings.size, uvec2(8, 8));
     EXPECT_EQ(job.settings.max_depth, 6u);
     EXPECT_EQ(job.settings.seed, 4u);
-    options.spp.reset();
-    options.samples = SampleRange{10, 25};
+    options.rendering.sampling.spp.reset();
+    options.stopping.samples = SampleRange{10, 25};
     EXPECT_EQ(options.job(scene).target, 15u);
     EXPECT_EQ(options.job(scene).settings.first_sample, 10u);
 }
