@@ -16,6 +16,7 @@ endfunction()
 candela_check(layers ${PYTHON3} cmake/checks/layers.py ${CMAKE_SOURCE_DIR})
 candela_check(layers_test ${PYTHON3} cmake/checks/layers_test.py)
 candela_check(promises ${PYTHON3} cmake/checks/promises.py docs/files.md ${CMAKE_SOURCE_DIR})
+candela_check(mutations ${PYTHON3} tests/mutations/mutate.py --check)
 candela_check(setup_test ${PYTHON3} cmake/checks/setup_test.py)
 candela_check(workflows_test ${PYTHON3} cmake/checks/workflows_test.py)
 candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
@@ -70,8 +71,9 @@ VK_DRIVER_FILES=${RADV_MANIFEST};VK_ICD_FILENAMES=${RADV_MANIFEST};CANDELA_VALID
 endforeach()
 
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS
-    ${CMAKE_SOURCE_DIR}/host/*.cpp ${CMAKE_SOURCE_DIR}/host/*.h ${CMAKE_SOURCE_DIR}/shaders/shared/*.h
-    ${CMAKE_SOURCE_DIR}/tests/*.cpp ${CMAKE_SOURCE_DIR}/tests/*.h)
+    ${CMAKE_SOURCE_DIR}/host/*.cpp ${CMAKE_SOURCE_DIR}/host/*.h ${CMAKE_SOURCE_DIR}/shaders/*.glsl
+    ${CMAKE_SOURCE_DIR}/shaders/*.h ${CMAKE_SOURCE_DIR}/tests/*.cpp ${CMAKE_SOURCE_DIR}/tests/*.glsl
+    ${CMAKE_SOURCE_DIR}/tests/*.h)
 if(CLANG_FORMAT)
     candela_check(format ${CLANG_FORMAT} --dry-run -Werror ${sources})
 else()

@@ -78,6 +78,7 @@ VIOLATIONS = [
     ("a cycle", "shaders/bsdf/a.glsl", f'// A.\n{GUARD}#include "bsdf/a.glsl"\n#endif\n', "includes itself in the end"),
     ("an unknown folder", "host/gui/a.cpp", "// A.\n", "the folder host/gui/ is not in the table of layers"),
     ("a file without a comment", "host/base/a.cpp", "int a;\n", "host/base/a.cpp:1: must begin with a comment"),
+    ("a line that is too long", "shaders/shared/a.inc", f"// A.\n// {118 * 'a'}\n", "shaders/shared/a.inc:2: is longer"),
     ("a test without a comment", "tests/unit/b_test.cpp", "int b;\n", "tests/unit/b_test.cpp:1: must begin with"),
 ]
 

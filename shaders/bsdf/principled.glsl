@@ -21,9 +21,9 @@
 // bias, since all that is measured counts linearly: there are no tables of albedos, and no fits. So a surface has other
 // lobes at each vertex, and the right ones on average. Nothing is gained or lost, whatever the roughness, the indices and
 // the film. The whole is not reciprocal; its lobes are, one by one, except fuzz.
-// Ref: glTF 2.0, appendix B, and its extensions KHR_materials_*; OpenPBR 1.1; Kulla and Conty 2017, Revisiting Physically
-// Based Shading at Imageworks, on lost light; Cranley and Patterson 1976, Randomization of Number Theoretic Methods for
-// Multiple Integration, on such lattices.
+// Ref: glTF 2.0, appendix B, and its extensions KHR_materials_*; OpenPBR 1.1; Kulla and Conty 2017, Revisiting
+// Physically Based Shading at Imageworks, on lost light; Cranley and Patterson 1976, Randomization of Number Theoretic
+// Methods for Multiple Integration, on such lattices.
 //
 // Local frame, z on the viewer's side, x along the direction that anisotropy makes rougher.
 #ifndef BSDF_PRINCIPLED_GLSL

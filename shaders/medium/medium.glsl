@@ -29,8 +29,8 @@ uint media_first(uvec2 media) {
 uvec2 media_entered(uvec2 media, uint medium) {
     uvec4 m = media_unpack(media);
     bvec4 after = lessThanEqual(m >> MEDIUM_INDEX_BITS, uvec4(medium >> MEDIUM_INDEX_BITS));
-    return media_pack(uvec4(after.x ? medium : m.x, after.x ? m.x : after.y ? medium : m.y,
-                            after.y ? m.y : after.z ? medium : m.z, after.z ? m.z : after.w ? medium : m.w));
+    return media_pack(uvec4(after.x ? medium : m.x, after.x ? m.x : (after.y ? medium : m.y),
+                            after.y ? m.y : (after.z ? medium : m.z), after.z ? m.z : (after.w ? medium : m.w)));
 }
 
 // The media after leaving `medium`; the same if it is not one of them.

@@ -6,8 +6,8 @@
 // that of BSDF samples. The point lies on the ray that found the triangle, where nothing is in between, so no light
 // leaks through what touches the mesh. The height is 0 where normals do not diverge, falls with the square of the
 // triangle's size, and is the same on both sides of an edge.
-// Ref: Hanika 2021, Hacking the Shadow Terminator, in Ray Tracing Gems II, which lifts the point along its normal, by the
-// vertices' tangent planes.
+// Ref: Hanika 2021, Hacking the Shadow Terminator, in Ray Tracing Gems II, which lifts the point along its normal, by
+// the vertices' tangent planes.
 #ifndef SCENE_SMOOTH_GLSL
 #define SCENE_SMOOTH_GLSL
 
