@@ -114,9 +114,7 @@ struct PrincipledImage {
 #ifdef __cplusplus
 
 inline std::array<uvec4, PRINCIPLED_WORDS> pack(const PrincipledRecord& p) {
-    const auto four = [](float x, float y, float z, float w) {
-        return word(vec3(x, y, z), floatBitsToUint(w));
-    };
+    const auto four = [](float x, float y, float z, float w) { return word(vec3(x, y, z), floatBitsToUint(w)); };
     return {four(p.metalness, p.roughness, p.diffuse_roughness, p.specular),
             word(p.specular_color, floatBitsToUint(p.transmission)),
             word(p.diffuse_transmission_color, floatBitsToUint(p.diffuse_transmission)),
@@ -124,8 +122,7 @@ inline std::array<uvec4, PRINCIPLED_WORDS> pack(const PrincipledRecord& p) {
             word(p.sheen_color, floatBitsToUint(p.sheen_roughness)),
             four(p.iridescence, p.iridescence_ior, p.thickness, p.thickness_range),
             four(p.anisotropy, p.rotation.x, p.rotation.y, p.dispersion),
-            uvec4(p.coat_normal, floatBitsToUint(p.coat_normal_scale), p.images,
-                  floatBitsToUint(p.coat_internal)),
+            uvec4(p.coat_normal, floatBitsToUint(p.coat_normal_scale), p.images, floatBitsToUint(p.coat_internal)),
             word(p.fuzz_color, floatBitsToUint(p.fuzz_roughness)),
             four(p.fuzz, 0.0f, 0.0f, 0.0f)};
 }
