@@ -1,14 +1,11 @@
-// The rival in the benchmark of building, if the program was built with it; see build.h.
-#include "bench/build.h"
-
-#ifdef CANDELA_EMBREE
-
+// The rival in `candela bench` of building, if the program is built with it; see bench/build.h.
 #include <cassert>
 #include <new>
 
 #include <embree3/rtcore.h>
 
 #include "base/error.h"
+#include "bench/build.h"
 #include "bvh/measure.h"
 #include "bvh/quantise.h"
 
@@ -149,15 +146,3 @@ std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes) {
 }
 
 }  // namespace candela
-
-#else
-
-namespace candela {
-
-std::optional<TimedBvh> build_with_embree(std::span<const Box>) {
-    return std::nullopt;
-}
-
-}  // namespace candela
-
-#endif

@@ -1,8 +1,4 @@
-// The rival in the benchmark of rays, if the program was built with it; see tracer.h.
-#include "bench/tracer.h"
-
-#ifdef CANDELA_EMBREE
-
+// The rival in `candela bench` of rays, if the program is built with it; see bench/tracer.h.
 #include <atomic>
 #include <new>
 #include <thread>
@@ -10,6 +6,8 @@
 #include <embree3/rtcore.h>
 #include <pmmintrin.h>
 #include <xmmintrin.h>
+
+#include "bench/tracer.h"
 
 namespace candela {
 namespace {
@@ -162,19 +160,3 @@ std::optional<std::string> embree_version() {
 }
 
 }  // namespace candela
-
-#else
-
-namespace candela {
-
-std::unique_ptr<RayTracer> make_embree_tracer(const BenchTriangles&) {
-    return nullptr;
-}
-
-std::optional<std::string> embree_version() {
-    return std::nullopt;
-}
-
-}  // namespace candela
-
-#endif
