@@ -16,13 +16,14 @@ endfunction()
 candela_check(layers ${PYTHON3} cmake/checks/layers.py ${CMAKE_SOURCE_DIR})
 candela_check(layers_test ${PYTHON3} cmake/checks/layers_test.py)
 candela_check(promises ${PYTHON3} cmake/checks/promises.py docs/files.md ${CMAKE_SOURCE_DIR})
+candela_check(mutations ${PYTHON3} tests/mutations/mutate.py --check)
 candela_check(setup_test ${PYTHON3} cmake/checks/setup_test.py)
 candela_check(workflows_test ${PYTHON3} cmake/checks/workflows_test.py)
 candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
 set_tests_properties(shaders_alone PROPERTIES LABELS check)
-candela_check(schema ${PYTHON3} tests/unit/schema_test.py scenes tests/references tests/bench/scenes)
+candela_check(schema ${PYTHON3} cmake/checks/schema.py scenes tests/references tests/bench/scenes)
 candela_check(principled_keys ${PYTHON3} cmake/checks/principled_keys.py)
-candela_check(sky ${PYTHON3} tests/unit/sky_test.py scenes)
+candela_check(sky ${PYTHON3} cmake/checks/sky.py scenes)
 
 # These need a device, unlike the others.
 file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/docs/*.md)
@@ -70,8 +71,9 @@ VK_DRIVER_FILES=${RADV_MANIFEST};VK_ICD_FILENAMES=${RADV_MANIFEST};CANDELA_VALID
 endforeach()
 
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS
-    ${CMAKE_SOURCE_DIR}/host/*.cpp ${CMAKE_SOURCE_DIR}/host/*.h ${CMAKE_SOURCE_DIR}/shaders/shared/*.h
-    ${CMAKE_SOURCE_DIR}/tests/*.cpp ${CMAKE_SOURCE_DIR}/tests/*.h)
+    ${CMAKE_SOURCE_DIR}/host/*.cpp ${CMAKE_SOURCE_DIR}/host/*.h ${CMAKE_SOURCE_DIR}/shaders/*.glsl
+    ${CMAKE_SOURCE_DIR}/shaders/*.h ${CMAKE_SOURCE_DIR}/tests/*.cpp ${CMAKE_SOURCE_DIR}/tests/*.glsl
+    ${CMAKE_SOURCE_DIR}/tests/*.h)
 if(CLANG_FORMAT)
     candela_check(format ${CLANG_FORMAT} --dry-run -Werror ${sources})
 else()

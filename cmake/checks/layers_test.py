@@ -11,10 +11,11 @@ TABLE = CHECKER.parents[2] / "CONTRIBUTING.md"
 
 GOOD = {
     "CONTRIBUTING.md": TABLE.read_text(encoding="utf-8"),
-    "host/CMakeLists.txt": "candela_library(base PNG::PNG)\ncandela_library(scene candela_base)\n",
+    "host/CMakeLists.txt": "candela_library(base)\ncandela_library(image candela_base PNG::PNG)\n"
+    "candela_library(scene candela_image)\n",
     "host/base/error.h": "// Errors.\n#pragma once\n",
     "host/base/math.h": "// Math.\n#pragma once\n#include <glm/glm.hpp>\n",
-    "host/base/image_io.cpp": "// Files.\n#include <ImfHeader.h>\n#include <stb_image_write.h>\n",
+    "host/image/image_io.cpp": "// Files.\n#include <ImfHeader.h>\n#include <stb_image_write.h>\n",
     "host/vk/device.h": '// A device.\n#pragma once\n#include <volk.h>\n#include "base/error.h"\n',
     "host/scene/scene.h": '// A scene.\n#pragma once\n#include "base/math.h"\n',
     "host/load/json.h": "// JSON.\n#pragma once\n#include <nlohmann/json.hpp>\n",
@@ -38,7 +39,7 @@ GUARD = "#ifndef BSDF_A_GLSL\n#define BSDF_A_GLSL\n"
 # (what is planted, its file, its text, what the checker must say)
 VIOLATIONS = [
     ("a scene that knows Vulkan", "host/scene/a.cpp", '// A.\n#include "vk/device.h"\n',
-     'host/scene/a.cpp:2: includes "vk/device.h", but host/scene/ may include only host/scene, host/base'),
+     'host/scene/a.cpp:2: includes "vk/device.h", but host/scene/ may include only host/scene, host/base, host/image'),
     ("base that knows of ours", "host/base/a.cpp", '// A.\n\n#include "scene/scene.h"\n',
      'host/base/a.cpp:3: includes "scene/scene.h", but host/base/ may include only host/base'),
     ("Vulkan objects that know vectors", "host/vk/a.cpp", '// A.\n#include "base/math.h"\n',
@@ -65,7 +66,7 @@ VIOLATIONS = [
     ("a missing guard", "shaders/bsdf/a.glsl", "// A.\n", "lacks the include guard BSDF_A_GLSL"),
     ("a missing pragma", "host/base/a.h", "// A.\n", "host/base/a.h:1: lacks #pragma once"),
     ("a library that links what its folder may not include", "host/CMakeLists.txt",
-     "candela_library(base)\ncandela_library(vk candela_base)\n\ncandela_library(scene candela_base candela_vk)\n",
+     "candela_library(image)\ncandela_library(vk candela_base)\n\ncandela_library(scene candela_image candela_vk)\n",
      "host/CMakeLists.txt:4: candela_scene links candela_vk, which host/scene/ may not include"),
     ("a library that does not link what its folder may include", "host/CMakeLists.txt",
      "candela_library(base)\ncandela_library(film nlohmann_json::nlohmann_json)\n",
@@ -77,6 +78,7 @@ VIOLATIONS = [
     ("a cycle", "shaders/bsdf/a.glsl", f'// A.\n{GUARD}#include "bsdf/a.glsl"\n#endif\n', "includes itself in the end"),
     ("an unknown folder", "host/gui/a.cpp", "// A.\n", "the folder host/gui/ is not in the table of layers"),
     ("a file without a comment", "host/base/a.cpp", "int a;\n", "host/base/a.cpp:1: must begin with a comment"),
+    ("a line that is too long", "shaders/shared/a.inc", f"// A.\n// {118 * 'a'}\n", "shaders/shared/a.inc:2: is longer"),
     ("a test without a comment", "tests/unit/b_test.cpp", "int b;\n", "tests/unit/b_test.cpp:1: must begin with"),
 ]
 

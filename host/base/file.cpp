@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "base/temporary_file.h"
+#include "base/text.h"
 
 namespace candela {
 namespace {
@@ -223,6 +224,10 @@ void refuse_pointer(const fs::path& path, std::string_view start) {
 
 std::string quoted(const fs::path& path) {
     return '"' + printable(path.string(), MOST_PATH_BYTES) + '"';
+}
+
+std::string extension_of(const fs::path& path) {
+    return lower_case(path.extension().string());
 }
 
 void check_readable(const fs::path& path) {

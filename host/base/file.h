@@ -13,6 +13,9 @@ namespace candela {
 // The path in quotation marks, as messages show it: printable, and cut at MOST_PATH_BYTES.
 std::string quoted(const std::filesystem::path& path);
 
+// The extension of a path in lower case, with its dot.
+std::string extension_of(const std::filesystem::path& path);
+
 // Throws Error if `path` cannot be read: it is missing, a directory or a device, or may not be opened.
 void check_readable(const std::filesystem::path& path);
 

@@ -1,4 +1,4 @@
-// Texts made of parts.
+// Texts: made of parts, in lower case.
 #pragma once
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 namespace candela {
 
@@ -16,6 +17,15 @@ std::string concat(const Parts&... parts) {
     text.precision(std::numeric_limits<float>::max_digits10);
     (text << ... << parts);
     return text.str();
+}
+
+// The text with the letters A to Z in lower case, in every locale.
+inline std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower) {
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    }
+    return lower;
 }
 
 // A number in at most `digits` significant digits, for messages.

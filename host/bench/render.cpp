@@ -1,8 +1,8 @@
 // See render.h.
 #include "bench/render.h"
 
-#include "base/relative_error.h"
 #include "bench/clocks.h"
+#include "image/relative_error.h"
 
 namespace candela {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "base/image.h"
 #include "bench/options.h"
 #include "bench/report.h"
+#include "image/image.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include "vk/device.h"

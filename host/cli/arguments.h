@@ -10,9 +10,9 @@
 #include <CLI/CLI.hpp>
 
 #include "base/error.h"
-#include "base/image.h"
 #include "film/accumulation.h"
 #include "film/sample_range.h"
+#include "image/image.h"
 #include "scene/names.h"
 
 namespace candela {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/image_io.h"
 #include "base/printable.h"
 #include "bench/build.h"
 #include "bench/clocks.h"
@@ -23,6 +22,7 @@
 #include "cli/json_text.h"
 #include "cli/loading.h"
 #include "cli/vulkan.h"
+#include "image/image_io.h"
 #include "probe/scenes.h"
 #include "session/version.h"
 #include "vk/device.h"
@@ -39,17 +39,17 @@ constexpr double DEFAULT_SECONDS = 3.0;
 // A run is limited by time unless the command line limits it by samples.
 RenderTask make_task(const BenchArguments& arguments, const std::string& name, Scene scene) {
     RenderTask task{.name = name, .scene = std::move(scene)};
-    task.settings = arguments.render.settings(task.scene);
-    task.spp = arguments.render.spp.value_or(MAX_SPP);
+    task.settings = arguments.rendering.settings(task.scene, task.scene.cameras.front());
+    task.spp = arguments.rendering.sampling.spp.value_or(MAX_SPP);
     task.seconds = arguments.seconds;
-    if (!task.seconds && !arguments.render.spp) task.seconds = DEFAULT_SECONDS;
+    if (!task.seconds && !arguments.rendering.sampling.spp) task.seconds = DEFAULT_SECONDS;
     return task;
 }
 
 std::vector<RenderTask> make_tasks(const BenchArguments& arguments) {
     std::vector<RenderTask> tasks;
     for (const std::string& file : arguments.scenes)
-        tasks.push_back(make_task(arguments, file, load_with_progress(file, arguments.render.loading)));
+        tasks.push_back(make_task(arguments, file, load_with_progress(file, arguments.rendering.loading)));
     if (tasks.empty()) tasks.push_back(make_task(arguments, "Cornell box", cornell_box()));
     return tasks;
 }
@@ -108,6 +108,7 @@ void print_heading(const vk::DeviceInfo& device, const BenchOptions& options) {
 
 Json settings_json(const BenchArguments& arguments, const RenderTask& task) {
     const RenderSettings& settings = task.settings;
+    const std::optional<uint32_t>& spp = arguments.rendering.sampling.spp;
     return {{"runs", arguments.bench.runs},
             {"rays", arguments.bench.rays},
             {"triangles", arguments.bench.triangles},
@@ -115,7 +116,7 @@ Json settings_json(const BenchArguments& arguments, const RenderTask& task) {
             {"instances", arguments.bench.instances},
             {"scene_buffers", name_of(arguments.bench.scene_access, SCENE_ACCESS_NAMES)},
             {"seconds", task.seconds ? Json(*task.seconds) : Json(nullptr)},
-            {"spp", arguments.render.spp ? Json(*arguments.render.spp) : Json(nullptr)},
+            {"spp", spp ? Json(*spp) : Json(nullptr)},
             {"reference", arguments.reference ? Json(*arguments.reference) : Json(nullptr)},
             {"width", settings.crop.width()},
             {"height", settings.crop.height()},
@@ -179,7 +180,7 @@ std::vector<Row> run_group(BenchGroup group, const vk::Device& device, const Ben
         case BenchGroup::first_pixel: {
             const auto program = std::filesystem::read_symlink("/proc/self/exe");
             const auto first_pixel = [&](const std::optional<std::filesystem::path>& scene) {
-                append(bench_first_pixel(arguments.bench, program, scene, arguments.render.device));
+                append(bench_first_pixel(arguments.bench, program, scene, arguments.rendering.device.name));
             };
             for (const std::string& scene : arguments.scenes)
                 first_pixel(scene);
@@ -213,10 +214,10 @@ ExitCode bench(const BenchArguments& arguments) {
 
     const vk::Instance instance(instance_options());
     const std::vector<vk::DeviceInfo> devices = instance.devices();
-    const vk::Device device(instance, vk::select_device(devices, arguments.render.device),
+    const vk::Device device(instance, vk::select_device(devices, arguments.rendering.device.name),
                             pipeline_cache_folder());
     BenchArguments told = arguments;
-    told.bench.scene_access = arguments.render.scene_access;
+    told.bench.scene_access = arguments.rendering.device.scene_access;
     told.bench.progress = [table](const std::string& text) { print_progress(text, table); };
     if (table) print_heading(device.info(), told.bench);
     std::vector<BenchTable> tables;

@@ -84,7 +84,7 @@ void BenchArguments::add_to(CLI::App& app) {
         ->type_name("TIME");
     app.add_option("--reference", reference, "Converged image of the one scene, to report the relMSE as well")
         ->type_name("FILE.exr");
-    render.add_rendering_to(app);
+    rendering.add_to(app);
 }
 
 }  // namespace candela

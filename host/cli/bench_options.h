@@ -9,7 +9,7 @@
 
 #include "bench/options.h"
 #include "cli/arguments.h"
-#include "cli/render_options.h"
+#include "cli/rendering_options.h"
 
 namespace candela {
 
@@ -29,7 +29,7 @@ struct BenchArguments {
     BenchOptions bench;
     std::optional<double> seconds;
     std::optional<std::string> reference;
-    RenderOptions render;  // Only those that add_rendering_to() declares.
+    RenderingOptions rendering;
 
     // Declares all options on `app`, which fills them in when it parses; this object must not move.
     void add_to(CLI::App& app);

@@ -1,5 +1,5 @@
 // `candela compare`: whether two renderings of the same picture differ by more than their noise.
-#include "base/compare.h"
+#include "image/compare.h"
 
 #include <cmath>
 #include <cstdio>
@@ -8,11 +8,11 @@
 #include <string>
 
 #include "base/file.h"
-#include "base/image_io.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
+#include "image/image_io.h"
 
 namespace candela {
 namespace {

@@ -15,6 +15,7 @@
 #include "cli/console.h"
 #include "cli/json_text.h"
 #include "cli/loading.h"
+#include "cli/loading_options.h"
 #include "gpu_scene/gpu_scene.h"
 #include "render/renderer.h"
 #include "scene/geometry.h"

@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "cli/render_options.h"
+#include "cli/loading_options.h"
+#include "cli/message_options.h"
 #include "gpu_scene/gpu_scene.h"
 #include "scene/scene.h"
 

@@ -14,8 +14,8 @@
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
+#include "cli/image_options.h"
 #include "cli/outputs.h"
-#include "cli/render_options.h"
 #include "film/sample_range.h"
 
 namespace candela {
@@ -24,7 +24,7 @@ namespace {
 struct MergeArguments {
     std::vector<std::string> parts;
     std::optional<SampleRange> missing;
-    RenderOptions options;  // Only the outputs.
+    ImageOutputs images;
 };
 
 // Prints the samples that no part holds, one range per line.
@@ -41,15 +41,15 @@ ExitCode print_missing(const MergeArguments& arguments) {
 ExitCode run(const MergeArguments& arguments, const std::string& command_line) {
     if (arguments.missing) return print_missing(arguments);
     CommandFiles files;  // The parts are all read before anything is written: one of them may be the output.
-    for (const std::string& path : arguments.options.images.files)
+    for (const std::string& path : arguments.images.files)
         files.write("-o", path);
-    check_outputs(arguments.options.images);
+    check_outputs(arguments.images);
     Merged merged = merge_files({arguments.parts.begin(), arguments.parts.end()});
     print_warnings(merged.warnings);
     merged.image.attributes["candela.commandLine"] = command_line;
     const std::string samples = std::get<std::string>(merged.image.attributes.at("candela.samples"));
     const size_t count = arguments.parts.size();
-    write_images(arguments.options.images, std::move(merged.image));
+    write_images(arguments.images, std::move(merged.image));
     std::printf("merged %zu part%s: samples %s\n", count, count == 1 ? "" : "s",
                 printable(samples, MOST_MESSAGE_BYTES).c_str());
     flush_results();
@@ -66,7 +66,7 @@ Command add_merge_command(CLI::App& app, const std::string& command_line) {
         ->required()
         ->type_name("")
         ->take_all();
-    arguments->options.add_images_to(*command);
+    arguments->images.add_to(*command);
     add_value(
         *command, "--missing", arguments->missing, parse_samples, SAMPLES_EXPECTED,
         "Only print which of these samples no part holds, one range per line; a file that cannot be read "

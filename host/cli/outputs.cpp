@@ -14,11 +14,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
-#include "base/image_io.h"
-#include "base/tonemap.h"
 #include "cli/attempts.h"
 #include "cli/console.h"
 #include "cli/json_text.h"
+#include "image/image_io.h"
+#include "image/tonemap.h"
 
 namespace candela {
 namespace {
@@ -49,7 +49,7 @@ void write_image(const ImageOutputs& outputs, const std::string& path, const Ima
         write_exr(path, image, write);
     } else {
         write_png(path, image.data.width(), image.data.height(),
-                  develop(image, outputs.tonemap, float(outputs.exposure)), write);
+                  develop(image, outputs.development.tonemap, float(outputs.development.exposure)), write);
     }
 }
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "base/image.h"
-#include "cli/render_options.h"
+#include "cli/image_options.h"
+#include "image/image.h"
 #include "session/record.h"
 
 namespace candela {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <string>
 
-#include "cli/render_options.h"
+#include "cli/message_options.h"
 
 namespace candela {
 

@@ -101,15 +101,15 @@ std::optional<Checkpoint> resume(const RenderJob& job, const RenderRecord& recor
 
 // Writes all files. If one fails, still writes the others, and then throws the Error; or `failure`, if there
 // is one.
-void write_files(Rendering& rendering, const RenderOptions& options, const vk::Instance& instance,
-                 const std::optional<Error>& failure, uint32_t target) {
+void write_files(Rendering& rendering, const OutputOptions& outputs, const MessageOptions& messages,
+                 const vk::Instance& instance, const std::optional<Error>& failure, uint32_t target) {
     Image image = rendering.image();
     RenderRecord record = rendering.record();
-    print_outcome(options.messages, record, target);
+    print_outcome(messages, record, target);
     record.validation_messages = instance.validation_messages().size();
     Attempts attempts;
     attempts.attempt([&] { rendering.finish_checkpoint(); });
-    attempts.attempt([&] { write_outputs(options.images, options.report, record, std::move(image)); });
+    attempts.attempt([&] { write_outputs(outputs.images, outputs.report, record, std::move(image)); });
     attempts.attempt([&] {
         if (failure) throw Error(*failure);
     });
@@ -118,9 +118,8 @@ void write_files(Rendering& rendering, const RenderOptions& options, const vk::I
 
 // Renders on an instance, and writes the files.
 ExitCode render_on(const vk::Instance& instance, const vk::DeviceInfo& device, const GpuScene& scene,
-                   const RenderJob& job, const RenderOptions& options, std::optional<Image> reference,
-                   RenderRecord record) {
-    const MessageOptions& messages = options.messages;
+                   const RenderJob& job, const OutputOptions& outputs, const MessageOptions& messages,
+                   std::optional<Image> reference, RenderRecord record) {
     std::optional<Checkpoint> resumed = resume(job, record, device, messages);
     Rendering rendering({.instance = &instance,
                          .device = device,
@@ -132,8 +131,7 @@ ExitCode render_on(const vk::Instance& instance, const vk::DeviceInfo& device, c
     if (messages.verbose) print_details(rendering.device(), scene, rendering.record());
     const PixelRect& crop = job.settings.crop;
     Progress progress(uint64_t{crop.width()} * crop.height(), job.target,
-                      double(rendering.spp()) / job.target, job.time_limit,
-                      messages.quiet ? ProgressStyle::none : messages.progress);
+                      double(rendering.spp()) / job.target, job.time_limit, messages.progress_style());
 
     // Before this line there is nothing to keep, and a signal ends the program at once.
     const InterruptGuard guard;
@@ -143,55 +141,56 @@ ExitCode render_on(const vk::Instance& instance, const vk::DeviceInfo& device, c
          .warn = print_warning,
          .device_failed = warn_of_device_failure,
          .write = [&](const RenderRecord& current,
-                      Image image) { write_current_images(options.images, current, std::move(image)); }});
+                      Image image) { write_current_images(outputs.images, current, std::move(image)); }});
     progress.clear();
     const bool complete = rendering.record().complete;
     const bool interrupted = guard.interrupted() && !complete;
-    write_files(rendering, options, instance, failure, job.target);
+    write_files(rendering, outputs, messages, instance, failure, job.target);
     progress.end(complete ? "done" : interrupted ? "interrupted" : "time limit");
     return interrupted ? ExitCode::interrupted : ExitCode::done;
 }
 
 // The files that the command line names.
-CommandFiles files_of(const RenderOptions& options) {
+CommandFiles files_of(const SceneOptions& scene, const OutputOptions& outputs,
+                      const CheckpointOptions& checkpoint) {
     CommandFiles files;
-    files.read("SCENE", options.scene_file);
-    if (options.reference) files.read("--reference", *options.reference);
-    for (const std::string& path : options.images.files)
+    files.read("SCENE", scene.file);
+    if (outputs.reference) files.read("--reference", *outputs.reference);
+    for (const std::string& path : outputs.images.files)
         files.write("-o", path);
-    if (options.report) files.write("--report", *options.report);
-    if (options.checkpoint.file) files.write("--checkpoint", *options.checkpoint.file);
+    if (outputs.report) files.write("--report", *outputs.report);
+    if (checkpoint.file) files.write("--checkpoint", *checkpoint.file);
     return files;
 }
 
 ExitCode render(const RenderOptions& options, const std::string& command_line) {
-    CommandFiles files = files_of(options);
-    check_outputs(options.images);
-    check_report(options.report);
+    const OutputOptions& outputs = options.outputs;
+    CommandFiles files = files_of(options.scene, outputs, options.checkpoint);
+    check_outputs(outputs.images);
+    check_report(outputs.report);
     check_checkpoint(options.checkpoint);
 
     const auto start = std::chrono::steady_clock::now();
-    const MessageOptions& messages = options.messages;
-    const ProgressStyle style = messages.quiet ? ProgressStyle::none : messages.progress;
-    Scene scene = load_with_progress(options.scene_file, options.loading, style);
+    const ProgressStyle style = options.messages.progress_style();
+    Scene scene = load_with_progress(options.scene.file, options.rendering.loading, style);
     files.read_all("the scene's file", scene.files);
     const double load_seconds = seconds_since(start);
     const RenderJob job = options.job(scene);
     std::optional<Image> reference;
-    if (options.reference) reference = load_reference(*options.reference, job.settings);
+    if (outputs.reference) reference = load_reference(*outputs.reference, job.settings);
 
     warn_of_unseen_lights(scene, job.settings.estimator);
     const GpuScene gpu_scene = build_with_progress(scene, style);
     RenderRecord record = make_record(scene, gpu_scene, job);
     record.command_line = command_line;
-    record.scene_file = options.scene_file;
+    record.scene_file = options.scene.file;
     record.load_seconds = load_seconds;
-    record.reference = options.reference;
+    record.reference = outputs.reference;
 
     const vk::Instance instance(instance_options());
-    const vk::DeviceInfo device = vk::select_device(instance.devices(), options.device);
-    const ExitCode code =
-        render_on(instance, device, gpu_scene, job, options, std::move(reference), std::move(record));
+    const vk::DeviceInfo device = vk::select_device(instance.devices(), options.rendering.device.name);
+    const ExitCode code = render_on(instance, device, gpu_scene, job, outputs, options.messages,
+                                    std::move(reference), std::move(record));
     check_validation(instance);
     return code;
 }

@@ -1,128 +1,56 @@
-// The options of `candela render`.
+// The options of `candela render`, by subject.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "base/tonemap.h"
-#include "cli/arguments.h"
-#include "film/accumulation.h"
+#include "cli/image_options.h"
+#include "cli/message_options.h"
+#include "cli/rendering_options.h"
 #include "film/sample_range.h"
-#include "load/gltf/gltf.h"
-#include "render/renderer.h"
-#include "scene/names.h"
 #include "scene/scene.h"
 #include "session/job.h"
 
 namespace candela {
 
-inline constexpr Choices<SceneAccess, 3> SCENE_ACCESS_NAMES{{{"auto", SceneAccess::automatic},
-                                                             {"texel", SceneAccess::texel_buffers},
-                                                             {"storage", SceneAccess::storage_buffers}}};
-inline constexpr Choices<Tonemap, 5> TONEMAP_NAMES{{{"linear", Tonemap::linear},
-                                                    {"reinhard", Tonemap::reinhard},
-                                                    {"aces", Tonemap::aces},
-                                                    {"agx", Tonemap::agx},
-                                                    {"neutral", Tonemap::neutral}}};
+// When a rendering ends, and which samples it has until then.
+struct StoppingOptions {
+    std::optional<double> target_error;  // Relative error of the image.
+    std::optional<double> time_limit;    // Seconds.
+    bool adaptive = false;               // Samples go where the error is.
+    std::optional<SampleRange> samples;  // Only these, instead of SamplingOptions::spp.
 
-enum class ProgressStyle { automatic, json, none };
-inline constexpr Choices<ProgressStyle, 3> PROGRESS_NAMES{
-    {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}}};
-
-// Which images are written, and how.
-struct ImageOutputs {
-    std::vector<std::string> files;
-    AovSelection aovs{true, true, true, true, true, true};  // In an EXR.
-    bool half = false;                                      // EXR: R G B A and Albedo with 16 bits.
-    double exposure = 0.0;                                  // PNG [EV].
-    Tonemap tonemap = Tonemap::linear;                      // PNG.
-
-    // The images besides R G B A that will be written: those selected if there is an EXR among the files,
-    // otherwise none.
-    AovSelection written_aovs() const;
-};
-
-struct MessageOptions {
-    ProgressStyle progress = ProgressStyle::automatic;
-    bool quiet = false;
-    bool verbose = false;
-};
-
-// What the argument SCENE of a command may name.
-inline constexpr const char* SCENE_FILES = "Scene file (.json, .gltf, .glb, .obj, .ply)";
-
-// How scene files are read.
-struct LoadingOptions {
-    std::optional<uint32_t> texture_limit;  // Texels along a side of an image.
-    IfMissing missing_images = IfMissing::white;
-    std::vector<std::string> folders;      // From which files may be read besides the scene's.
-    bool any_folder = false;               // Whether they may be read from anywhere.
-    std::optional<uint64_t> memory_limit;  // Bytes; none: default_memory_limit().
-    GltfOptions gltf;
-
-    // Declares them on `app`; this object must not move.
+    // Declares them on `app`, after SamplingOptions; this object must not move.
     void add_to(CLI::App& app);
 };
 
-// The options of the command line; an empty optional leaves the choice to the scene file.
-struct RenderOptions {
-    std::string scene_file;
+// What a rendering writes, besides checkpoints.
+struct OutputOptions {
     ImageOutputs images;
     std::optional<std::string> report;     // "-": stdout.
     std::optional<double> write_every;     // Seconds.
     std::optional<std::string> reference;  // An image to measure the error against.
 
-    PictureOptions picture;
-    std::optional<std::string> camera;
-    LoadingOptions loading;
+    // Declares them on `app`; this object must not move.
+    void add_to(CLI::App& app);
+};
 
-    std::optional<uint32_t> spp;
-    std::optional<double> target_error;  // Relative error of the image.
-    std::optional<double> time_limit;    // Seconds.
-    bool adaptive = false;               // Samples go where the error is.
-    std::optional<SampleRange> samples;  // Only these, instead of spp.
-    std::optional<uint32_t> seed;
-    std::optional<uint32_t> max_depth;  // DEPTH_SAFETY_LIMIT: unlimited.
-    std::optional<uint32_t> rr_depth;
-    std::optional<Estimator> estimator;
-    std::optional<SamplerKind> sampler;
-    std::optional<Terminator> terminator;
-
+struct RenderOptions {
+    SceneOptions scene;
+    RenderingOptions rendering;
+    StoppingOptions stopping;
+    OutputOptions outputs;
     CheckpointOptions checkpoint;
-    std::optional<std::string> device;  // Index or part of the name.
-    SceneAccess scene_access = SceneAccess::automatic;
     MessageOptions messages;
 
     // Declares all options on `app`, which fills them in when it parses; this object must not move.
     void add_to(CLI::App& app);
-    // Declares only those that say what is computed and where: picture, sampling, device.
-    void add_rendering_to(CLI::App& app);
-    // Declares only those that say which images are written, and how: outputs, 16 bits, development.
-    void add_images_to(CLI::App& app);
-    // Declares only those that say how radiance becomes a picture: exposure and tone map.
-    void add_development_to(CLI::App& app);
-    // Declares --camera.
-    void add_camera_to(CLI::App& app);
 
     // Joins them with what the scene proposes. Throws Error (usage) for a camera that the scene lacks, a crop
     // that reaches beyond the picture, or --adaptive with an odd number of samples.
-    RenderJob job(const Scene& scene) const;
-    // The camera of that name, by default the scene's first. Throws Error (usage) that lists the names if
-    // there is none.
-    const Camera& choose_camera(const Scene& scene) const;
-    // The renderer's settings for a scene. Throws Error (usage) if the crop exceeds the picture.
-    RenderSettings settings(const Scene& scene) const;
-
-  private:
-    void add_output_options(CLI::App& app);
-    void add_sampling_options(CLI::App& app);
-    void add_checkpoint_options(CLI::App& app);
-    void add_message_options(CLI::App& app);
+    RenderJob job(const Scene& loaded) const;
 };
 
 }  // namespace candela

@@ -7,16 +7,17 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/image_io.h"
 #include "base/printable.h"
 #include "cli/attempts.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
+#include "cli/image_options.h"
 #include "cli/interrupt.h"
 #include "cli/loading.h"
-#include "cli/render_options.h"
+#include "cli/rendering_options.h"
 #include "cli/vulkan.h"
+#include "image/image_io.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 #include "vk/presenter.h"
@@ -27,7 +28,9 @@ namespace candela {
 namespace {
 
 struct ViewArguments {
-    RenderOptions render;
+    SceneOptions scene;
+    RenderingOptions rendering;
+    DevelopmentOptions development;
     std::optional<uint32_t> frames;
     std::vector<std::string> screenshots;
 
@@ -39,7 +42,7 @@ struct ViewArguments {
 
 void ViewArguments::add_to(CLI::App& app) {
     app.option_defaults()->take_last();
-    app.add_option("SCENE", render.scene_file, SCENE_FILES)->required()->type_name("");
+    scene.add_file_to(app);
     add_value(
         app, "--frames", frames, [](const std::string& text) { return parse_uint(text, 1, MAX_SPP); },
         "a whole number from 1 to " + std::to_string(MAX_SPP),
@@ -49,19 +52,19 @@ void ViewArguments::add_to(CLI::App& app) {
         ->type_name("FILE")
         ->take_all()
         ->allow_extra_args(false);
-    render.add_development_to(app);
-    render.add_rendering_to(app);
-    render.add_camera_to(app);
+    development.add_to(app);
+    rendering.add_to(app);
+    scene.add_camera_to(app);
     app.get_option("--crop")->group("");  // Hidden; check() refuses it with the reason.
     app.get_option("--spp")->description("Stop accumulating at this many samples per pixel (default: never)");
 }
 
 void ViewArguments::check() const {
-    if (render.picture.crop) {
+    if (rendering.picture.crop) {
         throw Error("--crop: a window shows the whole picture; leave it out, or use candela render",
                     ExitCode::usage);
     }
-    if (frames && render.spp) {
+    if (frames && rendering.sampling.spp) {
         throw Error("--frames and --spp both say how many samples there shall be; give one", ExitCode::usage);
     }
     if (!screenshots.empty() && !frames) {
@@ -88,20 +91,21 @@ vk::DeviceInfo choose_device(const vk::Instance& instance, const Window& window,
 
 ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     CommandFiles files;
-    files.read("SCENE", arguments.render.scene_file);
+    files.read("SCENE", arguments.scene.file);
     for (const std::string& path : arguments.screenshots)
         files.write("--screenshot", path);
     arguments.check();
-    const RenderOptions& options = arguments.render;
-    Scene scene = load_with_progress(options.scene_file, options.loading);
+    const RenderingOptions& rendering = arguments.rendering;
+    Scene scene = load_with_progress(arguments.scene.file, rendering.loading);
     files.read_all("the scene's file", scene.files);
-    const ViewState state{.camera = options.choose_camera(scene),
-                          .settings = options.settings(scene),
-                          .exposure_ev = float(options.images.exposure),
-                          .tonemap = options.images.tonemap};
+    const Camera& camera = arguments.scene.choose_camera(scene);
+    const ViewState state{.camera = camera,
+                          .settings = rendering.settings(scene, camera),
+                          .exposure_ev = float(arguments.development.exposure),
+                          .tonemap = arguments.development.tonemap};
 
     warn_of_unseen_lights(scene, state.settings.estimator);
-    const std::string name = std::filesystem::path(options.scene_file).stem().string();
+    const std::string name = std::filesystem::path(arguments.scene.file).stem().string();
     Window window(state.settings.size, !arguments.frames, printable(name, MOST_NAME_BYTES));
     vk::Instance::Options instance_wishes = instance_options();
     instance_wishes.extensions = window.instance_extensions();
@@ -110,11 +114,11 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     bool complete = false;
     {
         Viewer viewer(window, instance, std::move(scene), state,
-                      {.device = choose_device(instance, window, options.device),
+                      {.device = choose_device(instance, window, rendering.device.name),
                        .pipeline_cache_folder = pipeline_cache_folder(),
                        .name = name,
                        .command_line = command_line,
-                       .target = arguments.frames.value_or(options.spp.value_or(MAX_SPP)),
+                       .target = arguments.frames.value_or(rendering.sampling.spp.value_or(MAX_SPP)),
                        .close_at_target = arguments.frames.has_value(),
                        .stopped = [&guard] { return guard.interrupted(); },
                        .say = print_note});

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "base/image.h"
+#include "image/image.h"
 #include "shared/constants.h"
 
 namespace candela {

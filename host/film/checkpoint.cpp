@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/image_io.h"
 #include "base/printable.h"
 #include "film/sample_range.h"
+#include "image/image_io.h"
 
 namespace candela {
 namespace {

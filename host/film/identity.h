@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "base/image.h"
+#include "image/image.h"
 
 namespace candela {
 

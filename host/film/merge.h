@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "base/image.h"
-#include "base/image_io.h"
 #include "film/sample_range.h"
+#include "image/image.h"
+#include "image/image_io.h"
 
 namespace candela {
 

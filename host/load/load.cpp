@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_io_parts.h"
 #include "load/json/loader.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"

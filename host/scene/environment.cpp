@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/image_io.h"
 #include "base/printable.h"
+#include "image/image_io.h"
 
 namespace candela {
 namespace {

@@ -12,13 +12,12 @@
 
 #include "base/color.h"
 #include "base/error.h"
-#include "base/file.h"
 #include "base/memory_limit.h"
 #include "base/parallel.h"
-#include "base/printable.h"
-#include "base/shrink_image.h"
-#include "base/texel_io.h"
 #include "base/text.h"
+#include "image/shrink_image.h"
+#include "image/texel_io.h"
+#include "scene/images_parts.h"
 #include "scene/material_textures.h"
 
 namespace candela {
@@ -29,21 +28,6 @@ std::filesystem::path identity_of(const std::filesystem::path& path) {
     std::error_code ignored;
     const std::filesystem::path real = std::filesystem::weakly_canonical(path, ignored);
     return real.empty() ? path.lexically_normal() : real;
-}
-
-// The mean of some thousand texels all over the image. They follow a sequence that agrees with no pattern of
-// rows and columns. Ref: Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences" (2018).
-vec4 mean_codes(const TexelImage& image) {
-    constexpr size_t MOST = 4096;
-    constexpr double STEP_X = 0.7548776662466927, STEP_Y = 0.5698402909980532;
-    const size_t count = size_t(image.size.x) * image.size.y;
-    const size_t taken = std::min(count, MOST);
-    vec4 sum(0.0f);
-    for (size_t i = 0; i < taken; ++i) {
-        const glm::dvec2 p = fract(double(i) * glm::dvec2(STEP_X, STEP_Y)) * glm::dvec2(image.size);
-        sum += texel_codes(image, count <= MOST ? i : size_t(p.y) * image.size.x + size_t(p.x));
-    }
-    return sum / float(taken);
 }
 
 // The image of a file whose samples are light^gamma, in sRGB codes of 16 bits.
@@ -100,168 +84,9 @@ void convert_gammas(Scene& scene) {
     });
 }
 
-// Of the normals of any bumpy surface, the mean points away from it.
-bool points_up(vec4 mean) {
-    constexpr float FAR = 0.2f;
-    return mean.z > 0.6f && std::abs(mean.x - 0.5f) < FAR && std::abs(mean.y - 0.5f) < FAR;
-}
-
-// Whether the name of an image says where it is: within the file that names it.
-bool is_within(const ImageFile& file) {
-    return file.place.starts_with(file.path.string());
-}
-
 // A message that begins with the name of an image, with the place before it.
 std::string at_place(const ImageFile& file, const std::string& message) {
     return is_within(file) ? message : file.place + ": " + message;
-}
-
-// `PLACE: the normal map of the material "x", FILE,`.
-std::string map_text(const ImageFile& file, const char* what, const Material& material) {
-    const std::string name = is_within(file) ? "" : ", " + file.path.string() + ',';
-    return concat(file.place, ": the ", what, " of the material \"",
-                  printable(material.name, MOST_NAME_BYTES), '"', name);
-}
-
-// The mean codes of a scene's images, each computed once.
-class MeanCodes {
-  public:
-    explicit MeanCodes(const Scene& scene) : scene_(scene) {}
-
-    vec4 of(uint32_t image) {
-        const auto [known, is_new] = means_.try_emplace(image);
-        if (is_new) known->second = mean_codes(*scene_.images[image].image);
-        return known->second;
-    }
-
-  private:
-    const Scene& scene_;
-    std::map<uint32_t, vec4> means_;
-};
-
-// `what` is what the messages call the map.
-void check_normal_map(Scene& scene, MeanCodes& means, const Material& material, const NormalMap& map,
-                      const char* what) {
-    const ImageFile& file = scene.images[map.texture.image];
-    const vec4 mean = means.of(map.texture.image);
-    if (points_up(mean)) return;
-    scene.warnings.push_back(concat(map_text(file, what, material), " has a mean of ",
-                                    number_text(double(mean.x), 2), ' ', number_text(double(mean.y), 2), ' ',
-                                    number_text(double(mean.z), 2),
-                                    ", not about 0.5 0.5 1; is it one in tangent space?"));
-}
-
-// Whether an image of that mean is blue as a normal map in tangent space is.
-bool is_blue(vec4 mean) {
-    constexpr float LEAST = 0.15f;  // That of a map whose slopes are all of 70 degrees.
-    return points_up(mean) && mean.z - std::max(mean.x, mean.y) > LEAST;
-}
-
-// Many files name normal maps as bump maps.
-void check_bump_map(Scene& scene, MeanCodes& means, Material& material) {
-    const BumpMap bump = *material.bump_map;
-    const ImageFile& file = scene.images[bump.texture.image];
-    const vec4 mean = means.of(bump.texture.image);
-    if (!is_blue(mean)) return;
-    const std::string what = map_text(file, "bump map", material) + " has the colours of a normal map";
-    if (!bump.multiplier) {
-        scene.warnings.push_back(what + "; if it is one, name it as normal_map");
-        return;
-    }
-    material.normal_map = {bump.texture, *bump.multiplier};
-    material.bump_map.reset();
-    scene.warnings.push_back(what + " and is read as one; to say so, name it as norm");
-}
-
-// Whether an image that may be missing is, or is out of reach: nothing shall tell whether that one exists.
-bool is_lost(const Scene& scene, const ImageFile& file, const ImageOptions& options) {
-    if (std::max(file.if_missing, options.if_missing) == IfMissing::error) return false;
-    if (file.image || !file.bytes.empty()) return false;
-    if (!scene.reach.holds(file.path)) return true;
-    std::error_code ignored;
-    return std::filesystem::status(file.path, ignored).type() == std::filesystem::file_type::not_found;
-}
-
-// Lets materials do without lost images, which become a white texel.
-void drop_lost_images(Scene& scene, const std::vector<bool>& lost) {
-    const auto drop = [&](auto& texture) {
-        if (texture && lost[texture->image]) texture.reset();
-    };
-    const auto drop_map = [&](auto& map) {
-        if (map && lost[map->texture.image]) map.reset();
-    };
-    for (Material& material : scene.materials) {
-        if (auto* principled = std::get_if<PrincipledMaterial>(&material.model)) {
-            const std::optional<Texture>& texture = principled->emission.texture;
-            if (texture && lost[texture->image]) principled->emission = vec3(0.0f);
-            drop(principled->anisotropy_map);
-            drop_map(principled->coat_normal_map);
-        }
-        std::visit([&](auto& model) { for_each_value(model, [&](auto& value) { drop(value.texture); }); },
-                   material.model);
-        drop(material.opacity.value.texture);
-        drop_map(material.normal_map);
-        drop_map(material.bump_map);
-    }
-    for (Shape& shape : scene.shapes) {
-        if (!shape.emission) continue;
-        const std::optional<Texture>& texture = shape.emission->radiance.texture;
-        if (texture && lost[texture->image]) shape.emission.reset();
-    }
-}
-
-// Drops images that may be missing and are, with one warning, and another one for those out of reach.
-void drop_missing_images(Scene& scene, const ImageOptions& options) {
-    constexpr size_t MOST_LISTED = 10;
-    std::vector<bool> lost(scene.images.size());
-    size_t count = 0, outside = 0;
-    std::string names, place, refusal;
-    for (size_t i = 0; i < lost.size(); ++i) {
-        ImageFile& file = scene.images[i];
-        if (!is_lost(scene, file, options)) continue;
-        const TexelImage white{.size = uvec2(1),
-                               .channels = 1,
-                               .type = TexelType::unorm8,
-                               .texels = {std::byte(255)},
-                               .gamma = {}};
-        file.image = std::make_shared<TexelImage>(file.convert ? file.convert(white) : white);
-        if (file.convert) continue;  // The copy of an image that is lost, too.
-        lost[i] = true;
-        if (!scene.reach.holds(file.path)) {
-            if (outside++ == 0) refusal = file.place + ": " + scene.reach.refusal(file.path.string());
-            continue;
-        }
-        if (count == 0) place = file.place;
-        if (count < MOST_LISTED) names += (count == 0 ? "" : ", ") + quoted(file.path);
-        ++count;
-    }
-    if (count + outside > 0) drop_lost_images(scene, lost);
-    if (outside > 0) {
-        const std::string times = outside == 1 ? "" : concat(" (", outside, " times)");
-        scene.warnings.push_back(refusal + "; white takes its place" + times);
-    }
-    if (count == 0) return;
-    if (count > MOST_LISTED) names += ", ...";
-    const std::string which = count == 1
-                                  ? concat("the image ", names, " does not exist; white takes its place")
-                                  : concat(count, " images do not exist; white takes their place: ", names);
-    scene.warnings.push_back(place + ": " + which);
-}
-
-// Replaces ALPHA_OR_RED in the texture of an opacity.
-void choose_channel(const Scene& scene, Texture& texture) {
-    if (texture.channel != ALPHA_OR_RED) return;
-    texture.channel = scene.images[texture.image].image->channels % 2 == 0 ? ALPHA : RED;
-}
-
-void check_opacity(Scene& scene, const Material& material) {
-    const Texture& texture = *material.opacity.value.texture;
-    const ImageFile& file = scene.images[texture.image];
-    if (texture.channel != ALPHA || file.image->channels % 2 == 0) return;
-    scene.warnings.push_back(
-        concat(file.place, ": the opacity of the material \"", printable(material.name, MOST_NAME_BYTES),
-               "\" is the alpha of ", is_within(file) ? "the image" : file.path.string(),
-               ", which has none: it is opaque", file.of_gltf ? "" : "; name another channel"));
 }
 
 }  // namespace
@@ -346,17 +171,7 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
             scene.warnings.push_back(at_place(scene.images[i], warning));
     }
     convert_gammas(scene);
-    MeanCodes means(scene);
-    for (Material& material : scene.materials) {
-        if (material.normal_map) check_normal_map(scene, means, material, *material.normal_map, "normal map");
-        const auto* principled = std::get_if<PrincipledMaterial>(&material.model);
-        if (principled != nullptr && principled->coat_normal_map)
-            check_normal_map(scene, means, material, *principled->coat_normal_map, "coat's normal map");
-        if (material.bump_map) check_bump_map(scene, means, material);
-        if (!material.opacity.value.texture) continue;
-        choose_channel(scene, *material.opacity.value.texture);
-        check_opacity(scene, material);
-    }
+    check_maps(scene);
 }
 
 }  // namespace candela

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/math.h"
-#include "base/texel_image.h"
+#include "image/texel_image.h"
 
 namespace candela {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "base/compare.h"
-#include "base/image_io.h"
 #include "base/statistics.h"
 #include "base/text.h"
 #include "gpu_scene/gpu_scene.h"
+#include "image/compare.h"
+#include "image/image_io.h"
 #include "probe/embedded.h"
 #include "probe/scenes.h"
 #include "render/renderer.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/relative_error.h"
 #include "film/sample_range.h"
+#include "image/relative_error.h"
 #include "session/next_look.h"
 
 namespace candela {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/image_io.h"
-#include "base/relative_error.h"
+#include "image/image_io.h"
+#include "image/relative_error.h"
 #include "session/next_look.h"
 
 namespace candela {

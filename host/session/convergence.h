@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "base/image.h"
 #include "film/accumulation.h"
+#include "image/image.h"
 #include "render/renderer.h"
 
 namespace candela {

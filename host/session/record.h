@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/image.h"
 #include "film/identity.h"
 #include "gpu_scene/gpu_scene.h"
+#include "image/image.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include "session/convergence.h"

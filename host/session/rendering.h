@@ -10,8 +10,8 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/image.h"
 #include "film/checkpoint.h"
+#include "image/image.h"
 #include "session/checkpoints.h"
 #include "session/convergence.h"
 #include "session/interval.h"

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "base/image.h"
 #include "base/math.h"
-#include "base/tonemap.h"
+#include "image/image.h"
+#include "image/tonemap.h"
 #include "vk/buffer.h"
 #include "vk/commands.h"
 #include "vk/device.h"

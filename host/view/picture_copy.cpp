@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/relative_error.h"
+#include "image/relative_error.h"
 
 namespace candela {
 

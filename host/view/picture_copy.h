@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "base/image.h"
+#include "image/image.h"
 #include "render/renderer.h"
 #include "view/clock.h"
 

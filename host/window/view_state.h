@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "base/tonemap.h"
+#include "image/tonemap.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
 

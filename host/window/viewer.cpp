@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/printable.h"
-#include "base/relative_error.h"
+#include "image/relative_error.h"
 #include "session/next_look.h"
 #include "view/pace.h"
 

@@ -1,7 +1,7 @@
 // See viewer.h. The files that the viewer writes.
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_io.h"
+#include "image/image_io.h"
 #include "session/record.h"
 #include "view/camera_control.h"
 #include "window/viewer.h"

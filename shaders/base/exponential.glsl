@@ -39,8 +39,10 @@ ExpParts exp_parts(float x) {
     const float ln2_low = 1.42860682030941723e-6;
     float k = floor(x * 1.44269504088896 + 0.5);
     precise float r = (x - k * ln2_high) - k * ln2_low;  // In this order: the first difference is exact.
+    // clang-format off
     float p = r * (1.0 + r * (1.0 / 2.0 + r * (1.0 / 6.0 + r * (1.0 / 24.0 + r * (1.0 / 120.0 + r * (1.0 / 720.0 +
               r * (1.0 / 5040.0 + r * (1.0 / 40320.0))))))));
+    // clang-format on
     return ExpParts(p, uintBitsToFloat(uint(int(k) + 127) << 23u));
 }
 

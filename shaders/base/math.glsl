@@ -88,8 +88,10 @@ float angle_turn(float y, float x) {
     vec2 a = abs(vec2(x, y));
     float q = min(a.x, a.y) / max(max(a.x, a.y), 1e-37);
     float z = q * q;
+    // clang-format off
     float atan_q = q * (0.999999982 + z * (-0.333330367 + z * (0.19991872 + z * (-0.141977978 + z * (0.106183706 +
                    z * (-0.0745685483 + z * (0.0421376236 + z * (-0.0157312491 + z * 0.0027662835))))))));
+    // clang-format on
     float turn = atan_q * (0.5 * INV_PI);
     if (a.y > a.x) turn = 0.25 - turn;
     if (x < 0.0) turn = 0.5 - turn;

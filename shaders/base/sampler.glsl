@@ -1,5 +1,5 @@
-// Samplers: two words of random bits for a pair of dimensions, as a pure function of (pixel, n, seed, pair); and a third
-// for a choice that goes with the point of the pair.
+// Samplers: two words of random bits for a pair of dimensions, as a pure function of (pixel, n, seed, pair); and a
+// third for a choice that goes with the point of the pair.
 //
 // All three are counter-based: they keep no state but the counters, so that any sample of any pixel can be made
 // anywhere, at any time, in any order.

@@ -1,4 +1,4 @@
-// The tone curves and the sRGB encoding, by the formulas of host/base/tonemap.cpp, which has their references.
+// The tone curves and the sRGB encoding, by the formulas of host/image/tonemap.cpp, which has their references.
 #ifndef BASE_TONEMAP_GLSL
 #define BASE_TONEMAP_GLSL
 

@@ -1,5 +1,5 @@
-// Fuzz: a layer of short fibres among which light scatters many times, to the directions of Lambert's law under a linear
-// transform that depends on wo alone. Local frame, z on the viewer's side of the surface.
+// Fuzz: a layer of short fibres among which light scatters many times, to the directions of Lambert's law under a
+// linear transform that depends on wo alone. Local frame, z on the viewer's side of the surface.
 // Ref: Zeltner, Burley and Chiang 2022, Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines; the
 // fits are those of MaterialX 1.39 (mx_microfacet_sheen.glsl), for OpenPBR 1.1.
 #ifndef BSDF_FUZZ_GLSL

@@ -28,8 +28,8 @@ vec3 interference(float path, vec3 shift) {
     const vec4 MEAN = vec4(1.6810e6, 1.7953e6, 2.2084e6, 2.2399e6);
     const vec4 VARIANCE = vec4(4.3278e9, 9.3046e9, 6.6121e9, 4.5282e9);
     const float UNIT = 1.0685e-7;
-    const mat3 XYZ_TO_REC709 = mat3(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314,
-                                    0.0415560, 1.0572252);
+    const mat3 XYZ_TO_REC709 =
+        mat3(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314, 0.0415560, 1.0572252);
     float phase = 2.0 * PI * 1e-9 * path;
     vec4 shifts = vec4(shift, shift.x);
     vec4 part;

@@ -19,11 +19,11 @@
 //
 // <x> is the mean of x over the facets that wo sees. A lattice of FACETS of them at random places measures it, without
 // bias, since all that is measured counts linearly: there are no tables of albedos, and no fits. So a surface has other
-// lobes at each vertex, and the right ones on average. Nothing is gained or lost, whatever the roughness, the indices and
-// the film. The whole is not reciprocal; its lobes are, one by one, except fuzz.
-// Ref: glTF 2.0, appendix B, and its extensions KHR_materials_*; OpenPBR 1.1; Kulla and Conty 2017, Revisiting Physically
-// Based Shading at Imageworks, on lost light; Cranley and Patterson 1976, Randomization of Number Theoretic Methods for
-// Multiple Integration, on such lattices.
+// lobes at each vertex, and the right ones on average. Nothing is gained or lost, whatever the roughness, the indices
+// and the film. The whole is not reciprocal; its lobes are, one by one, except fuzz.
+// Ref: glTF 2.0, appendix B, and its extensions KHR_materials_*; OpenPBR 1.1; Kulla and Conty 2017, Revisiting
+// Physically Based Shading at Imageworks, on lost light; Cranley and Patterson 1976, Randomization of Number Theoretic
+// Methods for Multiple Integration, on such lattices.
 //
 // Local frame, z on the viewer's side, x along the direction that anisotropy makes rougher.
 #ifndef BSDF_PRINCIPLED_GLSL
@@ -77,8 +77,8 @@ BsdfValue principled_reflection(Principled p, vec3 wo, vec3 wi, bool through) {
                      ggx_reflected_pdf(d, wo.z, reach_o) * (through ? share : 1.0 - share));
 }
 
-// Value and density of a coat that is not ideal, whose normal is its own, and so is the side of a direction. The value is
-// for a cosine of wi to another normal: 1 gives the value times the cosine to the coat's.
+// Value and density of a coat that is not ideal, whose normal is its own, and so is the side of a direction. The value
+// is for a cosine of wi to another normal: 1 gives the value times the cosine to the coat's.
 BsdfValue principled_coat_evaluate(Principled p, vec3 wo, vec3 wi, float cosine) {
     if (p.coat_ideal || p.pmf.x <= 0.0) return bsdf_zero();
     vec3 o = to_coat(p, wo), i = to_coat(p, wi);

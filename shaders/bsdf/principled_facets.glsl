@@ -1,5 +1,5 @@
-// What a principled material is at a point, and the facets of its base: what they reflect and transmit, and what of that
-// they lose. bsdf/principled.glsl has the whole on one page.
+// What a principled material is at a point, and the facets of its base: what they reflect and transmit, and what of
+// that they lose. bsdf/principled.glsl has the whole on one page.
 #ifndef BSDF_PRINCIPLED_FACETS_GLSL
 #define BSDF_PRINCIPLED_FACETS_GLSL
 
@@ -20,13 +20,13 @@ const bool PRINCIPLED_TRANSMITS = (PRINCIPLED & (PRINCIPLED_HAS_THIN | PRINCIPLE
 struct PrincipledSurface {
     PrincipledRecord record;
     vec3 base_color;
-    float eta;       // Index of refraction on the other side over that on the viewer's.
-    vec3 spread;     // Factor of eta for red, green and blue.
-    bool encloses;   // A medium: light is refracted. Otherwise the surface is a thin wall.
-    bool inside;     // The viewer is in that medium.
-    vec3 coat_n;     // Normal of the coat, in the local frame.
-    vec3 hue;        // Shares of the colours in the choice of a direction; they add up to 1.
-    vec4 random;     // Uniform in [0, 1), for two lattices.
+    float eta;      // Index of refraction on the other side over that on the viewer's.
+    vec3 spread;    // Factor of eta for red, green and blue.
+    bool encloses;  // A medium: light is refracted. Otherwise the surface is a thin wall.
+    bool inside;    // The viewer is in that medium.
+    vec3 coat_n;    // Normal of the coat, in the local frame.
+    vec3 hue;       // Shares of the colours in the choice of a direction; they add up to 1.
+    vec4 random;    // Uniform in [0, 1), for two lattices.
 };
 
 // The lobes of such a point, seen from wo.
@@ -35,22 +35,22 @@ struct Principled {
     // normal, and transmit transmit (t_0 - t_edge t) of it: S is schlick_weight(c), t rises from 0 to 1 as Fresnel's
     // equations do.
     vec2 alpha;
-    bool ideal;      // There are no facets but the surface itself.
+    bool ideal;  // There are no facets but the surface itself.
     bool refracts;
-    vec3 eta;        // Of red, green and blue.
+    vec3 eta;  // Of red, green and blue.
     vec3 r_0;
     vec3 r_edge;
     vec3 r_schlick;
-    float r_total;   // What is added where reflection is total: the transmitting share loses nothing.
+    float r_total;  // What is added where reflection is total: the transmitting share loses nothing.
     vec3 transmit;
     vec3 t_0;
     vec3 t_edge;
 
     vec3 base_color;  // Of the diffuse base,
     float roughness;
-    vec3 diffuse;     // and its weight.
-    vec3 again;       // Reflectance of Lambert's lobe for light that facets scatter more than once,
-    vec3 through;     // and transmittance: of that, and of the diffuse base.
+    vec3 diffuse;  // and its weight.
+    vec3 again;    // Reflectance of Lambert's lobe for light that facets scatter more than once,
+    vec3 through;  // and transmittance: of that, and of the diffuse base.
     vec3 sheen;
     float sheen_alpha;
     vec3 fuzz;        // What it reflects; the directions,
@@ -210,9 +210,9 @@ FacetMeans principled_measure(Principled p, vec3 d_0, vec3 d_edge, vec3 wo, vec2
 }
 
 // Colour of light that metal facets scatter more than once, m_0 + m_edge S each time: after each time but the first it
-// stays with the same probability. That and the mean of S are fits to random walks among facets of one roughness, within
-// 0.001 of the albedo; the energy does not depend on them. Ref: Heitz et al. 2016, Multiple-Scattering Microfacet BSDFs
-// with the Smith Model, on the walks; Kulla and Conty 2017, on the sum over all times.
+// stays with the same probability. That and the mean of S are fits to random walks among facets of one roughness,
+// within 0.001 of the albedo; the energy does not depend on them. Ref: Heitz et al. 2016, Multiple-Scattering
+// Microfacet BSDFs with the Smith Model, on the walks; Kulla and Conty 2017, on the sum over all times.
 vec3 metal_again(vec3 m_0, vec3 m_edge, vec2 alpha) {
     float a = sqrt(0.5 * dot(alpha, alpha));
     float stays = 0.397 * a;

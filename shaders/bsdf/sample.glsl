@@ -23,7 +23,7 @@ struct BsdfSample {
     float pdf;    // [1/sr]; 0 says that the sample failed.
     bool delta;   // Ideal scattering: light samples cannot find wi.
     float eta;    // Index of refraction on wi's side over that on wo's; 1 unless wi is refracted.
-    bool above;   // Whether wi is meant to be on the viewer's side: wi.z > 0, but for layers with a normal of their own.
+    bool above;  // Whether wi is meant to be on the viewer's side: wi.z > 0, but for layers with a normal of their own.
 };
 
 // A sample of scattering that is not ideal.

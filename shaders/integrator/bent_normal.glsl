@@ -57,9 +57,9 @@ vec3 consistent_normal(vec3 wo, vec3 n, vec3 ns) {
     return normalize(wo + sqrt((1.0 - LEAST * LEAST) / length_squared) * along + LEAST * n);
 }
 
-// The interpolated normal ns if wo sees its front, otherwise turned as a bent normal is. wo is not below the surface with
-// the normal n. A mirror may reflect light to below that surface. There it meets the surface once more, from behind ns,
-// and the turned normal reflects it away.
+// The interpolated normal ns if wo sees its front, otherwise turned as a bent normal is. wo is not below the surface
+// with the normal n. A mirror may reflect light to below that surface. There it meets the surface once more, from
+// behind ns, and the turned normal reflects it away.
 vec3 facing_normal(vec3 wo, vec3 n, vec3 ns) {
     const float LEAST = 0.01;  // Of the cosine, unless n itself has a smaller one.
     return dot(wo, ns) < min(LEAST, dot(wo, n)) ? consistent_normal(wo, n, ns) : ns;

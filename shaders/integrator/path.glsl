@@ -112,8 +112,8 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     if (HAS_COATED_EMISSION) {
         share = emitted_share(s.material, s.attributes, dot(s.wo, s.n), unit_float(hit_random(path.ray).xy));
     }
-    estimate.L += emission_weight(path, pdf_light) * share * path.beta *
-                  area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
+    estimate.L += emission_weight(path, pdf_light) * share * path.beta * area_light_le(light_at(s.light), s.front) *
+                  light_texture(s.light, s.attributes);
 }
 
 // A sample of a light for the surface, as lit; layers above what emits leave a fraction of its radiance.
@@ -140,9 +140,8 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
     vec3 Ld = path.beta * value.f * cosine * light.Li;
     Ld *= media_transmittance(media, light.t_max * length(ray.d));
     // A light is not seen if the horizon and the shading normal disagree about its side.
-    bool sides_differ = LIT_FROM_BEHIND
-                            ? surface_reflects(x, light.wi, dot(light.wi, x.frame.z)) != viewers_side
-                            : dot(light.wi, x.horizon) <= 0.0;
+    bool sides_differ = LIT_FROM_BEHIND ? surface_reflects(x, light.wi, dot(light.wi, x.frame.z)) != viewers_side
+                                        : dot(light.wi, x.horizon) <= 0.0;
     bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
     float weight = 1.0;
     if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, value.pdf);

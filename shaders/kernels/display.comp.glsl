@@ -13,10 +13,18 @@ layout(constant_id = DISPLAY_CONSTANT_CURVE) const uint CURVE = TONEMAP_LINEAR;
 layout(constant_id = DISPLAY_CONSTANT_BLUE_FIRST) const bool BLUE_FIRST = false;
 
 layout(binding = DISPLAY_BINDING_IMAGE, rgba32f) uniform readonly image2DArray accumulation;
-layout(std430, binding = DISPLAY_BINDING_OVERLAY) readonly buffer OverlayBlock { uint overlay[]; };
-layout(std430, binding = DISPLAY_BINDING_PICTURE) buffer PictureBlock { uint picture[]; };
-layout(std430, binding = DISPLAY_BINDING_SCREEN) writeonly buffer ScreenBlock { uint screen[]; };
-layout(push_constant) uniform DisplayBlock { DisplayPush push; };
+layout(std430, binding = DISPLAY_BINDING_OVERLAY) readonly buffer OverlayBlock {
+    uint overlay[];
+};
+layout(std430, binding = DISPLAY_BINDING_PICTURE) buffer PictureBlock {
+    uint picture[];
+};
+layout(std430, binding = DISPLAY_BINDING_SCREEN) writeonly buffer ScreenBlock {
+    uint screen[];
+};
+layout(push_constant) uniform DisplayBlock {
+    DisplayPush push;
+};
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;

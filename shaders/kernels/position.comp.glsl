@@ -9,7 +9,9 @@
 layout(local_size_x = WORKGROUP_SIZE, local_size_y = WORKGROUP_SIZE) in;
 
 layout(binding = BINDING_IMAGE, rgba32f) uniform writeonly image2DArray position;
-layout(push_constant) uniform TileBlock { Tile tile; };
+layout(push_constant) uniform TileBlock {
+    Tile tile;
+};
 
 void main() {
     if (any(greaterThanEqual(gl_GlobalInvocationID.xy, tile.size))) return;

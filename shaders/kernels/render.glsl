@@ -16,8 +16,12 @@
 layout(local_size_x = WORKGROUP_SIZE, local_size_y = WORKGROUP_SIZE) in;
 
 layout(binding = BINDING_IMAGE, rgba32f) uniform image2DArray accumulation;
-layout(std430, binding = BINDING_COUNTERS) buffer CountersBlock { uint counters[COUNTER_COUNT]; };
-layout(push_constant) uniform TileBlock { Tile tile; };
+layout(std430, binding = BINDING_COUNTERS) buffer CountersBlock {
+    uint counters[COUNTER_COUNT];
+};
+layout(push_constant) uniform TileBlock {
+    Tile tile;
+};
 
 // The counts of a work group, if GROUP_COUNTERS: on a GPU, all invocations would otherwise contend for the same words
 // of the buffer.
@@ -208,7 +212,8 @@ Met sample_trace(Sample s) {
             more = traversal.any_hit || !bvh_ended(traversal);
         } while (more);
     } else {
-        while (!bvh_ended(traversal)) sample_advance(s, traversal, lit);
+        while (!bvh_ended(traversal))
+            sample_advance(s, traversal, lit);
     }
     bool turned = !(HAS_OPACITY && traversal.any_hit);  // To the path's ray, if there is one.
     return Met(turned && bvh_ended(traversal), lit, traversal.hit);

@@ -1,5 +1,6 @@
-// The choice of a light for a point that is lit, and its probability: all that a sampler of lights is. Whoever hits a light
-// asks for the probability with which it would have been chosen for the point before, so that both may depend on it.
+// The choice of a light for a point that is lit, and its probability: all that a sampler of lights is. Whoever hits a
+// light asks for the probability with which it would have been chosen for the point before, so that both may depend on
+// it.
 #ifndef LIGHT_CHOICE_GLSL
 #define LIGHT_CHOICE_GLSL
 

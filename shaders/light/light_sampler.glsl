@@ -30,8 +30,8 @@ Attributes light_sample_attributes(LightSample s, LitPoint lit) {
     return light_attributes(s.light, l, area_light_coordinates(l, s.u), n);
 }
 
-// Cosine between the ray to the sample and the normal of the light's surface there, on the side that is seen; only if it
-// has one.
+// Cosine between the ray to the sample and the normal of the light's surface there, on the side that is seen; only if
+// it has one.
 float light_sample_cosine(LightSample s, LitPoint lit) {
     LightRecord l = light_at(s.light);
     vec3 n = is_light(l, LIGHT_SPHERE) ? lit.p + s.shadow - l.p : cross(l.e1, l.e2);
@@ -45,8 +45,8 @@ void light_apply_textures(inout LightSample s, LitPoint lit) {
     if ((TEXTURED & TEXTURED_OPACITY) != 0u) s.Li *= material_opacity(scene_light_textures(s.light).material, at);
 }
 
-// A sample of a point on one of the lights, from 3 x 32 random bits: u.xy chooses the point, u.z the light. The scene has
-// at least one light; light_prepare comes first.
+// A sample of a point on one of the lights, from 3 x 32 random bits: u.xy chooses the point, u.z the light. The scene
+// has at least one light; light_prepare comes first.
 LightSample light_sample_li(LitPoint lit, uvec3 u) {
     uint i = light_choose(lit, u.z);
     LightRecord l = light_at(i);

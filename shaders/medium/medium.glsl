@@ -8,8 +8,8 @@
 
 #include "scene/scene_data.glsl"
 
-// The media around a point, MEDIUM_BITS each, the one that fills it first, MEDIUM_NONE after the last. Where media do not
-// nest, only the first is in use.
+// The media around a point, MEDIUM_BITS each, the one that fills it first, MEDIUM_NONE after the last. Where media do
+// not nest, only the first is in use.
 const uvec2 MEDIA_NONE = uvec2(MEDIUM_NONE);
 
 uvec4 media_unpack(uvec2 media) {
@@ -29,8 +29,8 @@ uint media_first(uvec2 media) {
 uvec2 media_entered(uvec2 media, uint medium) {
     uvec4 m = media_unpack(media);
     bvec4 after = lessThanEqual(m >> MEDIUM_INDEX_BITS, uvec4(medium >> MEDIUM_INDEX_BITS));
-    return media_pack(uvec4(after.x ? medium : m.x, after.x ? m.x : after.y ? medium : m.y,
-                            after.y ? m.y : after.z ? medium : m.z, after.z ? m.z : after.w ? medium : m.w));
+    return media_pack(uvec4(after.x ? medium : m.x, after.x ? m.x : (after.y ? medium : m.y),
+                            after.y ? m.y : (after.z ? medium : m.z), after.z ? m.z : (after.w ? medium : m.w)));
 }
 
 // The media after leaving `medium`; the same if it is not one of them.
@@ -39,8 +39,8 @@ uvec2 media_left(uvec2 media, uint medium) {
     bvec4 here = equal(m, uvec4(medium));
     bool second = here.x || here.y;
     bool third = second || here.z;
-    return media_pack(uvec4(here.x ? m.y : m.x, second ? m.z : m.y, third ? m.w : m.z,
-                            third || here.w ? MEDIUM_NONE : m.w));
+    return media_pack(
+        uvec4(here.x ? m.y : m.x, second ? m.z : m.y, third ? m.w : m.z, third || here.w ? MEDIUM_NONE : m.w));
 }
 
 // The media beyond a surface that is reached through `here` and has `behind` at its back.
@@ -60,7 +60,8 @@ vec3 media_transmittance(uvec2 media, float distance) {
 }
 
 // The index of refraction beyond a boundary over that before it; 1, exactly, if the indices are equal, or the same
-// medium fills both sides, as where one is entered within another of a higher priority. `own_eta` if that of the surface holds, `eta`.
+// medium fills both sides, as where one is entered within another of a higher priority. `own_eta` if that of the
+// surface holds, `eta`.
 float media_eta(uvec2 here, uvec2 beyond, bool own_eta, float eta) {
     uint from = media_first(here);
     uint to = media_first(beyond);

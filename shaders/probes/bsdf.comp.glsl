@@ -1,5 +1,5 @@
-// For selftest/bsdfs.h: one material, given by its record; if it is principled, by two. Samples it with u and evaluates it, both for the sampled
-// direction and for a given wi.
+// For selftest/bsdfs.h: one material, given by its record; if it is principled, by two. Samples it with u and evaluates
+// it, both for the sampled direction and for a given wi.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -19,11 +19,11 @@ void main() {
     vec3 wo = item_floats(2u).xyz;
     if (material.model == MATERIAL_PRINCIPLED) {
         uvec4 words[PRINCIPLED_WORDS];
-        for (uint i = 0u; i < PRINCIPLED_WORDS; ++i) words[i] = item(5u + i);
+        for (uint i = 0u; i < PRINCIPLED_WORDS; ++i)
+            words[i] = item(5u + i);
         uvec4 bits = hash_pcg4d(uvec4(item(2u).w, 1u, 2u, 3u));
-        PrincipledSurface surface =
-            principled_surface(material, principled_unpack(words), front, bsdf.parameter, vec3(1.0 / 3.0),
-                               vec4(unit_float(bits.xy), unit_float(bits.zw)));
+        PrincipledSurface surface = principled_surface(material, principled_unpack(words), front, bsdf.parameter,
+                                                       vec3(1.0 / 3.0), vec4(unit_float(bits.xy), unit_float(bits.zw)));
         bsdf.principled = principled_lobes(surface, wo);
     }
     vec3 wi = item_floats(3u).xyz;

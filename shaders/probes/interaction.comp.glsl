@@ -15,7 +15,8 @@ void main() {
     Hit hit = bvh_intersect(ray);
     put(hit.t);
     if (!is_hit(hit)) {
-        while (values_put < RESULT_WORDS) put(0u);
+        while (values_put < RESULT_WORDS)
+            put(0u);
         return;
     }
     Interaction s = interaction_at(ray, hit);

@@ -8,7 +8,9 @@
 layout(local_size_x = 64) in;
 
 layout(binding = BINDING_ITEMS) uniform usamplerBuffer items;
-layout(std430, binding = BINDING_RESULTS) writeonly buffer ResultsBlock { uint results[]; };
+layout(std430, binding = BINDING_RESULTS) writeonly buffer ResultsBlock {
+    uint results[];
+};
 layout(push_constant) uniform CountsBlock {
     uint item_count;
     uint primitive_count;  // Of the scene, for kernels that read one.

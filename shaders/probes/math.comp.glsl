@@ -18,7 +18,8 @@ void main() {
     put(power_heuristic(v.x, v.y));
     vec3 sum = vec3(v.x);
     vec3 compensation = vec3(0.0);
-    for (uint i = item(0u).w; i > 0u; --i) compensated_add(sum, compensation, vec3(v.y));
+    for (uint i = item(0u).w; i > 0u; --i)
+        compensated_add(sum, compensation, vec3(v.y));
     put(sum.x);
     put(compensation.x);
 }

@@ -14,7 +14,8 @@ Hit brute_force(Ray ray) {
     Candidate candidate = candidate_none();
     for (uint i = 0u; i < primitive_count; ++i) {
         meet(i, primitive_hit(ray, shear, scene_primitive(i), i, NO_INSTANCE), hit, candidate);
-        for (int k = 0; k < 2; ++k) decide(ray, shear, hit, candidate);
+        for (int k = 0; k < 2; ++k)
+            decide(ray, shear, hit, candidate);
     }
     return hit;
 }

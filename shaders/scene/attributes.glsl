@@ -8,7 +8,7 @@
 
 // What a surface has at a point besides its geometry; 0, or white, where the scene has none.
 struct Attributes {
-    vec2 uv0;      // Texture coordinates, v upwards.
+    vec2 uv0;  // Texture coordinates, v upwards.
     vec2 uv1;
     vec4 color;    // Linear red, green, blue, and alpha.
     vec4 tangent;  // x, y, z: where u grows, about unit length; w: 1, or -1 if v grows along -cross(n, tangent).
@@ -66,9 +66,9 @@ Attributes attributes_at(AttributePlace place) {
         uvec4 t = scene_tangents(place.primitive);
         if (place.second) t.yz = t.zw;
         vec2 b = place.b;
-        at.tangent = vec4((1.0 - b.x - b.y) * octahedral_unpack(t.x) + b.x * octahedral_unpack(t.y) +
-                              b.y * octahedral_unpack(t.z),
-                          (t.x & TANGENT_MIRRORED) != 0u ? -1.0 : 1.0);
+        at.tangent = vec4(
+            (1.0 - b.x - b.y) * octahedral_unpack(t.x) + b.x * octahedral_unpack(t.y) + b.y * octahedral_unpack(t.z),
+            (t.x & TANGENT_MIRRORED) != 0u ? -1.0 : 1.0);
         if (place.on_sphere) at.tangent = vec4(normalize(vec3(place.n.z, 0.0, -place.n.x)), 1.0);
     }
     return at;

@@ -21,8 +21,8 @@ UvEdges sphere_uv_edges(float radius, vec3 n) {
     return UvEdges(2.0 * PI * radius * around, PI * radius * up, vec2(1.0, 0.0), vec2(0.0, 1.0));
 }
 
-// The edges of the triangle that was hit, or the axes of the disk, in the frame of the scene; for the set of coordinates
-// of texture t.
+// The edges of the triangle that was hit, or the axes of the disk, in the frame of the scene; for the set of
+// coordinates of texture t.
 UvEdges uv_edges(TextureRecord t, Hit hit, vec3 n) {
     Primitive p = scene_primitive(hit_primitive(hit));
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) return sphere_uv_edges(p.b.x, n);
@@ -46,7 +46,8 @@ UvEdges uv_edges(TextureRecord t, Hit hit, vec3 n) {
 vec3 bumped_normal(TextureRecord t, float scale, Hit hit, Interaction s) {
     vec3 n = s.front ? s.ns : -s.ns;
     UvEdges edges = uv_edges(t, hit, s.front ? s.n : -s.n);
-    vec2 slope = texture_slope(t, has_trait(t.traits, TEXTURE_UV1, TEXTURE_UV_SETS) ? s.attributes.uv1 : s.attributes.uv0);
+    vec2 slope =
+        texture_slope(t, has_trait(t.traits, TEXTURE_UV1, TEXTURE_UV_SETS) ? s.attributes.uv1 : s.attributes.uv0);
     // The gradient along the surface rises along e1 and e2 as the heights do.
     vec3 along_e1 = cross(edges.e2, n), along_e2 = cross(n, edges.e1);
     float det = dot(edges.e1, along_e1);

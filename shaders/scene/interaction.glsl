@@ -9,23 +9,23 @@
 #include "scene/traversal.glsl"
 #include "scene/vertex.glsl"
 
-// In the frame of the scene. Both normals are unit vectors on the viewer's side of the surface; the geometric normal alone
-// decides which side that is.
+// In the frame of the scene. Both normals are unit vectors on the viewer's side of the surface; the geometric normal
+// alone decides which side that is.
 struct Interaction {
     vec3 p;
-    vec3 wo;        // Towards the viewer, unit.
-    vec3 n;         // Geometric normal.
-    vec3 ns;        // Shading normal.
-    bool front;     // The viewer sees the front side.
-    float error;    // How far from the surface, along n, rays must begin.
-    vec3 lift;      // From p to where light that stays on the viewer's side begins: see scene/smooth.glsl.
+    vec3 wo;      // Towards the viewer, unit.
+    vec3 n;       // Geometric normal.
+    vec3 ns;      // Shading normal.
+    bool front;   // The viewer sees the front side.
+    float error;  // How far from the surface, along n, rays must begin.
+    vec3 lift;    // From p to where light that stays on the viewer's side begins: see scene/smooth.glsl.
     uint material;
     uint light;  // Light that the surface belongs to, or NO_LIGHT.
     Attributes attributes;
 };
 
-// The interpolated shading normal of the triangle that was hit, on the viewer's side, and the lift of light from it. The
-// ray is `ray_length` long.
+// The interpolated shading normal of the triangle that was hit, on the viewer's side, and the lift of light from it.
+// The ray is `ray_length` long.
 void smooth_shading(inout Interaction s, Hit hit, Instance instance, Primitive primitive, vec2 b, float ray_length) {
     VertexNormals normals = vertex_normals(hit, instance);
     s.ns = shading_normal(normals, b, s.n);
@@ -84,7 +84,8 @@ Interaction interaction_at(Ray ray, Hit hit) {
         s.n = normalize(cross(e1, e2));
         s.p = a + (at.x * e1 + at.y * e2);  // Where triangles are small, no sum but the last rounds by much.
     }
-    s.attributes = attributes_at(AttributePlace(hit_primitive(hit), hit_second(hit), at, is_kind(primitive.kind, PRIMITIVE_SPHERE), s.n));
+    s.attributes = attributes_at(
+        AttributePlace(hit_primitive(hit), hit_second(hit), at, is_kind(primitive.kind, PRIMITIVE_SPHERE), s.n));
     s.error = surface.error;
     if (is_instanced(hit.instance)) bring_to_scene(instance, s);
     s.wo = wo;

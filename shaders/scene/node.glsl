@@ -32,12 +32,12 @@ struct BoxHits {
 // plane in front of the origin, or the near plane that is most behind. Either way t_near is greater, and the ray misses
 // the box.
 BoxHits boxes_intersect(uvec3 q_near, uvec3 q_far, vec3 scale, vec3 near, vec3 far, float t_max) {
-    ivec4 t_near = max(max(ordered_bits(bytes(q_near.x) * scale.x + near.x),
-                           ordered_bits(bytes(q_near.y) * scale.y + near.y)),
-                       ordered_bits(bytes(q_near.z) * scale.z + near.z));
-    ivec4 t_far = min(min(ordered_bits(bytes(q_far.x) * scale.x + far.x),
-                          ordered_bits(bytes(q_far.y) * scale.y + far.y)),
-                      min(ordered_bits(bytes(q_far.z) * scale.z + far.z), ordered_bits(vec4(t_max))));
+    ivec4 t_near =
+        max(max(ordered_bits(bytes(q_near.x) * scale.x + near.x), ordered_bits(bytes(q_near.y) * scale.y + near.y)),
+            ordered_bits(bytes(q_near.z) * scale.z + near.z));
+    ivec4 t_far =
+        min(min(ordered_bits(bytes(q_far.x) * scale.x + far.x), ordered_bits(bytes(q_far.y) * scale.y + far.y)),
+            min(ordered_bits(bytes(q_far.z) * scale.z + far.z), ordered_bits(vec4(t_max))));
     return BoxHits(lessThanEqual(t_near, t_far), t_near);
 }
 

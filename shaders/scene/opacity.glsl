@@ -10,8 +10,8 @@
 const bool HAS_OPACITY = (TEXTURED & TEXTURED_OPACITY) != 0u;
 
 // A number in [0, 1) that is random for each ray and hit, whatever the order in which these are found: a hash of the
-// bits of the ray in the primitive's space, of the surface's id in the scene, and of whether the hit is the first one of
-// its primitive. (A sample's rays differ from those of every other sample.)
+// bits of the ray in the primitive's space, of the surface's id in the scene, and of whether the hit is the first one
+// of its primitive. (A sample's rays differ from those of every other sample.)
 float opacity_random(Ray ray, uint id, bool first) {
     uvec4 v = hash_pcg4d(uvec4(floatBitsToUint(ray.d), id));
     return unit_float(hash_pcg4d(v ^ uvec4(floatBitsToUint(ray.o), uint(first))).x);
@@ -20,7 +20,8 @@ float opacity_random(Ray ray, uint id, bool first) {
 // Whether the ray hits the primitive from behind; `n` points from a sphere's centre to the hit.
 bool is_hit_from_behind(Ray ray, Primitive p, Hit hit, vec3 n) {
     if (is_kind(p.kind, PRIMITIVE_DISK)) n = cross(p.b, p.c);
-    if (is_kind(p.kind, PRIMITIVE_TRIANGLES)) n = hit_second(hit) ? cross(p.c - p.a, p.d - p.a) : cross(p.b - p.a, p.c - p.a);
+    if (is_kind(p.kind, PRIMITIVE_TRIANGLES))
+        n = hit_second(hit) ? cross(p.c - p.a, p.d - p.a) : cross(p.b - p.a, p.c - p.a);
     return dot(n, ray.d) > 0.0;
 }
 
@@ -49,8 +50,8 @@ Candidate candidate_none() {
     return Candidate(hit_none(0.0), true);
 }
 
-// The primitive at that position in leaf order has its first hit there: replaces the ray's nearest hit, or, if some rays
-// pass the primitive, the candidate, if it is nearer than the nearest hit.
+// The primitive at that position in leaf order has its first hit there: replaces the ray's nearest hit, or, if some
+// rays pass the primitive, the candidate, if it is nearer than the nearest hit.
 void meet(uint position, Hit found, inout Hit hit, inout Candidate candidate) {
     if (!is_nearer(found, hit)) return;
     if (HAS_OPACITY && scene_surface(position).lets_pass != 0u) {

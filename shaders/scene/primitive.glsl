@@ -65,10 +65,11 @@ bool is_nearer(Hit found, Hit hit) {
     return found.t > 0.0 && (found.t < hit.t || (found.t == hit.t && before));
 }
 
-// The first hit of the primitive at that position in leaf order, of that instance or of none, by a ray in its space; the
-// hit's t is not above 0 if the ray misses.
+// The first hit of the primitive at that position in leaf order, of that instance or of none, by a ray in its space;
+// the hit's t is not above 0 if the ray misses.
 Hit primitive_hit(Ray ray, RayShear shear, Primitive p, uint position, uint instance) {
-    if (is_kind(p.kind, PRIMITIVE_SPHERE)) return Hit(sphere_intersect(ray, p.a, p.b.x).x, int(2u * position), instance);
+    if (is_kind(p.kind, PRIMITIVE_SPHERE))
+        return Hit(sphere_intersect(ray, p.a, p.b.x).x, int(2u * position), instance);
     if (is_kind(p.kind, PRIMITIVE_DISK)) return Hit(disk_intersect(ray, p.a, p.b, p.c).x, int(2u * position), instance);
     return triangles_hit(triangles_intersect(ray, shear, p.a, p.b, p.c, p.d), position, instance);
 }
@@ -85,8 +86,8 @@ Hit primitive_second_hit(Ray ray, RayShear shear, Primitive p, Hit first) {
 }
 
 // Surface coordinates of a hit of that primitive: for a triangle, the barycentric ones of its second and third vertex;
-// for a disk, those along its axes. The ray is in the primitive's space. (Few hits need them, so traversal does not keep
-// them.)
+// for a disk, those along its axes. The ray is in the primitive's space. (Few hits need them, so traversal does not
+// keep them.)
 vec2 hit_coordinates(Ray ray, Primitive p, Hit hit) {
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) return vec2(0.0);
     if (is_kind(p.kind, PRIMITIVE_DISK)) return disk_intersect(ray, p.a, p.b, p.c).yz;

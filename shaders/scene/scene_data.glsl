@@ -14,7 +14,9 @@
 #include "shared/scene_buffers.inc"
 #undef BUFFER
 
+// clang-format off
 layout(std430, binding = BINDING_STORAGE) readonly buffer StorageBlock { uvec4 words[]; } storage[STORAGE_BUFFERS];
+// clang-format on
 layout(std140, binding = BINDING_PARAMETERS) uniform ParametersBlock {
     uvec4 parameter_words[PARAMETERS_WORDS];
     uvec4 array_starts[(ARRAY_COUNT + 3u) / 4u];  // First word of each array in its texel or storage buffer.

@@ -2,12 +2,12 @@
 //
 // Where a triangle faces away from a light but its shading normal does not, the triangle would shadow itself, and the
 // terminator would follow the mesh in steps. So the light that a vertex of a path reflects begins above the curved
-// surface, from where no direction above the horizon of the shading normal meets a convex mesh: that of light samples and
-// that of BSDF samples. The point lies on the ray that found the triangle, where nothing is in between, so no light
+// surface, from where no direction above the horizon of the shading normal meets a convex mesh: that of light samples
+// and that of BSDF samples. The point lies on the ray that found the triangle, where nothing is in between, so no light
 // leaks through what touches the mesh. The height is 0 where normals do not diverge, falls with the square of the
 // triangle's size, and is the same on both sides of an edge.
-// Ref: Hanika 2021, Hacking the Shadow Terminator, in Ray Tracing Gems II, which lifts the point along its normal, by the
-// vertices' tangent planes.
+// Ref: Hanika 2021, Hacking the Shadow Terminator, in Ray Tracing Gems II, which lifts the point along its normal, by
+// the vertices' tangent planes.
 #ifndef SCENE_SMOOTH_GLSL
 #define SCENE_SMOOTH_GLSL
 

@@ -110,8 +110,8 @@ float texture_number(TextureRecord t, vec2 uv) {
 // Ref: Pharr, Wronski, Salvi and Fajardo 2024, Filtering After Shading with Stochastic Texture Filtering.
 vec4 texture_tap(TextureRecord t, vec2 uv, vec2 random) {
     TexturePlace at = texture_place(t, uv);
-    return texel_at(t, uvec2(random.x < at.u.weight ? at.u.second : at.u.first,
-                             random.y < at.v.weight ? at.v.second : at.v.first));
+    return texel_at(
+        t, uvec2(random.x < at.u.weight ? at.u.second : at.u.first, random.y < at.v.weight ? at.v.second : at.v.first));
 }
 
 // The derivatives of the texture's channel with u and v, for texels joined by a quadratic B-spline.

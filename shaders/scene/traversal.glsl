@@ -18,19 +18,19 @@ const uint NODE_NONE = 0xFFFFFFFFu;
 
 // The state of a ray that traverses the tree.
 struct Traversal {
-    Ray ray;         // In the space of the nodes that it visits: the scene's, or that of an instance's mesh.
-    vec3 inv_d;      // reciprocals(ray.d)
+    Ray ray;     // In the space of the nodes that it visits: the scene's, or that of an instance's mesh.
+    vec3 inv_d;  // reciprocals(ray.d)
     RayShear shear;
-    bool any_hit;    // The first hit ends the traversal.
-    Hit hit;         // The nearest so far.
-    uint node;       // To be visited next;
-    uint pending;    // then its siblings; those further up are on the stack.
-    uint leaves;     // To be tested before `node`; bit i: the primitive i places after
-    uint first_leaf; // this position in leaf order.
+    bool any_hit;         // The first hit ends the traversal.
+    Hit hit;              // The nearest so far.
+    uint node;            // To be visited next;
+    uint pending;         // then its siblings; those further up are on the stack.
+    uint leaves;          // To be tested before `node`; bit i: the primitive i places after
+    uint first_leaf;      // this position in leaf order.
     Candidate candidate;  // For bvh_decide.
-    Ray outside;     // In the frame of the scene.
-    uint instance;   // That the ray is in, or NO_INSTANCE,
-    uint root;       // and the root of its mesh, behind which lie all nodes of the mesh; 0 outside.
+    Ray outside;          // In the frame of the scene.
+    uint instance;        // That the ray is in, or NO_INSTANCE,
+    uint root;            // and the root of its mesh, behind which lie all nodes of the mesh; 0 outside.
 };
 
 // A traversal at the root that looks for hits with t in (0, t_max). bvh_prepare comes first.
@@ -61,9 +61,9 @@ void leave_instance(inout Traversal t) {
     t.inv_d = reciprocals(t.ray.d);  // For enter_instance, too.
 }
 
-// Brings the ray into the space of an instance if its record, of these words, lies in the node's place: then the root of
-// its mesh is the only child. On software Vulkan every lane computes with the words, and would take a hundred times as
-// long for the denormal numbers that those of a node may be.
+// Brings the ray into the space of an instance if its record, of these words, lies in the node's place: then the root
+// of its mesh is the only child. On software Vulkan every lane computes with the words, and would take a hundred times
+// as long for the denormal numbers that those of a node may be.
 void enter_instance(inout Traversal t, BvhNode node, NodeWords words, inout bool down, inout uint rest,
                     inout uint child) {
     uint keep = is_instance(node) ? 0xFFFFFFFFu : 0u;

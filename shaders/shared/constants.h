@@ -18,10 +18,9 @@ const uint DEPTH_SAFETY_LIMIT = 4096u;
 const uint NO_LIGHT = 0xFFFFFFFFu;
 
 // Estimators of direct light.
-const uint ESTIMATOR_BSDF = 0u;  // Emission counts only where a BSDF sample hits it.
-const uint ESTIMATOR_LIGHT =
-    1u;                         // Emission counts only through light samples (and where those cannot reach).
-const uint ESTIMATOR_MIS = 2u;  // Both, weighted by the power heuristic.
+const uint ESTIMATOR_BSDF = 0u;   // Emission counts only where a BSDF sample hits it.
+const uint ESTIMATOR_LIGHT = 1u;  // Emission counts only through light samples (and where those cannot reach).
+const uint ESTIMATOR_MIS = 2u;    // Both, weighted by the power heuristic.
 
 // Samplers.
 const uint SAMPLER_INDEPENDENT = 0u;

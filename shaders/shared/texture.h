@@ -72,8 +72,8 @@ struct MaterialTextures {
     uint base;  // The record's fields of these names are multiplied by them.
     uint specular;
     uint parameter;
-    uint normal;  // Tangent space: x along the tangent, y along the bitangent, z along the normal; in [0, 1].
-    uint bump;    // 1: the channel of `normal` is a height instead,
+    uint normal;           // Tangent space: x along the tangent, y along the bitangent, z along the normal; in [0, 1].
+    uint bump;             // 1: the channel of `normal` is a height instead,
     float normal_scale;    // Factor of its x and y, or the height for 1, in the frame of the scene.
     uint opacity_texture;  // Its channel is a factor of
     float opacity;         // the probability that a ray does not pass the surface as if it were not there.
@@ -99,15 +99,13 @@ const uint TEXTURED_NORMAL = 1u << 4u;
 const uint TEXTURED_OPACITY = 1u << 5u;  // Or opacity is less than 1 everywhere.
 const uint TEXTURED_EMISSION = 1u << 6u;
 const uint TEXTURED_BUMP = 1u << 7u;
-const uint TEXTURED_MATERIALS =
-    TEXTURED_BASE | TEXTURED_SPECULAR | TEXTURED_PARAMETER | TEXTURED_VERTEX_COLORS;
+const uint TEXTURED_MATERIALS = TEXTURED_BASE | TEXTURED_SPECULAR | TEXTURED_PARAMETER | TEXTURED_VERTEX_COLORS;
 
 // Attributes of the corners a, b, c, d of primitives, a bit each: the specialization constant ATTRIBUTES. A
 // primitive has the words of each that is there, in this order.
-const uint ATTRIBUTE_UV0 = 1u << 0u;  // 2 words: u, v of a and b; of c and d.
-const uint ATTRIBUTE_UV1 = 1u << 1u;  // 2 words.
-const uint ATTRIBUTE_COLOR =
-    1u << 2u;  // 2 words: red, green, blue, alpha of a and b; of c and d; half floats.
+const uint ATTRIBUTE_UV0 = 1u << 0u;      // 2 words: u, v of a and b; of c and d.
+const uint ATTRIBUTE_UV1 = 1u << 1u;      // 2 words.
+const uint ATTRIBUTE_COLOR = 1u << 2u;    // 2 words: red, green, blue, alpha of a and b; of c and d; half floats.
 const uint ATTRIBUTE_TANGENT = 1u << 3u;  // 1 word: at a, b, c, d, as pack_tangent() packs them.
 const uint ATTRIBUTES_ALL = 15u;
 
@@ -121,8 +119,7 @@ inline std::array<uvec4, TEXTURE_WORDS> pack(const TextureRecord& t) {
 }
 
 inline std::array<uvec4, MATERIAL_TEXTURES_WORDS> pack(const MaterialTextures& t) {
-    return {uvec4(t.base | t.vertex_colors << 31u, t.specular | t.culled << 31u, t.parameter,
-                  t.normal | t.bump << 31u),
+    return {uvec4(t.base | t.vertex_colors << 31u, t.specular | t.culled << 31u, t.parameter, t.normal | t.bump << 31u),
             uvec4(t.opacity_texture, floatBitsToUint(t.opacity), floatBitsToUint(t.cutoff),
                   floatBitsToUint(t.normal_scale))};
 }

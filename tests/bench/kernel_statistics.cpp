@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/console.h"
-#include "cli/render_options.h"
+#include "cli/rendering_options.h"
 #include "cli/vulkan.h"
 #include "compiled_kernel.h"
 #include "kernel_bounds.h"
@@ -28,7 +28,7 @@ struct Arguments {
     std::vector<std::string> scenes;
     std::optional<std::string> bounds;
     bool json = false;
-    RenderOptions render;
+    RenderingOptions rendering;
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -38,9 +38,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
     app.add_flag("--json", arguments.json, "Print all statistics of the driver as JSON");
     app.add_option("--bounds", arguments.bounds, "Fail if a kernel is beyond its bound in this file")
         ->type_name("FILE");
-    arguments.render.add_rendering_to(app);
-    arguments.render.images.files = {
-        "picture.exr"};  // With all its images, as candela render writes it by default.
+    arguments.rendering.add_to(app);
 }
 
 // The device that `request` names, or the best one, ready to be opened.
@@ -52,15 +50,17 @@ vk::DeviceInfo find_device(const vk::Instance& instance, const std::optional<std
 }
 
 std::vector<CompiledKernel> compile(const vk::Device& device, const Arguments& arguments) {
-    std::vector<SceneAccess> accesses{arguments.render.scene_access};
+    std::vector<SceneAccess> accesses{arguments.rendering.device.scene_access};
     if (accesses.front() == SceneAccess::automatic)
         accesses = {SceneAccess::texel_buffers, SceneAccess::storage_buffers};
     std::vector<CompiledKernel> all;
     for (const std::string& file : arguments.scenes) {
         const Scene scene = load_scene(file, {.reach = {.anywhere = true}});
-        const auto kernels =
-            compile_scene_kernels(device, std::filesystem::path(file).stem().string(), scene,
-                                  scene.cameras.front(), arguments.render.settings(scene), accesses);
+        const Camera& camera = scene.cameras.front();
+        RenderSettings settings = arguments.rendering.settings(scene, camera);
+        settings.aovs = true;  // As for an EXR by default.
+        const auto kernels = compile_scene_kernels(device, std::filesystem::path(file).stem().string(), scene,
+                                                   camera, settings, accesses);
         all.insert(all.end(), kernels.begin(), kernels.end());
     }
     all.push_back(compile_display_kernel(device));
@@ -125,7 +125,7 @@ void run(const Arguments& arguments) {
     std::optional<KernelBounds> bounds;
     if (arguments.bounds) bounds = load_kernel_bounds(*arguments.bounds);
     const vk::Instance instance(instance_options());
-    const vk::Device device(instance, find_device(instance, arguments.render.device));
+    const vk::Device device(instance, find_device(instance, arguments.rendering.device.name));
     const vk::DeviceInfo& info = device.info();
     if (bounds && info.driver != bounds->driver) {
         std::printf("skipped: the bounds are for the compiler of %s, and the driver here is %s\n",

@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
-#include "base/image.h"
-#include "base/image_io.h"
+#include "image/image.h"
+#include "image/image_io.h"
 #include "support/process.h"
-#include "unit/base_fixture.h"
+#include "unit/base/base_fixture.h"
 
 namespace candela {
 

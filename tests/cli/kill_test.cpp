@@ -10,9 +10,9 @@
 #include <tuple>
 
 #include "base/file.h"
-#include "base/texel_io.h"
 #include "cli/cli_fixture.h"
 #include "film/checkpoint.h"
+#include "image/texel_io.h"
 
 namespace candela {
 namespace {

@@ -9,9 +9,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "base/tonemap.h"
 #include "cli/cli_fixture.h"
 #include "film/accumulation.h"
+#include "image/tonemap.h"
 #include "support/wait.h"
 
 namespace candela {

@@ -5,10 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/compare.h"
-#include "base/image_io.h"
 #include "base/memory_limit.h"
-#include "base/texel_io.h"
 #include "cli/report_curve.h"
 #include "film/checkpoint.h"
 #include "film/merge.h"
@@ -16,6 +13,9 @@
 #include "fuzz/image_text.h"
 #include "fuzz/memory_file.h"
 #include "gpu_scene/gpu_scene.h"
+#include "image/compare.h"
+#include "image/image_io.h"
+#include "image/texel_io.h"
 #include "load/gltf/gltf.h"
 #include "load/json/loader.h"
 #include "load/obj/mtl.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "base/image.h"
 #include "gpu/device_fixture.h"
+#include "image/image.h"
 #include "shared/constants.h"
 #include "vk/transfer.h"
 

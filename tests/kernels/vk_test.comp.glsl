@@ -1,15 +1,22 @@
-// For vk_test.cpp: reads every kind of resource and writes a known function of them, so that a wrong binding shows.
+// For vk_test.cpp: reads every kind of resource and writes a known function of them, so that a wrong binding
+// shows.
 #version 450
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint FACTOR = 0;
 layout(constant_id = 1) const uint SUMMAND = 0;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer texels;                 // One per pixel, row-major.
-layout(set = 0, binding = 1, std430) readonly buffer Weights { float weights[]; };  // One per column.
-layout(set = 0, binding = 2, std140) uniform Tint { vec4 tint; };
+layout(set = 0, binding = 0) uniform usamplerBuffer texels;  // One per pixel, row-major.
+layout(set = 0, binding = 1, std430) readonly buffer Weights {
+    float weights[];
+};  // One per column.
+layout(set = 0, binding = 2, std140) uniform Tint {
+    vec4 tint;
+};
 layout(set = 0, binding = 3, rgba32f) uniform image2DArray pixels;
-layout(set = 0, binding = 4, std430) buffer Count { uint count; };          // Pixels written so far.
+layout(set = 0, binding = 4, std430) buffer Count {
+    uint count;
+};  // Pixels written so far.
 
 layout(push_constant) uniform Push {
     uint layer;

@@ -6,6 +6,7 @@ it, for two minutes at most. Prints the table of README.md, and exits with 1 if 
 ninety minutes on two cores.
 
 usage: mutate.py [WORD]...      WORD: only the ways whose names have one of them
+       mutate.py --check        only says whether each way finds its place in the sources
 """
 import re
 import shutil
@@ -85,8 +86,19 @@ def mutate(filters, name, file, old, new):
         path.write_text(original, encoding="utf-8")
 
 
+def check():
+    """Says which ways do not find what they replace; the exit code."""
+    misplaced = [f"{file}: \"{old}\" does not stand there once; mend mutations.py ({name})"
+                 for _, ways in GROUPS for name, file, old, _ in ways
+                 if (ROOT / file).read_text(encoding="utf-8").count(old) != 1]
+    print("\n".join([*misplaced, f"{sum(len(ways) for _, ways in GROUPS)} ways, {len(misplaced)} misplaced"]))
+    return 1 if misplaced else 0
+
+
 def main():
     words = sys.argv[1:] or [""]
+    if words == ["--check"]:
+        sys.exit(check())
     if words in (["-h"], ["--help"]):
         sys.exit(__doc__)
     update_copy()

@@ -210,7 +210,7 @@ GROUPS = [
         ("the second triangle's coordinates for the first", ATTRIBUTES, "uintBitsToFloat(second ? cd.xy : ab.zw)",
          "uintBitsToFloat(cd.xy)"),
         ("lights sampled without their textures", LIGHT_SAMPLER, "s.Li *= light_texture(s.light, at);", ""),
-        ("lights hit without their textures", PATH, "* light_texture(s.light, s.attributes)", ""),
+        ("lights hit without their textures", PATH, "light_texture(s.light, s.attributes)", "vec3(1.0)"),
         ("a lamp sampled where it is transparent", LIGHT_SAMPLER,
          "s.Li *= material_opacity(scene_light_textures(s.light).material, at)", "s.Li *= 1.0"),
         ("both triangles of a lamp for the first", LIGHT_SAMPLER, "place.second = b.y > b.x;", "place.second = false;"),

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "base/relative_error.h"
+#include "image/relative_error.h"
 #include "load/load.h"
 #include "scene/names.h"
 #include "session/adaptive.h"

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "render_fixture.h"
+#include "support/ggx_reference.h"
 
 namespace candela {
 namespace {
@@ -9,19 +10,13 @@ namespace {
 constexpr float ETA = 1.5f;
 constexpr float THICKNESS = 0.5f;  // Of the slabs [m].
 
-// Reflectance of a boundary for unpolarised light that arrives at theta > 0 from the thinner side: the mean
-// of sin^2(theta - theta_t) / sin^2(theta + theta_t) and of the same with tangents. Ref: Fresnel's equations.
 double fresnel(double ior, double theta) {
-    if (theta == 0.0) return std::pow((ior - 1.0) / (ior + 1.0), 2.0);
-    const double theta_t = std::asin(std::sin(theta) / ior);
-    const double s = std::sin(theta - theta_t) / std::sin(theta + theta_t);
-    const double p = std::tan(theta - theta_t) / std::tan(theta + theta_t);
-    return 0.5 * (s * s + p * p);
+    return fresnel_exact(std::cos(theta), ior);
 }
 
 // Schlick's approximation of that.
 double schlick(double ior, double theta) {
-    const double normal = fresnel(ior, 0.0);
+    const double normal = fresnel_normal(ior);
     return normal + (1.0 - normal) * std::pow(1.0 - std::cos(theta), 5.0);
 }
 

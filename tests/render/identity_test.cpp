@@ -10,7 +10,7 @@
 #include "film/checkpoint.h"
 #include "render/make_identity.h"
 #include "render_fixture.h"
-#include "unit/base_fixture.h"
+#include "unit/base/base_fixture.h"
 
 namespace candela {
 namespace {

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <ostream>
 
-#include "base/image_io.h"
-#include "base/tonemap.h"
+#include "image/image_io.h"
+#include "image/tonemap.h"
 #include "load/load.h"
 #include "render_fixture.h"
-#include "unit/base_fixture.h"
+#include "unit/base/base_fixture.h"
 
 namespace candela {
 namespace {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "base/compare.h"
 #include "base/statistics.h"
 #include "gpu_scene/gpu_scene.h"
+#include "image/compare.h"
 #include "render/renderer.h"
 #include "support/effort.h"
 #include "support/scene_builders.h"

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "support/png_writer.h"
-#include "unit/base_fixture.h"
+#include "unit/base/base_fixture.h"
 
 namespace candela {
 namespace {

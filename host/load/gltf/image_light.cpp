@@ -11,8 +11,8 @@
 
 #include "base/color.h"
 #include "base/error.h"
-#include "base/texel_io.h"
 #include "base/text.h"
+#include "image/texel_io.h"
 #include "load/gltf/uri.h"
 #include "load/gltf/values.h"
 #include "scene/environment.h"

@@ -8,83 +8,13 @@
 
 #include "base/text.h"
 #include "load/gltf/accessor.h"
+#include "load/gltf/primitive_triangles.h"
 #include "load/gltf/values.h"
 #include "scene/mesh.h"
 #include "scene/texture.h"
 
 namespace candela::gltf {
 namespace {
-
-constexpr uint32_t TRIANGLES = 4;
-constexpr uint32_t TRIANGLE_FAN = 6;
-
-// The indices of all corners, or 0, 1, 2 ... if the primitive has none. Each is below `vertices`.
-std::vector<uint32_t> read_corners(File& file, const Node& primitive, uint32_t vertices) {
-    const auto reference = primitive.find("indices");
-    if (!reference) {
-        std::vector<uint32_t> corners(vertices);
-        for (uint32_t i = 0; i < vertices; ++i)
-            corners[i] = i;
-        return corners;
-    }
-    const Accessor accessor(file, *reference, {"SCALAR"});
-    std::vector<uint32_t> corners = accessor.integers();
-    const auto wrong = std::ranges::find_if(corners, [&](uint32_t i) { return i >= vertices; });
-    if (wrong != corners.end()) {
-        accessor.node().fail(concat("index ", wrong - corners.begin(),
-                                    " is not one of the primitive's vertices, which are 0 to ", vertices - 1,
-                                    "; is the file damaged?"));
-    }
-    const uint32_t restart = accessor.component() == Component::uint8    ? UINT8_MAX
-                             : accessor.component() == Component::uint16 ? UINT16_MAX
-                                                                         : UINT32_MAX;
-    const auto odd = std::ranges::find(corners, restart);
-    if (odd != corners.end()) {
-        file.warn(accessor.node(),
-                  concat("index ", odd - corners.begin(), " is ", restart,
-                         ", at which a strip may begin anew elsewhere; here it is a vertex"));
-    }
-    return corners;
-}
-
-std::vector<uvec3> triangles_of(const std::vector<uint32_t>& corners, uint32_t mode) {
-    std::vector<uvec3> triangles;
-    if (corners.size() < 3) return triangles;
-    if (mode == TRIANGLES) {
-        triangles.reserve(corners.size() / 3);
-        for (size_t i = 0; i + 3 <= corners.size(); i += 3)
-            triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
-        return triangles;
-    }
-    triangles.reserve(corners.size() - 2);
-    for (size_t i = 0; i + 3 <= corners.size(); ++i) {
-        if (mode == TRIANGLE_FAN) {
-            triangles.emplace_back(corners[i + 1], corners[i + 2], corners[0]);
-        } else {
-            triangles.emplace_back(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
-        }
-    }
-    return triangles;
-}
-
-// Renumbers the vertices of triangles to those that are used; returns the old number of each.
-std::vector<uint32_t> keep_used(std::vector<uvec3>& triangles, uint32_t vertices) {
-    constexpr uint32_t UNUSED = UINT32_MAX;
-    std::vector<uint32_t> number(vertices, UNUSED);
-    for (const uvec3 t : triangles) {
-        for (glm::length_t i = 0; i < 3; ++i)
-            number[t[i]] = 0;
-    }
-    std::vector<uint32_t> rows;
-    for (uint32_t i = 0; i < vertices; ++i) {
-        if (number[i] == UNUSED) continue;
-        number[i] = uint32_t(rows.size());
-        rows.push_back(i);
-    }
-    for (uvec3& t : triangles)
-        t = {number[t.x], number[t.y], number[t.z]};
-    return rows;
-}
 
 // Reads one primitive, attribute by attribute, for the vertices that its triangles use.
 class PrimitiveReader {
@@ -321,10 +251,8 @@ bool is_empty(const File& file, const Node& reference) {
 
 std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive,
                                            const Deformation& deformation) {
-    constexpr uint32_t LAST_MODE = 6;
-    const auto mode_node = primitive.find("mode");
-    const uint32_t mode = mode_node ? mode_node->integer(0, LAST_MODE) : TRIANGLES;
-    if (mode < TRIANGLES) {
+    const uint32_t mode = mode_of(primitive);
+    if (mode < MODE_TRIANGLES) {
         file.warn(primitive, "left out points or lines, which have no surface");
         return std::nullopt;
     }
@@ -341,7 +269,7 @@ std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive,
         return std::nullopt;
     }
     const uint32_t vertices = Accessor(file, *position, {"VEC3"}).count();
-    std::vector<uvec3> triangles = triangles_of(read_corners(file, primitive, vertices), mode);
+    std::vector<uvec3> triangles = read_triangles(file, primitive, mode, vertices);
     if (deformation.mirrors) {
         for (uvec3& t : triangles)
             std::swap(t.y, t.z);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/image_io_parts.h"
+#include "base/text.h"
 #include "load/quote.h"
 
 namespace candela::gltf {

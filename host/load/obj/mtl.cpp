@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/image_io_parts.h"
 #include "base/text.h"
 #include "load/obj/counted_warnings.h"
 #include "load/obj/mtl_ignored.h"

@@ -17,7 +17,7 @@
 #include <xmmintrin.h>
 
 #include "base/error.h"
-#include "base/image_io.h"
+#include "image/image_io.h"
 #include "load/load.h"
 #include "tracer_materials.h"
 #include "tracer_scene.h"

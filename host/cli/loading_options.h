@@ -1,0 +1,31 @@
+// How scene files are read.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "load/gltf/gltf.h"
+#include "scene/scene.h"
+
+namespace candela {
+
+// What the argument SCENE of a command may name.
+inline constexpr const char* SCENE_FILES = "Scene file (.json, .gltf, .glb, .obj, .ply)";
+
+struct LoadingOptions {
+    std::optional<uint32_t> texture_limit;  // Texels along a side of an image.
+    IfMissing missing_images = IfMissing::white;
+    std::vector<std::string> folders;      // From which files may be read besides the scene's.
+    bool any_folder = false;               // Whether they may be read from anywhere.
+    std::optional<uint64_t> memory_limit;  // Bytes; none: default_memory_limit().
+    GltfOptions gltf;
+
+    // Declares them on `app`; this object must not move.
+    void add_to(CLI::App& app);
+};
+
+}  // namespace candela

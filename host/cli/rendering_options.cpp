@@ -1,0 +1,90 @@
+// See rendering_options.h.
+#include "cli/rendering_options.h"
+
+#include "session/job.h"
+#include "shared/constants.h"
+
+namespace candela {
+
+static std::optional<uint32_t> parse_spp(const std::string& text) {
+    return parse_uint(text, 1, MAX_SPP);
+}
+
+static std::optional<uint32_t> parse_seed(const std::string& text) {
+    return parse_uint(text, 0, UINT32_MAX);
+}
+
+static std::optional<uint32_t> parse_depth(const std::string& text) {
+    return parse_uint(text, 0, DEPTH_SAFETY_LIMIT);
+}
+
+static std::optional<uint32_t> parse_max_depth(const std::string& text) {
+    return text == "unlimited" ? DEPTH_SAFETY_LIMIT : parse_depth(text);
+}
+
+void SceneOptions::add_file_to(CLI::App& app) {
+    app.add_option("SCENE", file, SCENE_FILES)->required()->type_name("");
+}
+
+void SceneOptions::add_camera_to(CLI::App& app) {
+    app.option_defaults()->group("Picture");
+    app.add_option("--camera", camera, "Camera by name (default: the scene's first)")->type_name("NAME");
+}
+
+const Camera& SceneOptions::choose_camera(const Scene& scene) const {
+    return candela::choose_camera(scene, camera, "--camera: ");
+}
+
+void SamplingOptions::add_to(CLI::App& app) {
+    app.option_defaults()->group(SAMPLING_GROUP);
+    add_value(app, "--spp", spp, parse_spp, "a whole number from 1 to " + std::to_string(MAX_SPP),
+              "Samples per pixel")
+        ->type_name("N");
+    add_value(app, "--seed", seed, parse_seed, "a whole number from 0 to 4294967295",
+              "Seed of the random numbers; each has other noise")
+        ->type_name("S");
+    const std::string depths = "a whole number from 0 to " + std::to_string(DEPTH_SAFETY_LIMIT);
+    add_value(app, "--max-depth", max_depth, parse_max_depth, depths + ", or unlimited",
+              "Maximum number of bounces, or unlimited; 0 shows only lights")
+        ->type_name("D");
+    add_value(app, "--rr-depth", rr_depth, parse_depth, depths, "Bounces before Russian roulette begins")
+        ->type_name("N");
+    add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
+               "How direct light is sampled; mis has the least noise, bsdf misses lights without a surface");
+    add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
+    add_choice(
+        app, "--terminator", terminator, TERMINATOR_NAMES,
+        "Where light ends on meshes with smooth normals: smooth as they are, or flat as their triangles");
+}
+
+void DeviceOptions::add_to(CLI::App& app) {
+    app.option_defaults()->group("Device");
+    app.add_option("--device", name, "Index or part of the name (default: the best; see candela devices)")
+        ->type_name("D");
+    add_choice(app, "--scene-buffers", scene_access, SCENE_ACCESS_NAMES,
+               "How kernels read the scene; the image is the same (default: auto)");
+}
+
+void RenderingOptions::add_to(CLI::App& app) {
+    app.option_defaults()->group("Picture");
+    picture.add_to(app);
+    loading.add_to(app);
+    sampling.add_to(app);
+    device.add_to(app);
+}
+
+RenderSettings RenderingOptions::settings(const Scene& scene, const Camera& camera) const {
+    RenderSettings result = proposed_settings(scene, camera);
+    result.size = picture.size.value_or(result.size);
+    result.crop = picture.crop_within(result.size);
+    result.estimator = sampling.estimator.value_or(result.estimator);
+    result.sampler = sampling.sampler.value_or(result.sampler);
+    result.terminator = sampling.terminator.value_or(result.terminator);
+    result.seed = sampling.seed.value_or(result.seed);
+    result.max_depth = sampling.max_depth.value_or(result.max_depth);
+    result.rr_depth = sampling.rr_depth.value_or(result.rr_depth);
+    result.scene_access = device.scene_access;
+    return result;
+}
+
+}  // namespace candela

@@ -1,0 +1,31 @@
+// What the files image_io*.cpp share, some of it with texel_io*.cpp.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+#include "image/image.h"
+#include "image/image_io.h"
+
+namespace candela {
+
+// The first bytes of OpenEXR files and of Radiance pictures.
+inline constexpr std::string_view EXR_MAGIC("\x76\x2f\x31\x01"), HDR_MAGIC("#?");
+
+// Pixels along either side of an image that is read; more can only be a damaged header.
+inline constexpr uint32_t MAX_IMAGE_SIDE = 1 << 20;
+
+// Throws Error if width * height exceeds `max_pixels`; both sides are at most MAX_IMAGE_SIDE.
+void check_pixel_count(const std::filesystem::path& path, uint64_t width, uint64_t height,
+                       uint64_t max_pixels);
+
+// Grows the wanted channels to that many rows: a short file whose header claims a huge picture runs out of
+// file before the machine runs out of memory.
+void grow(Image& image, uint32_t rows, const ImageLimits& limits);
+
+// Decodes an OpenEXR file of one part into the image's channels through the library's C++ interface, which
+// trusts the header. Throws a std::exception if pixels are damaged.
+void decode_exr_by_rows(std::string_view file, Image& image, const ImageLimits& limits);
+
+}  // namespace candela

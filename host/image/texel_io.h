@@ -1,0 +1,42 @@
+// Files of the images that are textures: PNG, JPEG, WebP, Radiance HDR, OpenEXR, BMP and Targa, told apart by
+// their first bytes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image/texel_image.h"
+
+namespace candela {
+
+struct TexelLimits {
+    // An image with more is refused before memory is taken for any of them.
+    uint64_t max_pixels = uint64_t{1} << 28;
+    // Not a limit: what messages about other formats advise.
+    const char* formats = "PNG, JPEG, WebP, Radiance HDR or OpenEXR";
+};
+
+// Reads an image of one of these kinds from the bytes of a file, whatever its extension; `name` is what
+// messages call it:
+//   PNG       of any colour type and depth; 16 bits stay 16, fewer than 8 become 8, colours of a palette
+//             become RGB, and transparent colours an alpha channel. Of an animation, the default image.
+//   JPEG      grey or of three colours, baseline or progressive, of 8 bits.
+//   WebP      lossy or lossless, without animation.
+//   Radiance  as read_hdr(), as halves.
+//   OpenEXR   as read_exr(): R, G and B, or Y, each with A or without, as halves. Its colours, premultiplied
+//             by convention, are divided by alpha wherever that is above 0.
+//   BMP       without compression.
+//   Targa     with run lengths or without, from left to right. Its alpha counts if the header says so.
+// Of halves, values above 65504 become 65504; what is negative or not finite becomes 0. Colour profiles and
+// the orientation that a camera notes are ignored.
+// `warnings` gets what is odd but usable, each beginning with the name. Throws Error if the file is of
+// another kind, damaged or incomplete, or exceeds the limits. Takes no more memory than the file's bytes may
+// stand for, where its format has a bound on that (PNG, Huffman-coded JPEG, Radiance, most kinds of OpenEXR,
+// BMP, Targa). Any number of threads may call it.
+TexelImage decode_texels(std::string_view bytes, const std::filesystem::path& name,
+                         std::vector<std::string>& warnings, const TexelLimits& limits = {});
+
+}  // namespace candela

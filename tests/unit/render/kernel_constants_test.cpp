@@ -1,0 +1,36 @@
+// The constants that kernels are compiled with, and who sets them.
+#include <gtest/gtest.h>
+
+#include "render/renderer.h"
+#include "unit/gpu_scene/packed_scene.h"
+
+namespace candela {
+namespace {
+
+// So identities, which use these constants alone, are the same on every device.
+TEST(KernelConstants, WhatTheDeviceSetsHasItsDefaultUntilThereIsOne) {
+    Scene scene = scene_of_shapes({emitter(SQUARE, vec3(1))});
+    scene.environment = Environment{.size = {2, 1}, .radiance = {vec3(1), vec3(2)}, .visible = false};
+    RenderSettings settings;
+    settings.estimator = Estimator::light;
+    settings.sampler = SamplerKind::independent;
+    const KernelConstants constants = make_constants(build_gpu_scene(scene), Camera{}, settings);
+    for (const ConstantEntry& entry : CONSTANT_ENTRIES) {
+        if (entry.owner != ConstantOwner::device) continue;
+        EXPECT_EQ(constants[entry.number], entry.initial) << entry.number;
+    }
+    EXPECT_EQ(constants[CONSTANT_ENVIRONMENT], ENVIRONMENT_HIDDEN);
+    EXPECT_EQ(constants[CONSTANT_ESTIMATOR], ESTIMATOR_LIGHT);
+    EXPECT_EQ(constants[CONSTANT_SAMPLER], SAMPLER_INDEPENDENT);
+}
+
+TEST(KernelConstants, AreNumberedInTheOrderOfTheList) {
+    for (uint32_t i = 0; i < CONSTANT_COUNT; ++i)
+        EXPECT_EQ(CONSTANT_ENTRIES[i].number, i);
+    for (uint32_t i = 0; i < ARRAY_COUNT; ++i)
+        EXPECT_EQ(SCENE_ARRAYS[i].number, i);
+    EXPECT_EQ(BUFFER_COUNT, CONSTANT_COUNT - CONSTANT_SLOT_NODES);
+}
+
+}  // namespace
+}  // namespace candela
