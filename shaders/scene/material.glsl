@@ -87,7 +87,8 @@ void principled_apply(inout PrincipledRecord p, inout vec3 base_color, Principle
         p.anisotropy *= texel.b;
     }
     p.thickness_range *= principled_number(texel, image, PRINCIPLED_THICKNESS);
-#define COLOR(bit, name, word) if (principled_gives(image.values, bit)) p.name *= texel.rgb;
+#define COLOR(bit, name, word) \
+    if (principled_gives(image.values, bit)) p.name *= texel.rgb;
 #define WEIGHT(bit, name, word, place) p.name *= principled_number(texel, image, bit);
 #include "shared/principled_record.inc"
 }
