@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "base/image.h"
-#include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/scene_stages.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include "view/clock.h"
@@ -94,7 +94,8 @@ class Viewer {
     Scene scene_;
     std::vector<vec3> radiance_;  // Of the scene's environment, at intensity 1 ...
     float intensity_ = 1.0f;      // ... and its factor in scene_.
-    GpuScene gpu_scene_;
+    SceneStages stages_;
+    const GpuScene& gpu_scene_ = stages_.joined();
     ViewState state_;
     ViewerOptions options_;
     Camera home_;
