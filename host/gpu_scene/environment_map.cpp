@@ -8,6 +8,7 @@
 
 #include "base/color.h"
 #include "gpu_scene/alias_table.h"
+#include "gpu_scene/append.h"
 
 namespace candela {
 namespace {
@@ -40,6 +41,20 @@ EnvironmentMap build_environment_map(const Environment& environment) {
         map.texels.push_back({radiance, float(pdf)});
     }
     return map;
+}
+
+SkyArrays build_sky_arrays(const Environment& environment, EnvironmentMap map, bool is_light) {
+    SkyArrays arrays{.facts = {.environment = environment.visible ? ENVIRONMENT_VISIBLE : ENVIRONMENT_HIDDEN,
+                               .even_sky = map.even,
+                               .environment_size = environment.size,
+                               .environment_rotation = environment.rotation},
+                     .texels = {},
+                     .alias = pack_alias_table(map.alias)};
+    for (EnvironmentTexel& texel : map.texels) {
+        if (!is_light) texel.pdf = 0.0f;
+        append(arrays.texels, pack(texel));
+    }
+    return arrays;
 }
 
 }  // namespace candela

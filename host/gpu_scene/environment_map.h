@@ -4,19 +4,39 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "shared/constants.h"
 #include "shared/light.h"
 
 namespace candela {
 
-struct EnvironmentMap {
+// The sky as a light.
+struct SkyLight {
+    double irradiance = 0.0;  // Luminance, integrated over the whole sphere [W/m^2].
+    bool even = false;        // The same radiance from everywhere.
+};
+
+struct EnvironmentMap : SkyLight {
     // Row-major from the top. pdf is luminance / irradiance: the density of texels chosen in proportion to
     // luminance times solid angle [1/sr], before the choice among lights.
     std::vector<EnvironmentTexel> texels;
     std::vector<AliasEntry> alias;  // Chooses a texel; empty for a black environment.
-    double irradiance = 0.0;        // Luminance, integrated over the whole sphere [W/m^2].
-    bool even = false;              // The same radiance from everywhere.
 };
 
 EnvironmentMap build_environment_map(const Environment& environment);
+
+struct SkyFacts {
+    uint32_t environment = ENVIRONMENT_NONE;
+    bool even_sky = false;
+    uvec2 environment_size{0};          // Texels.
+    float environment_rotation = 0.0f;  // [rad]
+};
+
+struct SkyArrays {
+    SkyFacts facts;
+    std::vector<uvec4> texels, alias;
+};
+
+// The arrays of an environment with that map; densities are 0 unless it is a light.
+SkyArrays build_sky_arrays(const Environment& environment, EnvironmentMap map, bool is_light);
 
 }  // namespace candela

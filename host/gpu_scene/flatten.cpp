@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
-#include <memory>
 #include <utility>
 
 #include <glm/packing.hpp>
 
-#include "base/color.h"
+#include "gpu_scene/material_arrays.h"
 #include "gpu_scene/ray_error.h"
-#include "gpu_scene/texture_mean.h"
 #include "gpu_scene/triangle_pairs.h"
 #include "scene/materials.h"
 #include "scene/mesh.h"
+#include "shared/light.h"
 
 namespace candela {
 namespace {
@@ -36,14 +34,6 @@ uvec2 pack_halves(vec4 v) {
     return {glm::packHalf2x16(vec2(v.x, v.y)), glm::packHalf2x16(vec2(v.z, v.w))};
 }
 
-// Texture coordinates over a piece of a surface: origin + b1 along_b1 + b2 along_b2, at the surface
-// coordinates of its light.
-struct PieceUv {
-    vec2 origin{0};
-    vec2 along_b1{0};
-    vec2 along_b2{0};
-};
-
 PieceUv piece_uv(vec2 a, vec2 b, vec2 c) {
     return {a, b - a, c - a};
 }
@@ -60,7 +50,8 @@ class Flattener {
         flat_.attributes.reserve(primitives * attribute_words(attributes_));
     }
 
-    void add(const Shape& shape, bool lets_pass) {
+    void add(const Shape& shape, uint index, bool lets_pass) {
+        index_ = index;
         lets_pass_ = lets_pass ? 1 : 0;
         std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
     }
@@ -82,7 +73,7 @@ class Flattener {
         for (const auto& [v, first, second] :
              shape.emission ? single_triangles(mesh) : pair_triangles(mesh)) {
             const double error = pair_error(p[v.x], p[v.y], p[v.z], p[v.w]);
-            const uint light = add_flat_light(shape, LIGHT_TRIANGLE, p[v.x], p[v.y] - p[v.x], p[v.z] - p[v.x],
+            const uint light = add_flat_piece(shape, LIGHT_TRIANGLE, p[v.x], p[v.y] - p[v.x], p[v.z] - p[v.x],
                                               error, emission_uv(shape, mesh, v));
             add_primitive({PRIMITIVE_TRIANGLES, p[v.x], p[v.y], p[v.z], p[v.w]},
                           {first_id + uvec2(first, second), shape.material, smooth, light,
@@ -114,18 +105,18 @@ class Flattener {
         const vec3 along_u = side.x != 0.0f ? side.x * e1 : other.x * e2;
         const float handedness = side.x * other.y - side.y * other.x > 0.0f ? 1.0f : -1.0f;
         if (!shape.emission || length(c[0] + e1 + e2 - c[2]) <= rounding) {
-            const uint light = add_flat_light(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2, error,
+            const uint light = add_flat_piece(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2, error,
                                               piece_uv(uv[0], uv[1], uv[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[3]},
                           {uvec2(id, id + 1), shape.material, 0, light, origin_error, lets_pass_});
             add_uvs({uv[0], uv[1], uv[2], uv[3]}, vec4(along_u, handedness));
         } else {
-            uint light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], e1, diagonal, error,
+            uint light = add_flat_piece(shape, LIGHT_TRIANGLE, c[0], e1, diagonal, error,
                                         piece_uv(uv[0], uv[1], uv[2]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[2]},
                           {uvec2(id), shape.material, 0, light, origin_error, lets_pass_});
             add_uvs({uv[0], uv[1], uv[2], uv[2]}, vec4(along_u, handedness));
-            light = add_flat_light(shape, LIGHT_TRIANGLE, c[0], diagonal, e2, error,
+            light = add_flat_piece(shape, LIGHT_TRIANGLE, c[0], diagonal, e2, error,
                                    piece_uv(uv[0], uv[2], uv[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[2], c[3], c[3]},
                           {uvec2(id + 1), shape.material, 0, light, origin_error, lets_pass_});
@@ -136,15 +127,14 @@ class Flattener {
     void add(const Shape& shape, const Sphere& sphere) {
         const vec3 center = frame_.point(sphere.center);
         const vec3 radius(frame_.length(sphere.radius), 0.0f, 0.0f);
-        const double area = 4.0 * double(PI) * double(radius.x) * double(radius.x);
         const double error = sphere_error(center, radius.x);
         constexpr double COARSE = 0.03;  // Of the radius.
         ++flat_.spheres;
         flat_.coarse_spheres += error > COARSE * double(radius.x);
         // All around and from pole to pole; where the poles get too much, that only makes the choice of
         // lights worse.
-        const uint light = add_light(shape, LIGHT_SPHERE, center, radius, vec3(0.0f), area, error,
-                                     piece_uv(vec2(0, 0), vec2(1, 0), vec2(0, 1)));
+        const uint light =
+            add_piece(shape, LIGHT_SPHERE, error, piece_uv(vec2(0, 0), vec2(1, 0), vec2(0, 1)));
         add_primitive(
             {PRIMITIVE_SPHERE, center, radius, vec3(0.0f), vec3(0.0f)},
             {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error), lets_pass_});
@@ -156,7 +146,7 @@ class Flattener {
         const vec3 e1 = frame_.vector(disk.e1);
         const vec3 e2 = frame_.vector(disk.e2);
         const double error = disk_error(center, e1, e2);
-        const uint light = add_flat_light(shape, LIGHT_DISK, center, e1, e2, error,
+        const uint light = add_flat_piece(shape, LIGHT_DISK, center, e1, e2, error,
                                           piece_uv(disk.uvs[0], disk.uvs[1], disk.uvs[2]));
         add_primitive(
             {PRIMITIVE_DISK, center, e1, e2, vec3(0.0f)},
@@ -198,12 +188,18 @@ class Flattener {
         }
     }
 
-    uint add_flat_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2, double error,
+    // The index of a new piece, or NO_LIGHT if the shape does not emit: the part of a flat shape that is
+    // p + b1 e1 + b2 e2.
+    uint add_flat_piece(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2, double error,
                         const PieceUv& uv) {
         if (!shape.emission) return NO_LIGHT;
-        const double share = kind == LIGHT_TRIANGLE ? 0.5 : kind == LIGHT_DISK ? double(PI) : 1.0;
-        return add_light(shape, kind, p, e1, e2, share * length(cross(dvec3(e1), dvec3(e2))),
-                         error + flat_light_error(p, e1, e2), uv);
+        return add_piece(shape, kind, error + flat_light_error(p, e1, e2), uv);
+    }
+
+    uint add_piece(const Shape& shape, uint kind, double error, const PieceUv& uv) {
+        if (!shape.emission) return NO_LIGHT;
+        flat_.pieces.push_back({uint(flat_.primitives.size()), index_, kind, error, uv});
+        return uint(flat_.pieces.size() - 1);
     }
 
     // The texture coordinates of the first of the triangles at these vertices, as the shape's emission looks
@@ -214,51 +210,12 @@ class Flattener {
         return uv.empty() ? PieceUv{} : piece_uv(uv[v.x], uv[v.y], uv[v.z]);
     }
 
-    // The mean radiance of an emitter over a piece of it.
-    vec3 mean_radiance(const Emission& emission, uint kind, const PieceUv& uv) {
-        const std::optional<Texture>& texture = emission.radiance.texture;
-        if (!texture) return emission.radiance.factor;
-        std::unique_ptr<ImagePyramid>& pyramid = pyramids_[{texture->image, texture->encoding}];
-        if (!pyramid)
-            pyramid = std::make_unique<ImagePyramid>(*scene_.images[texture->image].image, texture->encoding);
-        constexpr int SIDE = 4;
-        std::vector<vec2> places;
-        for (int i = 0; i < SIDE * SIDE; ++i) {
-            vec2 b = (vec2(i % SIDE, i / SIDE) + 0.5f) / float(SIDE);
-            if (kind == LIGHT_TRIANGLE)
-                b = b.x < b.y ? vec2(0.5f * b.x, b.y - 0.5f * b.x) : vec2(b.x - 0.5f * b.y, 0.5f * b.y);
-            if (kind == LIGHT_DISK) b = 2.0f * b - 1.0f;
-            places.push_back(uv.origin + b.x * uv.along_b1 + b.y * uv.along_b2);
-        }
-        const float longest =
-            std::max({length(uv.along_b1), length(uv.along_b2), length(uv.along_b1 - uv.along_b2)});
-        const float spacing = (kind == LIGHT_DISK ? 2.0f : 1.0f) * longest / float(SIDE);
-        return emission.radiance.factor * pyramid->mean(*texture, places, spacing);
-    }
-
-    // The index of a new light, or NO_LIGHT if the piece emits nothing.
-    uint add_light(const Shape& shape, uint kind, vec3 p, vec3 e1, vec3 e2, double area, double error,
-                   const PieceUv& uv) {
-        if (!shape.emission) return NO_LIGHT;
-        const Emission& emission = *shape.emission;
-        // Rays pass what is culled from behind, and see nothing of it.
-        const bool two_sided = emission.two_sided && !is_culled(scene_.materials[shape.material]);
-        const double power = area * luminance(mean_radiance(emission, kind, uv)) * (two_sided ? 2.0 : 1.0);
-        if (power == 0.0) return NO_LIGHT;
-        flat_.lights.push_back({kind, p, e1, e2, emission.radiance.factor, two_sided ? 1u : 0u,
-                                float(1.0 / area), 0.0f, float(error)});
-        flat_.powers.push_back(power);
-        flat_.light_surfaces.push_back({uint(flat_.primitives.size()), &shape});
-        return uint(flat_.lights.size() - 1);
-    }
-
     const Scene& scene_;
     const SceneFrame& frame_;
     uint attributes_;
     bool has_normals_;
-    uint lets_pass_ = 0;  // Of the shape that is added.
-    std::map<std::pair<uint32_t, TextureEncoding>, std::unique_ptr<ImagePyramid>>
-        pyramids_;  // Of images that emit.
+    uint lets_pass_ = 0;  // Of the shape that is added,
+    uint index_ = 0;      // and which one it is.
     FlatScene flat_;
 };
 
@@ -266,20 +223,18 @@ class Flattener {
 
 FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes,
                   const std::vector<bool>& left_out) {
-    const auto is_left_out = [&](const Shape& shape) {
-        return !left_out.empty() && left_out[size_t(&shape - scene.shapes.data())];
-    };
+    const auto is_left_out = [&](size_t i) { return !left_out.empty() && left_out[i]; };
     size_t count = 0;
-    for (const Shape& shape : scene.shapes) {
-        if (is_left_out(shape)) continue;
-        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+        if (is_left_out(i)) continue;
+        const auto* instance = std::get_if<MeshInstance>(&scene.shapes[i].geometry);
         count +=
             instance != nullptr ? scene.meshes[instance->mesh].triangles.size() : 2;  // A quad may be two.
     }
     Flattener flattener(scene, frame, attributes, has_shading_normals(scene));
     flattener.reserve(count);
-    for (const Shape& shape : scene.shapes) {
-        if (!is_left_out(shape)) flattener.add(shape, lets_rays_pass(scene, shape));
+    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+        if (!is_left_out(i)) flattener.add(scene.shapes[i], uint(i), lets_rays_pass(scene, scene.shapes[i]));
     }
     return flattener.take();
 }
@@ -288,7 +243,7 @@ FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool le
                        const SceneFrame& frame, uint attributes, bool has_normals) {
     Flattener flattener(scene, frame, attributes, has_normals);
     flattener.reserve(scene.meshes[instance.mesh].triangles.size());
-    flattener.add({.geometry = instance, .material = 0, .emission = {}}, lets_pass);
+    flattener.add({.geometry = instance, .material = 0, .emission = {}}, 0, lets_pass);
     return flattener.take();
 }
 
@@ -297,15 +252,6 @@ bool has_shading_normals(const Scene& scene) {
         const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
         return instance != nullptr && !scene.meshes[instance->mesh].normals.empty();
     });
-}
-
-bool lets_rays_pass(const Scene& scene, const Shape& shape) {
-    const Material& material = scene.materials[shape.material];
-    if (is_culled(material)) return true;
-    if (material.opacity.value.texture || material.opacity.value.factor < 1.0f) return true;
-    const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
-    return instance != nullptr && material.vertex_colors &&
-           std::ranges::any_of(scene.meshes[instance->mesh].colors, [](vec4 c) { return c.w < 1.0f; });
 }
 
 Box bounds(const Primitive& p) {
@@ -328,6 +274,14 @@ Box bounds(const Primitive& p) {
             box.extend(p.d);
     }
     return box;
+}
+
+std::vector<Box> boxes_of(const std::vector<Primitive>& primitives) {
+    std::vector<Box> boxes;
+    boxes.reserve(primitives.size());
+    for (const Primitive& primitive : primitives)
+        boxes.push_back(bounds(primitive));
+    return boxes;
 }
 
 }  // namespace candela

@@ -1,4 +1,4 @@
-// Shapes -> primitives and lights: the scene in its own order, before the BVH reorders it.
+// Shapes -> primitives: the scene in its own order, before the BVH reorders it.
 #pragma once
 
 #include <array>
@@ -6,35 +6,44 @@
 
 #include "scene/frame.h"
 #include "scene/scene.h"
-#include "shared/light.h"
 #include "shared/primitive.h"
 #include "shared/texture.h"
 
 namespace candela {
 
-// The surface of a light.
-struct LightSurface {
-    uint32_t primitive = 0;  // Index of its first primitive.
-    const Shape* shape = nullptr;
+// Texture coordinates over a piece of a surface: origin + b1 along_b1 + b2 along_b2, at the surface
+// coordinates of its light.
+struct PieceUv {
+    vec2 origin{0};
+    vec2 along_b1{0};
+    vec2 along_b2{0};
+};
+
+// A piece of a surface that emits: a light, unless it is black (light_arrays.h).
+struct EmittingPiece {
+    uint32_t primitive = 0;  // Its first one,
+    uint32_t shape = 0;      // and the shape to which it belongs.
+    uint32_t kind = 0;       // LIGHT_*
+    double error = 0.0;      // How far from it rays must begin; see ray_error.h.
+    PieceUv uv;
 };
 
 struct FlatScene {
     std::vector<Primitive> primitives;
-    std::vector<Surface> surfaces;                          // One per primitive.
+    // One per primitive; `light` is the index of a piece, or NO_LIGHT.
+    std::vector<Surface> surfaces;
     std::vector<std::array<uvec4, NORMALS_WORDS>> normals;  // One per primitive, or none if all are flat.
     std::vector<uvec4> attributes;                          // attribute_words() per primitive.
     uint64_t triangles = 0;                                 // Of meshes; and of these,
     uint64_t coarse = 0;                                    // as count_coarse_triangles() says.
-    uint64_t flattened = 0;           // Triangles that are left out: rounded to floats, they have no area.
-    uint64_t spheres = 0;             // And of these,
-    uint64_t coarse_spheres = 0;      // those that rounding moves by more than 3 % of their radius.
-    uint32_t id_count = 0;            // Ids that the surfaces have: one for each triangle, sphere and disk.
-    std::vector<LightRecord> lights;  // Those that emit; pmf is 0 until group_lights().
-    std::vector<double> powers;       // Power of each light over pi, by its luminance [W],
-    std::vector<LightSurface> light_surfaces;  // and what it belongs to.
+    uint64_t flattened = 0;       // Triangles that are left out: rounded to floats, they have no area.
+    uint64_t spheres = 0;         // And of these,
+    uint64_t coarse_spheres = 0;  // those that rounding moves by more than 3 % of their radius.
+    uint32_t id_count = 0;        // Ids that the surfaces have: one for each triangle, sphere and disk.
+    std::vector<EmittingPiece> pieces;
 };
 
-// The records are in `frame`; so are areas and powers. `attributes` (bits ATTRIBUTE_*) says which of the
+// The records are in `frame`. `attributes` (bits ATTRIBUTE_*) says which of the
 // vertices' attributes are kept; `left_out`, unless empty, which shapes are left out.
 FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes = 0,
                   const std::vector<bool>& left_out = {});
@@ -46,10 +55,8 @@ FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool le
 // Whether a mesh that is shown has shading normals.
 bool has_shading_normals(const Scene& scene);
 
-// Whether some rays may pass the shape: its material, or the colours of its vertices, are not opaque.
-bool lets_rays_pass(const Scene& scene, const Shape& shape);
-
-// The least box around a primitive.
+// The least box around a primitive, and around each of several.
 Box bounds(const Primitive& primitive);
+std::vector<Box> boxes_of(const std::vector<Primitive>& primitives);
 
 }  // namespace candela

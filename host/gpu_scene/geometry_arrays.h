@@ -1,24 +1,70 @@
-// Shapes -> the arrays of nodes and of what lies in leaf order.
+// Surfaces and trees -> the arrays of nodes, and of what lies in leaf order.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "gpu_scene/area_lights.h"
 #include "gpu_scene/flatten.h"
-#include "gpu_scene/gpu_scene.h"
-#include "gpu_scene/instancing.h"
+#include "gpu_scene/mesh_trees.h"
+#include "gpu_scene/scene_tree.h"
+#include "shared/kernel_constants.h"
 
 namespace candela {
 
-// The tree over all surfaces in the frame of the scene, and over instances.
-struct SceneTree {
-    std::vector<uint32_t> order;  // The flat scene's primitives in leaf order.
-    Box bounds;
+// A mesh with a tree of its own: its primitives in leaf order, and its triangles.
+struct InstancedMesh {
+    uint32_t first_primitive = 0;
+    uint32_t primitives = 0;
+    uint64_t triangles = 0;
 };
 
-// Builds the tree over `flat`, and over the instances of meshes with trees of their own, and appends them to
-// the arrays; sets what GpuScene says of them. Adds warnings about triangles that are too small.
-SceneTree append_geometry(GpuScene& gpu, const Scene& scene, const FlatScene& flat,
-                          const Instancing& instancing);
+// An instance: the place of its record among the nodes, and its mesh in LeafFacts::meshes.
+struct InstancePlace {
+    uint32_t node = 0;
+    uint32_t mesh = 0;
+};
+
+struct LeafFacts {
+    uint32_t primitive_count = 0;       // Two triangles may be one: see shared/primitive.h.
+    uint32_t baked_primitives = 0;      // The first of them, which lie in the frame of the scene; the others,
+    std::vector<InstancedMesh> meshes;  // in meshes' own spaces, are seen in instances.
+    uint32_t primitives_present = 0;    // Bit i: a primitive of kind i.
+    bool has_normals = false;
+    std::array<uint32_t, LIST_MAX> list_corners{};  // Of the first primitives; see LIST_CORNERS_0.
+};
+
+struct LeafArrays {
+    LeafFacts facts;
+    std::vector<uvec4> primitives, surfaces, normals, attributes;
+};
+
+// Everything that lies in leaf order: the primitives of `flat` in the order of the tree above, then those of
+// meshes, if the tree has instances. The lights of pieces are those of `area`.
+LeafArrays build_leaf_arrays(const FlatScene& flat, const AreaLights& area, const SceneTree& tree,
+                             const MeshTrees& trees, uint attributes);
+
+struct NodeFacts {
+    std::vector<InstancePlace> instances{};
+    uint32_t id_count = 0;   // Triangles, spheres and disks; modulo 2^32.
+    uint32_t bvh_depth = 1;  // Levels of nodes; an instance is one, and those of its mesh follow.
+    float bvh_sah_cost = 0.0f;
+};
+
+struct NodeArrays {
+    NodeFacts facts{};
+    std::vector<uvec4> nodes{};
+};
+
+// The nodes of the tree above, and then those of meshes, if it has instances. Ids of instances follow those
+// of `flat`. Throws Error if there are more nodes or primitives than a tree may have.
+NodeArrays build_node_arrays(const FlatScene& flat, const SceneTree& tree, const MeshTrees& trees);
+
+// Warnings about triangles and spheres that are too small for the floats of the frame.
+std::vector<std::string> warn_of_small_shapes(const SceneFrame& frame, const FlatScene& flat,
+                                              const MeshTrees& trees);
 
 }  // namespace candela

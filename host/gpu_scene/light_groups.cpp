@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "gpu_scene/alias_table.h"
 
@@ -30,35 +31,35 @@ int rank(const LightRecord& light) {
 }
 
 // Sorts lights and their powers by rank, otherwise in the order in which they are.
-void sort_by_rank(std::vector<LightRecord>& lights, std::vector<double>& powers) {
-    std::vector<uint32_t> order(lights.size());
+void sort_by_rank(PoweredLights& lights) {
+    std::vector<uint32_t> order(lights.records.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(order, {}, [&](uint32_t i) { return rank(lights[i]); });
-    const std::vector<LightRecord> old_lights = std::move(lights);
-    const std::vector<double> old_powers = std::move(powers);
-    lights.clear();
-    powers.clear();
+    std::ranges::stable_sort(order, {}, [&](uint32_t i) { return rank(lights.records[i]); });
+    PoweredLights sorted;
     for (const uint32_t i : order) {
-        lights.push_back(old_lights[i]);
-        powers.push_back(old_powers[i]);
+        sorted.records.push_back(lights.records[i]);
+        sorted.powers.push_back(lights.powers[i]);
     }
+    lights = std::move(sorted);
 }
 
 }  // namespace
 
-LightGroups group_lights(FlatScene& flat) {
-    if (!std::ranges::is_sorted(flat.lights, {}, rank)) sort_by_rank(flat.lights, flat.powers);
-    const auto count = [&](int of_rank) { return uint32_t(std::ranges::count(flat.lights, of_rank, rank)); };
+LightGroups group_lights(PoweredLights& lights) {
+    if (!std::ranges::is_sorted(lights.records, {}, rank)) sort_by_rank(lights);
+    const auto count = [&](int of_rank) {
+        return uint32_t(std::ranges::count(lights.records, of_rank, rank));
+    };
     LightGroups groups{.placed = count(0), .suns = count(1), .sun_share = 0, .sky_share = 0};
-    const std::span<const double> powers = flat.powers;
+    const std::span<const double> powers = lights.powers;
     const double placed = sum(powers.first(groups.placed));
     const double suns = sum(powers.subspan(groups.placed, groups.suns));
     const double sky = sum(powers.subspan(groups.placed + groups.suns));
     const uint32_t any_placed = groups.placed > 0, any_suns = groups.suns > 0;
     groups.sky_share = share(sky, suns + placed, WHOLE, any_suns + any_placed);
     groups.sun_share = share(suns, placed, WHOLE - groups.sky_share, any_placed);
-    for (uint32_t i = 0; i < flat.lights.size(); ++i) {
-        LightRecord& light = flat.lights[i];
+    for (uint32_t i = 0; i < lights.records.size(); ++i) {
+        LightRecord& light = lights.records[i];
         uint32_t group_share = WHOLE - groups.sun_share - groups.sky_share;
         double group_power = placed;
         if (rank(light) == 1) {

@@ -4,14 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "gpu_scene/flatten.h"
+#include "gpu_scene/powered_lights.h"
 #include "shared/light.h"
 
 namespace candela {
 
 // Brings the lights, which are complete, into the order of LightGroups, and sets the probability of choosing
 // each: its part of the total power. The lights of surfaces stay in front.
-LightGroups group_lights(FlatScene& flat);
+LightGroups group_lights(PoweredLights& lights);
 
 // The alias tables of the groups, one behind the other, for lights of these powers.
 std::vector<AliasEntry> light_alias_tables(const LightGroups& groups, std::span<const double> powers);

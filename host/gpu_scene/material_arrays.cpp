@@ -13,6 +13,7 @@
 #include "gpu_scene/principled_record.h"
 #include "scene/materials.h"
 #include "shared/material.h"
+#include "shared/primitive.h"
 
 namespace candela {
 namespace {
@@ -78,47 +79,98 @@ uint32_t append_principled(std::vector<uvec4>& words, EncodedPrincipled encoded,
     return first;
 }
 
-}  // namespace
+// Whether what a surface emits passes fuzz, a coat or sheen.
+bool has_layers(const Material& material) {
+    const auto* m = std::get_if<PrincipledMaterial>(&material.model);
+    return m != nullptr && !m->unlit &&
+           (m->fuzz.factor > 0.0f || m->coat.factor > 0.0f || m->sheen_color.factor != vec3(0.0f));
+}
 
-void append_materials(GpuScene& gpu, const std::vector<Material>& materials, TextureTable& textures) {
-    if (materials.size() > MAX_MATERIALS) {
-        throw Error("the scene has " + std::to_string(materials.size()) + " materials, but at most " +
-                    std::to_string(MAX_MATERIALS) + " fit into the records; use fewer");
-    }
-    gpu.material_count = uint32_t(materials.size());
+uint32_t needed_attributes(const MaterialFacts& facts) {
+    const auto bit = [](bool used, uint32_t of) { return used ? of : 0; };
+    return bit((facts.texture_traits & TEXTURE_UV0) != 0, ATTRIBUTE_UV0) |
+           bit((facts.texture_traits & TEXTURE_UV1) != 0, ATTRIBUTE_UV1) |
+           bit((facts.textured & TEXTURED_VERTEX_COLORS) != 0, ATTRIBUTE_COLOR) |
+           bit((facts.textured & TEXTURED_NORMAL) != 0 ||
+                   (facts.principled & (PRINCIPLED_HAS_ANISOTROPY | PRINCIPLED_HAS_COAT_NORMAL)) != 0,
+               ATTRIBUTE_TANGENT);
+}
+
+// Appends the records of the materials, and of the media that they enclose.
+void append_materials(MaterialArrays& out, const Scene& scene, const SceneFrame& frame,
+                      TextureTable& textures) {
     std::vector<Interior> media(1);
     static_assert(MEDIUM_NONE == 0);
     std::vector<std::pair<size_t, EncodedPrincipled>> principled;  // And the words of their materials.
-    for (const Material& material : materials) {
+    for (const Material& material : scene.materials) {
         const std::optional<Interior> inside = interior(material.model);
         const uint32_t medium = inside ? add_medium(media, *inside) : MEDIUM_NONE;
         const EncodedMaterial encoded = encode_material(material.model, medium);
         if (encoded.principled) {
-            principled.emplace_back(gpu.arrays[ARRAY_MATERIALS].size(), *encoded.principled);
-            gpu.principled |= encoded.principled->parts;
+            principled.emplace_back(out.materials.size(), *encoded.principled);
+            out.facts.principled |= encoded.principled->parts;
             // Its coat has a normal of its own if the base has one.
             const bool bent = material.normal_map || material.bump_map;
             if (bent && (encoded.principled->parts & PRINCIPLED_HAS_COAT) != 0)
-                gpu.principled |= PRINCIPLED_HAS_COAT_NORMAL;
+                out.facts.principled |= PRINCIPLED_HAS_COAT_NORMAL;
         }
-        append(gpu.arrays[ARRAY_MATERIALS], pack(encoded.record));
-        gpu.materials_present |= 1u << encoded.record.model;
-        const MaterialTextures used = textures_of(material, encoded, gpu.frame, textures);
-        append(gpu.arrays[ARRAY_MATERIAL_TEXTURES], pack(used));
-        gpu.textured |= textured_bits(used);
-        if (used.culled != 0) gpu.principled |= PRINCIPLED_HAS_CULLED;
+        append(out.materials, pack(encoded.record));
+        out.facts.materials_present |= 1u << encoded.record.model;
+        const MaterialTextures used = textures_of(material, encoded, frame, textures);
+        append(out.material_textures, pack(used));
+        out.facts.textured |= textured_bits(used);
+        if (used.culled != 0) out.facts.principled |= PRINCIPLED_HAS_CULLED;
     }
     for (const auto& [word, encoded] : principled) {
-        std::vector<uvec4>& words = gpu.arrays[ARRAY_MATERIALS];
-        const uint32_t first = append_principled(words, encoded, textures);
-        words[word + 1].x = std::bit_cast<uint32_t>(principled_place(first));
+        const uint32_t first = append_principled(out.materials, encoded, textures);
+        out.materials[word + 1].x = std::bit_cast<uint32_t>(principled_place(first));
     }
     for (const Interior& m : media) {
-        append(gpu.arrays[ARRAY_MEDIA],
-               pack(MediumRecord{vec3(gpu.frame.unit * dvec3(m.medium.absorption)), m.ior}));
-        gpu.has_media |= m.medium != Medium{};
+        append(out.media, pack(MediumRecord{vec3(frame.unit * dvec3(m.medium.absorption)), m.ior}));
+        out.facts.has_media |= m.medium != Medium{};
     }
-    if (gpu.textured == 0) gpu.arrays[ARRAY_MATERIAL_TEXTURES].clear();
+    if (out.facts.textured == 0) out.material_textures.clear();
+}
+
+// What the emissions of shapes look up, and what else of a material depends on the shapes that have it.
+void add_emissions(MaterialArrays& out, const Scene& scene, TextureTable& textures) {
+    for (const Shape& shape : scene.shapes) {
+        if (shape.emission && has_layers(scene.materials[shape.material]))
+            out.facts.principled |= PRINCIPLED_HAS_COATED_EMISSION;
+        out.emission_textures.push_back(shape.emission ? textures.add(shape.emission->radiance.texture)
+                                                       : TEXTURE_NONE);
+        if (out.emission_textures.back() != TEXTURE_NONE) out.facts.textured |= TEXTURED_EMISSION;
+    }
+}
+
+}  // namespace
+
+MaterialArrays build_material_arrays(const Scene& scene, const SceneFrame& frame) {
+    if (scene.materials.size() > MAX_MATERIALS) {
+        throw Error("the scene has " + std::to_string(scene.materials.size()) + " materials, but at most " +
+                    std::to_string(MAX_MATERIALS) + " fit into the records; use fewer");
+    }
+    MaterialArrays out;
+    out.facts.material_count = uint32_t(scene.materials.size());
+    if (std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return lets_rays_pass(scene, shape); }))
+        out.facts.textured |= TEXTURED_OPACITY;
+    TextureTable textures(scene.images);
+    append_materials(out, scene, frame, textures);
+    add_emissions(out, scene, textures);
+    out.textures = textures.records();
+    out.image_places = textures.places();
+    out.facts.texture_traits = textures.traits();
+    out.facts.attributes = needed_attributes(out.facts);
+    return out;
+}
+
+bool lets_rays_pass(const Scene& scene, const Shape& shape) {
+    const Material& material = scene.materials[shape.material];
+    if (is_culled(material)) return true;
+    if (material.opacity.value.texture || material.opacity.value.factor < 1.0f) return true;
+    const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+    return instance != nullptr && material.vertex_colors &&
+           std::ranges::any_of(scene.meshes[instance->mesh].colors, [](vec4 c) { return c.w < 1.0f; });
 }
 
 }  // namespace candela

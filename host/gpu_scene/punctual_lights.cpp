@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/color.h"
 #include "base/error.h"
@@ -23,10 +24,8 @@ double one_minus_cos(double angle) {
 
 class PunctualLights {
   public:
-    PunctualLights(FlatScene& flat, const SceneFrame& frame, const Box& box)
-        : flat_(flat),
-          frame_(frame),
-          radius_(box.is_empty() ? 0.0 : 0.5 * length(glm::dvec3(box.extent()))) {}
+    PunctualLights(const SceneFrame& frame, const Box& box)
+        : frame_(frame), radius_(box.is_empty() ? 0.0 : 0.5 * length(glm::dvec3(box.extent()))) {}
 
     void add(const std::string& name, const PointLight& light) {
         LightRecord record = make_record(name, LIGHT_POINT, light.position, light.intensity);
@@ -52,6 +51,8 @@ class PunctualLights {
         record.radiance = light.irradiance;
         append(record, radius_ * radius_);
     }
+
+    PoweredLights take() { return std::move(lights_); }
 
   private:
     // Divided by its greatest component first, which keeps squares from over- and underflowing.
@@ -82,21 +83,22 @@ class PunctualLights {
     void append(const LightRecord& record, double factor) {
         const double power = factor * double(luminance(record.radiance));
         if (power == 0.0) return;
-        flat_.lights.push_back(record);
-        flat_.powers.push_back(power);
+        lights_.records.push_back(record);
+        lights_.powers.push_back(power);
     }
 
-    FlatScene& flat_;
     const SceneFrame& frame_;
     double radius_;  // Of the sphere around the scene.
+    PoweredLights lights_;
 };
 
 }  // namespace
 
-void add_punctual_lights(FlatScene& flat, const Scene& scene, const SceneFrame& frame, const Box& box) {
-    PunctualLights lights(flat, frame, box);
+PoweredLights build_punctual_lights(const Scene& scene, const SceneFrame& frame, const Box& box) {
+    PunctualLights lights(frame, box);
     for (const Light& light : scene.lights)
         std::visit([&](const auto& model) { lights.add(light.name, model); }, light.model);
+    return lights.take();
 }
 
 }  // namespace candela

@@ -132,7 +132,7 @@ uint32_t TextureTable::add(const std::optional<Texture>& texture) {
                            image.size.y, " pixels, but a texture at most ", MAX_IMAGE_SIDE,
                            " along a side; make it smaller (--texture-limit)"));
     }
-    std::optional<uint32_t>& first = firsts_[texture->image];
+    std::optional<uint32_t>& first = places_[texture->image];
     if (!first) {
         first = uint32_t(words_);
         words_ += texel_words(image);
@@ -163,17 +163,21 @@ std::vector<uvec4> TextureTable::records() const {
 }
 
 // Grows step by step, because memory that has not been written to takes none.
-std::vector<uvec4> TextureTable::texels(const std::function<void(size_t)>& packed) const {
+std::vector<uvec4> build_texels(const std::vector<ImageFile>& images, const ImagePlaces& places,
+                                const std::function<void(size_t)>& packed) {
     std::vector<std::pair<uint32_t, size_t>> in_order;
-    for (size_t i = 0; i < images_.size(); ++i) {
-        if (firsts_[i]) in_order.emplace_back(*firsts_[i], i);
+    uint64_t count = 0;
+    for (size_t i = 0; i < images.size(); ++i) {
+        if (!places[i]) continue;
+        in_order.emplace_back(*places[i], i);
+        count += texel_words(*images[i].image);
     }
     std::ranges::sort(in_order);
     std::vector<uvec4> words;
-    words.reserve(words_);
+    words.reserve(count);
     for (const auto& [first, i] : in_order) {
-        words.resize(first + texel_words(*images_[i].image));
-        pack_texels(*images_[i].image, std::span(words).subspan(first));
+        words.resize(first + texel_words(*images[i].image));
+        pack_texels(*images[i].image, std::span(words).subspan(first));
         packed(i);
     }
     return words;

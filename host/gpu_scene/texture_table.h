@@ -15,11 +15,14 @@
 
 namespace candela {
 
+// The word of each image's first tile among the texels, if a texture looks it up.
+using ImagePlaces = std::vector<std::optional<uint32_t>>;
+
 // Collects the textures of a scene, each once, and the images that they look up.
 class TextureTable {
   public:
     // The scene's images must outlive the table.
-    explicit TextureTable(const std::vector<ImageFile>& images) : images_(images), firsts_(images.size()) {}
+    explicit TextureTable(const std::vector<ImageFile>& images) : images_(images), places_(images.size()) {}
 
     // The index of a texture's record, or TEXTURE_NONE for none. Throws Error if its image is too large, or
     // if there are too many texels.
@@ -29,21 +32,24 @@ class TextureTable {
     uint32_t traits() const { return traits_; }
 
     std::vector<uvec4> records() const;
-    // Of all images that some texture looks up, tile by tile. Calls packed(i) as soon as image i is not
-    // needed any more.
-    std::vector<uvec4> texels(const std::function<void(size_t)>& packed = [](size_t) {}) const;
+    const ImagePlaces& places() const { return places_; }
 
   private:
     using TextureKey = std::array<uint32_t, 13>;  // All bits of a texture.
     static TextureKey key_of(const Texture& texture);
 
     const std::vector<ImageFile>& images_;
-    std::vector<std::optional<uint32_t>> firsts_;  // Word of each image's first tile, if a texture uses it.
+    ImagePlaces places_;
     uint64_t words_ = 0;
     std::map<TextureKey, uint32_t> indices_;  // Of the records.
     std::vector<TextureRecord> records_;
     uint32_t traits_ = 0;
 };
+
+// The tiles of all images that have a place. Calls packed(i) as soon as image i is not needed any more.
+std::vector<uvec4> build_texels(
+    const std::vector<ImageFile>& images, const ImagePlaces& places,
+    const std::function<void(size_t)>& packed = [](size_t) {});
 
 // Words of uvec4 that the tiles of an image take.
 uint64_t texel_words(const TexelImage& image);

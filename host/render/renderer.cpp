@@ -206,10 +206,16 @@ void Renderer::compile() {
     pipeline_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
+void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSettings& settings,
+                     const BufferSet& changed) {
     const double submission_seconds = settings_.submission_seconds;
     settings_ = settings;
     if (settings_.submission_seconds == 0.0) settings_.submission_seconds = submission_seconds;
+    if (changed.any()) {
+        scene_.update(scene, map_arrays(device_->info(), scene, settings.scene_access), changed);
+        scene_.bind_to(*render_kernel_);
+    }
+    frame_ = scene.frame;
     scene_.set(make_parameters(scene, camera, settings));
     const uvec2 size = image_size();
     if (size == uvec2(image_.width(), image_.height()) && layer_count(settings) == image_.layers()) {

@@ -65,9 +65,10 @@ class Renderer {
              const RenderSettings& settings);
 
     // Starts over without samples, with another camera or other settings. Compiles the kernel only if its
-    // constants change (see make_constants). `scene` must be the one that the renderer was made with, except
-    // for the rotation of its environment. How its arrays are read does not change.
-    void reset(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
+    // constants change (see make_constants). `scene` must have the arrays that it had before, except in the
+    // buffers `changed`: only these are copied to the device. The picture is what a new renderer would make.
+    void reset(const GpuScene& scene, const Camera& camera, const RenderSettings& settings,
+               const BufferSet& changed = {});
 
     // Adds samples until every pixel holds `target`, or its limit if that is less. Calls
     // `keep_going(progress)`, progress in [0, 1], between submissions; if it returns false, rendering stops,

@@ -32,6 +32,24 @@ Sizes device_sizes(const GpuScene& scene, const ArrayMap& map) {
     return sizes;
 }
 
+// Makes those buffers anew, by make(bytes, i), that have another size now. Returns which these are.
+template <class Sizes, class Make>
+std::vector<bool> resize(std::vector<vk::Buffer>& buffers, const Sizes& sizes, const Make& make) {
+    std::vector<bool> is_new(sizes.size());
+    while (buffers.size() > sizes.size())
+        buffers.pop_back();
+    for (size_t i = 0; i < sizes.size(); ++i) {
+        is_new[i] = i >= buffers.size() || buffers[i].size() != std::max<uint64_t>(sizes[i], sizeof(uvec4));
+        if (!is_new[i]) continue;
+        if (i < buffers.size()) {
+            buffers[i] = make(sizes[i], i);
+        } else {
+            buffers.push_back(make(sizes[i], i));
+        }
+    }
+    return is_new;
+}
+
 // The names of the arrays in a buffer, for messages.
 std::string names_in(uint32_t buffer) {
     std::string names;
@@ -43,27 +61,39 @@ std::string names_in(uint32_t buffer) {
 
 }  // namespace
 
-// All bindings of a kernel must be bound, so that those which it does not read get buffers of one word.
 SceneBuffers::SceneBuffers(const vk::Device& device, const GpuScene& scene, const Parameters& parameters,
                            const ArrayMap& map)
-    : map_(map),
-      parameters_(device, (PARAMETERS_WORDS + STARTS_WORDS) * sizeof(uvec4), vk::BufferUsage::uniform,
+    : parameters_(device, (PARAMETERS_WORDS + STARTS_WORDS) * sizeof(uvec4), vk::BufferUsage::uniform,
                   "parameters") {
-    const Sizes sizes = device_sizes(scene, map);
-    for (const uint64_t bytes : sizes.storage)
-        storage_.emplace_back(device, bytes, vk::BufferUsage::storage,
-                              "storage " + std::to_string(storage_.size()));
-    for (uint32_t i = 0; i < BUFFER_COUNT; ++i)
-        texels_.emplace_back(device, sizes.texel[i], vk::BufferUsage::texel, names_in(i));
-    std::array<uvec4, STARTS_WORDS> starts{};
-    for (const SceneArray& array : SCENE_ARRAYS) {
-        const uint32_t slot = map.slots[array.buffer], start = map.starts[array.number];
-        vk::upload(slot == NO_SLOT ? texels_[array.buffer] : storage_[slot],
-                   std::as_bytes(std::span(scene.arrays[array.number])), start * sizeof(uvec4));
-        starts[array.number / 4][int(array.number % 4)] = start;
-    }
-    vk::upload(parameters_, std::as_bytes(std::span(starts)), PARAMETERS_WORDS * sizeof(uvec4));
+    update(scene, map, BufferSet().set());
     set(parameters);
+}
+
+// All bindings of a kernel must be bound, so that those which it does not read get buffers of one word.
+uint32_t SceneBuffers::update(const GpuScene& scene, const ArrayMap& map, const BufferSet& changed) {
+    const Sizes sizes = device_sizes(scene, map);
+    const vk::Device& device = parameters_.device();
+    const auto new_storage = resize(storage_, sizes.storage, [&](uint64_t bytes, size_t i) {
+        return vk::Buffer(device, bytes, vk::BufferUsage::storage, "storage " + std::to_string(i));
+    });
+    const auto new_texels = resize(texels_, sizes.texel, [&](uint64_t bytes, size_t i) {
+        return vk::Buffer(device, bytes, vk::BufferUsage::texel, names_in(uint32_t(i)));
+    });
+    uint32_t copied = 0;
+    std::array<uvec4, STARTS_WORDS> starts{};
+    for (const auto& [number, buffer, name, words] : SCENE_ARRAYS) {
+        const uint32_t slot = map.slots[buffer], start = map.starts[number];
+        starts[number / 4][int(number % 4)] = start;
+        const bool stays = !changed[buffer] && slot == map_.slots[buffer] && start == map_.starts[number] &&
+                           !(slot == NO_SLOT ? new_texels[buffer] : new_storage[slot]);
+        if (stays || scene.arrays[number].empty()) continue;
+        vk::upload(slot == NO_SLOT ? texels_[buffer] : storage_[slot],
+                   std::as_bytes(std::span(scene.arrays[number])), start * sizeof(uvec4));
+        ++copied;
+    }
+    map_ = map;
+    vk::upload(parameters_, std::as_bytes(std::span(starts)), PARAMETERS_WORDS * sizeof(uvec4));
+    return copied;
 }
 
 void SceneBuffers::set(const Parameters& parameters) {

@@ -39,7 +39,7 @@ Viewer::Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewSt
     : window_(window),
       instance_(instance),
       scene_(std::move(scene)),
-      gpu_scene_(build_gpu_scene(scene_)),
+      stages_(scene_),
       state_(std::move(state)),
       options_(std::move(options)),
       home_(state_.camera),
@@ -111,12 +111,16 @@ void Viewer::recover(const Error& error) {
 // Begins the picture that the user wants now or, if only the device has changed, continues the current one.
 void Viewer::begin() {
     restart_ |= outdated();
+    BufferSet changed;
     if (intensity_ != state_.environment_intensity) {
         intensity_ = state_.environment_intensity;
         for (size_t i = 0; i < radiance_.size(); ++i)
             scene_.environment->radiance[i] = intensity_ * radiance_[i];
-        gpu_scene_ = build_gpu_scene(scene_);
-        renderer_.reset();  // Before the next one takes memory.
+        changed = stages_.update(scene_, {.environment = true});
+    }
+    if (scene_.environment && scene_.environment->rotation != state_.environment_rotation) {
+        scene_.environment->rotation = state_.environment_rotation;
+        stages_.update(scene_, {.rotation = true});
     }
     if (restart_) {
         copy_.clear();
@@ -126,12 +130,11 @@ void Viewer::begin() {
     begun_ = Clock::now();
     moving_ = !copy_.state() && changed_lately();
     scale_ = moving_ ? next_scale_ : 1;
-    gpu_scene_.environment_rotation = state_.environment_rotation;
     camera_ = state_.camera;
     settings_ = resized(state_.settings, scaled_size(state_.settings.size, scale_));
     if (!device_) open();
     if (renderer_) {
-        renderer_->reset(gpu_scene_, camera_, settings_);
+        renderer_->reset(gpu_scene_, camera_, settings_, changed);
     } else {
         renderer_ = std::make_unique<Renderer>(*device_, gpu_scene_, camera_, settings_);
     }

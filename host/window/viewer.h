@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/scene_stages.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include "session/recovery.h"
@@ -83,7 +83,8 @@ class Viewer {
     Scene scene_;
     std::vector<vec3> radiance_;  // Of the scene's environment, at intensity 1 ...
     float intensity_ = 1.0f;      // ... and its factor in scene_.
-    GpuScene gpu_scene_;
+    SceneStages stages_;
+    const GpuScene& gpu_scene_ = stages_.joined();
     ViewState state_;
     ViewerOptions options_;
     Camera home_;

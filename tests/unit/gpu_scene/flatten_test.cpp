@@ -5,9 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "gpu_scene/light_groups.h"
+#include "gpu_scene/area_lights.h"
+#include "gpu_scene/gpu_scene.h"
 #include "probe/random.h"
 #include "support/scene_builders.h"
+#include "unit/gpu_scene/packed_scene.h"
 
 namespace candela {
 namespace {
@@ -17,60 +19,77 @@ Shape shape(const decltype(Shape::geometry)& geometry, uint32_t material,
     return {.geometry = geometry, .material = material, .emission = emission};
 }
 
-FlatScene flatten_shapes(const std::vector<Shape>& shapes) {
+Scene scene_of(const std::vector<Shape>& shapes) {
     Scene scene;
     scene.materials.resize(8);
     scene.shapes = shapes;
-    return flatten(scene, SceneFrame{});
+    return scene;
+}
+
+FlatScene flatten_shapes(const std::vector<Shape>& shapes) {
+    return flatten(scene_of(shapes), SceneFrame{});
+}
+
+AreaLights lights_of(const std::vector<Shape>& shapes) {
+    return build_area_lights(scene_of(shapes), flatten_shapes(shapes));
 }
 
 const Sphere BALL{.center = dvec3(1, -2, 3), .radius = 0.5};
 const Disk ELLIPSE{.center = dvec3(4, 5, 6), .e1 = dvec3(2, 0, 0), .e2 = dvec3(1, 0, -3)};
 
 TEST(Flatten, ASphereIsOnePrimitiveAndOneLight) {
-    const FlatScene flat =
-        flatten_shapes({shape(BALL, 7, Emission{.radiance = vec3(0, 2, 0), .two_sided = false})});
+    const std::vector<Shape> shapes{shape(BALL, 7, Emission{.radiance = vec3(0, 2, 0), .two_sided = false})};
+    const FlatScene flat = flatten_shapes(shapes);
+    const auto [lights, pieces, of_pieces] = lights_of(shapes);
     ASSERT_EQ(flat.primitives.size(), 1u);
     EXPECT_EQ(flat.primitives[0].kind, PRIMITIVE_SPHERE);
     EXPECT_EQ(flat.primitives[0].a, vec3(BALL.center));
     EXPECT_EQ(flat.primitives[0].b.x, BALL.radius);
     EXPECT_EQ(flat.surfaces[0].material, 7u);
     EXPECT_EQ(flat.surfaces[0].light, 0u);
-    ASSERT_EQ(flat.lights.size(), 1u);
-    EXPECT_EQ(flat.lights[0].kind, LIGHT_SPHERE);
-    EXPECT_EQ(flat.lights[0].p, vec3(BALL.center));
-    EXPECT_EQ(flat.lights[0].e1.x, BALL.radius);
-    EXPECT_EQ(flat.lights[0].radiance, vec3(0, 2, 0));
-    EXPECT_NEAR(1.0 / flat.lights[0].pdf_area, M_PI, 1e-6);  // 4 pi / 2^2
-    EXPECT_NEAR(flat.powers[0], M_PI * 2.0 * 0.7152, 2e-6);
+    EXPECT_EQ(of_pieces, std::vector<uint32_t>{0});
+    ASSERT_EQ(lights.records.size(), 1u);
+    EXPECT_EQ(lights.records[0].kind, LIGHT_SPHERE);
+    EXPECT_EQ(lights.records[0].p, vec3(BALL.center));
+    EXPECT_EQ(lights.records[0].e1.x, BALL.radius);
+    EXPECT_EQ(lights.records[0].radiance, vec3(0, 2, 0));
+    EXPECT_NEAR(1.0 / lights.records[0].pdf_area, M_PI, 1e-6);  // 4 pi / 2^2
+    EXPECT_NEAR(lights.powers[0], M_PI * 2.0 * 0.7152, 2e-6);
 }
 
 TEST(Flatten, ADiskIsOnePrimitiveAndOneLight) {
-    const FlatScene flat =
-        flatten_shapes({shape(ELLIPSE, 3, Emission{.radiance = vec3(1), .two_sided = true})});
+    const std::vector<Shape> shapes{shape(ELLIPSE, 3, Emission{.radiance = vec3(1), .two_sided = true})};
+    const FlatScene flat = flatten_shapes(shapes);
+    const auto [lights, pieces, of_pieces] = lights_of(shapes);
     ASSERT_EQ(flat.primitives.size(), 1u);
     EXPECT_EQ(flat.primitives[0].kind, PRIMITIVE_DISK);
     EXPECT_EQ(flat.primitives[0].a, vec3(ELLIPSE.center));
     EXPECT_EQ(flat.primitives[0].b, vec3(ELLIPSE.e1));
     EXPECT_EQ(flat.primitives[0].c, vec3(ELLIPSE.e2));
     EXPECT_EQ(flat.surfaces[0].light, 0u);
-    ASSERT_EQ(flat.lights.size(), 1u);
-    EXPECT_EQ(flat.lights[0].kind, LIGHT_DISK);
-    EXPECT_EQ(flat.lights[0].two_sided, 1u);
-    EXPECT_NEAR(1.0 / flat.lights[0].pdf_area, 6.0 * M_PI, 1e-5);  // The parallelogram of its axes is 6 m^2.
-    EXPECT_NEAR(flat.powers[0], 12.0 * M_PI, 2e-5);
+    EXPECT_EQ(of_pieces, std::vector<uint32_t>{0});
+    ASSERT_EQ(lights.records.size(), 1u);
+    EXPECT_EQ(lights.records[0].kind, LIGHT_DISK);
+    EXPECT_EQ(lights.records[0].two_sided, 1u);
+    EXPECT_NEAR(1.0 / lights.records[0].pdf_area, 6.0 * M_PI,
+                1e-5);  // The parallelogram of its axes is 6 m^2.
+    EXPECT_NEAR(lights.powers[0], 12.0 * M_PI, 2e-5);
 }
 
 TEST(Flatten, BlackShapesAreNoLights) {
     const Emission black{.radiance = vec3(0), .two_sided = true};
     const Disk without_area{.center = dvec3(0), .e1 = dvec3(1, 0, 0), .e2 = dvec3(2, 0, 0)};
-    const FlatScene flat =
-        flatten_shapes({shape(BALL, 0), shape(BALL, 0, black), shape(ELLIPSE, 0), shape(ELLIPSE, 0, black),
-                        shape(without_area, 0, Emission{.radiance = vec3(1), .two_sided = false})});
-    EXPECT_TRUE(flat.lights.empty());
-    ASSERT_EQ(flat.primitives.size(), 5u);
-    for (const Surface& surface : flat.surfaces)
-        EXPECT_EQ(surface.light, NO_LIGHT);
+    const std::vector<Shape> shapes{
+        shape(BALL, 0), shape(BALL, 0, black), shape(ELLIPSE, 0), shape(ELLIPSE, 0, black),
+        shape(without_area, 0, Emission{.radiance = vec3(1), .two_sided = false})};
+    EXPECT_EQ(flatten_shapes(shapes).primitives.size(), 5u);
+    const AreaLights area = lights_of(shapes);
+    EXPECT_TRUE(area.lights.records.empty());
+    EXPECT_EQ(area.of_pieces, std::vector<uint32_t>(3, NO_LIGHT));
+    const std::vector<uvec4> surfaces = build_gpu_scene(scene_of(shapes)).arrays[ARRAY_SURFACES];
+    ASSERT_EQ(surfaces.size(), 5u);
+    for (const uvec4 surface : surfaces)
+        EXPECT_EQ(surface.w, NO_LIGHT);
 }
 
 TEST(Flatten, IdsFollowTheOrderOfTheSceneAcrossKinds) {
@@ -131,11 +150,11 @@ TEST(Flatten, EveryPrimitiveHasARecordOfNormalsIfOneIsSmooth) {
 
 TEST(Flatten, ProbabilitiesAreSharesOfAllPowers) {
     const Emission white{.radiance = vec3(1), .two_sided = false};
-    FlatScene flat = flatten_shapes({shape(BALL, 0, white), shape(ELLIPSE, 0, white)});
-    group_lights(flat);
-    const double sum = flat.powers[0] + flat.powers[1];
+    const PoweredLights lights = lights_of({shape(BALL, 0, white), shape(ELLIPSE, 0, white)}).lights;
+    const GpuScene gpu = build_gpu_scene(scene_of({shape(BALL, 0, white), shape(ELLIPSE, 0, white)}), {});
+    const double sum = lights.powers[0] + lights.powers[1];
     for (const size_t i : {0u, 1u})
-        EXPECT_NEAR(flat.lights[i].pmf, flat.powers[i] / sum, 1e-7);
+        EXPECT_NEAR(light(gpu, uint32_t(i)).pmf, lights.powers[i] / sum, 1e-7);
 }
 
 // Points of the surface, in double precision, lie in the box but for its roundings, and on each side of the
@@ -193,9 +212,9 @@ TEST(Flatten, TheBackOfACulledShapeEmitsNothing) {
     scene.materials.resize(1);
     scene.materials[0].model = PrincipledMaterial{.double_sided = false};
     scene.shapes.push_back(shape(ELLIPSE, 0, Emission{.radiance = vec3(1), .two_sided = true}));
-    const FlatScene flat = flatten(scene, SceneFrame{});
-    EXPECT_EQ(flat.lights.at(0).two_sided, 0u);
-    EXPECT_NEAR(flat.powers[0], 6.0 * M_PI, 2e-5);
+    const PoweredLights lights = build_area_lights(scene, flatten(scene, SceneFrame{})).lights;
+    EXPECT_EQ(lights.records.at(0).two_sided, 0u);
+    EXPECT_NEAR(lights.powers[0], 6.0 * M_PI, 2e-5);
 }
 
 }  // namespace

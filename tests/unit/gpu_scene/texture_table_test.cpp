@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "gpu_scene/area_lights.h"
 #include "gpu_scene/flatten.h"
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/texture_mean.h"
@@ -63,7 +64,7 @@ TEST(TextureTable, HoldsEveryTextureAndImageOnce) {
     EXPECT_EQ(table.add(Texture{.image = 2}), 0u);
     EXPECT_EQ(table.add(Texture{.image = 0, .encoding = TextureEncoding::srgb}), 2u);
     EXPECT_EQ(table.records().size(), 3 * TEXTURE_WORDS);
-    EXPECT_EQ(table.texels().size(), 2 * 4u);  // Image 1 is not looked up.
+    EXPECT_EQ(build_texels(images, table.places()).size(), 2 * 4u);  // Image 1 is not looked up.
     EXPECT_EQ(table.traits(), TEXEL_RGBA8 | TEXTURE_LINEAR | TEXTURE_SRGB | TEXTURE_BILINEAR |
                                   TEXTURE_REPEAT | TEXTURE_CLAMP | TEXTURE_REPEAT << TEXTURE_WRAP_V |
                                   TEXTURE_UV0);
@@ -130,8 +131,8 @@ double power_of(const decltype(Shape::geometry)& geometry, uvec2 lo, uvec2 hi,
         add_triangle(mesh, vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0));
         add_shape(scene, mesh, add_diffuse(scene, vec3(0)), emission);
     }
-    const FlatScene flat = flatten(scene, SceneFrame{}, ATTRIBUTE_UV0);
-    return std::accumulate(flat.powers.begin(), flat.powers.end(), 0.0);
+    const AreaLights area = build_area_lights(scene, flatten(scene, SceneFrame{}, ATTRIBUTE_UV0));
+    return std::accumulate(area.lights.powers.begin(), area.lights.powers.end(), 0.0);
 }
 
 TEST(TextureMean, TheWholeImageHasItsMean) {
@@ -173,7 +174,7 @@ TEST(TextureMean, ALevelThatWasRoundedUpIsLookedUpWhereItIs) {
     TriangleMesh mesh{.uv0 = {vec2(7.55f / 9, 0.4f), vec2(7.95f / 9, 0.4f), vec2(7.75f / 9, 0.6f)}};
     add_triangle(mesh, vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0));
     add_shape(scene, mesh, add_diffuse(scene, vec3(0)), Emission{{vec3(1), texture}, false});
-    EXPECT_EQ(flatten(scene, SceneFrame{}, ATTRIBUTE_UV0).lights.size(), 1u);
+    EXPECT_EQ(build_area_lights(scene, flatten(scene, SceneFrame{}, ATTRIBUTE_UV0)).pieces.size(), 1u);
 }
 
 }  // namespace

@@ -1,0 +1,108 @@
+// See area_lights.h.
+#include "gpu_scene/area_lights.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "base/color.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "gpu_scene/texture_mean.h"
+#include "scene/materials.h"
+
+namespace candela {
+namespace {
+
+// Of images that emit.
+using Pyramids = std::map<std::pair<uint32_t, TextureEncoding>, std::unique_ptr<ImagePyramid>>;
+
+// The mean radiance of an emitter over a piece of it.
+vec3 mean_radiance(const Scene& scene, Pyramids& pyramids, const Emission& emission, uint kind,
+                   const PieceUv& uv) {
+    const std::optional<Texture>& texture = emission.radiance.texture;
+    if (!texture) return emission.radiance.factor;
+    std::unique_ptr<ImagePyramid>& pyramid = pyramids[{texture->image, texture->encoding}];
+    if (!pyramid)
+        pyramid = std::make_unique<ImagePyramid>(*scene.images[texture->image].image, texture->encoding);
+    constexpr int SIDE = 4;
+    std::vector<vec2> places;
+    for (int i = 0; i < SIDE * SIDE; ++i) {
+        vec2 b = (vec2(i % SIDE, i / SIDE) + 0.5f) / float(SIDE);
+        if (kind == LIGHT_TRIANGLE)
+            b = b.x < b.y ? vec2(0.5f * b.x, b.y - 0.5f * b.x) : vec2(b.x - 0.5f * b.y, 0.5f * b.y);
+        if (kind == LIGHT_DISK) b = 2.0f * b - 1.0f;
+        places.push_back(uv.origin + b.x * uv.along_b1 + b.y * uv.along_b2);
+    }
+    const float longest =
+        std::max({length(uv.along_b1), length(uv.along_b2), length(uv.along_b1 - uv.along_b2)});
+    const float spacing = (kind == LIGHT_DISK ? 2.0f : 1.0f) * longest / float(SIDE);
+    return emission.radiance.factor * pyramid->mean(*texture, places, spacing);
+}
+
+// A piece as its light's record holds it, and its area.
+struct Extent {
+    vec3 p, e1, e2;
+    double area;
+};
+
+Extent extent_of(uint kind, const Primitive& primitive) {
+    const auto& [_, a, b, c, d] = primitive;
+    const auto flat = [&](vec3 e1, vec3 e2, double fraction) {
+        return Extent{a, e1, e2, fraction * length(cross(dvec3(e1), dvec3(e2)))};
+    };
+    switch (kind) {
+        case LIGHT_SPHERE:
+            return {a, b, vec3(0.0f), 4.0 * double(PI) * double(b.x) * double(b.x)};
+        case LIGHT_DISK:
+            return flat(b, c, double(PI));
+        case LIGHT_PARALLELOGRAM:
+            return flat(b - a, d - a, 1.0);
+        default:
+            return flat(b - a, c - a, 0.5);
+    }
+}
+
+}  // namespace
+
+AreaLights build_area_lights(const Scene& scene, const FlatScene& flat) {
+    Pyramids pyramids;
+    AreaLights result;
+    result.of_pieces.reserve(flat.pieces.size());
+    for (uint32_t i = 0; i < flat.pieces.size(); ++i) {
+        const EmittingPiece& piece = flat.pieces[i];
+        const Shape& shape = scene.shapes[piece.shape];
+        const Emission& emission = *shape.emission;
+        const auto [p, e1, e2, area] = extent_of(piece.kind, flat.primitives[piece.primitive]);
+        // Rays pass what is culled from behind, and see nothing of it.
+        const bool two_sided = emission.two_sided && !is_culled(scene.materials[shape.material]);
+        const double power = area *
+                             luminance(mean_radiance(scene, pyramids, emission, piece.kind, piece.uv)) *
+                             (two_sided ? 2.0 : 1.0);
+        result.of_pieces.push_back(power == 0.0 ? NO_LIGHT : uint32_t(result.pieces.size()));
+        if (power == 0.0) continue;
+        result.pieces.push_back(i);
+        result.lights.powers.push_back(power);
+        result.lights.records.push_back({piece.kind, p, e1, e2, emission.radiance.factor, two_sided ? 1u : 0u,
+                                         float(1.0 / area), 0.0f, float(piece.error)});
+    }
+    return result;
+}
+
+void check_emitters(const Scene& scene) {
+    constexpr uint64_t MOST_LIGHTS = 1u << 24u;  // A gigabyte of records.
+    uint64_t triangles = 0;
+    for (const Shape& shape : scene.shapes) {
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        if (instance != nullptr && shape.emission) triangles += scene.meshes[instance->mesh].triangles.size();
+    }
+    if (triangles > MOST_LIGHTS) {
+        throw Error(concat("the scene has ", triangles,
+                           " triangles that emit, each of which is a light, but at most ", MOST_LIGHTS,
+                           " are possible; let fewer copies of a mesh emit, or simpler ones"));
+    }
+}
+
+}  // namespace candela

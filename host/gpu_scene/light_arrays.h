@@ -1,0 +1,41 @@
+// Lights -> the arrays of their records, of the table that chooses one, and of their textures.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "gpu_scene/area_lights.h"
+#include "gpu_scene/environment_map.h"
+#include "gpu_scene/flatten.h"
+#include "gpu_scene/material_arrays.h"
+#include "gpu_scene/powered_lights.h"
+#include "scene/scene.h"
+#include "shared/light.h"
+
+namespace candela {
+
+struct LightFacts {
+    uint32_t light_count = 0;
+    uint32_t lights_present = 0;  // Bit i: a light of kind i.
+    LightGroups light_groups{};
+};
+
+struct LightArrays {
+    LightFacts facts;
+    std::vector<uvec4> lights, alias;
+    bool sky_is_light = false;
+};
+
+// Joins the lights of a scene, in the order of LightGroups: those of surfaces are in front. The sky is one of
+// them if there is one and it helps to sample it. `box` is the box around all primitives.
+LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punctual,
+                               const std::optional<SkyLight>& sky, const Box& box);
+
+// The textures of lights, by the places of their surfaces in leaf order; empty if no kernel reads them.
+// `order` has the primitives of `flat` in leaf order.
+std::vector<uvec4> light_textures(const Scene& scene, const MaterialArrays& materials, const FlatScene& flat,
+                                  const AreaLights& area, std::span<const uint32_t> order);
+
+}  // namespace candela

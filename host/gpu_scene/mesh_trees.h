@@ -1,0 +1,34 @@
+// Meshes that instances show -> trees of their own.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "bvh/bvh.h"
+#include "gpu_scene/flatten.h"
+#include "gpu_scene/instancing.h"
+#include "scene/frame.h"
+#include "scene/scene.h"
+
+namespace candela {
+
+struct MeshTree {
+    bool lets_pass = false;  // Rays may pass it in some instance.
+    SceneFrame frame{};      // Of its own space, in which all that follows is.
+    FlatScene flat{};
+    Bvh bvh{};
+    std::vector<Box> boxes{};  // Which together contain the mesh; none if no ray can meet it.
+};
+
+// By the meshes' indices.
+using MeshTrees = std::map<uint32_t, MeshTree>;
+
+// The trees of the meshes that instances show, with these attributes (bits ATTRIBUTE_*). A tree depends on
+// its mesh, on whether rays may pass it, on the attributes and on whether any mesh has shading normals, but
+// not on where its instances are. `known` has trees for which all but the second of these are as they were:
+// they are not built again.
+MeshTrees build_mesh_trees(const Scene& scene, const Instancing& instancing, uint attributes,
+                           MeshTrees&& known = {});
+
+}  // namespace candela

@@ -1,0 +1,210 @@
+// See scene_stages.h. Each stage is made by one function, if what it is made of is other than before; the
+// stages that follow learn from `Work` whether it is.
+#include "gpu_scene/scene_stages.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <utility>
+#include <variant>
+
+#include "gpu_scene/coplanar_lights.h"
+#include "gpu_scene/punctual_lights.h"
+
+namespace candela {
+namespace {
+
+// Whether the shape is a copy of one of these meshes.
+bool shows_one_of(const Shape& shape, const std::vector<uint32_t>& meshes) {
+    const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+    return instance != nullptr && std::ranges::find(meshes, instance->mesh) != meshes.end();
+}
+
+// What decides whether a mesh needs another tree, if the mesh itself is as it was.
+std::vector<std::pair<uint32_t, bool>> kinds_of(const MeshTrees& trees) {
+    std::vector<std::pair<uint32_t, bool>> kinds;
+    for (const auto& [mesh, tree] : trees)
+        kinds.emplace_back(mesh, tree.lets_pass);
+    return kinds;
+}
+
+}  // namespace
+
+SceneStages::SceneStages(const Scene& scene, const Options& options)
+    : given_frame_(options.frame), rule_(options.rule) {
+    const SceneChange everything;
+    Work work{.scene = scene, .change = everything, .all = true};
+    make(work, options.packed);
+}
+
+BufferSet SceneStages::update(const Scene& scene, const SceneChange& change) {
+    changed_.reset();
+    Work work{.scene = scene, .change = change};
+    make(work, [](size_t) {});
+    return changed_;
+}
+
+void SceneStages::put(uint32_t array, std::vector<uvec4>&& words) {
+    if (gpu_.arrays[array] == words) return;
+    gpu_.arrays[array] = std::move(words);
+    changed_.set(SCENE_ARRAYS[array].buffer);
+}
+
+void SceneStages::make(Work& work, const std::function<void(size_t)>& packed) {
+    make_frame(work);
+    make_materials(work);
+    make_nesting(work);
+    make_surfaces(work);
+    make_area_lights(work);
+    if (work.texels)  // Lights have read the images.
+        put(ARRAY_TEXELS, build_texels(work.scene.images, materials_.image_places, packed));
+    const auto start = std::chrono::steady_clock::now();
+    make_mesh_trees(work);
+    make_tree(work);
+    make_geometry(work);
+    gpu_.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    make_lights(work);
+    gpu_.warnings = nesting_.warnings;
+    if (coplanar_lights_) gpu_.warnings.push_back(*coplanar_lights_);
+    std::ranges::copy(warn_of_small_shapes(gpu_.frame, surfaces_, trees_), std::back_inserter(gpu_.warnings));
+}
+
+void SceneStages::make_frame(Work& work) {
+    if (!work.all && !work.change.of_geometry()) return;
+    const SceneFrame frame = given_frame_ ? *given_frame_ : choose_frame(work.scene);
+    work.frame = work.all || frame != gpu_.frame;
+    gpu_.frame = frame;
+}
+
+void SceneStages::make_materials(Work& work) {
+    const SceneChange& change = work.change;
+    work.materials = work.all || work.frame || change.materials || change.images || !change.shapes.empty() ||
+                     !change.meshes.empty();
+    if (!work.materials) return;
+    MaterialArrays made = build_material_arrays(work.scene, gpu_.frame);
+    work.attributes = work.all || made.facts.attributes != materials_.facts.attributes;
+    work.texels = work.all || change.images || made.image_places != materials_.image_places;
+    materials_ = std::move(made);
+    static_cast<MaterialFacts&>(gpu_) = materials_.facts;
+    put(ARRAY_MATERIALS, std::move(materials_.materials));
+    put(ARRAY_MEDIA, std::move(materials_.media));
+    put(ARRAY_MATERIAL_TEXTURES, std::move(materials_.material_textures));
+    put(ARRAY_TEXTURES, std::move(materials_.textures));
+}
+
+void SceneStages::make_nesting(const Work& work) {
+    if (work.all || work.materials || work.change.of_geometry()) {
+        nesting_ = find_nesting(work.scene);
+        gpu_.nested_media = nesting_.nested;
+    }
+    if (work.all || work.change.of_geometry()) coplanar_lights_ = warn_of_coplanar_lights(work.scene);
+}
+
+// Whether flatten() would make something else of the shapes that are no instances.
+bool SceneStages::has_other_surfaces(const Work& work, const Instancing& instancing,
+                                     const std::vector<bool>& lets_pass) const {
+    if (work.all || work.frame || work.attributes || work.normals) return true;
+    if (instancing.is_instance != instancing_.is_instance) return true;
+    const auto is_surface = [&](uint32_t i) { return !instancing.is_instance[i]; };
+    if (std::ranges::any_of(work.change.moved, is_surface) ||
+        std::ranges::any_of(work.change.shapes, is_surface))
+        return true;
+    for (uint32_t i = 0; i < lets_pass.size(); ++i) {
+        if (is_surface(i) &&
+            (lets_pass[i] != lets_pass_[i] || shows_one_of(work.scene.shapes[i], work.change.meshes)))
+            return true;
+    }
+    return false;
+}
+
+void SceneStages::make_surfaces(Work& work) {
+    if (!work.materials && !work.change.of_geometry()) return;
+    const Scene& scene = work.scene;
+    check_emitters(scene);
+    Instancing instancing = choose_instances(scene, rule_);
+    const bool has_normals = has_shading_normals(scene);
+    work.normals = has_normals != has_normals_;
+    std::vector<bool> lets_pass;
+    for (const Shape& shape : scene.shapes)
+        lets_pass.push_back(lets_rays_pass(scene, shape));
+    work.surfaces = has_other_surfaces(work, instancing, lets_pass);
+    instancing_ = std::move(instancing);
+    has_normals_ = has_normals;
+    lets_pass_ = std::move(lets_pass);
+    if (work.surfaces)
+        surfaces_ = flatten(scene, gpu_.frame, materials_.facts.attributes, instancing_.is_instance);
+}
+
+void SceneStages::make_area_lights(Work& work) {
+    if (!work.surfaces && !work.change.radiance && !work.change.materials && !work.change.images) return;
+    AreaLights made = build_area_lights(work.scene, surfaces_);
+    work.leaves = made.of_pieces != area_lights_.of_pieces;
+    area_lights_ = std::move(made);
+}
+
+void SceneStages::make_mesh_trees(Work& work) {
+    if (!work.materials && !work.change.of_geometry()) return;
+    MeshTrees known;
+    const auto before = kinds_of(trees_);
+    if (!work.attributes && !work.normals) known = std::move(trees_);
+    for (const uint32_t mesh : work.change.meshes)
+        known.erase(mesh);
+    const size_t kept = known.size();
+    trees_ = build_mesh_trees(work.scene, instancing_, materials_.facts.attributes, std::move(known));
+    work.trees = kept != trees_.size() || kinds_of(trees_) != before;
+}
+
+void SceneStages::make_tree(Work& work) {
+    work.tree =
+        work.all || work.surfaces || work.trees || !work.change.moved.empty() || !work.change.shapes.empty();
+    if (!work.tree) return;
+    SceneTree made = build_scene_tree(work.scene, gpu_.frame, surfaces_, instancing_, trees_);
+    work.leaves |= made.order != tree_.order || made.instances.empty() != tree_.instances.empty();
+    tree_ = std::move(made);
+}
+
+void SceneStages::make_geometry(const Work& work) {
+    if (work.all || work.surfaces || work.trees || work.leaves) {
+        LeafArrays leaves =
+            build_leaf_arrays(surfaces_, area_lights_, tree_, trees_, materials_.facts.attributes);
+        static_cast<LeafFacts&>(gpu_) = std::move(leaves.facts);
+        put(ARRAY_PRIMITIVES, std::move(leaves.primitives));
+        put(ARRAY_SURFACES, std::move(leaves.surfaces));
+        put(ARRAY_NORMALS, std::move(leaves.normals));
+        put(ARRAY_ATTRIBUTES, std::move(leaves.attributes));
+    }
+    if (work.tree) {
+        NodeArrays nodes = build_node_arrays(surfaces_, tree_, trees_);
+        static_cast<NodeFacts&>(gpu_) = std::move(nodes.facts);
+        put(ARRAY_NODES, std::move(nodes.nodes));
+    }
+}
+
+void SceneStages::make_lights(const Work& work) {
+    const Scene& scene = work.scene;
+    gpu_.environment_rotation = scene.environment ? scene.environment->rotation : 0.0f;
+    const bool other_sky = work.all || work.change.environment;
+    if (!other_sky && !work.tree && !work.materials && !work.change.radiance && !work.change.lights) return;
+    std::optional<EnvironmentMap> map;
+    if (other_sky && scene.environment) map = build_environment_map(*scene.environment);
+    if (other_sky) sky_ = map ? std::optional<SkyLight>(*map) : std::nullopt;
+
+    LightArrays made = build_light_arrays(
+        area_lights_, build_punctual_lights(scene, gpu_.frame, tree_.bounds), sky_, tree_.bounds);
+    static_cast<LightFacts&>(gpu_) = made.facts;
+    put(ARRAY_LIGHTS, std::move(made.lights));
+    put(ARRAY_LIGHT_ALIAS, std::move(made.alias));
+    put(ARRAY_LIGHT_TEXTURES, light_textures(scene, materials_, surfaces_, area_lights_, tree_.order));
+
+    if (other_sky || made.sky_is_light != sky_is_light_) {
+        if (scene.environment && !map) map = build_environment_map(*scene.environment);
+        SkyArrays sky =
+            map ? build_sky_arrays(*scene.environment, std::move(*map), made.sky_is_light) : SkyArrays{};
+        static_cast<SkyFacts&>(gpu_) = sky.facts;
+        put(ARRAY_ENVIRONMENT, std::move(sky.texels));
+        put(ARRAY_ENVIRONMENT_ALIAS, std::move(sky.alias));
+    }
+    sky_is_light_ = made.sky_is_light;
+}
+
+}  // namespace candela

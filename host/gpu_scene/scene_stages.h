@@ -1,0 +1,110 @@
+// A scene's records in stages, each of which is a value made of the scene and of stages before it. After a
+// change of the scene, only those are made again that depend on it, and the records are the same bits as if
+// all were.
+//
+//   textures, materials   of materials, emissions and images, and the unit of the frame
+//   texels                of images
+//   surfaces              of shapes that are no instances, in the frame: primitives, and pieces that emit
+//   area lights           of surfaces, emissions, materials and images
+//   mesh trees            of meshes that instances show, in frames of their own
+//   tree above            of the boxes around surfaces and instances, in the frame
+//   leaves                of surfaces, the lights on them and mesh trees, in the order of the tree above
+//   nodes                 of the tree above and mesh trees
+//   lights                of area lights, punctual lights, the power of the sky and the bounds of the tree
+//   sky                   of the environment, and of whether it is a light
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/nesting.h"
+
+namespace candela {
+
+// What of a scene is other than before. There are as many materials, meshes, shapes and images as there were.
+struct SceneChange {
+    bool environment = false;  // All of it, or whether there is one.
+    bool rotation = false;     // Of the environment.
+    bool lights = false;       // The punctual ones.
+    bool radiance = false;     // Factors and sides of emissions; neither their textures nor what emits.
+    bool materials = false;
+    bool images = false;
+    std::vector<uint32_t> moved{};   // Shapes that are meshes in another place.
+    std::vector<uint32_t> shapes{};  // Shapes that differ in any other way.
+    std::vector<uint32_t> meshes{};
+
+    bool of_geometry() const { return !moved.empty() || !shapes.empty() || !meshes.empty(); }
+};
+
+class SceneStages {
+  public:
+    struct Options {
+        std::optional<SceneFrame> frame{};  // None: that which choose_frame() chooses.
+        InstancingRule rule{};
+        // Called when the texels of image i have been copied for the first time.
+        std::function<void(size_t)> packed = [](size_t) {};
+    };
+
+    // Throws what build_gpu_scene() throws.
+    explicit SceneStages(const Scene& scene) : SceneStages(scene, Options()) {}
+    SceneStages(const Scene& scene, const Options& options);
+
+    const GpuScene& joined() const { return gpu_; }
+    GpuScene take() && { return std::move(gpu_); }
+
+    // Makes the records those of `scene`, which differs by `change` from what it was. Returns the buffers
+    // that hold other words than before. Throws what build_gpu_scene() throws; then the stages are of no more
+    // use.
+    BufferSet update(const Scene& scene, const SceneChange& change);
+
+  private:
+    // What is being made, and which stages have other values than before.
+    struct Work {
+        const Scene& scene;
+        const SceneChange& change;
+        bool all = false;  // Nothing has been made before.
+        bool frame = false, materials = false, attributes = false, normals = false, texels = false,
+             surfaces = false, trees = false, tree = false, leaves = false;
+    };
+
+    void make(Work& work, const std::function<void(size_t)>& packed);
+    void make_frame(Work& work);
+    void make_materials(Work& work);
+    void make_nesting(const Work& work);
+    void make_surfaces(Work& work);
+    void make_area_lights(Work& work);
+    void make_mesh_trees(Work& work);
+    void make_tree(Work& work);
+    void make_geometry(const Work& work);
+    void make_lights(const Work& work);
+    bool has_other_surfaces(const Work& work, const Instancing& instancing,
+                            const std::vector<bool>& lets_pass) const;
+    void put(uint32_t array, std::vector<uvec4>&& words);
+
+    std::optional<SceneFrame> given_frame_;
+    InstancingRule rule_;
+
+    // What later stages need of earlier ones; the arrays are in gpu_ alone.
+    MaterialArrays materials_;
+    Nesting nesting_;
+    std::optional<std::string> coplanar_lights_;  // The warning about them.
+    Instancing instancing_;
+    std::vector<bool> lets_pass_;  // Of each shape.
+    bool has_normals_ = false;     // Some mesh has shading normals.
+    FlatScene surfaces_;
+    AreaLights area_lights_;
+    MeshTrees trees_;
+    SceneTree tree_;
+    std::optional<SkyLight> sky_;
+    bool sky_is_light_ = false;
+
+    GpuScene gpu_;
+    BufferSet changed_;
+};
+
+}  // namespace candela
