@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "gpu_scene/append.h"
-
 namespace candela {
 
 std::vector<AliasEntry> build_alias_table(std::span<const double> weights) {
@@ -38,14 +36,6 @@ std::vector<AliasEntry> build_alias_table(std::span<const double> weights) {
     }
     // What is left differs from a full column by rounding only, and stays its own alias.
     return table;
-}
-
-std::vector<uvec4> pack_alias_table(std::span<const AliasEntry> entries) {
-    std::vector<uvec4> words;
-    words.reserve((entries.size() + 1) / 2);
-    for (size_t i = 0; i < entries.size(); i += 2)
-        append(words, pack(entries[i], i + 1 < entries.size() ? entries[i + 1] : AliasEntry{}));
-    return words;
 }
 
 }  // namespace candela

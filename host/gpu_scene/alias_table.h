@@ -12,7 +12,4 @@ namespace candela {
 // column i. Ref: Vose 1991, A Linear Algorithm for Generating Random Numbers with a Given Distribution.
 std::vector<AliasEntry> build_alias_table(std::span<const double> weights);
 
-// The words of a table.
-std::vector<uvec4> pack_alias_table(std::span<const AliasEntry> entries);
-
 }  // namespace candela

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "base/color.h"
-#include "gpu_scene/alias_table.h"
 #include "gpu_scene/append.h"
+#include "gpu_scene/cdf_table.h"
 
 namespace candela {
 namespace {
@@ -24,22 +25,40 @@ double texel_solid_angle(uvec2 size, uint32_t row) {
 EnvironmentMap build_environment_map(const Environment& environment) {
     const uvec2 size = environment.size;
     EnvironmentMap map;
-    std::vector<double> weights;
-    weights.reserve(environment.radiance.size());
-    for (uint32_t y = 0; y < size.y; ++y) {
-        const double solid_angle = texel_solid_angle(size, y);
-        for (uint32_t x = 0; x < size.x; ++x)
-            weights.push_back(luminance(environment.radiance[size_t(y) * size.x + x]) * solid_angle);
-    }
-    map.irradiance = std::accumulate(weights.begin(), weights.end(), 0.0);
-    if (map.irradiance > 0.0) map.alias = build_alias_table(weights);
+    for (const vec3 radiance : environment.radiance)
+        map.texels.push_back({radiance, 0.0f});
     map.even = std::ranges::all_of(environment.radiance,
                                    [&](vec3 radiance) { return radiance == environment.radiance[0]; });
-    map.texels.reserve(environment.radiance.size());
-    for (const vec3 radiance : environment.radiance) {
-        const double pdf = map.irradiance > 0.0 ? luminance(radiance) / map.irradiance : 0.0;
-        map.texels.push_back({radiance, float(pdf)});
+    std::vector<double> weights, rows;  // Of texels and of rows: luminance times solid angle.
+    weights.reserve(environment.radiance.size());
+    double squares = 0.0;
+    for (uint32_t y = 0; y < size.y; ++y) {
+        const double solid_angle = texel_solid_angle(size, y);
+        rows.push_back(0.0);
+        for (uint32_t x = 0; x < size.x; ++x) {
+            const double bright = luminance(environment.radiance[size_t(y) * size.x + x]);
+            weights.push_back(bright * solid_angle);
+            rows.back() += weights.back();
+            squares += bright * weights.back();
+        }
     }
+    map.irradiance = std::accumulate(rows.begin(), rows.end(), 0.0);
+    if (map.irradiance == 0.0) return map;
+    map.contrast = 4.0 * std::numbers::pi * squares / (map.irradiance * map.irradiance);
+    const std::vector<uint64_t> row_words = divide_words(rows);
+    for (uint32_t y = 0; y < size.y; ++y) {
+        const std::span row = std::span(weights).subspan(size_t(y) * size.x, size.x);
+        if (row_words[y] == 0) {
+            map.cdf.resize(map.cdf.size() + size.x);
+            continue;
+        }
+        const std::vector<uint64_t> words = divide_words(row);
+        append_cdf_table(map.cdf, words);
+        const double per_word = double(row_words[y]) * 0x1p-64 / texel_solid_angle(size, y);
+        for (uint32_t x = 0; x < size.x; ++x)
+            map.texels[size_t(y) * size.x + x].pdf = float(per_word * double(words[x]));
+    }
+    append_cdf_table(map.cdf, row_words);
     return map;
 }
 
@@ -49,7 +68,7 @@ SkyArrays build_sky_arrays(const Environment& environment, EnvironmentMap map, b
                                .environment_size = environment.size,
                                .environment_rotation = environment.rotation},
                      .texels = {},
-                     .alias = pack_alias_table(map.alias)};
+                     .cdf = pack_pairs<CdfEntry>(map.cdf)};
     for (EnvironmentTexel& texel : map.texels) {
         if (!is_light) texel.pdf = 0.0f;
         append(arrays.texels, pack(texel));

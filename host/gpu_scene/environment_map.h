@@ -12,14 +12,17 @@ namespace candela {
 // The sky as a light.
 struct SkyLight {
     double irradiance = 0.0;  // Luminance, integrated over the whole sphere [W/m^2].
-    bool even = false;        // The same radiance from everywhere.
+    double contrast = 1.0;  // Mean of the squared luminance over the square of its mean, on the sphere; >= 1.
+    bool even = false;      // The same radiance from everywhere.
 };
 
 struct EnvironmentMap : SkyLight {
-    // Row-major from the top. pdf is luminance / irradiance: the density of texels chosen in proportion to
-    // luminance times solid angle [1/sr], before the choice among lights.
+    // Row-major from the top. pdf is the density [1/sr], before the choice among lights, of texels chosen in
+    // proportion to luminance times solid angle, as whole numbers of random words allow.
     std::vector<EnvironmentTexel> texels;
-    std::vector<AliasEntry> alias;  // Chooses a texel; empty for a black environment.
+    // For each row of texels a table that chooses a column, and at the end one that chooses a row; empty for
+    // a black environment.
+    std::vector<CdfEntry> cdf;
 };
 
 EnvironmentMap build_environment_map(const Environment& environment);
@@ -33,7 +36,7 @@ struct SkyFacts {
 
 struct SkyArrays {
     SkyFacts facts;
-    std::vector<uvec4> texels, alias;
+    std::vector<uvec4> texels, cdf;
 };
 
 // The arrays of an environment with that map; densities are 0 unless it is a light.

@@ -20,6 +20,7 @@ struct LightFacts {
     uint32_t light_count = 0;
     uint32_t lights_present = 0;  // Bit i: a light of kind i.
     LightGroups light_groups{};
+    float sky_rival = 1.0f;  // See environment_rival_pdf in shaders/light/environment.glsl.
 };
 
 struct LightArrays {

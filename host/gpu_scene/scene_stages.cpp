@@ -202,7 +202,7 @@ void SceneStages::make_lights(const Work& work) {
             map ? build_sky_arrays(*scene.environment, std::move(*map), made.sky_is_light) : SkyArrays{};
         static_cast<SkyFacts&>(gpu_) = sky.facts;
         put(ARRAY_ENVIRONMENT, std::move(sky.texels));
-        put(ARRAY_ENVIRONMENT_ALIAS, std::move(sky.alias));
+        put(ARRAY_ENVIRONMENT_CDF, std::move(sky.cdf));
     }
     sky_is_light_ = made.sky_is_light;
 }

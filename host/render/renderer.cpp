@@ -150,7 +150,8 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .focal_distance = frame.length(double(lens.focal_distance)),
             .blades = lens.blades,
             .first_sample = settings.first_sample,
-            .camera_media = media_at(scene, camera.position)};
+            .camera_media = media_at(scene, camera.position),
+            .sky_rival = scene.sky_rival};
 }
 
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants) {

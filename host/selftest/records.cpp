@@ -75,7 +75,7 @@ struct Records {
     LightRecord light;
     AliasEntry light_even, light_odd;
     EnvironmentTexel texel;
-    AliasEntry texel_even, texel_odd;
+    CdfEntry texel_even, texel_odd;
     MaterialTextures material_textures;
     LightTextures light_textures;
     TextureRecord texture;
@@ -91,7 +91,7 @@ struct Item {
 
 // What the kernel writes.
 struct Result {
-    std::array<uint, 231> words;
+    std::array<uint, 232> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -118,7 +118,8 @@ Records filled(Fields& fields) {
                     .focal_distance = fields.f(),
                     .blades = fields.u(),
                     .first_sample = fields.u(),
-                    .camera_media = fields.u2()};
+                    .camera_media = fields.u2(),
+                    .sky_rival = fields.f()};
     r.node.origin = fields.f3();
     r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);
     for (const int axis : {0, 1, 2})
@@ -167,8 +168,8 @@ Records filled(Fields& fields) {
     r.light_even = entry();
     r.light_odd = entry();
     r.texel = {.radiance = fields.f3(), .pdf = fields.f()};
-    r.texel_even = entry();
-    r.texel_odd = entry();
+    r.texel_even = {.last_word = fields.u(), .range = fields.u()};
+    r.texel_odd = {.last_word = fields.u(), .range = fields.u()};
     r.material_textures = {.base = fields.keep(0x2BCDEF01u),
                            .specular = fields.keep(0x3C4D5E6Fu),
                            .parameter = fields.u(),
@@ -221,7 +222,7 @@ GpuScene packed(const Records& r) {
     append_second(array(ARRAY_LIGHTS), pack(r.light));
     append_second(array(ARRAY_LIGHT_ALIAS), pack(r.light_even, r.light_odd));
     append_second(array(ARRAY_ENVIRONMENT), pack(r.texel));
-    append_second(array(ARRAY_ENVIRONMENT_ALIAS), pack(r.texel_even, r.texel_odd));
+    append_second(array(ARRAY_ENVIRONMENT_CDF), pack(r.texel_even, r.texel_odd));
     append_second(array(ARRAY_MATERIAL_TEXTURES), pack(r.material_textures));
     append_second(array(ARRAY_LIGHT_TEXTURES), pack(r.light_textures));
     append_second(array(ARRAY_TEXTURES), pack(r.texture));

@@ -86,12 +86,12 @@ LitPoint path_lit_point(Path path) {
     return lit;
 }
 
-// Weight of the emission that the path's ray has hit, and that a light sample would find with the density pdf_light
-// [1/sr].
-float emission_weight(Path path, float pdf_light) {
+// Weight of the emission that the path's ray has hit, which the BSDF found with the density pdf_bsdf [1/sr], and which
+// a light sample would find with pdf_light.
+float emission_weight(Path path, float pdf_bsdf, float pdf_light) {
     if (path.delta || ESTIMATOR == ESTIMATOR_BSDF) return 1.0;
     if (ESTIMATOR == ESTIMATOR_LIGHT) return pdf_light > 0.0 ? 0.0 : 1.0;
-    return power_heuristic(path.pdf_bsdf, pdf_light);
+    return power_heuristic(pdf_bsdf, pdf_light);
 }
 
 // Adds the radiance of the sky, for a path whose ray left the scene.
@@ -99,7 +99,7 @@ void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u && ENVIRONMENT != ENVIRONMENT_VISIBLE) return;
     EnvironmentTexel texel = environment_texel(path.ray.d);
     float pdf_light = environment_pdf_li(texel, path_lit_point(path));
-    estimate.L += emission_weight(path, pdf_light) * path.beta * texel.radiance;
+    estimate.L += emission_weight(path, environment_rival_pdf(path.pdf_bsdf), pdf_light) * path.beta * texel.radiance;
     if (path.depth == 0u) estimate.visible = true;
 }
 
@@ -112,8 +112,8 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     if (HAS_COATED_EMISSION) {
         share = emitted_share(s.material, s.attributes, dot(s.wo, s.n), unit_float(hit_random(path.ray).xy));
     }
-    estimate.L += emission_weight(path, pdf_light) * share * path.beta * area_light_le(light_at(s.light), s.front) *
-                  light_texture(s.light, s.attributes);
+    estimate.L += emission_weight(path, path.pdf_bsdf, pdf_light) * share * path.beta *
+                  area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
 }
 
 // A sample of a light for the surface, as lit; layers above what emits leave a fraction of its radiance.
@@ -144,7 +144,10 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
                                         : dot(light.wi, x.horizon) <= 0.0;
     bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
     float weight = 1.0;
-    if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, value.pdf);
+    if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) {
+        bool is_sky = SKY_IS_LIGHT && light.light == sky_light();
+        weight = power_heuristic(light.pdf, is_sky ? environment_rival_pdf(value.pdf) : value.pdf);
+    }
     return ShadowRay(ray, dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
 }
 
@@ -211,7 +214,6 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     }
     surface_turn(x);
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
-    uvec2 choice = sampler_pair(random, pair + PAIR_CHOICE);
 
     // Choose a point on a light, before the lobes of a principled material take room.
     LitPoint lit = lit_point(x);
@@ -224,9 +226,11 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     if (ESTIMATOR != ESTIMATOR_BSDF) shadow = direct_light(path, x, lit, light);
 
     // Scatter.
-    vec2 u = unit_float(sampler_pair(random, pair + PAIR_BSDF));
-    if (!path_scatter(path, x, lit, surface_sample_f(x, unit_float(choice.y), u))) return false;
-    if (path.depth >= parameters.rr_depth && !path_survives(path, unit_float(choice.x))) return false;
+    uvec3 u = sampler_triple(random, pair + PAIR_BSDF);
+    if (!path_scatter(path, x, lit, surface_sample_f(x, unit_float(u.z), unit_float(u.xy)))) return false;
+    if (path.depth >= parameters.rr_depth) {
+        if (!path_survives(path, unit_float(sampler_pair(random, pair + PAIR_SURVIVAL).x))) return false;
+    }
     ++path.depth;
     return true;
 }

@@ -36,22 +36,56 @@ vec3 environment_direction(uvec2 texel, vec2 within) {
     return vec3(turn.x * m.x + turn.y * m.z, m.y, turn.x * m.z - turn.y * m.x);
 }
 
+// A place that random bits chose, and what the choice leaves of them, uniform in [0, 1).
+struct EnvironmentChoice {
+    uint i;
+    float rest;
+};
+
+// One of n places by 32 random bits, by the table that begins at entry `first`. Neighbouring bits choose neighbouring
+// places, so that the choice keeps the order of a low-discrepancy sequence. The entry of the bits' own part of the
+// table says between which places to look, by bisection.
+// Ref: Chen and Asau 1974, On Generating Random Variates from an Empirical Distribution.
+EnvironmentChoice environment_choose(uint first, uint n, uint bits) {
+    uint part, unused;
+    umulExtended(bits, n, part, unused);
+    uint range = scene_environment_cdf(first + part).range;
+    uint lo = range & CDF_MAX_PLACES - 1u, more = range >> CDF_PLACE_BITS;
+    uint hi = more < CDF_MANY_MORE ? lo + more : n - 1u;
+    while (lo < hi) {
+        uint middle = (lo + hi) / 2u;
+        bool beyond = bits > scene_environment_cdf(first + middle).last_word;
+        lo = beyond ? middle + 1u : lo;
+        hi = beyond ? hi : middle;
+    }
+    uint begin = lo == 0u ? 0u : scene_environment_cdf(first + lo - 1u).last_word + 1u;
+    uint last = scene_environment_cdf(first + lo).last_word;
+    float rest = (float(bits - begin) + 0.5) / (float(last - begin) + 1.0);
+    return EnvironmentChoice(lo, min(rest, 1.0 - 1.0 / 16777216.0));
+}
+
 // A direction towards the sky, from 2 x 32 random bits.
 LightSample environment_light_sample_li(uvec2 u) {
     uvec2 size = scene_parameters().environment_size;
-    uvec2 column = warp_alias_column(u.x, size.x * size.y);
-    // What the choices leave of the random bits is uniform again, and places the point within the texel.
-    AliasChoice choice = warp_alias_choice(uvec2(column.x, u.y), scene_environment_alias(column.x));
-    vec2 within = vec2(float(column.y >> 8u) * (1.0 / 16777216.0), choice.rest);
-    EnvironmentTexel texel = scene_environment_texel(choice.i);
+    EnvironmentChoice row = environment_choose(size.x * size.y, size.y, u.y);
+    EnvironmentChoice column = environment_choose(row.i * size.x, size.x, u.x);
+    EnvironmentTexel texel = scene_environment_texel(row.i * size.x + column.i);
     LightSample s;
-    s.wi = environment_direction(uvec2(choice.i % size.x, choice.i / size.x), within);
+    s.wi = environment_direction(uvec2(column.i, row.i), vec2(column.rest, row.rest));
     s.Li = texel.radiance;
     s.pdf = texel.pdf;
     s.delta = false;
     s.shadow = s.wi;
     s.t_max = FLOAT_MAX;
     return s;
+}
+
+// The density [1/sr] that the MIS weights of sky samples use in place of a BSDF's, the same for both strategies, so
+// that the estimate stays unbiased. A light sample of the sky brings f times a constant: where the BSDF is broad, that
+// is smooth, and BSDF samples, which bring the sky's contrast, only add noise to it. A density above 10 / pi is a
+// lobe's, and is used as it is.
+float environment_rival_pdf(float pdf_bsdf) {
+    return pdf_bsdf * clamp(pdf_bsdf * (PI / 10.0), scene_parameters().sky_rival, 1.0);
 }
 
 #endif

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 231u
+#define RESULT_WORDS 232u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -29,6 +29,7 @@ void put_parameters(Parameters p) {
     put(p.blades);
     put(p.first_sample);
     put(p.camera_media);
+    put(p.sky_rival);
 }
 
 void put_node(uint i) {
@@ -90,6 +91,11 @@ void put_alias_entry(AliasEntry e) {
     put(e.alias);
 }
 
+void put_cdf_entry(CdfEntry e) {
+    put(e.last_word);
+    put(e.range);
+}
+
 void put_texel(EnvironmentTexel t) {
     put(t.radiance);
     put(t.pdf);
@@ -146,8 +152,8 @@ void main() {
     put_alias_entry(scene_light_alias(2u));
     put_alias_entry(scene_light_alias(3u));
     put_texel(scene_environment_texel(1u));
-    put_alias_entry(scene_environment_alias(2u));
-    put_alias_entry(scene_environment_alias(3u));
+    put_cdf_entry(scene_environment_cdf(2u));
+    put_cdf_entry(scene_environment_cdf(3u));
     put_material_textures(scene_material_textures(1u));
     LightTextures light_textures = scene_light_textures(1u);
     put(uvec3(light_textures.primitive, light_textures.emission, light_textures.material));

@@ -160,11 +160,11 @@ EnvironmentTexel scene_environment_texel(uint i) {
     return environment_texel_unpack(a);
 }
 
-// Entry of the alias table that chooses texels of the environment.
-AliasEntry scene_environment_alias(uint i) {
+// Entry of the tables that choose texels of the environment: of columns, row after row, and of rows.
+CdfEntry scene_environment_cdf(uint i) {
     uvec4 a;
-    READ_1(ENVIRONMENT, ENVIRONMENT_ALIAS, i / 2u, a);
-    return alias_unpack(a, i);
+    READ_1(ENVIRONMENT, ENVIRONMENT_CDF, i / 2u, a);
+    return cdf_unpack(a, i);
 }
 
 // The textures of the material at that place.

@@ -32,9 +32,9 @@ const uint SAMPLER_SOBOL = 2u;
 const uint PAIR_PIXEL = 0u;
 const uint PAIR_LENS = 1u;
 const uint PAIR_FIRST_BOUNCE = 2u;
-const uint PAIR_LIGHT = 0u;   // The point on a light; its third word: which light.
-const uint PAIR_BSDF = 1u;    // Scattered direction.
-const uint PAIR_CHOICE = 2u;  // x: survival; y: which lobe of the BSDF.
+const uint PAIR_LIGHT = 0u;     // The point on a light; its third word: which light.
+const uint PAIR_BSDF = 1u;      // Scattered direction; its third word: which lobe of the BSDF.
+const uint PAIR_SURVIVAL = 2u;  // Its first word.
 const uint PAIRS_PER_BOUNCE = 3u;
 
 // Layers of the accumulation image (rgba32f). The value of a sum is sum - compensation (Kahan).

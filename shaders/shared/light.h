@@ -1,11 +1,12 @@
 // Records of a light (4 words of uvec4), of the groups of lights (1 word), of a texel of the environment (1
-// word), and of the entries of alias tables (two to a word).
+// word), and of the entries of tables that choose (two to a word).
 //
 //   LightRecord                   EnvironmentTexel                 AliasEntry
 //     0: p.xyz, kind                0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
 //     1: e1.xyz, error |                                                entry 2i + 1: threshold, alias
-//     2: e2.xyz, pmf
-//     3: radiance.rgb, pdf_area
+//     2: e2.xyz, pmf                                               CdfEntry
+//     3: radiance.rgb, pdf_area                                      0: entry 2i: last_word, range;
+//                                                                       entry 2i + 1: last_word, range
 //
 //   LightGroups
 //     0: placed, suns, sun_share, sky_share
@@ -23,6 +24,7 @@ const uint LIGHT_WORDS = 4u;
 const uint LIGHT_GROUPS_WORDS = 1u;
 const uint ENVIRONMENT_TEXEL_WORDS = 1u;
 const uint ALIAS_WORDS = 1u;  // Of two entries.
+const uint CDF_WORDS = 1u;    // Of two entries.
 
 const uint LIGHT_TRIANGLE = 0u;       // p + b1 e1 + b2 e2 with b1, b2 >= 0, b1 + b2 <= 1.
 const uint LIGHT_PARALLELOGRAM = 1u;  // p + b1 e1 + b2 e2 with b1, b2 in [0, 1].
@@ -73,6 +75,19 @@ struct AliasEntry {
     uint alias;
 };
 
+const uint CDF_PLACE_BITS = 20u;
+const uint CDF_MAX_PLACES = 1u << CDF_PLACE_BITS;
+const uint CDF_MANY_MORE = 4095u;  // Or beyond.
+
+// Entry i of a table by which random words choose one of n places in their order: those up to last_word, and
+// beyond that of the entry before, choose place i. (Places before the first that can be chosen have 2^32 - 1.)
+// The words in the i-th of n equal parts choose the first place in the lowest CDF_PLACE_BITS of `range` or one
+// of the next few; the other bits say how many.
+struct CdfEntry {
+    uint last_word;
+    uint range;
+};
+
 #ifdef __cplusplus
 
 inline std::array<uvec4, LIGHT_WORDS> pack(const LightRecord& l) {
@@ -90,6 +105,10 @@ inline std::array<uvec4, ENVIRONMENT_TEXEL_WORDS> pack(const EnvironmentTexel& t
 
 inline std::array<uvec4, ALIAS_WORDS> pack(const AliasEntry& even, const AliasEntry& odd) {
     return {uvec4(even.threshold, even.alias, odd.threshold, odd.alias)};
+}
+
+inline std::array<uvec4, CDF_WORDS> pack(const CdfEntry& even, const CdfEntry& odd) {
+    return {uvec4(even.last_word, even.range, odd.last_word, odd.range)};
 }
 
 }  // namespace candela
@@ -123,6 +142,10 @@ EnvironmentTexel environment_texel_unpack(uvec4 a) {
 // Entry i, out of word i / 2.
 AliasEntry alias_unpack(uvec4 a, uint i) {
     return (i & 1u) == 0u ? AliasEntry(a.x, a.y) : AliasEntry(a.z, a.w);
+}
+
+CdfEntry cdf_unpack(uvec4 a, uint i) {
+    return (i & 1u) == 0u ? CdfEntry(a.x, a.y) : CdfEntry(a.z, a.w);
 }
 
 #endif

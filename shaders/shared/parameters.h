@@ -4,7 +4,7 @@
 //   0: position.xyz, seed         5: lens_x.xyz, focal_distance
 //   1: right.xyz, max_depth       6: lens_y.xyz, blades
 //   2: up.xyz, rr_depth           7: environment_size.xy, environment_turn.xy
-//   3: forward.xyz, first_sample  8: camera_media.xy
+//   3: forward.xyz, first_sample  8: camera_media.xy, sky_rival
 //   4: full_size.xy, crop.xy       9: lights
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
@@ -42,6 +42,7 @@ struct Parameters {
     uint blades;           // Corners of a polygonal aperture.
     uint first_sample;     // Index of the first sample of every pixel.
     uvec2 camera_media;    // Around the camera: see medium/medium.glsl.
+    float sky_rival;       // In (0, 1]: see environment_rival_pdf.
 };
 
 // One dispatch: a rectangle of the accumulation image whose pixels are brought to `target_samples` samples
@@ -66,7 +67,7 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         word(p.lens_y, p.blades),
         uvec4(p.environment_size.x, p.environment_size.y, floatBitsToUint(p.environment_turn.x),
               floatBitsToUint(p.environment_turn.y)),
-        uvec4(p.camera_media.x, p.camera_media.y, 0, 0),
+        uvec4(p.camera_media.x, p.camera_media.y, floatBitsToUint(p.sky_rival), 0),
         pack(p.lights)[0],
     };
 }
@@ -93,6 +94,7 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     p.environment_size = w[7].xy;
     p.environment_turn = uintBitsToFloat(w[7].zw);
     p.camera_media = w[8].xy;
+    p.sky_rival = uintBitsToFloat(w[8].z);
     p.lights = light_groups_unpack(w[9]);
     return p;
 }

@@ -113,6 +113,14 @@ void TracerScene::build_lights() {
     map_ = build_environment_map(environment_);
     for (uint32_t y = 0; y <= environment_.size.y; ++y)
         row_cosines_.push_back(std::cos(PI * float(y) / float(environment_.size.y)));
+    if (map_.irradiance > 0.0) {
+        std::vector<double> weights;  // Of texels; solid angles of rows are as differences of cosines.
+        for (size_t i = 0; i < map_.texels.size(); ++i) {
+            const size_t row = i / environment_.size.x;
+            weights.push_back(double(map_.texels[i].pdf) * double(row_cosines_[row] - row_cosines_[row + 1]));
+        }
+        sky_alias_ = build_alias_table(weights);
+    }
     std::vector<double> powers;
     for (const Lamp& lamp : lamps)
         powers.push_back(lamp.area * luminance(lamp.radiance));
@@ -168,7 +176,7 @@ LightSample TracerScene::sample_light(vec3 from, Random& random) const {
 
 // Chooses a texel by luminance times solid angle, and a direction uniformly within it.
 LightSample TracerScene::sample_environment(Random& random) const {
-    const uint32_t texel = choose(map_.alias, random);
+    const uint32_t texel = choose(sky_alias_, random);
     const uvec2 size = environment_.size;
     const float phi = 2.0f * PI * ((float(texel % size.x) + random.number()) / float(size.x) - 0.5f);
     const float above = row_cosines_[texel / size.x], below = row_cosines_[texel / size.x + 1];

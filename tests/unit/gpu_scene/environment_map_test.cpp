@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include <gtest/gtest.h>
 
 #include "probe/random.h"
+#include "unit/gpu_scene/cdf_words.h"
 
 namespace candela {
 namespace {
@@ -66,28 +68,38 @@ TEST(EnvironmentMap, TheDensityIsProportionalToLuminanceAndIntegratesToOne) {
     }
 }
 
-// A threshold is rounded to 2^-32 of a column; luminances to 2^-23 of themselves.
-TEST(EnvironmentMap, TheTableChoosesTexelsByTheirShareOfTheLight) {
+// A share is a product of two that are rounded to 2^-32; luminances are good to 2^-23 of themselves. The
+// density is that of the choice to the last bit of a float.
+TEST(EnvironmentMap, TheTablesChooseTexelsByTheirPartOfTheLight) {
     const uvec2 size(31, 17);
-    const EnvironmentMap map = build_environment_map(random_environment(size, 2));
-    ASSERT_EQ(map.alias.size(), map.texels.size());
-    std::vector<double> chosen(map.alias.size());
-    for (size_t i = 0; i < chosen.size(); ++i) {
-        const double kept = double(map.alias[i].threshold) * 0x1p-32;
-        chosen[i] += kept / double(chosen.size());
-        chosen[map.alias[i].alias] += (1.0 - kept) / double(chosen.size());
+    const Environment environment = random_environment(size, 2);
+    const EnvironmentMap map = build_environment_map(environment);
+    ASSERT_EQ(map.cdf.size(), map.texels.size() + size.y);
+    const std::span table(map.cdf);
+    const std::vector<uint64_t> rows = words_of(table.subspan(map.texels.size()));
+    for (uint32_t y = 0; y < size.y; ++y) {
+        const std::vector<uint64_t> columns = words_of(table.subspan(size_t(y) * size.x, size.x));
+        for (uint32_t x = 0; x < size.x; ++x) {
+            const size_t i = size_t(y) * size.x + x;
+            const double chosen = double(rows[y]) * 0x1p-32 * double(columns[x]) * 0x1p-32;
+            const double part = luminance_of(environment.radiance[i]) * solid_angle(size, y) / map.irradiance;
+            ASSERT_NEAR(chosen, part, 0x1p-31 + part * 0x1p-22) << i;
+            ASSERT_NEAR(double(map.texels[i].pdf) * solid_angle(size, y), chosen, chosen * 0x1p-23) << i;
+        }
     }
-    for (size_t i = 0; i < chosen.size(); ++i) {
-        const double share = double(map.texels[i].pdf) * solid_angle(size, uint32_t(i) / size.x);
-        ASSERT_NEAR(chosen[i], share, 0x1p-32 + share * 0x1p-22) << i;
-    }
+}
+
+// Half of the sphere at 3, half at 1: (9 + 1) / 2 over 2 squared.
+TEST(EnvironmentMap, ContrastIsTheMeanSquareOverTheSquaredMean) {
+    const EnvironmentMap map = build_environment_map({.size = {1, 2}, .radiance = {vec3(3.0f), vec3(1.0f)}});
+    EXPECT_NEAR(map.contrast, 1.25, 0x1p-20);
 }
 
 TEST(EnvironmentMap, ABlackSkyIsNotSampled) {
     const EnvironmentMap map =
         build_environment_map({.size = {4, 2}, .radiance = std::vector<vec3>(8, vec3(0.0f))});
     EXPECT_EQ(map.irradiance, 0.0);
-    EXPECT_TRUE(map.alias.empty());
+    EXPECT_TRUE(map.cdf.empty());
     ASSERT_EQ(map.texels.size(), 8u);
     for (const EnvironmentTexel& texel : map.texels)
         EXPECT_EQ(texel.pdf, 0.0f);

@@ -194,14 +194,30 @@ TEST(GpuScene, TheSkyIsALightAndChosenByThePowerThatFallsOntoTheScene) {
     for (const uint32_t i : {0u, 1u, 2u}) {
         EXPECT_EQ(texel(gpu, i).radiance, radiance[i]);
         EXPECT_NEAR(texel(gpu, i).pdf, 1.0 / (4.0 * M_PI), 1e-7);
-        // All weights are equal: whichever index a column gives, all three come out alike.
-        EXPECT_LT(entry(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS], i).alias, 3u);
     }
     EXPECT_EQ(gpu.arrays[ARRAY_ENVIRONMENT].size(), 3u);
-    EXPECT_EQ(gpu.arrays[ARRAY_ENVIRONMENT_ALIAS].size(), 2u);
+    EXPECT_EQ(gpu.arrays[ARRAY_ENVIRONMENT_CDF].size(),
+              2u);  // Of three columns and a row, two entries a word.
+    EXPECT_EQ(gpu.sky_rival, 1.0f);
 
     scene.environment->visible = false;
     EXPECT_EQ(build_gpu_scene(scene).environment, ENVIRONMENT_HIDDEN);
+}
+
+// Two texels of eight have all the light: a contrast of 4, and (8/3 / 4)^3 if no other light is chosen. A
+// lamp of the same power halves what light samples of the sky are worth.
+TEST(GpuScene, BsdfSamplesRivalLightSamplesOfASkyByItsContrast) {
+    Scene scene = scene_of_shapes({emitter(SQUARE, vec3(0))});
+    std::vector<vec3> radiance(8, vec3(0));
+    radiance[1] = radiance[5] = vec3(4);
+    scene.environment = Environment{.size = {8, 1}, .radiance = radiance, .rotation = 0.0f};
+    EXPECT_NEAR(build_gpu_scene(scene).sky_rival, 8.0 / 27.0, 1e-6);
+    scene.shapes.push_back(emitter(SQUARE, vec3(1000)));
+    EXPECT_EQ(build_gpu_scene(scene).sky_rival, 1.0f);
+    scene.shapes.pop_back();
+    radiance[1] = vec3(1e6f);
+    scene.environment->radiance = radiance;
+    EXPECT_EQ(build_gpu_scene(scene).sky_rival, 0.2f);
 }
 
 TEST(GpuScene, TheSkyIsChosenForHalfOfTheSamplesAtMost) {

@@ -71,7 +71,7 @@ TEST(ArrayMap, EachBufferIsATexelBufferIfThatMayHoldIt) {
     EXPECT_EQ(map.shared_slot, NO_SLOT);
     EXPECT_EQ(map.storage_buffers, 1u);
     expect_sound(map, SIZES, 900, 900);
-    EXPECT_EQ(map.starts[ARRAY_ENVIRONMENT_ALIAS], SIZES[ARRAY_ENVIRONMENT]);
+    EXPECT_EQ(map.starts[ARRAY_ENVIRONMENT_CDF], SIZES[ARRAY_ENVIRONMENT]);
 }
 
 TEST(ArrayMap, LongerOnesHaveStorageBuffersOfTheirOwn) {
