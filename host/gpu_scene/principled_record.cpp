@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/texture.h"
+
 namespace candela {
 namespace {
 
