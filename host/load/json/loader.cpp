@@ -16,12 +16,11 @@ namespace candela {
 namespace {
 
 Film read_film(const Node& node) {
-    constexpr uint32_t MOST_PIXELS = 65536;  // Along one side.
     node.allow_only({"size"});
     const Node size = node.require("size");
     const std::vector<Node> sides = size.elements();
     if (sides.size() != 2) size.fail_expected("two whole numbers [width, height]");
-    return {uvec2(sides[0].integer(1, MOST_PIXELS), sides[1].integer(1, MOST_PIXELS))};
+    return {uvec2(sides[0].integer(1, MAX_PICTURE_SIZE), sides[1].integer(1, MAX_PICTURE_SIZE))};
 }
 
 IntegratorSettings read_integrator(const Node& node) {

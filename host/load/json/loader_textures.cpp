@@ -35,9 +35,9 @@ void read_wrap(const Node& node, Texture& texture) {
 
 // uv_scale, then uv_rotation, then uv_offset.
 void read_uv_transform(const Node& node, Texture& texture) {
-    constexpr double MOST = 1e6;  // So that no coordinate leaves the range of floats.
     const auto checked = [&](const Node& value, glm::dvec2 v) {
-        if (std::abs(v.x) > MOST || std::abs(v.y) > MOST) value.fail_expected("numbers from -1e6 to 1e6");
+        if (std::abs(v.x) > MAX_UV_TRANSFORM || std::abs(v.y) > MAX_UV_TRANSFORM)
+            value.fail_expected("numbers from -1e6 to 1e6");
         return v;
     };
     glm::dvec2 scale(1.0), offset(0.0);
@@ -93,9 +93,8 @@ Textured<vec3> read_radiance(const Node& node, const ImageFolder& folder) {
 
 NormalMap read_normal_map(const Node& node, const ImageFolder& folder) {
     constexpr std::array<std::string_view, 1> SCALE{"scale"};
-    constexpr float MOST = 1e3f;
     NormalMap map{.texture = read_texture(node, folder, TextureEncoding::linear, SCALE)};
-    if (const auto scale = node.find("scale")) map.scale = scale->number(-MOST, MOST);
+    if (const auto scale = node.find("scale")) map.scale = scale->number(-MAX_NORMAL_SCALE, MAX_NORMAL_SCALE);
     return map;
 }
 
