@@ -22,7 +22,7 @@ candela_check(workflows_test ${PYTHON3} cmake/checks/workflows_test.py)
 candela_check(shaders_alone ${PYTHON3} cmake/checks/shaders_alone.py ${GLSLANG_VALIDATOR} ${CMAKE_SOURCE_DIR})
 set_tests_properties(shaders_alone PROPERTIES LABELS check)
 candela_check(schema ${PYTHON3} cmake/checks/schema.py scenes tests/references tests/bench/scenes)
-candela_check(principled_keys ${PYTHON3} cmake/checks/principled_keys.py)
+candela_check(scene_keys ${PYTHON3} cmake/checks/scene_keys.py)
 candela_check(sky ${PYTHON3} cmake/checks/sky.py scenes)
 
 # These need a device, unlike the others.

@@ -11,4 +11,7 @@ inline constexpr uint32_t MAX_SPP = 1u << 24;
 // The most bounces of a path: those of unlimited ones end there, too.
 inline constexpr uint32_t MAX_BOUNCES = 4096;
 
+// The most pixels along a side of a picture.
+inline constexpr uint32_t MAX_PICTURE_SIZE = 65536;
+
 }  // namespace candela

@@ -10,15 +10,13 @@
 #include <CLI/CLI.hpp>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "film/accumulation.h"
 #include "film/sample_range.h"
 #include "image/image.h"
 #include "scene/names.h"
 
 namespace candela {
-
-// Pictures are at most this wide and high, as in scene files.
-inline constexpr uint32_t MAX_PICTURE_SIZE = 65536;
 
 // The images that --aov can name.
 inline constexpr const char* AOV_NAMES = "albedo,n,p,z,variance,samples";

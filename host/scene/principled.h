@@ -20,8 +20,9 @@ struct Medium {
 // along the tangent, the bitangent and the normal of the surface.
 struct NormalMap {
     Texture texture{};
-    float scale = 1.0f;  // Factor of red and green.
+    float scale = 1.0f;  // Factor of red and green, within +-MAX_NORMAL_SCALE.
 };
+inline constexpr float MAX_NORMAL_SCALE = 1e3f;
 
 // The kinds of values in principled_values.inc, and what holds one.
 enum class ValueKind {

@@ -16,6 +16,9 @@ namespace candela {
 // No texture coordinate is further from 0, so that no transform of one leaves the range of floats.
 inline constexpr double MAX_UV = 1e30;
 
+// No number of such a transform is further from 0, for the same reason.
+inline constexpr double MAX_UV_TRANSFORM = 1e6;
+
 // What becomes of an image file that does not exist.
 enum class IfMissing { white, error };
 

@@ -142,8 +142,7 @@ std::optional<Environment> read_image_light(File& file, const Node& scene) {
     if (levels.size() == 0 || levels[0].size() != FACES) levels.fail("a cube needs six images");
     for (const Node& face : levels[0].elements())
         use_buffer(file, face);
-    constexpr float MOST = 1e30f;
-    const float intensity = number_of(file, light, "intensity", 0.0f, MOST, 1.0f);
+    const float intensity = number_of(file, light, "intensity", 0.0f, MAX_LIGHT, 1.0f);
     return file.contents().keep("sky of " + light.place(), [&] { return sky_of(file, light, intensity); });
 }
 

@@ -74,13 +74,12 @@ LightUnits units_of(const File& file, const GltfOptions& options) {
 }
 
 Light read_light(File& file, const Node& reference, const glm::dmat4& world, LightUnits units) {
-    constexpr float MOST = 1e30f;
     const Node lights = lights_of(file, reference);
     const uint32_t index = reference.integer(0, UINT32_MAX);
     if (index >= lights.size()) reference.fail(concat("there is no light ", index, " among ", lights.size()));
     const Node light = lights[index];
     const vec3 color = color_of(file, light, "color", 1.0f, vec3(1.0f));
-    const double intensity = double(number_of(file, light, "intensity", 0.0f, MOST, 1.0f));
+    const double intensity = double(number_of(file, light, "intensity", 0.0f, MAX_LIGHT, 1.0f));
     if (const auto range = light.find("range"))
         file.warn(*range, "the range of a light is ignored: its intensity falls with the squared distance");
     const dvec3 position = position_of(reference, world);

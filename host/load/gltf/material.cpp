@@ -89,10 +89,10 @@ class MaterialReader {
     }
 
     std::optional<NormalMap> normal_map(const Node& object, std::string_view key) {
-        constexpr float MOST = 1e3f;
         const auto map = texture(object, key, TextureEncoding::linear);
         if (!map) return std::nullopt;
-        return NormalMap{*map, number(object.require(key), "scale", -MOST, MOST, 1.0f)};
+        return NormalMap{*map,
+                         number(object.require(key), "scale", -MAX_NORMAL_SCALE, MAX_NORMAL_SCALE, 1.0f)};
     }
 
     // A colour with alpha, and its texture.
@@ -247,14 +247,13 @@ class MaterialReader {
     }
 
     void read_emission(PrincipledMaterial& m) {
-        constexpr float MOST = 1e30f;
-        const vec3 factor = color_of(file_, node_, "emissiveFactor", MOST, vec3(0.0f));
+        const vec3 factor = color_of(file_, node_, "emissiveFactor", MAX_LIGHT, vec3(0.0f));
         if (factor == vec3(0.0f)) return;
         const auto e = extension("KHR_materials_emissive_strength");
-        float strength = e ? number(*e, "emissiveStrength", 0.0f, MOST, 1.0f) : 1.0f;
+        float strength = e ? number(*e, "emissiveStrength", 0.0f, MAX_LIGHT, 1.0f) : 1.0f;
         if (const auto old = extension("VRMC_materials_hdr_emissiveMultiplier"); old && !e)
-            strength = number(*old, "emissiveMultiplier", 0.0f, MOST, 1.0f);
-        const dvec3 radiance = min(dvec3(factor) * double(strength), dvec3(double(MOST)));
+            strength = number(*old, "emissiveMultiplier", 0.0f, MAX_LIGHT, 1.0f);
+        const dvec3 radiance = min(dvec3(factor) * double(strength), dvec3(double(MAX_LIGHT)));
         m.emission = vec3(radiance);
         m.emission.texture = texture(node_, "emissiveTexture", TextureEncoding::srgb);
     }

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/limits.h"
 #include "base/memory_limit.h"
 #include "base/text.h"
 #include "load/gltf/animation.h"
@@ -295,8 +296,8 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
         type.fail_expected(R"("perspective" or "orthographic")");
     }
     if (aspect > 0.0) {
-        constexpr double MOST = 65536.0;  // Pixels along one side.
-        result.film_size = uvec2(uint32_t(std::clamp(std::round(aspect * LINES), 1.0, MOST)), LINES);
+        result.film_size =
+            uvec2(uint32_t(std::clamp(std::round(aspect * LINES), 1.0, double(MAX_PICTURE_SIZE))), LINES);
     }
     const dvec3 backwards(posed.world[2]);
     const dvec3 up(posed.world[1]);

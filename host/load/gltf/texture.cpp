@@ -43,14 +43,13 @@ void read_texture_sampler(File& file, const Node& sampler, Texture& texture) {
 // The rows of KHR_texture_transform for coordinates with v upwards. The extension's v grows downwards:
 // u' = a u + b v + c, v' = d u + e v + f, where v and v' stand for 1 - v and 1 - v'.
 void read_transform_of_uvs(const Node& transform, Texture& texture) {
-    constexpr double MOST = 1e6;  // So that no coordinate leaves the range of floats.
     dvec3 offset(0.0), scale(1.0);
     const auto pair = [&](std::string_view key, dvec3& value) {
         const auto node = transform.find(key);
         if (!node) return;
         const std::vector<double> numbers = node->numbers(2);
         for (size_t i = 0; i < 2; ++i) {
-            if (std::abs(numbers[i]) > MOST) node->fail_expected("numbers from -1e6 to 1e6");
+            if (std::abs(numbers[i]) > MAX_UV_TRANSFORM) node->fail_expected("numbers from -1e6 to 1e6");
             value[glm::length_t(i)] = numbers[i];
         }
     };

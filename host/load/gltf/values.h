@@ -9,6 +9,9 @@
 
 namespace candela::gltf {
 
+// The most that a light's intensity, or a factor of emission, may be: its products fit into floats.
+inline constexpr float MAX_LIGHT = 1e30f;
+
 // The number of a key, in [lo, hi]; `otherwise` if the key is absent.
 float number_of(File& file, const Node& object, std::string_view key, float lo, float hi, float otherwise);
 

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/limits.h"
 #include "load/json/loader_parts.h"
 #include "load/quote.h"
 #include "scene/names.h"
@@ -16,30 +15,32 @@ namespace candela {
 namespace {
 
 Film read_film(const Node& node) {
-    constexpr uint32_t MOST_PIXELS = 65536;  // Along one side.
-    node.allow_only({"size"});
+    node.allow_only({}, keys_of({"film"}));
+    const SceneKey side = scene_key("film", "size");
     const Node size = node.require("size");
     const std::vector<Node> sides = size.elements();
     if (sides.size() != 2) size.fail_expected("two whole numbers [width, height]");
-    return {uvec2(sides[0].integer(1, MOST_PIXELS), sides[1].integer(1, MOST_PIXELS))};
+    return {uvec2(read_integer(sides[0], side), read_integer(sides[1], side))};
 }
 
 IntegratorSettings read_integrator(const Node& node) {
-    node.allow_only({"spp", "max_depth", "rr_depth", "estimator", "sampler", "terminator", "seed"});
+    node.allow_only({}, keys_of({"integrator"}));
     IntegratorSettings settings;
-    if (const auto spp = node.find("spp")) settings.spp = spp->integer(1, MAX_SPP);
+    if (const auto spp = node.find("spp")) settings.spp = read_integer(*spp, scene_key("integrator", "spp"));
     if (const auto depth = node.find("max_depth")) {
         const bool unlimited = depth->is_string() && depth->string() == "unlimited";
         if (!unlimited && !depth->is_number()) depth->fail_expected("a whole number or \"unlimited\"");
-        if (!unlimited) settings.max_depth = depth->integer(0, MAX_BOUNCES);
+        if (!unlimited) settings.max_depth = read_integer(*depth, scene_key("integrator", "max_depth"));
     }
-    if (const auto depth = node.find("rr_depth")) settings.rr_depth = depth->integer(0, MAX_BOUNCES);
+    if (const auto depth = node.find("rr_depth"))
+        settings.rr_depth = read_integer(*depth, scene_key("integrator", "rr_depth"));
     if (const auto estimator = node.find("estimator"))
         settings.estimator = estimator->choice(ESTIMATOR_NAMES);
     if (const auto sampler = node.find("sampler")) settings.sampler = sampler->choice(SAMPLER_NAMES);
     if (const auto terminator = node.find("terminator"))
         settings.terminator = terminator->choice(TERMINATOR_NAMES);
-    if (const auto seed = node.find("seed")) settings.seed = seed->integer(0, ~0u);
+    if (const auto seed = node.find("seed"))
+        settings.seed = read_integer(*seed, scene_key("integrator", "seed"));
     return settings;
 }
 
@@ -59,8 +60,7 @@ JsonScene scene_of(const json::Document& document, const std::filesystem::path& 
                    const GltfOptions& gltf, const LoadProgress& progress, const FileReach& reach,
                    GltfFiles& files) {
     const Node root(document);
-    root.allow_only({"$schema", "scene", "cameras", "film", "integrator", "materials", "objects", "shapes",
-                     "lights", "environment"});
+    root.allow_only({"$schema"}, keys_of({"scene"}));
 
     Scene scene;
     scene.reach = reach;

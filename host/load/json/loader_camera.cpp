@@ -41,7 +41,7 @@ float read_vertical_fov(const Node& node, const Film& film) {
 }
 
 Lens read_lens(const Node& node) {
-    node.allow_only({"radius", "focal_distance", "blades", "rotation"});
+    node.allow_only({}, keys_of({"lens"}));
     Lens lens;
     lens.radius = float(node.require("radius").non_negative());
     const auto distance = node.find("focal_distance");
@@ -50,7 +50,7 @@ Lens read_lens(const Node& node) {
         node.fail("a lens with a radius above 0 needs \"focal_distance\", the distance at which it is sharp");
     }
     const auto blades = node.find("blades");
-    if (blades) lens.blades = blades->integer(3, MAX_BLADES);
+    if (blades) lens.blades = read_integer(*blades, scene_key("lens", "blades"));
     if (const auto rotation = node.find("rotation")) {
         if (!blades) rotation->fail("rotation turns the polygon of an aperture; it needs \"blades\"");
         lens.rotation = float(rotation->angle());
@@ -75,8 +75,7 @@ double read_ortho_height(const Node& node, const Node& height) {
 
 Camera read_camera(const Node& node, const Film& film) {
     constexpr double PARALLEL = 1e-6;  // Sine of the least angle between view and up.
-    node.allow_only({"position", "look_at", "up", "vertical_fov", "film_size", "focal_length",
-                     "orthographic_height", "lens"});
+    node.allow_only({}, keys_of({"camera"}));
     Camera camera;
     camera.name = node.key();
     const Node look_at = node.require("look_at");

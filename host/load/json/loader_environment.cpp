@@ -36,7 +36,7 @@ void scale(Environment& environment, const Node& node) {
 }  // namespace
 
 Environment read_environment(const Node& node, const std::filesystem::path& folder, Scene& scene) {
-    node.allow_only({"file", "radiance", "rotation", "intensity", "visible"});
+    node.allow_only({}, keys_of({"environment"}));
     const auto file = node.find("file");
     const auto radiance = node.find("radiance");
     if (file.has_value() == radiance.has_value()) {

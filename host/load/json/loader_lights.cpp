@@ -15,7 +15,7 @@ dvec3 direction_of(const Node& node) {
 }
 
 PointLight read_point(const Node& node) {
-    node.allow_only({"type", "name", "position", "intensity"});
+    node.allow_only({"type"}, keys_of({"light", "point"}));
     return {.position = node.require("position").vector(),
             .intensity = vec3(node.require("intensity").rgb())};
 }
@@ -33,8 +33,7 @@ dvec3 spot_direction(const Node& node, dvec3 position) {
 }
 
 SpotLight read_spot(const Node& node) {
-    node.allow_only(
-        {"type", "name", "position", "direction", "look_at", "intensity", "inner_angle", "outer_angle"});
+    node.allow_only({"type"}, keys_of({"light", "spot"}));
     constexpr double WIDEST = 90.0;
     SpotLight light;
     light.position = node.require("position").vector();
@@ -57,7 +56,7 @@ SpotLight read_spot(const Node& node) {
 }
 
 DirectionalLight read_directional(const Node& node) {
-    node.allow_only({"type", "name", "direction", "irradiance"});
+    node.allow_only({"type"}, keys_of({"light", "directional"}));
     return {.direction = direction_of(node.require("direction")),
             .irradiance = vec3(node.require("irradiance").rgb())};
 }

@@ -9,7 +9,7 @@ namespace candela {
 namespace {
 
 MaterialModel read_diffuse(const Node& node, const ImageFolder& images) {
-    node.allow_only({"type", "reflectance"}, MATERIAL_KEYS);
+    node.allow_only({"type"}, keys_of({"diffuse", "material"}));
     return DiffuseMaterial{read_color(node.require("reflectance"), images)};
 }
 
@@ -34,18 +34,19 @@ void check_sum(const Node& place, std::string_view names, const Textured<dvec3>&
 }
 
 MaterialModel read_phong(const Node& node, const ImageFolder& images) {
-    node.allow_only({"type", "diffuse", "specular", "exponent"}, MATERIAL_KEYS);
+    node.allow_only({"type"}, keys_of({"phong", "material"}));
     const auto diffuse = node.find("diffuse");
     const Node specular = node.require("specular");
     const Textured<dvec3> kd = diffuse ? read_reflectance(*diffuse, images) : dvec3(0.0);
     const Textured<dvec3> ks = read_reflectance(specular, images);
     check_sum(specular, "diffuse + specular", kd, ks);
-    return PhongMaterial{as_floats(kd), as_floats(ks),
-                         read_number(node.require("exponent"), images, 0.0f, MAX_PHONG_EXPONENT)};
+    return PhongMaterial{
+        as_floats(kd), as_floats(ks),
+        read_number(node.require("exponent"), images, scene_key("phong", "exponent").range())};
 }
 
 MaterialModel read_mirror(const Node& node, const ImageFolder& images) {
-    node.allow_only({"type", "reflectance"}, MATERIAL_KEYS);
+    node.allow_only({"type"}, keys_of({"mirror", "material"}));
     MirrorMaterial material;
     if (const auto reflectance = node.find("reflectance"))
         material.reflectance = read_color(*reflectance, images);
@@ -53,17 +54,18 @@ MaterialModel read_mirror(const Node& node, const ImageFolder& images) {
 }
 
 MaterialModel read_conductor(const Node& node, const ImageFolder& images) {
-    node.allow_only({"type", "reflectance", "alpha"}, MATERIAL_KEYS);
+    node.allow_only({"type"}, keys_of({"conductor", "material"}));
     const Textured<vec3> reflectance = read_color(node.require("reflectance"), images);
     const Node alpha = node.require("alpha");
     if (alpha.is_number() && alpha.number() == 0.0) {
         alpha.fail(R"(a metal without any roughness is no "conductor"; use the type "mirror")");
     }
-    return ConductorMaterial{reflectance, read_number(alpha, images, MIN_ALPHA, 1.0f)};
+    return ConductorMaterial{reflectance,
+                             read_number(alpha, images, scene_key("conductor", "alpha").range())};
 }
 
 MaterialModel read_diffuse_transmission(const Node& node, const ImageFolder& images) {
-    node.allow_only({"type", "reflectance", "transmittance", "absorption"}, MATERIAL_KEYS);
+    node.allow_only({"type"}, keys_of({"diffuse_transmission", "material"}));
     const Textured<dvec3> reflectance = read_reflectance(node.require("reflectance"), images);
     const Node place = node.require("transmittance");
     const Textured<dvec3> transmittance = read_reflectance(place, images);
@@ -75,7 +77,7 @@ MaterialModel read_diffuse_transmission(const Node& node, const ImageFolder& ima
 
 MaterialModel read_dielectric(const Node& node, const ImageFolder&) {
     constexpr double MOST_CONTRAST = 1e6;  // Its square, which scales radiance, fits into floats.
-    node.allow_only({"type", "ior", "exterior_ior", "fresnel", "absorption", "priority"}, MATERIAL_KEYS);
+    node.allow_only({"type"}, keys_of({"dielectric", "material"}));
     DielectricMaterial material;
     const Node ior = node.require("ior");
     material.ior = float(ior.positive());
@@ -86,7 +88,8 @@ MaterialModel read_dielectric(const Node& node, const ImageFolder&) {
     }
     if (const auto fresnel = node.find("fresnel")) material.fresnel = fresnel->choice(FRESNEL_NAMES);
     if (const auto absorption = node.find("absorption")) material.inside = read_absorption(*absorption);
-    if (const auto priority = node.find("priority")) material.priority = priority->integer(0, MAX_PRIORITY);
+    if (const auto priority = node.find("priority"))
+        material.priority = read_integer(*priority, scene_key("dielectric", "priority"));
     return material;
 }
 
@@ -94,7 +97,7 @@ MaterialModel read_dielectric(const Node& node, const ImageFolder&) {
 
 // By Beer and Lambert, from the share of light that is left after a distance.
 Medium read_absorption(const Node& node) {
-    node.allow_only({"transmittance", "distance"});
+    node.allow_only({}, keys_of({"absorption"}));
     const Node transmittance = node.require("transmittance");
     const dvec3 share = transmittance.reflectance();
     if (glm::any(glm::equal(share, dvec3(0.0)))) {

@@ -79,7 +79,7 @@ void read_whole(const Node& node, ShapeList& shapes, Load load) {
 }  // namespace
 
 void read_obj(const Node& node, ShapeList& shapes) {
-    node.allow_only({"file", "normals"}, SHAPE_KEYS);
+    node.allow_only({"type"}, keys_of({"obj", "shape"}));
     if (!node.find("material") && !node.find("emission")) return read_obj_with_materials(node, shapes);
     read_whole(node, shapes, [&](const Node& file, const std::filesystem::path& path, MeshNormals normals) {
         std::vector<std::string> warnings;
@@ -90,7 +90,7 @@ void read_obj(const Node& node, ShapeList& shapes) {
 }
 
 void read_ply(const Node& node, ShapeList& shapes) {
-    node.allow_only({"file", "normals"}, SHAPE_KEYS);
+    node.allow_only({"type"}, keys_of({"ply", "shape"}));
     read_whole(node, shapes, [&](const Node& file, const std::filesystem::path& path, MeshNormals normals) {
         std::vector<std::string> warnings;
         TriangleMesh mesh = load_ply(path, normals, shapes.scene().reach, warnings);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "load/json/keys.h"
 #include "load/json/loader_textures.h"
 #include "load/json/shape_list.h"
 #include "load/node.h"
@@ -20,10 +21,6 @@ Camera read_camera(const Node& node, const Film& film);
 
 // Reads a material, whose key is its name.
 Material read_material(const Node& node, const ImageFolder& images);
-
-// The keys that every material may have besides those of its model.
-inline constexpr std::array<std::string_view, 4> MATERIAL_KEYS{"normal_map", "bump_map", "opacity",
-                                                               "vertex_colors"};
 
 // Reads the object "absorption": what takes up light inside a surface.
 Medium read_absorption(const Node& node);

@@ -33,7 +33,7 @@ void check_unlit(const Node& node) {
         return std::ranges::find(keys, key) != keys.end();
     };
     for (const Node& member : node.members()) {
-        if (is_in(USED, member.key()) || is_in(MATERIAL_KEYS, member.key())) continue;
+        if (is_in(USED, member.key()) || is_in(keys_of({"material"}), member.key())) continue;
         member.fail(concat(member.key(), " has no effect on an unlit material, which shows its base_color; ",
                            "remove it, or \"unlit\""));
     }
@@ -52,7 +52,7 @@ void read_inside(const Node& node, bool thin, PrincipledMaterial& material) {
     }
     if (!thin) material.inside = absorption ? read_absorption(*absorption) : Medium{};
     if (const auto priority = node.find("priority")) {
-        material.priority = priority->integer(0, MAX_PRIORITY);
+        material.priority = read_integer(*priority, scene_key("dielectric", "priority"));
         if (thin) {
             priority->fail(
                 "priority ranks the medium inside, and a thin wall has none; add \"absorption\" or "
@@ -94,7 +94,7 @@ float read_index(const Node& node, Range range) {
 // The thickness where an image is 1 must be stated: the factor of other values, 1, would be one nanometre.
 Textured<float> read_thickness(const Node& node, const ImageFolder& images, Range range) {
     if (node.is_object()) node.require("factor");
-    return read_number(node, images, range.least, range.most);
+    return read_number(node, images, range);
 }
 
 template <ValueKind kind>
@@ -102,7 +102,7 @@ typename ValueOf<kind>::Type read_value(const Node& node, const ImageFolder& ima
     using enum ValueKind;
     if constexpr (kind == color) return read_color(node, images);
     if constexpr (kind == radiance) return read_radiance(node, images);
-    if constexpr (kind == weight) return read_number(node, images, range.least, range.most);
+    if constexpr (kind == weight) return read_number(node, images, range);
     if constexpr (kind == thickness) return read_thickness(node, images, range);
     if constexpr (kind == number) return node.number(range.least, range.most);
     if constexpr (kind == index) return read_index(node, range);
@@ -141,7 +141,7 @@ MaterialModel read_principled(const Node& node, const ImageFolder& images) {
 #undef VALUE
 #undef KEY
         },
-        MATERIAL_KEYS);
+        keys_of({"material"}));
     PrincipledMaterial material;
     if (const auto unlit = node.find("unlit"); unlit && unlit->boolean()) check_unlit(node);
     check_companions(node);
@@ -152,24 +152,24 @@ MaterialModel read_principled(const Node& node, const ImageFolder& images) {
 }
 
 MaterialModel read_rough_conductor(const Node& node, const ImageFolder& images) {
-    node.allow_only({"type", "reflectance", "roughness", "anisotropy", "anisotropy_rotation"}, MATERIAL_KEYS);
+    node.allow_only({"type"}, keys_of({"rough_conductor", "material"}));
     check_companions(node);
     PrincipledMaterial material;
     material.metalness = 1.0f;
     read_values(node, images, material);
     material.base_color = read_color(node.require("reflectance"), images);
-    material.roughness = read_number(node.require("roughness"), images, 0.0f, 1.0f);
+    material.roughness = read_number(node.require("roughness"), images, PRINCIPLED_RANGES.roughness);
     return material;
 }
 
 // Like the type "dielectric", it encloses a medium unless it says otherwise.
 MaterialModel read_rough_dielectric(const Node& node, const ImageFolder& images) {
-    node.allow_only({"type", "ior", "roughness", "absorption", "thin_walled", "priority"}, MATERIAL_KEYS);
+    node.allow_only({"type"}, keys_of({"rough_dielectric", "material"}));
     PrincipledMaterial material;
     material.base_color = vec3(1.0f);
     material.transmission = 1.0f;
-    material.ior = node.require("ior").number(PRINCIPLED_RANGES.ior.least, PRINCIPLED_RANGES.ior.most);
-    material.roughness = read_number(node.require("roughness"), images, 0.0f, 1.0f);
+    material.ior = read_number(node.require("ior"), scene_key("rough_dielectric", "ior"));
+    material.roughness = read_number(node.require("roughness"), images, PRINCIPLED_RANGES.roughness);
     read_inside(node, false, material);
     return material;
 }

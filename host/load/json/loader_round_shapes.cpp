@@ -43,7 +43,7 @@ void check_breadth(const Node& node, const Disk& disk) {
 }  // namespace
 
 void read_sphere(const Node& node, ShapeList& shapes) {
-    node.allow_only({"center", "radius"}, SHAPE_KEYS);
+    node.allow_only({"type"}, keys_of({"sphere", "shape"}));
     const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     const std::optional<double> scale = transform.uniform_scale();
@@ -61,7 +61,7 @@ void read_sphere(const Node& node, ShapeList& shapes) {
 }
 
 void read_disk(const Node& node, ShapeList& shapes) {
-    node.allow_only({"center", "normal", "radius"}, SHAPE_KEYS);
+    node.allow_only({"type"}, keys_of({"disk", "shape"}));
     const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     const dvec3 center = transform.point(center_of(node));

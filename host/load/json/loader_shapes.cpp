@@ -36,7 +36,7 @@ void check_quad(const Node& node, const Quad& quad) {
 }
 
 void read_quad(const Node& node, ShapeList& shapes) {
-    node.allow_only({"vertices"}, SHAPE_KEYS);
+    node.allow_only({"type"}, keys_of({"quad", "shape"}));
     const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     const Node vertices = node.require("vertices");
@@ -58,7 +58,7 @@ void read_box(const Node& node, ShapeList& shapes) {
                                      {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     // Which of a side's corners is at the lower left of an image that stands upright, seen from outside.
     constexpr uint8_t LOWER_LEFT[6] = {0, 3, 0, 1, 3, 0};
-    node.allow_only({"min", "max"}, SHAPE_KEYS);
+    node.allow_only({"type"}, keys_of({"box", "shape"}));
     const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     const dvec3 lo = node.require("min").vector();
@@ -115,7 +115,7 @@ std::vector<vec4> read_colors(const Node& node, size_t positions) {
 }
 
 void read_mesh(const Node& node, ShapeList& shapes) {
-    node.allow_only({"positions", "triangles", "normals", "uvs", "uvs1", "colors"}, SHAPE_KEYS);
+    node.allow_only({"type"}, keys_of({"mesh", "shape"}));
     const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     TriangleMesh mesh;

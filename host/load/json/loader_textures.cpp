@@ -4,16 +4,12 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "load/json/keys.h"
 #include "scene/images.h"
 #include "scene/names.h"
 
 namespace candela {
 namespace {
-
-constexpr std::array<std::string_view, 9> TEXTURE_KEYS{
-    "image", "encoding", "wrap", "filter", "channel", "uv_set", "uv_rotation", "uv_offset", "uv_scale"};
-
-constexpr std::array<std::string_view, 1> FACTOR{"factor"};
 
 // Two numbers that floats can hold.
 glm::dvec2 pair_of(const Node& node) {
@@ -35,9 +31,9 @@ void read_wrap(const Node& node, Texture& texture) {
 
 // uv_scale, then uv_rotation, then uv_offset.
 void read_uv_transform(const Node& node, Texture& texture) {
-    constexpr double MOST = 1e6;  // So that no coordinate leaves the range of floats.
     const auto checked = [&](const Node& value, glm::dvec2 v) {
-        if (std::abs(v.x) > MOST || std::abs(v.y) > MOST) value.fail_expected("numbers from -1e6 to 1e6");
+        if (std::abs(v.x) > MAX_UV_TRANSFORM || std::abs(v.y) > MAX_UV_TRANSFORM)
+            value.fail_expected("numbers from -1e6 to 1e6");
         return v;
     };
     glm::dvec2 scale(1.0), offset(0.0);
@@ -49,12 +45,6 @@ void read_uv_transform(const Node& node, Texture& texture) {
     const double c = std::cos(angle), s = std::sin(angle);
     texture.rows[0] = vec3(dvec3(c * scale.x, -s * scale.y, offset.x));
     texture.rows[1] = vec3(dvec3(s * scale.x, c * scale.y, offset.y));
-}
-
-std::vector<std::string_view> keys_with(std::span<const std::string_view> more_keys) {
-    std::vector<std::string_view> keys(TEXTURE_KEYS.begin(), TEXTURE_KEYS.end());
-    keys.insert(keys.end(), more_keys.begin(), more_keys.end());
-    return keys;
 }
 
 }  // namespace
@@ -70,8 +60,8 @@ std::filesystem::path find_file(const Node& name, const std::filesystem::path& f
 }
 
 Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncoding encoding,
-                     std::span<const std::string_view> more_keys) {
-    node.allow_only({}, keys_with(more_keys));
+                     std::string_view more_keys) {
+    node.allow_only({}, keys_of({"texture", more_keys}));
     const Node image = node.require("image");
     Texture texture{.encoding = encoding};
     texture.image = add_image(folder.scene, find_file(image, folder.path, folder.scene.reach), image.place());
@@ -79,7 +69,8 @@ Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncodin
     if (const auto value = node.find("wrap")) read_wrap(*value, texture);
     if (const auto value = node.find("filter")) texture.filter = value->choice(FILTER_NAMES);
     if (const auto value = node.find("channel")) texture.channel = value->choice(CHANNEL_NAMES);
-    if (const auto value = node.find("uv_set")) texture.uv_set = value->integer(0, 1);
+    if (const auto value = node.find("uv_set"))
+        texture.uv_set = read_integer(*value, scene_key("texture", "uv_set"));
     read_uv_transform(node, texture);
     return texture;
 }
@@ -88,36 +79,34 @@ Textured<vec3> read_radiance(const Node& node, const ImageFolder& folder) {
     if (!node.is_object()) return vec3(node.rgb());
     const auto factor = node.find("factor");
     return {factor ? vec3(factor->rgb()) : vec3(1.0f),
-            read_texture(node, folder, TextureEncoding::srgb, FACTOR)};
+            read_texture(node, folder, TextureEncoding::srgb, "textured")};
 }
 
 NormalMap read_normal_map(const Node& node, const ImageFolder& folder) {
-    constexpr std::array<std::string_view, 1> SCALE{"scale"};
-    constexpr float MOST = 1e3f;
-    NormalMap map{.texture = read_texture(node, folder, TextureEncoding::linear, SCALE)};
-    if (const auto scale = node.find("scale")) map.scale = scale->number(-MOST, MOST);
+    NormalMap map{.texture = read_texture(node, folder, TextureEncoding::linear, "normal_map")};
+    if (const auto scale = node.find("scale"))
+        map.scale = read_number(*scale, scene_key("normal_map", "scale"));
     return map;
 }
 
 BumpMap read_bump_map(const Node& node, const ImageFolder& folder) {
-    constexpr std::array<std::string_view, 1> SCALE{"scale"};
-    BumpMap map{.texture = read_texture(node, folder, TextureEncoding::linear, SCALE)};
+    BumpMap map{.texture = read_texture(node, folder, TextureEncoding::linear, "bump_map")};
     map.scale = float(node.require("scale").number());
     return map;
 }
 
 Opacity read_opacity(const Node& node, const ImageFolder& folder) {
-    constexpr std::array<std::string_view, 2> MORE{"factor", "cutoff"};
     Opacity opacity;
     if (!node.is_object()) {
-        opacity.value = node.number(0.0f, 1.0f);
+        opacity.value = read_number(node, scene_key("opacity", "factor"));
         return opacity;
     }
     const auto factor = node.find("factor");
-    Texture texture = read_texture(node, folder, TextureEncoding::linear, MORE);
+    Texture texture = read_texture(node, folder, TextureEncoding::linear, "opacity");
     if (!node.find("channel")) texture.channel = ALPHA;
-    opacity.value = {factor ? factor->number(0.0f, 1.0f) : 1.0f, texture};
-    if (const auto cutoff = node.find("cutoff")) opacity.cutoff = cutoff->number(0.0f, 1.0f);
+    opacity.value = {factor ? read_number(*factor, scene_key("opacity", "factor")) : 1.0f, texture};
+    if (const auto cutoff = node.find("cutoff"))
+        opacity.cutoff = read_number(*cutoff, scene_key("opacity", "cutoff"));
     return opacity;
 }
 
@@ -125,7 +114,7 @@ Textured<dvec3> read_reflectance(const Node& node, const ImageFolder& folder) {
     if (!node.is_object()) return node.reflectance();
     const auto factor = node.find("factor");
     return {factor ? factor->reflectance() : dvec3(1.0),
-            read_texture(node, folder, TextureEncoding::srgb, FACTOR)};
+            read_texture(node, folder, TextureEncoding::srgb, "textured")};
 }
 
 Textured<vec3> as_floats(const Textured<dvec3>& color) {
@@ -138,11 +127,11 @@ Textured<vec3> read_color(const Node& node, const ImageFolder& folder) {
     return as_floats(read_reflectance(node, folder));
 }
 
-Textured<float> read_number(const Node& node, const ImageFolder& folder, float lo, float hi) {
-    if (!node.is_object()) return node.number(lo, hi);
+Textured<float> read_number(const Node& node, const ImageFolder& folder, Range range) {
+    if (!node.is_object()) return node.number(range.least, range.most);
     const auto factor = node.find("factor");
-    return {factor ? factor->number(0.0f, hi) : 1.0f,
-            read_texture(node, folder, TextureEncoding::linear, FACTOR)};
+    return {factor ? factor->number(0.0f, range.most) : 1.0f,
+            read_texture(node, folder, TextureEncoding::linear, "textured")};
 }
 
 }  // namespace candela

@@ -18,10 +18,10 @@ struct ImageFolder {
     Scene& scene;                // Gets the images.
 };
 
-// Reads a texture; `more_keys` are allowed besides its own. Its encoding is `encoding` unless it says
-// otherwise.
+// Reads a texture, which may have the keys of the object `more_keys` in scene_keys.inc besides its own. Its
+// encoding is `encoding` unless it says otherwise.
 Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncoding encoding,
-                     std::span<const std::string_view> more_keys = {});
+                     std::string_view more_keys = {});
 
 // A colour, each channel in [0, 1], or a texture with such a factor (1 if it has none).
 Textured<dvec3> read_reflectance(const Node& node, const ImageFolder& folder);
@@ -31,8 +31,8 @@ Textured<vec3> as_floats(const Textured<dvec3>& color);
 // A reflectance as floats.
 Textured<vec3> read_color(const Node& node, const ImageFolder& folder);
 
-// A number in [lo, hi], or a texture with such a factor (1 if it has none).
-Textured<float> read_number(const Node& node, const ImageFolder& folder, float lo, float hi);
+// A number in `range`, or a texture with such a factor (1 if it has none).
+Textured<float> read_number(const Node& node, const ImageFolder& folder, Range range);
 
 // A colour, no channel below 0, or a texture with such a factor.
 Textured<vec3> read_radiance(const Node& node, const ImageFolder& folder);

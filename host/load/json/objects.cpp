@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include "load/json/keys.h"
+
 namespace candela {
 namespace {
 
@@ -58,7 +60,7 @@ std::vector<std::pair<Node, Transform>> transforms_of(const Node& node) {
 }  // namespace
 
 void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes) {
-    node.allow_only({"object", "transforms"}, SHAPE_KEYS);
+    node.allow_only({"type"}, keys_of({"instance", "shape"}));
     const Node name = node.require("object");
     const auto object = objects.find(name.string());
     if (object == objects.end()) {

@@ -17,10 +17,6 @@
 
 namespace candela {
 
-// The keys that every shape may have, for Node::allow_only.
-inline constexpr std::array<std::string_view, 5> SHAPE_KEYS{"type", "material", "emission", "two_sided",
-                                                            "transform"};
-
 // The shapes of a scene while they are read.
 class ShapeList : public SceneBuilder {
   public:

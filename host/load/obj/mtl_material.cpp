@@ -133,9 +133,8 @@ class Converter {
     }
 
     float ior() const {
-        constexpr double MOST = 1e6;
         const double ni = s_.ni.value_or(COMMON_GLASS);
-        return float(ni > 1.0 ? std::min(ni, MOST) : COMMON_GLASS);
+        return float(ni > 1.0 ? std::min(ni, double(PRINCIPLED_RANGES.ior.most)) : COMMON_GLASS);
     }
 
     Model principled() {

@@ -10,12 +10,10 @@
 #include "base/text.h"
 #include "load/quote.h"
 #include "load/text_lines.h"
+#include "scene/principled.h"
 
 namespace candela {
 namespace {
-
-constexpr double MOST_TRANSFORM = 1e6;  // So that no coordinate leaves the range of floats.
-constexpr double MOST_MULTIPLIER = 1e3;
 
 constexpr std::array<std::string_view, 13> OPTIONS{"-s",      "-o",      "-clamp", "-imfchan", "-bm",
                                                    "-mm",     "-t",      "-boost", "-texres",  "-type",
@@ -89,7 +87,7 @@ class OptionReader {
         } else if (option_ == "-clamp") {
             texture.wrap_u = texture.wrap_v = is_on() ? Wrap::clamp : Wrap::repeat;
         } else if (option_ == "-bm") {
-            result_.multiplier = number(MOST_MULTIPLIER);
+            result_.multiplier = number(double(MAX_NORMAL_SCALE));
         } else if (option_ == "-imfchan") {
             read_channel();
         } else {
@@ -101,14 +99,14 @@ class OptionReader {
     void read_ignored() {
         bool changes = true;
         if (option_ == "-mm") {
-            const float base = number(MOST_TRANSFORM), gain = number(MOST_TRANSFORM);
+            const float base = number(MAX_UV_TRANSFORM), gain = number(MAX_UV_TRANSFORM);
             changes = base != 0.0f || gain != 1.0f;
         } else if (option_ == "-t") {
             changes = up_to_three(0.0f) != vec3(0.0f);
         } else if (option_ == "-boost") {
-            changes = number(MOST_TRANSFORM) != 0.0f;
+            changes = number(MAX_UV_TRANSFORM) != 0.0f;
         } else if (option_ == "-texres") {
-            number(MOST_TRANSFORM);
+            number(MAX_UV_TRANSFORM);
         } else if (option_ == "-type") {
             next_word(rest_);
         } else if (option_ == "-blendu" || option_ == "-blendv") {
@@ -137,10 +135,10 @@ class OptionReader {
 
     // One to three numbers; those that are absent are `other`.
     vec3 up_to_three(float other) {
-        vec3 numbers(number(MOST_TRANSFORM), other, other);
+        vec3 numbers(number(MAX_UV_TRANSFORM), other, other);
         for (glm::length_t i = 1; i < 3; ++i) {
             std::string_view after = rest_;
-            const auto value = read_number(next_word(after), MOST_TRANSFORM);
+            const auto value = read_number(next_word(after), MAX_UV_TRANSFORM);
             if (!value) break;
             numbers[i] = *value;
             rest_ = after;

@@ -300,6 +300,12 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
     EXPECT_EQ(build_gpu_scene(scene_of_shapes({})).materials_present, 1u << MATERIAL_DIFFUSE);
 }
 
+// Shaders clamp what images give to the limits that loaders check.
+TEST(GpuScene, LimitsOfMaterialsAreThoseOfTheShaders) {
+    EXPECT_EQ(LEAST_ALPHA, MIN_ALPHA);
+    EXPECT_EQ(GREATEST_EXPONENT, MAX_PHONG_EXPONENT);
+}
+
 // Behind the records of all materials, those of principled ones, each with the images that it takes values
 // from: textures that differ in nothing but the channel are one.
 TEST(GpuScene, PrincipledMaterialsHaveRecordsBehindTheOthers) {

@@ -82,7 +82,7 @@ TEST(SceneShapes, CheckSpheres) {
                         "\"radius\": expected a number of at least 1.2e-38, found 1e-40");
     folder.expect_error(sphere("\"center\": @[0, 0]"), "\"center\": expected three numbers, found [0, 0]");
     folder.expect_error(sphere("@\"centre\": [0, 0, 0]"),
-                        "unknown key \"centre\" (did you mean \"center\"? known: center, radius, type, "
+                        "unknown key \"centre\" (did you mean \"center\"? known: type, center, radius, "
                         "material, emission, two_sided, transform)");
     const std::string uneven =
         "a sphere may only be moved, turned, mirrored and scaled evenly; use a mesh instead";
