@@ -42,8 +42,13 @@ TEST(EnvironmentMap, TexelsFillTheSphere) {
         const std::vector<vec3> ones(size_t(size.x) * size.y, vec3(1.0f));
         const EnvironmentMap map = build_environment_map({.size = size, .radiance = ones});
         EXPECT_NEAR(map.irradiance, 4.0 * std::numbers::pi, 4.0 * std::numbers::pi * 0x1p-22);
-        for (const EnvironmentTexel& texel : map.texels)
-            ASSERT_NEAR(texel.pdf, 1.0 / (4.0 * std::numbers::pi), 0x1p-24);
+        for (size_t i = 0; i < map.texels.size(); ++i) {
+            // Both the row and the column are chosen by whole numbers of 2^32 words.
+            const double angle = solid_angle(size, uint32_t(i) / size.x);
+            const double row = angle * size.x / (4.0 * std::numbers::pi), column = 1.0 / size.x;
+            ASSERT_NEAR(map.texels[i].pdf, 1.0 / (4.0 * std::numbers::pi),
+                        0x1p-24 + 0x1p-32 * (row + column) / angle);
+        }
     }
 }
 
@@ -64,7 +69,8 @@ TEST(EnvironmentMap, TheDensityIsProportionalToLuminanceAndIntegratesToOne) {
     for (size_t i = 0; i < map.texels.size(); ++i) {
         const double pdf = luminance_of(environment.radiance[i]) / irradiance;
         EXPECT_EQ(map.texels[i].radiance, environment.radiance[i]);
-        ASSERT_NEAR(map.texels[i].pdf, pdf, pdf * 0x1p-21);
+        const double words = 0x1p-31 / solid_angle(size, uint32_t(i) / size.x);  // Of a row and of a column.
+        ASSERT_NEAR(map.texels[i].pdf, pdf, pdf * 0x1p-21 + words);
     }
 }
 
