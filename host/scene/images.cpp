@@ -84,7 +84,7 @@ void for_each_srgb_texture(Scene& scene, const Visit& visit) {
     }
 }
 
-// Lets textures that take an image with a gamma of its own for sRGB look up a converted copy.
+// Lets textures that treat an image with its own gamma as sRGB look up a converted copy.
 void convert_gammas(Scene& scene) {
     std::map<uint32_t, uint32_t> copies;
     for_each_srgb_texture(scene, [&](Texture& texture) {
@@ -100,13 +100,13 @@ void convert_gammas(Scene& scene) {
     });
 }
 
-// Of the normals of any bumpy surface, the mean points away from it.
+// The mean normal of a bumpy surface points away from it.
 bool points_up(vec4 mean) {
     constexpr float FAR = 0.2f;
     return mean.z > 0.6f && std::abs(mean.x - 0.5f) < FAR && std::abs(mean.y - 0.5f) < FAR;
 }
 
-// Whether the name of an image says where it is: within the file that names it.
+// Whether an image is within the file that names it, as its name then says.
 bool is_within(const ImageFile& file) {
     return file.place.starts_with(file.path.string());
 }
@@ -139,7 +139,7 @@ class MeanCodes {
     std::map<uint32_t, vec4> means_;
 };
 
-// `what` is what the messages call the map.
+// Messages call the map `what`.
 void check_normal_map(Scene& scene, MeanCodes& means, const Material& material, const NormalMap& map,
                       const char* what) {
     const ImageFile& file = scene.images[map.texture.image];
@@ -153,7 +153,7 @@ void check_normal_map(Scene& scene, MeanCodes& means, const Material& material, 
 
 // Whether an image of that mean is blue as a normal map in tangent space is.
 bool is_blue(vec4 mean) {
-    constexpr float LEAST = 0.15f;  // That of a map whose slopes are all of 70 degrees.
+    constexpr float LEAST = 0.15f;  // The value for a map with slopes of 70 degrees everywhere.
     return points_up(mean) && mean.z - std::max(mean.x, mean.y) > LEAST;
 }
 
@@ -173,7 +173,8 @@ void check_bump_map(Scene& scene, MeanCodes& means, Material& material) {
     scene.warnings.push_back(what + " and is read as one; to say so, name it as norm");
 }
 
-// Whether an image that may be missing is, or is out of reach: nothing shall tell whether that one exists.
+// Whether an image that may be missing is missing or out of reach. Nothing may reveal whether an image out of
+// reach exists.
 bool is_lost(const Scene& scene, const ImageFile& file, const ImageOptions& options) {
     if (std::max(file.if_missing, options.if_missing) == IfMissing::error) return false;
     if (file.image || !file.bytes.empty()) return false;
@@ -182,7 +183,7 @@ bool is_lost(const Scene& scene, const ImageFile& file, const ImageOptions& opti
     return std::filesystem::status(file.path, ignored).type() == std::filesystem::file_type::not_found;
 }
 
-// Lets materials do without lost images, which become a white texel.
+// Replaces lost images by a white texel, and removes them from materials.
 void drop_lost_images(Scene& scene, const std::vector<bool>& lost) {
     const auto drop = [&](auto& texture) {
         if (texture && lost[texture->image]) texture.reset();
@@ -210,7 +211,7 @@ void drop_lost_images(Scene& scene, const std::vector<bool>& lost) {
     }
 }
 
-// Drops images that may be missing and are, with one warning, and another one for those out of reach.
+// Drops missing images that may be missing, with one warning, and images out of reach, with another.
 void drop_missing_images(Scene& scene, const ImageOptions& options) {
     constexpr size_t MOST_LISTED = 10;
     std::vector<bool> lost(scene.images.size());
@@ -238,13 +239,13 @@ void drop_missing_images(Scene& scene, const ImageOptions& options) {
     if (count + outside > 0) drop_lost_images(scene, lost);
     if (outside > 0) {
         const std::string times = outside == 1 ? "" : concat(" (", outside, " times)");
-        scene.warnings.push_back(refusal + "; white takes its place" + times);
+        scene.warnings.push_back(refusal + "; white is used instead" + times);
     }
     if (count == 0) return;
     if (count > MOST_LISTED) names += ", ...";
     const std::string which = count == 1
-                                  ? concat("the image ", names, " does not exist; white takes its place")
-                                  : concat(count, " images do not exist; white takes their place: ", names);
+                                  ? concat("the image ", names, " does not exist; white is used instead")
+                                  : concat(count, " images do not exist; white is used instead: ", names);
     scene.warnings.push_back(place + ": " + which);
 }
 
@@ -295,7 +296,7 @@ uint32_t add_image_bytes(Scene& scene, const std::string& name, std::string_view
                    .place = place,
                    .image = {}};
     const auto known = scene.image_indices.find(file.real_path.string());
-    // Of other bytes that have the same hash.
+    // Other bytes with the same hash.
     if (known != scene.image_indices.end() && scene.images[known->second].bytes != bytes)
         file.real_path = name;
     return add_image_file(scene, std::move(file));
@@ -319,7 +320,7 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
         ImageFile& file = scene.images[i];
         if (file.image) return;
         const auto load = [&] {
-            kept[i]->warnings.clear();  // Of an attempt that failed.
+            kept[i]->warnings.clear();  // From an attempt that failed.
             if (file.bytes.empty()) file.bytes = scene.reach.read(file.path);
             TexelLimits limits;
             if (file.of_gltf) limits.formats = "PNG, JPEG or WebP";

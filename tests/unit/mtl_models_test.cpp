@@ -159,7 +159,7 @@ TEST_F(MtlModels, PbrStatementsMayComeWithTransmission) {
     EXPECT_EQ(model<PrincipledMaterial>(text).transmission, 0.5f);
     EXPECT_TRUE(model<PrincipledMaterial>(text).inside);
     expect_warning(text,
-                   "Tf beside Pr or Pm is read as a share of 0.5 of the light that passes, as through glass");
+                   "Tf beside Pr or Pm is read as a fraction 0.5 of the light that passes, as through glass");
     for (const char* opaque : {"Tf 1 1 1\nTr 0\nNi 1.5", "Tf 0 0 0\nNi 1.5", "Tf 1 1 1\nNi 1", "Tf 1 1 1",
                                "Tf 1 1 1\nNi 1.5\nillum 4"}) {
         SCOPED_TRACE(opaque);
@@ -236,13 +236,13 @@ TEST_F(MtlModels, OpacityIsDOrElseWhatTrLeaves) {
     EXPECT_EQ(opacity("illum 3\nd 0.25"), 0.25f);
     EXPECT_EQ(opacity("illum 7\nd 0.25"), 1.0f);  // It is glass, which lets light through.
     EXPECT_EQ(opacity("illum 7\nKd 0\nd 7"), 1.0f);
-    for (const char* text : {"d 0.5\nTr 0", "Tr 1\nd 0.5"})  // d counts: it is in the specification.
+    for (const char* text : {"d 0.5\nTr 0", "Tr 1\nd 0.5"})  // d is used: it is in the specification.
         EXPECT_EQ(opacity(text), 0.5f);
 }
 
 TEST_F(MtlModels, WarnsOfOddOpacity) {
-    expect_warning("Kd 1\nd 0", "nothing is seen of it: d is 0, or Tr is 1");
-    expect_warning("Kd 1\nTr 1", "nothing is seen of it: d is 0, or Tr is 1");
+    expect_warning("Kd 1\nd 0", "it is invisible: d is 0, or Tr is 1");
+    expect_warning("Kd 1\nTr 1", "it is invisible: d is 0, or Tr is 1");
     expect_warning("Kd 1\nd 1.5", "d 1.5 is not from 0 to 1; the material is taken to be opaque");
     expect_warning("Kd 1\nTr -3", "Tr -3 is not from 0 to 1; the material is taken to be opaque");
     EXPECT_EQ(material("d 1.5").material.opacity.value, 1.0f);

@@ -61,7 +61,7 @@ class MtlTextures : public testing::Test {
 
 constexpr TextureEncoding SRGB = TextureEncoding::srgb;
 constexpr TextureEncoding LINEAR = TextureEncoding::linear;
-const std::string UNUSED = " (their materials have no use for them: illum or Pm says so, or a factor of 0)";
+const std::string UNUSED = " (their materials do not use them, because of illum, Pm or a factor of 0)";
 
 TEST_F(MtlTextures, ColoursAreMultipliedByTheirStatement) {
     const auto plain = model<DiffuseMaterial>("map_Kd a.png").reflectance;
