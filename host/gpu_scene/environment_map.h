@@ -1,4 +1,4 @@
-// Environment -> the records from which the device looks it up and samples it.
+// Environment -> the records with which the device looks it up and samples it.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ struct EnvironmentMap {
     std::vector<EnvironmentTexel> texels;
     std::vector<AliasEntry> alias;  // Chooses a texel; empty for a black environment.
     double irradiance = 0.0;        // Luminance, integrated over the whole sphere [W/m^2].
-    bool even = false;              // The same radiance from everywhere.
+    bool even = false;              // Radiance is the same in all directions.
 };
 
 EnvironmentMap build_environment_map(const Environment& environment);

@@ -201,7 +201,7 @@ TEST(WarningSummary, HasABound) {
     for (const std::string& line : summary)
         bytes += line.size();
     EXPECT_LE(bytes, 65536u + 100);
-    EXPECT_EQ(summary.size(), 22u);  // Of 3000 bytes each, 21 fit into 64 KiB.
+    EXPECT_EQ(summary.size(), 22u);  // 21 messages of 3000 bytes fit into 64 KiB.
     EXPECT_EQ(summary.back(), "4980 more warnings");
 }
 

@@ -1,4 +1,4 @@
-// Images made smaller: means over areas, of light where codes stand for it.
+// Images made smaller: means over areas, of light if the image is encoded.
 #include "base/shrink_image.h"
 
 #include <cmath>
