@@ -59,7 +59,8 @@ void RenderOptions::add_to(CLI::App& app) {
               "Render only the samples A to B-1, as a part for candela merge")
         ->type_name("A..B")
         ->excludes(app.get_option("--spp"));
-    app.add_flag("--adaptive", adaptive, "Put samples where the error is; --spp is their mean, and even")
+    app.add_flag("--adaptive", adaptive,
+                 "Put samples where the error is; --spp is their mean, and must be even")
         ->excludes(app.get_option("--samples"));
     add_checkpoint_options(app);
     add_message_options(app);
@@ -136,7 +137,7 @@ void RenderOptions::add_sampling_options(CLI::App& app) {
               "Samples per pixel")
         ->type_name("N");
     add_value(app, "--seed", seed, parse_seed, "a whole number from 0 to 4294967295",
-              "Seed of the random numbers; each has other noise")
+              "Seed of the random numbers; each gives different noise")
         ->type_name("S");
     const std::string depths = "a whole number from 0 to " + std::to_string(DEPTH_SAFETY_LIMIT);
     add_value(app, "--max-depth", max_depth, parse_max_depth, depths + ", or unlimited",
@@ -147,9 +148,9 @@ void RenderOptions::add_sampling_options(CLI::App& app) {
     add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
                "How direct light is sampled; mis has the least noise, bsdf misses lights without a surface");
     add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
-    add_choice(
-        app, "--terminator", terminator, TERMINATOR_NAMES,
-        "Where light ends on meshes with smooth normals: smooth as they are, or flat as their triangles");
+    add_choice(app, "--terminator", terminator, TERMINATOR_NAMES,
+               "Where light ends on meshes with smooth normals: along the smooth surface, or along the flat "
+               "triangles");
 }
 
 void RenderOptions::add_message_options(CLI::App& app) {

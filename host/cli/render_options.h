@@ -34,7 +34,7 @@ enum class ProgressStyle { automatic, json, none };
 inline constexpr Choices<ProgressStyle, 3> PROGRESS_NAMES{
     {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}}};
 
-// Which images are written, and how.
+// The images that are written, and their formats.
 struct ImageOutputs {
     std::vector<std::string> files;
     AovSelection aovs{true, true, true, true, true, true};  // In an EXR.
@@ -42,7 +42,7 @@ struct ImageOutputs {
     double exposure = 0.0;                                  // PNG [EV].
     Tonemap tonemap = Tonemap::linear;                      // PNG.
 
-    // The images besides R G B A that will be written: those selected if there is an EXR among the files,
+    // The images besides R G B A that will be written: those selected, if one of the files is an EXR;
     // otherwise none.
     AovSelection written_aovs() const;
 };
@@ -60,7 +60,7 @@ inline constexpr const char* SCENE_FILES = "Scene file (.json, .gltf, .glb, .obj
 struct LoadingOptions {
     std::optional<uint32_t> texture_limit;  // Texels along a side of an image.
     IfMissing missing_images = IfMissing::white;
-    std::vector<std::string> folders;      // From which files may be read besides the scene's.
+    std::vector<std::string> folders;      // Files may be read from these, too.
     bool any_folder = false;               // Whether they may be read from anywhere.
     std::optional<uint64_t> memory_limit;  // Bytes; none: default_memory_limit().
     GltfOptions gltf;
@@ -100,17 +100,17 @@ struct RenderOptions {
 
     // Declares all options on `app`, which fills them in when it parses; this object must not move.
     void add_to(CLI::App& app);
-    // Declares only those that say what is computed and where: picture, sampling, device.
+    // Declares only the options of what is computed and where: picture, sampling, device.
     void add_rendering_to(CLI::App& app);
-    // Declares only those that say which images are written, and how: outputs, 16 bits, development.
+    // Declares only the options of images and how they are written: outputs, 16 bits, development.
     void add_images_to(CLI::App& app);
-    // Declares only those that say how radiance becomes a picture: exposure and tone map.
+    // Declares only the options that turn radiance into a picture: exposure and tone map.
     void add_development_to(CLI::App& app);
     // Declares --camera.
     void add_camera_to(CLI::App& app);
 
-    // Joins them with what the scene proposes. Throws Error (usage) for a camera that the scene lacks, a crop
-    // that reaches beyond the picture, or --adaptive with an odd number of samples.
+    // Combines them with what the scene proposes. Throws Error (usage) for a camera that the scene lacks, a
+    // crop that reaches beyond the picture, or --adaptive with an odd number of samples.
     RenderJob job(const Scene& scene) const;
     // The camera of that name, by default the scene's first. Throws Error (usage) that lists the names if
     // there is none.
