@@ -27,7 +27,7 @@ Scene scene_of(const Parts& parts) {
     for (const float power : parts.lamps)
         add_square(float(scene.shapes.size()), Emission{vec3(power), false});
     if (parts.lamps.empty()) add_square(0.0f, std::nullopt);
-    const double radius_squared =  // Of the sphere around the squares' box.
+    const double radius_squared =  // For the sphere around the squares' box.
         0.25 * (2.0 + std::pow(double(scene.shapes.size()) - 1.0, 2));
     for (const float power : parts.suns)
         scene.lights.push_back({"", DirectionalLight{.irradiance = vec3(float(power / radius_squared))}});
