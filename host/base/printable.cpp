@@ -36,9 +36,9 @@ constexpr std::array<Range, 21> ESCAPED{{
     {0xFFA0, 0xFFA0},    // Hangul filler.
     {0xFFF0, 0xFFFB},    // Controls of annotations, and reserved ones.
     {0xFFFE, 0xFFFF},    // No characters; XML cannot hold them.
-    {0x13430, 0x1343F},  // Controls of hieroglyphs,
-    {0x1BCA0, 0x1BCA3},  // of shorthand
-    {0x1D173, 0x1D17A},  // and of music.
+    {0x13430, 0x1343F},  // Controls of hieroglyphs.
+    {0x1BCA0, 0x1BCA3},  // Controls of shorthand.
+    {0x1D173, 0x1D17A},  // Controls of music.
     {0xE0000, 0xE00FF},  // Tags.
     {0xE01F0, 0xE0FFF},  // Reserved.
 }};

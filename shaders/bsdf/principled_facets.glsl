@@ -160,8 +160,8 @@ float facet_shadowed(vec2 alpha, vec3 wo, vec3 wi, float reach_o) {
 
 // Means over the facets that wo sees.
 struct FacetMeans {
-    vec3 edge;        // t,
-    float schlick;    // and S: see Principled.
+    vec3 edge;        // Mean of t: see Principled.
+    float schlick;    // Mean of S: see Principled.
     float most;       // The greatest channel of the dielectric's reflection.
     float most_lost;  // The part of `most` that is shadowed.
     float lost;       // The light shadowed if all is reflected.

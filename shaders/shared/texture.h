@@ -64,8 +64,8 @@ struct TextureRecord {
     uint first;   // Word of its first tile.
     uvec2 size;   // Texels, at most MAX_IMAGE_SIDE.
     uint traits;  // One bit of each group, and the channel.
-    vec3 row_u;   // The image is looked up at (dot(row_u, (u, v, 1)), dot(row_v, (u, v, 1))), which repeats
-    vec3 row_v;   // with a period of 1, (0, 0) being its top left corner.
+    vec3 row_u;   // The place along x is dot(row_u, (u, v, 1)): 0 at the left edge, with a period of 1.
+    vec3 row_v;   // The place along y is dot(row_v, (u, v, 1)): 0 at the top edge, with a period of 1.
 };
 
 // The textures of a material: indices, or TEXTURE_NONE.

@@ -12,8 +12,8 @@ namespace {
 
 // Parts of a scene that light it.
 struct Parts {
-    std::vector<float> lamps;  // Powers over pi,
-    std::vector<float> suns;   // of each.
+    std::vector<float> lamps;  // Powers over pi of the lamps.
+    std::vector<float> suns;   // Powers over pi of the suns.
     bool sky = false;
 };
 

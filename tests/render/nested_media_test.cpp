@@ -83,8 +83,8 @@ TEST_F(NestedMediaTest, OverlapsBelongToTheHighestPriority) {
 // Stokes 1862, On the Intensity of the Light Reflected from or Transmitted through a Pile of Plates.
 struct Pile {
     double ior = 1.0, a = 1.0;         // Index and absorption of the last slab.
-    double reflected = 0, passed = 1;  // Seen from the front,
-    double reflected_back = 0;         // and from the back.
+    double reflected = 0, passed = 1;  // Seen from the front.
+    double reflected_back = 0;         // Seen from the back.
 
     void add(double next_ior, double next_a) {
         const double r = std::pow((ior - next_ior) / (ior + next_ior), 2.0), t = 1.0 - r;
