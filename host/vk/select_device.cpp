@@ -16,13 +16,13 @@ static std::string lower(std::string text) {
     return text;
 }
 
-// `0: "llvmpipe" (CPU), 1: "old" (other; unsuitable:  it has no compute queue)`
+// `0: "llvmpipe" (CPU), 1: "old" (other; unsuitable: it has no compute queue)`
 static std::string list(std::span<const DeviceInfo> devices) {
     std::string text;
     for (const DeviceInfo& device : devices) {
         if (!text.empty()) text += ", ";
         text += std::to_string(device.index) + ": \"" + device.name + "\" (" + to_string(device.type);
-        if (!device.reason.empty()) text += "; unsuitable:  " + device.reason;
+        if (!device.reason.empty()) text += "; unsuitable: " + device.reason;
         text += ")";
     }
     return text;
@@ -80,7 +80,7 @@ const DeviceInfo& select_device(std::span<const DeviceInfo> devices,
     }
     const DeviceInfo& device = *matches.front();
     if (!device.reason.empty()) {
-        throw Error("device " + std::to_string(device.index) + " \"" + device.name + "\" is unsuitable:  " +
+        throw Error("device " + std::to_string(device.index) + " \"" + device.name + "\" is unsuitable: " +
                         device.reason + "; choose another device or install a newer driver",
                     ExitCode::no_device);
     }

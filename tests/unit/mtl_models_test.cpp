@@ -65,7 +65,7 @@ TEST_F(MtlModels, ReflectsByKsBesideKd) {
         for (const char* sharp : {"", "\nNs 1000"})
             EXPECT_EQ(model<PhongMaterial>("Kd 0.9 0 0\nKs 0.1" + text + sharp).exponent, 1e5f);
         EXPECT_TRUE(material("Kd 0.9 0 0\nKs 0.1\nNs 50" + text).warnings.empty());
-        expect_warning(text, "it has no colour (Kd); grey of 0.5 is taken");
+        expect_warning(text, "it has no colour (Kd); grey of 0.5 is used");
     }
     for (const char* illum : {"9", "10"}) {
         const std::string text = std::string("Kd 0.5\nKs 0.5\nillum ") + illum;
@@ -148,7 +148,7 @@ TEST_F(MtlModels, PbrStatementsDecide) {
     EXPECT_EQ(model<PrincipledMaterial>("Kd 1\nPr 0.4").ior, 1.5f);
     EXPECT_EQ(model<PrincipledMaterial>("Kd 1\nPr 0.4\nNi 1").ior, 1.5f);
     EXPECT_EQ(model<PrincipledMaterial>("Kd 1\nPm 1").roughness, 0.5f);
-    expect_warning("Kd 1\nPm 1", "it has no roughness (Pr); 0.5 is taken");
+    expect_warning("Kd 1\nPm 1", "it has no roughness (Pr); 0.5 is used");
     expect_library_warnings("newmtl a\nKd 1\nPr 0.4\naniso 0\nanisor 0\n", {});
     expect_library_warnings("newmtl a\nKd 1\nPr 0.4\naniso 0.5\nanisor 0.2\n",
                             {"m.mtl: ignored aniso (brushed metal is not supported)"});
@@ -217,7 +217,7 @@ TEST_F(MtlModels, EmissionIsTakenAsItIs) {
 
 TEST_F(MtlModels, WithoutColourIsGrey) {
     for (const char* text : {"Ka 1 1 1", "Ks 0 0 0", "Ke 0", "map_d a.png"}) {
-        expect_warning(text, "it has no colour (Kd); grey of 0.5 is taken");
+        expect_warning(text, "it has no colour (Kd); grey of 0.5 is used");
         EXPECT_EQ(model<DiffuseMaterial>(text).reflectance, vec3(0.5f));
     }
 }
@@ -243,13 +243,13 @@ TEST_F(MtlModels, OpacityIsDOrElseWhatTrLeaves) {
 TEST_F(MtlModels, WarnsOfOddOpacity) {
     expect_warning("Kd 1\nd 0", "it is invisible: d is 0, or Tr is 1");
     expect_warning("Kd 1\nTr 1", "it is invisible: d is 0, or Tr is 1");
-    expect_warning("Kd 1\nd 1.5", "d 1.5 is not from 0 to 1; the material is taken to be opaque");
-    expect_warning("Kd 1\nTr -3", "Tr -3 is not from 0 to 1; the material is taken to be opaque");
+    expect_warning("Kd 1\nd 1.5", "d 1.5 is not from 0 to 1; the material is read as opaque");
+    expect_warning("Kd 1\nTr -3", "Tr -3 is not from 0 to 1; the material is read as opaque");
     EXPECT_EQ(material("d 1.5").material.opacity.value, 1.0f);
     const MtlMaterial none = material("Kd 1\nTr 2");
     EXPECT_EQ(none.material.opacity.value, 0.0f);
     ASSERT_EQ(none.warnings.size(), 2u);
-    EXPECT_NE(none.warnings[0].text.find("Tr 2 is not from 0 to 1; the material is taken to be transparent"),
+    EXPECT_NE(none.warnings[0].text.find("Tr 2 is not from 0 to 1; the material is read as transparent"),
               std::string::npos);
 }
 

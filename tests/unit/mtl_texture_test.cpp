@@ -206,7 +206,7 @@ TEST_F(MtlTextures, PbrStatementsMayHaveTextures) {
     EXPECT_EQ(glass.roughness, (Textured<float>(1.0f, Texture{.encoding = LINEAR})));
     expect_ignored("Kd 1\nPm 1\nPr 0.5\nKs 1\nmap_Ks a.png", {"map_Ks" + UNUSED});
     expect_ignored("Kd 1\nPm 0\nmap_Pm a.png\nPr 0.5", {"map_Pm" + UNUSED});
-    expect_warnings("Pm 1\nPr 1", {"it has no colour (Kd); grey of 0.5 is taken"});
+    expect_warnings("Pm 1\nPr 1", {"it has no colour (Kd); grey of 0.5 is used"});
     expect_warnings("Kd 2\nPm 1\nPr 1", {"Kd is 2 in a channel; it is scaled to 1"});
 }
 

@@ -90,7 +90,7 @@ TEST(SelectDevice, NoMatchListsWhatThereIs) {
             "no device matches \"" + std::string(request) +
                 "\"; give the index or a part of the name of one of: "
                 "0: \"llvmpipe (LLVM 15.0.6, 256 bits)\" (CPU), "
-                "1: \"Old Radeon\" (discrete GPU; unsuitable:  it offers Vulkan 1.1.70, and 1.2 is needed), "
+                "1: \"Old Radeon\" (discrete GPU; unsuitable: it offers Vulkan 1.1.70, and 1.2 is needed), "
                 "2: \"Intel UHD 630\" (integrated GPU), 3: \"Radeon RX 6600\" (discrete GPU)");
     }
 }
@@ -107,10 +107,9 @@ TEST(SelectDevice, ADeviceThatWillNotDoIsRefusedWithItsReason) {
     for (const char* request : {"1", "old"}) {
         const auto [message, code] = error_and_code_of([&] { selected(request); });
         EXPECT_EQ(code, ExitCode::no_device);
-        EXPECT_EQ(
-            message,
-            "device 1 \"Old Radeon\" is unsuitable:  it offers Vulkan 1.1.70, and 1.2 is needed; choose "
-            "another device or install a newer driver");
+        EXPECT_EQ(message,
+                  "device 1 \"Old Radeon\" is unsuitable: it offers Vulkan 1.1.70, and 1.2 is needed; choose "
+                  "another device or install a newer driver");
     }
 }
 

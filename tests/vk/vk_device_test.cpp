@@ -127,7 +127,7 @@ TEST_F(Vk, AvailableMemoryBoundsAllocations) {
 TEST_F(Vk, ADeviceThatWillNotDoIsNotOpened) {
     info_.reason = "it has no compute queue";
     EXPECT_EQ(error_of(ExitCode::no_device, [&] { Device(instance_, info_); }),
-              "device \"" + info_.name + "\" is unsuitable:  it has no compute queue");
+              "device \"" + info_.name + "\" is unsuitable: it has no compute queue");
 }
 
 TEST(VkInstance, WithoutADriverNamesTheRemedy) {

@@ -170,7 +170,7 @@ class Converter {
         if (s_.pr || find("map_Pr")) return number_of(s_.pr.value_or(1.0), "map_Pr");
         if (s_.by_blender && find("map_Ns")) return number_of(1.0, "map_Ns");  // It holds roughness.
         if (states_pbr() && !s_.by_blender) {
-            warn("no Pr", "it has no roughness (Pr); " + number_text(DULL, 6) + " is taken");
+            warn("no Pr", "it has no roughness (Pr); " + number_text(DULL, 6) + " is used");
             return float(DULL);
         }
         const double ns = s_.ns.value_or(reflects() ? MOST_NS : 0.0);
@@ -214,7 +214,7 @@ class Converter {
     dvec3 default_kd(bool has_highlight) {
         if (find("map_Kd")) return dvec3(1.0);
         if (has_highlight || vec3(ke_) != vec3(0.0f)) return dvec3(0.0);
-        warn("no Kd", "it has no colour (Kd); grey of " + number_text(GREY, 6) + " is taken");
+        warn("no Kd", "it has no colour (Kd); grey of " + number_text(GREY, 6) + " is used");
         return dvec3(GREY);
     }
 
@@ -246,7 +246,7 @@ class Converter {
         const double d = is_glass_ ? 1.0 : std::clamp(opacity_, 0.0, 1.0);
         if (d != opacity_ && !is_glass_) {
             warn("opacity", (s_.d ? "d " + number_text(*s_.d, 6) : "Tr " + number_text(*s_.tr, 6)) +
-                                " is not from 0 to 1; the material is taken to be " +
+                                " is not from 0 to 1; the material is read as " +
                                 (d > 0.0 ? "opaque" : "transparent"));
         } else if (!s_.d && !s_.tr && d < 1.0) {
             warn("Maya", "Tf is read as an opacity of " + number_text(d, 6) + ", since Ni is not above 1");
