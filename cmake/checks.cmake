@@ -53,7 +53,7 @@ candela_check(metal ${PYTHON3} cmake/checks/metal.py ${SPIRV_CROSS} ${spirv} ${p
 
 # What AMD's compiler makes of the kernels: Mesa's RADV compiles for a chip that is not there, and nothing runs. About
 # three seconds a kernel, so those that read storage buffers, which differ in nothing else, are compiled only among the
-# slow tests. The driver is Mesa's own, whatever driver the other tests run on.
+# slow tests. The driver is Mesa's own, regardless of the other tests' driver.
 find_file(RADV_MANIFEST NAMES radeon_icd.${CMAKE_HOST_SYSTEM_PROCESSOR}.json radeon_icd.json
     PATHS /usr/share/vulkan/icd.d NO_DEFAULT_PATH)
 set(texel_label check)

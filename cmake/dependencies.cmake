@@ -27,13 +27,13 @@ if(CANDELA_VIEW)
     find_library(STB_LIBRARY NAMES stb)
     if(glfw3_FOUND AND IMGUI_INCLUDE_DIR AND IMGUI_LIBRARY AND STB_LIBRARY)
         set(CANDELA_HAS_VIEW TRUE)
-        # Debian's library holds all backends, and the linker takes those that are called: not the one for Vulkan, whose
-        # calls of Vulkan's functions would resolve to volk's variables of the same names.
+        # Debian's library has all backends, and the linker uses only those that are called: not the one for Vulkan,
+        # whose calls of Vulkan's functions would resolve to volk's variables of the same names.
         add_library(imgui INTERFACE)
         target_include_directories(imgui SYSTEM INTERFACE ${IMGUI_INCLUDE_DIR})
         target_link_libraries(imgui INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY})
     elseif(NOT CANDELA_VIEW STREQUAL "AUTO")
-        message(FATAL_ERROR "CANDELA_VIEW takes GLFW and Dear ImGui: install libglfw3-dev and libimgui-dev, or "
+        message(FATAL_ERROR "CANDELA_VIEW needs GLFW and Dear ImGui: install libglfw3-dev and libimgui-dev, or "
             "configure with -DCANDELA_VIEW=OFF")
     endif()
 endif()
@@ -56,7 +56,7 @@ target_include_directories(candela_flags INTERFACE ${CMAKE_SOURCE_DIR}/host ${CM
 target_include_directories(candela_flags SYSTEM INTERFACE ${STB_INCLUDE_DIR} ${VOLK_INCLUDE_DIR})
 target_link_libraries(candela_flags INTERFACE Threads::Threads glm::glm)
 if(CANDELA_SANITIZE)
-    # GCC 12 takes parts of vectors, variants and std::regex for uninitialised when it instruments them.
+    # GCC 12 believes that parts of vectors, variants and std::regex are uninitialised when it instruments them.
     target_compile_options(candela_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
         -fno-omit-frame-pointer $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(candela_flags INTERFACE -fsanitize=address,undefined)

@@ -46,7 +46,7 @@ unpack() {
     $apt update
     shift 2
     for name in "$@"; do
-        rm -f "$packages/$name"_*.deb  # Of an earlier try.
+        rm -f "$packages/$name"_*.deb  # From an earlier try.
         (cd "$packages" && $apt download "$name/$suite")
         dpkg-deb -x "$packages/$name"_*.deb "$folder/root"
     done

@@ -17,7 +17,7 @@ list_packages() {
     done
 }
 
-# missing NAME...: prints those that are not installed. Of the optional ones, only those that apt can install.
+# missing NAME...: prints those that are not installed, but optional ones only if apt can install them.
 missing() {
     for name in "$@"; do
         status=$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) || status=absent

@@ -23,9 +23,9 @@ function(candela_add_kernels target)
     endforeach()
 endfunction()
 
-# Passes of spirv-opt that put functions in place and take structures apart, as lavapipe would at each start, two to three
-# times as slowly. None of them changes the order of operations on numbers, and so none changes a bit of an image.
-# Without ssa-rewrite: lavapipe's code for its results is up to 25 % slower.
+# Passes of spirv-opt that inline functions and split structures, as lavapipe would at each start, two to three times as
+# slowly. None of them changes the order of operations on numbers, and so none changes a bit of an image. Without
+# ssa-rewrite: lavapipe's code for its results is up to 25 % slower.
 set(SPIRV_INLINING --merge-return --inline-entry-points-exhaustive --scalar-replacement=0 --convert-local-access-chains
     --eliminate-local-single-block --eliminate-local-single-store --eliminate-dead-code-aggressive)
 

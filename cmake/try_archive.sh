@@ -1,7 +1,7 @@
 #!/bin/sh
-# Makes the portable archive and renders from it in a root folder that holds nothing but glibc, the C++ run-time
-# library and lavapipe; prints which versions of the first two it needs, and fails if they are newer than Debian 12's.
-# Needs a build with the preset `release`, and root.   usage: sh cmake/try_archive.sh
+# Makes the portable archive and renders from it in a root folder that holds only glibc, the C++ run-time library and
+# lavapipe; prints which versions of the first two it needs, and fails if they are newer than Debian 12's. Needs a build
+# with the preset `release`, and root. usage: sh cmake/try_archive.sh
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -39,7 +39,7 @@ check_newest() {
 check_newest GLIBC "$GLIBC"
 check_newest GLIBCXX "$GLIBCXX"
 
-# Nothing else builds a program without a window. (It fails, so that grep's result counts.)
+# Nothing else builds a program without a window. (It fails, so that grep's result decides.)
 "$build/candela" view scenes/cornell-box.json 2>&1 | grep -F 'view: this program was built without a window'
 
 # bring FILE...: copies files, and the shared libraries that they need, to the same places in the root folder.

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
     using candela::ExitCode;
     // A write beyond the limit on file sizes must be an ordinary error, not the end of the program.
     std::signal(SIGXFSZ, SIG_IGN);
-    // So must a write to a pipe that nobody reads any more.
+    // So must a write to a pipe without a reader.
     std::signal(SIGPIPE, SIG_IGN);
     try {
         return int(candela::run_program(argc, argv));

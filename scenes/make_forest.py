@@ -16,7 +16,7 @@ import numpy as np
 import radiance_picture
 import textures
 
-SIDES = 5  # Of the tubes that branches are.
+SIDES = 5  # Of the tubes of branches.
 SPACING = 4.5  # Between trees, on average [m].
 SUN_AZIMUTH, SUN_ELEVATION = math.radians(-62), math.radians(12)  # From -Z towards +X; above the horizon.
 MOST_WOOD = 0.3  # Of a tree's triangles.

@@ -122,7 +122,7 @@ def model_sky(d):
 
 
 def sun_colour():
-    """The sun's light behind the air, of luminance 1: white light less what molecules, aerosols and ozone take."""
+    """The sun's light behind the air, of luminance 1: white light minus absorption by molecules, aerosols and ozone."""
     angle = math.degrees(math.pi / 2 - SUN_ELEVATION)
     mass = 1 / (math.cos(math.radians(angle)) + 0.15 * (93.885 - angle) ** -1.253)
     beta = 0.04608 * TURBIDITY - 0.04586
@@ -217,7 +217,7 @@ def cloud_depth(x, z, footprint, octaves):
     """Optical depth of the layer, straight through."""
     x, z = x * CLOUD_FREQUENCY, z * CLOUD_FREQUENCY
     footprint *= CLOUD_FREQUENCY
-    # A slow wave of cover, so that clouds come in fields; and a bend of the plane, so that they are no blobs.
+    # A slow wave of cover, so that clouds come in fields; and a bend of the plane, so that they are not blobs.
     cover = 0.5 * noise(0.31 * x + 3.7, 0.31 * z - 8.2)
     bend = 0.55 * noise(0.9 * x + 41.0, 0.9 * z + 9.0) * (1 - smoothstep(0.3, 0.8, footprint))
     value = fractal(x + bend, 0.75 * z - bend, octaves, footprint, 0.56) + cover

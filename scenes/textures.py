@@ -114,7 +114,7 @@ def filtered(pixels):
 def write_png(path, image, step=1):
     """Writes numbers from 0 to 1 as 8 bits: rows of pixels from the top, of 1, 3 or 4 channels.
 
-    What needs no precision takes less space in steps of more than 1 code.
+    Values that do not need precision use less space in steps of more than 1 code.
     """
     codes = np.round(np.clip(image, 0, 1) * 255 / step) * step
     pixels = np.minimum(codes, 255).astype(np.uint8)

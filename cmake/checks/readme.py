@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Runs the commands of README.md and of the pages in docs/ as a reader would. Each page has a folder of its own, empty
 but for links to the scenes, the tests and the program, as if it were the root of the repository; the page's commands
-run there in order. Every ```sh block counts, so a command of an unknown kind is an error; other blocks are not run.
+run there in order. Every ```sh block is run, so a command of an unknown kind is an error; other blocks are not run.
 Scripts (sh, python3) only have to exist, and cmake and ctest are left to the stages that run them: this check is part
-of what they do. What would take minutes is cut short: a rendering takes 64 samples per pixel at most, a benchmark runs
-once at the smallest sizes, the commands in the captions of pictures take a single sample, and the selftest, which has a
+of what they do. What would take minutes is cut short: a rendering uses at most 64 samples per pixel, a benchmark runs
+once at the smallest sizes, the commands in the captions of pictures use a single sample, and the selftest, which has a
 test of its own, shows its help.
 
 usage: readme.py CANDELA PAGE...      Prints each command and what went wrong; exits 1 if anything did.

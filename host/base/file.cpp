@@ -1,5 +1,5 @@
-// Reading and atomic writing of files, through POSIX calls: the standard library tells neither what kind of
-// file it has opened nor what a mount or a sticky directory forbids.
+// Reading and atomic writing of files, through POSIX calls: the standard library does not report the kind of
+// an open file, or what a mount or a sticky directory forbids.
 #include "base/file.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// Throws the Error for a system call that failed with `error` while `target` was being written.
+// Throws the Error of a system call that failed with `error` while `target` was being written.
 [[noreturn]] void fail_to_write(const fs::path& path, const fs::path& target, int error) {
     const fs::path directory = folder_of(target);
     std::error_code ignored;
@@ -48,7 +48,7 @@ fs::path folder_of(const fs::path& file) {
         fail_to_write(path, "the directory " + quoted(directory) + " does not exist; create it first");
     }
     switch (error) {
-        case ENOENT:  // Kernel file systems say so where nothing can be created.
+        case ENOENT:  // The code of kernel file systems in which nothing can be created.
         case EACCES:
         case EPERM:
         case EROFS:
@@ -63,8 +63,8 @@ fs::path folder_of(const fs::path& file) {
     }
 }
 
-// The file that `path` means once symbolic links are followed, even if it does not exist yet; a link, if they
-// lead in a circle.
+// The file that `path` leads to, following symbolic links, even if it does not exist yet; a link if they form
+// a circle.
 fs::path follow_links(const fs::path& path) {
     constexpr int MOST_LINKS = 40;  // As in the Linux kernel.
     fs::path target = path;
@@ -104,12 +104,12 @@ void check_replaceable(const fs::path& path, const fs::path& target) {
     struct statx file {};
     if (::statx(AT_FDCWD, target.c_str(), 0, STATX_BASIC_STATS, &file) != 0) return;  // It is new.
     if ((file.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0) {
-        fail_to_write(
-            path, "the file is mounted by itself, and cannot be replaced; mount the folder that holds it");
+        fail_to_write(path,
+                      "the file is a mount point, and cannot be replaced; mount the folder that holds it");
     }
     if ((file.stx_attributes & STATX_ATTR_APPEND) != 0) {
         fail_to_write(path,
-                      "the file may only grow (chattr +a), and cannot be replaced; choose another name");
+                      "the file is append-only (chattr +a), and cannot be replaced; choose another name");
     }
     struct stat folder {};
     const uid_t user = ::geteuid();
@@ -155,8 +155,8 @@ std::optional<fs::path> write_to_temporary_folder(const fs::path& target, std::s
     return kept;
 }
 
-// Writes what can no longer be written to `target`: beside it, else to the working folder, else to the
-// temporary one. Returns the path; nothing if all three fail.
+// Writes data that can no longer be written to `target`: beside it, otherwise to the working folder,
+// otherwise to the temporary one. Returns the path; nothing if all three fail.
 std::optional<fs::path> write_elsewhere(const fs::path& target, std::string_view bytes) {
     const std::optional<mode_t> permissions = permissions_of(target);
     std::optional<fs::path> kept = write_beside(target, permissions, bytes);
@@ -214,7 +214,7 @@ class Descriptor {
 
 constexpr std::string_view START_OF_POINTER = "version https://git-lfs.github.com/spec/";
 
-// Throws Error if these bytes, the first ones of a file, are what Git LFS puts in the place of one.
+// Throws Error if these bytes, the first ones of a file, are a pointer of Git LFS.
 void refuse_pointer(const fs::path& path, std::string_view start) {
     if (start.starts_with(START_OF_POINTER))
         fail_to_read(path, "it is a pointer of Git LFS, not the file itself; run `git lfs pull`");
@@ -262,7 +262,7 @@ std::string read_file(const fs::path& path, const ReadProgress& progress) {
 std::string read_finite_file(const fs::path& path, const fs::path& real, uint64_t most,
                              const ReadProgress& progress) {
     check_readable(path);
-    constexpr const char* NO_FILE = "it is not a regular file; a file may name no other kind";
+    constexpr const char* NO_FILE = "it is not a regular file, and files may name no others";
     std::error_code ignored;
     if (!fs::is_regular_file(real, ignored)) fail_to_read(path, NO_FILE);
     const Descriptor file(real, O_RDONLY | O_NONBLOCK | O_NOFOLLOW);
@@ -270,13 +270,12 @@ std::string read_finite_file(const fs::path& path, const fs::path& real, uint64_
     const uint64_t size = file.is_open() ? file.size() : 0;
     const uint64_t wanted = std::max<uint64_t>(most, START_OF_POINTER.size());
     std::string bytes;
-    // One byte more than there should be shows that there are more.
+    // Reads one byte beyond the size, to notice that there are more.
     if (!file.is_open() || !file.read_all(bytes, std::min(wanted, size + 1), progress))
         fail_to_read(path, describe(errno) + "; check the file and its disk");
     if (bytes.size() != std::min(wanted, size)) {
         fail_to_read(path,
-                     "it holds another number of bytes than its size says; is it a file of the system, or "
-                     "still being written?");
+                     "its contents do not match its size; is it a system file, or still being written?");
     }
     refuse_pointer(path, bytes);
     bytes.resize(std::min(bytes.size(), size_t(most)));
@@ -288,7 +287,7 @@ FileStart read_file_start(const fs::path& path, size_t most) {
     const Descriptor file(path, O_RDONLY | O_NONBLOCK);
     FileStart start;
     if (file.is_open() && !file.is_regular())
-        fail_to_read(path, "it is a pipe, and is to be read more than once; give the name of a file");
+        fail_to_read(path, "it is a pipe, but must be read more than once; give the name of a file");
     if (!file.is_open() || !file.read_all(start.bytes, most))
         fail_to_read(path, describe(errno) + "; check the file and its disk");
     refuse_pointer(path, start.bytes);
@@ -325,7 +324,7 @@ void write_finished_work(const fs::path& path, std::string_view bytes) {
     } catch (const Error& error) {
         const std::optional<fs::path> kept = write_elsewhere(follow_links(path), bytes);
         if (!kept) throw;
-        throw Error(std::string(error.what()) + "; what was to be written is in " + quoted(*kept));
+        throw Error(std::string(error.what()) + "; the data is saved in " + quoted(*kept));
     }
 }
 

@@ -1,5 +1,5 @@
 // Files read and written whole. A written file appears complete or not at all: the bytes go to a temporary
-// file beside the target, which then takes the target's name.
+// file beside the target, which is then renamed to the target.
 #pragma once
 
 #include <cstdint>
@@ -22,21 +22,21 @@ void check_readable(const std::filesystem::path& path);
 // Called while a file is read: `done` bytes are there, of `of`, which is 0 for a pipe.
 using ReadProgress = std::function<void(size_t done, size_t of)>;
 
-// Returns the bytes of a file or pipe. Throws Error as check_readable() does, if reading breaks off, or if
-// Git LFS has put a pointer in the place of the file.
+// Returns the bytes of a file or pipe. Throws Error as check_readable() does, if reading fails, or if the
+// file is a pointer of Git LFS.
 std::string read_file(const std::filesystem::path& path, const ReadProgress& progress = {});
 
-// Returns the first `most` bytes of a regular file, and no more than the system says that it holds: pipes,
-// devices and sockets are refused before they are opened, and a file that the kernel makes up while it is
-// read, as those in /proc, after its first byte. `real` is the same file without symbolic links, and is
-// opened; messages name `path`. Throws Error otherwise, and as read_file() does.
+// Returns the first `most` bytes of a regular file, and no more than its size: pipes, devices and sockets are
+// refused before they are opened, and files that the kernel makes up while they are read, as in /proc, after
+// the first byte. `real` is the same file without symbolic links, and is opened; messages name `path`. Throws
+// Error otherwise, and as read_file() does.
 std::string read_finite_file(const std::filesystem::path& path, const std::filesystem::path& real,
                              uint64_t most = UINT64_MAX, const ReadProgress& progress = {});
 
 // The first bytes of a regular file, `most` at most. Throws Error as read_file() does, and for a pipe.
 struct FileStart {
     std::string bytes;
-    uint64_t size = 0;  // Of the whole file.
+    uint64_t size = 0;  // Size of the whole file.
 };
 FileStart read_file_start(const std::filesystem::path& path, size_t most);
 
@@ -52,16 +52,16 @@ void check_writable(const std::filesystem::path& path);
 // temporary file left behind.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-// The same for what must not get lost, because it took long and is made only once. If it cannot be written to
-// `path`, it gets a free name such as box-1.exr: beside that, else in the working folder, else in a new
+// The same for data that must not be lost, because it took long to make. If it cannot be written to `path`,
+// it gets a free name such as box-1.exr: beside `path`, otherwise in the working folder, otherwise in a new
 // folder for this user alone among the temporary files. The Error then says where it is.
 void write_finished_work(const std::filesystem::path& path, std::string_view bytes);
 
 // One of these two.
 using FileWriter = void (*)(const std::filesystem::path& path, std::string_view bytes);
 
-// Whether two paths name one file: by device and inode if both exist, else by where the names lead, links
-// followed.
+// Whether two paths name the same file: by device and inode if both exist, otherwise by the paths after
+// following links.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace candela

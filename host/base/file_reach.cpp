@@ -11,12 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder of a file, as its user names it.
+// The folder of a file, as the user wrote it.
 fs::path name_of_folder(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// Where a file is, or would be if it is missing; empty if the system does not tell.
+// Where a file is, or would be if it is missing; empty if the system does not say.
 fs::path real_path(const fs::path& path) {
     std::error_code error;
     const fs::path absolute = fs::absolute(path, error);

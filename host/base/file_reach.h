@@ -1,4 +1,4 @@
-// Which files may be read because another file names them.
+// The files that may be read because another file names them.
 #pragma once
 
 #include <cstddef>
@@ -12,20 +12,20 @@
 
 namespace candela {
 
-// What the user allows besides the folder of the file that is opened.
+// What the user allows in addition to the folder of the file that is opened.
 struct ReachOptions {
     std::vector<std::filesystem::path> folders{};
     bool anywhere = false;
 };
 
-// The files in the folder of one that the user opens, and below it, and those that the user allows besides.
-// Symbolic links are followed first: what counts is where a file is, not where its name is.
+// The files in or below the folder of the file that the user opens, and the others that the user allows.
+// Symbolic links are followed first: the place of the file decides, not that of the link.
 class FileReach {
   public:
-    // Nothing.
+    // No files.
     FileReach() = default;
-    // What the file `opened` may name, and the files that it names in turn. Throws Error (usage) for an
-    // allowed folder that is not one.
+    // The files that `opened`, and the files that it names, may name. Throws Error (usage) for an allowed
+    // folder that is not a folder.
     explicit FileReach(const std::filesystem::path& opened, const ReachOptions& options = {});
 
     // Whether the user trusts all files.
@@ -34,15 +34,15 @@ class FileReach {
     // Whether a path, of a file that may be missing, is within reach.
     bool holds(const std::filesystem::path& path) const;
 
-    // What messages say of a file of that name, as another one has it, that is out of reach.
+    // The message about a file that is out of reach, by the name that another file gives it.
     std::string refusal(const std::string& name) const;
 
     // The file that another one in `folder` calls `name`. Throws Error if it is out of reach.
     std::filesystem::path find(const std::filesystem::path& folder, const std::string& name) const;
 
-    // The first `most` bytes of a file. That which the user has opened is read as read_file() does. Any other
-    // must be within reach, and a regular file that holds as many bytes as the system says, so that reading
-    // ends. Throws Error otherwise, and if the file cannot be read.
+    // The first `most` bytes of a file. The file that the user opened is read as by read_file(). Any other
+    // must be within reach, and a regular file with as many bytes as its size, so that reading ends. Throws
+    // Error otherwise, and if the file cannot be read.
     std::string read(const std::filesystem::path& path, uint64_t most = UINT64_MAX,
                      const ReadProgress& progress = {}) const;
 
@@ -50,7 +50,7 @@ class FileReach {
     bool holds_real(const std::filesystem::path& real) const;
 
     std::filesystem::path opened_;
-    std::vector<std::filesystem::path> folders_;  // Where they are, links followed.
+    std::vector<std::filesystem::path> folders_;  // Their places, after following links.
     bool anywhere_ = false;
 };
 

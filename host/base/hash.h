@@ -24,7 +24,7 @@ inline uint64_t fnv1a64(std::span<const std::byte> bytes, uint64_t hash = FNV1A6
 }
 
 // A 64-bit hash of `bytes` and of their number. To hash in parts, pass the hash of the previous part as
-// `hash`. A step is one multiplication per eight bytes: half a gigabyte takes about 0.2 s. A multiplication
+// `hash`. A step is one multiplication per eight bytes: about 0.2 s for half a gigabyte. A multiplication
 // spreads bits upwards only; the rotation brings the upper bits of a word down for the next step.
 inline uint64_t hash_words(std::span<const std::byte> bytes, uint64_t hash = FNV1A64_BASIS) {
     constexpr uint64_t ODD = 0x9e3779b97f4a7c15u;  // 2^64 over the golden ratio: bits without a pattern.

@@ -21,8 +21,8 @@ using glm::vec4;
 
 inline constexpr float PI = 3.14159265358979f;
 inline constexpr float INFINITE = std::numeric_limits<float>::infinity();
-inline constexpr float FLOAT_MAX = std::numeric_limits<float>::max();  // The greatest float that is finite
-inline constexpr float FLOAT_MIN = std::numeric_limits<float>::min();  // and the least that is normal.
+inline constexpr float FLOAT_MAX = std::numeric_limits<float>::max();  // The greatest finite float.
+inline constexpr float FLOAT_MIN = std::numeric_limits<float>::min();  // The least normal float.
 // No shape reaches further along an axis, so that boxes can be added, subtracted and scaled as floats.
 inline constexpr float MAX_COORDINATE = 1e37f;
 

@@ -1,4 +1,4 @@
-// Replaces the operators new and delete of the program, and of the libraries in C++ that it has loaded.
+// Replaces the operators new and delete of the program and of the C++ libraries that it loads.
 #include "base/memory_limit.h"
 
 #include <algorithm>
@@ -19,13 +19,13 @@ namespace candela {
 namespace {
 
 constexpr uint64_t NO_LIMIT = UINT64_MAX;
-// What is left for error messages when nothing else is, and how large its parts may be.
+// The reserve for error messages when memory is used up, and the largest size of its parts.
 constexpr uint64_t RESERVE = uint64_t(1) << 20;
 constexpr size_t SMALL = 1024;
 
 std::atomic<uint64_t> in_use = 0;
 std::atomic<uint64_t> limit = NO_LIMIT;
-std::atomic<uint32_t> holders = 0;  // Of LimitedMemory.
+std::atomic<uint32_t> holders = 0;  // Live objects of LimitedMemory.
 
 void check_limit(uint64_t bytes) {
     if (holders.load(std::memory_order_relaxed) == 0) return;
@@ -74,7 +74,7 @@ uint64_t default_memory_limit() {
     while (std::getline(groups, group) && !group.starts_with("0::/")) {
     }
     if (!groups) return bytes / 4 * 3;
-    // The limits of the groups above hold, too; where there is none, the file says "max".
+    // The limits of the groups above apply, too; without a limit, the file says "max".
     for (std::filesystem::path path = "/sys/fs/cgroup" + group.substr(3); path.has_relative_path();
          path = path.parent_path()) {
         uint64_t allowed = 0;
@@ -123,14 +123,14 @@ std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
     const auto* reached = dynamic_cast<const LimitReached*>(&error);
     if (reached == nullptr) return "";
     const uint64_t needed = std::max(reached->needed(), before);
-    return ", which takes at least " + size_text(needed - before) + ", where " + size_text(before) +
+    return ", which needs at least " + size_text(needed - before) + ", where " + size_text(before) +
            " are in use and --memory-limit allows " + size_text(limit);
 }
 
 }  // namespace candela
 
-// All forms, since sanitizers have some of their own, which do not know of these. Where they are inlined, GCC
-// takes malloc() and delete for a mismatch.
+// All forms, since sanitizers replace the missing ones with their own. If these are inlined, GCC warns that
+// malloc() and delete do not match.
 [[gnu::noinline]] void* operator new(size_t size) {
     candela::check_limit(size);
     return candela::counted(std::malloc(std::max<size_t>(size, 1)));

@@ -1,5 +1,5 @@
-// How much memory the program may take. What `new` hands out is counted, and refused before it is taken where
-// it would be more than the limit: so whatever a file makes the program build has a bound.
+// A limit on the program's memory. Allocations by `new` are counted, and refused if they would exceed the
+// limit, so that no file can make the program use more.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace candela {
 
-// Bytes that `new` has handed out, and those of MemoryCharge.
+// Bytes allocated by `new`, and those of MemoryCharge.
 uint64_t memory_in_use();
 
 // The limit of the process; at first, there is none.
@@ -25,20 +25,20 @@ uint64_t default_memory_limit();
 // powers of 1024; nothing for anything else, for 0, and for more than 2^63.
 std::optional<uint64_t> parse_memory_size(const std::string& text);
 
-// What `new` throws in place of exceeding the limit.
+// Thrown by `new` instead of exceeding the limit.
 class LimitReached : public std::bad_alloc {
   public:
     LimitReached(uint64_t wanted, uint64_t in_use) : needed_(in_use + wanted) {}
 
-    // Of the whole process.
+    // Limit of the whole process.
     uint64_t needed() const { return needed_; }
 
   private:
     uint64_t needed_;
 };
 
-// While one lives, the limit holds. Elsewhere it does not: drivers and libraries end the program where `new`
-// fails.
+// While one lives, the limit applies. It does not apply otherwise, since drivers and libraries end the
+// program if `new` fails.
 class LimitedMemory {
   public:
     LimitedMemory();
@@ -47,7 +47,7 @@ class LimitedMemory {
     ~LimitedMemory();
 };
 
-// Memory that a library in C takes, for as long as this lives. The constructor throws LimitReached.
+// Counts memory of a C library for as long as this lives. The constructor throws LimitReached.
 class MemoryCharge {
   public:
     explicit MemoryCharge(uint64_t bytes);
@@ -59,12 +59,12 @@ class MemoryCharge {
     uint64_t bytes_;
 };
 
-// For messages: `, which takes at least 3.2 GiB, where 210.0 MiB are in use and --memory-limit allows 2.0
-// GiB`, of something that began when `before` was in use; nothing if it is the machine that has no more.
+// For messages: `, which needs at least 3.2 GiB, where 210.0 MiB are in use and --memory-limit allows 2.0
+// GiB`, of an action that began with `before` in use; nothing if the machine itself has run out.
 std::string shortage_text(const std::bad_alloc& error, uint64_t before);
 
-// Returns action(). Where memory does not suffice, throws Error `PLACE: there is not enough memory for WHAT`
-// instead, with what it takes; place() is what the message begins with.
+// Returns action(). If memory does not suffice, throws Error `PLACE: there is not enough memory for WHAT`
+// with the amount needed; the message begins with place().
 template <class Place, class Action>
 auto with_memory_for(const char* what, const Place& place, const Action& action) {
     const uint64_t before = memory_in_use();

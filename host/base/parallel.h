@@ -14,8 +14,8 @@
 namespace candela {
 
 // Calls step(i) for i = 0 .. count - 1, in no particular order, on as many threads as there are cores, or on
-// fewer if no more can be started. If steps throw, those that have not begun are left out, and the exception
-// of the first one, by i, that has thrown is thrown here.
+// fewer if no more can be started. If a step throws, no further steps begin, and the exception of the lowest
+// i is rethrown.
 template <class Step>
 void parallel_for(size_t count, const Step& step) {
     std::atomic<size_t> next = 0;

@@ -1,4 +1,5 @@
-// Works on bytes alone, whatever the locale. Ref: The Unicode Standard 15.0, sections 3.9 (UTF-8) and 23.
+// Works on bytes alone, independent of the locale. Ref: The Unicode Standard 15.0, sections 3.9 (UTF-8) and
+// 23.
 #include "base/printable.h"
 
 #include <algorithm>
@@ -33,13 +34,13 @@ constexpr std::array<Range, 21> ESCAPED{{
     {0x3164, 0x3164},    // Hangul filler.
     {0xFEFF, 0xFEFF},    // Byte order mark.
     {0xFFA0, 0xFFA0},    // Hangul filler.
-    {0xFFF0, 0xFFFB},    // Controls of annotations, and what is reserved for such.
+    {0xFFF0, 0xFFFB},    // Controls of annotations, and reserved ones.
     {0xFFFE, 0xFFFF},    // No characters; XML cannot hold them.
-    {0x13430, 0x1343F},  // Controls of hieroglyphs,
-    {0x1BCA0, 0x1BCA3},  // of shorthand
-    {0x1D173, 0x1D17A},  // and of music.
+    {0x13430, 0x1343F},  // Controls of hieroglyphs.
+    {0x1BCA0, 0x1BCA3},  // Controls of shorthand.
+    {0x1D173, 0x1D17A},  // Controls of music.
     {0xE0000, 0xE00FF},  // Tags.
-    {0xE01F0, 0xE0FFF},  // Reserved for such.
+    {0xE01F0, 0xE0FFF},  // Reserved.
 }};
 
 bool is_escaped(uint32_t code) {
@@ -94,7 +95,7 @@ std::string take_character(std::string_view& text) {
     return is_escaped(*code) ? escape_of(*code) : std::string(bytes);
 }
 
-// As much of the beginning as fits into `most` bytes. Leaves the rest in `text`.
+// As much of the beginning of `text` as fits into `most` bytes; the rest remains in `text`.
 std::string take_start(std::string_view& text, size_t most) {
     std::string start;
     while (!text.empty()) {

@@ -1,5 +1,5 @@
-// What files, drivers and libraries say, made fit for a terminal: nothing of it moves the cursor, colours or
-// hides text, turns its direction or begins a line, and there is not too much of it.
+// Texts from files, drivers and libraries, made safe for a terminal: they do not move the cursor, colour or
+// hide text, change its direction or begin a line, and they are not too long.
 #pragma once
 
 #include <cstddef>
@@ -18,20 +18,20 @@ inline constexpr size_t MOST_PATH_BYTES = 1000;
 inline constexpr size_t MOST_MESSAGE_BYTES = 4000;
 
 // `text` with its control and invisible characters escaped as in JSON (`\u001b`, `\n`), and bytes that are
-// not UTF-8 as `\xff`. What is longer than `most` bytes, which are at least 40, loses its middle: whole
-// characters are left out, and `…` takes their place. A second call changes nothing.
+// not UTF-8 as `\xff`. A text longer than `most` bytes (at least 40) loses its middle: `…` replaces whole
+// characters. A second call changes nothing.
 std::string printable(std::string_view text, size_t most = SIZE_MAX);
 
-// The same JSON, in UTF-8, with escapes in its strings for the characters that printable() escapes.
+// The same JSON, in UTF-8, with the characters that printable() escapes escaped in its strings.
 std::string printable_json(std::string_view json);
 
 // "a, b, c": printable names; after 20, how many more there are.
 std::string joined(std::span<const std::string> names);
 
-// As few lines as say what the warnings do, each a printable message. A warning that differs from an earlier
-// one only in its place (`file:line:column: ...` or `file#/pointer: ...`) is counted there. If more than
-// three differ only in names and numbers, the first three are followed by how many more there are. What
-// exceeds 64 KiB in all is only counted. The kinds are in the order of their first warnings.
+// The warnings in as few lines as possible, each a printable message. A warning that differs from an earlier
+// one only in its place (`file:line:column: ...` or `file#/pointer: ...`) is counted with it. If more than
+// three differ only in names and numbers, the first three are followed by the number of the others. Beyond 64
+// KiB in all, warnings are only counted. The kinds are in the order of their first warnings.
 std::vector<std::string> summary_of(const std::vector<std::string>& warnings);
 
 }  // namespace candela

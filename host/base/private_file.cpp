@@ -1,4 +1,5 @@
-// See private_file.h. Every path leads through the open folder, so that nobody can exchange it in between.
+// See private_file.h. Every path goes through the open folder, so that nobody can replace the folder in
+// between.
 #include "base/private_file.h"
 
 #include <cerrno>
@@ -31,7 +32,7 @@ class Place {
         if (file_ >= 0) ::close(file_);
     }
 
-    // Whether it is of that type and belongs to this user, and nobody else may write to it.
+    // Whether it has that type, belongs to this user, and nobody else may write to it.
     bool is_private(mode_t type) const {
         constexpr mode_t OTHERS_WRITE = S_IWGRP | S_IWOTH;
         return (status_.st_mode & S_IFMT) == type && status_.st_uid == ::geteuid() &&

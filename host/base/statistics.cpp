@@ -111,7 +111,8 @@ double chi_squared_p_value(double statistic, double degrees_of_freedom) {
 }
 
 double pearson_p_value(std::span<const double> counts, std::span<const double> expected) {
-    constexpr double LEAST_EXPECTED = 5.0;  // Of a pool, so that its count is nearly normal.
+    constexpr double LEAST_EXPECTED = 5.0;  // Least expectation of a pool, so that its count is nearly
+                                            // normal.
     assert(counts.size() == expected.size());
     const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
     assert(total > 0.0);

@@ -1,4 +1,4 @@
-// The distributions behind statistical tests, in double precision: normal, chi-squared and Student's t, the
+// Distributions for statistical tests, in double precision: normal, chi-squared and Student's t, the
 // correction for many tests, and running mean and variance. Independent of images and of rendering.
 #pragma once
 

@@ -42,8 +42,8 @@ auto retried(Call call) {
     return result;
 }
 
-// How the names of this computer's files begin until it is restarted: ".candela-", 16 hexadecimal digits and
-// "-". Empty if the system does not identify itself and its last start.
+// The beginning of the names of this computer's files until it is restarted: ".candela-", 16 hexadecimal
+// digits and "-". Empty if the system does not identify itself and its last start.
 const std::string& own_prefix() {
     static const std::string prefix = [] {
         std::array<char, 256> host{};
@@ -59,14 +59,15 @@ const std::string& own_prefix() {
     return prefix;
 }
 
-// Short whatever the target is called, so that it never exceeds the longest name allowed.
+// Independent of the target's name, so that it never exceeds the longest name allowed.
 std::string new_name() {
     static std::atomic<unsigned> counter = 0;
     const std::string prefix = own_prefix().empty() ? ".candela-" : own_prefix();
     return prefix + std::to_string(::getpid()) + '-' + std::to_string(counter++) + std::string(SUFFIX);
 }
 
-// The process that a file of that name belongs to; none if it is another computer's, or no temporary file.
+// The process that a file of that name belongs to; nothing if it is another computer's, or not a temporary
+// file.
 std::optional<pid_t> owner_of(std::string_view name) {
     const std::string& prefix = own_prefix();
     if (prefix.empty() || !name.starts_with(prefix) || !name.ends_with(SUFFIX)) return std::nullopt;
@@ -101,9 +102,9 @@ TemporaryFile::TemporaryFile(fs::path target, std::optional<mode_t> permissions)
     do {
         name_ = target_.parent_path() / new_name();
         file_ = retried([&] { return ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode); });
-    } while (file_ < 0 && errno == EEXIST);  // Left behind by another process of that number.
+    } while (file_ < 0 && errno == EEXIST);  // Left behind by an earlier process of that number.
     if (file_ < 0) fail("open");
-    ::flock(file_, LOCK_EX | LOCK_NB);  // Where there are no locks, nothing is ever removed.
+    ::flock(file_, LOCK_EX | LOCK_NB);  // On file systems without locks, nothing is ever removed.
     if (permissions) ::fchmod(file_, mode);
 }
 

@@ -13,8 +13,8 @@ namespace candela {
 std::optional<mode_t> permissions_of(const std::filesystem::path& file);
 
 // A new, empty file beside `target`, with these permissions or the usual ones. Removed with this object
-// unless commit() gave it the target's name. Its own name says which process of which computer it belongs to,
-// and it is locked as long as that process lives. All functions throw std::system_error.
+// unless commit() gave it the target's name. Its name identifies its process and computer, and it is locked
+// as long as the process lives. All functions throw std::system_error.
 class TemporaryFile {
   public:
     explicit TemporaryFile(std::filesystem::path target, std::optional<mode_t> permissions = {});
@@ -25,7 +25,7 @@ class TemporaryFile {
     void write(std::string_view bytes);
     // Waits until the bytes are on the disk.
     void flush();
-    // Takes the target's place.
+    // Replaces the target.
     void commit();
     // Takes a free name like the target's instead, such as box-1.exr, and returns the path.
     std::filesystem::path commit_beside();
@@ -38,7 +38,7 @@ class TemporaryFile {
 };
 
 // Removes the files that killed processes left in the folder, if they ran on this computer since it was
-// started: of others nobody knows whether they still run.
+// started: whether other processes are still running cannot be known.
 void remove_abandoned_files(const std::filesystem::path& folder);
 
 }  // namespace candela

@@ -8,7 +8,7 @@
 
 namespace candela {
 
-// Starts `count` threads that call work(); fewer, or none, if the system lets no more be started.
+// Starts `count` threads that call work(); fewer, or none, if the system does not allow more.
 template <class Work>
 std::vector<std::jthread> start_helpers(size_t count, const Work& work) {
     std::vector<std::jthread> helpers;

@@ -1,4 +1,4 @@
-// Which warnings say the same. See printable.h.
+// Groups similar warnings. See printable.h.
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -13,11 +13,11 @@ namespace {
 
 constexpr size_t MOST_OF_A_KIND = 3;
 constexpr size_t MOST_BYTES = size_t{64} << 10;
-constexpr size_t AROUND_LINE = 24;  // Bytes that are printed around each line.
+constexpr size_t AROUND_LINE = 24;  // Bytes printed around each line.
 
 constexpr std::string_view DIGITS = "0123456789";
 
-// How many characters a place has that `text` begins with: `#/a/0` or `:12:3`; 0 if there is none.
+// The length of the place that `text` begins with, such as `#/a/0` or `:12:3`; 0 if there is none.
 size_t length_of_place(std::string_view text) {
     if (text.starts_with("#/")) return std::min(text.find_first_of(" ,:;\""), text.size());
     size_t length = 0;
@@ -47,8 +47,7 @@ size_t length_of_quotation(std::string_view text) {
     return std::min(length + 1, text.size());
 }
 
-// `text` without what names and numbers say: what is in quotation marks, and words with digits, dots within
-// or slashes.
+// `text` without names and numbers: without quoted text, and words with digits, inner dots or slashes.
 std::string without_names(std::string_view text) {
     std::string kind;
     while (!text.empty()) {
@@ -71,7 +70,7 @@ std::string without_names(std::string_view text) {
     return kind;
 }
 
-// Warnings that say the same of several places.
+// Equal warnings about several places.
 struct Same {
     const std::string* first;
     size_t count = 0;

@@ -15,20 +15,21 @@ namespace candela {
 
 // For displaced_scene()s of options.triangles, whose triangles are paired first: the speed of pairing and
 // building, compared with Embree's over the triangles themselves [Mtriangles/s]; the speed of both builders
-// over the pairs, and the SAH cost of these trees (see bvh/measure.h; less is better); and the bytes that a
-// triangle takes on a device, smooth normals included. Speeds are by CPU time of all cores, and by wall time
-// beside that. Embree's medium-quality builder takes turns with ours. Throws Error as build_gpu_scene() does.
+// over the pairs, and the SAH cost of these trees (see bvh/measure.h; less is better); and the bytes of a
+// triangle on a device, including smooth normals. Speeds are by CPU time of all cores, with speeds by wall
+// time beside them. Embree's medium-quality builder takes turns with ours. Throws Error as build_gpu_scene()
+// does.
 std::vector<Row> bench_build(const BenchOptions& options);
 
-// A tree and the time that building it took.
+// A tree and the time to build it.
 struct TimedBvh {
     Bvh bvh;
     Clocks clocks;
 };
 
-// The tree that rtcBuildBVH makes of `boxes` (at least one) in medium quality with BVH_WIDTH children a node,
-// leaves of one and the costs of bvh/measure.h, converted to our records, which is not timed. Its depth has
-// no limit. None if the program was built without Embree.
+// The tree that rtcBuildBVH makes of `boxes` (at least one) in medium quality, with BVH_WIDTH children per
+// node, one primitive per leaf and the costs of bvh/measure.h, converted to our records. The conversion is
+// not timed. Its depth has no limit. Nothing if the program was built without Embree.
 std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes);
 
 }  // namespace candela

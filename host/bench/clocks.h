@@ -1,4 +1,5 @@
-// CPU time and wall time: on a machine that is shared with other work, the first says what the work costs.
+// CPU time and wall time: on a machine that is shared with other work, CPU time measures the cost of the
+// work.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace candela {
 
 // Durations [s].
 struct Clocks {
-    double cpu = 0.0;  // Of all threads of the process together.
+    double cpu = 0.0;  // Sum over all threads of the process.
     double wall = 0.0;
 };
 
@@ -40,12 +41,12 @@ inline double cores() {
     return double(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-// Whether the device's work takes CPU time. A GPU's is measured only by wall time.
+// Whether the device's work uses CPU time. A GPU is measured only by wall time.
 inline bool works_on_cpu(const vk::DeviceInfo& device) {
     return device.type == vk::DeviceType::cpu;
 }
 
-// The seconds by which a speed is computed: CPU time over the number of cores, as if these had nothing else
+// The seconds from which a speed is computed: CPU time over the number of cores, as if these had nothing else
 // to do; or wall time.
 inline double counted_seconds(const Clocks& clocks, bool by_cpu_time) {
     return by_cpu_time ? clocks.cpu / cores() : clocks.wall;

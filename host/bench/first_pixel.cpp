@@ -89,7 +89,7 @@ Clocks run_program(std::vector<std::string> arguments, const std::vector<std::st
             call += (call.empty() ? "" : " ") + word;
         const std::string end = WIFEXITED(status) ? concat("exited with ", WEXITSTATUS(status))
                                                   : concat("was ended by signal ", WTERMSIG(status));
-        throw Error("first-pixel: `" + call + "` " + end + "; see above for what it said");
+        throw Error("first-pixel: `" + call + "` " + end + "; see its messages above");
     }
     return {seconds(usage.ru_utime) + seconds(usage.ru_stime), wall};
 }

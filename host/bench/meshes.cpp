@@ -68,7 +68,8 @@ void add_grid(TriangleMesh& mesh, uint32_t columns, uint32_t rows, const Point& 
     }
 }
 
-// i / n of the way from -1 to 1; exact at both ends, so that neighbouring faces of a cube share their edges.
+// The number i / n of the way from -1 to 1; exact at both ends, so that neighbouring faces of a cube share
+// their edges.
 float across(uint32_t i, uint32_t n) {
     return float(2 * i) / float(n) - 1.0f;
 }
@@ -129,7 +130,7 @@ class Tree {
   private:
     static constexpr uint32_t CHILDREN = 5, SIDES = 5;
 
-    // Whose far end is three fifths as thick.
+    // The far end is three fifths as thick.
     void add_tube(vec3 from, vec3 to, float radius) {
         const vec3 axis = normalize(to - from);
         const vec3 x = normalize(cross(axis, std::abs(axis.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0)));
@@ -228,7 +229,7 @@ TriangleMesh tree_mesh(uint32_t triangles, uint32_t seed) {
 
 Scene forest_scene(uint32_t trees) {
     constexpr uint32_t TRIANGLES = 100'000, KINDS = 20, TREES_PER_KIND = 500;
-    constexpr double SPACING = 4.5;  // Of a square grid, around whose points trees stand [m].
+    constexpr double SPACING = 4.5;  // Spacing of a square grid, around whose points trees stand [m].
     const auto rows = uint32_t(std::ceil(std::sqrt(double(trees))));
     const double edge = SPACING * rows;
     Scene scene = scene_with_camera(dvec3(-0.5 * edge, 16.0, 0.5 * edge), dvec3(0.0), 0.8f);

@@ -27,7 +27,7 @@ TriangleMesh tree_mesh(uint32_t triangles, uint32_t seed);
 // the crowns from a corner. One material.
 Scene forest_scene(uint32_t trees);
 
-// That many instances of a mesh of 48 triangles, turned at random in a cube.
+// `count` instances of a mesh of 48 triangles, turned at random in a cube.
 Scene scattered_scene(uint32_t instances);
 
 }  // namespace candela

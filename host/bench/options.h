@@ -11,13 +11,13 @@
 namespace candela {
 
 struct BenchOptions {
-    uint32_t runs = 5;                                 // Of each figure, after a warm-up; at least 1.
+    uint32_t runs = 5;                                 // For each figure, after a warm-up; at least 1.
     std::vector<uint32_t> triangles{190000, 1000000};  // Approximate sizes of the meshes; see meshes.h.
-    uint32_t trees = 10'000;                           // Of the forest,
-    uint32_t instances = 1'000'000;                    // and of the small mesh; see meshes.h.
+    uint32_t trees = 10'000;                           // Trees of the forest; see meshes.h.
+    uint32_t instances = 1'000'000;                    // Instances of the small mesh; see meshes.h.
     uint32_t rays = 1u << 20;                          // Approximate number of camera rays.
     SceneAccess scene_access = SceneAccess::automatic;
-    std::function<void(const std::string&)> progress;  // Gets what comes next: "traversal: 1 M triangles".
+    std::function<void(const std::string&)> progress;  // Gets the next task: "traversal: 1 M triangles".
 };
 
 }  // namespace candela

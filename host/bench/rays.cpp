@@ -12,10 +12,10 @@
 namespace candela {
 namespace {
 
-// Bounces start above the surface by this share of the scene's extent: a hundred times the rounding of its
+// Bounces start above the surface by this fraction of the scene's extent: a hundred times the rounding of its
 // coordinates, so that no tracer hits the surface that a ray leaves.
 constexpr double START_ABOVE = 1e-5;
-// Shadow rays end before the light by this share of their length.
+// Shadow rays end before the light by this fraction of their length.
 constexpr float END_BEFORE = 1e-3f;
 
 std::vector<BenchRay> primary_rays(const Camera& camera, uint32_t count, Random& random) {

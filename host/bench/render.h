@@ -18,15 +18,15 @@ struct RenderTask {
     std::string name;
     Scene scene;
     RenderSettings settings{};             // Without AOVs.
-    uint32_t spp = 0;                      // Samples per pixel of a run ...
-    std::optional<double> seconds{};       // ... which ends earlier after this time [s], if given.
+    uint32_t spp = 0;                      // Samples per pixel of a run.
+    std::optional<double> seconds{};       // If given, the run ends after this time [s] at the latest.
     std::optional<RgbPlanes> reference{};  // A converged image of the same crop, if the error is wanted.
 };
 
 // Speed [Msamples/s], rays per sample, and, if there is a reference, relMSE at the end of a run. Each run has
-// a seed of its own. Times are those of rendering alone. On a CPU device they are CPU time over the number of
-// cores, with speeds by wall time beside those; on a GPU they are wall time. A run ends at most a few per
-// cent late. Throws Error as Renderer does.
+// its own seed. Times are of rendering alone. On a CPU device they are CPU time over the number of cores,
+// with speeds by wall time beside them; on a GPU they are wall time. A run ends at most a few per cent late.
+// Throws Error as Renderer does.
 std::vector<Row> bench_render(const vk::Device& device, const BenchOptions& options, const RenderTask& task);
 
 }  // namespace candela

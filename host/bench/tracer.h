@@ -1,4 +1,4 @@
-// RayTracer: traces a set of rays and times that, with candela's kernels or with the rival.
+// RayTracer: traces a set of rays and measures the time, with candela's kernels or with the rival.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@ class RayTracer {
 };
 
 // The kernels closest_hit and any_hit of shaders/probes on a scene's records, one ray per invocation. A
-// dispatch has as many rays as the device allows, but at most `batch`. Wall time is the device's own where it
-// has a clock. `device` must outlive the tracer.
+// dispatch has as many rays as the device allows, but at most `batch`. Wall time is by the device's clock if
+// it has one. `device` must outlive the tracer.
 std::unique_ptr<RayTracer> make_device_tracer(const vk::Device& device, const GpuScene& scene,
                                               SceneAccess access, size_t batch = SIZE_MAX);
 

@@ -156,10 +156,9 @@ Row time_rays(const std::string& subject, const RaySet& set, RayTracer& ours, Ra
 
 void check_same_hits(const std::string& what, size_t differing, size_t rays) {
     if (differing <= 1 + rays / RAYS_PER_OTHER_HIT) return;
-    throw Error(
-        concat(what, ": ", differing, " of ", rays,
-               " rays have another hit than Embree's, so that the speeds are not those of one task; `candela "
-               "selftest` tells what is wrong on this device"));
+    throw Error(concat(what, ": ", differing, " of ", rays,
+                       " rays hit something else than in Embree, so the speeds cannot be compared; run "
+                       "`candela selftest` on this device"));
 }
 
 }  // namespace candela

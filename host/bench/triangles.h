@@ -1,4 +1,4 @@
-// The triangles of a scene by their ids, as its records hold them: meshes that instances share have theirs
+// The triangles of a scene by their ids, as in its records: a mesh that instances share has its triangles
 // once.
 #pragma once
 
@@ -20,22 +20,23 @@ class BenchTriangles {
   public:
     struct Instance {
         uint32_t mesh;      // Index into meshes().
-        uint32_t first_id;  // Of its triangles.
+        uint32_t first_id;  // First id of its triangles.
         glm::dmat3 to_scene;
         vec3 centre;  // The place of the mesh's origin.
     };
 
-    // Of a scene of triangles alone, at most 2^32 of them.
+    // For a scene of triangles alone, at most 2^32 of them.
     explicit BenchTriangles(const GpuScene& scene);
 
     // The triangle of that id, in the frame of the scene.
     BenchTriangle at(uint32_t id) const;
-    // How many are seen.
+    // The number that is visible.
     uint64_t count() const { return count_; }
-    // What the triangles lie in.
+    // The bounds of the triangles.
     const Box& bounds() const { return bounds_; }
 
-    // Those in the frame of the scene, by id; those of meshes by their ids in an instance, less its first.
+    // Triangles in the frame of the scene, by id; triangles of meshes, by their ids in an instance minus its
+    // first id.
     const std::vector<BenchTriangle>& baked() const { return baked_; }
     const std::vector<std::vector<BenchTriangle>>& meshes() const { return meshes_; }
     // In the order of their ids, which follow those of the baked triangles.

@@ -8,7 +8,7 @@
 
 namespace candela {
 
-// x, y, z, and a fourth lane without a meaning. A comparison sets all bits of an Int4's lane, or none.
+// x, y, z, and an unused fourth lane. A comparison sets all bits of an Int4's lane, or none.
 using Float4 [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = int32_t;
 

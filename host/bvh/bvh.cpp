@@ -1,7 +1,7 @@
-// Builds the tree from the root down. Large ranges are tasks of their own, split straight into the children
-// of one node; a smaller one becomes a binary tree, which is then turned into wide nodes at the least cost.
-// The pieces are joined in depth-first order. What a task does follows from its range alone, so the number of
-// threads never changes the result.
+// Builds the tree from the root down. A large range is a task of its own, split directly into the children of
+// one node; a smaller one becomes a binary tree, which is then turned into wide nodes at the least cost. The
+// pieces are joined in depth-first order. A task depends on its range alone, so the number of threads never
+// changes the result.
 #include "bvh/bvh.h"
 
 #include <algorithm>
@@ -25,8 +25,8 @@ namespace candela {
 
 namespace {
 
-// Up to this size, a task builds the whole subtree of a range; of a larger one it builds a node, whose child
-// nodes become tasks. Small enough for many tasks per thread, large enough that the cost of taking one is
+// Up to this size, a task builds the whole subtree of a range; for a larger one it builds a node, whose child
+// nodes become tasks. Small enough for many tasks per thread, large enough that the cost of a task itself is
 // negligible.
 constexpr uint32_t TASK_SIZE = 8192;
 
@@ -67,9 +67,9 @@ uint32_t balanced_depth(uint32_t count) {
 }
 
 // Whether a range at that depth must be split into equal parts. The heuristic may split off a single
-// primitive every time (from boxes that grow exponentially). So where a child with all primitives but one
-// might need more than what is left of BVH_MAX_DEPTH levels, the parts must be equal. These fit, since the
-// nodes above kept to this rule. A binary tree may follow it level by level, since a wide node replaces at
+// primitive every time (from boxes that grow exponentially). So if a child with all primitives except one
+// might need more than the remaining levels of BVH_MAX_DEPTH, the parts must be equal. They fit, since the
+// nodes above followed this rule. A binary tree may follow it level by level, since a wide node replaces at
 // least one of its levels.
 bool must_balance(uint32_t depth, uint32_t count) {
     return depth + 1 + balanced_depth(count - 1) >= BVH_MAX_DEPTH;
@@ -172,7 +172,7 @@ void build_subtree(std::span<PrimitiveRef> refs, const Job& root, Piece& piece) 
             stack.push_back({wide.indices[c], first + c});
     }
 }
-// Builds what one task stands for: a subtree, or a node and the tasks of its children.
+// Runs one task: builds a subtree, or a node and the tasks of its children.
 void run_task(std::span<PrimitiveRef> refs, const Task& task, TaskQueue<Task>& queue) {
     Piece& piece = *task.piece;
     if (task.job.range.count <= TASK_SIZE) {
@@ -251,7 +251,7 @@ std::vector<PrimitiveRef> make_refs(std::span<const Box> boxes, PrimitiveRange& 
         if (!valid) {
             throw Error(
                 "BVH: primitive " + std::to_string(refs.size()) + " has the box " + in_words(box) +
-                "; coordinates must be numbers from -1e37 to 1e37, and none of the first above the second");
+                "; coordinates must be numbers from -1e37 to 1e37, and no lower one above its upper one");
         }
         refs.push_back({box.lo, uint32_t(refs.size()), box.hi});
         all.add(refs.back());

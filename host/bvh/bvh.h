@@ -24,7 +24,7 @@ struct Bvh {
     std::vector<PackedBvhNode> nodes;
     std::vector<uint32_t> order;  // Primitive indices; a leaf is a position.
     Box bounds;                   // Exact, of all primitives; empty if there is none.
-    uint32_t depth = 0;           // Nodes on the longest way down, the root included; at most BVH_MAX_DEPTH.
+    uint32_t depth = 0;     // Nodes on the longest path down, including the root; at most BVH_MAX_DEPTH.
     float sah_cost = 0.0f;  // Expected cost of a ray through `bounds`, in primitive tests; see measure.h.
 };
 
@@ -33,8 +33,8 @@ struct Bvh {
 // if there are more than BVH_MAX_PRIMITIVES boxes.
 Bvh build_bvh(std::span<const Box> boxes, const BvhOptions& options = {});
 
-// The first broken invariant of `bvh` over `boxes`, in words; none if it is valid. Reads nothing out of
-// range, whatever the references say.
+// The first broken invariant of `bvh` over `boxes`, in words; nothing if it is valid. Never reads out of
+// range, even if references are.
 std::optional<std::string> validate(const Bvh& bvh, std::span<const Box> boxes);
 
 }  // namespace candela

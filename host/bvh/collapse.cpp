@@ -7,8 +7,8 @@
 namespace candela {
 namespace {
 
-// The cost of at most k wide nodes or leaves in place of a node's two children, and the left child's share of
-// k.
+// The cost of at most k wide nodes or leaves in place of a node's two children, and how many of the k the
+// left child gets.
 struct Division {
     double cost = std::numeric_limits<double>::infinity();
     uint32_t left_share = 0;

@@ -14,16 +14,17 @@ struct BinaryNode {
     double area = 0.0;  // Half its surface.
     uint32_t left = 0;  // Index of its left child, which the right one follows; 0: it is a leaf.
 
-    // Filled by find_least_costs. There are many ways to put at most k nodes or leaves of the wide tree in
-    // this node's place. cost[k], k >= 1: the least sum of the areas of these and all wide nodes below them.
+    // Filled by find_least_costs. There are many ways to replace this node by at most k nodes or leaves of
+    // the wide tree. cost[k], k >= 1: the least sum of the areas of these and all wide nodes below them.
     // left_share[k]: how many of the k then replace the left child; 0 if this node becomes a wide one itself.
     // The children of a wide node follow from left_share[BVH_WIDTH].
     std::array<double, BVH_WIDTH> cost{};
     std::array<uint8_t, BVH_WIDTH + 1> left_share{};
 };
 
-// Finds the wide tree with the least sum of areas of nodes, which is what its nodes cost a random ray; leaves
-// cost the same in every tree. Among equals it prefers more children per node, evenly from both sides.
+// Finds the wide tree with the least sum of areas of nodes, which is the cost of its nodes for a random ray;
+// leaves cost the same in every tree. Among equal trees it prefers more children per node, evenly from both
+// sides.
 // Ref: Ylitie, Karras and Laine 2017, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
 // BVHs.
 void find_least_costs(std::span<BinaryNode> tree);

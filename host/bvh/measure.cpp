@@ -7,7 +7,7 @@
 namespace candela {
 
 BvhMeasures measure(std::span<const PackedBvhNode> nodes, const Box& bounds) {
-    std::vector<uint32_t> depths(nodes.size());  // Of the subtree below each node, itself included.
+    std::vector<uint32_t> depths(nodes.size());  // Depth of each node's subtree, including itself.
     const double root_area = bounds.is_empty() ? 0.0 : half_area(bounds);
     double cost = root_area * BVH_NODE_COST;
     for (size_t i = nodes.size(); i-- > 0;) {  // Children follow their parent.

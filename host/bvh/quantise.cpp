@@ -10,7 +10,8 @@ namespace candela {
 namespace {
 
 constexpr uint32_t LAST_STEP = 255;
-constexpr int LEAST_EXPONENT = -126;  // Of a normal float: devices may flush smaller ones to zero.
+constexpr int LEAST_EXPONENT = -126;  // Least exponent of a normal float: devices may flush smaller ones to
+                                      // zero.
 
 // One axis of the grid. Estimates are made in double precision; decode() is the device's arithmetic and
 // decides. It rounds once, and rounding is monotonic, so step 0 decodes to `origin` itself and no step to

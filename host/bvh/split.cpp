@@ -12,9 +12,9 @@ namespace candela {
 namespace {
 
 // Few bins cannot cut a small detailed object out of a large room: with 32 instead of 128, rays there cost a
-// tenth more, and with 8 far more; the build takes the same time. A small range gets fewer bins, since a bin
-// costs as much as several primitives; with a bin for every 4 of them, trees are 0.1 % better and take 3 %
-// longer to build.
+// tenth more, and with 8 far more; the build is as fast. A small range gets fewer bins, since a bin costs as
+// much as several primitives; with a bin for every 4 primitives, trees are 0.1 % better and builds 3 %
+// slower.
 constexpr uint32_t MIN_BINS = 4;
 constexpr uint32_t MAX_BINS = 128;
 constexpr uint32_t PRIMITIVES_PER_BIN = 8;  // Above MIN_BINS.
@@ -42,7 +42,7 @@ struct Binning {
     }
 };
 
-// What is in the bins of each axis; elements from Binning::count on are not set.
+// The contents of the bins of each axis; elements from Binning::count on are not set.
 struct Bins {
     std::array<std::array<Box4, 3>, MAX_BINS> bounds;
     std::array<Int4, MAX_BINS> counts;
@@ -94,7 +94,7 @@ Cut best_cut(const Bins& bins, const Binning& binning, const PrimitiveRange& ran
         right.add(bins, i);
         right_cost[i] = right.cost(unit);
     }
-    // The best on each axis.
+    // The best cut on each axis.
     Float4 least_cost = all4(INFINITE), least_imbalance = all4(INFINITE);
     Int4 best_bin{};
     BinUnion left;

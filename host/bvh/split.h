@@ -10,7 +10,7 @@
 
 namespace candela {
 
-// What the builder keeps of a primitive: 32 bytes, which it moves until they are in leaf order.
+// The builder's data of a primitive: 32 bytes, which it moves until they are in leaf order.
 struct alignas(16) PrimitiveRef {
     vec3 lo;
     uint32_t index;  // In the caller's order.
@@ -46,8 +46,8 @@ struct PrimitiveRange {
 using SplitRanges = std::array<PrimitiveRange, 2>;
 
 // Reorders `range` (2 primitives or more) of `refs` and returns its two parts, neither empty: the cut between
-// bins of centroids with the least A(left) * n(left) + A(right) * n(right), the more balanced one where
-// several are equal; where no axis can be binned (equal centroids), split_median().
+// bins of centroids with the least A(left) * n(left) + A(right) * n(right), the more balanced one if several
+// are equal. If no axis can be binned (equal centroids), split_median().
 SplitRanges split_sah(std::span<PrimitiveRef> refs, const PrimitiveRange& range);
 
 // The same, but in two halves by centroid along the longest axis of the centroids' bounds; equal centroids

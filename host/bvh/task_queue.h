@@ -1,4 +1,4 @@
-// Runs tasks that make further tasks on a few threads. Nothing here knows of trees.
+// Runs tasks, which may add further tasks, on a few threads. Independent of trees.
 #pragma once
 
 #include <condition_variable>
@@ -23,9 +23,9 @@ class TaskQueue {
         changed_.notify_one();
     }
 
-    // Calls work(task) for every task, on `threads` (>= 1) threads of which the caller's is one, or on fewer
-    // if no more can be started, until none is left. The first exception that `work` throws ends the run and
-    // is thrown here.
+    // Calls work(task) for every task, on `threads` (>= 1) threads including the caller's, or on fewer if no
+    // more can be started, until no task is left. The first exception that `work` throws ends the run and is
+    // rethrown.
     template <class Work>
     void run(unsigned threads, const Work& work) {
         std::vector<std::jthread> helpers = start_helpers(threads - 1, [&] { serve(work); });

@@ -14,8 +14,8 @@ namespace {
 
 // The children of a node: nodes and instances, then primitives.
 struct Regrouped {
-    std::array<uint32_t, BVH_WIDTH> before{};  // Which child of the old node each is.
-    uint32_t nodes = 0;                        // And instances.
+    std::array<uint32_t, BVH_WIDTH> before{};  // The index of each in the old node.
+    uint32_t nodes = 0;                        // Number of nodes and instances.
     uint32_t count = 0;
 };
 
@@ -26,7 +26,7 @@ Regrouped children_of(uint32_t nodes, uint32_t count) {
     return children;
 }
 
-// Sorts the children that are nodes as bvh_longest_axis() says.
+// Sorts the children that are nodes along bvh_longest_axis().
 void sort_nodes(const BvhNode& node, Regrouped& children) {
     const auto axis = glm::length_t(bvh_longest_axis(node.scale));
     const auto middle = [&](uint32_t child) {

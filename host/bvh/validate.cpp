@@ -32,12 +32,12 @@ Problem check_order(std::span<const uint32_t> order, size_t count) {
     return std::nullopt;
 }
 
-// What the references of a tree have claimed so far.
+// The nodes and positions claimed by a tree's references so far.
 struct Claims {
     std::vector<bool> nodes;
     std::vector<bool> positions;
 
-    // Claims what child `reference` of node `parent` refers to.
+    // Claims the node or position of child `reference` of node `parent`.
     Problem claim(size_t parent, uint32_t reference) {
         if (!is_leaf(reference)) {
             if (reference >= nodes.size())

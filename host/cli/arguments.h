@@ -21,10 +21,10 @@ namespace candela {
 // The images that --aov can name.
 inline constexpr const char* AOV_NAMES = "albedo,n,p,z,variance,samples";
 
-// The parts of `text` between separators, empty ones included.
+// The parts of `text` between separators, including empty ones.
 std::vector<std::string> split(const std::string& text, char separator);
 
-// Each parses all of `text`; returns nothing if that is not as described.
+// Each parses all of `text`; returns nothing if it does not have the form described.
 
 // A whole decimal number in [least, most].
 std::optional<uint32_t> parse_uint(const std::string& text, uint32_t least, uint32_t most);
@@ -59,7 +59,7 @@ CLI::Option* add_value(CLI::App& app, const std::string& names, Target& target, 
     return app.add_option_function<std::string>(names, store, description);
 }
 
-// Adds an option that takes one of a few words; `choices` must live as long as `app`.
+// Adds an option whose value is one of a few words; `choices` must live as long as `app`.
 template <class Target, class T, size_t N>
 CLI::Option* add_choice(CLI::App& app, const std::string& names, Target& target, const Choices<T, N>& choices,
                         const std::string& description) {
@@ -82,8 +82,8 @@ struct PictureOptions {
 
     // Adds --size and --crop.
     void add_to(CLI::App& app);
-    // The crop within a picture of `full` pixels, by default all of it. Throws Error (usage) if the crop
-    // exceeds it.
+    // The crop within a picture of `full` pixels; by default the whole picture. Throws Error (usage) if the
+    // crop exceeds it.
     PixelRect crop_within(uvec2 full) const;
 };
 

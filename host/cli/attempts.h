@@ -1,4 +1,4 @@
-// Attempts: several things to do of which none shall keep the others from being tried.
+// Attempts: several actions, all of which are tried even if some fail.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace candela {
 
-// Tries one thing after another; in the end throws the last Error, after the others have been printed.
+// Tries one action after another; at the end prints all Errors but the last, and throws that.
 class Attempts {
   public:
     void attempt(const std::function<void()>& action) {

@@ -72,8 +72,8 @@ RgbPlanes reference_planes(const std::string& file, const Image& image, const Re
     return *planes;
 }
 
-// Prints on stderr what is running: on a terminal in a line that is cleared later; elsewhere only if no table
-// is printed.
+// Prints on stderr what is running: on a terminal, in a line that is cleared later; elsewhere, only if no
+// table is printed.
 void print_progress(const std::string& text, bool table) {
     const bool terminal = stderr_is_terminal();
     if (terminal) std::fputs("\r\x1b[K", stderr);
@@ -83,7 +83,7 @@ void print_progress(const std::string& text, bool table) {
 
 std::string rival_text() {
     return embree_version().value_or(
-        "none; for Embree beside it install libembree-dev and build with cmake -DCANDELA_EMBREE=ON");
+        "none; to compare with Embree, install libembree-dev and build with cmake -DCANDELA_EMBREE=ON");
 }
 
 void print_heading(const vk::DeviceInfo& device, const BenchOptions& options) {
@@ -97,8 +97,8 @@ void print_heading(const vk::DeviceInfo& device, const BenchOptions& options) {
                 options.runs);
     if (works_on_cpu(device)) {
         std::printf(
-            "Speeds are by CPU time, times the cores; times are CPU seconds. Beside them stands the median\n"
-            "by wall time, which other work on the machine disturbs.\n\n");
+            "Speeds are by CPU time, times the cores; times are CPU seconds. The median by wall time, which\n"
+            "other work on the machine disturbs, is beside them.\n\n");
     } else {
         std::printf(
             "Rays and samples are by wall time, those of candela on the device, Embree's on all cores.\n"

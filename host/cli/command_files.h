@@ -1,4 +1,5 @@
-// The files of one command. A file that is written may not be any other of them, by whatever name.
+// The files of one command. A file that is written may not be the same file as any other, even under another
+// name.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +10,7 @@ namespace candela {
 
 class CommandFiles {
   public:
-    // Add a file that is read, or one that is written; messages call it `role`: "SCENE", "-o". A written "-"
+    // Add a file that is read, or one that is written; messages call it `role`: "SCENE", "-o". An output "-"
     // means standard output, and is ignored. Throw Error (usage) that names both roles and paths if the same
     // file was added before, unless both only read it.
     void read(const std::string& role, const std::filesystem::path& path);

@@ -17,7 +17,7 @@
 namespace candela {
 
 void print_warning(const std::string& message) {
-    // On a terminal it takes the place of a live line, if there is one.
+    // On a terminal it replaces a live line, if there is one.
     std::fprintf(stderr, "%scandela: warning: %s\n", stderr_is_terminal() ? "\r\x1b[K" : "",
                  printable(message, MOST_MESSAGE_BYTES).c_str());
 }

@@ -7,12 +7,13 @@
 
 namespace candela {
 
-// Messages are lines: what is not printable in them is escaped, and what exceeds MOST_MESSAGE_BYTES is cut.
+// Messages are lines: unprintable characters are escaped, and a message longer than MOST_MESSAGE_BYTES is
+// cut.
 
 // Prints `candela: warning: MESSAGE` to stderr.
 void print_warning(const std::string& message);
 
-// Prints what summary_of() makes of many.
+// Prints the summary_of() many warnings.
 void print_warnings(const std::vector<std::string>& messages);
 
 // Prints `candela: error: MESSAGE` to stderr.

@@ -43,8 +43,8 @@ std::string escape(const std::string& text) {
 // A logarithmic axis: maps numbers to places in the drawing.
 class Axis {
   public:
-    // From `least` to `most` (more than 0), widened slightly, and to at least one decade, which has three
-    // numbers to label. The ends lie at `from` and `to`.
+    // From `least` to `most` (more than 0), widened slightly and to at least one decade, so that there are
+    // three numbers to label. The ends lie at `from` and `to`.
     Axis(double least, double most, double from, double to) : from_(from), to_(to) {
         const double margin = std::max(MARGIN, 0.5 - 0.5 * std::log10(most / least));
         least_ = std::log10(least) - margin;

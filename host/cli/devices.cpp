@@ -52,11 +52,11 @@ void print_row(const char* key, const std::string& value) {
 void print(const vk::DeviceInfo& info, bool is_default) {
     std::printf("%u: %s (%s)%s\n", info.index, printable(info.name, MOST_NAME_BYTES).c_str(),
                 vk::to_string(info.type), is_default ? ", used by default" : "");
-    print_row("will do", info.reason.empty() ? "yes" : "no: " + info.reason);
+    print_row("suitable", info.reason.empty() ? "yes" : "no: " + info.reason);
     print_row("Vulkan", vk::version_text(info.api_version));
     if (!info.reason.empty()) return;  // The rest may be unknown.
     print_row("driver", info.driver);
-    // Whatever a CPU device reports as its heap, the computer's RAM is what counts.
+    // The computer's RAM limits a CPU device, not the heap that it reports.
     print_row("memory",
               info.type == vk::DeviceType::cpu ? "the computer's free RAM" : bytes_text(info.device_heap));
     print_row("subgroup size", std::to_string(info.subgroup_size));
@@ -68,8 +68,8 @@ void print(const vk::DeviceInfo& info, bool is_default) {
     print_row("maxMemoryAllocationSize", bytes_text(info.limits.max_memory_allocation_size));
 }
 
-// The index of the device that is used by default; none, and the reason in `failure`, if no device can be
-// used.
+// The index of the device that is used by default. If no device can be used: none, and the reason in
+// `failure`.
 std::optional<uint32_t> find_default(const std::vector<vk::DeviceInfo>& devices,
                                      std::optional<Error>& failure) {
     try {
@@ -108,7 +108,7 @@ Command add_devices_command(CLI::App& app) {
         app.add_subcommand("devices", "List Vulkan devices, and why candela cannot use some");
     const auto json = std::make_shared<bool>(false);
     command->add_flag("--json", *json, "Print JSON for programs");
-    command->footer("--device of `candela render` takes the index or a part of the name.");
+    command->footer("Give the index or a part of the name to --device of `candela render`.");
     return {command, [json] { return devices(*json); }};
 }
 

@@ -84,7 +84,7 @@ const char* kind_of(const DirectionalLight&) {
     return "directional";
 }
 
-// The lights that no surface shows.
+// The lights without a surface.
 Json punctual_lights_of(const Scene& scene) {
     Json lights = Json::array();
     for (const Light& light : scene.lights) {
@@ -94,8 +94,8 @@ Json punctual_lights_of(const Scene& scene) {
     return lights;
 }
 
-// What the instances of meshes share: the triangles that are stored and that are seen of these meshes, and
-// about how many bytes all copies together would take besides.
+// What instances save: the triangles of their meshes, as stored and as seen, and about how many more bytes
+// copies of the meshes would need.
 Json sharing_of(const GpuScene& gpu) {
     uint64_t stored = 0, seen = 0, primitives_saved = 0;
     for (const InstancedMesh& mesh : gpu.meshes)
@@ -164,7 +164,7 @@ std::string bounds_text(const Json& bounds) {
     return point(bounds[0]) + " to " + point(bounds[1]) + " m";
 }
 
-// `3: sun (directional), lamp (spot)`: how many there are, and those that no surface shows by name.
+// `3: sun (directional), lamp (spot)`: how many lights there are, and the names of those without a surface.
 std::string lights_text(const Json& info) {
     std::vector<std::string> names;
     for (const Json& light : info["punctual_lights"])

@@ -14,7 +14,7 @@ namespace candela {
 static std::atomic<bool> signalled = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-// Whatever signal comes next has its usual effect.
+// The next signal has its usual effect.
 static void on_signal(int) {
     signalled = true;
     for (const int signal : InterruptGuard::SIGNALS) {

@@ -1,4 +1,5 @@
-// Catches Ctrl-C, termination and the end of the terminal: the image so far can be kept, or nothing is left.
+// Catches Ctrl-C, termination and the end of the terminal, so that the image so far is kept, or nothing is
+// left behind.
 #pragma once
 
 #include <array>
@@ -12,8 +13,8 @@ enum class OnSignal {
     quit,  // Each ends the program at once, with ExitCode::interrupted and a message that a scene was loaded.
 };
 
-// Rules what signals do while it lives. A SIGHUP that was ignored before, as by nohup, stays ignored. Only
-// one may exist at a time.
+// Determines what signals do while it lives. A SIGHUP that was ignored before, as by nohup, stays ignored.
+// Only one may exist at a time.
 class InterruptGuard {
   public:
     explicit InterruptGuard(OnSignal on_signal = OnSignal::note);

@@ -81,7 +81,7 @@ Command add_merge_command(CLI::App& app, const std::string& command_line) {
         "  candela merge --missing 0..256 a.exr b.exr\n\n"
         "Scene, size, crop, camera, seed, sampler, estimator and depths must be the same, and no two parts "
         "may\n"
-        "hold the same sample. Missing samples cause a warning. The result is that of one rendering of all\n"
+        "hold the same sample. Missing samples cause a warning. The result equals one rendering of all\n"
         "samples, up to rounding (a few units of 2^-24), and can be merged again; parts by --half have "
         "three\n"
         "digits.");

@@ -27,8 +27,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* STDOUT = "-";
 
-// Marks R G B A and Albedo as 16-bit. A channel that 16 bits cannot hold stays as it is, with a warning: its
-// samples must not be lost.
+// Marks R G B A and Albedo as 16-bit. A channel whose values exceed 16 bits keeps 32, with a warning: no
+// sample may be lost.
 void use_half(Image& image) {
     constexpr float LARGEST_HALF = 65504.0f;
     constexpr std::string_view COLOUR_CHANNELS[] = {"R", "G", "B", "A", "Albedo.R", "Albedo.G", "Albedo.B"};
@@ -37,9 +37,8 @@ void use_half(Image& image) {
         channel.half = std::ranges::all_of(
             channel.values, [](float v) { return !std::isfinite(v) || std::abs(v) <= LARGEST_HALF; });
         if (!channel.half) {
-            print_warning(
-                "channel " + channel.name +
-                " holds values beyond 65504, the most that 16 bits can; it is written with 32 bits");
+            print_warning("channel " + channel.name +
+                          " holds values beyond 65504, the largest 16-bit float; it is written with 32 bits");
         }
     }
 }
@@ -57,7 +56,7 @@ Json or_null(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
 }
 
-// Adds what --target-error and --reference put into the report.
+// Adds the results of --target-error and --reference to the report.
 void add_convergence(Json& report, const RenderRecord& record) {
     if (record.target_error) {
         report["target_error"] = *record.target_error;
@@ -132,7 +131,7 @@ void write_report(const std::string& target, const Json& report) {
 
 void check_outputs(const ImageOutputs& outputs) {
     if (outputs.files.empty()) {
-        throw Error("there is no output; give -o FILE.exr or -o FILE.png (both, too)", ExitCode::usage);
+        throw Error("no output given; use -o FILE.exr, -o FILE.png, or both", ExitCode::usage);
     }
     for (const std::string& path : outputs.files)
         image_format(path);
@@ -159,7 +158,7 @@ void write_current_images(const ImageOutputs& outputs, const RenderRecord& recor
         try {
             write_image(outputs, path, image, write_file_atomically);
         } catch (const Error& error) {
-            print_warning(std::string(error.what()) + "; the rendering goes on without this image");
+            print_warning(std::string(error.what()) + "; rendering continues without this image");
         }
     }
 }

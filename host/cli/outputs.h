@@ -10,8 +10,8 @@
 
 namespace candela {
 
-// Throws Error if an output is missing, has an unknown extension (both: usage) or could not be written. Call
-// it before any long work.
+// Throws Error (usage) if there is no output or one has an unknown extension, and Error if one could not be
+// written. Call it before any long work.
 void check_outputs(const ImageOutputs& outputs);
 // Throws Error if the report could not be written.
 void check_report(const std::optional<std::string>& file);

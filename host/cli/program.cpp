@@ -98,7 +98,7 @@ ExitCode run_program(int argc, const char* const* argv) {
         if (command.app->parsed()) return command.run();
     }
     throw Error(
-        "there is no command; give render, view, info, devices, compare, merge, plot, selftest or bench, or "
+        "no command given; use render, view, info, devices, compare, merge, plot, selftest or bench, or "
         "see candela --help",
         ExitCode::usage);
 }

@@ -25,7 +25,7 @@ Progress::Progress(uint64_t pixels, uint32_t spp, double done, std::optional<dou
       line_(style, done),
       now_{.done = done} {}
 
-// Whole samples per pixel; the share may fall short of one by rounding.
+// Whole samples per pixel; rounding may leave the fraction slightly below 1.
 uint32_t Progress::spp_done() const {
     return uint32_t(now_.done * spp_ + 1e-3);
 }

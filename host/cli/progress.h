@@ -11,12 +11,12 @@ namespace candela {
 
 class Progress {
   public:
-    // `pixels` get `spp` samples each, of which the share `done` exists already, unless `time_limit` [s], if
-    // given, ends the rendering earlier. The clock starts here.
+    // Each of `pixels` gets `spp` samples, a fraction `done` of which already exists. A `time_limit` [s] may
+    // end rendering earlier. The clock starts here.
     Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit,
              ProgressStyle style);
-    // Reports the share `done`, in [0, 1], of all samples and the estimated error of the image; prints no
-    // more often than suits the output.
+    // Reports the fraction `done`, in [0, 1], of all samples and the estimated error of the image; prints
+    // only as often as suits the output.
     void update(double done, std::optional<double> error);
     // Clears the live line, so that others can print.
     void clear() { line_.clear(); }

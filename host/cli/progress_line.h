@@ -11,14 +11,14 @@ namespace candela {
 
 class ProgressLine {
   public:
-    // The clock starts here, with the share `done` of the work.
+    // The clock starts here, with a fraction `done` of the work already complete.
     ProgressLine(ProgressStyle style, double done);
     // Clears the live line, if there is one.
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    // Whether it is time to print, at the share `done` of the work, in [0, 1].
+    // Whether it is time to print, with a fraction `done` of the work complete, in [0, 1].
     bool is_due(double done) const;
     bool is_json() const { return output_ == Output::json; }
     bool is_live() const { return output_ == Output::live; }
@@ -35,7 +35,7 @@ class ProgressLine {
 
     Output output_;
     std::chrono::steady_clock::time_point start_;
-    double printed_done_;  // When something was printed last.
+    double printed_done_;  // At the last line printed.
     double printed_seconds_ = 0.0;
 };
 

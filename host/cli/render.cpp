@@ -55,13 +55,15 @@ std::string error_text(const RenderRecord& record) {
 void print_outcome(const MessageOptions& messages, const RenderRecord& record, uint32_t target) {
     if (record.counters.nonfinite_samples > 0) {
         print_warning(std::to_string(record.counters.nonfinite_samples) +
-                      " sample(s) were not finite and count as black");
+                      " sample(s) were not finite; they are treated as black");
     }
     if (record.counters.depth_limit_hits > 0) {
-        print_warning(std::to_string(record.counters.depth_limit_hits) + " path(s) were cut after " +
-                      std::to_string(DEPTH_SAFETY_LIMIT) + " bounces, and their light is missing");
+        print_warning(std::to_string(record.counters.depth_limit_hits) + " path(s) were cut off after " +
+                      std::to_string(DEPTH_SAFETY_LIMIT) +
+                      " bounces; the light that they would have found is missing");
     }
-    if (record.spp == 0) print_warning("stopped before every pixel had a sample; those without are black");
+    if (record.spp == 0)
+        print_warning("stopped before every pixel had a sample; pixels without one are black");
     if (record.target_error && record.complete &&
         !(record.estimated_error && *record.estimated_error <= *record.target_error)) {
         print_warning("the target error was not reached with " + std::to_string(target) +
@@ -76,7 +78,7 @@ void print_outcome(const MessageOptions& messages, const RenderRecord& record, u
 }
 
 void warn_of_device_failure(const Error& error, uint32_t kept, double submission_seconds) {
-    print_warning(std::string(error.what()) + "; opening the device again, and going on from " +
+    print_warning(std::string(error.what()) + "; reopening the device and continuing from " +
                   std::to_string(kept) + " samples per pixel in submissions of " +
                   fixed(1e3 * submission_seconds, 3) + " ms");
 }
@@ -84,7 +86,7 @@ void warn_of_device_failure(const Error& error, uint32_t kept, double submission
 void warn_of_maker(const Maker& before, const Maker& now) {
     if (before == now) return;
     print_warning("the checkpoint was made by " + to_text(before) + ", and this is " + to_text(now) +
-                  ": the image is right, but not the same bits as if one had made it all");
+                  ": the image is correct, but its bits are not those of a single program or device");
 }
 
 // The checkpoint that the job asks to continue from, if there is one yet.
@@ -94,15 +96,15 @@ std::optional<Checkpoint> resume(const RenderJob& job, const RenderRecord& recor
     if (checkpoint) {
         warn_of_maker(checkpoint->header.maker, make_maker(device));
     } else if (job.checkpoint.resume && !messages.quiet) {
-        print_note('"' + *job.checkpoint.file + "\" does not exist yet: starting anew");
+        print_note('"' + *job.checkpoint.file + "\" does not exist yet: starting from the beginning");
     }
     return checkpoint;
 }
 
-// Writes all files. If one fails, still writes the others, and then throws the Error; or `failure`, if there
-// is one.
-void write_files(Rendering& rendering, const OutputOptions& outputs, const MessageOptions& messages,
-                 const vk::Instance& instance, const std::optional<Error>& failure, uint32_t target) {
+// Writes all files. If one fails, still writes the others, and then throws the Error; throws `failure`
+// instead, if there is one.
+void write_files(Rendering& rendering, const RenderOptions& options, const vk::Instance& instance,
+                 const std::optional<Error>& failure, uint32_t target) {
     Image image = rendering.image();
     RenderRecord record = rendering.record();
     print_outcome(messages, record, target);
@@ -204,10 +206,10 @@ nohup. A second Ctrl-C ends the program at once.
 With --checkpoint a rendering survives the end of the program: the same command with --resume continues it,
 to the same bits. Scripts can always pass --resume, even the first time.
 --target-error compares the image with that of half as many samples, at powers of two from 16 on. This is the
-error for --sampler independent, and somewhat more than the error where others converge faster. It does not
-include light that no sample has found yet. A resumed rendering estimates the error anew, and may take up to
-twice as many samples.
---adaptive renders two halves with different seeds. Each takes its samples where the other shows that they
+error for --sampler independent, and more than the error for samplers that converge faster. It excludes light
+that no sample has found yet. A resumed rendering estimates the error anew, and may need up to twice as many
+samples.
+--adaptive renders two halves with different seeds. Each puts its samples where the other shows that they
 remove the most noise for their time, so there is no bias. The image is their mean, and their difference gives
 the estimated error. It keeps four states in memory instead of one, and its images cannot be merged.
 --progress json prints an object twice a second, and a last one, whose state is neither "loading" nor

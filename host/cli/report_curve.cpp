@@ -22,7 +22,7 @@ Curve curve_of_report(std::string_view text, const std::string& path) {
     };
     Curve curve{.name = std::filesystem::path(path).stem().string(), .points = {}};
     const Json report = Json::parse(text, nullptr, false);
-    if (!report.is_object()) refuse("it is no report");
+    if (!report.is_object()) refuse("it is not a report");
     if (!report.contains("convergence") || !report.contains("reference"))
         refuse("it has no errors against a reference");
     try {

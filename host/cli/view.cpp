@@ -64,12 +64,13 @@ void ViewArguments::check() const {
         throw Error("--crop: a window shows the whole picture; leave it out, or use candela render",
                     ExitCode::usage);
     }
-    if (frames && rendering.sampling.spp) {
-        throw Error("--frames and --spp both say how many samples there shall be; give one", ExitCode::usage);
+    if (frames && render.spp) {
+        throw Error("--frames and --spp both set the number of samples; give only one", ExitCode::usage);
     }
     if (!screenshots.empty() && !frames) {
-        throw Error("--screenshot: give --frames N too, which says when; P and X write pictures at any time",
-                    ExitCode::usage);
+        throw Error(
+            "--screenshot: also give --frames N, after which it is taken; P and X save a picture at any time",
+            ExitCode::usage);
     }
     for (const std::string& path : screenshots)
         image_format(path);
@@ -133,7 +134,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     if (guard.interrupted()) return ExitCode::interrupted;
     if (arguments.frames && !complete) {
         throw Error("the window was closed before it had shown " + std::to_string(*arguments.frames) +
-                    " frames; no screenshot was written");
+                    " frames, so no screenshot was written");
     }
     return ExitCode::done;
 }
@@ -143,7 +144,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
 ExitCode view(const ViewArguments& arguments, const std::string&) {
     arguments.check();
     throw Error(
-        "view: this program was built without a window, which takes GLFW and Dear ImGui; install "
+        "view: this program was built without a window, which needs GLFW and Dear ImGui; install "
         "libglfw3-dev and libimgui-dev and build it with cmake -DCANDELA_VIEW=ON, or use candela render");
 }
 
@@ -159,7 +160,7 @@ Command add_view_command(CLI::App& app, const std::string& command_line) {
         std::string(
             "The picture has the size of the window. While the camera moves it may be coarser; at rest it\n"
             "accumulates the same bits as `candela render`, up to --spp samples per pixel if given.\n"
-            "Files are written to the current folder: SCENE-1.png, SCENE-2.png, ... EXRs are those of\n"
+            "Files are written to the current folder: SCENE-1.png, SCENE-2.png, ... EXRs are the same as by\n"
             "`candela render`, so that candela merge and compare read them.\n\n"
             "Mouse and keys:\n") +
         CONTROLS_HELP +

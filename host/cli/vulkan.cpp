@@ -29,7 +29,7 @@ static bool is_on(const char* name) {
     return !value.empty() && value != "0";
 }
 
-// Where programs keep what they can make again; nothing if the environment does not say. By the XDG
+// The folder for files that programs can make again; nothing if the environment does not set one. By the XDG
 // specification, a relative path is ignored.
 static std::optional<std::filesystem::path> cache_home() {
     const std::filesystem::path cache = environment("XDG_CACHE_HOME");
@@ -50,16 +50,16 @@ static void keep_drivers_off_full_disks() {
         ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
 }
 
-// Drivers that find no room for threads and code end the program silently or hang. Writable memory is what
-// both limits count, on the address space and on data.
+// Drivers without room for threads and code end the program silently or hang. Both limits, on the address
+// space and on data, apply to writable memory.
 static void check_address_space() {
     constexpr size_t NEEDED = size_t{768} << 20;
     void* const room =
         ::mmap(nullptr, NEEDED, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (room == MAP_FAILED) {
         throw Error(
-            "cannot use Vulkan: fewer than 768 MiB of address space or data are left, which its drivers "
-            "take; raise the limit (ulimit -v, ulimit -d)",
+            "cannot use Vulkan: its drivers need 768 MiB of address space and data, and less is left; raise "
+            "the limit (ulimit -v, ulimit -d)",
             ExitCode::out_of_memory);
     }
     ::munmap(room, NEEDED);
@@ -89,8 +89,8 @@ vk::Instance::Options instance_options() {
 void check_validation(const vk::Instance& instance) {
     const size_t count = instance.validation_messages().size();
     if (count > 0) {
-        throw Error("the Vulkan validation layer found fault " + std::to_string(count) +
-                    " time(s), see above; this is a bug in candela or the driver, please report it");
+        throw Error("the Vulkan validation layer reported errors " + std::to_string(count) +
+                    " time(s), see above; this is a bug in candela or in the driver; please report it");
     }
 }
 

@@ -13,7 +13,7 @@ namespace candela {
 // process has too little address space for drivers.
 vk::Instance::Options instance_options();
 
-// Throws Error if the validation layer has reported anything so far.
+// Throws Error if the validation layer has reported anything.
 void check_validation(const vk::Instance& instance);
 
 // The folder where compiled kernels are kept: candela in $XDG_CACHE_HOME or ~/.cache. None if there is no

@@ -30,7 +30,7 @@ class Half {
     explicit Half(std::span<const Accumulation> states) : states_(states) {}
 
     uint32_t count(size_t i) const { return count_of(states_, i); }
-    // The share of the camera rays that hit something visible.
+    // The fraction of camera rays that hit something visible.
     double alpha(size_t i) const {
         return sum(i, [&](const Accumulation& state) { return double(state.at(LAYER_L, i)[3]); }) / count(i);
     }

@@ -11,7 +11,7 @@
 
 namespace candela {
 
-// What the device counted while it rendered.
+// Counters of the device.
 struct RenderCounters {
     uint64_t rays = 0;
     uint64_t nonfinite_samples = 0;  // Samples that were not finite and added nothing.
@@ -23,13 +23,13 @@ struct RenderCounters {
 // Sums of samples per pixel, exactly as the device holds them: layers (LAYER_*) of `rect`, each row-major
 // RGBA.
 struct Accumulation {
-    uvec2 full{0, 0};  // Pixels of the whole picture ...
-    PixelRect rect;    // ... and the part of it that is held here.
+    uvec2 full{0, 0};  // Size of the whole picture [pixels].
+    PixelRect rect;    // The part of the picture that is held here.
     uint32_t seed = 0;
     uint32_t first_sample = 0;                  // Index of each pixel's first sample.
     uint32_t layer_count = LAYER_COUNT_COLOUR;  // LAYER_COUNT_COLOUR or LAYER_COUNT_AOVS.
     std::vector<float> values;                  // Empty if no pixel has a sample or a limit.
-    RenderCounters counters{};                  // Of all the work that went into it.
+    RenderCounters counters{};                  // Totals for all of the samples.
 
     size_t pixel_count() const { return size_t(rect.width()) * rect.height(); }
     // RGBA of a layer at pixel i of `rect`.
@@ -37,7 +37,7 @@ struct Accumulation {
     uint32_t sample_count(size_t i) const {
         return values.empty() ? 0 : uint32_t(at(LAYER_L_COMPENSATION, i)[3]);
     }
-    // How many rays a sample of pixel i took, on average.
+    // The average number of rays of a sample of pixel i.
     double rays_per_sample(size_t i) const {
         return double(at(LAYER_SQUARE_COMPENSATION, i)[3]) / std::max(1u, sample_count(i));
     }
@@ -51,16 +51,17 @@ struct Accumulation {
     uint32_t most_samples() const;
 };
 
-// `states` below are one; or two, whose samples are combined; or four, for the two halves of an adaptive
-// rendering: the samples of each pair are combined, and the image is the unweighted mean of the two halves.
+// `states` below are one state; or two, whose samples are combined; or four, for the two halves of an
+// adaptive rendering: the samples of each pair are combined, and the image is the unweighted mean of the
+// halves.
 
 struct SampleCounts {
-    uint64_t total = 0;  // Of all pixels.
-    uint32_t least = 0;  // Of the pixel that holds fewest ...
-    uint32_t most = 0;   // ... and of the one that holds most.
+    uint64_t total = 0;  // Samples of all pixels.
+    uint32_t least = 0;  // Fewest samples of a pixel.
+    uint32_t most = 0;   // Most samples of a pixel.
 };
 SampleCounts count_samples(std::span<const Accumulation> states);
-// The samples that every pixel holds at least; for two halves, the mean over the pixels, rounded down.
+// The number of samples that every pixel has; for two halves, the mean over the pixels, rounded down.
 uint32_t samples_per_pixel(std::span<const Accumulation> states);
 RenderCounters total_counters(std::span<const Accumulation> states);
 
@@ -79,10 +80,10 @@ struct AovSelection {
     bool needs_positions() const { return position || depth; }
 };
 
-// The image of the states: means over each pixel's own samples, in double precision; over one half alone
-// where the other has no samples, and 0 where there are none at all. A is the share of camera rays that hit
-// something visible. `positions` holds x, y, z, depth per pixel, row-major; it may be empty if the selection
-// does not need it.
+// The image of the states: means over each pixel's own samples, in double precision; over one half alone if
+// the other has no samples, and 0 if neither has. A is the fraction of camera rays that hit something
+// visible. `positions` holds x, y, z, depth per pixel, row-major; it may be empty if the selection does not
+// need it.
 Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
                  const std::vector<float>& positions);
 

@@ -21,7 +21,7 @@ constexpr const char* SECONDS_ATTRIBUTE = "candela.renderSeconds";
 constexpr const char* FORMAT_ATTRIBUTE = "candela.checkpoint";
 constexpr const char* STATES_ATTRIBUTE = "candela.states";
 
-// Version of the file format; it grows when older programs cannot read newer checkpoints.
+// Version of the file format; it increases when older programs cannot read newer checkpoints.
 constexpr uint32_t FORMAT = 1;
 
 // Numbers of states of a plain and of an adaptive rendering; see adaptive.h.
@@ -110,7 +110,7 @@ Accumulation read_layers(const Image& image, size_t index, const std::string& na
 
 [[noreturn]] void fail_damaged(const std::string& name, const std::string& what) {
     throw Error(name + ": the checkpoint is damaged: " + what +
-                "; use an undamaged copy, or remove the file to start anew");
+                "; use an undamaged copy, or remove the file to start over");
 }
 
 // Throws Error if a newer version wrote the file, or if it does not hold as many states as it says.
@@ -119,7 +119,7 @@ void check_format(const Image& image, const std::string& name) {
     if (format > FORMAT) {
         throw Error(name + ": the checkpoint was made by a newer version of candela (its format is " +
                     std::to_string(format) + ", and " + std::to_string(FORMAT) +
-                    " is the newest known here); go on with that version");
+                    " is the newest known here); continue with that version");
     }
     const auto states = number_attribute<size_t>(image, STATES_ATTRIBUTE, name);
     if (states != PLAIN_STATES && states != ADAPTIVE_STATES)
@@ -131,7 +131,7 @@ bool is_count(float value, float most) {
     return value >= 0.0f && value <= most && value == std::floor(value);
 }
 
-// Checks what a renderer relies on. The checksum alone does not ensure it: a forger can compute one.
+// Checks what a renderer relies on. The checksum does not ensure it, since a forger can compute one.
 void check_state(const Accumulation& state, const std::string& name) {
     for (size_t i = 0; i < state.pixel_count(); ++i) {
         const float samples = state.at(LAYER_L_COMPENSATION, i)[3];
@@ -147,7 +147,7 @@ void check_state(const Accumulation& state, const std::string& name) {
     }
 }
 
-// The states of one rendering differ in their seeds, as adaptive_states() says.
+// The states of one rendering differ in their seeds as in adaptive_states().
 void check_together(const Checkpoint& checkpoint, const std::string& name) {
     const Accumulation& first = checkpoint.states.front();
     for (size_t i = 0; i < checkpoint.states.size(); ++i) {
@@ -158,7 +158,7 @@ void check_together(const Checkpoint& checkpoint, const std::string& name) {
     }
     const CheckpointHeader& header = checkpoint.header;
     if (!(header.render_seconds >= 0.0 && std::isfinite(header.render_seconds)))
-        fail_damaged(name, "its rendering time is none");
+        fail_damaged(name, "its rendering time is not valid");
     if (header.planned > MAX_SPP) fail_damaged(name, "it plans more samples than a pixel can hold");
 }
 
@@ -195,7 +195,7 @@ Checkpoint checkpoint_of(const Image& image, const std::string& name, bool with_
     for (size_t index = 0; index < count_states(image); ++index)
         checkpoint.states.push_back(read_layers(image, index, name));
     if (with_checksum && hexadecimal(checksum(image, checkpoint.states)) != expected)
-        fail_damaged(name, "its contents do not have its checksum");
+        fail_damaged(name, "its contents do not match its checksum");
     for (size_t index = 0; index < checkpoint.states.size(); ++index) {
         for_each_number(checkpoint.states[index], prefix_of(index),
                         [&]<class Number>(const std::string& attribute, Number& number) {

@@ -12,12 +12,12 @@
 
 namespace candela {
 
-// What a checkpoint says about its states.
+// Information about the states of a checkpoint.
 struct CheckpointHeader {
     Identity identity;
     Maker maker;
     double render_seconds = 0.0;  // Wall time of rendering the states.
-    uint32_t planned = 0;         // Of an adaptive rendering: see render_pass().
+    uint32_t planned = 0;         // For adaptive rendering: see render_pass().
 };
 
 struct Checkpoint {
@@ -31,8 +31,8 @@ struct Checkpoint {
 void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& header,
                      std::span<const Accumulation> states, FileWriter write = write_file_atomically);
 
-// Reads it back. Throws Error if the file is not a checkpoint, if any bit of it that matters has changed, if
-// it holds a state that no renderer produces, or if a newer version wrote it.
+// Reads it back. Throws Error if the file is not a checkpoint, if any significant bit has changed, if it
+// holds a state that no renderer produces, or if a newer version wrote it.
 Checkpoint load_checkpoint(const std::filesystem::path& path);
 
 // The same for an image that was read; `name` is for messages. Without `with_checksum` the checksum is not

@@ -104,7 +104,7 @@ std::string difference(const Identity& theirs, const Identity& ours) {
     std::string text;
     for (size_t i = 0; i < NAMES.size(); ++i) {
         if (theirs.settings[i] == ours.settings[i]) continue;
-        // A frame follows from the scene.
+        // The frame is determined by the scene.
         const bool older = theirs.settings[i] == OLDER || ours.settings[i] == OLDER;
         if (NAMES[i].attribute == FRAME_ATTRIBUTE && !older && text.empty()) text = ANOTHER_SCENE;
         text += (text.empty() ? "its " : ", its ") + std::string(NAMES[i].word) + " is " +

@@ -1,4 +1,4 @@
-// Identity: everything that an image depends on except which samples it holds, as attributes of the image.
+// Identity: everything that determines an image except its range of samples, as attributes of the image.
 // Renderings with the same identity can be continued and merged.
 #pragma once
 
@@ -11,19 +11,19 @@
 namespace candela {
 
 struct Identity {
-    // The settings as people read them: size, crop, seed, sampler, estimator, terminator, max depth, rr
-    // depth, camera and frame.
+    // The settings as text: size, crop, seed, sampler, estimator, terminator, max depth, rr depth, camera and
+    // frame.
     static constexpr size_t SETTING_COUNT = 10;
     std::array<std::string, SETTING_COUNT> settings;
-    // Of the scene's arrays, the record of camera and settings, and the specialization constants.
+    // Hash of the scene's arrays, the record of camera and settings, and the specialization constants.
     uint64_t hash = 0;
 };
 
-// What made an image or a state. With another maker, the same samples may have other bits.
+// The maker of an image or a state. With another maker, the same samples may have other bits.
 struct Maker {
     std::string device;
     std::string driver;
-    std::string version;  // Of candela.
+    std::string version;  // Version of candela.
 
     bool operator==(const Maker&) const = default;
 };
@@ -46,11 +46,11 @@ void set_maker(Image& image, const Maker& maker);
 Maker maker_of(const Image& image, const std::string& name);
 std::string to_text(const Maker& maker);
 
-// How `theirs` differs from `ours`, e.g. "its seed is 8, not 7"; empty if they are the same.
+// The differences of `theirs` from `ours`, e.g. "its seed is 8, not 7"; empty if they are the same.
 std::string difference(const Identity& theirs, const Identity& ours);
 
-// The text of an attribute. If the image does not have it, throws Error that names the attribute and `name`,
-// and asks for a file that candela render wrote.
+// The text of an attribute. If it is missing, throws Error that names the attribute and `name`, and asks for
+// a file by candela render.
 std::string text_attribute(const Image& image, const std::string& attribute, const std::string& name);
 
 // 16 hexadecimal digits.

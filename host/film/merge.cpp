@@ -21,13 +21,13 @@ constexpr const char* SPP = "samplesPerPixel";
 constexpr const char* SECONDS = "renderTimeSeconds";
 constexpr const char* COUNT_CHANNEL = "SampleCount.V";
 
-// The header of a file: what it says of the part, and its channels without their values.
+// The header of a file: the description of the part, and its channels without their values.
 struct Part {
     std::filesystem::path file;
     std::string name;
     Identity identity;
     Maker maker;
-    std::vector<SampleRange> samples;  // Those that some pixel holds.
+    std::vector<SampleRange> samples;  // The samples that some pixel has.
     float seconds = 0.0f;
     Image header;
 };
@@ -73,7 +73,7 @@ std::vector<uint32_t> sample_counts(const Image& image, const std::string& name,
     return counts;
 }
 
-// Describes one file by its header. Throws Error for whatever is wrong with that.
+// Describes one file by its header. Throws Error if anything is wrong with the header.
 Part describe(const std::filesystem::path& file, Image image) {
     Part part{.file = file, .name = file.string(), .identity = {}, .maker = {}, .samples = {}, .header = {}};
     part.identity = identity_of(image, part.name);
@@ -81,14 +81,14 @@ Part describe(const std::filesystem::path& file, Image image) {
     for (const char* colour : {"R", "G", "B", "A"}) {
         if (image.find(colour) == nullptr) {
             refuse(part.name, std::string("it has no channel ") + colour +
-                                  "; give images (-o), no checkpoints or other files");
+                                  "; give images (-o), not checkpoints or other files");
         }
     }
     if (image.attributes.contains(ADAPTIVE_ATTRIBUTE)) {
-        refuse(
-            part.name,
-            "it was rendered with --adaptive: where its samples lie depends on what they found; render parts "
-            "with --samples");
+        refuse(part.name,
+               "it was rendered with --adaptive: its sample counts depend on the samples themselves; render "
+               "parts "
+               "with --samples");
     }
     const std::string samples = text_attribute(image, SAMPLES, part.name);
     const auto ranges = parse_ranges(samples);
@@ -138,7 +138,7 @@ void warn_of_makers(const std::vector<Part>& parts, std::vector<std::string>& wa
     }
 }
 
-// The channels that all parts have, sorted by name; warns of those that are left out.
+// The channels that all parts have, sorted by name; warns of channels that are left out.
 std::vector<std::string> common_channels(const std::vector<Part>& parts, std::vector<std::string>& warnings) {
     std::set<std::string> names;
     for (const Part& part : parts) {
@@ -174,7 +174,7 @@ void warn_of_interruption(const Part& part, uint32_t least, std::vector<std::str
 void warn_of_halves(const Part& part, std::vector<std::string>& warnings) {
     if (std::ranges::any_of(part.header.channels, &Channel::half)) {
         warnings.push_back(part.name +
-                           " holds 16-bit floats: of its digits only three are right; render parts "
+                           " holds 16-bit floats: only three of its digits are right; render parts "
                            "without --half");
     }
 }
@@ -258,7 +258,7 @@ Merged merge_files(const std::vector<std::filesystem::path>& files, const PartRe
     warn_of_makers(parts, merged.warnings);
     const std::vector<std::string> channels = common_channels(parts, merged.warnings);
     PartSum sum(first.header, channels);
-    Image first_image;  // Only its positions.
+    Image first_image;  // Only the positions are kept.
     for (const Part& part : parts) {
         Image image = read_values(part, channels, read);
         const std::vector<uint32_t> counts = sample_counts(image, part.name, part.samples);
@@ -284,7 +284,8 @@ Missing missing_samples(const std::vector<std::filesystem::path>& files, SampleR
     std::vector<std::filesystem::path> readable;
     for (const std::filesystem::path& file : files) {
         try {
-            // A damaged file may have a whole header, so all is decoded, though few values are kept.
+            // A damaged file may have an intact header, so everything is decoded, although few values are
+            // kept.
             read.image(file, {.channels = {COUNT_CHANNEL}});
             readable.push_back(file);
         } catch (const Error& error) {

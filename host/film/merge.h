@@ -1,5 +1,4 @@
-// Merges parts of one rendering, each with samples of its own, into the image of all samples: `candela
-// merge`.
+// Merges parts of one rendering, each with different samples, into the image of all samples: `candela merge`.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +15,7 @@ namespace candela {
 struct Merged {
     Image image;
     std::vector<std::string>
-        warnings;  // Odd, but no reason to refuse: gaps, interrupted parts, other devices.
+        warnings;  // Oddities that can be merged: gaps, interrupted parts, other devices.
 };
 
 // How the files of parts are read: first their headers, then, once, their values.
@@ -26,17 +25,17 @@ struct PartReader {
 };
 
 // Merges EXR images by candela render: parts with the same identity whose samples do not overlap. Means are
-// weighted by the pixels' sample counts; PartSum says how, and how exact they are. The image has the channels
-// that all parts have, and the attributes of the part with the first samples, except for the samples, the
-// time and the makers, which are those of all parts. The order of the files changes no bit. Throws Error that
-// says what is wrong with which file if one cannot be read, is not such a part, or does not belong with the
-// others. Holds the values of one part at a time in memory.
+// weighted by the pixels' sample counts; see PartSum, also for their precision. The image has the channels
+// that all parts have, and the attributes of the part with the first samples, except that samples, time and
+// makers are those of all parts. The order of the files does not change a bit. Throws Error if a file cannot
+// be read, is not such a part, or does not belong with the others. Holds the values of one part at a time in
+// memory.
 Merged merge_files(const std::vector<std::filesystem::path>& files, const PartReader& read = {});
 
 struct Missing {
-    std::vector<SampleRange> samples;  // Of those wanted, ascending.
-    std::vector<std::string>
-        warnings;  // Of files that cannot be read, and of interrupted parts, some of whose pixels have fewer.
+    std::vector<SampleRange> samples;   // The wanted samples that are missing, ascending.
+    std::vector<std::string> warnings;  // About files that cannot be read, and interrupted parts, in which
+                                        // some pixels have fewer samples.
 };
 
 // The samples among `wanted` that no part holds for all pixels. A file that cannot be read holds none. Throws

@@ -16,17 +16,17 @@ namespace candela {
 // an image of all samples, which is rounded, too. For values of both signs (N) these errors are relative to
 // the mean of |part|.
 //
-// The sum of squared deviations of all N samples, N (N - 1) V for the Variance V, consists of that within the
-// parts, n (n - 1) Variance, and that between them, w d^2, where d is the difference between a part's mean
-// and that of the parts before it, and w < n. In real numbers this is exact. With rounding, the former has a
-// relative error of u. The d are off by e <= 2 u M, for means up to M, and by Cauchy and Schwarz the sum of w
-// (2 d e + e^2) is at most 4 u M sqrt(N sum(w d^2)) + 4 u^2 M^2 N. With one more u for the result, V is off
-// by less than 3 u V + 4 u M sqrt(V / (N - 1)) + 4 u^2 M^2 / (N - 1).
+// The sum of squared deviations of all N samples, N (N - 1) V for the Variance V, consists of the sum within
+// the parts, n (n - 1) Variance, and the sum between them, w d^2, where d is the difference between a part's
+// mean and the mean of the parts before it, and w < n. In real numbers this is exact. With rounding, the
+// former has a relative error of u. The d are off by e <= 2 u M, for means up to M, and by Cauchy and Schwarz
+// the sum of w (2 d e + e^2) is at most 4 u M sqrt(N sum(w d^2)) + 4 u^2 M^2 N. With one more u for the
+// result, V is off by less than 3 u V + 4 u M sqrt(V / (N - 1)) + 4 u^2 M^2 / (N - 1).
 //
 // Ref: Chan, Golub, LeVeque, "Algorithms for Computing the Sample Variance" (1983), equation 2.1.
 class PartSum {
   public:
-    // For images of the size of `like`; sums their channels of these names, in that order. It knows R, G, B,
+    // For images of the size of `like`; sums their channels of these names, in this order. It knows R, G, B,
     // A, Albedo and N (means), Variance of R, G and B, SampleCount.V, and P and Z (the same in all images).
     PartSum(const Image& like, std::vector<std::string> channels);
     static bool knows(const std::string& channel);
@@ -35,8 +35,8 @@ class PartSum {
     // among them, R, G and B.
     void add(const Image& part, const std::vector<uint32_t>& counts);
 
-    // The image of all samples, in 32 bits, without attributes. Means are 0 where there is no sample, and
-    // Variance is infinite where there are fewer than two.
+    // The image of all samples, in 32 bits, without attributes. Means are 0 for pixels without samples, and
+    // Variance is infinite below two samples.
     Image image() const;
 
     const std::vector<uint64_t>& counts() const { return counts_; }
@@ -46,7 +46,7 @@ class PartSum {
     struct Sum {
         std::string name;
         Kind kind;
-        std::string mean_name;        // Of the channel whose variance it is.
+        std::string mean_name;        // The channel whose variance it is.
         std::vector<double> values;   // mean: sum of the samples; variance: sum of squared deviations.
         std::vector<double> samples;  // variance: sum of the samples.
     };
@@ -56,7 +56,7 @@ class PartSum {
 
     uvec2 full_;
     PixelRect data_;
-    std::vector<uint64_t> counts_;  // Of the images so far.
+    std::vector<uint64_t> counts_;  // Samples of the images so far.
     std::vector<Sum> sums_;
 };
 

@@ -26,7 +26,8 @@ std::string to_text(std::span<const SampleRange> ranges);
 // The ranges that `text` lists, which must ascend without overlap; nothing for any other text.
 std::optional<std::vector<SampleRange>> parse_ranges(const std::string& text);
 
-// The same samples in ascending ranges: adjacent ones are joined, empty ones left out. None may overlap.
+// The same samples in ascending ranges: adjacent ranges are joined, empty ones left out. They may not
+// overlap.
 std::vector<SampleRange> joined(std::vector<SampleRange> ranges);
 
 // The samples of `within` that no range holds, ascending.

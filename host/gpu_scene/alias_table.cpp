@@ -13,7 +13,7 @@ std::vector<AliasEntry> build_alias_table(std::span<const double> weights) {
     assert(total > 0.0);
     const size_t n = weights.size();
     std::vector<AliasEntry> table(n);
-    std::vector<double> share(n);  // What column i still holds of its own index, in columns.
+    std::vector<double> share(n);  // How much of column i still belongs to its own index, in columns.
     std::vector<uint32_t> small;
     std::vector<uint32_t> large;
     for (uint32_t i = 0; i < n; ++i) {
@@ -34,7 +34,7 @@ std::vector<AliasEntry> build_alias_table(std::span<const double> weights) {
             small.push_back(l);
         }
     }
-    // What is left differs from a full column by rounding only, and stays its own alias.
+    // The remaining columns differ from full ones only by rounding, and stay their own alias.
     return table;
 }
 

@@ -14,7 +14,7 @@
 namespace candela {
 namespace {
 
-// A convex polygon, in world space; of a disk, eight points of its edge.
+// A convex polygon, in world space; for a disk, eight points of its edge.
 struct FlatPiece {
     size_t shape;
     std::vector<dvec3> corners;
@@ -27,7 +27,7 @@ bool meet(const DoubleBox& a, const DoubleBox& b) {
     return glm::all(glm::lessThanEqual(max(a.lo, b.lo), min(a.hi, b.hi)));
 }
 
-// Calls visit(piece) for the flat pieces of a shape that have an area; of a mesh, only for those that may
+// Calls visit(piece) for the flat pieces of a shape that have an area; for a mesh, only for pieces that may
 // reach into the box `within`.
 template <class Visit>
 void for_each_piece(const Scene& scene, size_t shape, const DoubleBox& within, const Visit& visit) {
@@ -138,7 +138,7 @@ std::optional<std::string> warn_of_coplanar_lights(const Scene& scene) {
     if (hidden.empty()) return std::nullopt;
     const auto [light, other] = *hidden.begin();
     return concat(name_of_shape(scene, light), ": the light lies in the plane of ",
-                  name_of_shape(scene, other), ", so that either may hide the other; move it off that plane",
+                  name_of_shape(scene, other), ", so either may hide the other; move it off that plane",
                   hidden.size() == 1 ? "" : concat(" (and ", hidden.size() - 1, " more)"));
 }
 

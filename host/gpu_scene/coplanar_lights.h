@@ -9,7 +9,7 @@
 namespace candela {
 
 // The warning about quads, disks and triangles that emit and overlap another shape in one plane, where
-// rounding decides which of the two rays meet; none if there are none among the first hundred that emit.
+// rounding decides which of the two rays hit; nothing if there are none among the first hundred that emit.
 std::optional<std::string> warn_of_coplanar_lights(const Scene& scene);
 
 }  // namespace candela

@@ -27,7 +27,7 @@ bool is_even_enough(const Transform& transform) {
     return std::max({rows.x, rows.y, rows.z}) <= double{MAX_INSTANCE_CONDITION};  // False for NaN.
 }
 
-// The elements of the matrix of cofactors with a sum in place of each difference, which bound the rounding of
+// The elements of the matrix of cofactors with each difference replaced by a sum, which bound the rounding of
 // both.
 dmat3 absolute_cofactors(const dmat3& rows) {
     const auto sums = [](dvec3 a, dvec3 b) {

@@ -1,4 +1,4 @@
-// Which meshes get a tree of their own, and where their instances lie.
+// Chooses the meshes that get their own trees, and places their instances.
 #pragma once
 
 #include <cstdint>
@@ -17,24 +17,24 @@ namespace candela {
 // (tests/bench/NOTEBOOK.md).
 struct InstancingRule {
     uint32_t least_uses = 2;
-    uint64_t least_triangles = 65536;  // Of all copies together.
+    uint64_t least_triangles = 65536;  // Triangles of all copies together.
 };
 
 // The shapes that are instances.
 struct Instancing {
     std::vector<uint32_t> shapes;   // Indices, ascending.
-    std::vector<uint32_t> meshes;   // Those that they show: indices, ascending.
-    std::vector<bool> is_instance;  // Of every shape.
+    std::vector<uint32_t> meshes;   // The meshes that they show: indices, ascending.
+    std::vector<bool> is_instance;  // For every shape.
 };
 
-// Follows the rule; but what emits light is baked, since each of its triangles is a light of its own anyway,
-// and so is what is sheared or scaled too unevenly (MAX_INSTANCE_CONDITION).
+// Follows the rule. But shapes that emit light are baked, since each of their triangles is a light of its own
+// anyway, and so are shapes that are sheared or scaled too unevenly (MAX_INSTANCE_CONDITION).
 Instancing choose_instances(const Scene& scene, const InstancingRule& rule);
 
-// An instance's place in the frame of a scene.
+// The placement of an instance in the frame of a scene.
 struct PlacedInstance {
     Instance record;  // Only to_mesh, centre and error.
-    Box box;          // Around all that rays may meet there.
+    Box box;          // Around everything that rays may hit there.
 };
 
 // `boxes` together contain the mesh, in `mesh_frame`.

@@ -11,14 +11,14 @@
 namespace candela {
 namespace {
 
-constexpr uint32_t WHOLE = 1u << 31u;  // In the unit of LightGroups' shares.
+constexpr uint32_t WHOLE = 1u << 31u;  // 1, in the unit of LightGroups' fractions.
 
 double sum(std::span<const double> powers) {
     return std::accumulate(powers.begin(), powers.end(), 0.0);
 }
 
-// The share of a group with that power, of what is left for it and the others; it leaves at least 1 to each
-// of them, and takes at least 1 itself.
+// The fraction for a group with that power, out of what is left for it and the other groups; at least 1, and
+// it leaves at least 1 for each of them.
 uint32_t share(double power, double others_power, uint32_t left, uint32_t others) {
     if (power == 0.0) return 0;
     if (others == 0) return left;
@@ -30,9 +30,9 @@ int rank(const LightRecord& light) {
     return light.kind == LIGHT_ENVIRONMENT ? 2 : light.kind == LIGHT_DIRECTIONAL ? 1 : 0;
 }
 
-// Sorts lights and their powers by rank, otherwise in the order in which they are.
-void sort_by_rank(PoweredLights& lights) {
-    std::vector<uint32_t> order(lights.records.size());
+// Sorts lights and their powers by rank, keeping the order of equal ones.
+void sort_by_rank(std::vector<LightRecord>& lights, std::vector<double>& powers) {
+    std::vector<uint32_t> order(lights.size());
     std::iota(order.begin(), order.end(), 0u);
     std::ranges::stable_sort(order, {}, [&](uint32_t i) { return rank(lights.records[i]); });
     PoweredLights sorted;

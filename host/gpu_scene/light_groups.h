@@ -1,4 +1,4 @@
-// The order of lights in their table, and the tables by which they are chosen.
+// The order of lights in their table, and the tables for choosing one.
 #pragma once
 
 #include <span>
@@ -9,11 +9,11 @@
 
 namespace candela {
 
-// Brings the lights, which are complete, into the order of LightGroups, and sets the probability of choosing
-// each: its part of the total power. The lights of surfaces stay in front.
-LightGroups group_lights(PoweredLights& lights);
+// Sorts all lights into the order of LightGroups, and sets the probability of choosing each: its fraction of
+// the total power. The lights of surfaces stay in front.
+LightGroups group_lights(FlatScene& flat);
 
-// The alias tables of the groups, one behind the other, for lights of these powers.
+// The alias tables of the groups, one after the other, for lights of these powers.
 std::vector<AliasEntry> light_alias_tables(const LightGroups& groups, std::span<const double> powers);
 
 }  // namespace candela

@@ -15,7 +15,7 @@ struct PrincipledTexture {
     Texture texture{};
 };
 
-// What a principled material has besides its MaterialRecord.
+// The part of a principled material that is not in its MaterialRecord.
 struct EncodedPrincipled {
     PrincipledRecord record{};  // Neither `images` nor `coat_normal` is set.
     uint32_t parts = 0;         // Bits PRINCIPLED_HAS_*.
@@ -23,14 +23,14 @@ struct EncodedPrincipled {
     std::optional<Texture> coat_normal{};
 };
 
-// What a material's record holds, and the textures by which some of that is multiplied.
+// The contents of a material's record, and the textures that multiply some of its values.
 struct EncodedMaterial {
     MaterialRecord record{};
     std::optional<Texture> base{}, specular{}, parameter{};  // As in MaterialTextures.
-    std::optional<EncodedPrincipled> principled{};           // Of a model that is MATERIAL_PRINCIPLED.
+    std::optional<EncodedPrincipled> principled{};           // Only if the model is MATERIAL_PRINCIPLED.
 };
 
-// What a surface encloses.
+// The medium that a surface encloses.
 struct Interior {
     Medium medium{};
     float ior = 1.0f;
@@ -39,10 +39,10 @@ struct Interior {
     bool operator==(const Interior&) const = default;
 };
 
-// `medium` is what shared/medium.h knows interior() by; it does not matter for an opaque material.
+// `medium` identifies interior() in shared/medium.h; it does not matter for an opaque material.
 EncodedMaterial encode_material(const decltype(Material::model)& model, uint32_t medium = MEDIUM_NONE);
 
-// What is behind a surface; none if it is the same as in front, or if the material is opaque.
+// The medium behind a surface; none if it is the same as in front, or if the material is opaque.
 std::optional<Interior> interior(const decltype(Material::model)& model);
 
 }  // namespace candela

@@ -19,7 +19,7 @@ class Welder {
     Welder(const std::vector<vec3>& positions, double tolerance)
         : positions_(positions), tolerance_(tolerance), side_(CELL * tolerance) {}
 
-    // The first of the vertices asked for that is at the place of this one.
+    // The first vertex so far that is at the same place as this one.
     uint32_t find(uint32_t vertex) {
         const dvec3 p(positions_[vertex]);
         const dvec3 lo = floor((p - tolerance_) / side_), hi = floor((p + tolerance_) / side_);
@@ -39,7 +39,8 @@ class Welder {
     }
 
   private:
-    static constexpr double CELL = 16.0;  // Tolerances along a side: most places are near no other cell.
+    static constexpr double CELL = 16.0;  // Tolerances along a side, so that few places are near another
+                                          // cell.
 
     static uint64_t key(dvec3 cell) {
         const std::array<double, 3> words{cell.x + 0.0, cell.y + 0.0, cell.z + 0.0};  // No -0.
@@ -51,7 +52,7 @@ class Welder {
     std::unordered_multimap<uint64_t, uint32_t> cells_;
 };
 
-// The triangles with the least of the vertices that are at one place, for each of their corners.
+// The triangles, with each corner replaced by the lowest vertex at the same place.
 std::vector<uvec3> welded_triangles(const TriangleMesh& mesh) {
     float greatest = 0.0f;
     for (const uvec3 t : mesh.triangles) {
@@ -74,7 +75,7 @@ std::vector<uvec3> welded_triangles(const TriangleMesh& mesh) {
     return triangles;
 }
 
-// For each vertex of the triangles, one that stands for all that are connected with it.
+// For each vertex of the triangles, one that represents all vertices connected to it.
 std::vector<uint32_t> connected(const std::vector<uvec3>& triangles, size_t vertices) {
     std::vector<uint32_t> root(vertices);
     std::iota(root.begin(), root.end(), 0u);
@@ -105,7 +106,8 @@ std::vector<MeshSolid> find_mesh_solids(const TriangleMesh& mesh) {
     const std::vector<uvec3> triangles = welded_triangles(mesh);
     const std::vector<uint32_t> root = connected(triangles, mesh.positions.size());
     std::vector<MeshSolid> solids;
-    std::vector<uint64_t> edges;  // The sum of their hashes, each with its sign: 0 if closed, else by chance.
+    std::vector<uint64_t> edges;  // The signed sum of the edges' hashes: 0 if closed, otherwise only by
+                                  // chance.
     std::unordered_map<uint32_t, size_t> places;  // By root.
     for (uint32_t i = 0; i < triangles.size(); ++i) {
         const uvec3 t = triangles[i];

@@ -1,4 +1,4 @@
-// What a mesh encloses: its connected parts, as solids of their own.
+// The solids that a mesh encloses: its connected parts.
 #pragma once
 
 #include <vector>
@@ -7,18 +7,17 @@
 
 namespace candela {
 
-// Triangles that hang together. Volumes are positive inside of surfaces whose front is outside, and negative
-// around a cavity; that of a part that is not closed means nothing.
+// Connected triangles. Volumes are positive inside surfaces whose front is outside, and negative around a
+// cavity; the volume of a part that is not closed is meaningless.
 struct MeshSolid {
-    Box box;              // In the mesh's own space, relative to its origin.
+    Box box;              // In the mesh's space, relative to its origin.
     double volume = 0.0;  // There.
-    bool closed =
-        false;  // Each edge of each triangle is also that of another one, in the opposite direction.
+    bool closed = false;  // Each edge of each triangle is also an edge of another, in the opposite direction.
     std::vector<uint32_t> triangles;  // Their indices.
 };
 
-// The parts of a mesh. Vertices at the same place are one; so are those that are not more than four steps of
-// the floats of its greatest coordinate apart, which is what rounding makes of a seam.
+// The parts of a mesh. Vertices at the same place are treated as one, and so are vertices at most four steps
+// of the greatest coordinate's floats apart, as at a seam with rounding.
 std::vector<MeshSolid> find_mesh_solids(const TriangleMesh& mesh);
 
 }  // namespace candela

@@ -19,13 +19,13 @@
 namespace candela {
 namespace {
 
-// Something that encloses a medium.
+// A solid that encloses a medium.
 struct Solid {
     DoubleBox box;
     Interior inside;
     size_t shape;        // The first, of several.
-    bool walls = false;  // Quads and disks of one medium: all that are no boxes.
-    // Of a box, twice its volume and its surface.
+    bool walls = false;  // The quads and disks of one medium that do not form a box.
+    // For a box, twice its volume and its surface.
     double volume2 = 0.0, area = 0.0;
 };
 
@@ -33,7 +33,7 @@ struct Solid {
 using MeshSolids = std::map<uint32_t, std::vector<MeshSolid>>;
 
 // For each shape that is the side of a box, the first side of that box. Quads of one material that share
-// corners belong together, and six or more of them are taken for a box.
+// corners belong together, and six or more of them are treated as a box.
 std::vector<std::optional<size_t>> find_boxes(const Scene& scene) {
     std::vector<size_t> first(scene.shapes.size());
     std::iota(first.begin(), first.end(), size_t(0));
@@ -42,7 +42,7 @@ std::vector<std::optional<size_t>> find_boxes(const Scene& scene) {
             i = first[i] = first[first[i]];
         return i;
     };
-    std::map<std::tuple<uint32_t, double, double, double>, size_t> owners;  // Of corners.
+    std::map<std::tuple<uint32_t, double, double, double>, size_t> owners;  // First side at each corner.
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         const auto* quad = std::get_if<Quad>(&scene.shapes[i].geometry);
         if (quad == nullptr || !interior(scene.materials[scene.shapes[i].material].model)) continue;
@@ -67,8 +67,8 @@ std::vector<Solid> find_solids(const Scene& scene) {
     std::vector<Solid> solids;
     const ShapeBounds bounds_of(scene);
     const std::vector<std::optional<size_t>> boxes = find_boxes(scene);
-    std::map<size_t, size_t> known_boxes;  // Solids, by their first sides.
-    std::vector<size_t> known_walls;       // Solids, one for each medium.
+    std::map<size_t, size_t> known_boxes;  // Boxes among the solids, by their first sides.
+    std::vector<size_t> known_walls;       // Walls among the solids, one for each medium.
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         const Shape& shape = scene.shapes[i];
         const std::optional<Interior> inside = interior(scene.materials[shape.material].model);
@@ -100,7 +100,7 @@ std::vector<Solid> find_solids(const Scene& scene) {
     return solids;
 }
 
-// Of the parts of a mesh, the least thickness: volume over half the surface, as of a pane.
+// The least thickness of a mesh's parts: volume over half the surface, as for a pane.
 double least_thickness(const TriangleMesh& mesh, const std::vector<MeshSolid>& parts,
                        const Transform& transform) {
     double least = std::numeric_limits<double>::infinity();
@@ -126,7 +126,7 @@ double thickness(const Scene& scene, const Solid& solid, const MeshSolids& parts
     return solid.area > 0.0 ? std::abs(solid.volume2) / solid.area : std::numeric_limits<double>::infinity();
 }
 
-// How far it is across the scene and to its cameras.
+// The extent of the scene and its cameras.
 double reach_of(const Scene& scene) {
     DoubleBox box = bounds(scene);
     for (const Camera& camera : scene.cameras)
@@ -143,8 +143,8 @@ bool contains(const DoubleBox& outer, const DoubleBox& inner) {
     return all(lessThanEqual(outer.lo, inner.lo)) && all(greaterThanEqual(outer.hi, inner.hi));
 }
 
-// Calls each(i, j) for each two of the solids, which are sorted by their boxes' least x, whose boxes overlap,
-// until it returns false. Gives up, and returns false, where that would take seconds.
+// Calls each(i, j) for every two solids whose boxes overlap, until it returns false. The solids are sorted by
+// the least x of their boxes. Gives up, and returns false, if that would take seconds.
 template <class Each>
 bool for_each_overlap(const std::vector<Solid>& solids, const Each& each) {
     constexpr size_t MOST_LOOKS = size_t(1) << 26;
@@ -168,8 +168,8 @@ MeshSolids find_parts(const Scene& scene, const std::vector<Solid>& solids) {
     return parts;
 }
 
-// Whether closed parts of a mesh, other than cavities, have boxes that overlap; true if there are so many
-// parts that it would take long to find out.
+// Whether closed parts of a mesh, other than cavities, have boxes that overlap; also true if there are too
+// many parts to find out quickly.
 bool parts_overlap(const std::vector<MeshSolid>& parts) {
     constexpr uint64_t MOST_PAIRS = 1u << 24u;
     std::vector<Box> boxes;
@@ -206,12 +206,11 @@ std::optional<std::string> warn_of_thin(const Scene& scene, const std::vector<So
         thinnest = &solid;
     }
     if (thinnest == nullptr) return std::nullopt;
-    return concat(
-        name_of_shape(scene, thinnest->shape), ": the solid is ", number_text(least, 3),
-        " m thick, less than 16 steps of 32-bit coordinates over the ", number_text(reach, 3),
-        " m of the scene and its cameras, so that rays may miss one of its sides; make it thicker, or "
-        "use a thin wall",
-        count == 1 ? "" : concat(" (and ", count - 1, " more)"));
+    return concat(name_of_shape(scene, thinnest->shape), ": the solid is ", number_text(least, 3),
+                  " m thick, less than 16 steps of 32-bit coordinates over the ", number_text(reach, 3),
+                  " m of the scene and its cameras, so rays may miss one of its sides; make it thicker, or "
+                  "use a thin wall",
+                  count == 1 ? "" : concat(" (and ", count - 1, " more)"));
 }
 
 }  // namespace
@@ -226,11 +225,11 @@ Nesting find_nesting(const Scene& scene) {
     std::vector<Solid> solids = find_solids(scene);
     std::ranges::sort(solids, {}, [](const Solid& solid) { return solid.box.lo.x; });
     if (!for_each_overlap(solids, [&](size_t, size_t) { return !(result.nested = true); }))
-        result.nested = true;  // Perhaps; kernels only take longer.
+        result.nested = true;  // Unknown; if wrong, kernels are only slower.
     const MeshSolids parts = find_parts(scene, solids);
     for (const auto& [mesh, mesh_parts] : parts)
         result.nested = result.nested || parts_overlap(mesh_parts);
-    // Where rays miss a side, a path that knows which medium it is in gains no light.
+    // If rays miss a side, a path that tracks its media at least gains no light.
     if (const auto warning = warn_of_thin(scene, solids, parts)) {
         result.nested = true;
         result.warnings.push_back(*warning);
@@ -241,13 +240,12 @@ Nesting find_nesting(const Scene& scene) {
         if (instance == nullptr || !(result.nested || solid.inside.medium != Medium{})) continue;
         if (!std::ranges::all_of(parts.at(instance->mesh), &MeshSolid::closed)) {
             result.warnings.push_back(name_of_shape(scene, solid.shape) +
-                                      ": the mesh is not closed, so that rays may leave the medium inside "
-                                      "without passing its surface, and "
-                                      "stay in it; close the mesh");
+                                      ": the mesh is not closed, so rays may leave the medium without "
+                                      "crossing its surface, and remain in it; close the mesh");
         }
     }
 
-    std::vector<uint32_t> around(solids.size(), 1);  // How many solids' boxes contain each, itself included.
+    std::vector<uint32_t> around(solids.size(), 1);  // How many solids' boxes contain each, including itself.
     for_each_overlap(solids, [&](size_t i, size_t j) {
         around[i] += contains(solids[j].box, solids[i].box);
         around[j] += contains(solids[i].box, solids[j].box);
@@ -257,8 +255,8 @@ Nesting find_nesting(const Scene& scene) {
     if (most != around.end() && *most > MEDIA_AT_ONCE) {
         result.warnings.push_back(
             concat(name_of_shape(scene, solids[size_t(most - around.begin())].shape), " may lie within ",
-                   *most - 1, " other solids; a path keeps ", MEDIA_AT_ONCE,
-                   " media in mind, and forgets the one with the lowest priority that it entered first"));
+                   *most - 1, " other solids; a path can track ", MEDIA_AT_ONCE,
+                   " media, and drops the one with the lowest priority that it entered first"));
     }
     return result;
 }

@@ -1,4 +1,4 @@
-// Which solids that enclose media may lie within each other, and what is odd about them.
+// Finds solids with media that may lie within each other, and warns of oddities.
 #pragma once
 
 #include <string>
@@ -9,18 +9,19 @@
 namespace candela {
 
 struct Nesting {
-    // Whether paths must keep in mind which media they are in: the boxes around two solids overlap, or rays
-    // may miss a side of a solid.
+    // Whether paths must track the media they are in: the boxes around two solids overlap, or rays may miss a
+    // side of a solid.
     bool nested = false;
-    // Meshes with holes whose inside counts, more solids within each other than paths can keep in mind, and
-    // solids that are too thin.
+    // About open meshes that enclose a medium, solids nested deeper than a path can track (MEDIA_AT_ONCE),
+    // and solids that are too thin.
     std::vector<std::string> warnings;
 };
 
-// Quads and disks that enclose the same medium count as one solid; the closed parts of a mesh, as several.
+// Quads and disks that enclose the same medium are one solid; each closed part of a mesh is a solid of its
+// own.
 Nesting find_nesting(const Scene& scene);
 
-// What messages call scene.shapes[i].
+// The name of scene.shapes[i] in messages.
 std::string name_of_shape(const Scene& scene, size_t i);
 
 }  // namespace candela

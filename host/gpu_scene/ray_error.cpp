@@ -8,7 +8,7 @@
 namespace candela {
 namespace {
 
-constexpr double ROUNDING = 0x1p-24;  // Relative to a number, at most.
+constexpr double ROUNDING = 0x1p-24;  // The largest relative rounding error.
 
 double greatest(dvec3 v) {
     return std::max({v.x, v.y, v.z});

@@ -10,7 +10,7 @@
 namespace candela {
 namespace {
 
-// Texel i along an axis of n, wherever that is.
+// Texel i along an axis of n, for any i.
 uint32_t wrapped(double i, uint32_t n, Wrap wrap) {
     if (wrap == Wrap::clamp) return uint32_t(std::clamp(i, 0.0, n - 1.0));
     const double period = wrap == Wrap::repeat ? n : 2.0 * n;
@@ -49,9 +49,9 @@ ImagePyramid::ImagePyramid(const TexelImage& image, TextureEncoding encoding) {
     }
 }
 
-// A texel that is not black and that the texture mixes into some place of the piece is at most a texel of the
-// image and one gap away from one of `places`. On a level whose texels are at least four times as large as
-// either, it lies in one of the four texels that are mixed there.
+// If the texture mixes a texel that is not black into some place of the piece, that texel is at most a texel
+// of the image and one gap away from one of `places`. On a level whose texels are at least four times as
+// large as both, it lies in one of the four texels that are mixed there.
 vec3 ImagePyramid::mean(const Texture& texture, std::span<const vec2> places, float spacing) const {
     constexpr float SAFETY = 4.0f;
     const float stretch = std::max(length(texture.rows[0]), length(texture.rows[1]));
@@ -66,7 +66,8 @@ vec3 ImagePyramid::mean(const Texture& texture, std::span<const vec2> places, fl
 
 vec3 ImagePyramid::look_up(size_t number, const Texture& texture, vec2 place) const {
     const Level& level = levels_[number];
-    // Of the image in texels of the level: the last ones may reach beyond it, since sizes are rounded up.
+    // The size of the image in texels of the level: the last ones may reach beyond the image, since sizes are
+    // rounded up.
     const glm::dvec2 size = glm::dvec2(levels_[0].size) / std::exp2(double(number));
     const dvec3 uv1(place.x, place.y, 1.0);
     const double x = dot(dvec3(texture.rows[0]), uv1) * size.x - 0.5;

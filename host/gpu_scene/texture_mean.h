@@ -1,4 +1,4 @@
-// The mean of a texture over a piece of a surface: how much light a textured emitter sends out.
+// The mean of a texture over a piece of a surface: the light of a textured emitter.
 #pragma once
 
 #include <span>
@@ -13,9 +13,9 @@ class ImagePyramid {
   public:
     ImagePyramid(const TexelImage& image, TextureEncoding encoding);
 
-    // About the mean of `texture`, which looks up this image, over places (u, v) that are spread evenly over
-    // a piece of a surface, with gaps of at most `spacing` between them. It is positive in every channel in
-    // which the texture is not 0 all over the piece.
+    // The approximate mean of `texture`, which looks up this image, over places (u, v) that are spread evenly
+    // over a piece of a surface, with gaps of at most `spacing`. It is positive in every channel in which the
+    // texture is not 0 all over the piece.
     vec3 mean(const Texture& texture, std::span<const vec2> places, float spacing) const;
 
   private:
@@ -24,10 +24,10 @@ class ImagePyramid {
         std::vector<vec3> texels;
     };
 
-    // On the level of that number, between the centres of texels, linearly.
+    // Interpolated linearly between the centres of texels, on that level.
     vec3 look_up(size_t number, const Texture& texture, vec2 place) const;
 
-    std::vector<Level> levels_;  // The image, and each at half the size of that before, down to one texel.
+    std::vector<Level> levels_;  // The image, and halved repeatedly, down to one texel.
 };
 
 // The linear red, green and blue of texel i, row-major from the top.

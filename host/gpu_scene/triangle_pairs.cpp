@@ -71,7 +71,7 @@ TrianglePair best_pair(const TriangleMesh& mesh, const Fans& fans, const std::ve
             if (!d) continue;
             Box both = box;
             both.extend(mesh.positions[*d]);
-            // Above 0 where the pair is worth it.
+            // Above 0 if the pair is worth it.
             const double gain =
                 half_area(box) + half_area(box_of(mesh, mesh.triangles[other])) - half_area(both);
             if (gain < 0.0 || (best.second != first && gain <= largest)) continue;

@@ -11,13 +11,13 @@ namespace candela {
 // `second` is `first`.
 struct TrianglePair {
     uvec4 corners;    // Indices of the positions a, b, c, d.
-    uint32_t first;   // Index of the triangle a b c,
-    uint32_t second;  // and of a c d.
+    uint32_t first;   // Index of the triangle a b c.
+    uint32_t second;  // Index of the triangle a c d.
 };
 
-// Every triangle once, in the order of the lesser index in each pair. In that order, each triangle takes the
-// remaining neighbour with which it saves the most area: that of the boxes around each, less that of the box
-// around both. It takes none if that is negative, as the pair would then cost more than it saves.
+// Every triangle once, in the order of the lesser index in each pair. In that order, each triangle is paired
+// with the remaining neighbour that saves the most area: the boxes around each, minus the box around both. It
+// stays alone if no pair saves area.
 std::vector<TrianglePair> pair_triangles(const TriangleMesh& mesh);
 
 // Each triangle by itself.

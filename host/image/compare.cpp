@@ -69,7 +69,7 @@ void check_values(const Image& image, char name, const RgbPlanes& planes, bool v
     }
 }
 
-// Two images that have been checked to be comparable, and what can be asked of each pixel.
+// Two images that have been checked to be comparable, and quantities of each pixel.
 class Pair {
   public:
     Pair(const Image& a, const Image& b) : data_(a.data) {

@@ -1,4 +1,4 @@
-// Comparison of two renderings of one picture: how far they are apart, and whether noise alone explains it.
+// Comparison of two renderings of one picture: how much they differ, and whether noise alone explains it.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ struct CompareOptions {
     // Probability, in (0, 1), with which each of the three z-tests may reject two images of the same
     // expectation.
     double alpha = 0.01;
-    // If given, the images pass when relmse is at most this, whatever the z-tests say.
+    // If given, the images pass when relmse is at most this, regardless of the z-tests.
     std::optional<double> relmse = std::nullopt;
 };
 
-// Passed without variances and without CompareOptions::relmse when relmse is at most this.
+// The limit of relmse if there are neither variances nor CompareOptions::relmse.
 inline constexpr double DEFAULT_RELMSE = 1e-3;
-// Share of pixels that must pass. Not all: estimates of the variance from few samples have heavy tails.
+// Fraction of pixels that must pass. Not all: estimates of the variance from few samples have heavy tails.
 inline constexpr double REQUIRED_PIXEL_SHARE = 0.9975;
 // Edge of the square blocks whose means are tested, in pixels; those at the right and lower edges may be
 // smaller.
@@ -36,7 +36,7 @@ struct WorstDeviation {
 };
 
 struct ZTests {
-    double passing_pixels = 0.0;  // Share of the pixels all of whose channels are within pixel.critical.
+    double passing_pixels = 0.0;  // Fraction of the pixels with all channels within pixel.critical.
     WorstDeviation pixel;
     WorstDeviation block;
     WorstDeviation mean;

@@ -100,9 +100,9 @@ std::vector<half> to_half(const fs::path& path, const Image& image, const Channe
     return values;
 }
 
-// Lets the library compress on all cores, which takes most of the time of writing; the file does not depend
-// on it. If the system lets no more threads be started, on fewer; without any, the caller's does it all. One
-// by one: what the library has started before a failure it uses.
+// Lets the library compress on all cores, since compression is most of the time of writing; the file does not
+// depend on their number. Threads are started one by one: if the system allows fewer, the library uses those,
+// and without any, the caller's.
 void start_threads() {
     try {
         for (int count = Imf::globalThreadCount() + 1; count <= int(std::thread::hardware_concurrency());
@@ -116,7 +116,8 @@ void start_threads() {
 
 void write_exr(const fs::path& path, const Image& image, FileWriter write) {
     assert(image.pixel_count() > 0 && image.data.x1 <= image.full.x && image.data.y1 <= image.full.y);
-    std::vector<std::vector<half>> halves;  // Of the 16-bit channels; must live until the pixels are written.
+    std::vector<std::vector<half>> halves;  // Values of the 16-bit channels; must live until the pixels are
+                                            // written.
     for (const Channel& channel : image.channels) {
         if (channel.half) halves.push_back(to_half(path, image, channel));
     }

@@ -29,7 +29,7 @@ void take_message(exr_const_context_t, exr_result_t, const char* message) {
     library_message = message;
 }
 
-// Zeroed, so that no old memory shows where a damaged chunk leaves something out; and bounded.
+// Zeroed, so that a damaged chunk that leaves something out does not expose old memory; and bounded.
 void* allocate(size_t size) {
     return size > 2 * MAX_CHUNK_BYTES ? nullptr : std::calloc(1, std::max<size_t>(size, 1));
 }
@@ -56,12 +56,12 @@ mat4 to_glm(const float* numbers) {
     return result;
 }
 
-// The library takes time with the square of the channels. Ten thousand take a tenth of a second.
+// The library's time grows with the square of the number of channels: a tenth of a second for ten thousand.
 constexpr uint32_t MOST_CHANNEL_BYTES = 1 << 18;
 
 // The size of the list of channels that the first header states; 0 if it has none.
 uint32_t channel_bytes(std::string_view file) {
-    constexpr size_t ATTRIBUTES = 8;  // Where they begin.
+    constexpr size_t ATTRIBUTES = 8;  // Offset of the attributes.
     uint32_t most = 0;
     std::string_view rest = file.substr(std::min(ATTRIBUTES, file.size()));
     while (!rest.empty() && rest[0] != '\0') {

@@ -17,7 +17,7 @@ namespace candela {
 // A file of which at least the first bytes are in memory.
 struct ExrBytes {
     std::string_view bytes;
-    uint64_t size = bytes.size();  // Of the file.
+    uint64_t size = bytes.size();  // Size of the file.
 };
 
 // The largest chunk that is decoded: 256 lines of DWAB, 2^16 pixels wide, of four 32-bit channels.
@@ -25,8 +25,8 @@ inline constexpr uint64_t MAX_CHUNK_BYTES = uint64_t{1} << 28;
 
 class ExrFile {
   public:
-    // Copies neither the bytes nor the path, which is the file's name in messages. Throws Error if it is no
-    // OpenEXR file, or its header is damaged.
+    // Copies neither the bytes nor the path, which is the file's name in messages. Throws Error if it is not
+    // an OpenEXR file, or its header is damaged.
     ExrFile(const ExrBytes& file, const std::filesystem::path& path);
     ExrFile(const ExrFile&) = delete;
     ExrFile& operator=(const ExrFile&) = delete;

@@ -1,6 +1,6 @@
 // Reads the pixels of OpenEXR files through the library's C interface, which describes each chunk before it
 // is decoded. Version 3.1 lacks DWA compression there; such chunks are decoded through the C++ interface,
-// from a file made of what has been checked.
+// from a file that is rebuilt from checked parts.
 #include <algorithm>
 #include <cstring>
 #include <functional>
@@ -29,8 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The most bytes that a compressed one can stand for, by compression; a chunk may have EXPANSION_SLACK more.
-// PIZ: runs of 255 words, nine bits each. DWA, which compresses twice, has no useful bound.
+// The most bytes that one compressed byte can expand to, by compression; a chunk may have EXPANSION_SLACK
+// more. PIZ: runs of 255 words, nine bits each. DWA, which compresses twice, has no useful bound.
 constexpr uint64_t MAX_EXPANSION[EXR_COMPRESSION_LAST_TYPE] = {1,    64, 1032, 1032,       454,
                                                                1400, 3,  11,   UINT32_MAX, UINT32_MAX};
 constexpr uint64_t EXPANSION_SLACK = 1024;
@@ -38,7 +38,7 @@ constexpr uint64_t EXPANSION_SLACK = 1024;
 constexpr const char* TOO_LARGE_CHUNKS =
     "it has more channels or longer lines than can be read together; write fewer";
 
-// Takes the bytes of a chunk as its pixels.
+// Uses the bytes of a chunk as its pixels.
 exr_result_t copy_chunk(exr_decode_pipeline_t* decoder) {
     std::memcpy(decoder->unpacked_buffer, decoder->packed_buffer, decoder->chunk.unpacked_size);
     return EXR_ERR_SUCCESS;
@@ -53,7 +53,7 @@ class ExrPixels : public ExrFile {
     Image read(const ImageLimits& limits);
 
   private:
-    // One of the rectangles that a file is cut into, with its place in the image.
+    // A chunk of a file, a rectangle, with its place in the image.
     struct Chunk {
         exr_chunk_info_t info;
         uint32_t x, y;
@@ -100,8 +100,8 @@ void ExrPixels::decode(const Chunk& chunk, Image& image, const ImageLimits& limi
         out.decode_to_ptr = reinterpret_cast<uint8_t*>(values);
     }
     check(exr_decoding_choose_default_routines(context(), PART, &decoder_));
-    // What compression would not make smaller is stored as it is. Version 3.1 of the library decompresses B44
-    // nevertheless.
+    // A chunk that compression would not shrink is stored uncompressed. Version 3.1 of the library
+    // nevertheless decompresses B44.
     if (info.compression != EXR_COMPRESSION_NONE && info.packed_size == info.unpacked_size)
         decoder_.decompress_fn = copy_chunk;
     check(exr_decoding_run(context(), PART, &decoder_));
@@ -145,7 +145,7 @@ uvec2 ExrPixels::tile_size() const {
     return {width, height};
 }
 
-// The least header that decoding needs, of values that have been checked.
+// The smallest header that decoding needs, with checked values.
 Imf::Header ExrPixels::least_header() const {
     exr_attr_box2i_t display{}, data{};
     check(exr_get_display_window(context(), PART, &display));
@@ -173,7 +173,7 @@ Imf::Header ExrPixels::least_header() const {
     return header;
 }
 
-// An OpenEXR file with the least header and the chunks as they are.
+// An OpenEXR file with the smallest header and the original chunks.
 std::string ExrPixels::least_file(const Image& image) {
     std::vector<Chunk> chunks;
     for_each_chunk(image, [&](const Chunk& chunk) {

@@ -43,7 +43,7 @@ void grow(Image& image, uint32_t rows, const ImageLimits& limits) {
 }
 
 void decode_exr_by_rows(std::string_view bytes, Image& image, const ImageLimits& limits) {
-    constexpr uint32_t ROWS = 256;  // At once: no chunk of scan lines has more.
+    constexpr uint32_t ROWS = 256;  // Decoded at once; no chunk of scan lines has more.
     MemoryFile stream(bytes);
     Imf::InputFile file(stream);
     const Imath::Box2i& window = file.header().dataWindow();

@@ -52,7 +52,7 @@ class HdrReader {
     }
 
   private:
-    // Which way rows follow each other, and pixels in them: a row may also be a column of the picture.
+    // The order of rows, and of pixels in them; a row may also be a column of the picture.
     struct Order {
         size_t rows, length;                // As the file has them.
         bool columns, rightwards, upwards;  // Along the rows or across them.
@@ -94,7 +94,7 @@ class HdrReader {
         if (end == std::string_view::npos) fail_damaged("it ends in its header");
         std::string_view text = bytes_.substr(at_, end - at_);
         at_ = end + 1;
-        if (text.ends_with('\r')) text.remove_suffix(1);  // Of programs for Windows.
+        if (text.ends_with('\r')) text.remove_suffix(1);  // From programs for Windows.
         return text;
     }
 
@@ -103,7 +103,7 @@ class HdrReader {
     }
 
     // Lines of the form NAME=VALUE and others, which are comments, up to an empty one. A line that begins
-    // with a blank tells of another file, from which this one was made.
+    // with a blank is about another file, from which this one was made.
     void read_header() {
         if (!bytes_.starts_with(HDR_MAGIC)) fail("it is not a Radiance picture; give an .hdr image");
         for (std::string_view text = line(); !text.empty(); text = line()) {
@@ -159,25 +159,24 @@ class HdrReader {
         const bool columns = is_axis(across, 'X') && is_axis(along, 'Y');
         if (stream.fail() || !(columns || (is_axis(across, 'Y') && is_axis(along, 'X'))) || rows < 1 ||
             rows > MAX_IMAGE_SIDE || length < 1 || length > MAX_IMAGE_SIDE) {
-            fail_damaged('"' + text + "\" is no size");
+            fail_damaged('"' + text + "\" is not a size");
         }
         return {size_t(rows), size_t(length), columns, (columns ? across : along) == "+X",
                 (columns ? along : across) == "+Y"};
     }
 
-    // In the older encoding, sixteen bytes can stand for a row of any length. No real picture is like that:
-    // throws Error if the file claims far more pixels than the newer encoding, at 16 per byte at most, could
-    // hold.
+    // In the older encoding, sixteen bytes can encode a row of any length. No real picture does so: throws
+    // Error if the file claims far more pixels than the newer encoding, at 16 per byte at most, could hold.
     void check_bytes(uvec2 size) const {
         constexpr uint64_t PIXELS_PER_BYTE = 64, SLACK = uint64_t{1} << 20;
         if (uint64_t{size.x} * size.y > PIXELS_PER_BYTE * bytes_.size() + SLACK) {
             fail("its " + std::to_string(size.x) + 'x' + std::to_string(size.y) + " pixels are more than " +
-                 std::to_string(bytes_.size()) + " bytes are taken for; make the image smaller");
+                 std::to_string(bytes_.size()) + " bytes can plausibly hold; make the image smaller");
         }
     }
 
-    // Each row has an encoding of its own. Two bytes of 2 and then the width announce the newer one, which no
-    // pixel of the older one can look like: its greatest mantissa would be at least 128.
+    // Each row has an encoding of its own. Two bytes of 2 and then the width announce the newer one, and
+    // cannot be a pixel of the older one, whose greatest mantissa would be at least 128.
     void read_row(std::vector<Rgbe>& row) {
         constexpr size_t MIN_ENCODED = 8;  // Pixels; shorter and longer rows always have the older encoding.
         constexpr size_t MAX_ENCODED = 0x7fff;
@@ -238,9 +237,9 @@ class HdrReader {
         }
     }
 
-    // The unit of a mantissa, by the exponent; 0 is black, whatever the mantissas.
+    // The unit of a mantissa, by the exponent; 0 is black, regardless of the mantissas.
     static inline const std::array<float, 256> SCALES = [] {
-        constexpr int BIAS = 128 + 8;  // Of the exponent; mantissas count 1/256.
+        constexpr int BIAS = 128 + 8;  // Of the exponent; mantissas are in units of 1/256.
         std::array<float, 256> scales{};
         for (int exponent = 1; exponent < 256; ++exponent)
             scales[size_t(exponent)] = std::ldexp(1.0f, exponent - BIAS);

@@ -1,4 +1,4 @@
-// What the files image_io*.cpp share, some of it with texel_io*.cpp.
+// Shared by the files image_io*.cpp; some of it also by texel_io*.cpp.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,21 @@ namespace candela {
 // The first bytes of OpenEXR files and of Radiance pictures.
 inline constexpr std::string_view EXR_MAGIC("\x76\x2f\x31\x01"), HDR_MAGIC("#?");
 
-// Pixels along either side of an image that is read; more can only be a damaged header.
+// The most pixels along either side of an image that is read; a larger number means a damaged header.
 inline constexpr uint32_t MAX_IMAGE_SIDE = 1 << 20;
+
+// The text with the letters A to Z in lower case, independent of the locale.
+std::string lower_case(std::string_view text);
+
+// The extension of a path in lower case, with its dot.
+std::string extension_of(const std::filesystem::path& path);
 
 // Throws Error if width * height exceeds `max_pixels`; both sides are at most MAX_IMAGE_SIDE.
 void check_pixel_count(const std::filesystem::path& path, uint64_t width, uint64_t height,
                        uint64_t max_pixels);
 
-// Grows the wanted channels to that many rows: a short file whose header claims a huge picture runs out of
-// file before the machine runs out of memory.
+// Grows the wanted channels to that many rows, so that a short file with a header for a huge picture ends
+// before memory runs out.
 void grow(Image& image, uint32_t rows, const ImageLimits& limits);
 
 // Decodes an OpenEXR file of one part into the image's channels through the library's C++ interface, which

@@ -7,7 +7,7 @@
 namespace candela {
 namespace {
 
-constexpr double DARKNESS = 0.01;  // Times the square of the mean, it is added to a pixel's square.
+constexpr double DARKNESS = 0.01;  // Times the square of the mean, added to a pixel's square.
 
 double mean_of(const RgbPlanes& planes) {
     double sum = 0.0;

@@ -15,7 +15,7 @@
 namespace candela {
 namespace {
 
-// What texels are averaged as, for every code that a channel may have.
+// The value that is averaged, for every code of a channel.
 class Scale {
   public:
     // `gamma` as in TexelImage; `encoded`: codes are averaged as light.

@@ -10,7 +10,7 @@
 
 namespace candela {
 
-// How a channel of a texel is stored: as an integer that stands for 0 (0) to 1 (255 or 65535), or as a 16-bit
+// How a channel of a texel is stored: as an integer, from 0 for 0 to 255 or 65535 for 1, or as a 16-bit
 // float.
 enum class TexelType { unorm8, unorm16, half };
 
@@ -19,15 +19,15 @@ constexpr size_t byte_size(TexelType type) {
     return type == TexelType::unorm8 ? 1 : 2;
 }
 
-// Texels, row-major from the top, channels interleaved, in the machine's byte order. What the values mean
-// (sRGB, linear light, a normal) is not the file's to say.
+// Texels, row-major from the top, channels interleaved, in the machine's byte order. The file does not
+// determine what the values mean (sRGB, linear light, a normal).
 struct TexelImage {
     uvec2 size{0};          // Each at least 1, once read.
     uint32_t channels = 0;  // 1: grey; 2: grey, alpha; 3: RGB; 4: RGBA. Alpha is straight, not premultiplied.
     TexelType type = TexelType::unorm8;
     std::vector<std::byte> texels;  // size.x * size.y * channels * byte_size(type).
-    // Of a PNG file that says how its samples are encoded, and says other than sRGB or about 1/2.2: sample =
-    // light^gamma, both from 0 to 1. Between 0.1 and 10.
+    // The gamma of a PNG file that states one, other than sRGB or about 1/2.2: sample = light^gamma, both
+    // from 0 to 1. Between 0.1 and 10.
     std::optional<double> gamma;
 };
 

@@ -1,5 +1,5 @@
-// Tells the formats of textures apart, and what is none of them. See texel_io.h.
-#include "image/texel_io.h"
+// Recognises the formats of texture files, and rejects the rest. See texel_io.h.
+#include "base/texel_io.h"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::string_view_literals;
 
-// What files of a kind have in common: these bytes, at that offset.
+// The bytes that all files of a kind have, and their offset.
 struct Signature {
     const char* name;  // With its article.
     size_t offset;
@@ -40,7 +40,7 @@ constexpr std::array<TexelFormat, 7> TEXEL_FORMATS{
      {{"a BMP image", 0, "BM"sv}, decode_bmp_texels, {".bmp", ".dib"}},
      {{"a Targa image", 0, {}}, decode_targa_texels, {".tga", ".icb", ".vda", ".vst"}}}};
 
-// What people take for textures, and is not read.
+// Other kinds that people use as textures, which are not read.
 constexpr std::array<Signature, 16> OTHER_KINDS{{{"a GIF image", 0, "GIF8"sv},
                                                  {"a TIFF image", 0, "II*\0"sv},
                                                  {"a TIFF image", 0, "MM\0*"sv},

@@ -31,7 +31,7 @@ class HalfConverter {
             ++too_large_;
             return {MAX_HALF};
         }
-        return {std::abs(value)};  // Of two zeros, the positive one.
+        return {std::abs(value)};  // Makes -0 positive.
     }
 
     void report(const TexelSource& source, size_t total) const {

@@ -18,8 +18,8 @@
 namespace candela {
 namespace {
 
-// Of a progressive file. A scan of a few bytes can take as long as the whole picture, and no encoder makes
-// more than a few dozen.
+// The most scans of a progressive file. A scan of a few bytes can take as long as the whole picture, and
+// encoders make at most a few dozen.
 constexpr int MAX_SCANS = 100;
 
 class JpegDecoder {
@@ -39,7 +39,7 @@ class JpegDecoder {
   private:
     using Message = std::array<char, JMSG_LENGTH_MAX>;
 
-    // Runs `step`, which libjpeg may leave by longjmp: then throws what libjpeg said.
+    // Runs `step`, which libjpeg may leave by longjmp: then throws libjpeg's message.
     template <class Step>
     void attempt(const Step& step) {
         static_assert(std::is_trivially_destructible_v<Step>);
@@ -60,7 +60,7 @@ class JpegDecoder {
         jpeg->err->format_message(jpeg, decoder.error_.data());
         std::longjmp(decoder.jump_, 1);
     }
-    // `level` is negative for a warning. libjpeg goes on with whatever there is, grey if need be.
+    // `level` is negative for a warning. libjpeg continues with what it has, or with grey.
     static void on_message(j_common_ptr jpeg, int level) {
         if (level >= 0) return;
         JpegDecoder& decoder = decoder_of(jpeg);
@@ -92,7 +92,7 @@ class JpegDecoder {
     bool too_many_scans_ = false;
 };
 
-// Whether the picture is as good as without what libjpeg warns of.
+// Whether the picture is unaffected by what libjpeg warns of.
 bool JpegDecoder::is_harmless_warning() const {
     switch (errors_.msg_code) {
         case JWRN_ADOBE_XFORM:
@@ -148,12 +148,12 @@ void JpegDecoder::check_colors() const {
             source_.fail("its colours are CMYK, which are for printing; convert it to RGB");
         default:
             source_.fail("it has " + std::to_string(jpeg_.num_components) +
-                         " channels of no known meaning; save it as grey or RGB");
+                         " channels of unknown meaning; save it as grey or RGB");
     }
 }
 
 // The finest channels have a block for 8x8 pixels (or for 8x16, where one is finer across and another down),
-// and a block takes at least one bit, unless arithmetic coding makes it even less.
+// and a block needs at least one bit, or less with arithmetic coding.
 void JpegDecoder::check_size() const {
     constexpr uint64_t PIXELS_PER_BYTE = uint64_t{8} * 128;
     const uvec2 size(jpeg_.image_width, jpeg_.image_height);
@@ -168,7 +168,7 @@ TexelImage JpegDecoder::decode() {
     check_colors();
     const uvec2 size(jpeg_.image_width, jpeg_.image_height);
     const bool grey = jpeg_.jpeg_color_space == JCS_GRAYSCALE;
-    // Of images in several scans, all coefficients are kept: two bytes for each channel of a pixel at most.
+    // For images in several scans, all coefficients are kept: at most two bytes for each channel of a pixel.
     const MemoryCharge coefficients(
         jpeg_has_multiple_scans(&jpeg_) != 0 ? 2 * uint64_t(jpeg_.num_components) * size.x * size.y : 0);
     attempt([&] {

@@ -1,4 +1,4 @@
-// What the files texel_io*.cpp share.
+// Shared by the files texel_io*.cpp.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct TexelSource {
 
     [[noreturn]] void fail(const std::string& reason) const;
     [[noreturn]] void fail_damaged(const std::string& how) const;
-    // Throws the Error of a file whose bytes are too few for its picture, whatever they are.
+    // Throws the Error of a file with too few bytes for its picture, regardless of their values.
     [[noreturn]] void fail_too_short(uvec2 size) const;
     void warn(const std::string& what) const;
 };

@@ -23,11 +23,11 @@
 namespace candela {
 namespace {
 
-// What the chunks before the pixels say, as far as it is needed before libpng reads them, or libpng does not
-// tell it.
+// Values from the chunks before the pixels that are needed before libpng reads them, or that libpng does not
+// report.
 struct PngStart {
     uvec2 size{0};
-    uint32_t bits = 0;  // Of a sample, or of an index into the palette.
+    uint32_t bits = 0;  // Bits of a sample, or of an index into the palette.
     uint32_t color_type = 0;
     bool srgb = false;
     bool animated = false;
@@ -41,7 +41,7 @@ uint32_t big_endian(std::string_view bytes, size_t at) {
     return number;
 }
 
-// A chunk is the number of its bytes, its type, these bytes and a checksum, which libpng verifies.
+// A chunk is the number of its data bytes, its type, the data and a checksum, which libpng verifies.
 PngStart read_png_start(const TexelSource& source) {
     constexpr size_t SIGNATURE = 8, CHUNK_HEADER = 8, CHECKSUM = 4, IHDR = 13, GAMA = 4;
     std::string_view rest = source.bytes.substr(SIGNATURE);
@@ -65,7 +65,7 @@ PngStart read_png_start(const TexelSource& source) {
     return start;
 }
 
-// Refuses sizes that cannot be, or are not wanted, before memory is taken for them.
+// Refuses impossible or unwanted sizes before memory is allocated for them.
 void check_png_size(const TexelSource& source, const PngStart& start) {
     const uvec2 size = start.size;
     if (size.x < 1 || size.y < 1 || size.x > MAX_IMAGE_SIDE || size.y > MAX_IMAGE_SIDE) {
@@ -73,22 +73,24 @@ void check_png_size(const TexelSource& source, const PngStart& start) {
                             " pixels");
     }
     check_pixel_count(source.name, size.x, size.y, source.limits.max_pixels);
-    constexpr uint64_t MAX_DEFLATED = 1032;  // The most bytes that one of a deflate stream can stand for.
-    constexpr std::array<uint64_t, 7> SAMPLES = {1, 0, 3, 1, 2, 0, 4};  // Of a pixel, by its colour type.
+    constexpr uint64_t MAX_DEFLATED = 1032;  // The most bytes that one byte of a deflate stream can expand
+                                             // to.
+    constexpr std::array<uint64_t, 7> SAMPLES = {1, 0, 3, 1, 2, 0, 4};  // Samples of a pixel, by its colour
+                                                                        // type.
     const uint64_t samples = start.color_type < SAMPLES.size() ? SAMPLES[start.color_type] : 0;
     if (size.x * samples * start.bits / 8 * size.y > MAX_DEFLATED * source.bytes.size())
         source.fail_too_short(size);
 }
 
-// The exponent of a gAMA chunk, unless it only says what sRGB says.
+// The exponent of a gAMA chunk, unless it is that of sRGB.
 std::optional<double> png_gamma(const TexelSource& source, const PngStart& start) {
     constexpr double USUAL = 45455;           // 1/2.2.
-    constexpr double ROUNDING = 50;           // Of a gamma with three decimals.
+    constexpr double ROUNDING = 50;           // Rounding of a gamma with three decimals.
     constexpr double LEAST = 0.1, MOST = 10;  // Beyond, it is a mistake.
     if (start.srgb || !start.gamma || std::abs(*start.gamma - USUAL) <= ROUNDING) return std::nullopt;
     const double gamma = *start.gamma / double{PNG_FP_1};
     if (gamma >= LEAST && gamma <= MOST) return gamma;
-    source.warn("its gamma of " + number_text(gamma, 6) + " cannot be meant, and is ignored");
+    source.warn("its gamma of " + number_text(gamma, 6) + " is implausible, and is ignored");
     return std::nullopt;
 }
 
@@ -113,7 +115,7 @@ class PngDecoder {
   private:
     using Message = std::array<char, 160>;
 
-    // Runs `step`, which libpng may leave by longjmp: then throws what libpng said.
+    // Runs `step`, which libpng may leave by longjmp: then throws libpng's message.
     template <class Step>
     void attempt(const Step& step) {
         static_assert(std::is_trivially_destructible_v<Step>);
@@ -168,7 +170,7 @@ void PngDecoder::read_header() {
         png_set_user_limits(png_, MAX_IMAGE_SIDE, MAX_IMAGE_SIDE);
         png_set_chunk_malloc_max(png_, source_.bytes.size());  // No chunk is longer than the file.
         png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-        // Of the chunks that a decoder may skip, only tRNS is wanted.
+        // tRNS is the only optional chunk that is used.
         png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
         png_read_info(png_, info_);
     });
@@ -188,8 +190,8 @@ void PngDecoder::read_rows(uint8_t* rows, size_t row_bytes) {
     });
 }
 
-// The colours are looked up here. Of indices that the palette lacks, some versions of libpng warn, and none
-// counts them.
+// The colours are looked up here. Some versions of libpng warn of indices beyond the palette, but none counts
+// them.
 TexelImage PngDecoder::decode_palette() {
     png_colorp colors = nullptr;
     png_bytep alphas = nullptr;

@@ -1,5 +1,5 @@
-// Reads Targa and BMP files with stb_image. It takes zeros for what a file lacks, and memory for whatever a
-// header says: headers and lengths are checked before. No other file includes stb_image.
+// Reads Targa and BMP files with stb_image. stb_image reads zeros where a file ends early, and allocates as
+// much as a header says, so headers and lengths are checked first. No other file includes stb_image.
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -69,7 +69,7 @@ struct TargaHeader {
           bits(uint8_t(bytes[16])),
           flags(uint8_t(bytes[17])) {}
 
-    // Targa files have no signature: whether these numbers go together.
+    // Whether these numbers are consistent; Targa files have no signature.
     bool is_plausible() const {
         constexpr uint32_t PALETTE = 1, RGB = 2, GREY = 3;
         const auto is_color = [](uint32_t b) { return b == 15 || b == 16 || b == 24 || b == 32; };
@@ -79,7 +79,7 @@ struct TargaHeader {
                size.y > 0 && flags < 64;
     }
     size_t pixel_bytes() const { return (bits + 7) / 8; }
-    // Where the pixels begin.
+    // Offset of the pixels.
     size_t offset() const {
         return SIZE + name_bytes + size_t{has_palette} * colors * ((color_bits + 7) / 8);
     }
@@ -91,7 +91,7 @@ struct TargaHeader {
     uint32_t bits, flags;
 };
 
-// Where the pixels of a Targa file end; beyond its end if it lacks some.
+// Offset of the end of a Targa file's pixels; beyond its end if some are missing.
 size_t end_of_pixels(std::string_view bytes, const TargaHeader& header) {
     uint64_t left = uint64_t{header.size.x} * header.size.y;
     if (header.packed == 0) return header.offset() + left * header.pixel_bytes();

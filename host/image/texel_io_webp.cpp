@@ -1,5 +1,4 @@
-// Reads WebP files with libwebp. No bound on the size follows from the bytes: a file of one colour has next
-// to none, whatever its size.
+// Reads WebP files with libwebp. The bytes do not bound the size: an image of one colour needs hardly any.
 #include <cassert>
 #include <cstdint>
 #include <new>
@@ -23,7 +22,7 @@ void check_webp(const TexelSource& source, VP8StatusCode status) {
         case VP8_STATUS_SUSPENDED:
             source.fail_damaged("it ends early");
         default:
-            source.fail_damaged("its bytes are no valid WebP");
+            source.fail_damaged("its bytes are not valid WebP");
     }
 }
 
@@ -46,7 +45,7 @@ TexelImage decode_webp_texels(const TexelSource& source) {
     config.output.u.RGBA = {.rgba = reinterpret_cast<uint8_t*>(image.texels.data()),
                             .stride = int(size.x * image.channels),
                             .size = image.texels.size()};
-    const MemoryCharge inside(uint64_t{4} * size.x * size.y);  // Of libwebp, for images without loss.
+    const MemoryCharge inside(uint64_t{4} * size.x * size.y);  // Memory of libwebp for lossless images.
     check_webp(source, WebPDecode(bytes, source.bytes.size(), &config));
     return image;
 }

@@ -53,8 +53,8 @@ vec3 agx(vec3 colour) {
     return glm::pow(glm::max(outset * sigmoid, 0.0f), vec3(2.2f));
 }
 
-// Takes away the Fresnel reflection of a dielectric, so that base colours survive, and compresses and
-// desaturates what is brighter than START. Ref: Khronos PBR Neutral Tone Mapper, specification,
+// Subtracts the Fresnel reflection of a dielectric, so that base colours are kept, and compresses and
+// desaturates colours brighter than START. Ref: Khronos PBR Neutral Tone Mapper, specification,
 // https://github.com/KhronosGroup/ToneMapping (2024).
 vec3 neutral(vec3 colour) {
     constexpr float F90 = 0.04f;

@@ -23,7 +23,7 @@ inline constexpr float MAX_EXPOSURE_EV = 100.0f;
 
 // Applies a tone curve to a linear Rec.709 colour, where 1 is the white of the display without a curve.
 // Returns the light that the display should emit, linear Rec.709 in [0, 1]. Any input is valid: a colour with
-// a NaN becomes black, else one with a +infinity white; negative components count as 0.
+// a NaN becomes black, else one with a +infinity white; negative components become 0.
 vec3 tonemap(Tonemap curve, vec3 colour);
 
 // Encodes display light, linear Rec.709 in [0, 1], as sRGB and rounds to the nearest of the 256 codes; no

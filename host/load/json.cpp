@@ -1,5 +1,5 @@
 // nlohmann-json parses and validates, but its events carry no positions. So a cursor walks over the same
-// text, one token per event; it may be simple, since it only ever passes tokens that the parser has accepted.
+// text, one token per event; it can be simple, since it only passes tokens that the parser has accepted.
 #include "load/json.h"
 
 #include <algorithm>
@@ -197,7 +197,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     Value root_;
 };
 
-// Refuses what the parser would report in its own words, or not at all.
+// Refuses texts that the parser would report badly, or not at all.
 void check_encoding(std::string_view text, const std::string& file) {
     if (text.empty()) fail(file, {}, "the file is empty; a scene is a JSON object { ... }");
     if (text.starts_with("\xEF\xBB\xBF")) {
@@ -219,7 +219,8 @@ bool is_at_or_before(Place a, Place b) {
     return a.line != b.line ? a.line < b.line : a.column <= b.column;
 }
 
-// Of values in the order of the file, the last that begins at a place or before; the end if there is none.
+// Finds, among values in the order of the file, the last one that begins at or before a place; the end if
+// there is none.
 template <class Values, class PlaceOf>
 auto last_until(const Values& values, Place place, const PlaceOf& place_of) {
     const auto after = std::partition_point(values.begin(), values.end(), [&](const auto& value) {

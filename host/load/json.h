@@ -1,5 +1,5 @@
-// A JSON document in which every value knows where it stands in the file, so that any later complaint about
-// it can say `file:line:column`, or name it by its JSON pointer. Comments (// and /* */) are allowed.
+// A JSON document in which every value knows its place in the file, so that later messages about it can begin
+// with `file:line:column`, or with its JSON pointer. Comments (// and /* */) are allowed.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class Object : public std::vector<Member> {
   public:
     // The member with that key, or null.
     const Member* find(std::string_view key) const;
-    // Lets find() be fast even if there are many; to be called when all members are there.
+    // Makes find() fast for many members; call it when all have been added.
     void sort_keys();
 
   private:
@@ -33,13 +33,13 @@ class Object : public std::vector<Member> {
 };
 
 struct Value {
-    Place place;  // Of the first character.
+    Place place;  // Place of the first character.
     std::variant<std::nullptr_t, bool, double, std::string, Array, Object> data;
 };
 
 struct Member {
     std::string key;
-    Place place;  // Of the key.
+    Place place;  // Place of the key.
     Value value;
 };
 
@@ -50,7 +50,7 @@ struct Document {
     std::string file;  // Its name in messages.
     Value root;
     Places places = Places::lines;
-    bool nulls_are_absent = false;  // Whether a member that is null is as good as none.
+    bool nulls_are_absent = false;  // Whether a member that is null is treated as absent.
 };
 
 // Where a value of the document is, as messages begin: `file:line:column`, or `file#/key/0` with its JSON
@@ -67,8 +67,8 @@ Value parse(std::string_view text, const std::string& file);
 // A value as compact JSON.
 std::string to_text(const Value& value);
 
-// A value in a few words, for messages: scalars and short arrays of numbers as they are, else `an array of 7`
-// or `an object`.
+// A short description of a value, for messages: scalars and short arrays of numbers as they are, otherwise
+// `an array of 7` or `an object`.
 std::string describe(const Value& value);
 
 }  // namespace candela::json

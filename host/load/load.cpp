@@ -16,7 +16,7 @@
 namespace candela {
 namespace {
 
-// Throws Error for options that a file has no use for.
+// Throws Error for options that do not apply to a file.
 void refuse(const std::filesystem::path& file, const GltfOptions& options) {
     if (options == GltfOptions{}) return;
     throw Error(file.string() + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
@@ -31,7 +31,7 @@ std::string start_of(const std::filesystem::path& path) {
     return std::filesystem::is_regular_file(path, ignored) ? read_file_start(path, LONGEST).bytes : "";
 }
 
-// What a file is: its first bytes say so if they are unmistakable, otherwise its extension.
+// The format of a file, by its first bytes if they are unmistakable, otherwise by its extension.
 Format format_of(const std::filesystem::path& path) {
     constexpr std::array<std::pair<std::string_view, Format>, 4> BY_CONTENT{
         {{"glTF", Format::gltf},
@@ -50,7 +50,7 @@ Format format_of(const std::filesystem::path& path) {
     return Format::json;
 }
 
-// Judges the light of a native scene whose images have been read.
+// Adds a warning if a native scene, whose images have been read, has no light.
 void check_light(Scene& scene, const std::string& place) {
     const bool is_empty = scene.shapes.empty() && !scene.environment;
     if (!is_empty && !has_light(scene))

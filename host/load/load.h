@@ -14,25 +14,25 @@ struct LoadOptions {
     ImageOptions images{};
     GltfOptions gltf{};  // Also for a glTF file that a JSON scene names.
     LoadProgress progress = no_progress;
-    ReachOptions reach{};  // What the files may name besides what is in the folder of `path`.
+    ReachOptions reach{};  // The files that may be named outside the folder of `path`.
 };
 
-// What is read once for scenes that show the same files, such as at several times: parsed glTF files and
-// decoded images. The files are taken not to change.
+// Files shared by several scenes, such as the same one at several times: parsed glTF files and decoded
+// images. The files must not change.
 struct LoadedFiles {
     GltfFiles gltf{};
     DecodedImages images{};
 };
 
-// Reads a scene and the files that it names. The first bytes of a file say its format where they are
+// Reads a scene and the files that it names. The first bytes of a file determine its format if they are
 // unmistakable: binary glTF, PLY, and JSON with the "asset" of glTF. Otherwise its extension does, in upper
-// or lower case: glTF, OBJ or PLY; else JSON. Throws Error, beginning with the place, for whatever the format
-// or the meaning of a value forbids, and Error (usage) for options of glTF if no such file is read. What is
-// odd but usable goes to Scene::warnings.
+// or lower case: glTF, OBJ or PLY; JSON for any other. Throws Error, beginning with the place, for everything
+// that the format or the meaning of a value forbids, and Error (usage) for options of glTF if no such file is
+// read. Scene::warnings gets what is odd but usable.
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
-// The same, bit for bit, but reads nothing again that is among `files`, which what it reads joins. Other
-// options than those of glTF must be the same for all scenes of these files.
+// The same, bit for bit, but does not read again what is in `files`, and adds what it reads. All options but
+// those of glTF must be the same for all scenes of these files.
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options, LoadedFiles& files);
 
 }  // namespace candela

@@ -1,4 +1,4 @@
-// Complaints, and the conversions that may lead to them.
+// Error messages, and the conversions that may lead to them.
 #include "load/node.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 // The name that was probably meant, or null if none is close.
 const std::string* nearest(std::string_view name, std::span<const std::string> known) {
     const std::string* best = nullptr;
-    if (name.size() > MOST_NAME_BYTES) return nullptr;  // Nobody wrote it.
+    if (name.size() > MOST_NAME_BYTES) return nullptr;  // Not a name that anybody typed.
     size_t least = std::min<size_t>(3, name.size());    // At most two slips, and not the whole name.
     for (const std::string& candidate : known) {
         const size_t longer = std::max(candidate.size(), name.size());
@@ -149,7 +149,7 @@ const std::string& Node::file_name() const {
 double Node::number() const {
     const double* value = std::get_if<double>(&value_->data);
     if (value == nullptr) fail_expected("a number");
-    // Some write the greatest float in so few digits that the number is above it.
+    // Some programs write the greatest float in so few digits that the number exceeds it.
     constexpr double ROUNDED_TO_INFINITY = 0x1.ffffffp127;
     if (std::abs(*value) >= ROUNDED_TO_INFINITY) fail_expected("a number of at most 3.4e38 in size");
     return std::clamp(*value, -double(FLOAT_MAX), double(FLOAT_MAX));

@@ -1,4 +1,4 @@
-// Typed access to a value of a JSON document. Every complaint throws Error `place: ...` at the value's place,
+// Typed access to a value of a JSON document. Every failure throws Error `place: ...` at the value's place,
 // such as `file:line:column`, and says what was expected and what was found.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace candela {
 // A view: the document and the key must outlive it.
 class Node {
   public:
-    // `key` names the value in messages: its key, or that of the array that it is in.
+    // `key` names the value in messages: its own key, or the key of the array that contains it.
     Node(const json::Document& document, std::string_view key, const json::Value& value)
         : document_(&document), key_(key), value_(&value) {}
     explicit Node(const json::Document& document) : Node(document, "", document.root) {}
@@ -32,8 +32,8 @@ class Node {
     [[noreturn]] void fail(const std::string& message) const;
     // Throws Error `place: "key": expected WHAT, found VALUE`.
     [[noreturn]] void fail_expected(const std::string& what) const;
-    // Throws Error for a name that is not among `known`, with the nearest of them: `unknown WHAT "name" (did
-    // you mean "x"? WORD: x, y, z)`.
+    // Throws Error for a name that is not among `known`, with the nearest known name: `unknown WHAT "name"
+    // (did you mean "x"? WORD: x, y, z)`.
     [[noreturn]] void fail_unknown(const std::string& what, std::string_view name,
                                    std::span<const std::string> known,
                                    const std::string& word = "known") const;
@@ -74,7 +74,7 @@ class Node {
     double angle() const;
     // A whole number in [lo, hi].
     uint32_t integer(uint32_t lo, uint32_t hi) const;
-    // As many numbers, which floats can hold.
+    // An array of `count` numbers that floats can hold.
     std::vector<double> numbers(size_t count) const;
     // Three numbers that floats can hold.
     glm::dvec3 vector() const;

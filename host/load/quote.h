@@ -15,9 +15,8 @@ std::string quote(std::string_view text);
 // `text` as a whole string of JSON. Bytes that are not UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
 
-// While one lives, messages of its thread do not show the values in a file: it is not the one that the user
-// has opened, so that whoever reads the messages might not be meant to read the file. They do if the user
-// trusts all files.
+// While one lives, messages of its thread do not show the values in a file that another file names: readers
+// of the messages may not be allowed to read it. They do show them if the user trusts all files.
 class HiddenValues {
   public:
     explicit HiddenValues(const FileReach& reach);
@@ -29,7 +28,7 @@ class HiddenValues {
     bool were_hidden_;
 };
 
-// What messages show of a file's value, which is `text`: that, unless values are hidden.
+// A file's value `text` as messages show it, unless values are hidden.
 std::string shown(std::string text);
 
 }  // namespace candela

@@ -1,4 +1,4 @@
-// Words and numbers, whatever the locale.
+// Words and numbers, independent of the locale.
 #include "load/text_lines.h"
 
 #include <charconv>

@@ -20,10 +20,10 @@ namespace candela {
 // A scene's records on the device, for probes that include scene/scene_data.glsl.
 class DeviceScene {
   public:
-    // Uploads `parameters` as they are.
+    // Uploads `parameters` unchanged.
     DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access,
                 const Parameters& parameters);
-    // Sets only those parameters that depend on the scene alone.
+    // Sets only the parameters that depend on the scene alone.
     DeviceScene(const vk::Device& device, const GpuScene& scene, SceneAccess access);
 
     uint32_t primitive_count() const { return primitive_count_; }
@@ -39,15 +39,15 @@ KernelConstants traversal_constants(const GpuScene& scene);
 // The same for probes that draw samples; `sampler` is one of SAMPLER_*.
 KernelConstants sampler_constants(uint32_t sampler);
 
-// What shaders/probes/items.glsl declares: invocations in a work group, and push constants.
+// As declared by shaders/probes/items.glsl: invocations in a work group, and push constants.
 inline constexpr uint32_t PROBE_GROUP = 64;
 struct ProbeCounts {
     uint32_t items;
     uint32_t primitives;
 };
 
-// Makes the probe `spirv`, bound to the scene unless that is null. The scene's buffers set the constants that
-// say how arrays are read. `name` is for messages.
+// Makes the probe `spirv`, bound to the scene unless that is null. The scene's buffers set the constants for
+// reading arrays. `name` is for messages.
 vk::Kernel make_probe(const vk::Device& device, std::span<const uint32_t> spirv, KernelConstants constants,
                       const DeviceScene* scene, const std::string& name);
 

@@ -1,4 +1,5 @@
-// The probes as SPIR-V, compiled from shaders/probes at build time, and what the larger ones read and write.
+// The probes as SPIR-V, compiled from shaders/probes at build time, and the inputs and results of the larger
+// ones.
 #pragma once
 
 #include <array>
@@ -33,7 +34,7 @@ struct BsdfItem {
 };
 static_assert(sizeof(BsdfItem) == 80 + 16 * PRINCIPLED_WORDS);
 
-// `f` and `pdf_of_wi` are those at BsdfItem::wi, the rest belongs to the sample that u and uc choose.
+// `f` and `pdf_of_wi` are for BsdfItem::wi, the rest is for the sample that u and uc choose.
 struct BsdfResult {
     vec3 wi, weight;
     float pdf;
@@ -45,7 +46,7 @@ struct BsdfResult {
     float pdf_of_wi;
 };
 
-// light_choice: random bits for the choice of a light at a lit point, and a light that may be another.
+// light_choice: random bits for the choice of a light at a lit point, and a second light.
 struct LightChoiceItem {
     vec3 p{0};
     uint32_t choice = 0;
@@ -56,14 +57,14 @@ struct LightChoiceItem {
 struct LightChoice {
     uint32_t chosen;
     float pmf;
-    float pmf_of_light;  // Of LightChoiceItem::light.
+    float pmf_of_light;  // Probability of LightChoiceItem::light.
 };
 
 // light_sample: random bits for a light sample from a reference point.
 struct LightItem {
     vec3 from{0};
-    uint32_t choice = 0;  // Of the light,
-    uvec2 u{0};           // and of the point on it.
+    uint32_t choice = 0;  // Chooses the light.
+    uvec2 u{0};           // Chooses the point on it.
     uvec2 unused{0};
 };
 
@@ -92,11 +93,11 @@ struct SampleOfPair {
 // warp: a point u of the unit square, and its image under every warp.
 struct WarpItem {
     vec2 u{0};
-    float exponent = 1.0f;  // Of power_cosine.
-    float h_max = 1.0f;     // Of the cone.
-    vec3 w{0, 0, 1};        // For the visible normal: the view,
-    float alpha = 0.5f;     // and the roughness.
-    uint32_t corners = 3;   // Of the polygon.
+    float exponent = 1.0f;  // Exponent of power_cosine.
+    float h_max = 1.0f;     // Height of the cone.
+    vec3 w{0, 0, 1};        // View direction for the visible normal.
+    float alpha = 0.5f;     // Roughness for the visible normal.
+    uint32_t corners = 3;   // Corners of the polygon.
     uvec3 unused{0};
 };
 static_assert(sizeof(WarpItem) == 48);
@@ -146,9 +147,9 @@ struct TraversalResult {
     vec2 b;
     float brute_t;
     uint32_t brute_id;
-    uint32_t occluded_before;  // By anything nearer than the hit,
-    uint32_t occluded_at;      // up to the float above its t,
-    uint32_t occluded;         // at any distance.
+    uint32_t occluded_before;  // By anything nearer than the hit.
+    uint32_t occluded_at;      // Up to the float above the hit's t.
+    uint32_t occluded;         // At any distance.
 };
 
 }  // namespace candela

@@ -10,7 +10,7 @@ namespace candela {
 
 // Scenes from the folder scenes/, as embedded when the program was built.
 Scene cornell_box();
-// A closed box that emits radiance 1 everywhere and reflects `albedo` of what it receives.
+// A closed box that emits radiance 1 everywhere and reflects the fraction `albedo` of its incoming light.
 Scene furnace(float albedo);
 
 // Adds a material and returns its index.

@@ -20,7 +20,7 @@ uint32_t available_buffers(const vk::DeviceInfo& device) {
     return device.limits.max_per_stage_descriptor_storage_buffers - 1;
 }
 
-// Where all of them are texel buffers, a probe has one more, for its items, of the 16 that Vulkan promises.
+// If all of them are texel buffers, a probe has one more for its items, within the 16 that Vulkan promises.
 static_assert(BUFFER_COUNT + 1 <= 16);
 
 // Words of each of the scene's buffers.
@@ -76,7 +76,7 @@ ArrayMap map_arrays(const vk::DeviceInfo& device, const GpuScene& scene, SceneAc
     const uint32_t available = available_buffers(device);
     const bool shared = stored.size() > available;
     const size_t alone = shared ? available - 1 : stored.size();
-    std::array<uint64_t, BUFFER_COUNT> ends{};  // Of the arrays so far, in the buffer where they lie.
+    std::array<uint64_t, BUFFER_COUNT> ends{};  // Ends of the arrays so far, in their buffers.
     uint64_t shared_end = 0;
     for (size_t i = 0; i < stored.size(); ++i) {
         map.slots[stored[i]] = uint32_t(std::min(i, alone));

@@ -1,4 +1,5 @@
-// Where a kernel finds the arrays of a scene: what the constants SLOT_*, SHARED_SLOT and STORAGE_BUFFERS say.
+// Where a kernel finds the arrays of a scene: the values of the constants SLOT_*, SHARED_SLOT and
+// STORAGE_BUFFERS.
 #pragma once
 
 #include <array>
@@ -16,17 +17,17 @@ namespace candela {
 enum class SceneAccess { automatic, texel_buffers, storage_buffers };
 
 struct ArrayMap {
-    // Of each of the scene's buffers: the storage buffer in which it lies, or NO_SLOT for a texel buffer.
+    // For each of the scene's buffers, its storage buffer, or NO_SLOT for a texel buffer.
     std::array<uint32_t, BUFFER_COUNT> slots;
     std::array<uint32_t, ARRAY_COUNT> starts{};  // In words, within the texel or storage buffer.
-    uint32_t shared_slot = NO_SLOT;              // The storage buffer in which several of the scene's lie.
-    uint32_t storage_buffers = 1;                // That a kernel declares, used or not.
+    uint32_t shared_slot = NO_SLOT;  // The storage buffer that several of the scene's buffers share.
+    uint32_t storage_buffers = 1;    // Number that a kernel declares, used or not.
 
     bool operator==(const ArrayMap&) const = default;
 };
 
-// Maps all buffers to texel buffers or all to storage buffers, as wanted; or, for `automatic`, only those to
-// storage buffers that are too long for a texel buffer. Each has a storage buffer of its own if the device
+// Maps all buffers to texel buffers or all to storage buffers, as wanted; for `automatic`, maps only buffers
+// that are too long for a texel buffer to storage buffers. Each gets its own storage buffer if the device
 // allows that many; otherwise the longest do, and the others share the last one. Throws Error (out_of_memory)
 // that names the arrays and the device's limits if a buffer would be too long.
 ArrayMap map_arrays(const vk::DeviceInfo& device, const GpuScene& scene, SceneAccess wanted);

@@ -1,5 +1,4 @@
-// What is fixed when the renderer's kernels are compiled: the specialization constants of a scene on a
-// device.
+// The specialization constants of the renderer's kernels, for a scene on a device.
 #include <algorithm>
 
 #include "render/media_at.h"
@@ -31,7 +30,7 @@ uint32_t aperture_constant(const Camera& camera) {
 }
 
 // The length of the list that replaces the tree; 0 for the tree. Only on lavapipe: a GPU has no registers for
-// a list, and runs other work while some lanes wait; on SwiftShader the list takes 2.4 times as long as the
+// a list, and runs other work while some lanes wait; on SwiftShader the list is 2.4 times as slow as the
 // tree. Only for triangles, since every lane executes the tests of all kinds in the scene for each primitive;
 // and only if rays pass none of them.
 uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
@@ -75,7 +74,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_LIGHTS] = scene.lights_present;
     constants[CONSTANT_HAS_MEDIA] = scene.has_media;
     constants[CONSTANT_NESTED_MEDIA] = scene.nested_media || media_at(scene, camera.position) != uvec2(0);
-    // What boundaries within one medium are: see path_step().
+    // Boundaries within one medium: see path_step().
     if (constants[CONSTANT_NESTED_MEDIA] != 0 && (scene.principled & PRINCIPLED_HAS_VOLUME) != 0)
         constants[CONSTANT_MATERIALS] |= 1u << MATERIAL_DIELECTRIC_EXACT;
     constants[CONSTANT_ATTRIBUTES] = scene.attributes;

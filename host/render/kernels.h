@@ -8,8 +8,8 @@ namespace candela::kernels {
 
 extern const std::span<const uint32_t> render, position;
 extern const std::span<const uint32_t> render_layered;  // For scenes with principled materials.
-// The same, with all functions put in place: lavapipe compiles them in half the time, and other compilers
-// keep more values alive in them.
+// The same with all functions inlined: lavapipe compiles them in half the time, but other compilers keep more
+// values alive.
 extern const std::span<const uint32_t> render_inlined, render_layered_inlined;
 extern const std::span<const uint32_t> display;  // Reads no scene.
 

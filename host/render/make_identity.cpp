@@ -11,7 +11,7 @@
 namespace candela {
 namespace {
 
-// Grows with every change of what the records mean: the same numbers then make other pictures.
+// Increases with every change of the records' meaning, since equal numbers then give other pictures.
 constexpr uint32_t RECORDS_VERSION = 4;
 
 // The shortest text that reads back as that number.

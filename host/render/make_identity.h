@@ -7,7 +7,8 @@
 
 namespace candela {
 
-// It does not depend on the number of samples, the first sample, the AOVs or how the kernels read the scene.
+// The identity does not depend on the number of samples, the first sample, the AOVs or how the kernels read
+// the scene.
 Identity make_identity(const GpuScene& scene, const Camera& camera, const RenderSettings& settings);
 
 }  // namespace candela

@@ -14,13 +14,13 @@
 namespace candela {
 namespace {
 
-// Upwards, so that it meets the surface of a lake; along no axis and in no plane that scenes are likely to
-// have edges in.
+// Upwards, so that it meets the surface of a lake; not along an axis or in a plane in which scenes are likely
+// to have edges.
 const dvec3 DIRECTION = normalize(dvec3(0.123456, 0.978, 0.0765432));
 
-// What a ray tells about one medium.
+// One medium along a ray.
 struct Passage {
-    int exits = 0;  // Less the entries.
+    int exits = 0;  // Exits minus entries.
     double nearest_exit = INFINITE;
 };
 
@@ -89,7 +89,7 @@ bool meets_children(const GpuScene& scene, uint32_t i, dvec3 o, dvec3 d) {
     Box box;
     for (uint32_t k = 0; k < bvh_child_count(node); ++k)
         box.extend(child_box(node, k));
-    // The axes that may separate a line from a box are at right angles to the line and to an edge.
+    // The axes that may separate a line from a box are perpendicular to the line and to an edge.
     const dvec3 middle = 0.5 * (dvec3(box.lo) + dvec3(box.hi)), half = dvec3(box.hi) - middle;
     const dvec3 distance = abs(glm::cross(d, middle - o)), a = abs(d);
     return distance.x <= half.y * a.z + half.z * a.y && distance.y <= half.z * a.x + half.x * a.z &&

@@ -26,7 +26,7 @@ constexpr uint32_t POSITION_PIXELS = 1u << 20;
 
 constexpr uint64_t COUNTER_BYTES = COUNTER_COUNT * sizeof(uint32_t);
 
-// Vulkan guarantees this maxComputeWorkGroupInvocations, so that the device's need not be checked.
+// Vulkan guarantees this maxComputeWorkGroupInvocations, so the device's limit need not be checked.
 static_assert(WORKGROUP_SIZE * WORKGROUP_SIZE <= 128);
 
 template <class T>
@@ -44,9 +44,9 @@ std::string gibibytes(uint64_t bytes) {
     return text;
 }
 
-// Throws Error if the process would exceed its limit. While the picture is written, the host holds it as it
-// was accumulated and as channels, which takes 1.3 times as much as on the device; and the memory of a CPU
-// device is the host's.
+// Throws Error if the process would exceed its limit. While the picture is written, the host holds it as
+// accumulated and as channels, 1.3 times as much as on the device; and the memory of a CPU device is the
+// host's.
 void check_host_memory(const vk::Device& device, const GpuScene& scene, const RenderSettings& settings) {
     const uint64_t on_device = device_bytes(scene, settings);
     const uint64_t picture = on_device - scene.bytes();
@@ -78,7 +78,7 @@ const vk::Device& check_memory(const vk::Device& device, const GpuScene& scene,
 
 // The part of the picture, from its first pixel on, that fits into one image: all of it, or whole tiles.
 PixelRect largest_part(const vk::DeviceLimits& limits, const RenderSettings& settings) {
-    constexpr uint32_t TILE = 64;  // Drivers fill up images to such sizes.
+    constexpr uint32_t TILE = 64;  // Drivers pad images to multiples of this.
     const uint64_t bytes = std::min(limits.max_image_bytes, limits.max_memory_allocation_size);
     const uint64_t pixels = bytes / (sizeof(vec4) * layer_count(settings));
     const PixelRect& all = settings.crop;
@@ -124,7 +124,7 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
     const vec3 forward(normalize(camera.look_at - camera.position));
     const vec3 right = normalize(cross(forward, camera.up));
     const vec3 up = cross(right, forward);
-    // Half the view, at distance 1 or of parallel rays.
+    // Half the view: at distance 1, or for parallel rays.
     const float half_y = camera.ortho_height ? 0.5f * frame.length(*camera.ortho_height)
                                              : std::tan(0.5f * camera.vertical_fov);
     const float half_x = half_y * float(settings.size.x) / float(settings.size.y);
@@ -319,7 +319,7 @@ std::vector<float> Renderer::positions() {
     }
     std::vector<float> values = vk::download(image, 0, 1);
     for (size_t i = 0; i < values.size(); i += 4) {
-        if (values[i + 3] == INFINITE) continue;  // A miss.
+        if (values[i + 3] == INFINITE) continue;  // No hit.
         const dvec3 p = frame_.world(vec3(values[i], values[i + 1], values[i + 2]));
         for (glm::length_t c = 0; c < 3; ++c)
             values[i + size_t(c)] = float(p[c]);

@@ -33,7 +33,7 @@ struct RenderSettings {
     uint32_t rr_depth = 3;
     bool aovs = false;  // Accumulate albedo and normal as well.
     SceneAccess scene_access = SceneAccess::automatic;
-    double submission_seconds = 0.0;     // How long a submission should take; 0: what suits the device.
+    double submission_seconds = 0.0;     // Duration of a submission; 0: suitable for the device.
     uint32_t pass_growth = PASS_GROWTH;  // See Schedule; changes no bit.
 };
 
@@ -54,13 +54,13 @@ vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const Kerne
 // The state before the first sample: it holds no values yet.
 Accumulation empty_state(const RenderSettings& settings);
 
-// Bytes of device memory that rendering takes: scene, accumulation image and position image.
+// Bytes of device memory for rendering: scene, accumulation image and position image.
 uint64_t device_bytes(const GpuScene& scene, const RenderSettings& settings);
 
 class Renderer {
   public:
     // Uploads the scene and compiles the kernel, including an empty first dispatch. `device` must outlive the
-    // renderer. Throws Error (out_of_memory) that says how much memory is needed and what the device has.
+    // renderer. Throws Error (out_of_memory) with the memory that is needed and that the device has.
     Renderer(const vk::Device& device, const GpuScene& scene, const Camera& camera,
              const RenderSettings& settings);
 
@@ -98,7 +98,7 @@ class Renderer {
 
   private:
     struct Work {
-        double seconds = 0.0;  // That the device took.
+        double seconds = 0.0;  // Time on the device.
         uint64_t samples = 0;
     };
 
@@ -115,12 +115,12 @@ class Renderer {
     SceneFrame frame_;
     RenderCounters counters_;
     double pipeline_seconds_ = 0.0;
-    uint32_t samples_ = 0;  // That every pixel holds at least.
+    uint32_t samples_ = 0;  // Samples that every pixel has.
 
     SceneBuffers scene_;
     KernelConstants constants_;
-    vk::Buffer counter_buffer_;  // On the device, of one submission,
-    vk::Buffer counts_;          // and the host's copy.
+    vk::Buffer counter_buffer_;  // The device's counters of one submission.
+    vk::Buffer counts_;          // The host's copy.
     vk::StorageImage image_;
     vk::Commands commands_;
     std::unique_ptr<vk::Kernel> render_kernel_;

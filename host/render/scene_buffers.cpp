@@ -14,8 +14,8 @@ namespace {
 // The words that follow the parameters in their buffer: the arrays' starts, four to a word.
 constexpr uint32_t STARTS_WORDS = (ARRAY_COUNT + 3) / 4;
 
-// What the device's buffers are made from: bytes of each texel buffer, one for each of the scene's buffers,
-// and of each storage buffer.
+// The contents of the device's buffers: bytes of each texel buffer, one for each of the scene's buffers, and
+// of each storage buffer.
 struct Sizes {
     std::array<uint64_t, BUFFER_COUNT> texel{};
     std::vector<uint64_t> storage;
@@ -61,6 +61,7 @@ std::string names_in(uint32_t buffer) {
 
 }  // namespace
 
+// All bindings of a kernel must be bound, so those that it does not read get buffers of one word.
 SceneBuffers::SceneBuffers(const vk::Device& device, const GpuScene& scene, const Parameters& parameters,
                            const ArrayMap& map)
     : parameters_(device, (PARAMETERS_WORDS + STARTS_WORDS) * sizeof(uvec4), vk::BufferUsage::uniform,

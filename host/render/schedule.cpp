@@ -16,11 +16,11 @@ constexpr double FIRST_BUDGET = 4096;
 // unusually cheap.
 constexpr double LARGEST_GROWTH = 4;
 
-// Where a pass takes several submissions, the first pass adds one sample per pixel, for a quick look; the
-// second continues to SECOND_PASS_TARGET, and later ones add at most LARGEST_PASS. Within a pass, neighbours
-// whose paths differ in length each continue with their own next sample; at its end they wait for each other,
-// which takes as long as about two samples. A driver that ends an invocation's loops after 65 535 iterations
-// leaves 511 for each sample of the largest pass.
+// If a pass needs several submissions, the first pass adds one sample per pixel, for a quick look; the second
+// continues to SECOND_PASS_TARGET, and later ones add at most LARGEST_PASS. Within a pass, neighbours whose
+// paths differ in length each continue with their own next sample; at its end they wait for each other, for
+// about the time of two samples. A driver that ends an invocation's loops after 65 535 iterations leaves 511
+// for each sample of the largest pass.
 constexpr uint32_t SECOND_PASS_TARGET = 8;
 constexpr uint32_t LARGEST_PASS = 128;
 
@@ -73,7 +73,7 @@ Tile Schedule::next() const {
 }
 
 // The budget is for tiles in which no pixel has reached its limit. Where most pixels have, the cost of the
-// submission itself hides that of the samples, which is no reason to lower the budget.
+// submission itself hides that of the samples, and the budget need not shrink.
 void Schedule::advance(double seconds, uint64_t samples) {
     const Tile tile = next();
     const uint64_t most = uint64_t{tile.size.x} * tile.size.y * (pass_target_ - pass_start_);

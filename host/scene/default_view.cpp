@@ -9,7 +9,7 @@ namespace candela {
 
 void add_default_camera(Scene& scene) {
     const DoubleBox box = bounds(scene);
-    // Radius of the sphere around the box [m]; any length where there is nothing to see.
+    // Radius of the sphere around the box [m]; arbitrary if there is nothing to see.
     const double radius = box.is_empty() || box.extent() == dvec3(0.0) ? 1.0 : 0.5 * length(box.extent());
     const dvec3 towards_viewer = normalize(dvec3(0.5, 0.4, 1.0));
     Camera camera;

@@ -1,4 +1,4 @@
-// What a scene needs besides its shapes.
+// A default camera and default light.
 #pragma once
 
 #include "scene/scene.h"
@@ -9,8 +9,7 @@ namespace candela {
 // above: the sphere around their bounds touches the picture's upper and lower edge.
 void add_default_camera(Scene& scene);
 
-// Adds what a file without cameras or lights lacks: that camera and, where nothing emits, a constant sky of
-// radiance 1.
+// Adds that camera and, if nothing emits, a constant sky of radiance 1, for files that have neither.
 void add_default_view(Scene& scene);
 
 }  // namespace candela

@@ -36,7 +36,7 @@ RgbPlanes find_colours(const Image& image, const std::string& file) {
                 joined(names) + "; write it with one of these");
 }
 
-// Whether any channel is negative or not finite; then the others cannot be trusted either.
+// Whether any channel is negative or not finite; the others cannot be trusted then.
 bool is_unusable(vec3 radiance) {
     for (int c = 0; c < 3; ++c) {
         if (!std::isfinite(radiance[c]) || radiance[c] < 0.0f) return true;
@@ -44,11 +44,11 @@ bool is_unusable(vec3 radiance) {
     return false;
 }
 
-// "3 of 2048 texels are negative or not finite and count as black"
+// "3 of 2048 texels are negative or not finite, and are treated as black"
 std::string describe_unusable(size_t count, size_t texels) {
     return std::to_string(count) + " of " + std::to_string(texels) +
-           (count == 1 ? " texels is negative or not finite and counts as black"
-                       : " texels are negative or not finite and count as black");
+           (count == 1 ? " texels is negative or not finite, and is treated as black"
+                       : " texels are negative or not finite, and are treated as black");
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 namespace candela {
 
-// The point p of the user's world lies at (p - origin) / unit. Floats are finest around 0 and have no room
-// for scenes far from it: so a frame has its origin in the middle of the scene, and a unit of about its size.
+// The point p of the user's world lies at (p - origin) / unit. Floats are finest around 0 and too coarse for
+// scenes far from it, so a frame has its origin in the middle of the scene, and a unit of about its size.
 struct SceneFrame {
     dvec3 origin{0.0};
     double unit = 1.0;  // [m], a power of two: multiplying by it is exact.

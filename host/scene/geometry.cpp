@@ -56,7 +56,7 @@ vec3 brightness(const DirectionalLight& light) {
     return light.irradiance;
 }
 
-// Of a point or spot light.
+// The position of a point or spot light.
 template <class Model>
 vec3 brightness(const Model& light) {
     return light.intensity;
@@ -65,7 +65,7 @@ vec3 brightness(const Model& light) {
 }  // namespace
 
 ShapeBounds::ShapeBounds(const Scene& scene) : scene_(scene), mesh_boxes_(scene.meshes.size()) {
-    constexpr uint64_t MANY_TRIANGLES = 1u << 22u;  // Of all copies: a fraction of a second.
+    constexpr uint64_t MANY_TRIANGLES = 1u << 22u;  // Limit for all copies: a fraction of a second.
     std::vector<uint64_t> uses(scene.meshes.size());
     uint64_t copied = 0;
     for (const Shape& shape : scene.shapes) {

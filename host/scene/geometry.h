@@ -9,8 +9,8 @@
 
 namespace candela {
 
-// The box around all shapes; empty for a scene without shapes. It is the least one but for copied meshes, if
-// all copies have many triangles: of these, it contains the boxes around their placed boxes.
+// The box around all shapes; empty for a scene without shapes. It is the smallest one, except if copied
+// meshes have many triangles in all: it then contains the boxes around their placed boxes.
 DoubleBox bounds(const Scene& scene);
 
 // The same for some of the shapes of a scene, one by one.
@@ -24,10 +24,10 @@ class ShapeBounds {
     std::vector<std::optional<DoubleBox>> mesh_boxes_;  // In the meshes' spaces, of copied ones.
 };
 
-// How many triangles the shapes have; a quad counts as two, a sphere or disk as none.
+// The number of triangles of the shapes; a quad has two, a sphere or disk none.
 uint64_t triangle_count(const Scene& scene);
 
-// How many shapes emit light; the environment is not one of them.
+// The number of shapes that emit light; the environment is not included.
 size_t emitter_count(const Scene& scene);
 
 // Whether an environment is brighter than 0 anywhere.
@@ -36,7 +36,7 @@ bool gives_light(const Environment& environment);
 // Whether a light is not black.
 bool gives_light(const Light& light);
 
-// Whether the picture shows anything but black: light, or a shape that shows its colour without any.
+// Whether the picture is not all black: there is light, or a shape that shows its colour without light.
 bool has_light(const Scene& scene);
 
 }  // namespace candela

@@ -14,14 +14,14 @@ namespace {
 
 using std::numbers::pi;
 
-// What matters of an image of emission.
+// Properties of an image of emission.
 struct ImageGlow {
     vec3 mean{0};         // In linear light.
-    double bright = 0.0;  // The fraction that is not black.
+    double bright = 0.0;  // Fraction of texels that are not black.
 };
 
 ImageGlow glow_of(const TexelImage& image, TextureEncoding encoding) {
-    constexpr float BLACK = 0.05f;             // A code that noise of compression may have.
+    constexpr float BLACK = 0.05f;             // Codes up to this may be noise of compression.
     constexpr size_t MOST = size_t{1} << 16u;  // Texels, spread over the image.
     const size_t count = size_t(image.size.x) * image.size.y, step = count / MOST + 1;
     dvec3 sum(0.0);
@@ -36,8 +36,8 @@ ImageGlow glow_of(const TexelImage& image, TextureEncoding encoding) {
     return {vec3(sum / double(looks)), double(bright) / double(looks)};
 }
 
-// The mean length of the way that light leaving p has within the sphere of that radius around the origin; the
-// directions are those of a matt surface with the unit normal n.
+// The mean length of the path that light leaving p has within the sphere of that radius around the origin;
+// its directions are those of a matt surface with the unit normal n.
 double mean_way(dvec3 p, dvec3 n, double radius) {
     constexpr int DIRECTIONS = 16;
     constexpr double GOLDEN_ANGLE = 2.399963229728653;
@@ -117,12 +117,12 @@ class GlowMeter {
 
     const Scene& scene_;
     double bright_;
-    dvec3 center_{0};  // Of the sphere around the scene's bounds.
+    dvec3 center_{0};  // Centre of the sphere around the scene's bounds.
     double radius_ = 0.0;
-    uint64_t step_ = 1;  // Between the triangles that are looked at, through all shapes,
-    uint64_t next_ = 0;  // and the index of the next one.
+    uint64_t step_ = 1;  // From one triangle that is looked at to the next, through all shapes.
+    uint64_t next_ = 0;  // Index of the next one.
     std::map<uint32_t, ImageGlow> images_;
-    double sent_ = 0.0;  // Flux, each ray's times its way within the sphere [W m].
+    double sent_ = 0.0;  // Sum of each ray's flux times its path within the sphere [W m].
     double area_ = 0.0, bright_area_ = 0.0;
     Glow glow_;
 };

@@ -7,7 +7,7 @@
 
 namespace candela {
 
-// What shapes of this material emit that state no emission of their own.
+// The emission of shapes of this material that do not state their own.
 std::optional<Emission> material_emission(const Material& material);
 
 // Whether rays pass surfaces of this material from behind.
@@ -20,8 +20,9 @@ bool is_unlit(const Material& material);
 // same in all directions.
 bool needs_tangents(const Material& material);
 
-// The set of texture coordinates, 0 or 1, along which the tangents of a mesh run: that of the first of its
-// normal map, the coat's, and what makes reflection anisotropic. Only if needs_tangents().
+// The set of texture coordinates, 0 or 1, along which the tangents of a mesh run: the set of the first of
+// these that the material has: its normal map, the coat's, and the texture of anisotropy. Only if
+// needs_tangents().
 uint32_t tangent_uv_set(const Material& material);
 
 }  // namespace candela

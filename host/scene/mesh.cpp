@@ -14,7 +14,7 @@
 namespace candela {
 namespace {
 
-// Twice the area times the unit normal. In double, products of float differences are all but exact.
+// Twice the area times the unit normal. In double, products of float differences are nearly exact.
 glm::dvec3 scaled_normal(const TriangleMesh& mesh, uvec3 triangle) {
     const glm::dvec3 origin(mesh.positions[triangle.x]);
     return cross(glm::dvec3(mesh.positions[triangle.y]) - origin,
@@ -159,8 +159,8 @@ std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh, std::span<const u
     for (size_t i = 0; i < mesh.triangles.size(); ++i)
         parts[part_of[i]].triangles.push_back(mesh.triangles[i]);
     struct Copy {
-        size_t part;     // The part that the vertex was copied to last ...
-        uint32_t index;  // ... and its index there.
+        size_t part;     // The part to which the vertex was copied last.
+        uint32_t index;  // Its index in that part.
     };
     std::vector<Copy> copies(mesh.positions.size(), {count, 0});
     for (size_t part = 0; part < count; ++part) {

@@ -1,4 +1,4 @@
-// What every mesh goes through between a file and the scene, and between the scene and the world.
+// The steps of every mesh from a file to the scene, and from the scene to its frame.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace candela {
 
 // Where the shading normals of a mesh from a file come from.
 enum class MeshNormals {
-    file,    // From the file; flat where it has none.
+    file,    // From the file; flat if it has none.
     smooth,  // Averages, by smooth_normals().
     flat,
 };
@@ -29,8 +29,8 @@ uint32_t append_vertex(TriangleMesh& mesh, const TriangleMesh& source, uint32_t 
 
 // Gives a mesh its positions [m], which floats can hold, and its origin: the middle of their bounds,
 // truncated to a multiple of the least power of two that is greater than the mesh. So a coordinate that is a
-// float is kept exactly, any other is off by a small fraction of the mesh's size, however far from 0 it lies,
-// and a mesh around 0 has its origin there.
+// float is kept exactly, any other is off by a small fraction of the mesh's size, even far from 0, and a mesh
+// around 0 has its origin there.
 void set_positions(TriangleMesh& mesh, std::vector<glm::dvec3> positions);
 
 // Adds the triangles of a polygon with at least 3 corners, given as indices of vertices; see polygon.h.
@@ -39,17 +39,17 @@ void add_polygon(TriangleMesh& mesh, std::span<const uint32_t> corners);
 // The least box around the positions, relative to the origin.
 Box local_bounds(const TriangleMesh& mesh);
 
-// How many triangles are smaller than 16 steps of the floats that their coordinates would be around 0, which
-// is too coarse for their shape.
+// The number of triangles that are smaller than 16 steps of their coordinates as 32-bit floats, which are too
+// coarse for their shape.
 size_t count_coarse_triangles(const TriangleMesh& mesh);
 // Whether a warning is due: more than one in a hundred of `triangles`.
 bool is_too_coarse(uint64_t coarse, uint64_t triangles);
 
-// Removes the triangles whose corners lie on a line or point. Returns how many there were.
+// Removes the triangles whose corners lie on a line or point. Returns their number.
 size_t drop_flat_triangles(TriangleMesh& mesh);
 
 // Replaces the normals by unit averages of those of the triangles around each position, weighted by their
-// angles there. Vertices at equal positions share one normal, which is zero where the average cancels.
+// angles there. Vertices at equal positions share one normal, which is zero if the average cancels.
 // Ref: Thuermer, Wuethrich, "Computing Vertex Normals from Polygonal Facets" (1998).
 void smooth_normals(TriangleMesh& mesh);
 

@@ -11,7 +11,7 @@
 
 namespace candela {
 
-// The words of a setting, and what each stands for.
+// The words of a setting and their values.
 template <class T, size_t N>
 using Choices = std::array<std::pair<std::string_view, T>, N>;
 

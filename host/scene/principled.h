@@ -9,7 +9,7 @@
 
 namespace candela {
 
-// What lies between surfaces.
+// A medium between surfaces.
 struct Medium {
     vec3 absorption{0};  // [1/m], each >= 0 (Beer and Lambert).
 
@@ -24,7 +24,7 @@ struct NormalMap {
 };
 inline constexpr float MAX_NORMAL_SCALE = 1e3f;
 
-// The kinds of values in principled_values.inc, and what holds one.
+// The kinds of values in principled_values.inc, and their types.
 enum class ValueKind {
     color,
     radiance,
@@ -71,10 +71,10 @@ struct ValueOf<ValueKind::normal_map> {
     using Type = std::optional<NormalMap>;
 };
 
-// A dielectric or metallic base under layers: what glTF 2.0 says with its extensions, and what OpenPBR 1.1
-// adds. principled_values.inc and docs/scene-format.md say what each value is. One that is 0 by default
-// switches its layer off. Angles are in radians. An `ior` of 0 reflects all light. Without a medium inside,
-// the surface is a thin wall.
+// A dielectric or metallic base under layers, as described by glTF 2.0 with its extensions, and additions of
+// OpenPBR 1.1. principled_values.inc and docs/scene-format.md describe each value. A value that is 0 by
+// default switches its layer off. Angles are in radians. An `ior` of 0 reflects all light. Without a medium
+// inside, the surface is a thin wall.
 struct PrincipledMaterial {
 #define VALUE(kind, name, initial, least, most, needs, text) ValueOf<ValueKind::kind>::Type name = initial;
 #define KEY(name, member, text) member
@@ -83,7 +83,7 @@ struct PrincipledMaterial {
 #undef KEY
 };
 
-// What a value may be, or what the factor of its image may be.
+// The range of a value, or of the factor of its image.
 struct Range {
     float least;
     float most;

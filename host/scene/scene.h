@@ -20,10 +20,10 @@ namespace candela {
 
 // A thin lens. Its aperture is a disk, or a regular polygon whose corners lie on the disk's rim.
 struct Lens {
-    float radius = 0.0f;          // Of the aperture [m]; 0: a pinhole, everything is sharp.
+    float radius = 0.0f;          // Radius of the aperture [m]; 0: a pinhole, with everything sharp.
     float focal_distance = 1.0f;  // From the lens to the plane in focus, along the view [m]; above 0.
     uint32_t blades = 0;          // Corners of the polygon, 3 .. MAX_BLADES; 0: a disk.
-    float rotation = 0.0f;        // Of the polygon [rad]: its first corner, from the right towards up.
+    float rotation = 0.0f;        // Angle of the polygon's first corner [rad], from the right towards up.
 
     bool operator==(const Lens&) const = default;
 };
@@ -40,7 +40,7 @@ struct Camera {
     // through the position; the camera has no field of view and no lens.
     std::optional<double> ortho_height{};
     Lens lens;
-    std::optional<uvec2> film_size{};  // Of the picture [pixels], if the file says so for this camera.
+    std::optional<uvec2> film_size{};  // Size of the picture [pixels], if the file states it for this camera.
 
     bool operator==(const Camera&) const = default;
 };
@@ -51,11 +51,11 @@ struct Film {
 
 enum class Estimator { bsdf, light, mis };
 enum class SamplerKind { independent, stratified, sobol };
-// Where the light of a mesh with smooth normals ends: where its normals turn away from it, or where its
-// triangles do.
+// Where the light on a mesh with smooth normals ends: where its normals turn away from the light, or where
+// its triangles do.
 enum class Terminator { smooth, flat };
 
-// What the scene file proposes; the command line overrides it.
+// The scene file's proposals; the command line overrides them.
 struct IntegratorSettings {
     uint32_t spp = 64;
     std::optional<uint32_t> max_depth;  // Scattering vertices at most; none: unlimited.
@@ -116,18 +116,18 @@ inline constexpr uint32_t MAX_PRIORITY = 15;
 
 // Heights above a surface, for the normals that it would have if it were displaced by them.
 struct BumpMap {
-    Texture texture{};   // Its channel counts.
+    Texture texture{};   // Only its channel is used.
     float scale = 1.0f;  // The height for a value of 1 [m].
-    // What a mesh's own file states: the height for a value of 1 in units of the mesh, or, if the image turns
-    // out to hold normals, the scale of the normal map.
+    // As stated by a mesh's own file: the height for a value of 1 in units of the mesh, or, if the image
+    // turns out to hold normals, the scale of the normal map.
     std::optional<float> multiplier{};
 };
 
-// Some rays pass a surface as if it were not there.
+// Opacity: some rays pass a surface as if it were not there.
 struct Opacity {
-    Textured<float> value = 1.0f;  // The probability that a ray does not, in [0, 1].
-    std::optional<float>
-        cutoff{};  // If there is one, no ray passes where the value is at least this, else every ray.
+    Textured<float> value = 1.0f;   // The probability that a ray does not, in [0, 1].
+    std::optional<float> cutoff{};  // If given, no ray passes where the value is at least this, and every ray
+                                    // passes elsewhere.
 };
 
 struct Material {
@@ -153,12 +153,13 @@ struct Emission {
 // Triangles over shared vertices, counter-clockwise seen from the front, in a space of their own. The array
 // of an attribute is empty or has one element per position.
 struct TriangleMesh {
-    glm::dvec3 origin{0};            // Of the positions; see set_positions() in mesh.h.
+    glm::dvec3 origin{0};            // Origin of the positions; see set_positions() in mesh.h.
     std::vector<vec3> positions{};   // Relative to the origin.
-    std::vector<vec3> normals{};     // For shading; of any length, zero where there is none. Empty: flat.
-    std::vector<vec4> tangents{};    // x, y, z: where u grows; w: -1 if the bitangent is mirrored, else 1.
-    std::vector<vec2> uv0{};         // Texture coordinates, v upwards, ...
-    std::vector<vec2> uv1{};         // ... two sets of them.
+    std::vector<vec3> normals{};     // For shading; of any length, zero if there is none. Empty: flat.
+    std::vector<vec4> tangents{};    // x, y, z: the direction in which u grows; w: -1 if the bitangent is
+                                     // mirrored, otherwise 1.
+    std::vector<vec2> uv0{};         // First set of texture coordinates, v upwards.
+    std::vector<vec2> uv1{};         // Second set.
     std::vector<vec4> colors{};      // Linear RGB, and opacity.
     std::vector<uvec3> triangles{};  // Indices of vertices.
 };
@@ -196,7 +197,7 @@ struct Shape {
     std::variant<MeshInstance, Quad, Sphere, Disk> geometry;
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
-    bool states_emission = false;      // Otherwise the emission is its material's, and changes with it.
+    bool states_emission = false;      // If false, the emission is its material's, and changes with it.
 };
 
 // Radiance from infinitely far away, as a latitude-longitude map [W/(m^2 sr)], row-major from the top. Its
@@ -206,11 +207,11 @@ struct Environment {
     uvec2 size{1, 1};                     // Texels.
     std::vector<vec3> radiance{vec3(0)};  // Finite, each >= 0; intensity included.
     float rotation = 0.0f;                // About +Y [rad], counter-clockwise seen from above.
-    bool visible = true;                  // To camera rays; light and reflections come from it in any case.
+    bool visible = true;                  // To camera rays; it always lights the scene and is reflected.
 };
 
-// Light from a point, equal in all directions. No surface shows it, nor the two below: only light samples
-// find them.
+// Light from a point, equal in all directions. This light and the next two have no surface: only light
+// samples find them.
 struct PointLight {
     dvec3 position{0};
     vec3 intensity{1};  // [W/sr], each >= 0 and finite.
@@ -220,7 +221,7 @@ struct PointLight {
 // with the square of a number that is linear in the cosine.
 struct SpotLight {
     dvec3 position{0};
-    dvec3 direction{0, 0, -1};      // Of the axis, of any length above 0.
+    dvec3 direction{0, 0, -1};      // Direction of the axis, of any length above 0.
     vec3 intensity{1};              // Up to the inner angle [W/sr], each >= 0 and finite.
     float inner_angle = 0.0f;       // From the axis [rad]; 0 <= inner_angle < outer_angle <= pi / 2.
     float outer_angle = PI / 4.0f;  // Beyond it, the light is dark.
@@ -228,7 +229,7 @@ struct SpotLight {
 
 // Light from infinitely far away in a single direction.
 struct DirectionalLight {
-    dvec3 direction{0, 0, -1};  // In which it travels, of any length above 0.
+    dvec3 direction{0, 0, -1};  // The direction of travel, of any length above 0.
     vec3 irradiance{1};         // On a surface perpendicular to it [W/m^2], each >= 0 and finite.
 };
 
@@ -241,18 +242,19 @@ struct Scene {
     std::vector<Camera> cameras;  // At least one; the first is the default.
     Film film;
     IntegratorSettings integrator;
-    std::vector<ImageFile> images;                            // That textures look up.
-    std::unordered_map<std::string, uint32_t> image_indices;  // By real_path, of those that files name.
+    std::vector<ImageFile> images;                            // Looked up by textures.
+    std::unordered_map<std::string, uint32_t> image_indices;  // By real_path, for images that files name.
     std::vector<Material> materials;
     std::vector<TriangleMesh> meshes;
     std::vector<Shape> shapes;
     std::vector<Light> lights;                 // Besides shapes that emit and the environment.
     std::optional<Environment> environment;    // None: black.
-    FileReach reach;                           // What may be read for it.
-    std::vector<std::filesystem::path> files;  // Read besides a JSON scene file: meshes, materials, images.
-    std::vector<std::string> warnings;         // What the loader found odd but usable, each with its place.
+    FileReach reach;                           // The files that may be read for it.
+    std::vector<std::filesystem::path> files;  // Files read in addition to a JSON scene file: meshes,
+                                               // materials, images.
+    std::vector<std::string> warnings;         // Oddities that the loader could use, each with its place.
     std::vector<std::pair<std::string, std::string>>
-        attributes;  // What a file says of itself: name and text.
+        attributes;  // The file's description of itself: name and text.
 };
 
 }  // namespace candela

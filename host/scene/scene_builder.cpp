@@ -72,7 +72,7 @@ void complete_attributes(const Scene& scene, const std::string& place, const App
         }
         add_tangents(mesh, set);
     }
-    // Its image, which has not been read, may hold normals.
+    // Its image, which has not been read yet, may hold normals.
     if (material.bump_map && material.bump_map->multiplier)
         add_tangents(mesh, material.bump_map->texture.uv_set);
 }

@@ -1,4 +1,4 @@
-// Finishes the shapes that a loader of any format brings, and adds them to a scene.
+// Finishes the shapes from a loader of any format, and adds them to a scene.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace candela {
 
-// What a shape has besides its geometry.
+// The appearance of a shape.
 struct Appearance {
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
@@ -28,14 +28,14 @@ struct MeshPart {
 // Whether no coordinate of a point in world space lies beyond MAX_COORDINATE.
 bool is_within_reach(dvec3 p);
 
-// What messages say of a shape with such a point.
+// The message about a shape with such a point.
 inline constexpr const char* TOO_FAR =
     "the shape reaches beyond 1e37 along an axis; check its numbers and its transform";
 
-// What a file's faces without a material are made of: grey, or the colours of their vertices.
+// The material of a file's faces without one: grey, or the colours of their vertices.
 Material default_material(bool has_colors);
 
-// Appends to a scene's shapes, materials and warnings. A place is what messages begin with, such as
+// Appends to a scene's shapes, materials and warnings. Messages begin with a place, such as
 // `file:line:column`.
 class SceneBuilder {
   public:
@@ -54,19 +54,19 @@ class SceneBuilder {
                                  appearance.states_emission});
     }
     // Adds the parts of a mesh, each as a mesh with one instance. Completes their normals, and leaves out
-    // flat triangles with a warning; adds tangents where the material needs them. Throws Error if there are
-    // no others, if the mesh reaches too far, or if it lacks texture coordinates that its appearance needs.
+    // flat triangles with a warning; adds tangents where the material needs them. Throws Error if no
+    // triangles remain, if the mesh reaches too far, or if it lacks texture coordinates that its appearance
+    // needs.
     void add_mesh(const std::string& place, const Transform& transform, std::vector<MeshPart> parts);
     // Adds a mesh of one part.
     void add_mesh(const std::string& place, const Appearance& appearance, const Transform& transform,
                   TriangleMesh mesh);
     // Adds another instance of the mesh of scene().shapes[shape], with the same appearance.
     void add_instance(const std::string& place, size_t shape, const Transform& transform);
-    // Gives a mesh of the scene what another appearance than its first needs. Throws Error if it lacks
-    // texture coordinates.
+    // Gives a mesh of the scene what a second appearance needs. Throws Error if it lacks texture coordinates.
     void complete_mesh(const std::string& place, const Appearance& appearance, uint32_t mesh);
-    // Adds a shape whose geometry was finished before and then placed elsewhere. Returns false, and adds
-    // nothing, if it reaches too far.
+    // Adds a shape with a finished geometry that is placed elsewhere. Returns false, and adds nothing, if it
+    // reaches too far.
     bool add_placed(Shape shape);
 
     // Adds a material under its name, or a similar one if that is taken; returns its index.
@@ -74,7 +74,7 @@ class SceneBuilder {
 
     // Materials that come from files: `name` joins those of file and material, as in `pot.obj/clay`. The
     // scene's material gets this name, or a similar one if it is taken. `find` returns null for a name that
-    // was not added. The material's own name does not count.
+    // was not added. The material's own name is ignored.
     const Appearance* find_file_appearance(const std::string& name) const;
     void add_file_appearance(const std::string& name, Material material,
                              const std::optional<Emission>& emission);
@@ -93,9 +93,9 @@ class SceneBuilder {
     std::map<std::string, Appearance, std::less<>> file_appearances_;
     std::map<uint32_t, std::map<double, uint32_t>> at_scale_;  // By material and scale.
     std::optional<uint32_t> black_;
-    UniqueNames material_names_;  // Of the first `named_` of scene_.materials.
+    UniqueNames material_names_;  // Names of the first `named_` of scene_.materials.
     size_t named_ = 0;
-    std::vector<std::optional<Box>> mesh_boxes_;  // Of meshes that have several instances.
+    std::vector<std::optional<Box>> mesh_boxes_;  // Boxes of meshes that have several instances.
 };
 
 }  // namespace candela

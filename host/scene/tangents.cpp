@@ -59,13 +59,13 @@ dvec3 direction_in_plane(dvec3 v, dvec3 n) {
     return length(flat) > PARALLEL ? normalize(flat) : dvec3(0.0);
 }
 
-// Where nothing says where u grows: a unit vector orthogonal to the unit normal, near +X if that is possible.
+// The tangent where u is unknown: a unit vector orthogonal to the unit normal, near +X if possible.
 dvec3 default_tangent(dvec3 n) {
     const dvec3 axis = std::abs(n.x) < 0.99 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
     return normalize(axis - dot(axis, n) * n);
 }
 
-// What tangents depend on, by corners.
+// The inputs of tangents, by corners.
 class Corners {
   public:
     Corners(const TriangleMesh& mesh, uint32_t uv_set)
@@ -82,7 +82,7 @@ class Corners {
     uint32_t vertex(uint32_t c) const { return mesh_.triangles[c / 3][glm::length_t(c % 3)]; }
     vec3 position(uint32_t c) const { return mesh_.positions[vertex(c)]; }
     vec2 uv(uint32_t c) const { return uvs_[vertex(c)]; }
-    // As the mesh has it, of any length above 0; where there is none, the triangle's.
+    // The mesh's normal, of any length above 0; the triangle's if there is none.
     vec3 normal(uint32_t c) const {
         const vec3 n = mesh_.normals.empty() ? vec3(0.0f) : mesh_.normals[vertex(c)];
         return n == vec3(0.0f) ? flat_normals_[c / 3] : n;
@@ -90,7 +90,7 @@ class Corners {
     dvec3 unit_normal(uint32_t c) const { return normalize(dvec3(normal(c))); }
     dvec3 edge(uint32_t from, uint32_t to) const { return dvec3(position(to)) - dvec3(position(from)); }
 
-    // The same for corners that MikkTSpace takes for one vertex.
+    // The same for all corners that MikkTSpace treats as one vertex.
     std::array<uint32_t, 8> key(uint32_t c) const {
         const vec3 p = position(c);
         const vec3 n = normal(c);
@@ -102,14 +102,14 @@ class Corners {
   private:
     const TriangleMesh& mesh_;
     const std::vector<vec2>& uvs_;
-    std::vector<vec3> flat_normals_;  // Of the triangles, unit; empty if every vertex has a normal.
+    std::vector<vec3> flat_normals_;  // Unit normals of the triangles; empty if every vertex has a normal.
 };
 
-// What a triangle says about its corners.
+// What a triangle contributes to its corners.
 struct Facet {
     enum class Kind {
         useful,
-        without_uv_area,  // Its tangent is unknown, and it is of the orientation of the first group it joins.
+        without_uv_area,  // Its tangent is unknown, and its orientation is that of the first group it joins.
         without_edge,     // Two corners coincide: it has no neighbours.
     };
     Kind kind = Kind::useful;
@@ -125,7 +125,7 @@ Facet facet_of(const Corners& corners, uint32_t c) {
     if (p == q || q == r || r == p) return {.kind = Facet::Kind::without_edge};
     const vec2 uv1 = corners.uv(c + 1) - corners.uv(c);
     const vec2 uv2 = corners.uv(c + 2) - corners.uv(c);
-    // In floats, so that the sign of what is all but 0 is that of the program that baked the normal map.
+    // In floats, so that the sign of an area near 0 is the same as in the program that baked the normal map.
     const float area = uv1.x * uv2.y - uv1.y * uv2.x;
     const dvec3 edge1 = corners.edge(c, c + 1);
     const dvec3 edge2 = corners.edge(c, c + 2);
@@ -147,7 +147,7 @@ std::vector<uint32_t> find_twins(const std::vector<Facet>& facets, const std::ve
         const auto [lo, hi] = std::minmax(vertices[c], vertices[next_corner(c)]);
         return std::array<uint32_t, 2>{lo, hi};
     });
-    // The edges of a line that have no twin yet, all of one direction.
+    // The edges along a line without a twin so far, all of one direction.
     struct Queue {
         uint32_t first = NONE;
         uint32_t last = NONE;
@@ -201,7 +201,7 @@ class Grouping {
     }
 
   private:
-    // The group of a corner and of those that are reached from it, to either side.
+    // Puts a corner, and the corners that are reached from it to either side, into a group.
     void form_group(uint32_t c) {
         groups_.push_back({.mirrored = facets_[c / 3].mirrored});
         join_last_group(c);
@@ -258,7 +258,7 @@ class Grouping {
     std::vector<Facet> facets_;
     std::vector<uint32_t> twins_;
     std::vector<Group> groups_;
-    std::vector<uint32_t> group_of_;  // Of a corner.
+    std::vector<uint32_t> group_of_;  // Group of each corner.
 };
 
 // The tangent of each corner.

@@ -13,40 +13,37 @@
 
 namespace candela {
 
-// No texture coordinate is further from 0, so that no transform of one leaves the range of floats.
+// The largest magnitude of a texture coordinate, so that no transform of one leaves the range of floats.
 inline constexpr double MAX_UV = 1e30;
 
-// No number of such a transform is further from 0, for the same reason.
-inline constexpr double MAX_UV_TRANSFORM = 1e6;
-
-// What becomes of an image file that does not exist.
+// How a missing image file is handled.
 enum class IfMissing { white, error };
 
 // An image file that textures look up, or one within a scene file.
 struct ImageFile {
     std::filesystem::path path;
     std::filesystem::path real_path{};  // The same for all names of the file.
-    std::string bytes{};                // The file, if it is within another one.
-    // From the file's image to this one; none: it is the same.
+    std::string bytes{};                // The file's contents, if it is within another file.
+    // Converts the file's image to this one; none: it is the same.
     std::function<TexelImage(const TexelImage&)> convert{};
-    // A glTF file names it: a gamma of its own does not count, and only some formats are advised.
+    // A glTF file names it: its own gamma is ignored, and messages advise only some formats.
     bool of_gltf = false;
-    std::string place{};                        // Where the scene names it first, for messages.
-    IfMissing if_missing = IfMissing::error;    // White: nobody wrote the file that names it for candela.
-    std::shared_ptr<const TexelImage> image{};  // None: it has not been read.
+    std::string place{};                        // Where it is named first, for messages.
+    IfMissing if_missing = IfMissing::error;    // White: for images of files not written for candela.
+    std::shared_ptr<const TexelImage> image{};  // None: not read yet.
 };
 
-// What lies outside of [0, 1] along an axis of an image.
+// How an image continues outside [0, 1] along an axis.
 enum class Wrap { repeat, mirror, clamp };
 
-// Between the centres of texels: nothing, or linearly along both axes, in linear light.
+// Interpolation between the centres of texels: none, or linear along both axes, in linear light.
 enum class TextureFilter { nearest, bilinear };
 
-// What the numbers of the colour channels are. Alpha is always linear, as are half floats.
+// The meaning of the colour channels. Alpha is always linear, as are half floats.
 enum class TextureEncoding { linear, srgb };
 
-// Channels of an image. The last one stands for alpha if the image has it, otherwise for red, in an opacity
-// whose image load_images() has not read.
+// Channels of an image. ALPHA_OR_RED means alpha if the image has it, otherwise red, in an opacity until
+// load_images() has read its image.
 inline constexpr uint32_t RED = 0;
 inline constexpr uint32_t ALPHA = 3;
 inline constexpr uint32_t ALPHA_OR_RED = 4;
@@ -71,7 +68,7 @@ struct Texture {
 // A value that is the same everywhere, or that of a texture times a factor.
 template <class Value>
 struct Textured {
-    // Not explicit: every value is one.
+    // Implicit: every plain value is one.
     Textured(const Value& everywhere) : factor(everywhere) {}
     Textured(const Value& times, const Texture& image) : factor(times), texture(image) {}
 

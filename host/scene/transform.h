@@ -21,14 +21,14 @@ class Transform {
     glm::dvec3 vector(glm::dvec3 v) const { return glm::dmat3(matrix_) * v; }
     // The unit normal in world space for a normal of any length; zero stays zero.
     vec3 normal(vec3 n) const;
-    // What point() multiplies by, and vector().
+    // The matrices of point() and of vector().
     const glm::dmat4& matrix() const { return matrix_; }
     glm::dmat3 linear() const { return glm::dmat3(matrix_); }
     // True if the transform turns clockwise into counter-clockwise.
     bool mirrors() const { return mirrors_; }
 
     // The factor of a transform that only moves, turns, mirrors and scales evenly, so that spheres stay
-    // spheres within 2e-5 of their radius; none for any other.
+    // spheres within 2e-5 of their radius; nothing for any other.
     std::optional<double> uniform_scale() const;
     // The same, or of an uneven transform the edge of a cube with the volume that it gives a cube of edge 1.
     double mean_scale() const;

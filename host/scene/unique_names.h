@@ -1,4 +1,4 @@
-// Names that no two things share.
+// Unique names.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace candela {
 
-// The names in use. Nothing searches them: a hundred thousand things of a file may have one name.
+// The names in use. Choosing one takes constant time: a hundred thousand things of a file may have the same
+// name.
 class UniqueNames {
   public:
     void note(const std::string& name) { taken_.insert(name); }
 
-    // `name`, or, if that is in use, the first that is not of `name (2)`, `name (3)` ...; in use from now on.
+    // `name`, or, if that is in use, the first free name of `name (2)`, `name (3)` ...; it is then in use.
     std::string choose(const std::string& name) {
         if (taken_.insert(name).second) return name;
         uint64_t& next = next_.try_emplace(name, 2).first->second;
@@ -27,7 +28,7 @@ class UniqueNames {
 
   private:
     std::unordered_set<std::string> taken_;
-    std::unordered_map<std::string, uint64_t> next_;  // For each name that was asked for again.
+    std::unordered_map<std::string, uint64_t> next_;  // For each name that was requested more than once.
 };
 
 }  // namespace candela

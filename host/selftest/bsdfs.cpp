@@ -19,7 +19,7 @@ namespace {
 constexpr size_t BSDF_CELLS = 16, BSDF_FINE = 20;
 constexpr size_t BSDF_ALONG = BSDF_CELLS * BSDF_FINE;
 static_assert(BSDF_ALONG * BSDF_ALONG == BSDF_CASE_SAMPLES);
-constexpr size_t BSDF_REST = BSDF_CELLS * BSDF_CELLS;  // What is in no cell.
+constexpr size_t BSDF_REST = BSDF_CELLS * BSDF_CELLS;  // Samples in no cell.
 
 ChartPoint point_of(const BsdfCase& c, size_t i) {
     const size_t row = i / BSDF_ALONG, column = i % BSDF_ALONG;
@@ -116,7 +116,7 @@ std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& 
     return probe<BsdfResult>(device, kernels::bsdf, items);
 }
 
-// Integrates the density over each cell by the midpoint rule. One more cell takes what is left of 1: cells
+// Integrates the density over each cell by the midpoint rule. One more cell has the remainder to 1: cells
 // that the horizon crosses, where the density jumps to 0; directions outside the chart; and samples that
 // failed.
 void test_density(const BsdfCase& c, const std::vector<BsdfResult>& results, Evidence& evidence) {
@@ -139,7 +139,7 @@ void test_density(const BsdfCase& c, const std::vector<BsdfResult>& results, Evi
             counts[BSDF_REST] += std::exchange(counts[cell], 0.0);
         }
     }
-    // If nothing is left of 1, the rest is the error of the integral: a few times 10^-4.
+    // If there is no remainder, the rest is the error of the integral: a few times 10^-4.
     const double rest = expected[BSDF_REST];
     evidence.expect(rest >= -1e-3, [&] { return concat(c.name, ": the density adds up to ", 1.0 - rest); });
     if (!(rest >= 1e-3)) {
@@ -170,7 +170,7 @@ void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evid
                     double(s.f_of_sample[i]) * std::abs(double(s.wi.z)) / double(s.pdf_of_sample);
                 holds = holds && std::abs(double(s.weight[i]) - weight) <= weight * 0x1p-15 + 0x1p-19;
             }
-            // Refraction divides radiance by eta^2, energy by nothing.
+            // Refraction divides radiance by eta^2, but does not change energy.
             const glm::dvec3 share = glm::dvec3(s.weight) * (double(s.eta) * double(s.eta));
             albedo += share;
             squares += share * share;
@@ -182,8 +182,8 @@ void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evid
                           ", eta ", s.eta);
         });
     }
-    // No more light leaves than arrives. Of the principled material, lobes and what facets lose add up to 1:
-    // some dozens of roundings, which are as coarse as Vulkan allows.
+    // No more light leaves than arrives. In the principled material, lobes and the facets' losses add up to
+    // 1, with some dozens of roundings, which are as coarse as Vulkan allows.
     const double rounding = model == MATERIAL_PRINCIPLED ? 0x1p-16 : 0x1p-20;
     const auto count = double(results.size());
     for (const int i : {0, 1, 2}) {

@@ -27,13 +27,13 @@ struct ProbedMaterial {
     PrincipledRecord principled{};
 
     ProbedMaterial() = default;
-    ProbedMaterial(const MaterialRecord& r) : record(r) {}  // Not explicit: most materials have but this one.
+    ProbedMaterial(const MaterialRecord& r) : record(r) {}  // Implicit: most materials have only this record.
     ProbedMaterial(const MaterialRecord& r, const PrincipledRecord& p) : record(r), principled(p) {}
 };
 // With a medium behind the surface if the material has one.
 ProbedMaterial principled(const PrincipledMaterial& m);
 
-// An item that asks about that material; 1: wo is on the back side of the surface.
+// An item for that material. `back` is 1 if wo is on the back side of the surface.
 BsdfItem bsdf_item(const ProbedMaterial& material, vec3 wo, vec3 wi = vec3(0, 0, 1), uint32_t back = 0);
 
 // Head-on, oblique and grazing.
@@ -48,19 +48,19 @@ struct BsdfCase {
     uint32_t back = 0;  // 1: wo is on the back side of the surface.
 };
 std::vector<BsdfCase> bsdf_cases();
-// Those of the principled material: each of its lobes, and mixtures.
+// The cases of the principled material: each of its lobes, and mixtures.
 std::vector<BsdfCase> principled_cases();
 
 // BSDF_CASE_SAMPLES random samples of a case. The items' wi are the points of its chart, row by row. A
-// principled material has the same facets in all of them, and one density, or, if `any_facets`, others in
-// each, and its albedo on average.
+// principled material has the same random facets in all samples, and so one density; if `any_facets`,
+// different facets in each sample, and so its albedo on average.
 std::vector<BsdfResult> run_bsdf_case(const vk::Device& device, const BsdfCase& c, uint32_t seed,
                                       bool any_facets = false);
 inline constexpr size_t BSDF_CASE_SAMPLES = size_t{320} * 320;
 
 // Pearson's test of the samples against their density. `results` as run_bsdf_case() returns them.
 void test_density(const BsdfCase& c, const std::vector<BsdfResult>& results, Evidence& evidence);
-// Directions must be unit vectors, densities and weights those of the BSDF, and no energy may be gained.
+// Directions must be unit vectors, densities and weights must match the BSDF, and no energy may be gained.
 void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evidence& evidence);
 
 // Takes `count` samples of a model (MATERIAL_*) with random and extreme parameters, directions and random

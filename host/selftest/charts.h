@@ -1,5 +1,5 @@
-// Charts of directions: coordinates (a, b) in [0, 1]^2 in which a lobe, however narrow, is spread out, so
-// that cells of equal size resolve it. All in double precision, from the formulas of the models.
+// Charts of directions: coordinates (a, b) in [0, 1]^2 that spread out a lobe, however narrow, so that cells
+// of equal size resolve it. All in double precision, from the formulas of the models.
 #pragma once
 
 #include <cmath>
@@ -50,7 +50,7 @@ class LobeChart {
         return {r * std::cos(phi) * x_ + r * std::sin(phi) * y_ + (1.0 - h) * z_,
                 SHARE * 2.0 * M_PI / (n_ + 1.0) * std::exp(-n_ * log_cosine)};
     }
-    // None outside the cone.
+    // Nothing outside the cone.
     std::optional<glm::dvec2> find(glm::dvec3 w) const {
         const glm::dvec3 chord = w - z_;
         const double h = std::min(0.5 * dot(chord, chord), 1.0);
@@ -97,7 +97,7 @@ class FacetChart {
     double alpha_;
 };
 
-// The same of what facets refract; eta is the index on the other side over that on wo's.
+// The same for refraction by facets; eta is the index on the other side over the index on wo's side.
 class RefractionChart {
   public:
     RefractionChart(glm::dvec3 wo, double alpha, double eta) : wo_(wo), alpha_(alpha), eta_(eta) {}
@@ -105,7 +105,7 @@ class RefractionChart {
         const auto [h, facets] = FacetChart::facet_at(s, b, alpha_);
         const double cos_o = dot(wo_, h);
         const double cos2 = 1.0 - (1.0 - cos_o * cos_o) / (eta_ * eta_);
-        // Seen from behind, or total reflection: a direction that no light takes.
+        // Seen from behind, or total reflection: no light goes in this direction.
         const ChartPoint none{{1.0, 0.0, 0.0}, 0.0};
         if (cos_o <= 0.0 || cos2 <= 0.0) return none;
         const double cos_i = std::sqrt(cos2), sum = cos_o - eta_ * cos_i;
@@ -113,7 +113,7 @@ class RefractionChart {
         const glm::dvec3 w = (cos_o / eta_ - cos_i) * h - wo_ / eta_;
         return w.z < 0.0 ? ChartPoint{w, facets * sum * sum / (eta_ * eta_ * cos_i)} : none;
     }
-    // None for directions to which no facet refracts.
+    // Nothing for directions into which no facet refracts.
     std::optional<glm::dvec2> find(glm::dvec3 w) const {
         const glm::dvec3 sum = wo_ + eta_ * w;
         const glm::dvec3 h = normalize(sum.z < 0.0 ? -sum : sum);

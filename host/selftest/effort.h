@@ -1,4 +1,4 @@
-// How much evidence is gathered: the two sizes of all tests that only need samples.
+// The amount of evidence: two sizes for all tests that only need samples.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ enum class Effort { quick, full };
 inline constexpr std::array<std::pair<std::string_view, Effort>, 2> EFFORT_NAMES{
     {{"quick", Effort::quick}, {"full", Effort::full}}};
 
-// How many of `full` samples or rays to take. A sixteenth finds errors that are four times as large, and
-// takes minutes on a driver that needs half an hour for all, such as SwiftShader.
+// The number of samples or rays, out of `full`. A sixteenth finds errors that are four times as large, and
+// needs minutes on a driver that needs half an hour for all, such as SwiftShader.
 inline uint32_t sized(Effort effort, uint32_t full) {
     constexpr uint32_t QUICK_SHARE = 16;
     return effort == Effort::quick ? full / QUICK_SHARE : full;

@@ -1,4 +1,4 @@
-// What a check finds: comparisons, all of which must hold, and p-values of statistical tests.
+// The findings of a check: comparisons, which must all hold, and p-values of statistical tests.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@ namespace candela {
 
 class Evidence {
   public:
-    // Counts a comparison. Keeps the text that describe() returns for the first that does not hold.
+    // Counts a comparison. Keeps the text that describe() returns for the first comparison that does not
+    // hold.
     template <class Describe>
     void expect(bool holds, const Describe& describe) {
         ++compared_;
@@ -16,7 +17,7 @@ class Evidence {
         ++wrong_;
         if (wrong_ == 1) first_wrong_ = describe();
     }
-    // Adds the least p-value of `tests` statistical tests; `of` says what they test. NaN counts as 0.
+    // Adds the least p-value of `tests` statistical tests; `of` names their subject. NaN is treated as 0.
     void add_p_value(const std::string& of, double p, uint64_t tests = 1);
     // Adds everything that another check found.
     void add(const Evidence& other);
@@ -29,7 +30,7 @@ class Evidence {
     // The probability that chance alone gives a least p-value this small, for independent tests (Sidak's
     // correction); 1 if there was no test.
     double p_value() const;
-    // What the test with the least p-value tests.
+    // The subject of the test with the least p-value.
     const std::string& least_likely() const { return least_likely_; }
 
     // True if all comparisons hold and the p-value is above `level`.

@@ -40,7 +40,7 @@ std::vector<Exponentials> run_exponentials(const vk::Device& device, const std::
 // a sum, 1. Below -0.2929 the mantissa comes from the rounded 1 + x, which is off by 1/2, and the logarithm
 // by at most 1/2 / (0.7 * 0.35) = 2, close to -0.2929. The additions of the series add less than 1: they are
 // multiplied by less than 0.36 where they add to an exponent. Vulkan allows sums and products to be rounded
-// to either neighbour, so that everything but the division may count twice.
+// to either neighbour, so everything except the division may be doubled.
 Evidence test_logarithm(const vk::Device& device) {
     std::vector<float> x = of_every_size(-1.0 + 0x1p-24);
     add_neighbours(x, -0.2929f);
@@ -64,12 +64,12 @@ Evidence test_logarithm(const vk::Device& device) {
 // exp(x) = 2^k (1 + p). Errors, in units of 2^-24 of the result, in the worst case, |x - k log(2)| = 0.35:
 // this difference is off by 1/4; p, in [-0.3, 0.42], by 2.4 of itself (a product, a sum, the rest of the
 // series), which is 0.7 of 1 + p; the sum adds 0.7; the last product is exact. Together that is less than 2.
-// expm1 cancels most at k = -1, p = 0.41: 0.3 out of 0.5; less than 3. Both count twice, since a device may
+// expm1 cancels most at k = -1, p = 0.41: 0.3 out of 0.5; less than 3. Both are doubled, since a device may
 // round to either neighbour.
 Evidence test_exponentials(const vk::Device& device) {
     constexpr float LEAST = -87.0f;
     std::vector<float> x = of_every_size(double(LEAST));
-    for (int k = 0; k < 126; ++k)  // Where one power of two gives way to the next.
+    for (int k = 0; k < 126; ++k)  // At the boundaries between powers of two.
         add_neighbours(x, float(-std::log(2.0) * (k + 0.5)));
     const std::vector<Exponentials> values = run_exponentials(device, x);
     Evidence evidence;

@@ -14,7 +14,7 @@ struct Exponentials {
 };
 std::vector<Exponentials> run_exponentials(const vk::Device& device, const std::vector<float>& x);
 
-// Results must be right to the last few bits for numbers of every size, and around the seams of the
+// Results must be right to the last few bits for numbers of every size, and around the boundaries of the
 // approximations.
 Evidence test_logarithm(const vk::Device& device);
 Evidence test_exponentials(const vk::Device& device);

@@ -57,7 +57,7 @@ std::vector<LightItem> random_items(size_t count) {
     return items;
 }
 
-// The coordinates of a point in which the samples are uniform, from those along e1 and e2.
+// The coordinates in which samples are uniform, from a point's coordinates along e1 and e2.
 glm::dvec2 uniform_coordinates(const ExpectedLight& l, glm::dvec3 p) {
     const glm::dvec3 d(p - glm::dvec3(l.p)), e1(l.e1), e2(l.e2);
     const double det = e1.x * e2.y - e1.y * e2.x;

@@ -15,8 +15,7 @@ class Histogram {
     // `along`: cells along either axis.
     explicit Histogram(size_t along) : counts(along * along), along_(along) {}
 
-    // The cell of (a, b). Points outside, by a rounding or more, belong to cells at the border; NaN to the
-    // first cell.
+    // The cell of (a, b). Points outside belong to cells at the border; NaN belongs to the first cell.
     size_t cell(double a, double b) const { return place(a) * along_ + place(b); }
     void add(glm::dvec2 at) { ++counts[cell(at.x, at.y)]; }
 

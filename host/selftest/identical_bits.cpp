@@ -1,5 +1,5 @@
-// The contract on bits: N samples give the same sums however the work was cut into submissions, sessions and
-// crops, and however the scene is read.
+// The guarantee of identical bits: N samples give the same sums however the work is cut into submissions,
+// sessions and crops, and however the scene is read.
 #include <cstring>
 #include <functional>
 #include <string>

@@ -19,7 +19,7 @@
 namespace candela {
 namespace {
 
-constexpr uint32_t SIZE = 64;  // Of all pictures, in pixels along either side.
+constexpr uint32_t SIZE = 64;  // Pixels along either side of all pictures.
 
 // Renders with the variance of each pixel. All samples must be finite, and no path may be cut off.
 Image render(const vk::Device& device, const Scene& scene, Estimator estimator, uint32_t seed, uint32_t spp,
@@ -65,7 +65,7 @@ void test_same_expectation(const std::string& name, const Image& a, const Image&
     evidence.add_p_value(concat(name, ": mean of the image, z ", z.mean.z), normal_p_value(z.mean.z), 3);
 }
 
-// Lights and lobes are large enough for each estimator alone to have a small variance.
+// Lights and lobes are large enough that each estimator alone has a small variance.
 Scene room_of_lights() {
     Scene scene = open_room();
     scene.integrator.max_depth = 8;

@@ -18,7 +18,7 @@ Evidence test_estimators(const vk::Device& device, Effort effort);
 // The same samples give the same bits however the work is cut and however the scene is read.
 Evidence test_identical_bits(const vk::Device& device);
 
-// The Cornell box agrees with that of an independent renderer.
+// The Cornell box agrees with an independent renderer's.
 Evidence test_cornell_box(const vk::Device& device, Effort effort);
 
 }  // namespace candela

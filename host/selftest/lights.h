@@ -28,13 +28,14 @@ Evidence test_flat_light_points(const vk::Device& device, Effort effort);
 Evidence test_flat_light_values(const vk::Device& device, SceneAccess access);
 
 // Spheres are sampled uniformly over the solid angle that they subtend, from inside over their area; disks
-// over their area. Densities and radiance are those of the points, and nothing occludes them.
+// over their area. Densities and radiance match the points, and nothing occludes them.
 Evidence test_spheres_from_outside(const vk::Device& device, Effort effort);
 Evidence test_spheres_from_inside(const vk::Device& device, Effort effort);
 Evidence test_disks(const vk::Device& device, Effort effort);
 
 // Point, spot and directional lights, beside an emitter and alone, are chosen by their power; their samples
-// say what arrives, and that nothing else finds it; a square in between hides them.
+// have the light that arrives, and a pdf that says that nothing else finds them; a square in between hides
+// them.
 Evidence test_punctual_lights(const vk::Device& device, Effort effort);
 
 }  // namespace candela

@@ -9,7 +9,7 @@
 namespace candela {
 namespace {
 
-// What has a name, and what a chart must resolve.
+// The name of a case, and the lobe that its chart must resolve.
 enum class Lobe { wide, reflection, refraction };
 struct NamedMaterial {
     const char* name;

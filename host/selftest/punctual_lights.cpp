@@ -1,5 +1,5 @@
-// Samples of point, spot and directional lights: chosen by power, their values and what hides them as
-// computed in double precision.
+// Samples of point, spot and directional lights: they are chosen by power, and values and occlusion are as in
+// double precision.
 #include <algorithm>
 #include <cmath>
 
@@ -45,7 +45,7 @@ std::vector<LightItem> random_items(size_t count, uint32_t seed) {
     return items;
 }
 
-// The factor of a spot's intensity, in the words of glTF's KHR_lights_punctual.
+// The factor of a spot's intensity, as in the text of glTF's KHR_lights_punctual.
 double falloff(double cosine) {
     const double scale = 1.0 / (std::cos(INNER) - std::cos(OUTER));
     const double offset = -std::cos(OUTER) * scale;
@@ -53,12 +53,12 @@ double falloff(double cosine) {
     return attenuation * attenuation;
 }
 
-// What arrives from a light, without what is in between.
+// The light that arrives without occlusion.
 struct Arriving {
     dvec3 wi;
     dvec3 Li;
     double distance;     // Infinite for the sun.
-    double error = 0.0;  // Of Li, relative to the greatest that the light could send.
+    double error = 0.0;  // Error of Li, relative to the greatest that the light could send.
 };
 
 Arriving arriving(const PointLight& light, dvec3 from) {
@@ -80,7 +80,7 @@ Arriving arriving(const DirectionalLight& light, dvec3) {
     return {-normalize(light.direction), dvec3(light.irradiance), INFINITY};
 }
 
-// Whether the square is in between; none if its edge is too close to say.
+// Whether the square is in between; nothing if its edge is too close to decide.
 std::optional<bool> is_hidden(const Arriving& light, dvec3 from) {
     const double t = -from.z / light.wi.z;
     if (!(t > 0.0 && t < light.distance)) return false;
@@ -107,8 +107,8 @@ bool is_right(const LightItem& item, const LightSample& s, const Arriving& light
     return !hidden || s.occluded == (*hidden ? 1u : 0u);
 }
 
-// Which of the lights a sample is of, by its direction; they are never closer than that for all but a few
-// points, for which it does not matter.
+// The light of a sample, by its direction. Lights are further apart than that, except for a few points, for
+// which it does not matter.
 size_t light_of(const LightSample& s, const std::array<Arriving, 3>& lights) {
     size_t best = 0;
     for (size_t i = 1; i < lights.size(); ++i) {
@@ -127,9 +127,9 @@ double lamp_luminance(vec3 rgb) {
     return 0.2126 * double(rgb.x) + 0.7152 * double(rgb.y) + 0.0722 * double(rgb.z);
 }
 
-// Of the point, the spot, the sun, and the square, over pi. The mean of a spot's falloff over the directions
-// of its soft edge is a third; the sun shines onto a disk as wide as the sphere around the square, whose
-// squared radius is 2.
+// Powers of the point, the spot, the sun and the square, over pi. The mean of a spot's falloff over the
+// directions of its soft edge is a third; the sun shines onto a disk as wide as the sphere around the square,
+// whose squared radius is 2.
 std::array<double, 4> powers() {
     const double inner = 1.0 - std::cos(INNER), outer = 1.0 - std::cos(OUTER);
     return {4.0 * lamp_luminance(POINT.intensity),
@@ -137,7 +137,8 @@ std::array<double, 4> powers() {
             2.0 * lamp_luminance(SUN.irradiance), 2.0 * 4.0 * lamp_luminance(EMISSION)};
 }
 
-// Tests samples of the point, the spot and the sun, whose probabilities these are; counts what they are of.
+// Tests samples of the point, spot and directional light; `pmf` has their probabilities. Returns how often
+// each was chosen.
 std::array<double, 4> test_samples(const vk::Device& device, const Scene& scene,
                                    const std::array<double, 3>& pmf, size_t count, SceneAccess access,
                                    Evidence& evidence) {

@@ -1,4 +1,4 @@
-// Records cross the bus unharmed: what the host packs, a kernel reads back field by field, bit for bit.
+// A kernel reads the records that the host packs, field by field, bit for bit.
 #include "selftest/records.h"
 
 #include <array>
@@ -21,8 +21,8 @@
 namespace candela {
 namespace {
 
-// The fields of the records in the order in which records.comp.glsl writes them. Each field gets bits of its
-// own.
+// The fields of the records in the order in which records.comp.glsl writes them. Each field gets different
+// bits.
 class Fields {
   public:
     uint u() { return keep(0xA0000001u + uint(words.size()) * 0x00010203u); }
@@ -39,7 +39,7 @@ class Fields {
         const uvec3 xyz = u3();
         return {xyz.x, xyz.y, xyz.z, u()};
     }
-    // Of 24 bits.
+    // The next field, of 24 bits.
     uint u24() { return keep(0x00A00001u + uint(words.size()) * 0x00000203u); }
     uvec3 u24_3() {
         const uint x = u24();
@@ -80,7 +80,7 @@ struct Records {
     LightTextures light_textures;
     TextureRecord texture;
     uvec4 texels;
-    std::array<uvec4, 7> attributes;  // Of all kinds: attribute_words(ATTRIBUTES_ALL).
+    std::array<uvec4, 7> attributes;  // Words of all kinds: attribute_words(ATTRIBUTES_ALL).
     PrincipledRecord principled;
     PrincipledImage principled_image;
 };
@@ -89,7 +89,7 @@ struct Item {
     uvec4 unused{0};
 };
 
-// What the kernel writes.
+// The kernel's result.
 struct Result {
     std::array<uint, 232> words;
 };

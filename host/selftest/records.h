@@ -1,4 +1,4 @@
-// Tests records there and back: the device unpacks what the host packs.
+// Tests that the device unpacks the records that the host packs.
 #pragma once
 
 #include "render/renderer.h"

@@ -6,7 +6,7 @@
 namespace candela::reference {
 
 // Jarzynski and Olano 2020, listings of pcg3d and pcg4d: two rounds of products of the other components
-// around a xor-shift. Component i gains next(i) * after_next(i), in order.
+// around a xor-shift. next(i) * after_next(i) is added to component i, in order.
 uvec3 pcg3d(uvec3 v) {
     const auto round = [&] {
         for (int i = 0; i < 3; ++i)
@@ -108,8 +108,8 @@ uvec3 stratified_triple(uint32_t pixel, uint32_t n, uint32_t seed, uint32_t pair
     const uvec4 orders = pcg4d(uvec4(pixel, n / 64, pair, 0xFFFFFFFFu - seed));
     const uint32_t cell = permute_64(n % 64, orders.x), interval = permute_64(n % 64, orders.y);
     const uvec3 jitter = independent_triple(pixel, n, seed, pair);
-    constexpr uint32_t CELL = 1u << 29;      // An eighth of 2^32,
-    constexpr uint32_t INTERVAL = 1u << 26;  // and a 64th.
+    constexpr uint32_t CELL = 1u << 29;      // An eighth of 2^32.
+    constexpr uint32_t INTERVAL = 1u << 26;  // A 64th of 2^32.
     return {cell % 8 * CELL + jitter.x / 8, cell / 8 * CELL + jitter.y / 8,
             interval * INTERVAL + jitter.z / 64};
 }

@@ -49,11 +49,11 @@ const std::vector<Place> OUTSIDE{
 };
 
 // Samples are uniform in 1 - cos of the angle to the axis and in the angle around it. The density has the
-// error of 1 - cos(max) = sin^2 / (1 + sqrt(1 - sin^2)): sin^2 is off by 16 * 2^-24 of itself (the centre as
-// seen from the point counts twice), the root inherits this error over twice the root; the root itself, the
-// inverse of an inverse root to Vulkan, is off by 9, and two divisions by 5 each: 16 more and some roundings.
-// wi has the errors of the axis, an inverse root of 4 and some roundings, and of a direction around it, a
-// root of 9 and sines of 4: 2^-19.
+// error of 1 - cos(max) = sin^2 / (1 + sqrt(1 - sin^2)): sin^2 is off by 16 * 2^-24 of itself (the vector
+// from the point to the centre enters twice), the root inherits this error over twice the root; the root
+// itself, the inverse of an inverse root to Vulkan, is off by 9, and two divisions by 5 each: 16 more and
+// some roundings. wi has the errors of the axis, an inverse root of 4 and some roundings, and of a direction
+// around it, a root of 9 and sines of 4: 2^-19.
 void test_sphere_from_outside(const vk::Device& device, const Place& place, uint32_t samples,
                               Evidence& evidence) {
     const Sphere& sphere = place.sphere;
@@ -83,7 +83,7 @@ void test_sphere_from_outside(const vk::Device& device, const Place& place, uint
     }
     const std::string name = concat("sphere of radius ", sphere.radius, ' ', length(to_center), " m away");
     evidence.add_p_value(name, points.uniformity());
-    // Rays past the limb: the distance of the centre has 4 roundings, which count in radii.
+    // Rays past the limb: the distance of the centre has 4 roundings, relative to the radius.
     const double limb = std::min(1.0, 2.0 * 8 * 0x1p-24 / sine) * samples;
     evidence.expect(double(met) >= samples - 10.0 - 2.0 * limb && double(outside) <= 10.0 + 2.0 * limb, [&] {
         return concat(name, ": of ", samples, " samples ", met, " meet it, ", outside, " are beside it");
@@ -114,7 +114,7 @@ Evidence test_spheres_from_inside(const vk::Device& device, Effort effort) {
             points.add({(n.z + 1.0) / 2.0, turn_of(n.y, n.x)});
             const double distance = length(to_light), cosine = dot(to_light, n) / distance;
             const double pdf = distance * distance / (16.0 * M_PI * cosine);
-            // The error of taking the shadow ray's end, about 10^-4 off the sphere, for the point.
+            // The error of using the shadow ray's end, about 10^-4 off the sphere, as the point.
             const double off = 1e-4 * (1.0 / distance + 1.0 / cosine);
             const bool right = length(dvec3(s.wi) - to_light / distance) <= 1e-4 / distance &&
                                std::abs(double(s.pdf) - pdf) <= pdf * 10.0 * off && s.Li == RADIANCE &&
@@ -148,7 +148,7 @@ Evidence test_disks(const vk::Device& device, Effort effort) {
                          length(dvec3(s.wi) - to_light / distance) <= 0x1p-20 &&
                          std::abs(double(s.pdf) - pdf) <= pdf * 0x1p-22 * relative &&
                          s.Li == (from.z > 3.0f ? RADIANCE : vec3(0.0f)) && s.occluded == 0;
-            if (s.light_met != NO_LIGHT)  // Otherwise it misses the rim by a rounding.
+            if (s.light_met != NO_LIGHT)  // Otherwise it just misses the rim.
                 right = right && std::abs(double(s.pdf_met) - double(s.pdf)) <= pdf * 0x1p-20 * relative;
             evidence.expect(right, [&] { return describe("disk", from, s); });
         }

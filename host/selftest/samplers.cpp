@@ -14,7 +14,7 @@
 namespace candela {
 namespace {
 
-// What the probe `hash` writes.
+// The result of the probe `hash`.
 struct Hashes {
     uvec3 pcg3d;
     uvec4 pcg4d;

@@ -1,4 +1,4 @@
-// See selftest.h: the list of checks, and how each is judged.
+// See selftest.h: the list of checks, and their verdicts.
 #include "selftest/selftest.h"
 
 #include <chrono>
@@ -41,7 +41,7 @@ Evidence test_bsdfs(const vk::Device& device) {
 }
 
 Evidence test_layers(const vk::Device& device) {
-    constexpr size_t EVERY = 5;  // The tests in tests/gpu take all.
+    constexpr size_t EVERY = 5;  // The tests in tests/gpu use all.
     Evidence evidence;
     uint32_t seed = 1700;
     const std::vector<BsdfCase> cases = principled_cases();
@@ -71,7 +71,7 @@ Evidence test_some_textures(const vk::Device& device, SceneAccess access) {
     return test_textures(device, access, 100000);
 }
 
-// A test that is the same for every effort: it has no random part, or takes hardly any time.
+// A test that is the same for every effort: it has no random part, or needs hardly any time.
 template <Evidence (*test)(const vk::Device&)>
 Evidence always(const vk::Device& device, Effort) {
     return test(device);

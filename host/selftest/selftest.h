@@ -19,7 +19,7 @@ inline constexpr double SELFTEST_ALPHA = 1e-3;
 
 struct Check {
     std::string name;
-    std::string unit;               // What Evidence::compared() counts, a plural: "rays", "images".
+    std::string unit;               // The plural of what Evidence::compared() counts: "rays", "images".
     std::function<Evidence()> run;  // May throw Error.
 };
 
@@ -32,7 +32,7 @@ double check_level(size_t checks);
 struct CheckResult {
     std::string name, unit;
     Evidence evidence;
-    std::optional<Error> error;  // What ended the check early.
+    std::optional<Error> error;  // The error that ended the check early.
     bool passed = false;
     double seconds = 0.0;  // Wall time.
 };

@@ -31,8 +31,8 @@ double luminance_of(vec3 rgb) {
     return 0.2126 * double(rgb.x) + 0.7152 * double(rgb.y) + 0.0722 * double(rgb.z);
 }
 
-// Where a direction is in the map, in texels from its top left, as scene.h describes it: the centre is
-// towards -Z, u grows to +X and v downwards from +Y; the map was turned about +Y, which takes -Z towards -X.
+// The place of a direction in the map, in texels from its top left, as scene.h describes it: the centre is
+// towards -Z, u grows to +X and v downwards from +Y; the map was turned about +Y, which turns -Z towards -X.
 glm::dvec2 place_of(const Environment& sky, glm::dvec3 w) {
     const double longitude = std::atan2(w.x, -w.z) + double(sky.rotation);  // From -Z towards +X.
     const double colatitude = std::atan2(std::hypot(w.x, w.z), w.y);
@@ -40,7 +40,7 @@ glm::dvec2 place_of(const Environment& sky, glm::dvec3 w) {
     return {(u - std::floor(u)) * sky.size.x, colatitude / M_PI * sky.size.y};
 }
 
-// The texel that holds a place.
+// The texel at a place.
 size_t texel_of(const Environment& sky, glm::dvec2 place) {
     const auto index = [](double x, uint32_t size) {
         return x > 0.0 ? std::min(size_t(std::min(x, double(size))), size_t{size - 1}) : 0;
@@ -76,7 +76,7 @@ std::vector<vec3> directions_all_around() {
     return directions;
 }
 
-// What is expected of samples of a sky, and where they were found.
+// The expected distribution of samples of a sky, and their counts.
 struct SkyCounts {
     explicit SkyCounts(const Environment& sky) : texels(sky.radiance.size()), within(8) {
         for (size_t i = 0; i < sky.radiance.size(); ++i) {
@@ -94,10 +94,10 @@ struct SkyCounts {
         within.add({place.x - std::floor(place.x), (top - std::cos(step * place.y)) / (top - bottom)});
     }
 
-    std::vector<double> light;  // That each texel sends out.
+    std::vector<double> light;  // Light of each texel.
     double irradiance = 0.0;    // Its sum.
     std::vector<double> texels;
-    Histogram within;  // Of all texels: columns, and cosines of the colatitude.
+    Histogram within;  // Over all texels: columns, and cosines of the colatitude.
 };
 
 void test_samples_of(const vk::Device& device, const Environment& sky, uint32_t samples, Evidence& evidence) {

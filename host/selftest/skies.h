@@ -1,4 +1,4 @@
-// Tests the sky on the device: where its texels are, and how light samples find them.
+// Tests the sky on the device: the positions of its texels, and light samples of them.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace candela {
 // A scene under that sky, with one shape far below, which hides hardly any of the sky.
 Scene scene_under(const Environment& environment);
 
-// What the device finds in a direction.
+// The device's result for a direction.
 struct SkyTexel {
     vec3 radiance;
     float pdf;

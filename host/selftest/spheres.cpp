@@ -78,7 +78,7 @@ std::string name_of(const Sphere& sphere) {
                   sphere.center.z);
 }
 
-// More than this share of the rays must have hit the shape; otherwise the test would say nothing.
+// More than this fraction of the rays must have hit the shape; otherwise the test would prove nothing.
 void expect_most_meet(const std::string& name, size_t met, double share, size_t rays, Evidence& evidence) {
     evidence.expect(double(met) > share * double(rays),
                     [&] { return concat(name, ": only ", met, " of ", rays, " rays meet it"); });

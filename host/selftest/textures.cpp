@@ -59,7 +59,7 @@ dvec4 texel_of(const TexelImage& image, bool is_srgb, uint32_t x, uint32_t y) {
     return value;
 }
 
-// Texel i along an axis of n, wherever that is.
+// Texel i along an axis of n, for any i.
 int wrapped(int i, int n, Wrap wrap) {
     if (wrap == Wrap::clamp) return std::clamp(i, 0, n - 1);
     const int period = wrap == Wrap::repeat ? n : 2 * n;
@@ -192,8 +192,8 @@ TextureBounds TextureReference::at(uint32_t i, vec2 uv) const {
                        mix(texel(p.x, p.y + 1), texel(p.x + 1, p.y + 1), w.x), w.y));
         }
     }
-    // A box that reaches over several texels, or over several of the pieces between their centres, has these
-    // texels' values, too.
+    // A box that covers several texels, or several of the pieces between their centres, also has these
+    // texels' values.
     for (double row = nearest ? lo.y : lo.y + 1; row <= hi.y; ++row) {
         for (double column = lo.x; column <= hi.x + (nearest ? 0 : 1); ++column)
             extend(texel(column, row));

@@ -8,11 +8,11 @@
 
 namespace candela {
 
-// A scene whose materials take their colours from images of every kind of texel and of several sizes:
-// material i has texture i, with every combination of wrap, filter, encoding, channel and transform.
+// A scene whose materials have colours from images of every kind of texel and of several sizes: material i
+// has texture i, with every combination of wrap, filter, encoding, channel and transform.
 Scene texture_scene();
 
-// One look-up: a texture and where.
+// One look-up: a texture and a place.
 struct TextureItem {
     uint32_t texture = 0;
     vec2 uv{0};
@@ -30,7 +30,8 @@ std::vector<TextureItem> texture_items(const Scene& scene, size_t count);
 std::vector<TextureValue> run_textures(const vk::Device& device, const GpuScene& gpu, SceneAccess access,
                                        const std::vector<TextureItem>& items);
 
-// What a look-up may give: the value in double precision, with the bounds that rounding of its place allows.
+// The possible results of a look-up: the value in double precision, with bounds for the rounding of its
+// place.
 struct TextureBounds {
     glm::dvec4 lo, hi;
 };
@@ -46,7 +47,7 @@ class TextureReference {
 
   private:
     const Scene& scene_;
-    std::vector<std::vector<glm::dvec4>> texels_[2];  // Of each image, by encoding: linear, sRGB.
+    std::vector<std::vector<glm::dvec4>> texels_[2];  // Texels of each image, by encoding: linear, sRGB.
 };
 
 // `count` look-ups.

@@ -18,7 +18,7 @@ namespace candela {
 namespace {
 
 constexpr size_t WARP_CELLS = 8;         // Along each axis of a histogram.
-constexpr size_t WARP_SAMPLES = 400000;  // In this many cells, they reveal a density that is 2 % off.
+constexpr size_t WARP_SAMPLES = 400000;  // With this many cells, enough to reveal a density that is 2 % off.
 
 // Adds the p-value of the hypothesis that coordinates(result), in [0, 1]^2, are uniform.
 template <class Coordinates>
@@ -50,10 +50,10 @@ glm::dvec2 in_polygon(vec2 p, uint32_t corners) {
     return {sum * sum, (k + (sum > 0.0 ? b2 / sum : 0.0)) / corners};
 }
 
-// The share of visible normals in each cell, up to a factor, by slopes (x, y) = alpha sqrt(a / (1 - a)) (cos,
-// sin): d(slopes) = pi alpha^2 / (1 - a)^2 da db, d(normal) = n.z^3 d(slopes), with 1 - a = (1 - s)^2. The
-// density is D(n) max(0, w.n) over the projected area of all facets that w sees, which a sum over the cells
-// gives as well as Smith's formula does; it is continuous, so that the midpoint rule is good to 10^-3.
+// The fraction of visible normals in each cell, up to a factor, by slopes (x, y) = alpha sqrt(a / (1 - a))
+// (cos, sin): d(slopes) = pi alpha^2 / (1 - a)^2 da db, d(normal) = n.z^3 d(slopes), with 1 - a = (1 - s)^2.
+// The density is D(n) max(0, w.n) over the projected area of all facets that w sees, which a sum over the
+// cells gives as well as Smith's formula does; it is continuous, so that the midpoint rule is good to 10^-3.
 std::vector<double> visible_normals(vec3 w, float alpha) {
     constexpr size_t FINE = 32, ALONG = WARP_CELLS * FINE;
     std::vector<double> expected(WARP_CELLS * WARP_CELLS);
@@ -81,7 +81,7 @@ void test_visible_normals_of(const vk::Device& device, vec3 w, float alpha, Evid
         const double r = std::hypot(n.x, n.y) / (double(alpha) * n.z);
         points.add({1.0 - 1.0 / std::sqrt(1.0 + r * r), turn_of(n.y, n.x)});
     }
-    // A cell none of whose midpoints is visible from w may have a visible sliver.
+    // A cell without a midpoint visible from w may have a visible sliver.
     const std::vector<double> expected = visible_normals(w, alpha);
     for (size_t i = 0; i < expected.size(); ++i) {
         if (expected[i] > 0.0) continue;
@@ -101,8 +101,8 @@ std::vector<WarpResult> run_warps(const vk::Device& device, uint32_t seed, const
     return probe<WarpResult>(device, kernels::warp, items);
 }
 
-// Each in coordinates in which its density is uniform: r^2 and angle on the disk; cos^2 and angle on the
-// hemisphere; (b1 + b2)^2 and b2 / (b1 + b2) on the triangle.
+// Each in coordinates with a uniform density: r^2 and angle on the disk; cos^2 and angle on the hemisphere;
+// (b1 + b2)^2 and b2 / (b1 + b2) on the triangle.
 Evidence test_basic_warps(const vk::Device& device) {
     const std::vector<WarpResult> results = run_warps(device, 5);
     const auto on_disk = [](const WarpResult& r) {

@@ -1,4 +1,4 @@
-// Tests warps on the device: points and directions are distributed as their densities say.
+// Tests warps on the device: points and directions are distributed according to their densities.
 #pragma once
 
 #include <vector>

@@ -15,14 +15,14 @@ namespace {
 // The states of half h are 2h and 2h + 1: even, extra.
 constexpr size_t HALVES = 2;
 
-// All samples of the first pass are even. Fewer would say too little about where the error is.
+// All samples of the first pass are even. Fewer would not locate the error well enough.
 constexpr uint32_t FIRST_EVEN = 16;
 
-// Later, one sample in this many is even. More even samples locate the error better, but leave fewer to send
-// there.
+// Later, one sample in this many is even. More would locate the error better, but leave fewer extra samples
+// to reduce it.
 constexpr uint32_t EVEN_PART = 8;
 
-// A pixel gets at most this many times the average: its error may come from a single bright sample.
+// A pixel gets at most this many times the average, since its error may come from a single bright sample.
 constexpr double LARGEST_SHARE = 16.0;
 
 // Replaces each value of a row-major plane by the mean over its work group. A single pixel has too few
@@ -44,8 +44,8 @@ void average_groups(std::vector<double>& plane, size_t width) {
     }
 }
 
-// The relative variance of a sample in each pixel's group, summed over the channels, divided by the rays that
-// a sample takes.
+// The relative variance of a sample in each pixel's group, summed over the channels, divided by the rays per
+// sample.
 std::vector<double> variance_over_cost(const Accumulation& state) {
     const size_t width = state.rect.width();
     const Image image = make_image(state, {.variance = true}, {});

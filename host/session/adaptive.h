@@ -1,10 +1,10 @@
-// Adaptive sampling: samples go where the error is, and the image stays unbiased.
+// Adaptive sampling: more samples where the error is, without bias.
 //
 // A rendering consists of two halves with different seeds, and its image is the unweighted mean of theirs. A
 // half has two states: in one, every pixel has the same number of samples; in the other, it has as many extra
 // samples as its limit says. The limits of a half follow from the even samples of the other half, whose
 // number depends on no sample. So no sample influences how many others it is averaged with, and both means
-// are unbiased. Otherwise a pixel that missed a light at first would stop early, and stay dark: see Kirk and
+// are unbiased. Otherwise, a pixel that missed a light at first would stop early and stay dark. Ref: Kirk and
 // Arvo, "Unbiased sampling techniques for image synthesis" (1991).
 #pragma once
 
@@ -20,11 +20,12 @@ namespace candela {
 // The four states, with values but without samples. make_image() turns them into the image.
 std::vector<Accumulation> adaptive_states(const RenderSettings& settings);
 
-// The end of the pass after `spp`, both in samples per pixel on average; at most `target`. It does not depend
+// The end of the pass after `spp`, at most `target`, all in samples per pixel on average. It does not depend
 // on time, so that a rendering always ends with the same samples.
 uint32_t next_pass_end(uint32_t spp, uint32_t target);
 
-// The even samples, which all pixels have, of the `half` samples that a pixel of a half has on average.
+// The number of even samples, which all pixels have, among the `half` samples that a pixel of a half has on
+// average.
 uint32_t even_samples(uint32_t half);
 
 // Sets the limits of a half's extra samples, so that a pixel has `half` samples on average, `even` of which

@@ -16,7 +16,7 @@ void check_checkpoint(const CheckpointOptions& options) {
     std::error_code unreadable;  // Ignored: reading the file will report it.
     if (!options.resume && std::filesystem::exists(path, unreadable)) {
         throw Error("--checkpoint: \"" + path +
-                        "\" exists; add --resume to go on from it, or remove it to start anew",
+                        "\" exists; add --resume to continue from it, or remove it to start over",
                     ExitCode::usage);
     }
 }
@@ -28,9 +28,9 @@ std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& i
     if (!std::filesystem::exists(path, unreadable)) return std::nullopt;
     Checkpoint checkpoint = load_checkpoint(path);
     const auto refuse = [&](const std::string& why, const std::string& remedy) {
-        throw Error("--resume: cannot go on from \"" + path + "\": " + why + "; " + remedy);
+        throw Error("--resume: cannot continue from \"" + path + "\": " + why + "; " + remedy);
     };
-    const std::string same = "render what it was made of, or give another --checkpoint";
+    const std::string same = "render the same scene with the same options, or give another --checkpoint";
     const std::string different = difference(checkpoint.header.identity, identity);
     if (!different.empty()) refuse(different, same);
     const bool adaptive = checkpoint.states.size() > 1;
@@ -46,14 +46,14 @@ std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& i
     if ((state.layer_count == LAYER_COUNT_AOVS) != job.settings.aovs) {
         refuse(std::string("it holds ") + (job.settings.aovs ? "no " : "") +
                    "albedo and normals, which the outputs " + (job.settings.aovs ? "need" : "do not need"),
-               "give the outputs and --aov that it was made with");
+               "give the same outputs and --aov as for the checkpoint");
     }
     const uint32_t most = adaptive ? std::max(checkpoint.header.planned, samples_per_pixel(checkpoint.states))
                                    : state.most_samples();
     if (most > job.target) {
         refuse("it holds up to " + std::to_string(most) + " samples per pixel, but " +
                    std::to_string(job.target) + " are asked for",
-               "ask for as many at least");
+               "ask for at least as many");
     }
     return checkpoint;
 }
@@ -66,7 +66,7 @@ void CheckpointWriter::write(const CheckpointHeader& header, std::span<const Acc
     try {
         save_checkpoint(path_, header, states);
     } catch (const Error& error) {
-        warn(std::string(error.what()) + "; the rendering goes on without this checkpoint");
+        warn(std::string(error.what()) + "; rendering continues without this checkpoint");
     }
     interval_.restart();
 }

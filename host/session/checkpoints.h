@@ -18,8 +18,8 @@ namespace candela {
 void check_checkpoint(const CheckpointOptions& options);
 
 // The checkpoint that --resume continues from; nothing if the file does not exist yet. Throws Error if it is
-// damaged, belongs to another rendering than `identity` or the job, is adaptive where the job is not or the
-// other way round, or holds more samples per pixel than the job's target.
+// damaged, does not belong to `identity` and the job, is adaptive although the job is not, or the reverse, or
+// holds more samples per pixel than the job's target.
 std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& identity);
 
 // Writes checkpoints, the first after one interval.
@@ -34,7 +34,7 @@ class CheckpointWriter {
     // comes after another interval.
     void write(const CheckpointHeader& header, std::span<const Accumulation> states,
                const std::function<void(const std::string&)>& warn);
-    // Writes the last one, as finished work. Throws Error if it is not where it should be.
+    // Writes the last checkpoint, as finished work. Throws Error if it could not be written in its place.
     void finish(const CheckpointHeader& header, std::span<const Accumulation> states) const;
 
   private:

@@ -32,7 +32,7 @@ Image load_reference(const std::string& path, const RenderSettings& settings) {
             sum += value;
     }
     if (!std::isfinite(sum)) refuse("holds a value that is not finite; render it again without such samples");
-    if (sum <= 0.0) refuse("is black, and no error is relative to that; give one with light in it");
+    if (sum <= 0.0) refuse("is black, so no error can be relative to it; give one with light in it");
     return reference;
 }
 

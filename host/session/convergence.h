@@ -22,7 +22,7 @@ Image load_reference(const std::string& path, const RenderSettings& settings);
 struct ConvergencePoint {
     uint32_t spp = 0;                // As samples_per_pixel() says.
     double seconds = 0.0;            // Wall time of rendering.
-    std::optional<double> estimate;  // Of the relative error; see relative_error.h.
+    std::optional<double> estimate;  // Estimate of the relative error; see relative_error.h.
     std::optional<double> relmse;    // relative_mse() to the reference, if there is one.
 };
 
@@ -31,8 +31,8 @@ class Convergence {
     // `target`: relative error to reach.
     Convergence(std::optional<double> target, std::optional<Image> reference);
 
-    // The samples per pixel of the next look(), after `spp` and at most `most`, as next_look() says; or
-    // `most` itself if neither target nor reference needs a look.
+    // The samples per pixel of the next look(), after `spp` and at most `most`, from next_look(). If there is
+    // neither a target nor a reference: `most`.
     uint32_t next(uint32_t spp, uint32_t most) const;
     // Measures the image of the states after `seconds` of rendering.
     void look(std::span<const Accumulation> states, double seconds);

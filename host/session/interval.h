@@ -1,4 +1,4 @@
-// Work that recurs while a rendering goes on.
+// Work that recurs during a rendering.
 #pragma once
 
 #include <chrono>

@@ -25,7 +25,7 @@ const Camera& choose_camera(const Scene& scene, const std::optional<std::string>
 // What the scene proposes for a picture by one of its cameras.
 RenderSettings proposed_settings(const Scene& scene, const Camera& camera);
 
-// What a rendering needs besides the scene.
+// What a rendering needs in addition to the scene.
 struct RenderJob {
     Camera camera;
     RenderSettings settings;

@@ -1,4 +1,4 @@
-// What a rendering was and how it went, and what an image says of that.
+// The record of a rendering, and the attributes of images that are made from it.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace candela {
 
-// What a rendering was and how it went.
+// What was rendered, and how it went.
 struct RenderRecord {
     std::string command_line{};
     std::string scene_file{};
@@ -31,34 +31,34 @@ struct RenderRecord {
     ArrayMap array_map{};  // How the scene was read.
     uint32_t primitives = 0;
     uint32_t lights = 0;
-    double load_seconds = 0.0;      // Wall times: reading the scene file ...
-    double bvh_seconds = 0.0;       // ... building the BVH ...
-    double pipeline_seconds = 0.0;  // ... compiling kernels, an empty first dispatch included ...
-    double render_seconds = 0.0;    // ... and rendering, including before it was resumed.
+    double load_seconds = 0.0;      // Wall time to read the scene file.
+    double bvh_seconds = 0.0;       // Wall time to build the BVH.
+    double pipeline_seconds = 0.0;  // Wall time to compile kernels, including a first, empty dispatch.
+    double render_seconds = 0.0;    // Wall time to render, including before it was resumed.
     double cpu_seconds = 0.0;       // CPU time of the process while rendering, since it was resumed.
     bool complete = false;          // All samples are there, or as many as the target error needs.
-    uint32_t spp = 0;               // Samples that every pixel holds at least; on average if adaptive.
-    uint32_t most_spp = 0;          // And the most that one holds.
-    uint64_t samples = 0;           // Samples of all pixels together ...
-    uint64_t resumed_samples = 0;   // ... and those of them that a checkpoint brought.
+    uint32_t spp = 0;               // Samples that every pixel has; on average if adaptive.
+    uint32_t most_spp = 0;          // The largest number that a pixel has.
+    uint64_t samples = 0;           // Samples of all pixels together.
+    uint64_t resumed_samples = 0;   // The part of `samples` that came from a checkpoint.
     std::optional<double> target_error{};
     std::optional<std::string> reference{};       // The name of its file.
     std::vector<ConvergencePoint> convergence{};  // If a target error or a reference asks for it.
     std::optional<double> estimated_error{};      // The last one known.
     RenderCounters counters{};
-    uint32_t device_failures = 0;  // That were survived.
+    uint32_t device_failures = 0;  // Failures of the device that rendering survived.
     uint64_t device_bytes = 0;
     uint64_t image_hash = 0;
     size_t validation_messages = 0;
 };
 
-// What scene and job say of a rendering before it begins.
+// The record before rendering begins, from scene and job.
 RenderRecord make_record(const Scene& scene, const GpuScene& gpu_scene, const RenderJob& job);
 
 // This version of candela on a device.
 Maker make_maker(const vk::DeviceInfo& device);
 
-// The samples that some pixel holds, such as "0..64".
+// The range of samples that some pixel has, such as "0..64".
 std::string samples_text(const RenderRecord& record);
 
 // Adds an image's attributes, from the record: the camera, the samples, their time, maker, identity and

@@ -1,4 +1,4 @@
-// Recovery: how often a device that fails is opened again.
+// Recovery: how often a failed device is reopened.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,17 @@
 
 namespace candela {
 
-// A device that is lost or out of memory is opened again, and rendering continues from the host's copy of the
-// samples. This ends at the MOST_FAILURES-th failure in a row without progress of the copy.
+// A device that is lost or out of memory is reopened, and rendering continues from the host's copy of the
+// samples. Recovery gives up at the MOST_FAILURES-th failure in a row without progress of the copy.
 class Recovery {
   public:
     static constexpr uint32_t MOST_FAILURES = 5;
 
-    // Takes note of a failure, of a device that was `open`, where the copy holds `samples`. Throws the error
-    // if it is of another kind: but while the device is being opened again, any error is a failure, since a
-    // driver that is not ready may report anything. Returns whether to open the device again.
+    // Notes a failure of a device that was `open`, when the copy held `samples`. Throws the error if it is of
+    // another kind; but while the device is being reopened, any error is a failure, since a driver that is
+    // not ready may report anything. Returns whether to reopen the device.
     bool survives(const Error& error, bool open, uint64_t samples);
-    // Waits before the device is opened again, which its driver needs a moment to reset: twice as long each
+    // Waits before the device is reopened, since its driver needs a moment to reset it: twice as long each
     // time.
     void pause() const;
     // The copy begins again without samples.
@@ -32,8 +32,8 @@ class Recovery {
   private:
     std::optional<Error> cause_;
     uint32_t failures_ = 0;
-    uint32_t in_a_row_ = 0;  // Without progress.
-    uint64_t samples_ = 0;   // That the copy held at the last failure.
+    uint32_t in_a_row_ = 0;  // Failures without progress.
+    uint64_t samples_ = 0;   // Those in the copy at the last failure.
 };
 
 }  // namespace candela

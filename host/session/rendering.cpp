@@ -117,7 +117,7 @@ bool Rendering::step(double done) {
 }
 
 // Renders until all samples are there, the error is small enough or step() returns false; returns false only
-// in the last case. Looks at the error at fixed numbers of samples or, if nobody needs that, only at the end.
+// in the last case. Measures the error at fixed numbers of samples, or not at all if nothing needs it.
 bool Rendering::render_and_look() {
     const uint32_t target = job_.target;
     uint32_t held = spp();

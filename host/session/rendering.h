@@ -1,5 +1,5 @@
-// Rendering: a job from its first sample to its last, with what is done at intervals on the way: looks at the
-// error, checkpoints, and images of the samples so far.
+// Rendering: a job from its first sample to its last, with the work at intervals on the way: measuring the
+// error, writing checkpoints and images of the samples so far.
 #pragma once
 
 #include <chrono>
@@ -21,9 +21,9 @@
 
 namespace candela {
 
-// What a rendering says and asks on its way, between submissions to the device.
+// Callbacks of a rendering, between submissions to the device.
 struct RenderCallbacks {
-    // The share of all samples that are there, in [0, 1], and the last estimate of the error.
+    // Gets the fraction of all samples that are done, in [0, 1], and the last estimate of the error.
     std::function<void(double done, std::optional<double> error)> progress;
     // Whether to go on; asked after progress.
     std::function<bool()> keep_going;
@@ -45,7 +45,7 @@ class Rendering {
     };
 
     // Opens the device and prepares everything, as SteadyRenderer does; what `source` points to must outlive
-    // the rendering. `record` is what make_record() says, and what the caller adds for its files.
+    // the rendering. `record` is from make_record(), with what the caller adds for its files.
     Rendering(Source source, RenderJob job, RenderRecord record);
     Rendering(const Rendering&) = delete;
     Rendering& operator=(const Rendering&) = delete;
@@ -57,8 +57,8 @@ class Rendering {
 
     // Changes the samples per pixel that run() renders to.
     void set_target(uint32_t spp) { job_.target = spp; }
-    // Starts over, on the same device, with another job, which asks for no files; if `scene_changed`, with
-    // the source's scene as it is now. Throws Error if that fails, and is then of no more use.
+    // Starts over, on the same device, with another job, which may not ask for files; if `scene_changed`,
+    // with the source's scene as it is now. Throws Error if that fails; the object is then unusable.
     void restart(RenderJob job, RenderRecord record, bool scene_changed);
 
     // The image of the samples so far, from which record() takes its hash.
@@ -67,7 +67,7 @@ class Rendering {
     void finish_checkpoint() const;
 
     const RenderRecord& record() const { return record_; }
-    // The samples per pixel that there are.
+    // The samples per pixel so far.
     uint32_t spp() const { return samples_per_pixel(renderer_.states()); }
     // The device, unless run() has returned an Error.
     const vk::Device& device() const { return renderer_.device(); }
@@ -90,10 +90,10 @@ class Rendering {
     SteadyRenderer renderer_;
     Convergence convergence_;
     std::optional<CheckpointWriter> checkpoints_;
-    std::optional<Interval> images_;  // From one writing of the images to the next.
+    std::optional<Interval> images_;  // Between two writes of the images.
     std::chrono::steady_clock::time_point start_;
-    double seconds_before_;  // Of rendering before this run.
-    uint32_t planned_;       // Of an adaptive rendering: see render_pass().
+    double seconds_before_;  // Rendering time before this run.
+    uint32_t planned_;       // For adaptive rendering: see render_pass().
 };
 
 }  // namespace candela

@@ -59,7 +59,7 @@ class Session::Impl {
                              .warn = [this](const std::string& warning) { warn({warning}); },
                              .device_failed =
                                  [this](const Error& error, uint32_t, double) {
-                                     warn({std::string(error.what()) + "; opening the device again"});
+                                     warn({std::string(error.what()) + "; reopening the device"});
                                  },
                              .write = {}});
         for (const std::vector<std::string> messages = instance_.validation_messages();
@@ -71,7 +71,7 @@ class Session::Impl {
 
     // What was rendered last.
     Rendering& rendered() const {
-        if (!rendering_) throw Error("there is no picture yet; call render() first");
+        if (!rendering_) throw Error("nothing has been rendered yet; call render() first");
         return *rendering_;
     }
 
@@ -80,7 +80,7 @@ class Session::Impl {
     enum class Pending { nothing, picture, scene };
 
     void require_scene() const {
-        if (scene_.cameras.empty()) throw Error("there is no scene yet; call load() first");
+        if (scene_.cameras.empty()) throw Error("no scene has been loaded yet; call load() first");
     }
 
     void warn(const std::vector<std::string>& warnings) const {
@@ -107,7 +107,7 @@ class Session::Impl {
             .camera = camera, .settings = settings, .target = spp, .aovs = {all, all, all, all, all, all}};
     }
 
-    // Makes rendering_ one of the scene and the picture as they are now.
+    // Makes rendering_ one of the current scene and picture.
     void prepare(uint32_t spp) {
         RenderJob job = job_for(picture_, spp);
         if (rendering_ && pending_ == Pending::nothing) {
@@ -119,7 +119,8 @@ class Session::Impl {
             warn(gpu_scene_.warnings);
         }
         RenderRecord record = make_record(scene_, gpu_scene_, job);
-        std::unique_ptr<Rendering> rendering = std::move(rendering_);  // If this fails, it is of no more use.
+        std::unique_ptr<Rendering> rendering = std::move(rendering_);  // If this fails, the rendering is
+                                                                       // unusable.
         if (rendering) {
             rendering->restart(std::move(job), std::move(record), pending_ == Pending::scene);
         } else {
@@ -146,7 +147,7 @@ class Session::Impl {
     Pending pending_ = Pending::scene;
     std::unique_ptr<Rendering> rendering_;
     double done_ = 0.0;
-    size_t validation_messages_ = 0;  // That warn() has told.
+    size_t validation_messages_ = 0;  // Those already given to warn().
 };
 
 Session::Session(SessionOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}

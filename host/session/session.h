@@ -1,9 +1,9 @@
-// Session: a scene that stays. A program loads it, changes it, renders on and takes the picture's layers.
-// This header is all that it needs; it links the library candela_session, which brings the rest.
+// Session: a scene that stays loaded. A program loads it, changes it, continues rendering and reads the
+// picture's layers. The program needs only this header and the library candela_session.
 //
-// One rule holds throughout: after any change, the picture has the bits that a fresh session gives which
-// loads that state. So a change begins the picture anew, and rendering on, in however many steps, changes no
-// bit.
+// One rule always holds: after any change, the picture has the same bits as in a new session that loads the
+// changed scene. So a change restarts the picture, and the number of steps in which it is rendered does not
+// matter.
 //
 // All errors are std::runtime_error; what() names the thing, the place, the cause and the remedy. After an
 // error, the scene is as it was before the call, and the session can go on.
@@ -22,30 +22,30 @@ namespace candela {
 
 struct SessionOptions {
     std::string device{};  // Index or part of the name; empty: the best.
-    // A folder where compiled kernels are kept from one program to the next; none: nowhere.
+    // A folder that keeps compiled kernels between runs of programs; none: they are not kept.
     std::optional<std::filesystem::path> kernel_cache{};
-    // Gets what is odd in scene files but not an error, and why a device was lost that is opened again.
+    // Gets warnings: oddities of scene files that are not errors, and why a lost device is reopened.
     std::function<void(const std::string&)> warn{};
-    bool validation = false;  // Turn on Vulkan's validation layer; `warn` gets its messages, too.
+    bool validation = false;  // Turn on Vulkan's validation layer; `warn` also gets its messages.
 };
 
 // A scene file, of any format that candela reads, and how it is read.
 struct SceneFile {
     std::filesystem::path path;
-    // Files may be read from these folders, too: by default, a scene names only what is in its own.
+    // Further folders from which files may be read; by default, only the scene's own.
     std::vector<std::filesystem::path> folders{};
-    // For glTF: the pose at this time of the animation [s], of this name or index, by default the first.
-    // None: nodes as they stand.
+    // For glTF: pose the scene at this time [s] of the animation with this name or index (by default the
+    // first). None: not animated.
     std::optional<double> time{};
     std::optional<std::string> animation{};
 };
 
-// What is not given is what the scene proposes.
+// The scene proposes what is not given.
 struct PictureRequest {
     std::optional<std::string> camera{};        // By name; none: the scene's first.
     std::optional<uint32_t> width{}, height{};  // Pixels.
-    std::optional<uint32_t> seed{};             // Each has other noise.
-    // Whether there are layers besides R G B A: albedo, normal, position, depth, variance, sample count.
+    std::optional<uint32_t> seed{};             // Each gives different noise.
+    // Whether to make the layers besides R G B A: albedo, normal, position, depth, variance, sample count.
     bool all_layers = false;
 };
 
@@ -63,7 +63,7 @@ class Session {
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    // Reads a scene, which takes the place of any before it, changes included.
+    // Reads a scene, which replaces any earlier one and its changes.
     void load(const SceneFile& file);
 
     // Changes the scene by `json`, an object with any of the keys "cameras", "materials" and "environment",
@@ -73,17 +73,17 @@ class Session {
     // can neither get nor lose a normal map or anisotropy.
     void change(std::string_view json);
 
-    // Chooses the picture. Without a call, or after load(), it is the one that the scene proposes.
+    // Chooses the picture. By default, and after load(), it is the one that the scene proposes.
     void choose(const PictureRequest& picture);
 
-    // Renders until every pixel has `spp` samples: on from those that it has, or from none after a change.
-    // Calls `keep_going` regularly, with the share of the samples that are there, in [0, 1]; rendering stops
-    // where it returns false, and goes on in the next call. Returns whether all samples are there. A device
-    // that is lost is opened again, five times in a row at most.
+    // Renders until every pixel has `spp` samples, continuing from the samples so far; a change discards
+    // those. Calls `keep_going` regularly, with the fraction of the samples that are done, in [0, 1];
+    // rendering stops when it returns false, and continues in the next call. Returns whether all samples are
+    // done. A lost device is reopened, at most five times in a row.
     bool render(uint32_t spp, const std::function<bool(double done)>& keep_going = {});
 
-    // The picture that was rendered last: its size, and its layers, R, G, B and A among them, of the samples
-    // so far.
+    // The picture that was rendered last, from the samples so far: its size, and its layers, including R, G,
+    // B and A.
     uint32_t width() const;
     uint32_t height() const;
     std::vector<PictureLayer> layers() const;

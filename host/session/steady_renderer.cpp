@@ -9,7 +9,7 @@ namespace candela {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-// Copying the state may take this share of the time.
+// Copying the state may use this fraction of the time.
 static constexpr double LARGEST_SHARE_OF_HOLDING = 0.05;
 
 SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
@@ -49,7 +49,7 @@ void SteadyRenderer::restart(bool scene_changed, const RenderSettings& settings,
     source_.states = std::move(states);
     positions_.clear();
     selected_ = 0;
-    if (scene_changed) renderer_.reset();  // Before the next one takes memory.
+    if (scene_changed) renderer_.reset();  // Before the next one allocates memory.
     renderer_ ? load() : open();
     look_up_positions();
 }

@@ -26,9 +26,9 @@ class SteadyRenderer {
         const GpuScene* scene;
         const Camera* camera;
         RenderSettings settings;
-        std::vector<Accumulation> states;  // To continue from, at least one; each has a seed of its own.
+        std::vector<Accumulation> states;  // To continue from; at least one, with different seeds.
         bool positions = false;            // Whether positions() will be called.
-        double hold_seconds = 10.0;        // From one copy of the state to the next.
+        double hold_seconds = 10.0;        // Between two copies of the state.
     };
     // Called after every failure that is survived, with its cause, the samples that every pixel still holds
     // at least, and how long submissions will take from now on [s].
@@ -38,21 +38,21 @@ class SteadyRenderer {
     // Throws Error if that fails, or if a state does not fit.
     SteadyRenderer(Source source, OnFailure on_failure);
 
-    // Starts over, on the same device, with other settings and states, and with the camera that the source's
-    // pointer shows now; if `scene_changed`, with the scene that its pointer shows, too. Throws Error if that
-    // fails, and is then of no more use.
+    // Starts over, on the same device, with other settings and states, and with the source's camera as it is
+    // now; if `scene_changed`, also with its scene as it is now. Throws Error if that fails; the object is
+    // then unusable.
     void restart(bool scene_changed, const RenderSettings& settings, std::vector<Accumulation> states);
 
-    // Continues with this one of the states(), as it is there now. At the start, the first is selected.
+    // Selects one of the states() to continue with, as it is there now. At the start, the first is selected.
     void select(size_t state);
 
-    // As Renderer::render(), but `progress` is the share of all samples up to the target. If the device
-    // fails, opens it again and makes submissions half as long. Throws the Error if Recovery gives
-    // up; the states are then the last copies.
+    // As Renderer::render(), but `progress` is the fraction of all samples up to the target. If the device
+    // fails, reopens it and makes submissions half as long. Throws the Error if Recovery gives up; the states
+    // are then the last copies.
     bool render(uint32_t target, const std::function<bool(double progress)>& keep_going);
 
     // Copies the selected state from the device to the host. May only be called from keep_going(). render()
-    // itself does it every hold_seconds, less often where copying takes long, and at its end.
+    // itself copies every hold_seconds, less often where copying is slow, and at its end.
     void hold();
     // The states as last copied, or those of the source.
     std::vector<Accumulation>& states() { return source_.states; }

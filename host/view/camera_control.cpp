@@ -13,8 +13,8 @@ namespace {
 // How close an orbit may come to a pole [rad], where the picture's right is undefined.
 constexpr double POLE_DISTANCE = 0.02;
 
-// What a camera looks at stays at least that share of the numbers away, so that the direction remains
-// defined.
+// The point that a camera looks at stays at least this fraction of the coordinates away, so that the
+// direction remains defined.
 constexpr double LEAST_DISTANCE = 1e-9;
 
 struct Frame {
@@ -93,7 +93,7 @@ void pan(Camera& camera, vec2 shift) {
 
 void dolly(Camera& camera, float factor) {
     if (camera.ortho_height) {
-        // Within what scene files may say.
+        // Within the limits of scene files.
         camera.ortho_height = std::clamp(double(factor) * *camera.ortho_height, 2.0 * double(FLOAT_MIN),
                                          0.5 * double(FLOAT_MAX));
         return;

@@ -9,19 +9,20 @@
 
 namespace candela {
 
-// Moves the camera on the sphere around what it looks at: by `azimuth` [rad] about `up`, so that positive
-// values turn the scene to the right, and by `elevation` [rad] upwards, stopping short of the poles.
+// Moves the camera on the sphere around the point that it looks at: by `azimuth` [rad] about `up`, so that
+// positive values turn the scene to the right, and by `elevation` [rad] upwards, stopping short of the poles.
 void orbit(Camera& camera, float azimuth, float elevation);
 
-// Moves the camera and what it looks at across its view, so that the scene there moves in the picture by
-// `shift`, x to the right, y up, in heights of the picture.
+// Moves the camera and the point that it looks at across its view, so that the scene there moves in the
+// picture by `shift`, x to the right, y up, in heights of the picture.
 void pan(Camera& camera, vec2 shift);
 
-// Brings the camera to `factor` (above 0) times its distance from what it looks at; an orthographic one sees
-// so many times as much from the same place.
+// Moves the camera to `factor` (above 0) times its distance from the point that it looks at; an orthographic
+// camera sees `factor` times as much from the same place.
 void dolly(Camera& camera, float factor);
 
-// Moves the camera and what it looks at by `shift`: to the right, up, forwards, in the camera's frame [m].
+// Moves the camera and the point that it looks at by `shift`: to the right, up, forwards, in the camera's
+// frame [m].
 void fly(Camera& camera, dvec3 shift);
 
 // {"cameras": {NAME: {...}}}: the camera in the syntax of scene files, angles in degrees, to be pasted into a

@@ -1,4 +1,4 @@
-// Time in seconds, for what the viewer does at intervals.
+// Time in seconds, for the viewer's work at intervals.
 #pragma once
 
 #include <chrono>

@@ -34,12 +34,12 @@ class Display {
 
     // Develops the mean of the samples in `image` (layers LAYER_*, of any size: it is stretched over the
     // window), multiplied by 2^exposure_ev, into size.x * size.y pixels, as develop() does up to rounding,
-    // and blends `overlay` over them. A pixel without samples keeps what it showed, or is black if the
+    // and blends `overlay` over them. A pixel without samples keeps its previous colour, or is black if the
     // window's size has changed.
     void draw(const vk::StorageImage& image, uvec2 size, Tonemap curve, float exposure_ev,
               const Overlay& overlay);
 
-    // What was drawn last: words of four bytes, row-major.
+    // The pixels drawn last: words of four bytes, row-major.
     const vk::Buffer& screen() const { return *screen_; }
 
   private:

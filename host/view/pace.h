@@ -15,9 +15,9 @@ inline constexpr double MOVING_SECONDS = 0.05;
 inline constexpr uint32_t COARSEST_SCALE = 8;
 inline constexpr uint32_t FIRST_SCALE = 4;
 
-// While the camera moves, the sides of the picture are divided by a power of two. Returns that of the next
-// picture, if the last one's was `scale` and its first samples took `seconds`: more if that was longer than
-// MOVING_SECONDS, less if four times as many pixels would clearly not take longer.
+// While the camera moves, the sides of the picture are divided by a power of two. Returns the divisor of the
+// next picture, if the last one's was `scale` and its first samples took `seconds`: larger if that exceeded
+// MOVING_SECONDS, smaller if four times as many pixels clearly would not exceed it.
 uint32_t next_scale(uint32_t scale, double seconds);
 
 // `size` divided by `scale`, at least 1 in each direction.

@@ -22,9 +22,9 @@ class PictureCopy {
 
     // Copies the picture, all of whose pixels hold `spp` samples. Estimates its error, as `candela render
     // --target-error` does, if the last look was at half as many and there are at least LEAST_ESTIMATED_SPP.
-    // Does nothing if a look takes both more than a tenth of a second and more than a twentieth of `seconds`,
-    // the time that the picture has taken so far. What a look takes is what the last one took, and half as
-    // much each time that nothing is done, so that one slow look does not end them.
+    // Does nothing if a look would take more than a tenth of a second and more than a twentieth of `seconds`,
+    // the picture's time so far. The time of a look is estimated by the last one's, halved each time that
+    // nothing is done, so that one slow look does not end them.
     void look(const Renderer& renderer, uint32_t spp, double seconds);
 
     const std::optional<Accumulation>& state() const { return state_; }
@@ -35,7 +35,7 @@ class PictureCopy {
     std::optional<Accumulation> state_;
     std::optional<Image> seen_;  // At the last look.
     std::optional<double> error_;
-    double look_seconds_ = 0.0;  // How long a look takes, of any picture.
+    double look_seconds_ = 0.0;  // Estimated time of a look, for any picture.
     Clock::time_point next_;
 };
 

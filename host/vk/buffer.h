@@ -31,7 +31,7 @@ class Buffer {
     // The size in bytes, after rounding.
     uint64_t size() const { return size_; }
     BufferUsage usage() const { return usage_; }
-    // The contents as the host sees them, or null if they must be copied (vk/transfer.h). Never null for
+    // The contents mapped for the host, or null if they must be copied (vk/transfer.h). Never null for
     // readback.
     std::byte* mapped() const { return memory_.mapped(); }
 

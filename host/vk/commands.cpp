@@ -66,7 +66,7 @@ void Commands::begin() {
         vkCmdResetQueryPool(buffer_, timestamps_.get(), 0, 2);
         vkCmdWriteTimestamp(buffer_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_.get(), 0);
     }
-    // A fence makes what was written available, but visible to the host only.
+    // A fence makes writes available, but does not make them visible to the host.
     memory_barrier(buffer_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                    VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                    VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);

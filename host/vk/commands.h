@@ -16,9 +16,9 @@ namespace candela::vk {
 class Buffer;
 class Kernel;
 
-// Submissions run one after the other: each sees everything that the host and earlier submissions wrote, and
-// the host sees everything that a submission wrote once submit_and_wait() returns. Dispatches of one
-// submission must not depend on each other.
+// Submissions run one after the other: each sees all writes of the host and of earlier submissions, and the
+// host sees all writes of a submission once submit_and_wait() returns. Dispatches of one submission must not
+// depend on each other.
 class Commands {
   public:
     explicit Commands(const Device& device);
@@ -34,9 +34,9 @@ class Commands {
     // Copies a buffer to another of the same size, after the dispatches recorded so far.
     void copy(const Buffer& from, const Buffer& to);
 
-    // Runs what was recorded, waits until it is done and returns how long the device worked on it [s]: by the
-    // device's clock if it has one, else from submit to finish by the host's. Then recording starts afresh.
-    // Throws an Error (device_lost) if the device was lost.
+    // Runs the recorded commands, waits until they are done and returns how long the device worked on them
+    // [s]: by the device's clock if it has one, otherwise from submit to finish by the host's. Recording then
+    // starts over. Throws an Error (device_lost) if the device was lost.
     double submit_and_wait();
 
     // The command buffer, for transfers.

@@ -46,7 +46,7 @@ Device::Device(const Instance& instance, const DeviceInfo& info,
                const std::optional<std::filesystem::path>& pipeline_cache_folder)
     : info_(info), debug_names_(instance.validation()) {
     if (!info.reason.empty()) {
-        throw Error("device \"" + info.name + "\" will not do: " + info.reason, ExitCode::no_device);
+        throw Error("device \"" + info.name + "\" is unsuitable: " + info.reason, ExitCode::no_device);
     }
     vkGetPhysicalDeviceMemoryProperties(info.handle, &memory_);
     device_ = {create_device(info), vkDestroyDevice};

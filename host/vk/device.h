@@ -21,7 +21,7 @@ namespace candela::vk {
 class Device {
   public:
     // Opens the device that `info` (from instance.devices()) describes. Compiled kernels are kept in a
-    // file in `pipeline_cache_folder`, if given. Throws an Error if the device will not do or cannot be
+    // file in `pipeline_cache_folder`, if given. Throws an Error if the device is unsuitable or cannot be
     // opened.
     Device(const Instance& instance, const DeviceInfo& info,
            const std::optional<std::filesystem::path>& pipeline_cache_folder = std::nullopt);
@@ -32,7 +32,7 @@ class Device {
     const DeviceLimits& limits() const { return info_.limits; }
 
     // Bytes that can be allocated: on a CPU the RAM that is free now, otherwise the size of the largest
-    // device-local heap, however much of it may be in use.
+    // device-local heap, regardless of how much of it is in use.
     uint64_t available_memory() const;
 
     // The index of a memory type among `allowed` (one bit per type) that has all `required` properties, and

@@ -1,4 +1,4 @@
-// Asks a physical device what it is and what it offers.
+// Queries a physical device.
 #include "vk/device_info.h"
 
 #include <algorithm>
@@ -140,8 +140,8 @@ static void query_formats(DeviceInfo& info) {
     info.limits.max_image_bytes = image.maxResourceSize;
 }
 
-// The largest device-local heap; sets `reason` if there is none, as where a driver compiles for hardware that
-// is not there.
+// The largest device-local heap; sets `reason` if there is none, as with a driver that compiles for absent
+// hardware.
 static void query_memory(DeviceInfo& info) {
     VkPhysicalDeviceMemoryProperties memory{};
     vkGetPhysicalDeviceMemoryProperties(info.handle, &memory);

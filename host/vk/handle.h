@@ -8,15 +8,15 @@
 
 namespace candela::vk {
 
-// Parent is what the destroy function takes before the handle: nothing for VkInstance and VkDevice, VkDevice
-// for most others. The parent must outlive the handle. Move-only; an empty one holds VK_NULL_HANDLE.
+// Parent is the argument of the destroy function before the handle: nothing for VkInstance and VkDevice,
+// VkDevice for most others. The parent must outlive the handle. Move-only; an empty one holds VK_NULL_HANDLE.
 template <class Handle, class... Parent>
 class Unique {
   public:
     using Destroy = void(VKAPI_PTR*)(Parent..., Handle, const VkAllocationCallbacks*);
 
     Unique() = default;
-    // Takes over `handle`, which `destroy` (a function of volk's) will destroy.
+    // Takes ownership of `handle`, which `destroy` (a function of volk's) will destroy.
     Unique(Handle handle, Destroy destroy, Parent... parent)
         : handle_(handle), destroy_(destroy), parent_(parent...) {}
     Unique(Unique&& other) noexcept

@@ -22,7 +22,7 @@ class StorageImage {
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     uint32_t layers() const { return layers_; }
-    // Bytes that the image takes on the device.
+    // Bytes of the image on the device.
     uint64_t size() const { return size_; }
 
     VkImage handle() const { return image_.get(); }

@@ -1,4 +1,4 @@
-// Loads Vulkan, makes the instance and collects what the validation layer says.
+// Loads Vulkan, makes the instance and collects the messages of the validation layer.
 #include "vk/instance.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace candela::vk {
 
 static constexpr const char* VALIDATION_LAYER = "VK_LAYER_KHRONOS_validation";
 
-// What the validation layer said; drivers may call from threads of their own.
+// The messages of the validation layer; drivers may call from their own threads.
 class MessageLog {
   public:
     void add(std::string message) {
@@ -40,8 +40,8 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
     return VK_FALSE;  // The call that caused the message goes on.
 }
 
-// Warnings and errors about our use of Vulkan. The loader's messages about other drivers do not concern us,
-// nor does advice on performance, which objects to copies from images in layout GENERAL.
+// Warnings and errors about our use of Vulkan. We ignore the loader's messages about other drivers, and
+// advice on performance, which objects to copies from images in layout GENERAL.
 static VkDebugUtilsMessengerCreateInfoEXT messenger_info(MessageLog* log) {
     VkDebugUtilsMessengerCreateInfoEXT info{};
     info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
@@ -59,14 +59,15 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_complaint(VkDebugUtilsMessageSeverityFl
                                                    void* complaints) {
     auto& text = *static_cast<std::string*>(complaints);
     const std::string message = data->pMessage;
-    // That there is no driver is clear; and a damaged file would be a lack of memory to the loader.
+    // Leaves out that there is no driver, which is clear, and the loader's claim that a damaged file is a
+    // lack of memory.
     std::string said = message.substr(0, message.find(", this is usually because"));
     if (said.ends_with('.')) said.pop_back();
     if (said.find("vkCreateInstance") == std::string::npos) text += (text.empty() ? "" : "; ") + said;
     return VK_FALSE;
 }
 
-// What the loader finds wrong with the files of drivers, in its own words; empty if nothing.
+// The loader's complaints about the files of drivers, in its own words; empty if there are none.
 static std::string complaints_of_loader(const VkApplicationInfo& application) {
     std::string complaints;
     VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(nullptr);
@@ -94,7 +95,7 @@ static void check_created(VkResult result, const VkApplicationInfo& application)
     const std::string complaints = complaints_of_loader(application);
     if (!complaints.empty()) {
         throw Error("no Vulkan driver can be loaded: " + complaints +
-                        "; mend or remove that file, or install the driver again",
+                        "; repair or remove that file, or install the driver again",
                     ExitCode::no_device);
     }
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
@@ -109,7 +110,7 @@ static void check_created(VkResult result, const VkApplicationInfo& application)
 // The instance extensions of a layer, or, for null, of Vulkan itself.
 static std::vector<VkExtensionProperties> instance_extensions(const char* layer) {
     uint32_t count = 0;
-    // The loader fails here where it cannot read a driver's file. Why it says only when an instance is made.
+    // The loader fails here if it cannot read a driver's file, but says why only when an instance is made.
     if (vkEnumerateInstanceExtensionProperties(layer, &count, nullptr) < 0) return {};
     std::vector<VkExtensionProperties> extensions(count);
     VK_CHECK(vkEnumerateInstanceExtensionProperties(layer, &count, extensions.data()));
@@ -126,7 +127,7 @@ static void require_validation_layer() {
     });
     if (!found) {
         throw Error(std::string("validation was asked for, but the Vulkan layer ") + VALIDATION_LAYER +
-                    " is not there; install vulkan-validationlayers");
+                    " is missing; install vulkan-validationlayers");
     }
 }
 
@@ -199,7 +200,7 @@ Instance::~Instance() = default;
 
 std::vector<DeviceInfo> Instance::devices() const {
     uint32_t count = 0;
-    // VK_ERROR_INITIALIZATION_FAILED is how the loader says that no driver here has a device.
+    // The loader returns VK_ERROR_INITIALIZATION_FAILED if no driver has a device.
     const VkResult result = vkEnumeratePhysicalDevices(instance_.get(), &count, nullptr);
     if (result == VK_ERROR_INITIALIZATION_FAILED) return {};
     VK_CHECK(result);

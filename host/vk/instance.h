@@ -19,7 +19,7 @@ class Instance {
   public:
     struct Options {
         bool validation = false;  // Turn on VK_LAYER_KHRONOS_validation, synchronization checks included.
-        std::vector<std::string> extensions{};  // Required ones: those that windows need.
+        std::vector<std::string> extensions{};  // Required extensions, for windows.
     };
 
     // Throws an Error: exit code no_device if there is no Vulkan loader or no driver, failed if validation is

@@ -28,7 +28,7 @@ class Kernel {
            uint32_t push_constant_size, std::span<const uint32_t> constants, const std::string& name);
 
     // Binds a resource to (an element of) a binding of the matching type. It stays bound, and must live,
-    // until another takes its place. Must not be called between a dispatch and the submission that runs it.
+    // until another replaces it. Must not be called between a dispatch and the submission that runs it.
     void bind(uint32_t number, const Buffer& buffer, uint32_t element = 0);
     void bind(uint32_t number, const StorageImage& image);
 
@@ -41,7 +41,7 @@ class Kernel {
 
   private:
     void create_descriptor_set();
-    // The write that fills the binding of that number, still without its resource.
+    // The write for the binding of that number, without its resource yet.
     VkWriteDescriptorSet descriptor(uint32_t number) const;
 
     const Device* device_;

@@ -31,8 +31,8 @@ Memory::Memory(const Device& device, const VkMemoryRequirements& requirements, M
     VkDeviceMemory memory = VK_NULL_HANDLE;
     const VkResult result = vkAllocateMemory(device.handle(), &info, nullptr, &memory);
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY) {
-        throw Error(name + " needs " + std::to_string(requirements.size) + " bytes, which \"" +
-                        device.info().name + "\" does not have any more; use less or choose another device",
+        throw Error(name + " needs " + std::to_string(requirements.size) + " bytes, more than \"" +
+                        device.info().name + "\" has left; use less or choose another device",
                     ExitCode::out_of_memory);
     }
     VK_CHECK(result);

@@ -20,13 +20,14 @@ enum class MemoryUse {
 class Memory {
   public:
     Memory() = default;
-    // Allocates what `requirements` demand. `name` is what messages call the resource, e.g. `buffer "nodes"`.
-    // Throws an Error (out_of_memory) that gives need and limit if the device cannot hold it.
+    // Allocates memory for `requirements`. Messages call the resource `name`, e.g. `buffer "nodes"`. Throws
+    // an Error (out_of_memory) with need and limit if the device cannot hold it.
     Memory(const Device& device, const VkMemoryRequirements& requirements, MemoryUse use,
            const std::string& name);
 
     VkDeviceMemory handle() const { return memory_.get(); }
-    // The first byte as the host sees it, or null if the memory is not mapped. Coherent: no flush is needed.
+    // The first byte as mapped for the host, or null if the memory is not mapped. Coherent: no flush is
+    // needed.
     std::byte* mapped() const { return mapped_; }
 
   private:

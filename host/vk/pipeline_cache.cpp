@@ -1,5 +1,5 @@
 // The file of the pipeline cache: a hash of the data, 8 bytes in the machine's order, then the data that
-// Vulkan gave. A driver runs what it holds, so that nobody else may have written it.
+// Vulkan gave. A driver runs its contents, so nobody else may have written it.
 #include "vk/pipeline_cache.h"
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace candela::vk {
 
-// What a driver keeps for our few kernels has less by far.
+// A driver's cache of our few kernels is far smaller.
 static constexpr size_t MOST_BYTES = size_t{64} << 20;
 
 // FNV-1a, 64 bits. Vulkan checks only the header, and drivers trust the rest.

@@ -15,8 +15,8 @@ namespace candela::vk {
 class PipelineCache {
   public:
     // Creates the cache and fills it from its file in `folder`, if that is given. The file is named by the
-    // device's cache UUID, so that each device and driver has one of its own. A file that is missing,
-    // damaged, of another device or of another user is ignored, and so is anything else in its place.
+    // device's cache UUID, so that each device and driver has its own. A file that is missing, damaged, of
+    // another device or of another user is ignored, as is anything that is not a file.
     PipelineCache(VkDevice device, const VkPhysicalDeviceProperties& properties,
                   const std::optional<std::filesystem::path>& folder);
     // Saves the cache to the file if it changed, in a folder for this user alone. Failure is silent: the next
@@ -33,7 +33,7 @@ class PipelineCache {
     VkDevice device_;
     std::optional<std::filesystem::path> folder_;
     std::string name_;
-    std::vector<char> loaded_;  // What the file held, so that an unchanged cache is not written again.
+    std::vector<char> loaded_;  // The contents of the file, so that an unchanged cache is not written again.
     Unique<VkPipelineCache, VkDevice> cache_;
 };
 

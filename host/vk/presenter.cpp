@@ -1,5 +1,5 @@
-// Surfaces, the swapchain and the copy into its images. The host waits for every step, which is no more than
-// a copy, so that presenting needs neither semaphores nor frames in flight.
+// Surfaces, the swapchain and the copy into its images. The host waits for every step, which is only a copy,
+// so presenting needs neither semaphores nor frames in flight.
 #include "vk/presenter.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace candela::vk {
 
-// How long a window that shows nothing (say, hidden by another) may keep the program waiting.
+// How long the program waits for a window that shows nothing, such as a hidden one.
 static constexpr uint64_t ACQUIRE_NANOSECONDS = 100'000'000;
 
 void choose_presenting_queue(DeviceInfo& info, VkSurfaceKHR surface) {
@@ -55,7 +55,7 @@ static VkSurfaceFormatKHR choose_format(const Device& device, VkSurfaceKHR surfa
         const bool srgb = format.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR;
         if (srgb && (is_blue_first(format.format) || is_red_first(format.format))) return format;
     }
-    throw Error("the window takes no 8-bit sRGB pictures from device \"" + device.info().name +
+    throw Error("the window cannot show 8-bit sRGB pictures from device \"" + device.info().name +
                     "\"; choose another device (candela devices lists them), or use candela render",
                 ExitCode::no_device);
 }
@@ -88,7 +88,7 @@ bool Presenter::survives(VkResult result, const char* call) {
     switch (result) {
         case VK_ERROR_SURFACE_LOST_KHR:
             drop_swapchain();
-            surface_ = {};  // Before the window gets another.
+            surface_ = {};  // Must be destroyed before the window gets another.
             return false;
         case VK_ERROR_OUT_OF_DATE_KHR:
             drop_swapchain();
@@ -123,7 +123,7 @@ bool Presenter::make_swapchain(uint32_t width, uint32_t height) {
                     ExitCode::no_device);
     }
     VkExtent2D extent = surface.currentExtent;
-    if (extent.width == UINT32_MAX) extent = {width, height};  // The window takes the picture's size.
+    if (extent.width == UINT32_MAX) extent = {width, height};  // The window adapts to the picture's size.
     if (extent.width != width || extent.height != height) return false;
 
     VkSwapchainCreateInfoKHR info{};

@@ -19,14 +19,14 @@ namespace candela::vk {
 using Surface = Unique<VkSurfaceKHR, VkInstance>;
 
 // Chooses the first queue family of `info` that computes and can present to `surface`, and lets a Device
-// opened from it do so; if there is none, `reason` says why the device will not do.
+// opened from it do so; if there is none, `reason` says why the device is unsuitable.
 void choose_presenting_queue(DeviceInfo& info, VkSurfaceKHR surface);
 
 class Presenter {
   public:
-    // `surface` is the window's, and `make_surface` makes another when it is lost; `device` was opened after
-    // choose_presenting_queue() and outlives the presenter. Throws Error (no_device) if the surface takes no
-    // 8-bit RGB pictures.
+    // `surface` is the window's, and `make_surface` makes another one if it is lost; `device` was opened
+    // after choose_presenting_queue() and outlives the presenter. Throws Error (no_device) if the surface
+    // cannot show 8-bit RGB pictures.
     Presenter(const Device& device, Surface surface, std::function<Surface()> make_surface);
 
     // Shows width * height pixels, row-major from the top, that `pixels` (usage storage or readback) holds as
@@ -43,8 +43,8 @@ class Presenter {
     bool acquire(uint32_t& index);
     void copy(const Buffer& pixels, VkImage image);
     void drop_swapchain();
-    // Whether the call of that name went well enough to go on; if not, the next show() recreates what was
-    // lost. Throws an Error for what cannot be recreated.
+    // Whether the call of that name succeeded well enough to continue; if not, the next show() recreates what
+    // was lost. Throws an Error if that is impossible.
     bool survives(VkResult result, const char* call);
 
     const Device* device_;
@@ -55,8 +55,8 @@ class Presenter {
     Commands commands_;
     Unique<VkFence, VkDevice> acquired_;
     Unique<VkSwapchainKHR, VkDevice> swapchain_;
-    std::vector<VkImage> images_;  // Of the swapchain, which owns them.
-    uint32_t width_ = 0;           // Of the swapchain [pixels].
+    std::vector<VkImage> images_;  // Owned by the swapchain.
+    uint32_t width_ = 0;           // Width of the swapchain [pixels].
     uint32_t height_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Compute shaders, compiled for a device. Compiling takes longer than most of what a test or a probe asks, so
-// a device keeps what it has compiled.
+// Compute shaders, compiled for a device. Compiling takes longer than most tests or probes, so a device keeps
+// its compiled programs.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class Device;
 
 enum class BindingType { texel_buffer, storage_buffer, uniform_buffer, storage_image };
 
-// What a kernel declares: layout(set = 0, binding = number), an array if there are several.
+// A declaration of a kernel: layout(set = 0, binding = number), an array if there are several.
 struct Binding {
     uint32_t number;
     BindingType type;
@@ -39,20 +39,20 @@ inline constexpr size_t MOST_PROGRAMS = 64;
 
 class Programs {
   public:
-    // The program of these parts, which are those of Kernel; compiles it if there is none. `name` is for
-    // messages. A program lives while somebody uses it; when there are MOST_PROGRAMS, all are forgotten.
+    // The program of these parts, as in Kernel; compiles it if it is not known. `name` is for messages. A
+    // program lives while it is in use; when there are MOST_PROGRAMS, all are forgotten.
     std::shared_ptr<const Program> find_or_compile(const Device& device, std::span<const uint32_t> spirv,
                                                    std::span<const Binding> bindings,
                                                    uint32_t push_constant_size,
                                                    std::span<const uint32_t> constants,
                                                    const std::string& name);
 
-    // So that what is asked for next is compiled again: for whoever measures how long that takes.
+    // Makes the next request compile again, so that compile time can be measured.
     void forget() { programs_.clear(); }
     size_t count() const { return programs_.size(); }
 
   private:
-    // By all words that it was made of.
+    // The key is all words that the program was made of.
     std::map<std::vector<uint32_t>, std::shared_ptr<const Program>> programs_;
 };
 

@@ -16,19 +16,19 @@ static std::string lower(std::string text) {
     return text;
 }
 
-// `0: "llvmpipe" (CPU), 1: "old" (other; will not do: it has no compute queue)`
+// `0: "llvmpipe" (CPU), 1: "old" (other; unsuitable: it has no compute queue)`
 static std::string list(std::span<const DeviceInfo> devices) {
     std::string text;
     for (const DeviceInfo& device : devices) {
         if (!text.empty()) text += ", ";
         text += std::to_string(device.index) + ": \"" + device.name + "\" (" + to_string(device.type);
-        if (!device.reason.empty()) text += "; will not do: " + device.reason;
+        if (!device.reason.empty()) text += "; unsuitable: " + device.reason;
         text += ")";
     }
     return text;
 }
 
-// True if `a` suits a renderer better than `b`, whatever their places in the list.
+// True if `a` suits a renderer better than `b`, regardless of their places in the list.
 static bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
     if (a.type != b.type) return a.type < b.type;
     return a.type == DeviceType::cpu && a.is_lavapipe() && !b.is_lavapipe();
@@ -40,14 +40,14 @@ static const DeviceInfo& select_default(std::span<const DeviceInfo> devices) {
         if (device.reason.empty() && (best == nullptr || is_better(device, *best))) best = &device;
     }
     if (best == nullptr) {
-        throw Error("no Vulkan device here will do: " + list(devices) +
+        throw Error("no suitable Vulkan device:  " + list(devices) +
                         "; install a newer driver, or mesa-vulkan-drivers to render on the CPU",
                     ExitCode::no_device);
     }
     return *best;
 }
 
-// The devices that a request, an index or a part of a name, can mean.
+// The devices that match a request, an index or a part of a name.
 static std::vector<const DeviceInfo*> find_matches(std::span<const DeviceInfo> devices,
                                                    const std::string& request) {
     uint32_t index = 0;
@@ -80,7 +80,7 @@ const DeviceInfo& select_device(std::span<const DeviceInfo> devices,
     }
     const DeviceInfo& device = *matches.front();
     if (!device.reason.empty()) {
-        throw Error("device " + std::to_string(device.index) + " \"" + device.name + "\" will not do: " +
+        throw Error("device " + std::to_string(device.index) + " \"" + device.name + "\" is unsuitable: " +
                         device.reason + "; choose another device or install a newer driver",
                     ExitCode::no_device);
     }

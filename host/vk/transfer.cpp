@@ -50,7 +50,7 @@ void download(const Buffer& buffer, std::span<std::byte> bytes, uint64_t offset)
     }
 }
 
-// Changes the layout from UNDEFINED, which holds nothing, to GENERAL, for good.
+// Changes the layout from UNDEFINED, which has no contents, to GENERAL, permanently.
 static void set_layout(const StorageImage& image) {
     VkImageMemoryBarrier barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;

@@ -1,4 +1,4 @@
-// Copies between the host and what is on a device. Each waits until it is done.
+// Copies between the host and a device. Each waits until it is done.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ void upload(const Buffer& buffer, std::span<const std::byte> bytes, uint64_t off
 void download(const Buffer& buffer, std::span<std::byte> bytes, uint64_t offset = 0);
 
 // Makes an image of width * height pixels and `layers` layers, each at least 1, filled with zeros. `name` is
-// for messages. Throws an Error that names the image, what it needs and what the device allows if that is too
-// little.
+// for messages. If the device allows too little, throws an Error with the image's name, its needs and the
+// limit.
 StorageImage make_storage_image(const Device& device, uint32_t width, uint32_t height, uint32_t layers,
                                 const std::string& name);
 
@@ -35,7 +35,7 @@ void upload(const StorageImage& image, uint32_t first_layer, std::span<const flo
 // Returns `layer_count` layers from `first_layer` on; they must exist.
 std::vector<float> download(const StorageImage& image, uint32_t first_layer, uint32_t layer_count);
 
-// The most bytes that one copy between host and device takes at a time, so that large data needs little extra
+// The most bytes that are copied between host and device at a time, so that large data needs little extra
 // memory.
 inline constexpr uint64_t STAGING_BYTES = uint64_t{64} << 20;
 

@@ -15,10 +15,11 @@ namespace {
 // A drag over the height of the window turns the camera by half a circle.
 constexpr float ORBIT_PER_HEIGHT = PI;
 
-// One step of the wheel takes a tenth off the distance, or adds a ninth.
+// One step of the wheel shortens the distance by a tenth, or lengthens it by a ninth.
 constexpr float DOLLY_PER_STEP = 0.9f;
 
-// Flying covers the distance to what the camera looks at in this many seconds, with Shift in a fifth of them.
+// Flying covers the distance to the point that the camera looks at in this many seconds, or with Shift in a
+// fifth of the time.
 constexpr double FLIGHT_SECONDS = 2.0;
 constexpr float FAST = 5.0f;
 
@@ -96,7 +97,7 @@ ViewRequests Controls::apply(const Input* input, ViewState& state, double second
     return requests;
 }
 
-// A key that goes up was down until now: fly() will not see it any more, or has never seen it.
+// A key that goes up was down until now: fly() will not see it again, or has never seen it.
 void Controls::apply_key(const KeyInput& key, ViewState& state, ViewRequests& requests, double seconds) {
     if (!key.down) {
         if (held_.erase(key.key) > 0) fly_by({key.key}, state.camera, seconds);

@@ -8,7 +8,7 @@
 
 namespace candela {
 
-// What the mouse and the keys do, for the panel and for --help.
+// The actions of mouse and keys, for the panel and for --help.
 inline constexpr const char* CONTROLS_HELP =
     "drag        orbit\n"
     "Shift drag  pan (also right, middle)\n"
@@ -23,8 +23,8 @@ inline constexpr const char* CONTROLS_HELP =
 // `seconds`: since the last frame.
 class Controls {
   public:
-    // Applies the user's input, null if there is none, to `state`, and returns what else it requests. Call it
-    // within the turn of Gui for the same input.
+    // Applies the user's input, null if there is none, to `state`, and returns the user's other requests.
+    // Call it within the turn of Gui for the same input.
     ViewRequests apply(const Input* input, ViewState& state, double seconds);
     // Moves the camera by the keys that are down; call it once per frame.
     void fly(Camera& camera, double seconds) const;

@@ -18,7 +18,7 @@ namespace {
 // The position by which Dear ImGui knows that there is no mouse.
 constexpr vec2 NOWHERE(-FLT_MAX);
 
-// Time passes once per frame; further turns take almost none [s].
+// Time advances once per frame; further turns advance it by almost nothing [s].
 constexpr float INSTANT = 1e-6f;
 
 }  // namespace

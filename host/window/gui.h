@@ -8,9 +8,9 @@
 
 namespace candela {
 
-// Only one may exist at a time. A frame has one turn or more: Dear ImGui takes all input before a turn as
-// simultaneous, so that a key that went down and up was never down, and the mouse was only at its last place.
-// So each input gets a turn of its own, and its effect does not depend on how long a frame takes.
+// Only one may exist at a time. A frame has one turn or more: Dear ImGui treats all input before a turn as
+// simultaneous: a key that went down and up was never down, and the mouse was only at its last place. So each
+// input gets its own turn, and its effect does not depend on the length of a frame.
 class Gui {
   public:
     // `window` must outlive it.
@@ -19,12 +19,13 @@ class Gui {
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    // Takes in the window's size and the time.
+    // Reads the window's size and the time.
     void begin_frame();
-    // Between the two, widgets of Dear ImGui may be called. `input`: what the user does; null if nothing.
+    // Between the two, widgets of Dear ImGui may be called. `input`: the user's action; null if there is
+    // none.
     void begin_turn(const Input* input);
     void end_turn();
-    // What the widgets looked like in the last turn, in a window of `size` pixels; valid until the next call.
+    // The widgets as drawn in the last turn, in a window of `size` pixels; valid until the next call.
     const Overlay& draw(uvec2 size);
 
   private:
@@ -38,8 +39,8 @@ class Gui {
 
     Window& window_;
     vec2 mouse_;
-    std::array<bool, 5> buttons_{};    // Which are down.
-    std::array<bool, 8> modifiers_{};  // The same of Shift, Ctrl, Alt and Super, left and right.
+    std::array<bool, 5> buttons_{};    // Whether each is down.
+    std::array<bool, 8> modifiers_{};  // The same for Shift, Ctrl, Alt and Super, left and right.
     Overlay overlay_;
 };
 

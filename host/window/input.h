@@ -1,4 +1,4 @@
-// Input: one thing that the user does with mouse or keys.
+// Input: one action of the user with mouse or keys.
 #pragma once
 
 #include <variant>
@@ -34,7 +34,7 @@ struct FocusInput {
 using Input =
     std::variant<KeyInput, CharacterInput, ButtonInput, MoveInput, LeaveInput, WheelInput, FocusInput>;
 
-// There may be a thousand of these per second, so that they do not wait for a picture.
+// There may be a thousand of these per second, so they do not wait for a picture.
 inline bool is_motion(const Input& input) {
     return std::holds_alternative<MoveInput>(input) || std::holds_alternative<WheelInput>(input);
 }

@@ -17,7 +17,7 @@ constexpr float WIDTH = 290.0f;          // [pixels]
 constexpr float LABEL_WIDTH = 90.0f;     // The part of it for labels.
 constexpr float EXPOSURE_RANGE = 10.0f;  // [EV] to either side.
 constexpr float INTENSITY_RANGE = 100.0f;
-constexpr int DEEPEST = 32;  // Bounces on the slider; one more stands for no limit.
+constexpr int DEEPEST = 32;  // Bounces on the slider; one more means no limit.
 
 // In the order of Tonemap and of Estimator.
 constexpr std::array TONEMAPS{"linear", "reinhard", "aces", "agx", "neutral"};

@@ -7,9 +7,8 @@
 
 namespace candela {
 
-// Shows the panel, within a frame of Dear ImGui, and applies what the user does there to `state` and
-// `requests`. `cameras` are the scene's; `home` is the camera from which the sliders of the lens take their
-// ranges.
+// Shows the panel, within a frame of Dear ImGui, and applies the user's actions to `state` and `requests`.
+// `cameras` are the scene's; the ranges of the lens's sliders come from the camera `home`.
 void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& figures,
                 std::span<const Camera> cameras, const Camera& home, bool has_environment);
 

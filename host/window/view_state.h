@@ -1,4 +1,4 @@
-// What the user of the viewer can change, and what the viewer shows.
+// The settings that the viewer's user can change, and the figures that it shows.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace candela {
 
 struct ViewState {
     Camera camera;
-    RenderSettings settings;  // Of the picture at rest.
+    RenderSettings settings;  // Settings of the picture at rest.
     float exposure_ev = 0.0f;
     Tonemap tonemap = Tonemap::linear;
     float environment_rotation = 0.0f;   // [rad]
@@ -22,28 +22,28 @@ struct ViewState {
     bool panel = true;  // Whether it is shown.
 };
 
-// What the user requests once.
+// The user's one-time requests.
 struct ViewRequests {
     bool restart = false;
-    bool home = false;      // The camera as the scene has it.
+    bool home = false;      // Back to the scene's camera.
     bool save_png = false;  // The picture as it is shown, without the panel.
     bool save_exr = false;  // Radiance and more.
     bool save_camera = false;
     bool close = false;
     std::optional<size_t> camera;  // Switch to this camera of the scene.
     std::optional<vec2>
-        focus;  // Focus on what is seen there; in the window, (0,0) .. (1,1) from the top left.
+        focus;  // Focus on the point seen there; in the window, (0,0) .. (1,1) from the top left.
 };
 
-// What the panel shows.
+// The figures on the panel.
 struct ViewFigures {
     std::string device;
     uint64_t device_bytes = 0;
-    uvec2 size{0, 0};      // Of the picture right now; smaller than the window while the camera moves.
+    uvec2 size{0, 0};      // Size of the current picture; smaller than the window while the camera moves.
     double samples = 0.0;  // Per pixel, on average.
-    double samples_per_second = 0.0;  // Of all pixels together.
+    double samples_per_second = 0.0;  // Sum over all pixels.
     std::optional<double> error;      // Relative, the last estimate; see estimate_relative_error().
-    std::string message;              // What happened last.
+    std::string message;              // The last event.
 };
 
 }  // namespace candela

@@ -1,4 +1,4 @@
-// See viewer.h. One thread does everything: between two submissions to the device it looks after the window.
+// See viewer.h. One thread does everything: between two submissions to the device it serves the window.
 #include "window/viewer.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace candela {
 namespace {
 
-// How long a submission should take [s], which is how soon the window responds.
+// Duration of a submission [s], which is the window's response time.
 constexpr double SUBMISSION_SECONDS = 0.03;
 
 // The camera rests when nothing has changed for this long [s]; then the picture gets all its pixels.
@@ -103,7 +103,7 @@ void Viewer::recover(const Error& error) {
         throw Error(recovery_.cause());
     }
     const uint32_t kept = copy_.state() && !restart_ ? copy_.state()->least_samples() : 0;
-    tell(std::string(error.what()) + "; opening the device again, and going on from " + std::to_string(kept) +
+    tell(std::string(error.what()) + "; reopening the device and continuing from " + std::to_string(kept) +
          " samples per pixel");
     recovery_.pause();
 }
@@ -116,11 +116,8 @@ void Viewer::begin() {
         intensity_ = state_.environment_intensity;
         for (size_t i = 0; i < radiance_.size(); ++i)
             scene_.environment->radiance[i] = intensity_ * radiance_[i];
-        changed = stages_.update(scene_, {.environment = true});
-    }
-    if (scene_.environment && scene_.environment->rotation != state_.environment_rotation) {
-        scene_.environment->rotation = state_.environment_rotation;
-        stages_.update(scene_, {.rotation = true});
+        gpu_scene_ = build_gpu_scene(scene_);
+        renderer_.reset();  // Before the next one allocates memory.
     }
     if (restart_) {
         copy_.clear();
@@ -150,7 +147,7 @@ void Viewer::begin() {
     measured_samples_ = double(spp_) * figures_.size.x * figures_.size.y;
 }
 
-// Renders until the picture has all samples, or something stops it. Returns whether it has them.
+// Renders until the picture has all samples, or something stops it. Returns whether it has all.
 bool Viewer::accumulate() {
     while (spp_ < options_.target) {
         stop_ = scale_ > 1 ? options_.target : next_look(spp_, options_.target, LEAST_ESTIMATED_SPP / 2);
@@ -196,7 +193,7 @@ bool Viewer::step(double progress) {
     return !restart_ && !ended();
 }
 
-// Whether the picture in progress is no longer what the user wants.
+// Whether the picture in progress is outdated.
 bool Viewer::outdated() const {
     const RenderSettings& wanted = state_.settings;
     return state_.camera != camera_ || scaled_size(wanted.size, scale_) != settings_.size ||

@@ -31,12 +31,12 @@ namespace candela {
 struct ViewerOptions {
     vk::DeviceInfo device;  // After choose_presenting_queue().
     std::optional<std::filesystem::path> pipeline_cache_folder;
-    std::string name;               // Of the scene, for the title and for files.
+    std::string name;               // Name of the scene, for the title and for files.
     std::string command_line;       // For the attributes of EXRs.
     uint32_t target = 0;            // Samples per pixel to stop at, above 0.
-    bool close_at_target = false;   // Close then, and keep the picture's size whatever the window's.
-    std::function<bool()> stopped;  // Asked regularly whether to end.
-    std::function<void(const std::string&)> say;  // Gets what happened: "wrote box-1.png".
+    bool close_at_target = false;   // Close then, and keep the picture's size regardless of the window's.
+    std::function<bool()> stopped;  // Called regularly; returns whether to end.
+    std::function<void(const std::string&)> say;  // Gets events, such as "wrote box-1.png".
 };
 
 class Viewer {
@@ -45,14 +45,14 @@ class Viewer {
     // outlive the viewer. Throws Error if that fails.
     Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewState state, ViewerOptions options);
 
-    // Runs until the window is closed, options.stopped() says so or, if asked for, the target is reached.
-    // Returns whether the picture is at rest and has all samples. If the device is lost or out of memory,
-    // opens it again, and a picture at rest continues from its copy on the host, to the same bits. If
+    // Runs until the window is closed, options.stopped() returns true or, with close_at_target, the target is
+    // reached. Returns whether the picture is at rest and has all samples. If the device is lost or out of
+    // memory, reopens it, and a picture at rest continues from its copy on the host, to the same bits. If
     // Recovery gives up, writes the copy to a file and throws the Error.
     bool run();
 
-    // Writes the picture as it is: .png as it is shown, without the panel, or .exr as `candela render` would
-    // write it. Throws Error if that fails.
+    // Writes the current picture: as .png as it is shown, without the panel, or as .exr as by `candela
+    // render`. Throws Error if that fails.
     void save(const std::filesystem::path& path);
 
   private:
@@ -81,10 +81,9 @@ class Viewer {
     Window& window_;
     const vk::Instance& instance_;
     Scene scene_;
-    std::vector<vec3> radiance_;  // Of the scene's environment, at intensity 1 ...
-    float intensity_ = 1.0f;      // ... and its factor in scene_.
-    SceneStages stages_;
-    const GpuScene& gpu_scene_ = stages_.joined();
+    std::vector<vec3> radiance_;  // The scene's environment, at intensity 1.
+    float intensity_ = 1.0f;      // The environment's factor in scene_.
+    GpuScene gpu_scene_;
     ViewState state_;
     ViewerOptions options_;
     Camera home_;
@@ -100,8 +99,8 @@ class Viewer {
     std::unique_ptr<Renderer> renderer_;
     Recovery recovery_;
 
-    // The picture in progress: its camera and settings, the samples that every pixel holds at least, at how
-    // many the next look is, and how long it has taken so far [s].
+    // The picture in progress: its camera and settings, the samples that every pixel has, the number of
+    // samples at the next look, and the time so far [s].
     Camera camera_;
     RenderSettings settings_;
     uint32_t spp_ = 0;
@@ -109,17 +108,18 @@ class Viewer {
     double render_seconds_ = 0.0;
     PictureCopy copy_;
 
-    uint32_t scale_ = 1;    // The picture's sides are divided by this: by 1 unless it was begun while ...
-    bool moving_ = false;   // ... the camera moved; then what comes next depends ...
-    bool is_first_ = true;  // ... on when its first samples come, which have not been seen yet.
+    uint32_t scale_ = 1;    // The picture's sides are divided by this; 1 if it was begun at rest.
+    bool moving_ = false;   // Whether it was begun while the camera moved.
+    bool is_first_ = true;  // Whether its first samples have not been shown yet; their time determines the
+                            // next scale.
     uint32_t next_scale_;
-    bool restart_ = true;  // The picture no longer shows what it should.
+    bool restart_ = true;  // The picture is outdated.
     Clock::time_point begun_;
     Clock::time_point last_change_;
     Clock::time_point last_frame_;
-    double frame_seconds_ = 0.0;  // From the last frame to this one, up to a limit.
+    double frame_seconds_ = 0.0;  // Time from the last frame to this one, up to a limit.
     Clock::time_point next_draw_;
-    // For the rate: since when the device has worked without a break, and how many samples there were then.
+    // For the rate: the time since which the device has worked without a break, and the samples at that time.
     Clock::time_point measured_from_;
     double measured_samples_ = 0.0;
 };

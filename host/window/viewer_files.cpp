@@ -49,7 +49,7 @@ void Viewer::save_as_asked(const ViewRequests& requests) {
     }
 }
 
-// Writes to the first file NAME-1, NAME-2, ... that does not exist yet. Tells the user of a failure; they may
+// Writes to the first file NAME-1, NAME-2, ... that does not exist yet. Tells the user of a failure, who may
 // try again.
 void Viewer::save_as_next(const std::string& extension,
                           const std::function<void(const std::string&)>& write) {

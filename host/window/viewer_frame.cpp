@@ -1,4 +1,4 @@
-// See viewer.h. What the user sees and does between two submissions.
+// See viewer.h. The window between two submissions.
 #include <algorithm>
 #include <cstdio>
 #include <deque>
@@ -12,7 +12,7 @@
 namespace candela {
 namespace {
 
-// Drawing may take this share of the time, unless the user does something.
+// Drawing may use this fraction of the time, unless the user acts.
 constexpr double DRAWING_SHARE = 0.1;
 
 // After a pause, the camera flies no farther than in this time [s].

@@ -13,7 +13,7 @@
 namespace candela {
 namespace {
 
-// GLFW's last message; its callback has no other place to put it.
+// GLFW's last message; its callback cannot store it elsewhere.
 std::string last_error;
 
 Error no_window() {
@@ -58,7 +58,7 @@ void Window::add(const Input& input) {
 
 void Window::watch() {
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
-        // Repeats of a held key are not done by the user.
+        // Repeats of a held key are not actions of the user.
         if (action != GLFW_REPEAT) window_of(w).add(KeyInput{key, scancode, action == GLFW_PRESS, modifiers});
     });
     glfwSetCharCallback(window_,
@@ -82,7 +82,7 @@ void Window::watch() {
 std::vector<std::string> Window::instance_extensions() const {
     uint32_t count = 0;
     const char** names = glfwGetRequiredInstanceExtensions(&count);
-    // Also null where there is no Vulkan at all; then the instance says so.
+    // Also null if there is no Vulkan at all; the instance then says so.
     return names == nullptr ? std::vector<std::string>{} : std::vector<std::string>(names, names + count);
 }
 

@@ -1,4 +1,4 @@
-// Window: a window of the system, its Vulkan surface, and what the user does in it. Made with GLFW.
+// Window: a window of the system, its Vulkan surface, and the user's input. Made with GLFW.
 #pragma once
 
 #include <deque>
@@ -18,7 +18,7 @@ namespace candela {
 class Window {
   public:
     // Opens a window whose content has `size` pixels; the user can change that only if it is `resizable`.
-    // Throws Error if there is no display, or none that can show what Vulkan draws.
+    // Throws Error if there is no display, or if it cannot show what Vulkan draws.
     Window(uvec2 size, bool resizable, const std::string& title);
     ~Window();
     Window(const Window&) = delete;
@@ -36,13 +36,12 @@ class Window {
     bool closing() const;
     void close();
 
-    // Takes in what happened since the last call; wait() waits for something to happen if nothing did, at
-    // most `seconds`.
+    // Reads the events since the last call; if there are none, wait() waits for one, at most `seconds`.
     void poll();
     void wait(double seconds);
     // Whether the window changed, or the user did anything, since the last call.
     bool take_activity() { return std::exchange(activity_, false); }
-    // What the user did, in order, as far as it was taken in; whoever handles the first removes it.
+    // The input that was read, in order; the caller removes what it has handled.
     std::deque<Input>& inputs() { return inputs_; }
 
     GLFWwindow* handle() const { return window_; }

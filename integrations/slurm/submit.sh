@@ -4,9 +4,9 @@
 #
 #   usage: submit.sh [OPTIONS] SCENE --spp N -o IMAGE [-o IMAGE...] [OPTIONS of candela render]
 #
-# Options, and the variables that stand for them:
+# Options, and their variables:
 #   --part N        CANDELA_PART        samples of a task; else as many as --task-time allows
-#   --task-time M   CANDELA_TASK_TIME   minutes that a task may take (30), its limit for Slurm; rendering gets half of them
+#   --task-time M   CANDELA_TASK_TIME   the limit of a task for Slurm in minutes (30); rendering gets half of them
 #   --speed S       CANDELA_SPEED       samples per pixel that a node renders in a minute; else measured here, for 5 s
 #   --folder F      CANDELA_FOLDER      where parts, checkpoints, reports and logs go (IMAGE.parts); all nodes must see it
 #                   CANDELA             the program (candela)
@@ -48,7 +48,7 @@ while [ $# -gt 0 ]; do
         --speed) speed=$2; shift 2 ;;
         --folder) folder=$2; shift 2 ;;
         -h | --help) usage; exit 0 ;;
-        -*) fail "$1 is no option of submit.sh; options of candela render stand behind the scene, and a file is ./$1" ;;
+        -*) fail "$1 is not an option of submit.sh; give candela's options after the scene, and a file as ./$1" ;;
         *) break ;;
     esac
 done
@@ -69,7 +69,7 @@ while [ $# -gt 0 ]; do
     esac
 done
 [ -n "$spp" ] || fail "--spp is missing: the samples per pixel of the whole picture"
-[ ${#outputs[@]} -gt 0 ] || fail "there is no output; give -o FILE.exr or -o FILE.png (both, too)"
+[ ${#outputs[@]} -gt 0 ] || fail "no output given; use -o FILE.exr, -o FILE.png, or both"
 outputs=("${outputs[@]/#-/./-}")  # A name that begins with a dash is not an option.
 whole --spp "$spp"
 spp=$REPLY
@@ -124,7 +124,7 @@ mv -T "$folder/part-size.new" "$folder/part-size"
 tasks=$(((spp + part - 1) / part))
 whole "MaxArraySize of scontrol show config" "$(scontrol show config | sed -n 's/^MaxArraySize *= *//p')"
 most=$REPLY
-[ "$tasks" -lt "$most" ] || fail "$tasks tasks of $part sample(s) are more than Slurm takes, $((most - 1)); give a longer --task-time or a larger --part"
+[ "$tasks" -lt "$most" ] || fail "$tasks tasks of $part sample(s) are more than Slurm allows, $((most - 1)); give a longer --task-time or a larger --part"
 
 # The tasks whose samples no part holds yet, in Slurm's notation.
 parts=("$folder"/part-*.exr)

@@ -2,7 +2,7 @@
 #ifndef BASE_COLOR_GLSL
 #define BASE_COLOR_GLSL
 
-// Shares of a linear Rec.709 colour in its luminance.
+// Weights of linear Rec.709 channels in luminance.
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 float luminance(vec3 rgb) {

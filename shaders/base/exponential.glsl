@@ -5,11 +5,11 @@
 #ifndef BASE_EXPONENTIAL_GLSL
 #define BASE_EXPONENTIAL_GLSL
 
-// log(1 + x) for x in [-1, 0], with a relative error of at most 8 * 2^-24, even for tiny x (5 * 2^-24 of it is what
-// Vulkan allows a division); about -88 instead of minus infinity at x = -1.
+// log(1 + x) for x in [-1, 0], with a relative error of at most 8 * 2^-24, even for tiny x (Vulkan allows a division 5
+// * 2^-24 of it); about -88 instead of minus infinity at x = -1.
 //
-// Where 1 + x needs no range reduction, it is never rounded: f = x. With the mantissa 1 + f and s = f / (2 + f),
-// log(1 + f) = 2 (s + s^3/3 + s^5/5 + ...), |s| < 0.172.
+// Without range reduction, 1 + x is never rounded: f = x. With the mantissa 1 + f and s = f / (2 + f), log(1 + f) = 2
+// (s + s^3/3 + s^5/5 + ...), |s| < 0.172.
 float log1p_nonpositive(float x) {
     const float ln2_high = 0.693145751953125;  // 17 bits: its multiples up to 127 are exact.
     const float ln2_low = 1.42860682030941723e-6;

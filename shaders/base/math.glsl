@@ -15,7 +15,7 @@ float max_component(vec3 v) {
 }
 
 // The lesser and the greater of two numbers that are not NaN. With `precise`, each is one instruction on software
-// Vulkan; min and max take three, to handle NaN.
+// Vulkan; min and max are three, to handle NaN.
 float lesser(float a, float b) {
     precise float x = a < b ? a : b;
     return x;
@@ -39,7 +39,7 @@ bool is_finite(vec3 v) {
     return all(notEqual(floatBitsToUint(v) & 0x7F800000u, uvec3(0x7F800000u)));
 }
 
-// Signs of numbers that are not NaN; 0 has none. On software Vulkan, comparing bits takes one instruction, comparing
+// Signs of numbers that are not NaN; 0 has no sign. On software Vulkan, comparing bits is one instruction, comparing
 // floats three, to handle NaN.
 bool all_positive(vec4 v) {
     ivec4 bits = floatBitsToInt(v);

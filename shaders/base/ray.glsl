@@ -8,8 +8,8 @@ struct Ray {
     vec3 d;
 };
 
-// Reciprocals of a direction's components. A component near 0 is replaced by a tiny number: planes that the ray would
-// never reach are then very far away on either side, and 0 * infinity does not arise.
+// Reciprocals of a direction's components. A component near 0 is replaced by a tiny number: planes that the ray never
+// reaches are then very far away on either side, and 0 * infinity does not occur.
 vec3 reciprocals(vec3 d) {
     const float tiny = 1e-18;
     return 1.0 / mix(d, vec3(tiny), lessThan(abs(d), vec3(tiny)));

@@ -1,8 +1,8 @@
 // Samplers: two words of random bits for a pair of dimensions, as a pure function of (pixel, n, seed, pair); and a
-// third for a choice that goes with the point of the pair.
+// third for a choice at the point of the pair.
 //
-// All three are counter-based: they keep no state but the counters, so that any sample of any pixel can be made
-// anywhere, at any time, in any order.
+// All three are counter-based: their only state is the counters, so that any sample of any pixel can be made anywhere,
+// at any time, in any order.
 #ifndef BASE_SAMPLER_GLSL
 #define BASE_SAMPLER_GLSL
 
@@ -70,8 +70,8 @@ uint divide_by_trinomial(uint n, const uint k, const uint low) {
 }
 
 // Writes the polynomial i in powers of x^2 + x + 1, and swaps the two bits of each digit: the third dimension of
-// Niederreiter's sequence, whose first two are Sobol's, bit-reversed. Of 2^k points in a row, 2 have their three
-// words in each box of the volume 2^(1-k).
+// Niederreiter's sequence, whose first two are Sobol's, bit-reversed. Among 2^k points in a row, 2 have their three
+// words in each box of volume 2^(1-k).
 // Ref: Niederreiter 1988, Low-Discrepancy and Low-Dispersion Sequences, section 3.
 uint trinomial_digits(uint i) {
     i = divide_by_trinomial(i, 8u, 0x000000FFu);
@@ -90,8 +90,8 @@ uvec3 sobol_triple(Sampler s, uint pair) {
                                  hash_laine_karras(trinomial_digits(i), hash_pcg3d(seeds).x)));
 }
 
-// Three words of 32 random bits: two for that pair of dimensions, and one for a choice. The choice is as well spread
-// over the points of the pair as they are by themselves.
+// Three words of 32 random bits: two for that pair of dimensions, and one for a choice. Points and choice together are
+// as well distributed as the points alone.
 uvec3 sampler_triple(Sampler s, uint pair) {
     switch (SAMPLER) {
         case SAMPLER_INDEPENDENT: return hash_pcg4d(uvec4(s.pixel, s.n, pair, s.seed)).xyz;

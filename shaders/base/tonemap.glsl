@@ -31,7 +31,7 @@ vec3 tonemap_agx(vec3 colour) {
                              -0.0990297440797205, -0.0989611768448433, 1.15107367264116);
     const float MIN_EV = -12.47393;
     const float MAX_EV = 4.026069;
-    // In GLSL, log2(0) need not be -infinity.
+    // GLSL does not guarantee that log2(0) is -infinity.
     vec3 ev = clamp(log2(max(inset * colour, 1e-10)), MIN_EV, MAX_EV);
     vec3 x = (ev - MIN_EV) / (MAX_EV - MIN_EV);
     vec3 sigmoid = (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;

@@ -31,7 +31,7 @@ float warp_cosine_hemisphere_pdf(float cos_theta) {
 }
 
 // The unit direction with 1 - cos(theta) = h, in [0, 2], around +z, at an azimuth of that many turns. Near the pole, h
-// keeps the digits that the cosine has lost.
+// keeps the digits that the cosine loses.
 vec3 direction_at(float h, float turn) {
     return vec3(sqrt(max(0.0, h * (2.0 - h))) * cos_sin_turn(turn), 1.0 - h);
 }
@@ -60,7 +60,7 @@ float warp_cone_pdf(float h_max) {
 // Normal of a GGX microfacet that w sees, with the density G1(w) max(0, w.h) D(h) / w.z [1/sr], from u in [0,1)^2; w.z
 // > 0, alpha along x and y in (0, 1]. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, section 3.
 vec3 warp_ggx_visible_normal(vec2 u, vec2 alpha, vec3 w) {
-    // In stretched space the facets form a hemisphere. Its visible part projects to a disk, less a piece behind the
+    // In stretched space the facets form a hemisphere. Its visible part projects to a disk, minus a piece behind the
     // horizon.
     vec3 v = normalize(vec3(alpha * w.xy, w.z));
     float across = dot(v.xy, v.xy);
@@ -99,10 +99,10 @@ uvec2 warp_alias_column(uint bits, uint n) {
     return uvec2(column, fraction);
 }
 
-// What an alias table chose.
+// The choice of an alias table.
 struct AliasChoice {
     uint i;
-    float rest;  // Uniform in [0, 1): what the choice leaves of the random bits.
+    float rest;  // Uniform in [0, 1): the unused randomness.
 };
 
 // The choice of a column (index and the 32 bits that decide within it), whose entry is given.
@@ -113,8 +113,8 @@ AliasChoice warp_alias_choice(uvec2 column, AliasEntry entry) {
     return AliasChoice(keep ? column.x : entry.alias, min(rest, 1.0 - 1.0 / 16777216.0));
 }
 
-// Weight of a sample drawn with density pdf where another strategy has density pdf_other (same measure), one sample
-// each; power heuristic with exponent 2. 0 if pdf is 0, 1 if it is beyond comparison with pdf_other.
+// Weight of a sample drawn with density pdf if another strategy has density pdf_other (same measure), one sample each;
+// power heuristic with exponent 2. 0 if pdf is 0, 1 if it is too large to compare with pdf_other.
 // Ref: Veach 1997, Robust Monte Carlo Methods for Light Transport Simulation, section 9.2.4.
 float power_heuristic(float pdf, float pdf_other) {
     if (pdf == 0.0) return 0.0;

@@ -1,7 +1,7 @@
 // The BSDF of a material: one line per model. Local frame; see bsdf/sample.glsl for the conventions.
 //
-// Before it includes this, a kernel defines LAYERED: 1 if it has the code of principled materials, else 0. (That is no
-// specialization constant, since drivers read all of the code before they know of those.)
+// Before it includes this, a kernel defines LAYERED: 1 if it has the code of principled materials, else 0. (It is not a
+// specialization constant, since drivers read all of the code before they apply those.)
 #ifndef BSDF_BSDF_GLSL
 #define BSDF_BSDF_GLSL
 
@@ -21,7 +21,8 @@
 
 const uint MATERIALS_DIELECTRIC = 1u << MATERIAL_DIELECTRIC_SCHLICK | 1u << MATERIAL_DIELECTRIC_EXACT;
 
-// True if some surface scatters light that comes from behind it, so that light samples there count.
+
+// True if some surface scatters light that comes from behind it, so that light samples there are needed.
 const bool LIT_FROM_BEHIND =
     (MATERIALS & 1u << MATERIAL_DIFFUSE_TRANSMISSION | PRINCIPLED & PRINCIPLED_IS_LIT_FROM_BEHIND) != 0u;
 
@@ -80,8 +81,8 @@ BsdfValue bsdf_evaluate(Bsdf b, vec3 wo, vec3 wi) {
     return bsdf_zero();
 }
 
-// The value times the cosine and the density of a coat with a normal of its own, for wi below the horizon of what it
-// lies on; 0 for others.
+// The value times the cosine and the density of a coat with its own normal, for wi below the horizon of the layers
+// under it; 0 for other wi.
 BsdfValue bsdf_evaluate_coat(Bsdf b, vec3 wo, vec3 wi) {
     bool has_coat = (PRINCIPLED & PRINCIPLED_HAS_COAT_NORMAL) != 0u && is_model(b, 1u << MATERIAL_PRINCIPLED);
     if (!has_coat) return bsdf_zero();
@@ -104,7 +105,7 @@ BsdfSample bsdf_sample_f(Bsdf b, vec3 wo, float uc, vec2 u) {
     return bsdf_sample_failed();
 }
 
-// Share of the light that the surface scatters at normal incidence, per channel, for the albedo image.
+// Fraction of the light that the surface scatters at normal incidence, per channel, for the albedo image.
 vec3 bsdf_albedo(Bsdf b) {
     if (is_model(b, MATERIALS_DIELECTRIC)) return vec3(1.0);
     return is_model(b, 1u << MATERIAL_PHONG | 1u << MATERIAL_DIFFUSE_TRANSMISSION) ? b.base + b.specular : b.base;

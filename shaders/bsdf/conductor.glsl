@@ -9,8 +9,8 @@
 #include "bsdf/fresnel.glsl"
 #include "bsdf/sample.glsl"
 
-// Density of facets with the normal h, per area of surface [1/sr]; alpha in (0, 1], h.z > 0. In this form a small alpha
-// costs no digits.
+// Density of facets with the normal h, per area of surface [1/sr]; alpha in (0, 1], h.z > 0. This form keeps all digits
+// for a small alpha.
 float ggx_d(float alpha, vec3 h) {
     float stretched = dot(h.xy, h.xy) / square(alpha) + square(h.z);
     return 1.0 / (PI * square(alpha * stretched));
@@ -28,13 +28,13 @@ bool conductor_sees(vec3 w) {
     return w.z > least_cosine;
 }
 
-// Zero unless both directions see the surface. The density is G1 D / (4 cos(theta_o)): that of the facets that wo sees,
-// times the Jacobian of reflection. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, equations 3 and
-// 19.
+// Zero unless both directions see the surface. The density is G1 D / (4 cos(theta_o)): the density of the facets that
+// wo sees, times the Jacobian of reflection. Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals,
+// equations 3 and 19.
 BsdfValue conductor_evaluate(vec3 reflectance, float alpha, vec3 wo, vec3 wi) {
     if (!conductor_sees(wo) || !conductor_sees(wi)) return bsdf_zero();
     vec3 sum = wo + wi;
-    float cos_facet = 0.5 * length(sum);  // Of either direction to the facet's normal.
+    float cos_facet = 0.5 * length(sum);  // Cosine of either direction to the facet's normal.
     float d = ggx_d(alpha, normalize(sum));
     float reach_o = ggx_reach(alpha, wo);
     // G2 / (4 cos(theta_o) cos(theta_i))

@@ -8,10 +8,10 @@
 #include "bsdf/mirror.glsl"
 #include "shared/kernel_constants.h"
 
-// The reflected ray with the probability that Fresnel's term gives it, otherwise the refracted one; uc in [0,1)
-// chooses. The projected solid angle of a beam grows by eta^2 on its way through to the viewer, so that its radiance is
-// divided by eta^2. A ray passes a boundary between equal indices as if it were not there (where Schlick's
-// approximation would reflect at its rim).
+// The reflected ray with the probability of Fresnel's term, otherwise the refracted one; uc in [0,1) chooses. The
+// projected solid angle of a beam grows by eta^2 on its way through to the viewer, so its radiance is divided by eta^2.
+// A ray passes a boundary between equal indices as if it were not there (where Schlick's approximation would reflect at
+// its rim).
 BsdfSample dielectric_sample_f(float eta, bool exact, vec3 wo, float uc) {
     if (eta == 1.0) return bsdf_sample_delta(-wo, vec3(1.0), 1.0, 1.0);
     if (wo.z <= 0.0) return bsdf_sample_failed();

@@ -1,4 +1,4 @@
-// How much light a boundary reflects.
+// The reflectance of boundaries.
 #ifndef BSDF_FRESNEL_GLSL
 #define BSDF_FRESNEL_GLSL
 
@@ -24,7 +24,7 @@ float refracted_cosine(float sin2_theta, float eta) {
 
 // Reflectance of a dielectric boundary for unpolarised light: Schlick's approximation, with the angle on the side of
 // the lower index. That angle reaches 90 degrees when the other one reaches the critical angle, so both sides reflect
-// alike. 1 beyond the critical angle, where cos_t is 0.
+// equally. 1 beyond the critical angle, where cos_t is 0.
 float fresnel_dielectric_schlick(float cos_o, float cos_t, float eta) {
     float normal = square((eta - 1.0) / (eta + 1.0));
     return mix(normal, 1.0, schlick_weight(eta >= 1.0 ? cos_o : cos_t));

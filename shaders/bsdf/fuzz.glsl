@@ -9,10 +9,10 @@
 #include "base/math.glsl"
 #include "base/warp.glsl"
 
-// The fits are made for no less; there, fuzz reflects a ten-thousandth at most.
+// The fits are not made for smaller values, where fuzz reflects at most a ten-thousandth.
 const float LEAST_FUZZ_ROUGHNESS = 0.01;
 
-// Share of light from wo, whose cosine that is, that white fuzz reflects: 0 to 0.75. Roughness as above, up to 1.
+// Fraction of light from wo, given by its cosine, that white fuzz reflects: 0 to 0.75. Roughness as above, up to 1.
 float fuzz_albedo(float roughness, float cos_o) {
     const float INV_SQRT_2_PI = 0.398942280;
     float y = roughness;
@@ -23,8 +23,8 @@ float fuzz_albedo(float roughness, float cos_o) {
     return max(gaussian + offset, 0.0);
 }
 
-// (a, k): the inverse transform takes wi to (a wi.xy + k wi.z wo.xy, wi.z). So it needs no frame whose x is the azimuth
-// of wo, which has none at normal incidence.
+// (a, k): the inverse transform maps wi to (a wi.xy + k wi.z wo.xy, wi.z). So it does not need a frame whose x is the
+// azimuth of wo, which is undefined at normal incidence.
 vec2 fuzz_shape(float roughness, float cos_o) {
     float x = cos_o, y = roughness;
     float a = (2.58126 * x + 0.813703 * y) * y / (1.0 + x * (0.310327 * x + 2.60994 * y));

@@ -27,7 +27,7 @@ float ggx_visibility(float cos_o, float cos_i, float reach_o, float reach_i) {
     return 0.5 / (cos_i * reach_o + cos_o * reach_i);
 }
 
-// Density of the normals that wo sees, over 4 |wo.h| |d|: half of it is that of reflected directions [1/sr].
+// Density of directions reflected by facets sampled by visible area [1/sr]: G1 D / (4 cos_o).
 // Ref: Heitz 2018, Sampling the GGX Distribution of Visible Normals, equations 3 and 19.
 float ggx_reflected_pdf(float d, float cos_o, float reach_o) {
     return 0.5 * d / (cos_o + reach_o);

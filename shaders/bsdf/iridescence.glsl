@@ -20,8 +20,8 @@ float cos_of_phase(float x) {
     return cos_sin_turn(turns - floor(turns)).x;
 }
 
-// The mean of cos(2 pi path / wavelength + shift) under the curves by which the eye sees red, green and blue, which the
-// spectrum's Fourier transform gives; path [nm], over the vacuum's wavelengths.
+// The mean of cos(2 pi path / wavelength + shift) under the eye's sensitivity curves for red, green and blue, by their
+// Fourier transforms; path [nm], wavelengths in vacuum.
 vec3 interference(float path, vec3 shift) {
     // Gaussians in XYZ: height [m], mean [1/m], variance [1/m^2] of each; X has a second one.
     const vec4 HEIGHT = vec4(5.4856e-13, 4.4201e-13, 5.2481e-13, 9.7470e-14);

@@ -1,4 +1,4 @@
-// In the place of bsdf/principled.glsl, for kernels that have no principled materials.
+// Replaces bsdf/principled.glsl in kernels without principled materials.
 #ifndef BSDF_NO_LAYERS_GLSL
 #define BSDF_NO_LAYERS_GLSL
 

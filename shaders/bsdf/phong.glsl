@@ -6,8 +6,8 @@
 // viewer's side of the surface.
 // Ref: Lafortune and Willems 1994, Using the Modified Phong Reflectance Model for Physically Based Rendering.
 //
-// At an exponent of 10^5 the lobe is half a degree wide. There cos(alpha) has no digits left, so all is computed from
-// h = 1 - cos(alpha) = |wi - mirrored|^2 / 2 instead.
+// At an exponent of 10^5 the lobe is half a degree wide. There cos(alpha) has no digits left, so everything is computed
+// from h = 1 - cos(alpha) = |wi - mirrored|^2 / 2 instead.
 #ifndef BSDF_PHONG_GLSL
 #define BSDF_PHONG_GLSL
 
@@ -24,7 +24,7 @@ float phong_lobe(float n, vec3 wo, vec3 wi) {
     return h < 1.0 ? exp_nonpositive(n * log1p_nonpositive(-h)) : 0.0;
 }
 
-// Probability of sampling the lobe rather than the base: its share of the albedo.
+// Probability of sampling the lobe rather than the base: its fraction of the albedo.
 float phong_lobe_pmf(vec3 kd, vec3 ks) {
     float base = luminance(kd);
     float lobe = luminance(ks);

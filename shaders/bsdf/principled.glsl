@@ -11,16 +11,17 @@
 //                 refraction          base_color (1 - max Fd) D G
 //                 diffuse             base_color, diffuse_transmission_color           1 - <max Fd>
 //
-// Within a solid, light meets the facets of the part that transmits, and the diffuse base of the rest without any.
+// Within a solid, light meets the facets of the transmitting part, and the diffuse base of the rest without facets.
 //
-// What a layer leaves to those below is the last column, a function of wo alone: what it does not scatter itself. (By
-// facets, as glTF's own sample code has it, light would be gained at grazing angles.) Light that is scattered more than
-// once among facets is what they lose to shadowing, <1 - s>; it leaves the surface as from a diffuse one.
+// The last column is the light that a layer leaves to those below, a function of wo alone: the light that it does not
+// scatter itself. (By facets, as in glTF's own sample code, light would be gained at grazing angles.) Light that is
+// scattered more than once among facets is the light that they lose to shadowing, <1 - s>; it leaves the surface as
+// from a diffuse one.
 //
-// <x> is the mean of x over the facets that wo sees. A lattice of FACETS of them at random places measures it, without
-// bias, since all that is measured counts linearly: there are no tables of albedos, and no fits. So a surface has other
-// lobes at each vertex, and the right ones on average. Nothing is gained or lost, whatever the roughness, the indices
-// and the film. The whole is not reciprocal; its lobes are, one by one, except fuzz.
+// <x> is the mean of x over the facets that wo sees. A lattice of FACETS facets at random places measures it, without
+// bias, since everything measured enters linearly: there are no tables of albedos, and no fits. So a surface has
+// different lobes at each vertex, and the right ones on average. No light is gained or lost, at any roughness, indices
+// and film. The whole is not reciprocal; each of its lobes is, except fuzz.
 // Ref: glTF 2.0, appendix B, and its extensions KHR_materials_*; OpenPBR 1.1; Kulla and Conty 2017, Revisiting
 // Physically Based Shading at Imageworks, on lost light; Cranley and Patterson 1976, Randomization of Number Theoretic
 // Methods for Multiple Integration, on such lattices.
@@ -35,8 +36,8 @@
 #include "bsdf/rough_diffuse.glsl"
 #include "bsdf/sample.glsl"
 
-// Value and density of the facets of the base, for wi on the other side of a surface that refracts. Colour by colour,
-// since each has facets of its own there.
+// Value and density of the facets of the base, for wi on the other side of a surface that refracts. Each colour is
+// evaluated alone, since each has its own facets there.
 // Ref: Walter et al. 2007, equations 16 and 17, and 21 over eta^2 for radiance.
 BsdfValue principled_refraction(Principled p, vec3 wo, vec3 wi) {
     BsdfValue sum = bsdf_zero();
@@ -77,8 +78,8 @@ BsdfValue principled_reflection(Principled p, vec3 wo, vec3 wi, bool through) {
                      ggx_reflected_pdf(d, wo.z, reach_o) * (through ? share : 1.0 - share));
 }
 
-// Value and density of a coat that is not ideal, whose normal is its own, and so is the side of a direction. The value
-// is for a cosine of wi to another normal: 1 gives the value times the cosine to the coat's.
+// Value and density of a coat that is not ideal, with its own normal, which also decides the side of a direction. The
+// value is for a cosine of wi to another normal: 1 gives the value times the cosine to the coat's.
 BsdfValue principled_coat_evaluate(Principled p, vec3 wo, vec3 wi, float cosine) {
     if (p.coat_ideal || p.pmf.x <= 0.0) return bsdf_zero();
     vec3 o = to_coat(p, wo), i = to_coat(p, wi);
@@ -113,7 +114,7 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
         value.f += p.fuzz * f;
         value.pdf += p.fuzz_pmf * f * wi.z;
     }
-    // Radiance is divided by eta^2, however light gets through.
+    // Radiance is divided by eta^2 for every kind of transmission.
     if (!above) value.f += p.through * INV_PI / (p.refracts ? p.eta * p.eta : vec3(1.0));
     if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal && p.pmf.y > 0.0) {
         BsdfValue facets = bsdf_zero();
@@ -134,7 +135,7 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
     return value;
 }
 
-// An ideal direction and its weight, where the probability of choosing it is `chosen`.
+// An ideal direction and its weight; `chosen` is the probability of choosing it.
 BsdfSample principled_ideal(vec3 wi, vec3 weight, float chosen, float eta) {
     return bsdf_sample_delta(wi, weight / chosen, chosen, eta);
 }
@@ -157,7 +158,7 @@ BsdfSample principled_sample_facets(Principled p, vec3 wo, float uc, vec2 u) {
         if (wi.z <= 0.0) return bsdf_sample_failed();
         return principled_ideal(vec3(wi.xy, -wi.z), transmitted, p.pmf.y * share, 1.0);
     }
-    // One colour decides where the light goes, and takes those along that go there too.
+    // One colour decides the direction; the others follow if they scatter into it, too.
     float eta = p.eta.y;
     float chosen = share;
     if (principled_has(PRINCIPLED_HAS_DISPERSION)) {

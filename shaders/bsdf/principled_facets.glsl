@@ -1,5 +1,5 @@
-// What a principled material is at a point, and the facets of its base: what they reflect and transmit, and what of
-// that they lose. bsdf/principled.glsl has the whole on one page.
+// A principled material at a point, and the facets of its base: the light that they reflect, transmit and lose.
+// bsdf/principled.glsl has the whole on one page.
 #ifndef BSDF_PRINCIPLED_FACETS_GLSL
 #define BSDF_PRINCIPLED_FACETS_GLSL
 
@@ -16,17 +16,17 @@ bool principled_has(const uint part) {
 
 const bool PRINCIPLED_TRANSMITS = (PRINCIPLED & (PRINCIPLED_HAS_THIN | PRINCIPLED_HAS_VOLUME)) != 0u;
 
-// What a principled material is made of at a point: the record's values there.
+// The values of a principled material at a point.
 struct PrincipledSurface {
     PrincipledRecord record;
     vec3 base_color;
-    float eta;      // Index of refraction on the other side over that on the viewer's.
-    vec3 spread;    // Factor of eta for red, green and blue.
-    bool encloses;  // A medium: light is refracted. Otherwise the surface is a thin wall.
-    bool inside;    // The viewer is in that medium.
-    vec3 coat_n;    // Normal of the coat, in the local frame.
-    vec3 hue;       // Shares of the colours in the choice of a direction; they add up to 1.
-    vec4 random;    // Uniform in [0, 1), for two lattices.
+    float eta;       // Index of refraction on the other side over that on the viewer's.
+    vec3 spread;     // Factor of eta for red, green and blue.
+    bool encloses;   // The surface encloses a medium and refracts light. Otherwise it is a thin wall.
+    bool inside;     // The viewer is in that medium.
+    vec3 coat_n;     // Normal of the coat, in the local frame.
+    vec3 hue;        // Probabilities of the colours in the choice of a direction; they add up to 1.
+    vec4 random;     // Uniform in [0, 1), for two lattices.
 };
 
 // The lobes of such a point, seen from wo.
@@ -35,26 +35,26 @@ struct Principled {
     // normal, and transmit transmit (t_0 - t_edge t) of it: S is schlick_weight(c), t rises from 0 to 1 as Fresnel's
     // equations do.
     vec2 alpha;
-    bool ideal;  // There are no facets but the surface itself.
+    bool ideal;      // The surface itself is the only facet.
     bool refracts;
-    vec3 eta;  // Of red, green and blue.
+    vec3 eta;        // For red, green and blue.
     vec3 r_0;
     vec3 r_edge;
     vec3 r_schlick;
-    float r_total;  // What is added where reflection is total: the transmitting share loses nothing.
+    float r_total;   // Added if reflection is total, so that the transmitting fraction does not lose light.
     vec3 transmit;
     vec3 t_0;
     vec3 t_edge;
 
-    vec3 base_color;  // Of the diffuse base,
+    vec3 base_color;  // Colour of the diffuse base.
     float roughness;
-    vec3 diffuse;  // and its weight.
-    vec3 again;    // Reflectance of Lambert's lobe for light that facets scatter more than once,
-    vec3 through;  // and transmittance: of that, and of the diffuse base.
+    vec3 diffuse;     // Weight of the diffuse base.
+    vec3 again;       // Reflectance of Lambert's lobe for light that facets scatter more than once.
+    vec3 through;     // Transmittance of that lobe and of the diffuse base.
     vec3 sheen;
     float sheen_alpha;
-    vec3 fuzz;        // What it reflects; the directions,
-    vec2 fuzz_shape;  // and the probability of choosing it.
+    vec3 fuzz;        // Reflectance of the fuzz.
+    vec2 fuzz_shape;  // Its lobe: the transform of directions.
     float fuzz_pmf;
 
     float coat;
@@ -65,11 +65,12 @@ struct Principled {
     vec3 coat_n;
 
     vec3 hue;
-    // Of choosing: coat, base facets, diffuse reflection and sheen, diffuse transmission. All 0, and fuzz_pmf: black.
+    // Probabilities of choosing: coat, base facets, diffuse reflection and sheen, diffuse transmission. If all are 0,
+    // and fuzz_pmf, too: black.
     vec4 pmf;
 };
 
-// Beyond this relative index, boundaries reflect almost all light, and floats cannot hold the rest.
+// Beyond this relative index, boundaries reflect nearly all light, and floats cannot represent the rest.
 const float GREATEST_ETA = 100.0;
 
 // Facets that are measured: a power of two of at most 4, see lattice_point().
@@ -83,8 +84,8 @@ vec3 dispersion_spread(float ior, float dispersion) {
     return vec3(max(ior - h, min(ior, 1.0 + LEAST_ALPHA)), ior, ior + h) / ior;
 }
 
-// The material m at a point where it has the values of `record`, seen from its front or from its back; its coat has no
-// normal of its own yet. eta is as in PrincipledSurface, and so are hue and random.
+// The material m at a point where it has the values of `record`, seen from its front or from its back; its coat does
+// not have its own normal yet. eta, hue and random are as in PrincipledSurface.
 PrincipledSurface principled_surface(MaterialRecord m, PrincipledRecord record, bool front, float eta, vec3 hue,
                                      vec4 random) {
     PrincipledSurface s;
@@ -104,8 +105,8 @@ PrincipledSurface principled_surface(MaterialRecord m, PrincipledRecord record, 
     return s;
 }
 
-// (F - F(1)) / (1 - F(1)), F being Fresnel's reflectance of a dielectric at a cosine, F(1) that at normal incidence: in
-// [0, 1], and 1 if reflection is total.
+// (F - F(1)) / (1 - F(1)), where F is Fresnel's reflectance of a dielectric at a cosine, and F(1) at normal incidence:
+// in [0, 1], and 1 if reflection is total.
 float fresnel_edge(float eta, float cos_o) {
     if (eta > GREATEST_ETA) return schlick_weight(cos_o);
     float cos_t = refracted_cosine(1.0 - square(cos_o), eta);
@@ -119,7 +120,7 @@ vec3 principled_edge(Principled p, float cos_o) {
     return vec3(fresnel_edge(p.eta.x, cos_o), green, fresnel_edge(p.eta.z, cos_o));
 }
 
-// What facets at that cosine to wo reflect, and transmit, per colour.
+// The light that facets at that cosine to wo reflect, and transmit, per colour.
 void principled_facet(Principled p, float cos_o, out vec3 reflected, out vec3 transmitted) {
     vec3 edge = principled_edge(p, cos_o);
     reflected = p.r_0 + p.r_edge * edge;
@@ -133,7 +134,7 @@ void principled_facet(Principled p, float cos_o, out vec3 reflected, out vec3 tr
     if (principled_has(PRINCIPLED_HAS_METAL)) reflected += p.r_schlick * schlick_weight(cos_o);
 }
 
-// The probability that facets which reflect and transmit as much are chosen to transmit.
+// The probability of transmission by facets that reflect and transmit this much.
 float principled_transmitted_share(Principled p, vec3 reflected, vec3 transmitted) {
     float r = dot(p.hue, reflected), t = dot(p.hue, transmitted);
     return t > 0.0 ? t / (r + t) : 0.0;
@@ -149,8 +150,8 @@ vec2 lattice_point(uint i, vec2 shift) {
     return fract(vec2(float(i), float(i >> 1u | (i & 1u) << 1u)) / float(FACETS) + shift);
 }
 
-// Share of light that a facet reflects to wi and that does not get there: it is shadowed, or wi is below the surface.
-// Given that wo sees the facet: 1 - G2 / G1.
+// Fraction of the light reflected by a facet to wi that is lost: it is shadowed, or wi is below the surface. Given that
+// wo sees the facet: 1 - G2 / G1.
 float facet_shadowed(vec2 alpha, vec3 wo, vec3 wi, float reach_o) {
     if (wi.z <= 0.0) return 1.0;
     float both = wi.z * reach_o + wo.z * ggx_reach(alpha, wi);
@@ -159,16 +160,16 @@ float facet_shadowed(vec2 alpha, vec3 wo, vec3 wi, float reach_o) {
 
 // Means over the facets that wo sees.
 struct FacetMeans {
-    vec3 edge;        // t,
-    float schlick;    // and S: see Principled.
-    float most;       // The greatest channel of what the dielectric reflects,
-    float most_lost;  // and of that, what is shadowed.
-    float lost;       // What is shadowed where all is reflected,
-    vec3 glass_lost;  // and where the dielectric reflects and transmits, per colour.
+    vec3 edge;        // Mean of t: see Principled.
+    float schlick;    // Mean of S: see Principled.
+    float most;       // The greatest channel of the dielectric's reflection.
+    float most_lost;  // The part of `most` that is shadowed.
+    float lost;       // The light shadowed if all is reflected.
+    vec3 glass_lost;  // The light that the dielectric loses in reflection and transmission, per colour.
 };
 
-// Share of the light that a dielectric facet with the normal h loses, for one relative index: neither its reflection,
-// of which `shadowed` is lost, nor its refraction. F = d_0 + d_edge t is what it reflects.
+// Fraction of the light that a dielectric facet with the normal h loses, for one relative index: neither its
+// reflection, of which the fraction `shadowed` is lost, nor its refraction. Its reflectance is F = d_0 + d_edge t.
 float glass_lost(Principled p, float eta, float d_0, float d_edge, float shadowed, vec3 wo, vec3 h) {
     float cos_o = dot(wo, h);
     float reflected = min(d_0 + d_edge * fresnel_edge(eta, cos_o), 1.0);
@@ -180,7 +181,8 @@ float glass_lost(Principled p, float eta, float d_0, float d_edge, float shadowe
     return mix(hidden, shadowed, reflected);
 }
 
-// Of facets whose dielectric reflects d_0 + d_edge t, for the index of refraction of red, of green and of blue light.
+// For facets whose dielectric reflects d_0 + d_edge t, with the indices of refraction of red, of green and of blue
+// light.
 FacetMeans principled_measure(Principled p, vec3 d_0, vec3 d_edge, vec3 wo, vec2 shift) {
     FacetMeans sum = FacetMeans(vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0));
     float reach_o = ggx_reach(p.alpha, wo);
@@ -209,10 +211,11 @@ FacetMeans principled_measure(Principled p, vec3 d_0, vec3 d_edge, vec3 wo, vec2
                       EACH * sum.glass_lost);
 }
 
-// Colour of light that metal facets scatter more than once, m_0 + m_edge S each time: after each time but the first it
-// stays with the same probability. That and the mean of S are fits to random walks among facets of one roughness,
-// within 0.001 of the albedo; the energy does not depend on them. Ref: Heitz et al. 2016, Multiple-Scattering
-// Microfacet BSDFs with the Smith Model, on the walks; Kulla and Conty 2017, on the sum over all times.
+// Colour of light that metal facets scatter more than once, m_0 + m_edge S each time: after each time except the first
+// it stays with the same probability. This probability and the mean of S are fits to random walks among facets of one
+// roughness, within 0.001 of the albedo; the energy does not depend on them. Ref: Heitz et al. 2016,
+// Multiple-Scattering Microfacet BSDFs with the Smith Model, on the walks; Kulla and Conty 2017, on the sum over all
+// times.
 vec3 metal_again(vec3 m_0, vec3 m_edge, vec2 alpha) {
     float a = sqrt(0.5 * dot(alpha, alpha));
     float stays = 0.397 * a;
@@ -220,7 +223,7 @@ vec3 metal_again(vec3 m_0, vec3 m_edge, vec2 alpha) {
     return mean * mean * ((1.0 - stays) / (1.0 - mean * stays));
 }
 
-// Share of light from all sides that a dielectric boundary reflects: what a facet scatters again goes to that side.
+// Fraction of light from all sides that a dielectric boundary reflects: multiply scattered light goes to that side.
 float diffuse_reflectance(float eta) {
     float f0 = square((eta - 1.0) / (eta + 1.0));
     float outside = mix(f0, 1.0, 1.0 / 21.0);

@@ -1,5 +1,5 @@
-// The lobes of a principled material seen from one direction: fuzz, coat, sheen and base, from above, each under what
-// the one before leaves. bsdf/principled.glsl has the whole on one page.
+// The lobes of a principled material seen from one direction: fuzz, coat, sheen and base, from above, each lit by what
+// the previous one leaves. bsdf/principled.glsl has the whole on one page.
 #ifndef BSDF_PRINCIPLED_LOBES_GLSL
 #define BSDF_PRINCIPLED_LOBES_GLSL
 
@@ -10,7 +10,7 @@
 #include "bsdf/sheen.glsl"
 #include "bsdf/sheen_albedo.glsl"
 
-// Between the frame and that of the coat.
+// Conversion between the frame and the coat's frame.
 vec3 to_coat(Principled p, vec3 w) {
     return principled_has(PRINCIPLED_HAS_COAT_NORMAL) ? frame_to_local(frame_from_z(p.coat_n), w) : w;
 }
@@ -23,7 +23,7 @@ float coat_fresnel(Principled p, float cos_o) {
     return mix(fresnel_edge(p.coat_ior, cos_o), 1.0, p.coat_f0);
 }
 
-// The fuzz's lobe; returns what it leaves to the layers below.
+// The fuzz's lobe; returns the fraction that it leaves to the layers below.
 float principled_fuzz(inout Principled p, PrincipledSurface s, vec3 wo) {
     p.fuzz = vec3(0.0);
     p.fuzz_shape = vec2(1.0, 0.0);
@@ -37,7 +37,7 @@ float principled_fuzz(inout Principled p, PrincipledSurface s, vec3 wo) {
     return 1.0 - reflected;
 }
 
-// The coat's lobes; returns what it leaves to the layers below.
+// The coat's lobes; returns the fraction that it leaves to the layers below.
 float principled_coat(inout Principled p, PrincipledSurface s, vec3 wo) {
     p.coat = 0.0;
     p.coat_ideal = true;
@@ -70,8 +70,8 @@ float principled_coat(inout Principled p, PrincipledSurface s, vec3 wo) {
     return max(1.0 - p.coat * reflected, 0.0);
 }
 
-// Darkens what the layers under the coat send up: the coat reflects a part of it down again, and what reflects little
-// takes that away. `up` is the share that they send up, `roughness` how diffuse that is.
+// Darkens the light that the layers under the coat send up: the coat reflects a part of it down again, and a dark base
+// absorbs that. `up` is the fraction that they send up, `roughness` its diffuseness.
 // Ref: OpenPBR 1.1, section on coat darkening.
 void principled_darken(inout Principled p, PrincipledSurface s, vec3 wo, vec3 up, float roughness) {
     if (p.coat == 0.0) return;
@@ -88,7 +88,7 @@ void principled_darken(inout Principled p, PrincipledSurface s, vec3 wo, vec3 up
     p.sheen *= factor;
 }
 
-// The sheen's lobe under a coat that leaves `above`; returns what sheen and coat leave.
+// The sheen's lobe under a coat that leaves `above`; returns the fraction that sheen and coat leave.
 float principled_sheen(inout Principled p, PrincipledSurface s, vec3 wo, float above) {
     p.sheen = vec3(0.0);
     p.sheen_alpha = 1.0;
@@ -102,7 +102,7 @@ float principled_sheen(inout Principled p, PrincipledSurface s, vec3 wo, float a
     return above * (1.0 - max_component(s.record.sheen_color) * albedo);
 }
 
-// The facets of the base: how rough they are, and between which indices of refraction.
+// The facets of the base: their roughness and indices of refraction.
 void principled_base_facets(inout Principled p, PrincipledSurface s, float transmission) {
     PrincipledRecord r = s.record;
     float alpha = square(r.roughness);
@@ -124,9 +124,9 @@ struct BaseReflectance {
     vec3 d_edge;
     vec3 m_0;
     vec3 m_edge;
-    vec3 most_0;  // The greatest channel of the dielectric, if the index were that of red, of green and of blue light:
+    vec3 most_0;  // The greatest channel of the dielectric, with the index of red, of green and of blue light:
     vec3 most_edge;      // most_0 + most_edge t.
-    float smooth_share;  // The greatest channel that the dielectric without a film reflects to the mirror direction.
+    float smooth_share;  // The greatest channel of the mirror reflection of the dielectric without a film.
 };
 
 BaseReflectance principled_base_reflectance(Principled p, PrincipledSurface s, vec3 wo) {
@@ -161,7 +161,7 @@ BaseReflectance principled_base_reflectance(Principled p, PrincipledSurface s, v
     return f;
 }
 
-// What the facets lose and leave, by the means over those that wo sees.
+// The light that the facets lose and leave, by the means over the facets that wo sees.
 FacetMeans principled_base_means(Principled p, PrincipledSurface s, BaseReflectance f, vec3 wo) {
     FacetMeans mean = FacetMeans(principled_edge(p, wo.z), schlick_weight(wo.z), 0.0, 0.0, 0.0, vec3(0.0));
     mean.most = min(f.most_0.y + f.most_edge.y * mean.edge.y, 1.0);
@@ -171,7 +171,7 @@ FacetMeans principled_base_means(Principled p, PrincipledSurface s, BaseReflecta
     return mean;
 }
 
-// The weights of the base's lobes under layers that leave `above`.
+// The weights of the base's lobes under layers that leave the fraction `above`.
 void principled_base_weights(inout Principled p, PrincipledSurface s, BaseReflectance f, FacetMeans mean, float above,
                              float metalness, float transmission, float diffuse_transmission) {
     PrincipledRecord r = s.record;
@@ -210,8 +210,8 @@ void principled_base_weights(inout Principled p, PrincipledSurface s, BaseReflec
     }
 }
 
-// The probabilities of choosing the base's lobes, not yet normalised: about the albedo of each. What facets scatter is
-// not 0 where none of those measured does.
+// The probabilities of choosing the base's lobes, not yet normalised: about the albedo of each. Scattering by facets is
+// not 0 even if none of the measured ones scatters.
 void principled_base_choices(inout Principled p, PrincipledSurface s, FacetMeans mean) {
     const float UNMEASURED = 1e-3;
     vec3 edge = mean.edge + UNMEASURED;
@@ -233,7 +233,7 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     FacetMeans mean = principled_base_means(p, s, f, wo);
     principled_base_weights(p, s, f, mean, above, metalness, transmission, diffuse_transmission);
     if (principled_has(PRINCIPLED_HAS_COAT_DARKENING)) {
-        // What the metal and the dielectric send up at normal incidence.
+        // The light that the metal and the dielectric send up at normal incidence.
         vec3 base = p.t_0 * ((1.0 - transmission) * (1.0 - diffuse_transmission)) * s.base_color;
         float roughness = mix(mix(1.0, r.roughness, transmission), r.roughness, f.smooth_share);
         principled_darken(p, s, wo, mix(f.d_0 + base, f.m_0, metalness), mix(roughness, r.roughness, metalness));
@@ -241,7 +241,7 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     principled_base_choices(p, s, mean);
 }
 
-// What fuzz, coat and sheen leave to what lies under them.
+// The fraction of light that fuzz, coat and sheen leave to the base.
 float principled_layers(PrincipledSurface s, vec3 wo) {
     Principled p;
     float below_fuzz = principled_fuzz(p, s, wo);

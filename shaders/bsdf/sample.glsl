@@ -1,4 +1,4 @@
-// What evaluating and sampling a BSDF return.
+// The results of evaluating and sampling a BSDF.
 //
 // Conventions of all BSDFs: wo (towards the viewer) and wi (towards the light) are unit vectors that point away
 // from the surface, in the local frame whose z is the shading normal on the viewer's side. `f` is the value
@@ -10,7 +10,7 @@
 // The value for a pair of directions.
 struct BsdfValue {
     vec3 f;     // [1/sr]
-    float pdf;  // Of sampling wi [1/sr].
+    float pdf;  // Density of sampling wi [1/sr].
 };
 
 BsdfValue bsdf_zero() {
@@ -20,10 +20,10 @@ BsdfValue bsdf_zero() {
 struct BsdfSample {
     vec3 wi;
     vec3 weight;  // f |cos(theta_i)| / pdf, for radiance: refraction divides by eta^2. 0: nothing is scattered.
-    float pdf;    // [1/sr]; 0 says that the sample failed.
+    float pdf;    // [1/sr]; 0 means that the sample failed.
     bool delta;   // Ideal scattering: light samples cannot find wi.
     float eta;    // Index of refraction on wi's side over that on wo's; 1 unless wi is refracted.
-    bool above;  // Whether wi is meant to be on the viewer's side: wi.z > 0, but for layers with a normal of their own.
+    bool above;   // Whether wi is meant to be on the viewer's side: wi.z > 0, except for layers with their own normal.
 };
 
 // A sample of scattering that is not ideal.

@@ -22,7 +22,7 @@ float sheen_log_lambda(float x, float alpha) {
            mix(-1.97760, -1.27393, rest) * x + mix(-4.32054, -4.85967, rest);
 }
 
-// Lambda of the masking by other fibres, at a cosine in (0, 1], which rounding may have brought above 1.
+// Lambda of the masking by other fibres, at a cosine in (0, 1], which rounding may have raised above 1.
 float sheen_lambda(float x, float alpha) {
     float exponent = x < 0.5 ? sheen_log_lambda(x, alpha)
                              : 2.0 * sheen_log_lambda(0.5, alpha) - sheen_log_lambda(max(1.0 - x, 0.0), alpha);

@@ -1,13 +1,13 @@
 // Shading with a normal from a normal map or a bump map.
 //
 // The viewer may be below the horizon of such a normal, and the hemisphere around it reaches below the surface. So the
-// normal is turned towards the viewer until its mirror direction is above the surface: facets that slope away are seen
-// less. And a direction on the wrong side of the surface is mirrored at the surface, as if by another facet that stands
-// at a right angle to the first one's slope. A surface that reflects all light does so under any map, and no facet is
-// black. Reciprocity is given up, by either: both depend on which of the two directions is the viewer's.
+// normal is turned towards the viewer until its mirror direction is above the surface: facets that slope away are less
+// visible. And a direction on the wrong side of the surface is mirrored at the surface, as if by a second facet
+// perpendicular to the slope of the first. A surface that reflects all light does so under any map, and no facet is
+// black. Both measures give up reciprocity: they depend on which of the two directions is the viewer's.
 // Ref: Keller et al. 2017, The Iray Light Transport Simulation and Rendering System, on consistent normals; Schuessler,
-// Heitz, Hanika and Dachsbacher 2017, Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing, of which
-// this keeps the idea of a second facet that is a mirror.
+// Heitz, Hanika and Dachsbacher 2017, Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing, from which
+// the idea of a second, mirroring facet is taken.
 #ifndef INTEGRATOR_BENT_NORMAL_GLSL
 #define INTEGRATOR_BENT_NORMAL_GLSL
 
@@ -45,9 +45,10 @@ bool bend_normal(inout Interaction s, Hit hit) {
     return true;
 }
 
-// The bent normal ns, turned so that it mirrors wo to above the surface with the normal n. wo is not below the surface.
+// The bent normal ns, turned so that it mirrors wo to a direction above the surface with the normal n. wo is not below
+// the surface.
 vec3 consistent_normal(vec3 wo, vec3 n, vec3 ns) {
-    const float LEAST = 0.01;  // Of the sine of the mirror direction's elevation; rounding is far less.
+    const float LEAST = 0.01;  // Least sine of the mirror direction's elevation; rounding is far smaller.
     vec3 mirror = 2.0 * dot(wo, ns) * ns - wo;
     float up = dot(mirror, n);
     if (up >= LEAST) return dot(wo, ns) < 0.0 ? -ns : ns;
@@ -61,7 +62,7 @@ vec3 consistent_normal(vec3 wo, vec3 n, vec3 ns) {
 // with the normal n. A mirror may reflect light to below that surface. There it meets the surface once more, from
 // behind ns, and the turned normal reflects it away.
 vec3 facing_normal(vec3 wo, vec3 n, vec3 ns) {
-    const float LEAST = 0.01;  // Of the cosine, unless n itself has a smaller one.
+    const float LEAST = 0.01;  // Least cosine, unless n itself has a smaller one.
     return dot(wo, ns) < min(LEAST, dot(wo, n)) ? consistent_normal(wo, n, ns) : ns;
 }
 
@@ -70,8 +71,8 @@ vec3 mirrored(vec3 w, vec3 n) {
     return w - 2.0 * dot(w, n) * n;
 }
 
-// The value times |cos| and the density of scattering into wi: what goes there, and what is mirrored there. n is the
-// geometric normal in the local frame.
+// The value times |cos| and the density of scattering into wi: directly, and mirrored into it. n is the geometric
+// normal in the local frame.
 BsdfValue bent_evaluate(Bsdf bsdf, vec3 wo, vec3 wi, vec3 n) {
     bool above = dot(wi, n) > 0.0;
     BsdfValue sum = bsdf_zero();

@@ -1,5 +1,5 @@
-// What a principled material needs to know about the place where it is hit. Kernels without such materials (LAYERED is
-// 0) have nothing of it.
+// The data of a principled material at the place where it is hit. Kernels without such materials (LAYERED is 0) do not
+// contain this.
 #ifndef INTEGRATOR_LAYERS_GLSL
 #define INTEGRATOR_LAYERS_GLSL
 
@@ -31,7 +31,7 @@ PrincipledSurface layers_at(inout MaterialRecord m, Interaction s, float eta, Ra
     vec3 hue = LUMINANCE;
     if ((PRINCIPLED & PRINCIPLED_HAS_DISPERSION) != 0u) {
         float sum = beta.x + beta.y + beta.z;
-        if (sum > 1e-30) hue = beta / sum;  // Less is nothing to be seen, and may be too small to divide by.
+        if (sum > 1e-30) hue = beta / sum;  // Below this, light is invisible, and may be too small to divide by.
     }
     return principled_surface(m, record, s.front, eta, hue, vec4(unit_float(bits.xy), unit_float(bits.zw)));
 }
@@ -58,7 +58,7 @@ float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
     return principled_layers(s, vec3(sqrt(max(1.0 - square(cosine), 0.0)), 0.0, cosine));
 }
 
-// The same of a sample of a light.
+// The same for a sample of a light.
 float emitted_share(LightSample light, LitPoint lit) {
     if (!light_has_surface(light_at(light.light))) return 1.0;
     uvec4 bits = hash_pcg4d(uvec4(floatBitsToUint(light.wi), floatBitsToUint(lit.p.x)));
@@ -66,7 +66,7 @@ float emitted_share(LightSample light, LitPoint lit) {
                          light_sample_cosine(light, lit), unit_float(bits.xy));
 }
 
-// Whether the material's coat has a normal map of its own.
+// Whether the material's coat has its own normal map.
 bool has_coat_map(MaterialRecord m) {
     if (!HAS_COAT_NORMALS || !is_principled(m)) return false;
     return scene_principled(principled_first(m.specular.x)).coat_normal != TEXTURE_NONE;
@@ -82,8 +82,8 @@ vec3 coat_normal(PrincipledRecord p, Interaction s, vec3 unbent, vec3 horizon, F
     return frame_to_local(frame, consistent_normal(s.wo, horizon, s.ns));
 }
 
-// Adds the lobes of the material m, if it is principled, at s, which the path's ray hit; m gets its base colour there,
-// and x of the frame the direction of the greatest roughness. `unbent` is the shading normal of the shape.
+// Adds the lobes of the material m, if it is principled, at s, which the path's ray hit. Sets m's base colour there,
+// and turns x of the frame to the direction of the greatest roughness. `unbent` is the shading normal of the shape.
 void add_layers(inout Bsdf bsdf, inout MaterialRecord m, inout Frame frame, Interaction s, vec3 unbent, vec3 horizon,
                 Ray ray, vec3 beta) {
     if (!is_principled(m)) return;

@@ -40,12 +40,12 @@ struct Path {
     uint depth;       // Scattering vertices so far.
 };
 
-// What a path has gathered.
+// The estimate of a path so far.
 struct Estimate {
     vec3 L;        // Radiance along the camera ray [W/(m^2 sr)].
     bool visible;  // The camera ray hit a surface or, if it may see it, the sky.
-    vec3 albedo;   // Of the surface that it hit,
-    vec3 normal;   // and its shading normal, world space; both 0 if it hit none.
+    vec3 albedo;   // Albedo of the surface that the camera ray hit; 0 if none.
+    vec3 normal;   // Its shading normal, world space; 0 if none.
     bool cut;      // The path was cut at DEPTH_SAFETY_LIMIT.
 };
 
@@ -53,10 +53,10 @@ struct Estimate {
 struct ShadowRay {
     Ray ray;
     float t_max;  // In lengths of ray.d; 0 if there is none to trace.
-    vec3 Ld;      // What L gains if the ray is not blocked.
+    vec3 Ld;      // Added to L if the ray is not blocked.
 };
 
-// A path that begins with a camera ray within these media, and an estimate that holds nothing yet.
+// A path that begins with a camera ray within these media, and an empty estimate.
 Path path_begin(Ray ray, uvec2 media) {
     return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u);
 }
@@ -71,8 +71,7 @@ ShadowRay shadow_none() {
 
 // The point of a surface for which lights are sampled. Rays begin at an offset from the surface, on the side to which
 // they leave. If some surface is lit from both sides, this is the point of the surface itself, since the side is only
-// known after the light is sampled. Otherwise it is the origin of the path's next ray, so that no other point has to be
-// kept.
+// known after the light is sampled. Otherwise it is the origin of the path's next ray, so that no second point is kept.
 LitPoint lit_point(ShadedSurface x) {
     Vertex v = interaction_vertex(x.s);
     vec3 p = LIT_FROM_BEHIND ? v.p + v.lift : vertex_spawn_origin(v, true);
@@ -116,7 +115,7 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
                   area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
 }
 
-// A sample of a light for the surface, as lit; layers above what emits leave a fraction of its radiance.
+// A sample of a light for the surface, as lit; layers above the emitter pass a fraction of its radiance.
 LightSample sample_light(LitPoint lit, Sampler random, uint pair) {
     LightSample light = light_sample_li(lit, sampler_triple(random, pair + PAIR_LIGHT));
     if (HAS_COATED_EMISSION) light.Li *= emitted_share(light, lit);
@@ -151,8 +150,8 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
     return ShadowRay(ray, dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
 }
 
-// Continues the path in the direction that the BSDF sampled; returns whether the path goes on. A direction carries
-// nothing if the horizon and the shading normal disagree about its side.
+// Continues the path in the direction that the BSDF sampled; returns whether the path goes on. A direction carries no
+// light if the horizon and the shading normal disagree about its side.
 bool path_scatter(inout Path path, ShadedSurface x, LitPoint lit, BsdfSample scattered) {
     vec3 wi = frame_to_world(x.frame, scattered.wi);
     path.beta *= scattered.weight;
@@ -170,7 +169,7 @@ bool path_scatter(inout Path path, ShadedSurface x, LitPoint lit, BsdfSample sca
 
 // Russian roulette: paths with a low throughput end early, and the survivors are weighted up. The square root lets them
 // end a vertex or two later, which reduces the noise by more than its rays cost. After ideal scattering the throughput
-// has no say: nothing but this path can find what lies ahead, often a light.
+// is ignored: only this path can find what lies ahead, which is often a light.
 // Ref: Arvo and Kirk 1990, Particle Transport and Image Synthesis.
 bool path_survives(inout Path path, float u) {
     float survival = RR_MAX_SURVIVAL;
@@ -180,13 +179,13 @@ bool path_survives(inout Path path, float u) {
     return true;
 }
 
-// Takes the path past the hit of its ray, or past its miss; returns whether the path goes on. `shadow` is the ray to be
-// traced for direct light at the hit.
+// Advances the path past the hit of its ray, or past its miss; returns whether the path continues. `shadow` is the ray
+// to trace for direct light at the hit.
 bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, Hit hit, Sampler random,
                Parameters parameters) {
     shadow = shadow_none();
     if (!is_hit(hit)) {
-        path.beta *= media_transmittance(path.media, FLOAT_MAX);  // Of a medium without an end.
+        path.beta *= media_transmittance(path.media, FLOAT_MAX);  // Through a medium without an end.
         if (ENVIRONMENT != ENVIRONMENT_NONE) add_environment(path, estimate);
         return false;
     }
@@ -215,7 +214,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     surface_turn(x);
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
 
-    // Choose a point on a light, before the lobes of a principled material take room.
+    // Choose a point on a light, before the lobes of a principled material need registers.
     LitPoint lit = lit_point(x);
     LightSample light;
     if (ESTIMATOR != ESTIMATOR_BSDF) light = sample_light(lit, random, pair);

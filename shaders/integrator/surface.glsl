@@ -1,5 +1,5 @@
-// The surface at the hit of a path's ray, resolved once: what it is made of at that point, what lies on both sides, and
-// the normal with which it is shaded. The integrator asks nothing else of materials.
+// The surface at the hit of a path's ray, resolved once: its material at that point, the media on both sides, and its
+// shading normal. The integrator uses materials only through this.
 #ifndef INTEGRATOR_SURFACE_GLSL
 #define INTEGRATOR_SURFACE_GLSL
 
@@ -11,20 +11,21 @@
 #include "scene/interaction.glsl"
 #include "scene/material.glsl"
 
-// surface_at() fills all but horizon and frame, which surface_turn() adds, and wo, which surface_add_layers() adds.
+// surface_at() fills all members except horizon and frame, which surface_turn() sets, and wo, which
+// surface_add_layers() sets.
 struct ShadedSurface {
     Interaction s;  // Its shading normal may come from a normal map or a bump map.
     MaterialRecord material;
     Bsdf bsdf;
     vec3 unbent;   // The shading normal of the shape itself.
-    vec3 horizon;  // The normal that says on which side of the surface a direction is.
-    bool bent;     // Shaded as integrator/bent_normal.glsl says.
+    vec3 horizon;  // The normal that decides on which side of the surface a direction is.
+    bool bent;     // Shaded by integrator/bent_normal.glsl.
     Frame frame;   // Around the shading normal.
     vec3 wo;       // Towards the viewer, in that frame.
 };
 
-// The ratio of the indices of refraction where media nest. A boundary within one medium is glass between equal indices,
-// whatever it is made of.
+// The ratio of the indices of refraction if media nest. A boundary within one medium is treated as glass between equal
+// indices, regardless of its material.
 void surface_nest(inout ShadedSurface x, uvec2 media) {
     if (!NESTED_MEDIA || !bsdf_refracts(x.material)) return;
     bool principled = is_principled(x.material);
@@ -48,10 +49,11 @@ ShadedSurface surface_at(Ray ray, Hit hit, uvec2 media) {
     return x;
 }
 
-// Turns the shading normals towards the viewer where that is needed, and puts the frame around the one that holds.
+// Turns the shading normals towards the viewer where necessary, and puts the frame around the resulting one.
 //
-// The horizon is that of the geometric normal; if SMOOTH, that of the shape's shading normal: light that scatters above
-// it but below the triangle's plane begins above the plane, and meets the surface again unless the lift takes it past.
+// The horizon is perpendicular to the geometric normal or, if SMOOTH, to the shape's shading normal: light that
+// scatters above it but below the triangle's plane begins above the plane, and hits the surface again unless the lift
+// is large enough.
 void surface_turn(inout ShadedSurface x) {
     x.horizon = x.s.n;
     if (SMOOTH) {
@@ -59,7 +61,7 @@ void surface_turn(inout ShadedSurface x) {
         x.horizon = x.unbent;
         if (!x.bent) x.s.ns = x.unbent;
     }
-    // Rays pass a boundary between equal indices straight, regardless of its shading normal.
+    // Rays go straight through a boundary between equal indices, regardless of its shading normal.
     if (is_model(x.bsdf, MATERIALS_DIELECTRIC) && x.bsdf.parameter == 1.0) {
         x.s.ns = x.horizon = x.s.n;
         x.bent = false;

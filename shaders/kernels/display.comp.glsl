@@ -1,5 +1,5 @@
 // Develops the accumulation image for a window: the mean of each pixel's samples, exposure, tone curve and sRGB, under
-// an overlay. A pixel that holds no sample yet keeps what it showed before.
+// an overlay. A pixel without samples keeps its previous colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,5 +1,5 @@
-// Writes what the sharp ray through the centre of each pixel hits: position and distance along the camera's axis, in
-// the frame of the scene. A pixel whose ray misses holds 0 0 0 and infinity.
+// Writes where the sharp ray through the centre of each pixel hits: position and distance along the camera's axis, in
+// the frame of the scene. A pixel whose ray misses gets 0 0 0 and infinity.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

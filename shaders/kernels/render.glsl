@@ -1,5 +1,5 @@
 // Brings every pixel of a tile to a number of samples, or to the pixel's limit if that is less: each invocation traces
-// one path after the other for its pixel and folds it into the accumulation image. A pixel's own count says which
+// one path after the other for its pixel and folds it into the accumulation image. A pixel's own count determines which
 // samples it still needs, so that any division of the work into tiles and dispatches gives the same bits.
 //
 // One iteration of a lane's loop, for a path on its way to vertex k:
@@ -26,7 +26,7 @@ layout(push_constant) uniform TileBlock {
 // The counts of a work group, if GROUP_COUNTERS: on a GPU, all invocations would otherwise contend for the same words
 // of the buffer.
 shared uint group_counters[COUNTER_COUNT];
-shared uint group_finished;  // Invocations that have nothing more to count.
+shared uint group_finished;  // Invocations that have finished counting.
 
 void count(uint counter, uint n) {
     if (GROUP_COUNTERS) {
@@ -66,11 +66,11 @@ struct Sum {
 // The state of a pixel.
 struct Pixel {
     Sum L;
-    Sum square;     // Of L.
-    Sum albedo;     // Of the first hits; only if HAS_AOVS.
-    Sum normal;     // Of the first hits; only if HAS_AOVS.
+    Sum square;     // Sum of L^2.
+    Sum albedo;     // Sum over the first hits; only if HAS_AOVS.
+    Sum normal;     // Sum over the first hits; only if HAS_AOVS.
     float visible;  // Samples whose camera ray hit something visible.
-    float rays;     // MAX_RAYS at most.
+    float rays;     // At most MAX_RAYS.
     float limit;    // 0: none; otherwise the most samples that it gets, plus one.
     uint samples;
 };
@@ -118,7 +118,7 @@ void pixel_store(uvec2 at, Pixel p) {
     }
 }
 
-// The number of samples that the pixel is to hold when others hold `target`.
+// The number of samples for the pixel when others have `target`.
 uint pixel_target(Pixel p, uint target) {
     return p.limit > 0.0 ? min(target, uint(p.limit) - 1u) : target;
 }
@@ -149,8 +149,8 @@ struct Sample {
     Sampler random;
     Path path;
     Estimate estimate;
-    ShadowRay shadow;  // Of the previous vertex.
-    bool alive;        // The path goes on.
+    ShadowRay shadow;  // From the previous vertex.
+    bool alive;        // The path continues.
     bool ended;        // The path has ended; its last shadow ray may still have to be traced.
     uint rays;         // Traced so far.
 };
@@ -174,11 +174,11 @@ void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index
     s.alive = true;
 }
 
-// What the rays of a sample hit.
+// The hits of a sample's rays.
 struct Met {
     bool complete;  // False if the driver ended the loop early.
     bool lit;       // There is a shadow ray, and it is not blocked.
-    Hit hit;        // Of the path's ray, if it goes on.
+    Hit hit;        // The hit of the path's ray, if the path continues.
 };
 
 // Advances the traversal; once that of a shadow ray has ended, begins that of the path's next ray, if there is one.
@@ -201,8 +201,8 @@ Met sample_trace(Sample s) {
     if (!shadowed && !s.alive) bvh_end(traversal);
     bool lit = false;
     if (HAS_OPACITY) {
-        // On software Vulkan, code in a branch takes its time even if no lane takes the branch. So what decides about
-        // opacity stands in an outer loop, at whose end lanes wait for each other once more.
+        // On software Vulkan, code in a branch takes its time even if no lane takes the branch. So the decision about
+        // opacity is in an outer loop, at whose end lanes wait for each other once more.
         bool more;
         do {
             while (!bvh_waits(traversal) && (traversal.any_hit || !bvh_ended(traversal))) {
@@ -219,7 +219,7 @@ Met sample_trace(Sample s) {
     return Met(turned && bvh_ended(traversal), lit, traversal.hit);
 }
 
-// Takes the path past the hit of its ray, or past its miss.
+// Advances the path past the hit of its ray, or past its miss.
 void sample_step(inout Sample s, Hit hit, Parameters parameters) {
     if (s.path.depth == 0u) s.estimate = estimate_begin();
     s.alive = path_step(s.path, s.estimate, s.shadow, hit, s.random, parameters);
@@ -245,14 +245,14 @@ void render_pixel() {
     // One vertex per iteration: a lane whose path has ended begins its next sample while its neighbours go on; the ray
     // traced after the last shadow ray of the ended path is that of the next sample.
     //
-    // Each step of a sample has one place in the code: the compiler might round differently in a copy of it, and a
-    // sample's bits must not depend on its place in a dispatch.
+    // Each step of a sample is in the code only once: the compiler might round differently in a copy, and a sample's
+    // bits must not depend on its place in a dispatch.
     //
-    // Lavapipe ends all loops of an invocation after 65 535 iterations in sum, whatever their conditions say. A sample
-    // that is not folded by then is dropped, and the next dispatch traces it again.
+    // Lavapipe ends all loops of an invocation after 65 535 iterations in total, regardless of their conditions. A
+    // sample that is not folded by then is dropped, and the next dispatch traces it again.
     Sample s = sample_none();
-    uint begun = before;  // Samples; of these, pixel.samples are folded.
-    uint rays = 0u;       // Of the folded samples.
+    uint begun = before;  // Samples begun; pixel.samples of them are folded.
+    uint rays = 0u;       // Rays of the folded samples.
     while (pixel.samples < target) {
         if (!s.alive && begun < target) {
             sample_begin(s, parameters, parameters.crop + at, parameters.first_sample + begun);

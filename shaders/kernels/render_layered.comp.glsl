@@ -1,5 +1,5 @@
-// The renderer's kernel for scenes with principled materials: drivers take twice as long over it, even where constants
-// remove the code.
+// The renderer's kernel for scenes with principled materials: drivers need twice as long to compile it, even if
+// constants remove the code.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,6 +1,6 @@
-// The choice of a light for a point that is lit, and its probability: all that a sampler of lights is. Whoever hits a
-// light asks for the probability with which it would have been chosen for the point before, so that both may depend on
-// it.
+// The choice of a light for a point that is lit, and its probability: the whole sampler of lights. A path that hits a
+// light asks for the probability with which it would have been chosen for the previous point, so choice and probability
+// may depend on the point.
 #ifndef LIGHT_CHOICE_GLSL
 #define LIGHT_CHOICE_GLSL
 
@@ -10,12 +10,12 @@
 const bool HAS_SUNS = (LIGHTS & 1u << LIGHT_DIRECTIONAL) != 0u;
 const bool SKY_IS_LIGHT = (LIGHTS & 1u << LIGHT_ENVIRONMENT) != 0u;
 
-// A point that is lit: what the choice of a light may depend on. In the frame of the scene.
+// A point that is lit: the inputs of the choice of a light. In the frame of the scene.
 struct LitPoint {
     vec3 p;           // Where rays to the lights begin.
-    vec3 n;           // Unit normal on the viewer's side: what is below its horizon does not light that side.
+    vec3 n;           // Unit normal on the viewer's side: lights below its horizon do not light that side.
     bool both_sides;  // Light from either side of n is scattered.
-    bool any_normal;  // Light from everywhere is scattered alike, and n is 0.
+    bool any_normal;  // Light from all directions is scattered equally, and n is 0.
 };
 
 // A point on a surface with that horizon.
@@ -49,7 +49,7 @@ uint sky_light() {
 }
 
 // Random bits below 2 * half_width, stretched to all 32 bits; half_width is in [1, 2^31]. No randomness is lost, as it
-// would be by way of a float, and each light's probability is right within 2^-21 of it.
+// would be through a float, and each light's probability is right within 2^-21 of itself.
 uint light_stretch(uint bits, uint half_width) {
     int shift = 30 - findMSB(half_width - 1u);
     float scale = 2147483648.0 / float(half_width << shift);  // In [1, 2).
@@ -72,7 +72,7 @@ uint light_choose(LitPoint lit, uint bits) {
     uint first = is_sun ? groups.placed : 0u;
     uint count = is_sun ? groups.suns : groups.placed;
     if (SKY_IS_LIGHT || HAS_SUNS) {
-        // What the choice among groups leaves of the bits is uniform again.
+        // The unused randomness of the choice among groups is uniform.
         uint rest = bits - 2u * (is_sun ? sky : sky + suns);
         bits = light_stretch(rest, max(is_sun ? suns : 2147483648u - sky - suns, 1u));
     }

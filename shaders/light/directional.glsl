@@ -5,8 +5,8 @@
 #include "base/math.glsl"
 #include "light/sample.glsl"
 
-// The light as seen from anywhere. Its radiance has no value but in an integral over directions, which is its
-// irradiance across the direction.
+// The light as seen from anywhere. Its radiance only has an integral over directions, which is its irradiance across
+// the direction.
 LightSample directional_light_sample_li(LightRecord l) {
     LightSample s;
     s.wi = l.e1;

@@ -12,7 +12,7 @@ EnvironmentTexel environment_texel(vec3 w) {
     if (EVEN_SKY) return scene_environment_texel(0u);
     Parameters parameters = scene_parameters();
     vec2 turn = parameters.environment_turn;
-    vec3 m = vec3(turn.x * w.x - turn.y * w.z, w.y, turn.y * w.x + turn.x * w.z);  // In the map's own axes.
+    vec3 m = vec3(turn.x * w.x - turn.y * w.z, w.y, turn.y * w.x + turn.x * w.z);  // In the map's axes.
     vec2 uv = vec2(fract(angle_turn(m.x, -m.z) + 0.5), 2.0 * angle_turn(length(m.xz), m.y));
     uvec2 size = parameters.environment_size;
     uvec2 texel = min(uvec2(uv * vec2(size)), size - 1u);
@@ -25,7 +25,7 @@ vec3 environment_direction(uvec2 texel, vec2 within) {
     uvec2 size = parameters.environment_size;
     // Rows are counted from the nearer pole, where 1 - cos(theta) = 2 sin(theta/2)^2 keeps its digits.
     uint row = min(texel.y, size.y - 1u - texel.y);
-    float row_turn = 0.25 / float(size.y);  // Of theta / 2.
+    float row_turn = 0.25 / float(size.y);  // A row, in turns of theta / 2.
     float s0 = square(cos_sin_turn(float(row) * row_turn).y);
     float s1 = square(cos_sin_turn(float(row + 1u) * row_turn).y);
     float h = 2.0 * mix(s0, s1, within.y);
@@ -67,9 +67,11 @@ EnvironmentChoice environment_choose(uint first, uint n, uint bits) {
 // A direction towards the sky, from 2 x 32 random bits.
 LightSample environment_light_sample_li(uvec2 u) {
     uvec2 size = scene_parameters().environment_size;
-    EnvironmentChoice row = environment_choose(size.x * size.y, size.y, u.y);
-    EnvironmentChoice column = environment_choose(row.i * size.x, size.x, u.x);
-    EnvironmentTexel texel = scene_environment_texel(row.i * size.x + column.i);
+    uvec2 column = warp_alias_column(u.x, size.x * size.y);
+    // The unused randomness of the choices is uniform, and places the point within the texel.
+    AliasChoice choice = warp_alias_choice(uvec2(column.x, u.y), scene_environment_alias(column.x));
+    vec2 within = vec2(float(column.y >> 8u) * (1.0 / 16777216.0), choice.rest);
+    EnvironmentTexel texel = scene_environment_texel(choice.i);
     LightSample s;
     s.wi = environment_direction(uvec2(column.i, row.i), vec2(column.rest, row.rest));
     s.Li = texel.radiance;

@@ -30,15 +30,15 @@ Attributes light_sample_attributes(LightSample s, LitPoint lit) {
     return light_attributes(s.light, l, area_light_coordinates(l, s.u), n);
 }
 
-// Cosine between the ray to the sample and the normal of the light's surface there, on the side that is seen; only if
-// it has one.
+// Cosine between the ray to the sample and the normal of the light's surface there, on the visible side; only if it has
+// one.
 float light_sample_cosine(LightSample s, LitPoint lit) {
     LightRecord l = light_at(s.light);
     vec3 n = is_light(l, LIGHT_SPHERE) ? lit.p + s.shadow - l.p : cross(l.e1, l.e2);
     return abs(dot(s.wi, normalize(n)));
 }
 
-// Multiplies a sample by what its surface says there.
+// Multiplies a sample by the factors of its surface there.
 void light_apply_textures(inout LightSample s, LitPoint lit) {
     Attributes at = light_sample_attributes(s, lit);
     s.Li *= light_texture(s.light, at);

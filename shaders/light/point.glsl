@@ -4,7 +4,7 @@
 
 #include "light/sample.glsl"
 
-// The light as seen from p_lit; nothing arrives at the point itself. A shadow ray ends before a surface on which the
+// The light as seen from p_lit; no light arrives at the point itself. A shadow ray ends before a surface on which the
 // light lies, so that rounding does not decide whether it is hidden.
 LightSample point_light_sample_li(LightRecord l, vec3 p_lit) {
     LightSample s;

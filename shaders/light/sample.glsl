@@ -1,4 +1,4 @@
-// What sampling a light returns.
+// The result of sampling a light.
 #ifndef LIGHT_SAMPLE_GLSL
 #define LIGHT_SAMPLE_GLSL
 
@@ -18,8 +18,8 @@ bool light_has_surface(LightRecord l) {
            !is_light(l, LIGHT_DIRECTIONAL);
 }
 
-// Shadow rays end that part of their length earlier: so large may the error be of the distance at which a light is hit
-// from far away.
+// Shadow rays end earlier by this fraction of their length, a bound on the error of the distance at which a light is
+// hit from far away.
 const float LIGHT_T_MAX = 1.0 - 1.0 / 524288.0;
 
 // How far before a light, along its normal, a ray from that distance must end, so that it does not hit it: error is the
@@ -30,14 +30,14 @@ float light_end_error(float error, float distance) {
 
 // A point on a light, as seen from a point that is lit.
 struct LightSample {
-    vec3 wi;     // Unit direction from the lit point.
-    vec3 Li;     // Radiance that arrives if nothing is in between [W/(m^2 sr)]; if delta, its integral over directions.
-    float pdf;   // Density over solid angle at the lit point [1/sr]; 0 says that nothing arrives.
-    bool delta;  // No other sampling could find it: pdf is the probability of choosing the light.
-    vec3 shadow;  // The light is hidden if a ray from the lit point in this direction, of any length,
-    float t_max;  // hits something with t in (0, t_max).
+    vec3 wi;      // Unit direction from the lit point.
+    vec3 Li;      // Radiance that arrives if nothing is in between [W/(m^2 sr)]; if delta, its integral over directions.
+    float pdf;    // Density over solid angle at the lit point [1/sr]; 0 means that no light arrives.
+    bool delta;   // Only light sampling can find it: pdf is the probability of choosing the light.
+    vec3 shadow;  // Direction, of any length, of the shadow ray from the lit point.
+    float t_max;  // The light is hidden if the shadow ray hits something with t in (0, t_max).
     uint light;   // Its place in the table of lights.
-    vec2 u;       // Chose the point on it.
+    vec2 u;       // The random numbers that chose the point on it.
 };
 
 #endif

@@ -13,8 +13,8 @@ float sphere_light_cap(float radius, float distance_squared) {
     return sin2_max / (1.0 + sqrt(1.0 - sin2_max));
 }
 
-// Whether a point whose squared distance to the centre this is lies inside. So does one on the sphere itself, wherever
-// rounding has put it: then the whole sphere is within its view, and not the near side alone.
+// Whether a point with that squared distance to the centre lies inside. A point on the sphere itself is treated as
+// inside, regardless of its rounding: the whole sphere is then in view, not only the near side.
 bool sphere_light_encloses(float radius, float distance_squared) {
     const float ROUNDING = 1e-5;
     return distance_squared <= square(radius) * (1.0 + ROUNDING);

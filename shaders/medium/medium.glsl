@@ -1,15 +1,15 @@
-// Media: what lies between surfaces, and which of them a path is in.
+// Media between surfaces, and those that a path is in.
 //
-// Solids may nest and overlap. Where several media are at one point, the one of the highest priority fills it; of equal
-// priorities, the one that the path entered last. Ref: Schmidt and Budge 2002, Simple Nested Dielectrics in Ray Traced
-// Images, which leaves equal priorities open.
+// Solids may nest and overlap. If several media are at one point, the one of the highest priority fills it; if
+// priorities are equal, the one that the path entered last. Ref: Schmidt and Budge 2002, Simple Nested Dielectrics in
+// Ray Traced Images, which leaves equal priorities open.
 #ifndef MEDIUM_MEDIUM_GLSL
 #define MEDIUM_MEDIUM_GLSL
 
 #include "scene/scene_data.glsl"
 
-// The media around a point, MEDIUM_BITS each, the one that fills it first, MEDIUM_NONE after the last. Where media do
-// not nest, only the first is in use.
+// The media around a point, MEDIUM_BITS each, the one that fills it first, MEDIUM_NONE after the last. If media do not
+// nest, only the first is used.
 const uvec2 MEDIA_NONE = uvec2(MEDIUM_NONE);
 
 uvec4 media_unpack(uvec2 media) {
@@ -50,8 +50,8 @@ uvec2 media_beyond(uvec2 here, uint behind, bool front) {
     return front ? media_entered(here, behind) : media_left(here, behind);
 }
 
-// Share of the light that the medium transmits over that distance. An infinite distance is replaced by a finite
-// one, since infinity times 0 is NaN. (A compiler that takes all numbers for finite may drop a min with FLOAT_MAX.)
+// Fraction of the light that the medium transmits over that distance. An infinite distance is replaced by a finite one,
+// since infinity times 0 is NaN. (A compiler that assumes finite numbers may drop a min with FLOAT_MAX.)
 // Ref: Beer and Lambert's law.
 vec3 media_transmittance(uvec2 media, float distance) {
     const float far = 1e30;
@@ -60,8 +60,8 @@ vec3 media_transmittance(uvec2 media, float distance) {
 }
 
 // The index of refraction beyond a boundary over that before it; 1, exactly, if the indices are equal, or the same
-// medium fills both sides, as where one is entered within another of a higher priority. `own_eta` if that of the
-// surface holds, `eta`.
+// medium fills both sides, as when one is entered within another of a higher priority. With `own_eta`, the surface's
+// own ratio `eta` is used.
 float media_eta(uvec2 here, uvec2 beyond, bool own_eta, float eta) {
     uint from = media_first(here);
     uint to = media_first(beyond);

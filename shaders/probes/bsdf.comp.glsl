@@ -1,5 +1,5 @@
-// For selftest/bsdfs.h: one material, given by its record; if it is principled, by two. Samples it with u and evaluates
-// it, both for the sampled direction and for a given wi.
+// For selftest/bsdfs.h: one material, given by its record, or by two if it is principled. Samples it with u and
+// evaluates it, both for the sampled direction and for a given wi.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,5 +1,5 @@
-// For bench/tracer.h: item (ray with t_max). The id of the nearest primitive, or NO_TRIANGLE: one word, so that
-// little but traversal takes time.
+// For bench/tracer.h: item (ray with t_max). The id of the nearest primitive, or NO_TRIANGLE: one word, so that most of
+// the time is traversal.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

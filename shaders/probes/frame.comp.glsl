@@ -1,4 +1,4 @@
-// For math_test.cpp: the frame around z, and a vector taken into it and back.
+// For math_test.cpp: the frame around z, and a vector transformed into it and back.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,4 +1,4 @@
-// For selftest/samplers.h: every integer function that the samplers are made of.
+// For selftest/samplers.h: every integer function of the samplers.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

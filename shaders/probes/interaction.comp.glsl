@@ -1,6 +1,6 @@
-// For selftest/spheres.h: item (ray; direction, side). What the ray hits, and what a second ray hits that leaves from
+// For selftest/spheres.h: item (ray; direction, side). The hit of the ray, and the hit of a second ray that leaves from
 // there in that direction, turned to the viewer's side (side 0) or to the other (1). If the first ray misses,
-// everything but its t is 0.
+// everything except its t is 0.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,5 +1,5 @@
-// What the probes share: invocation i reads item i, ITEM_WORDS words of uvec4, and writes result i,
-// RESULT_WORDS words, value after value. A kernel defines both numbers before it includes this.
+// Shared by the probes: invocation i reads item i, ITEM_WORDS words of uvec4, and writes result i, RESULT_WORDS words,
+// value after value. A kernel defines both numbers before it includes this.
 #ifndef PROBES_ITEMS_GLSL
 #define PROBES_ITEMS_GLSL
 
@@ -13,10 +13,10 @@ layout(std430, binding = BINDING_RESULTS) writeonly buffer ResultsBlock {
 };
 layout(push_constant) uniform CountsBlock {
     uint item_count;
-    uint primitive_count;  // Of the scene, for kernels that read one.
+    uint primitive_count;  // Primitives of the scene, for kernels that read a scene.
 };
 
-// True for invocations that have no item.
+// True for invocations without an item.
 bool past_end() {
     return gl_GlobalInvocationID.x >= item_count;
 }

@@ -1,5 +1,5 @@
 // For light_choice_test.cpp: item (lit point, 32 random bits; normal or 0, light). The light that the bits choose, its
-// probability, and that of the item's light.
+// probability, and the probability of the item's light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

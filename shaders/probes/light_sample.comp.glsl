@@ -1,6 +1,6 @@
 // For selftest/lights.h: item (reference point, 32 random bits for the light; 2 x 32 for the point). A light sample
-// from there; whether its shadow ray is blocked; and what a ray in its direction hits: which light, its radiance, and
-// the density with which light samples find it.
+// from there; whether its shadow ray is blocked; and, for a ray in its direction, the light that it hits, its radiance,
+// and the density with which light samples find it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,4 +1,4 @@
-// For selftest/textures.h: item (texture; uv). The texture there, and the number that it takes from its channel.
+// For selftest/textures.h: item (texture; uv). The texture there, and the number from its channel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -6,16 +6,17 @@
 #include "scene/scene_data.glsl"
 #include "texture/decode.glsl"
 
-// What a surface has at a point besides its geometry; 0, or white, where the scene has none.
+// The attributes of a surface at a point; 0, or white, if the scene has none.
 struct Attributes {
     vec2 uv0;  // Texture coordinates, v upwards.
     vec2 uv1;
     vec4 color;    // Linear red, green, blue, and alpha.
-    vec4 tangent;  // x, y, z: where u grows, about unit length; w: 1, or -1 if v grows along -cross(n, tangent).
+    vec4 tangent;  // x, y, z: the direction in which u grows, about unit length; w: 1, or -1 if v grows along -cross(n,
+                   // tangent).
 };
 
-// Where attributes are asked for: the triangle a b c or a c d (second) of the primitive at a position in leaf order, at
-// surface coordinates b; on a sphere, n points from its centre to the point, at any length.
+// The place of an attribute look-up: the triangle a b c or a c d (second) of the primitive at a position in leaf order,
+// at surface coordinates b; on a sphere, n points from its centre to the point, at any length.
 struct AttributePlace {
     uint primitive;
     bool second;

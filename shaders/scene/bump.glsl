@@ -1,11 +1,11 @@
-// Heights on a surface, and how they turn its normal.
+// Heights on a surface, and the normals that they imply.
 #ifndef SCENE_BUMP_GLSL
 #define SCENE_BUMP_GLSL
 
 #include "scene/interaction.glsl"
 #include "scene/texture.glsl"
 
-// Two directions in a surface, and how texture coordinates change along them.
+// Two directions in a surface, and the change of texture coordinates along them.
 struct UvEdges {
     vec3 e1;
     vec3 e2;
@@ -13,16 +13,16 @@ struct UvEdges {
     vec2 uv2;
 };
 
-// On a sphere of that radius around its centre, with the outer normal n: where u and v grow. 0 at the poles.
+// The directions in which u and v grow on a sphere of that radius, at the outer normal n. 0 at the poles.
 UvEdges sphere_uv_edges(float radius, vec3 n) {
-    const float POLE = 1e-30;  // Below the square of any distance but 0 from the axis.
+    const float POLE = 1e-30;  // Below the square of any nonzero distance from the axis.
     vec3 around = vec3(n.z, 0.0, -n.x);
     vec3 up = cross(n, around) * inversesqrt(max(dot(around, around), POLE));
     return UvEdges(2.0 * PI * radius * around, PI * radius * up, vec2(1.0, 0.0), vec2(0.0, 1.0));
 }
 
-// The edges of the triangle that was hit, or the axes of the disk, in the frame of the scene; for the set of
-// coordinates of texture t.
+// The edges of the triangle that was hit, or the axes of the disk, in the frame of the scene; for texture t's set of
+// coordinates.
 UvEdges uv_edges(TextureRecord t, Hit hit, vec3 n) {
     Primitive p = scene_primitive(hit_primitive(hit));
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) return sphere_uv_edges(p.b.x, n);
@@ -53,7 +53,7 @@ vec3 bumped_normal(TextureRecord t, float scale, Hit hit, Interaction s) {
     float det = dot(edges.e1, along_e1);
     vec3 gradient = (scale / det) * (dot(slope, edges.uv1) * along_e1 + dot(slope, edges.uv2) * along_e2);
     float length_squared = 1.0 + dot(gradient, gradient);
-    // Heights without a slope that floats can hold leave the normal as it is.
+    // If floats cannot hold the slope, the normal is unchanged.
     return det != 0.0 && length_squared < FLOAT_MAX ? inversesqrt(length_squared) * (n - gradient) : n;
 }
 

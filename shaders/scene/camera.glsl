@@ -20,14 +20,14 @@ Ray camera_ray_parallel(Parameters camera, vec2 film) {
     return Ray(camera.position + s.x * camera.right - s.y * camera.up, camera.forward);
 }
 
-// The ray through a film position that an aperture without extent lets through. Unit direction.
+// The ray through a film position and the centre of the aperture. Unit direction.
 Ray camera_ray_sharp(Parameters camera, vec2 film) {
     if (APERTURE == APERTURE_NONE) return camera_ray_parallel(camera, film);
     return Ray(camera.position, normalize(camera_film_direction(camera, film)));
 }
 
-// The ray through a film position and the point of the aperture, uniform over its area, that u in [0,1)^2 chooses. All
-// rays of one film position meet in the plane of focus. Unit direction.
+// The ray through a film position and a point of the aperture, which u in [0,1)^2 chooses uniformly by area. All rays
+// of one film position meet in the plane of focus. Unit direction.
 // Ref: Cook, Porter and Carpenter 1984, Distributed Ray Tracing, section 2.
 Ray camera_ray(Parameters camera, vec2 film, vec2 u) {
     if (APERTURE == APERTURE_PINHOLE || APERTURE == APERTURE_NONE) return camera_ray_sharp(camera, film);

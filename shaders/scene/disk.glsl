@@ -5,8 +5,8 @@
 #include "base/ray.glsl"
 
 // Distance t in lengths of ray.d, and (x, y) of the point center + x e1 + y e2 that the ray hits. It misses if t is not
-// above 0, as where x^2 + y^2 > 1. (A copy of this code may be compiled to round a hit at the rim outwards: x and y are
-// valid all the same.)
+// above 0, as when x^2 + y^2 > 1. (A copy of this code may be compiled to round a hit at the rim outwards: x and y are
+// still valid.)
 vec3 disk_intersect(Ray ray, vec3 center, vec3 e1, vec3 e2) {
     vec3 n = cross(e1, e2);
     float approach = dot(ray.d, n);

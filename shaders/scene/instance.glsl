@@ -10,8 +10,8 @@ bool is_instanced(uint instance) {
     return INSTANCED && instance != NO_INSTANCE;
 }
 
-// A vector of the frame of the scene in the mesh's space: the same bits wherever it is asked, since the coordinates of
-// a hit must be those of the ray that found it. (glslang 12 does not make a dot() precise.)
+// A vector of the frame of the scene in the mesh's space: the same bits everywhere in the code, since the coordinates
+// of a hit must match the ray that found it. (glslang 12 does not make a dot() precise.)
 vec3 vector_to_mesh(Instance i, vec3 v) {
     precise vec3 x = i.to_mesh[0] * v, y = i.to_mesh[1] * v, z = i.to_mesh[2] * v;
     precise vec3 sum = vec3(x.x + x.y + x.z, y.x + y.y + y.z, z.x + z.y + z.z);
@@ -29,8 +29,8 @@ float instance_determinant(Instance i) {
     return dot(i.to_mesh[0], cross(i.to_mesh[1], i.to_mesh[2]));
 }
 
-// A vector of the mesh's space in the frame of the scene: by Cramer's rule, since a record has no room for the inverse.
-// host/gpu_scene/instancing.cpp bounds its rounding.
+// A vector of the mesh's space in the frame of the scene: by Cramer's rule, since there is no room for the inverse in
+// the record. host/gpu_scene/instancing.cpp bounds its rounding.
 vec3 vector_to_scene(Instance i, vec3 v) {
     return (v.x * cross(i.to_mesh[1], i.to_mesh[2]) + v.y * cross(i.to_mesh[2], i.to_mesh[0]) +
             v.z * cross(i.to_mesh[0], i.to_mesh[1])) /

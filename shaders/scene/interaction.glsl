@@ -1,4 +1,4 @@
-// What the integrator needs to know about the point that a ray hit.
+// The integrator's data about the point that a ray hit.
 #ifndef SCENE_INTERACTION_GLSL
 #define SCENE_INTERACTION_GLSL
 
@@ -10,7 +10,7 @@
 #include "scene/vertex.glsl"
 
 // In the frame of the scene. Both normals are unit vectors on the viewer's side of the surface; the geometric normal
-// alone decides which side that is.
+// alone decides which side the viewer is on.
 struct Interaction {
     vec3 p;
     vec3 wo;      // Towards the viewer, unit.
@@ -20,7 +20,7 @@ struct Interaction {
     float error;  // How far from the surface, along n, rays must begin.
     vec3 lift;    // From p to where light that stays on the viewer's side begins: see scene/smooth.glsl.
     uint material;
-    uint light;  // Light that the surface belongs to, or NO_LIGHT.
+    uint light;  // Light of the surface, or NO_LIGHT.
     Attributes attributes;
 };
 
@@ -41,7 +41,7 @@ void smooth_shading(inout Interaction s, Hit hit, Instance instance, Primitive p
     s.lift = smooth_lift(smooth_height(normals, e1, e2, b, side), s.wo, s.ns, ray_length);
 }
 
-// Brings what is known of a point in the space of an instance's mesh to the frame of the scene.
+// Transforms a point in the space of an instance's mesh to the frame of the scene.
 void bring_to_scene(Instance i, inout Interaction s) {
     s.p = i.centre + vector_to_scene(i, s.p);
     vec3 n = normal_to_scene(i, s.n);
@@ -51,7 +51,7 @@ void bring_to_scene(Instance i, inout Interaction s) {
     if ((ATTRIBUTES & ATTRIBUTE_TANGENT) != 0u) {
         vec4 t = s.attributes.tangent;
         vec3 along = vector_to_scene(i, t.xyz);
-        // As long as before, also if that is 0.
+        // Keeps its length, also if that is 0.
         along *= sqrt(dot(t.xyz, t.xyz) / max(dot(along, along), 1e-36));
         s.attributes.tangent = vec4(along, instance_determinant(i) < 0.0 ? -t.w : t.w);
     }
@@ -82,7 +82,7 @@ Interaction interaction_at(Ray ray, Hit hit) {
         vec3 e1 = (second ? primitive.c : primitive.b) - a;
         vec3 e2 = (second ? primitive.d : primitive.c) - a;
         s.n = normalize(cross(e1, e2));
-        s.p = a + (at.x * e1 + at.y * e2);  // Where triangles are small, no sum but the last rounds by much.
+        s.p = a + (at.x * e1 + at.y * e2);  // If triangles are small, only the last sum rounds by much.
     }
     s.attributes = attributes_at(
         AttributePlace(hit_primitive(hit), hit_second(hit), at, is_kind(primitive.kind, PRIMITIVE_SPHERE), s.n));

@@ -1,8 +1,8 @@
 // Tests the triangles of a tiny scene one by one.
 //
-// Where all lanes run in step, as on software Vulkan, testing all of a few primitives takes less time than finding the
-// right ones in a tree, since no lane waits for another. The vertices are read once and stay in registers, or wherever
-// the driver puts so many. What a ray needs of a vertex is computed once for all primitives that share it.
+// If all lanes run in step, as on software Vulkan, testing all of a few primitives is faster than finding the right
+// ones in a tree, since no lane waits for another. The vertices are read once and stay in registers, or wherever the
+// driver puts so many. A ray's values at a vertex are computed once for all primitives that share it.
 #ifndef SCENE_LIST_GLSL
 #define SCENE_LIST_GLSL
 #extension GL_EXT_control_flow_attributes : require

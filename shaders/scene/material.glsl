@@ -1,4 +1,4 @@
-// What textures and the colours of vertices make of materials and lights at a point.
+// Materials and lights at a point, with their textures and the colours of vertices.
 #ifndef SCENE_MATERIAL_GLSL
 #define SCENE_MATERIAL_GLSL
 
@@ -34,15 +34,15 @@ float texture_number(uint i, Attributes at) {
     return texture_number(t, texture_uv(t, at));
 }
 
-// Random bits for the hit of a ray: a hash of its bits, so that scenes with textures take the same numbers from the
-// sampler as those without.
+// Random bits for the hit of a ray: a hash of its bits, so that scenes with textures use the same numbers from the
+// sampler as scenes without.
 uvec4 hit_random(Ray ray) {
     uvec4 v = hash_pcg4d(uvec4(floatBitsToUint(ray.d), floatBitsToUint(ray.o.x)));
     return hash_pcg4d(v ^ uvec4(floatBitsToUint(ray.o.y), floatBitsToUint(ray.o.z), 0u, 0u));
 }
 
-// The material of index i, seen by that ray. The radiance of all models is linear in their colours: these may be one
-// texel chosen at random. Other numbers are filtered.
+// The material of index i, seen by that ray. The radiance of all models is linear in their colours, so a colour may be
+// one texel chosen at random. Other numbers are filtered.
 MaterialRecord material_at(uint i, Attributes at, Ray ray) {
     MaterialRecord m = scene_material(i);
     if ((TEXTURED & TEXTURED_MATERIALS) == 0u) return m;
@@ -67,14 +67,14 @@ bool principled_gives(uint values, const uint value) {
     return (values & 1u << value) != 0u;
 }
 
-// What an image says of a number: its channel, or 1.
+// The factor of a number from an image: its channel, or 1.
 float principled_number(vec4 texel, PrincipledImage image, const uint value) {
     if (!principled_gives(image.values, value)) return 1.0;
     uint channel = (value < 16u ? image.channels.x >> 2u * value : image.channels.y >> 2u * (value - 16u)) & 3u;
     return channel < 2u ? (channel == 0u ? texel.r : texel.g) : (channel == 2u ? texel.b : texel.a);
 }
 
-// Multiplies the values of a principled material, and its base colour, by those of an image.
+// Multiplies the values of a principled material, and its base colour, by an image's values.
 void principled_apply(inout PrincipledRecord p, inout vec3 base_color, PrincipledImage image, Attributes at) {
     TextureRecord t = scene_texture(image.texture);
     vec4 texel = texture_at(t, texture_uv(t, at));
@@ -119,7 +119,7 @@ float material_opacity(uint i, Attributes at) {
     float opacity = textures.opacity * texture_number(textures.opacity_texture, at);
     if ((TEXTURED & TEXTURED_VERTEX_COLORS) != 0u && textures.vertex_colors != 0u) opacity *= at.color.a;
     if (textures.cutoff >= 0.0) return opacity >= textures.cutoff ? 1.0 : 0.0;
-    return min(opacity, 1.0);  // Images of floats may hold more.
+    return min(opacity, 1.0);  // Images of floats may exceed it.
 }
 
 // Factor of the radiance of light `i`.

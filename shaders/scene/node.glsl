@@ -13,12 +13,12 @@ vec4 bytes(uint word) {
 }
 
 // The bits of a float as an integer. Such integers order numbers >= 0 as floats do; all others become negative, in
-// reverse order. On software Vulkan, comparing integers takes one instruction, comparing floats three, to handle NaN.
+// reverse order. On software Vulkan, comparing integers is one instruction, comparing floats three, to handle NaN.
 ivec4 ordered_bits(vec4 x) {
     return floatBitsToInt(x);
 }
 
-// What a ray hits of four boxes.
+// The hits of a ray with four boxes.
 struct BoxHits {
     bvec4 met;
     ivec4 t;  // Where the ray enters each box, as the bits of a float; negative if it begins inside.
@@ -27,7 +27,7 @@ struct BoxHits {
 // Intersects a ray, clipped to [0, t_max], with the boxes whose nearer planes lie at `near + q_near * scale` along the
 // ray, axis by axis, and the others at `far + q_far * scale`; byte i of q: box i.
 //
-// There is no need to clip to 0. A box behind the ray's origin has a far plane behind it, and that axis's near plane
+// Clipping to 0 is not necessary. A box behind the ray's origin has a far plane behind it, and that axis's near plane
 // even further behind. So t_far is the far plane that is least behind, by the order of negative integers; t_near is a
 // plane in front of the origin, or the near plane that is most behind. Either way t_near is greater, and the ray misses
 // the box.
@@ -53,7 +53,7 @@ bvec4 both(bvec4 a, bvec4 b) {
     return bvec4(a.x && b.x, a.y && b.y, a.z && b.z, a.w && b.w);
 }
 
-// Where the ray enters those of the four boxes that are nodes, with the child's number in the low 3 bits; a greater
+// Where the ray enters the boxes, among the four, that are nodes, with the child's number in the low 3 bits; a greater
 // value for the others, and for a miss. `children`: the boxes' numbers; the first `node_count` children are nodes.
 ivec4 node_order(BoxHits hits, uvec4 children, uint node_count) {
     const int miss = 0x7FFFFFFF;
@@ -69,7 +69,7 @@ ivec4 node_order(BoxHits hits, uvec4 children, uint node_count) {
 // Ref: Ize 2013, Robust BVH Ray Traversal, for the problem; the bound is our own, for quantised boxes.
 //
 // Above instances, a ray into whose space may be off by INSTANCE_RAY_ERROR of the largest coordinate of its origin, and
-// by what the instances' boxes allow for.
+// by the margin of the instances' boxes.
 NodeHits node_intersect(BvhNode node, Ray ray, vec3 inv_d, float t_max, bool above_instances) {
     vec3 scale = node.scale * inv_d;
     vec3 start = (node.origin - ray.o) * inv_d;
@@ -87,13 +87,13 @@ NodeHits node_intersect(BvhNode node, Ray ray, vec3 inv_d, float t_max, bool abo
     first.xyz = min(first.xyz, node_order(b, uvec4(4u, 5u, 6u, 7u), node_count).xyz);
     uvec4 bits = mix(uvec4(0u), uvec4(1u, 2u, 4u, 8u), a.met);
     bits.xyz |= mix(uvec3(0u), uvec3(16u, 32u, 64u), b.met.xyz);
-    // From very far away, a ray hits all boxes of a node, even those of children that do not exist.
+    // From very far away, a ray hits all boxes of a node, even those of missing children.
     uint met = (bits.x | bits.y | bits.z | bits.w) & (2u << bvh_last_child(node.children)) - 1u;
     return NodeHits(met & (1u << node_count) - 1u, met >> node_count,
                     uint(min(min(first.x, first.y), min(first.z, first.w))) & 7u);
 }
 
-// Whether a ray meets a node's children rather from the last to the first.
+// Whether a ray tends to meet a node's children from the last to the first.
 bool node_descends(BvhNode node, Ray ray) {
     uint axis = bvh_longest_axis(node.scale);
     return (axis == 0u ? ray.d.x : axis == 1u ? ray.d.y : ray.d.z) < 0.0;

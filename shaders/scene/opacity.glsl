@@ -9,9 +9,9 @@
 
 const bool HAS_OPACITY = (TEXTURED & TEXTURED_OPACITY) != 0u;
 
-// A number in [0, 1) that is random for each ray and hit, whatever the order in which these are found: a hash of the
-// bits of the ray in the primitive's space, of the surface's id in the scene, and of whether the hit is the first one
-// of its primitive. (A sample's rays differ from those of every other sample.)
+// A number in [0, 1) that is random for each ray and hit, independent of the order in which they are found: a hash of
+// the bits of the ray in the primitive's space, of the surface's id in the scene, and of whether the hit is the first
+// one of its primitive. (A sample's rays differ from those of every other sample.)
 float opacity_random(Ray ray, uint id, bool first) {
     uvec4 v = hash_pcg4d(uvec4(floatBitsToUint(ray.d), id));
     return unit_float(hash_pcg4d(v ^ uvec4(floatBitsToUint(ray.o), uint(first))).x);
@@ -40,9 +40,9 @@ bool is_stopped(Ray ray, Primitive p, Hit hit, bool first) {
     return opacity_random(ray, hit_second(hit) ? surface.id.y : surface.id.x, first) < opacity;
 }
 
-// A hit that is nearer than any known to stop the ray, and may stop it, too.
+// A hit that may stop the ray, nearer than any hit that is known to stop it.
 struct Candidate {
-    Hit hit;     // No hit: there is none.
+    Hit hit;     // No hit if there is no candidate.
     bool first;  // It is the first hit of its primitive.
 };
 

@@ -16,10 +16,10 @@ bool is_kind(uint kind, const uint asked) {
     return (PRIMITIVES & ~(1u << asked)) == 0u || kind == asked;
 }
 
-// The nearest hit along a ray. Among equally near ones the first wins, by instance and then in leaf order, whatever the
-// order of visits.
+// The nearest hit along a ray. Among equally near ones the first wins, by instance and then in leaf order, independent
+// of the order of visits.
 struct Hit {
-    float t;        // In lengths of ray.d; without a hit, how far the ray was followed.
+    float t;        // In lengths of ray.d; without a hit, the limit of the search.
     int place;      // Twice its position in leaf order, plus 1 for the second of two triangles; negative: no hit.
     uint instance;  // The place of its record among the nodes, or NO_INSTANCE.
 };
@@ -42,7 +42,7 @@ bool hit_second(Hit hit) {
     return (hit.place & 1) != 0;
 }
 
-// The surface that was hit, with its place among all and the material of its instance.
+// The surface that was hit, with its place among all surfaces and the material of its instance.
 Surface hit_surface(Hit hit) {
     Surface surface = scene_surface(hit_primitive(hit));
     if (is_instanced(hit.instance)) {
@@ -78,7 +78,7 @@ Hit primitive_hit(Ray ray, RayShear shear, Primitive p, uint position, uint inst
 Hit primitive_second_hit(Ray ray, RayShear shear, Primitive p, Hit first) {
     if (is_kind(p.kind, PRIMITIVE_SPHERE)) return Hit(sphere_intersect(ray, p.a, p.b.x).y, first.place, first.instance);
     if (is_kind(p.kind, PRIMITIVE_DISK)) return Hit(-1.0, first.place, first.instance);
-    // The same triangle twice, so that the rounding of no other has a part in it.
+    // The same triangle twice, so that the other triangle's rounding has no influence.
     bool second = !hit_second(first);
     vec3 b = second ? p.c : p.b;
     vec3 c = second ? p.d : p.c;

@@ -23,7 +23,7 @@ layout(std140, binding = BINDING_PARAMETERS) uniform ParametersBlock {
 };
 
 // READ_n reads n words of an array in a buffer, from word i on. There is one branch for all of them, since not every
-// driver removes the dead side before it compiles. (An index must be valid even where it is never used.) The start of a
+// driver removes the dead side before it compiles. (An index must be valid even if it is never used.) The start of a
 // buffer's first array, which has its name, is known unless the buffer shares its storage buffer with others.
 #define TEXEL(buffer, i) texelFetch(texels_##buffer, int(i))
 #define STORED(buffer, i) storage[SLOT_##buffer < STORAGE_BUFFERS ? SLOT_##buffer : 0u].words[i]
@@ -194,7 +194,7 @@ uvec4 scene_texels(uint i) {
     return a;
 }
 
-// Words that a primitive has in the array of attributes, and where those of each begin.
+// The number of words of a primitive in the array of attributes, and the offsets of each attribute.
 const uint UV1_WORD = (ATTRIBUTES & ATTRIBUTE_UV0) != 0u ? 2u : 0u;
 const uint COLOR_WORD = UV1_WORD + ((ATTRIBUTES & ATTRIBUTE_UV1) != 0u ? 2u : 0u);
 const uint TANGENT_WORD = COLOR_WORD + ((ATTRIBUTES & ATTRIBUTE_COLOR) != 0u ? 2u : 0u);

@@ -4,7 +4,7 @@
 
 #include "base/ray.glsl"
 
-// The distances t > 0 in lengths of ray.d at which the ray hits, the lesser one first; the ray misses if they are not
+// The distances t > 0 in lengths of ray.d at which the ray hits, the smaller one first; the ray misses if they are not
 // above 0. `precise` makes every copy of the code find the same distances.
 //
 // Ref: Haines, Guenther and Akenine-Moeller 2019, Precision Improvements for Ray/Sphere Intersection (Ray Tracing Gems,
@@ -16,7 +16,7 @@ vec2 sphere_intersect(Ray ray, vec3 center, float radius) {
     float b = -dot(f, ray.d);
     vec3 nearest = f + (b / a) * ray.d;
     precise float discriminant = radius * radius - dot(nearest, nearest);
-    if (discriminant <= 0.0) return vec2(-1.0);  // So q is not 0.
+    if (discriminant <= 0.0) return vec2(-1.0);  // This ensures that q is not 0.
     float root = sqrt(a * discriminant);
     float q = b >= 0.0 ? b + root : b - root;
     precise float t0 = (dot(f, f) - radius * radius) / q;

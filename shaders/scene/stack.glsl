@@ -9,7 +9,7 @@
 // below: the index of the first child.
 const uint PENDING_SHIFT = 24u;
 const uint PENDING_NONE = 0u;
-// The highest child comes first, where there are instances.
+// With instances, the highest child comes first.
 const uint PENDING_DESCENDS = 0x80000000u;
 
 // The bits of the pending children.
@@ -40,10 +40,10 @@ uint pending_rest(uint pending) {
 }
 
 // The stack of bvh_advance, its top at 0: the pending children at each level above the current node, and PENDING_NONE
-// below them. The root has no siblings, and those of the node to be visited are not here. All of it moves with every
-// push and pop, so that no index depends on the ray and the array becomes registers: on software Vulkan, storing to an
-// indexed array takes longer than moving ten words. (The loop counters are signed, or lavapipe 22.3 would not unroll
-// the loops.) As a function's argument, the stack would be copied.
+// below them. The root has no siblings, and the siblings of the node to be visited are not here. The whole stack moves
+// with every push and pop, so that no index depends on the ray and the array becomes registers: on software Vulkan,
+// storing to an indexed array is slower than moving ten words. (The loop counters are signed, or lavapipe 22.3 would
+// not unroll the loops.) As a function's argument, the stack would be copied.
 const int STACK_WORDS = BVH_DEPTH > 1u ? int(BVH_DEPTH) - 1 : 1;
 uint stack[STACK_WORDS];
 

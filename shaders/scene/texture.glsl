@@ -5,7 +5,7 @@
 #include "scene/scene_data.glsl"
 #include "texture/filter.glsl"
 
-// The bits of texel (x, y) of texture t; 16-bit channels take two words.
+// The bits of texel (x, y) of texture t; 16-bit channels need two words.
 uvec2 texel_bits(TextureRecord t, uvec2 p) {
     uint tile = (p.y >> 2u) * (t.size.x + 3u >> 2u) + (p.x >> 2u);
     uvec2 within = p & 3u;
@@ -60,14 +60,14 @@ float texel_number(TextureRecord t, uvec2 p) {
     return srgb ? srgb_decode(vec3(number)).x : number;
 }
 
-// Where texture t is looked up at (u, v) of its set; it repeats with a period of 1.
+// The place in texture t for (u, v) of its set; it repeats with a period of 1.
 vec2 texture_point(TextureRecord t, vec2 uv) {
     precise float x = t.row_u.x * uv.x + t.row_u.y * uv.y + t.row_u.z;
     precise float y = t.row_v.x * uv.x + t.row_v.y * uv.y + t.row_v.z;
     return vec2(x, y);
 }
 
-// The texels that are mixed there.
+// The texels that are interpolated there.
 struct TexturePlace {
     AxisPlace u;
     AxisPlace v;
@@ -79,13 +79,13 @@ TexturePlace texture_place(TextureRecord t, vec2 uv) {
                         axis_place(point.y, t.size.y, t.traits, TEXTURE_WRAP_V));
 }
 
-// Texel i of the four that are mixed there.
+// Texel i of the four that are interpolated there.
 uvec2 texture_corner(TexturePlace at, int i) {
     return uvec2((i & 1) == 0 ? at.u.first : at.u.second, i < 2 ? at.v.first : at.v.second);
 }
 
-// The image of texture t at (u, v) of its set: linear red, green, blue and alpha. (A loop: there are compilers that put
-// the code of each call in its place, and take minutes over four.)
+// The image of texture t at (u, v) of its set: linear red, green, blue and alpha. (A loop: some compilers inline each
+// call, and need minutes for four.)
 vec4 texture_at(TextureRecord t, vec2 uv) {
     TexturePlace at = texture_place(t, uv);
     vec4 texels[4];
@@ -114,7 +114,7 @@ vec4 texture_tap(TextureRecord t, vec2 uv, vec2 random) {
         t, uvec2(random.x < at.u.weight ? at.u.second : at.u.first, random.y < at.v.weight ? at.v.second : at.v.first));
 }
 
-// The derivatives of the texture's channel with u and v, for texels joined by a quadratic B-spline.
+// The derivatives of the texture's channel with u and v, for texels interpolated by a quadratic B-spline.
 vec2 texture_slope(TextureRecord t, vec2 uv) {
     vec2 place = texture_point(t, uv);
     AxisSlope u = axis_slope(place.x, t.size.x, t.traits, 0u);

@@ -1,4 +1,4 @@
-// Rays against the scene's BVH: the closest hit, and whether there is any.
+// Rays against the scene's BVH: the closest hit, or whether there is any hit.
 #ifndef SCENE_TRAVERSAL_GLSL
 #define SCENE_TRAVERSAL_GLSL
 
@@ -13,7 +13,7 @@ void bvh_prepare() {
     list_prepare();
 }
 
-// Stands for no node.
+// No node.
 const uint NODE_NONE = 0xFFFFFFFFu;
 
 // The state of a ray that traverses the tree.
@@ -21,16 +21,16 @@ struct Traversal {
     Ray ray;     // In the space of the nodes that it visits: the scene's, or that of an instance's mesh.
     vec3 inv_d;  // reciprocals(ray.d)
     RayShear shear;
-    bool any_hit;         // The first hit ends the traversal.
-    Hit hit;              // The nearest so far.
-    uint node;            // To be visited next;
-    uint pending;         // then its siblings; those further up are on the stack.
-    uint leaves;          // To be tested before `node`; bit i: the primitive i places after
-    uint first_leaf;      // this position in leaf order.
+    bool any_hit;    // The first hit ends the traversal.
+    Hit hit;         // The nearest so far.
+    uint node;       // The next node to be visited.
+    uint pending;    // Its siblings, which come after it; those further up are on the stack.
+    uint leaves;     // Leaves to be tested before `node`; bit i: primitive first_leaf + i.
+    uint first_leaf; // Position in leaf order.
     Candidate candidate;  // For bvh_decide.
-    Ray outside;          // In the frame of the scene.
-    uint instance;        // That the ray is in, or NO_INSTANCE,
-    uint root;            // and the root of its mesh, behind which lie all nodes of the mesh; 0 outside.
+    Ray outside;     // In the frame of the scene.
+    uint instance;   // The instance that the ray is in, or NO_INSTANCE.
+    uint root;       // The root of its mesh, followed by all nodes of the mesh; 0 outside instances.
 };
 
 // A traversal at the root that looks for hits with t in (0, t_max). bvh_prepare comes first.
@@ -48,10 +48,10 @@ void bvh_end(inout Traversal t) {
 }
 
 // With instances, bvh_advance visits at most this many nodes: on software Vulkan, lanes that have found leaves wait for
-// those still on their way, which may be as far as the next instance.
+// the others, which may have to go as far as the next instance.
 const uint NODES_PER_TURN = 7u;
 
-// Brings the ray back to the frame of the scene if the next node lies there, before those of all meshes.
+// Returns the ray to the frame of the scene if the next node lies there, before the nodes of all meshes.
 void leave_instance(inout Traversal t) {
     if (t.node < t.root) {
         t.ray = t.outside;
@@ -61,9 +61,9 @@ void leave_instance(inout Traversal t) {
     t.inv_d = reciprocals(t.ray.d);  // For enter_instance, too.
 }
 
-// Brings the ray into the space of an instance if its record, of these words, lies in the node's place: then the root
-// of its mesh is the only child. On software Vulkan every lane computes with the words, and would take a hundred times
-// as long for the denormal numbers that those of a node may be.
+// Brings the ray into the space of an instance if its record, of these words, lies in the node's place; the root of its
+// mesh is then the only child. On software Vulkan every lane computes with the words, and would be a hundred times
+// slower for denormal numbers, which a node's words may be.
 void enter_instance(inout Traversal t, BvhNode node, NodeWords words, inout bool down, inout uint rest,
                     inout uint child) {
     uint keep = is_instance(node) ? 0xFFFFFFFFu : 0u;
@@ -99,7 +99,7 @@ void bvh_decide(inout Traversal t) {
 //
 // Leaves are tested as soon as their boxes are hit, and never wait on the stack, so that one word per level is enough.
 // On software Vulkan, neighbouring lanes wait for each other at the end of either loop. So a ray changes its space
-// within the loop of nodes, where every lane pays for it, but none waits.
+// within the loop over nodes, where every lane pays for it, but none waits.
 void bvh_advance(inout Traversal t) {
     if (LIST > 0u) {
         list_intersect(t.ray, t.shear, t.hit);
@@ -111,7 +111,7 @@ void bvh_advance(inout Traversal t) {
     for (uint k = 0u; t.leaves == 0u && t.node != NODE_NONE && (!INSTANCED || k < NODES_PER_TURN); ++k) {
         if (INSTANCED) leave_instance(t);
 
-        // What is next if this node has no child to visit.
+        // The next node if this one has no child to visit.
         bool siblings = pending_any(t.pending);
         uint next = mix(stack[0], t.pending, siblings);
         uint next_node = mix(NODE_NONE, pending_node(next, pending_first(next)), pending_any(next));

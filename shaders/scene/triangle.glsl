@@ -1,16 +1,16 @@
 // Ray against two triangles, watertight: two that share an edge leave no gap between them.
 //
 // Ref: Woop, Benthin and Wald 2013, Watertight Ray/Primitive Intersection. Their double-precision fallback for edge
-// functions of 0 is not needed for watertightness: rounding is monotone, so that a computed edge function can become 0
-// but never has the wrong sign; and 0 counts as inside on both sides of the edge.
+// functions of 0 is not needed for watertightness: rounding is monotone, so a computed edge function can become 0 but
+// never has the wrong sign; and 0 is inside on both sides of the edge.
 #ifndef SCENE_TRIANGLE_GLSL
 #define SCENE_TRIANGLE_GLSL
 
 #include "base/math.glsl"
 #include "base/ray.glsl"
 
-// What a ray computes once for all triangles: the axis z along which it is longest, and the shear that turns it onto
-// that axis.
+// Values of a ray that are computed once for all triangles: the axis z along which it is longest, and the shear that
+// turns it onto that axis.
 struct RayShear {
     uint kz;
     vec3 s;
@@ -31,7 +31,7 @@ RayShear ray_shear(vec3 d, vec3 inv_d) {
     return RayShear(kz, vec3(e.x / e.z, e.y / e.z, inv.z), inv.xy);
 }
 
-// A vertex as the ray sees it: across the ray, and along it [lengths of d's longest component].
+// A vertex in the coordinates of a ray: across the ray, and along it [lengths of d's longest component].
 struct ShearedVertex {
     vec2 p;
     float z;
@@ -56,16 +56,16 @@ bool edges_meet(vec3 e, float det) {
     return !(any_negative(e) && any_positive(e)) && det != 0.0;
 }
 
-// Where a ray hits two triangles.
+// The hit of a ray with two triangles.
 struct TrianglesHit {
     float t;      // In lengths of ray.d; the ray misses if it is not above 0.
     bool second;  // The ray hits the second one.
 };
 
-// Where a ray hits the triangles a b c and a c d: the nearer one if both, the first if they are equally near.
+// Where a ray hits the triangles a b c and a c d: the nearer one if it hits both, the first if they are equally near.
 TrianglesHit triangles_intersect(RayShear shear, ShearedVertex a, ShearedVertex b, ShearedVertex c, ShearedVertex d) {
-    // For triangles that are small compared with their distance, the edge functions below are nothing but rounding
-    // errors; so test first whether the rectangle around their vertices holds the origin. Comparisons do not round.
+    // For triangles that are small compared with their distance, the edge functions below are only rounding errors; so
+    // test first whether the rectangle around their vertices holds the origin. Comparisons do not round.
     vec4 x = vec4(a.p.x, b.p.x, c.p.x, d.p.x);
     vec4 y = vec4(a.p.y, b.p.y, c.p.y, d.p.y);
     bool beside = all_positive(x) || all_negative(x) || all_positive(y) || all_negative(y);
@@ -93,7 +93,7 @@ TrianglesHit triangles_intersect(RayShear shear, ShearedVertex a, ShearedVertex 
     return TrianglesHit(t, second);
 }
 
-// The same for vertices as they are.
+// The same for untransformed vertices.
 TrianglesHit triangles_intersect(Ray ray, RayShear shear, vec3 a, vec3 b, vec3 c, vec3 d) {
     return triangles_intersect(shear, shear_vertex(ray, shear, a), shear_vertex(ray, shear, b),
                                shear_vertex(ray, shear, c), shear_vertex(ray, shear, d));

@@ -8,7 +8,7 @@
 struct Vertex {
     vec3 p;
     vec3 n;       // Geometric normal on the viewer's side, unit; 0 if there is none.
-    float error;  // How far from p, along n, rays must begin.
+    float error;  // Distance from p, along n, at which rays must begin.
     vec3 lift;    // From p to where light that stays on the viewer's side begins: see scene/smooth.glsl.
 };
 

@@ -11,7 +11,7 @@
 // below the child.
 //
 // Children that are nodes come first, and are adjacent in the array of nodes; those that are primitives are
-// adjacent in leaf order. So two numbers say where all of them are.
+// adjacent in leaf order. So two numbers give the places of all children.
 #ifndef SHARED_BVH_NODE_H
 #define SHARED_BVH_NODE_H
 
@@ -25,12 +25,11 @@ namespace candela {
 const uint BVH_NODE_WORDS = 4u;
 const uint BVH_WIDTH = 7u;
 
-// No tree has more levels of nodes than this; the builder ensures it. Halving 2^26 primitives takes 26
-// levels; the rest is for the imbalance that the surface area heuristic causes. (A sphere of 10 M triangles
-// has 15 levels.)
+// The most levels of nodes in a tree, which the builder ensures. Halving 2^26 primitives needs 26 levels; the
+// rest is for the imbalance of the surface area heuristic. (A sphere of 10 M triangles has 15 levels.)
 const uint BVH_MAX_DEPTH = 48u;
 
-// A tree has fewer nodes than this: beside 24 bits for the index of a node, a word of traversal's stack has
+// A tree has fewer nodes than this: with 24 bits for the index of a node, a word of traversal's stack has
 // room for one bit per child.
 const uint BVH_MAX_NODES = 1u << 24u;
 
@@ -84,7 +83,7 @@ inline uint bvh_longest_axis(vec3 scale);
 
 #endif
 
-// Decodes a record. Both languages read this, so that the host checks the very boxes that the device sees.
+// Decodes a record. Both languages use this, so the host checks exactly the boxes that the device sees.
 BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     BvhNode n;
     n.origin = uintBitsToFloat(uvec3(a));
@@ -100,7 +99,7 @@ BvhNode bvh_node_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     return n;
 }
 
-// How many of a node's children are nodes: the first ones, from index children.x on.
+// The number of a node's children that are nodes: the first ones, from index children.x on.
 uint bvh_node_count(uvec2 children) {
     return children.y >> 26u & 7u;
 }
@@ -134,7 +133,7 @@ inline uint bvh_child(uvec2 children, uint i) {
     return i < nodes ? children.x + i : BVH_LEAF_BIT | (bvh_first_primitive(children) + i - nodes);
 }
 
-// How many children a node has. (The root of an empty tree has one that does not exist.)
+// The number of a node's children. (The root of an empty tree has one that does not exist.)
 inline uint bvh_child_count(const BvhNode& n) {
     return bvh_last_child(n.children) + 1u;
 }

@@ -11,16 +11,17 @@ namespace candela {
 // Work group of every image kernel, 8 x 8: software Vulkan runs eight lanes, and narrower groups waste them.
 const uint WORKGROUP_SIZE = 8u;
 
-// A path that would scatter more often than this is cut, counted and reported.
+// A path that would scatter more often than this is cut off, counted and reported.
 const uint DEPTH_SAFETY_LIMIT = 4096u;
 
 // No light, in Primitive::light.
 const uint NO_LIGHT = 0xFFFFFFFFu;
 
 // Estimators of direct light.
-const uint ESTIMATOR_BSDF = 0u;   // Emission counts only where a BSDF sample hits it.
-const uint ESTIMATOR_LIGHT = 1u;  // Emission counts only through light samples (and where those cannot reach).
-const uint ESTIMATOR_MIS = 2u;    // Both, weighted by the power heuristic.
+const uint ESTIMATOR_BSDF = 0u;  // Emission is only found by BSDF samples.
+const uint ESTIMATOR_LIGHT =
+    1u;                         // Emission is only found by light samples (except where they cannot find it).
+const uint ESTIMATOR_MIS = 2u;  // Both, weighted by the power heuristic.
 
 // Samplers.
 const uint SAMPLER_INDEPENDENT = 0u;
@@ -39,26 +40,26 @@ const uint PAIRS_PER_BOUNCE = 3u;
 
 // Layers of the accumulation image (rgba32f). The value of a sum is sum - compensation (Kahan).
 const uint LAYER_L = 0u;                    // rgb: sum of L; a: camera rays that hit something visible.
-const uint LAYER_L_COMPENSATION = 1u;       // rgb; a: how many samples the pixel holds.
+const uint LAYER_L_COMPENSATION = 1u;       // rgb; a: the pixel's number of samples.
 const uint LAYER_SQUARE = 2u;               // rgb: sum of L^2; a: the pixel's limit, see below.
 const uint LAYER_SQUARE_COMPENSATION = 3u;  // rgb; a: rays of the pixel's samples, MAX_RAYS at most.
 const uint LAYER_ALBEDO = 4u;               // rgb: sum of the first hit's albedo.
 const uint LAYER_ALBEDO_COMPENSATION = 5u;  // rgb.
 const uint LAYER_NORMAL = 6u;               // rgb: sum of the first hit's shading normal, world space.
 const uint LAYER_NORMAL_COMPENSATION = 7u;  // rgb.
-const uint LAYER_COUNT_COLOUR = 4u;         // Layers of an image without AOVs ...
-const uint LAYER_COUNT_AOVS = 8u;           // ... and of one with them.
+const uint LAYER_COUNT_COLOUR = 4u;         // Layers of an image without AOVs.
+const uint LAYER_COUNT_AOVS = 8u;           // Layers of an image with AOVs.
 
-// Floats hold every whole number up to here, so that sums of them do not depend on how they are split.
+// Floats represent every whole number up to this, so sums do not depend on how they are split.
 const float MAX_RAYS = 16777216.0;
 
 // A pixel's limit is 0 if there is none, otherwise the most samples that it gets, plus one.
 
-// Words of the counter buffer: what one submission did.
+// Words of the counter buffer, for one submission.
 const uint COUNTER_RAYS_LOW = 0u;  // Rays of the samples folded, 64 bits in two words.
 const uint COUNTER_RAYS_HIGH = 1u;
 const uint COUNTER_NONFINITE = 2u;    // Samples that were not finite and added nothing.
-const uint COUNTER_DEPTH_LIMIT = 3u;  // Paths cut at DEPTH_SAFETY_LIMIT.
+const uint COUNTER_DEPTH_LIMIT = 3u;  // Paths cut off at DEPTH_SAFETY_LIMIT.
 const uint COUNTER_SAMPLES = 4u;      // Samples folded.
 const uint COUNTER_UNFINISHED = 5u;   // Pixels whose loop the driver ended before they had all samples.
 const uint COUNTER_COUNT = 6u;
@@ -69,7 +70,7 @@ const uint BINDING_STORAGE = 16u;
 const uint BINDING_PARAMETERS = 17u;
 const uint BINDING_IMAGE = 18u;
 const uint BINDING_COUNTERS = 19u;
-const uint BINDING_ITEMS = 20u;  // Of probes.
+const uint BINDING_ITEMS = 20u;  // Items of probes.
 const uint BINDING_RESULTS = 21u;
 
 // The camera's aperture.

@@ -20,8 +20,8 @@ struct DisplayPush {
 
 const uint DISPLAY_BINDING_IMAGE = 0u;    // The accumulation image.
 const uint DISPLAY_BINDING_OVERLAY = 1u;  // overlay_size pixels, sRGB codes premultiplied by alpha.
-const uint DISPLAY_BINDING_PICTURE = 2u;  // The developed picture without the overlay ...
-const uint DISPLAY_BINDING_SCREEN = 3u;   // ... and with it, its bytes in the order that the window wants.
+const uint DISPLAY_BINDING_PICTURE = 2u;  // The developed picture without the overlay.
+const uint DISPLAY_BINDING_SCREEN = 3u;   // The picture with the overlay, its bytes in the window's order.
 
 // Specialization constants.
 const uint DISPLAY_CONSTANT_CURVE = 0u;       // TONEMAP_*

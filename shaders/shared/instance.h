@@ -1,12 +1,12 @@
-// Record of an instance: a mesh that is shown once more, elsewhere. It takes the place of a node in the array
-// of nodes, 4 words of uvec4; a node has no zero in the lowest byte of its first word's w.
+// Record of an instance: a mesh that is shown once more, elsewhere. It has the place of a node in the array
+// of nodes, 4 words of uvec4; the lowest byte of a node's first w is never zero.
 //
 //   0: to_mesh row 0, root << 8              2: to_mesh row 2, first_id
 //   1: to_mesh row 1, material | error       3: centre.xyz
 //
 // An instance has one child, the root of its mesh's tree, whose nodes and primitives lie in the mesh's space.
-// A ray goes there with its parameter t unchanged: the point p of the scene's frame is the point
-// to_mesh (p - centre) of the mesh's.
+// A ray goes there with its parameter t unchanged: the point p of the scene's frame is the point to_mesh (p -
+// centre) of the mesh's space.
 #ifndef SHARED_INSTANCE_H
 #define SHARED_INSTANCE_H
 
@@ -18,7 +18,7 @@
 namespace candela {
 #endif
 
-// Stands for no instance, that is for the frame of the scene: the first node is always the root.
+// No instance, i.e. the frame of the scene: the first node is always the root.
 const uint NO_INSTANCE = 0u;
 
 // How far a ray in a mesh's space may be off the ray in the frame of the scene, per length of its origin
@@ -27,17 +27,17 @@ const uint NO_INSTANCE = 0u;
 const float INSTANCE_RAY_ERROR = 1.0 / 131072.0;
 
 // The greatest sum of a row of |to_scene| |to_mesh|, absolute values of the matrices' elements, that an
-// instance may have: by how much rounding in the mesh's space grows on the way back. It is at most 3 for
-// turns and scales along the mesh's own axes.
+// instance may have. It bounds the growth of rounding on the way back from the mesh's space, and is at most 3
+// for turns and scales along the mesh's axes.
 const float MAX_INSTANCE_CONDITION = 16.0;
 
 struct Instance {
     vec3 to_mesh[3];  // Rows.
-    vec3 centre;      // Of the mesh's space, in the frame of the scene.
+    vec3 centre;      // Origin of the mesh's space, in the frame of the scene.
     uint root;        // Index of the root of the mesh's tree, among all nodes.
-    uint first_id;    // What is added to the ids of the mesh's surfaces, modulo 2^32.
-    uint material;    // In place of that of the mesh's surfaces.
-    float error;      // What rays add to a surface's error, in the frame of the scene: 0 or a power of two.
+    uint first_id;    // Added to the ids of the mesh's surfaces, modulo 2^32.
+    uint material;    // Replaces the material of the mesh's surfaces.
+    float error;      // Added to a surface's error for rays, in the frame of the scene: 0 or a power of two.
 };
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-// Specialization constants: values fixed when a kernel's pipeline is made. So a scene pays only for what it
+// Specialization constants: values fixed when a kernel's pipeline is made. So a scene only pays for what it
 // uses, and no branch depends on uniforms (which would make lavapipe 22.3 recompile the kernel at every
 // dispatch).
 //
@@ -18,7 +18,7 @@ const uint LIST_MAX = 16u;
 #include <iterator>
 namespace candela {
 
-// Who sets a constant. Scene and settings determine the image, the device how it is computed.
+// What determines a constant. Scene and settings determine the image, the device only its computation.
 enum class ConstantOwner { scene, settings, device };
 
 #define CONSTANT(number, type, name, initial, owner) const uint CONSTANT_##name = number;

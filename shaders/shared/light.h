@@ -23,18 +23,18 @@ namespace candela {
 const uint LIGHT_WORDS = 4u;
 const uint LIGHT_GROUPS_WORDS = 1u;
 const uint ENVIRONMENT_TEXEL_WORDS = 1u;
-const uint ALIAS_WORDS = 1u;  // Of two entries.
-const uint CDF_WORDS = 1u;    // Of two entries.
+const uint ALIAS_WORDS = 1u;  // Words of two entries.
 
 const uint LIGHT_TRIANGLE = 0u;       // p + b1 e1 + b2 e2 with b1, b2 >= 0, b1 + b2 <= 1.
 const uint LIGHT_PARALLELOGRAM = 1u;  // p + b1 e1 + b2 e2 with b1, b2 in [0, 1].
 const uint LIGHT_DISK = 2u;           // p + b1 e1 + b2 e2 with b1^2 + b2^2 <= 1.
 const uint LIGHT_SPHERE = 3u;         // Centre p, radius e1.x.
-const uint LIGHT_ENVIRONMENT = 4u;    // All around, infinitely far away; its texels are in tables of their own.
+const uint LIGHT_ENVIRONMENT = 4u;    // In all directions, infinitely far away; its texels are in their own
+                                      // tables.
 const uint LIGHT_POINT = 5u;          // At p, equal in all directions.
-const uint LIGHT_SPOT = 6u;           // At p, around the unit axis e1. For a direction of which 1 - cos of the angle
-                                      // to the axis is h, its intensity has the factor saturate((e2.x - h) e2.y)^2.
-const uint LIGHT_DIRECTIONAL = 7u;    // Infinitely far away in the unit direction e1.
+const uint LIGHT_SPOT = 6u;  // At p, around the unit axis e1. For a direction with 1 - cos of its angle to
+                             // the axis equal to h, its intensity has the factor saturate((e2.x - h) e2.y)^2.
+const uint LIGHT_DIRECTIONAL = 7u;  // Infinitely far away in the unit direction e1.
 
 // An emitter. The front of a flat one is the side that cross(e1, e2) points to, that of a sphere is outside.
 // No ray hits the last three. In the frame of the scene.
@@ -46,29 +46,29 @@ struct LightRecord {
     vec3 radiance;   // [W/(m^2 sr)], constant over the surface and its directions; of a point or spot light
                      // its intensity [W/sr], of a directional one the irradiance across it [W/m^2].
     uint two_sided;  // 1: emits from the back as well.
-    float pdf_area;  // Of a point on it, chosen uniformly by area [1/m^2]; 0 if it has no surface.
+    float pdf_area;  // Density of a point on it, chosen uniformly by area [1/m^2]; 0 if it has no surface.
     float pmf;       // Probability of choosing the light among all.
-    float error;     // How far from a point of it, along its normal, rays towards it must end; >= 0.
+    float error;     // Distance from its points, along the normal, at which rays towards it must end; >= 0.
 };
 
-// How the choice among lights is divided. Their table has first those with a place in the scene, then the
-// suns, which are the directional ones, then the sky, if it is one. Each of the first two groups has an alias
-// table of its own; that of the suns is behind the other.
+// The division of the choice among lights. Their table has first the lights with a place in the scene, then
+// the suns, which are the directional lights, then the sky, if it is a light. Each of the first two groups
+// has its own alias table; the suns' table comes second.
 struct LightGroups {
     uint placed;
     uint suns;
-    uint sun_share;  // Probability of choosing some sun, in units of 2^-31,
-    uint sky_share;  // and of the sky. The others have the rest.
+    uint sun_share;  // Probability of choosing some sun, in units of 2^-31.
+    uint sky_share;  // Probability of choosing the sky. The others have the rest.
 };
 
 // A piece of the sky in latitude and longitude.
 struct EnvironmentTexel {
     vec3 radiance;  // [W/(m^2 sr)], constant over the texel.
-    float pdf;      // Of sampling a direction in it, in proportion to luminance [1/sr]; 0 if the environment is
-                    // not a light.
+    float pdf;  // Density of sampling a direction in it, by luminance [1/sr]; 0 if the environment is not a
+                // light.
 };
 
-// Entry i of an alias table of n: column i is kept with probability threshold / 2^32, else the sample is
+// Entry i of an alias table of n: column i is kept with probability threshold / 2^32, otherwise the sample is
 // `alias`.
 struct AliasEntry {
     uint threshold;

@@ -1,4 +1,4 @@
-// Record of a medium, 1 word of uvec4: what lies between surfaces.
+// Record of a medium between surfaces, 1 word of uvec4.
 //
 //   0: absorption.rgb, ior
 #ifndef SHARED_MEDIUM_H
@@ -14,13 +14,13 @@ namespace candela {
 const uint MEDIUM_WORDS = 1u;
 
 // Materials and paths know a medium by its index and, in the bits above, its priority.
-const uint MEDIUM_NONE = 0u;  // Around everything; it absorbs nothing and has priority 0.
+const uint MEDIUM_NONE = 0u;  // Around everything; it does not absorb, and has priority 0.
 const uint MEDIUM_INDEX_BITS = 12u;
 const uint MEDIUM_BITS = 16u;
 const uint MEDIUM_SAME = 0xFFFFFFu;  // Behind a surface: the same medium as in front of it.
 const uint MAX_MEDIA = 1u << MEDIUM_INDEX_BITS;
 
-// Media in which one point can lie at once.
+// The most media at one point.
 const uint MEDIA_AT_ONCE = 4u;
 
 struct MediumRecord {

@@ -1,5 +1,5 @@
-// Record of everything that stays the same while an image is rendered, 10 words of uvec4 in a uniform buffer;
-// and the push constants of one dispatch.
+// Record of the constants of an image, 10 words of uvec4 in a uniform buffer; and the push constants of one
+// dispatch.
 //
 //   0: position.xyz, seed         5: lens_x.xyz, focal_distance
 //   1: right.xyz, max_depth       6: lens_y.xyz, blades
@@ -31,8 +31,8 @@ struct Parameters {
     uvec2 full_size;  // Pixels of the whole picture.
     uvec2 crop;       // Top left pixel of the accumulation image in the whole picture.
     uint seed;
-    uint max_depth;  // Scattering vertices at most, <= DEPTH_SAFETY_LIMIT.
-    uint rr_depth;   // Bounces that always survive.
+    uint max_depth;  // The most scattering vertices, <= DEPTH_SAFETY_LIMIT.
+    uint rr_depth;   // Bounces without Russian roulette.
     LightGroups lights;
     uvec2 environment_size;  // Texels.
     vec2 environment_turn;   // Cosine and sine of the environment's rotation about +Y.

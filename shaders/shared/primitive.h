@@ -1,6 +1,6 @@
-// Records of a primitive, which is what the BVH's leaves hold: its geometry, which traversal reads; its
-// surface, which is read where a path hits it; and its shading normals. The only functions are `pack` (C++)
-// and `unpack` (GLSL), side by side.
+// Records of a primitive, the content of the BVH's leaves: its geometry, which traversal reads; its surface,
+// which is read when a path hits it; and its shading normals. The only functions are `pack` (C++) and
+// `unpack` (GLSL), side by side.
 //
 //   Primitive, 3 words of uvec4   Surface, 1 word                   Normals, 1 word
 //     0: a.xyz, d.x or tag          0: id, id of the second           0: at a, b, c, d
@@ -25,13 +25,13 @@ const uint NORMALS_WORDS = 1u;
 
 // Kinds of primitives. In the frame of the scene.
 //
-// Two triangles that share an edge, as most in a mesh do, are one primitive: this halves memory and leaves,
-// and costs less than testing each. A single triangle has a second one, a c d, without area.
+// Two triangles that share an edge, as most in a mesh do, form one primitive: this halves memory and leaves,
+// and is cheaper than testing each. A single triangle has a second one, a c d, without area.
 const uint PRIMITIVE_TRIANGLES = 0u;  // a b c and a c d; counter-clockwise from the front.
 const uint PRIMITIVE_SPHERE = 1u;     // Centre a, radius b.x; the front is outside.
 const uint PRIMITIVE_DISK = 2u;       // a + x b + y c with x^2 + y^2 <= 1; cross(b, c) points to the front.
 
-// The tag of a kind that has no d: a NaN, which no vertex has.
+// The tag of a kind without d: a NaN, which no vertex has.
 const uint PRIMITIVE_TAG = 0x7FC00000u;
 
 const uint SURFACE_SMOOTH_BIT = 0x80000000u;
@@ -44,7 +44,7 @@ struct Primitive {
     vec3 a;
     vec3 b;
     vec3 c;
-    vec3 d;  // Of triangles only; equal to c if there is only one.
+    vec3 d;  // Only for triangles; equal to c if there is only one.
 };
 
 struct Surface {
@@ -52,7 +52,7 @@ struct Surface {
     uint material;     // Index of a material record, below MAX_MATERIALS.
     uint has_normals;  // 1: has shading normals.
     uint light;        // Index of a light record, or NO_LIGHT.
-    float error;       // How far from a point of it rays must begin, along its normal: 0 or a power of two.
+    float error;       // Distance at which rays must begin, along its normal: 0 or a power of two.
     uint lets_pass;    // 1: some rays may pass it, by scene/opacity.glsl.
 };
 

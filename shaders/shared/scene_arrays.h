@@ -1,6 +1,6 @@
-// The arrays of a scene, whose records are words of uvec4, and where a kernel finds them: in buffers, each of
-// which holds one array or several that change together. A buffer is a texel buffer or, if it is too long for
-// one, lies in a storage buffer; a device may have few of either.
+// The arrays of a scene, whose records are words of uvec4, and their buffers, each of which holds one array
+// or several that change together. A buffer is a texel buffer or, if it is too long for one, lies in a
+// storage buffer; a device may have few of either.
 //
 // scene_arrays.inc lists the arrays, scene_buffers.inc the buffers: both languages get a number ARRAY_NAME or
 // BUFFER_NAME for each line, and each kernel a specialization constant SLOT_NAME for each buffer: the storage
@@ -20,7 +20,7 @@
 namespace candela {
 #endif
 
-// Stands for no storage buffer.
+// No storage buffer.
 const uint NO_SLOT = 0xFFFFFFFFu;
 
 // Storage buffers that every device has for the arrays: Vulkan promises four, and one is for counters.
@@ -36,7 +36,7 @@ const uint LEAST_STORAGE_BUFFERS = 3u;
 
 #ifdef __cplusplus
 
-// Which buffer holds an array, what messages call it, and the length of its records.
+// The buffer of an array, its name in messages, and the length of its records.
 struct SceneArray {
     uint number;
     uint buffer;

@@ -1,4 +1,4 @@
-// Lets C++ and GLSL read the same file: the vector types by their GLSL names, and the reinterpretation of
+// Lets C++ and GLSL read the same file: vector types under their GLSL names, and the reinterpretation of
 // floats as the words of a record.
 #ifndef SHARED_TYPES_H
 #define SHARED_TYPES_H

@@ -1,11 +1,11 @@
-// What the codes of texels stand for.
+// The values of texels' codes.
 #ifndef TEXTURE_DECODE_GLSL
 #define TEXTURE_DECODE_GLSL
 
 #include "shared/kernel_constants.h"
 
-// True if `traits` have `trait`, one of the bits of `group`. What no texture of the scene has leaves no code in the
-// kernel, and what all have needs no branch.
+// True if `traits` have `trait`, one of the bits of `group`. A trait that no texture of the scene has leaves no code in
+// the kernel, and a trait that all have needs no branch.
 bool has_trait(uint traits, const uint trait, const uint group) {
     if ((TEXTURE_TRAITS & trait) == 0u) return false;
     return (TEXTURE_TRAITS & group & ~trait) == 0u || (traits & trait) != 0u;
@@ -18,8 +18,8 @@ uint component(uvec4 v, uint i) {
 }
 
 // Light of an sRGB code in [0, 1], by IEC 61966-2-1, to a relative 8e-5; 0 and 1 are exact. Powers differ between
-// devices, and a table of 256 entries takes longer to read. The polynomial in 1 - x is fitted to the least relative
-// error above the curve's linear part.
+// devices, and a table of 256 entries is slower. The polynomial in 1 - x is fitted to the least relative error above
+// the curve's linear part.
 vec3 srgb_decode(vec3 code) {
     vec3 y = 1.0 - code;
     precise vec3 q = vec3(0.14470205);

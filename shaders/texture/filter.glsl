@@ -1,30 +1,30 @@
-// Where an image is looked up, by arithmetic that has one result on every device (`precise`: no multiplication is fused
-// with an addition). Hardware filters round as they like, to 8 bits on software Vulkan.
+// The places where an image is looked up, by arithmetic that has one result on every device (`precise`: no
+// multiplication is fused with an addition). Hardware filters round as they like, to 8 bits on software Vulkan.
 #ifndef TEXTURE_FILTER_GLSL
 #define TEXTURE_FILTER_GLSL
 
 #include "texture/decode.glsl"
 
-// Where one axis of an image is looked up: the texels on either side, and the weight of the second.
+// The look-up along one axis of an image: the texels on either side, and the weight of the second.
 struct AxisPlace {
     uint first;
     uint second;
     float weight;  // In [0, 1].
 };
 
-// How an axis goes on beyond the image.
+// The continuation of an axis beyond the image.
 struct AxisWrap {
-    bool clamped;   // If it is neither,
-    bool mirrored;  // it repeats.
+    bool clamped;   // The edge continues.
+    bool mirrored;  // It alternates; without either, the image repeats.
 };
 
-// As the bits TEXTURE_WRAPS << group_shift of `traits` say.
+// By the bits TEXTURE_WRAPS << group_shift of `traits`.
 AxisWrap axis_wrap(uint traits, const uint group_shift) {
     return AxisWrap(has_trait(traits, TEXTURE_CLAMP << group_shift, TEXTURE_WRAPS << group_shift),
                     has_trait(traits, TEXTURE_MIRROR << group_shift, TEXTURE_WRAPS << group_shift));
 }
 
-// The place t along an axis, wrapped into [0, 1]; `turned` if it goes back as t grows.
+// The place t along an axis, wrapped into [0, 1]; `turned` if it decreases as t grows.
 float axis_wrapped(float t, AxisWrap wrap, out bool turned) {
     turned = false;
     precise float at = t - floor(t);
@@ -50,7 +50,7 @@ AxisPlace axis_place(float t, uint n, uint traits, const uint group_shift) {
     precise float x = scaled - 0.5;
     float below = floor(x);
     int last = int(n) - 1;
-    int i = clamp(int(below), -1, last);  // In range, whatever NaN becomes.
+    int i = clamp(int(below), -1, last);  // In range, even for NaN.
     bool repeats = !wrap.mirrored && !wrap.clamped;
     uint first = uint(i < 0 ? (repeats ? last : 0) : i);
     uint second = uint(i >= last ? (repeats ? 0 : last) : i + 1);
@@ -58,7 +58,7 @@ AxisPlace axis_place(float t, uint n, uint traits, const uint group_shift) {
 }
 
 // The three texels around a place along an axis; their weights in a quadratic B-spline, and the derivatives of these
-// with t. Between texels that are joined by lines, the slope would jump at each.
+// with t. With linear interpolation between texels, the slope would jump at each.
 struct AxisSlope {
     uvec3 texels;
     vec3 weights;

@@ -10,7 +10,7 @@
 
 namespace candela {
 
-// The statistics that count, as RADV names them. Demand is what a kernel needs before the scheduler spends
+// The statistics with bounds, under RADV's names. Demand is what a kernel needs before the scheduler spends
 // registers that are free up to the next step of occupancy: unlike the registers in use, it grows by one
 // where the code needs one more.
 inline constexpr const char* STATISTIC_VGPRS = "VGPRs";

@@ -1,4 +1,5 @@
-// `candela render --adaptive`: the same bits whatever happens on the way, and the options that exclude it.
+// `candela render --adaptive`: the same bits regardless of what happens on the way, and the options that
+// exclude it.
 #include <algorithm>
 #include <bit>
 #include <csignal>
@@ -62,7 +63,7 @@ TEST_F(AdaptiveCli, AResumedRenderingHasTheSameBits) {
     // There are more samples than 16 now.
     const ProcessResult fewer = candela(endless + checkpoint + Words{"--spp", "16"});
     EXPECT_EQ(fewer.exit_code, 1);
-    EXPECT_CONTAINS(fewer.err, " samples per pixel, but 16 are asked for; ask for as many at least");
+    EXPECT_CONTAINS(fewer.err, " samples per pixel, but 16 are asked for; ask for at least as many");
 }
 
 TEST_F(AdaptiveCli, ACheckpointIsOfOneKind) {
@@ -106,7 +107,7 @@ TEST_F(AdaptiveCli, WhatDoesNotGoWithItIsRefused) {
     ASSERT_EQ(candela(some + Words{"--spp", "8"}).exit_code, 0);
     expect_refused(
         {"merge", file("a.exr"), "-o", file("b.exr")}, 1,
-        "it was rendered with --adaptive: where its samples lie depends on what they found; render "
+        "it was rendered with --adaptive: its sample counts depend on the samples themselves; render "
         "parts with --samples");
 }
 

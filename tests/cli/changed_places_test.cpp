@@ -43,7 +43,7 @@ class ChangedPlaces : public CliTest {
         const size_t start = messages.find(error);
         ASSERT_NE(start, std::string::npos) << messages;
         const std::string line = messages.substr(start, messages.find('\n', start) - start);
-        EXPECT_CONTAINS(line, "; what was to be written is in \"" + kept + '"');
+        EXPECT_CONTAINS(line, "; the data is saved in \"" + kept + '"');
     }
     static void expect_all_there(const std::string& folder) {
         EXPECT_EQ(read_exr(folder + "/a-1.exr").full, uvec2(32, 32));
@@ -84,7 +84,7 @@ TEST_F(ChangedPlaces, ThatAreAllGonePutThePictureAmongTheTemporaryFiles) {
     size_t pictures = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(file("temporary"))) {
         if (entry.is_directory()) continue;
-        EXPECT_CONTAINS(messages, "; what was to be written is in \"" + entry.path().string() + '"');
+        EXPECT_CONTAINS(messages, "; the data is saved in \"" + entry.path().string() + '"');
         if (entry.path().filename() == "a-1.exr") {
             ++pictures;
             EXPECT_EQ(read_exr(entry.path()).full, uvec2(32, 32));
@@ -135,7 +135,7 @@ TEST_F(ChangedPlacesOfAWindow, KeepEachScreenshot) {
              CORNELL_BOX, becoming_a_folder(folder, file("log")))
             .finish();
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_CONTAINS(result.err, "; what was to be written is in \"" + file("place/a-1.exr") + '"');
+    EXPECT_CONTAINS(result.err, "; the data is saved in \"" + file("place/a-1.exr") + '"');
     for (const char* name : {"place/a-1.exr", "b.exr"})
         EXPECT_EQ(read_exr(file(name)).full, uvec2(100, 60));
 }

@@ -79,7 +79,7 @@ TEST_F(CheckpointTest, AResumedRenderingHasTheSameBits) {
     ASSERT_EQ(render({"-o", file("whole.exr"), "--spp", "9", "--report", file("whole.json")}).exit_code, 0);
     const ProcessResult first = render_with({"--resume", "--spp", "4"});
     EXPECT_EQ(first.exit_code, 0);
-    EXPECT_CONTAINS(first.err, "\"" + state_ + "\" does not exist yet: starting anew\n");
+    EXPECT_CONTAINS(first.err, "\"" + state_ + "\" does not exist yet: starting from the beginning\n");
     const ProcessResult second = render_with({"--resume", "--spp", "9", "--report", file("resumed.json")});
     EXPECT_EQ(second.exit_code, 0) << second.err;
     EXPECT_CONTAINS(second.err, "rendered 9 spp in ");
@@ -172,7 +172,7 @@ TEST_F(CheckpointTest, APlaceThatVanishesIsAWarningAndTriedAgain) {
                     options());
     wait_until("there is a checkpoint", [&] { return std::filesystem::exists(state); });
     std::filesystem::rename(file("gone"), file("elsewhere"));
-    ASSERT_TRUE(process.wait_for_err("the rendering goes on without this checkpoint"));
+    ASSERT_TRUE(process.wait_for_err("rendering continues without this checkpoint"));
     std::filesystem::create_directory(file("gone"));
     wait_until("there is a checkpoint again", [&] { return std::filesystem::exists(state); });
     EXPECT_GT(load_checkpoint(state).states.at(0).total_samples(), 0u);
@@ -187,7 +187,7 @@ TEST_F(CheckpointTest, AnExistingFileIsNeverOverwrittenUnasked) {
     const ProcessResult result = render_with({});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(result.err, "candela: error: --checkpoint: \"" + state_ +
-                              "\" exists; add --resume to go on from it, or remove it to start anew\n");
+                              "\" exists; add --resume to continue from it, or remove it to start over\n");
     EXPECT_EQ(read_file(state_), "precious");
 }
 
@@ -198,7 +198,7 @@ TEST_F(CheckpointTest, WhatDoesNotFitIsRefusedWithTheReason) {
         const ProcessResult result = render_with(Words{"--resume", "--seed", "3"} + arguments);
         EXPECT_EQ(result.exit_code, 1) << arguments[0];
         EXPECT_EQ(result.err,
-                  "candela: error: --resume: cannot go on from \"" + state_ + "\": " + reason + "\n");
+                  "candela: error: --resume: cannot continue from \"" + state_ + "\": " + reason + "\n");
         EXPECT_EQ(read_file(state_), before);
     };
     const std::string remedy = "; render what it was made of, or give another --checkpoint";
@@ -211,7 +211,7 @@ TEST_F(CheckpointTest, WhatDoesNotFitIsRefusedWithTheReason) {
                    "it holds albedo and normals, which the outputs do not need; give the outputs "
                    "and --aov that it was made with");
     expect_refused({"--spp", "3"},
-                   "it holds up to 4 samples per pixel, but 3 are asked for; ask for as many at least");
+                   "it holds up to 4 samples per pixel, but 3 are asked for; ask for at least as many");
 
     const ProcessResult part =
         candela({"render", CORNELL_BOX, "-o", file("a.exr"), "--size", "32x32", "--seed", "3", "--samples",
@@ -234,7 +234,8 @@ TEST_F(CheckpointTest, AnotherDeviceIsAWarningAndDamageIsNot) {
     EXPECT_EQ(other.exit_code, 0);
     EXPECT_CONTAINS(other.err,
                     "candela: warning: the checkpoint was made by Abacus, driver 1, candela 0, and this is ");
-    EXPECT_CONTAINS(other.err, ": the image is right, but not the same bits as if one had made it all");
+    EXPECT_CONTAINS(other.err,
+                    ": the image is correct, but its bits are not those of a single program or device");
 
     EXPECT_GT(read_exr(file("a.exr")).find("R")->values[0], 100.0f) << "it was not continued but begun anew";
 

@@ -122,7 +122,7 @@ class FileFaults : public CliTest {
 
     // Removes what the messages say was kept elsewhere, which must be new; returns how many files that are.
     size_t take_kept(const std::string& messages) const {
-        const std::string words = "; what was to be written is in \"";
+        const std::string words = "; the data is saved in \"";
         size_t kept = 0;
         for (size_t at = messages.find(words); at != std::string::npos; at = messages.find(words, at)) {
             at += words.size();

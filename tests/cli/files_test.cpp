@@ -145,7 +145,7 @@ TEST_F(MountedFiles, AFileThatIsMountedByItselfIsRefusedBeforehand) {
                        {"render", scene_, "-o", target, "--size", "8x8", "--spp", "1"});
     EXPECT_EQ(other.exit_code, 1);
     EXPECT_EQ(other.err, "candela: error: cannot write " + candela::quoted(target) +
-                             ": the file is mounted by itself, and cannot be replaced; mount the folder that "
+                             ": the file is a mount point, and cannot be replaced; mount the folder that "
                              "holds it\n");
 }
 

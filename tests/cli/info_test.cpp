@@ -122,7 +122,7 @@ TEST_F(Info, MissingImagesAreAnErrorOnRequest) {
                                     "f 1/1 2/1 3/1\n");
     const ProcessResult white = candela({"info", scene});
     EXPECT_EQ(white.exit_code, 0);
-    EXPECT_CONTAINS(white.err, "no.png\" does not exist; white takes its place\n");
+    EXPECT_CONTAINS(white.err, "no.png\" does not exist; white is used instead\n");
     const ProcessResult strict = candela({"info", scene, "--missing-images", "error"});
     EXPECT_EQ(strict.exit_code, 1);
     EXPECT_CONTAINS(strict.err, "no.png\": the file does not exist; check the name");

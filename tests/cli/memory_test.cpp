@@ -26,10 +26,9 @@ TEST_F(LittleMemory, IsAnErrorBeforeADriverFindsOut) {
         const ProcessResult result =
             run({"render", CORNELL_BOX, "--size", "16x16", "-o", file("a.png")}, limit);
         EXPECT_EQ(result.exit_code, 5) << limit << result.err;
-        EXPECT_CONTAINS(
-            result.err,
-            "candela: error: cannot use Vulkan: fewer than 768 MiB of address space or data are left, which "
-            "its drivers take; raise the limit (ulimit -v, ulimit -d)");
+        EXPECT_CONTAINS(result.err,
+                        "candela: error: cannot use Vulkan: its drivers need 768 MiB of address space and "
+                        "data, and less is left; raise the limit (ulimit -v, ulimit -d)");
     }
 }
 

@@ -25,8 +25,8 @@ double value(const Image& image, const std::string& channel, size_t i) {
 
 // The bounds of film/part_sum.h, and one rounding more for the whole image: u = 2^-24. Normals and means have
 // the bound of the mean of the parts' absolute values. The device rounds squares to floats before it sums
-// them, alike for parts and whole. If that makes a sum of squared deviations negative, it counts as 0, which
-// is off by at most u times the mean of the squares, divided by N - 1.
+// them, alike for parts and whole. If that makes a sum of squared deviations negative, it becomes 0, which is
+// off by at most u times the mean of the squares, divided by N - 1.
 TEST_F(MergeTest, PartsAgreeWithOneRunWithinRounding) {
     constexpr double U = 0x1p-24, N = 20;
     const std::vector<std::pair<std::string, double>> names = {{"0..5", 5}, {"5..6", 1}, {"6..20", 14}};
@@ -123,7 +123,7 @@ TEST_F(MergeTest, RefusalsAndWarningsReachTheUser) {
                                               file("d.png"), "--checkpoint", file("state.exr")});
     EXPECT_EQ(checkpoint.exit_code, 0);
     EXPECT_CONTAINS(merge({a, file("state.exr")}).err,
-                    "it has no channel R; give images (-o), no checkpoints or other files");
+                    "it has no channel R; give images (-o), not checkpoints or other files");
     EXPECT_EQ(candela({"merge", a}).exit_code, 2);
     EXPECT_EQ(candela({"merge", "-o", file("m.exr")}).exit_code, 2);
     EXPECT_CONTAINS(candela({"merge", a, "-o", file("none/m.exr")}).err, "none\" does not exist");

@@ -100,7 +100,7 @@ TEST_F(PlotTest, WhatCannotBePlottedIsRefused) {
                                         "FILE\n");
         EXPECT_FALSE(std::filesystem::exists(file("a.svg")));
     };
-    expect_refused(write("text.json", "no JSON"), "it is no report");
+    expect_refused(write("text.json", "no JSON"), "it is not a report");
     expect_refused(write("none.json", "{}"), "it has no errors against a reference");
     expect_refused(write("bad.json", R"({"reference": "r", "convergence": [{"seconds": "1"}]})"),
                    "its points are damaged");

@@ -102,7 +102,7 @@ TEST_F(Progressive, AnImageThatCannotBeWrittenIsAWarning) {
     wait_for(file("gone/a.png"));
     wait_for(file("b.exr"));
     std::filesystem::rename(file("gone"), file("elsewhere"));
-    ASSERT_TRUE(process.wait_for_err("the rendering goes on without this image"));
+    ASSERT_TRUE(process.wait_for_err("rendering continues without this image"));
     const float samples = least_samples(file("b.exr"));
     wait_until("the other goes on", [&] { return least_samples(file("b.exr")) > samples; });
     std::filesystem::create_directory(file("gone"));
@@ -112,7 +112,7 @@ TEST_F(Progressive, AnImageThatCannotBeWrittenIsAWarning) {
     EXPECT_EQ(result.exit_code, 130) << result.err;
     EXPECT_CONTAINS(result.err, "candela: warning: cannot write \"" + file("gone/a.png") +
                                     "\": the directory \"" + file("gone") +
-                                    "\" does not exist; create it first; the rendering goes on without this "
+                                    "\" does not exist; create it first; rendering continues without this "
                                     "image");
     EXPECT_TRUE(std::filesystem::exists(file("gone/a.png")));
     EXPECT_GT(least_samples(file("b.exr")), samples);
@@ -289,7 +289,7 @@ TEST_F(Progressive, WhatMakesNoSenseIsRefused) {
         image.add(name);
     }
     write_exr(reference, image);
-    expect_refused(report + Words{reference}, 1, refusal + "is black, and no error is relative to that");
+    expect_refused(report + Words{reference}, 1, refusal + "is black, so no error can be relative to it");
     image.channels[1].values[7] = INFINITY;
     write_exr(reference, image);
     expect_refused(report + Words{reference}, 1, refusal + "holds a value that is not finite");

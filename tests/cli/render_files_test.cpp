@@ -140,7 +140,7 @@ TEST_F(RenderFiles, SamplesThatAreNotFiniteAreAWarning) {
     const ProcessResult result =
         candela({"render", scene, "-o", file("a.exr"), "--size", "8x8", "--spp", "2", "--quiet"});
     EXPECT_EQ(result.exit_code, 0);
-    EXPECT_EQ(result.err, "candela: warning: 128 sample(s) were not finite and count as black\n");
+    EXPECT_EQ(result.err, "candela: warning: 128 sample(s) were not finite; they are treated as black\n");
 }
 
 TEST_F(RenderFiles, FailedRunsLeaveOldFilesAlone) {

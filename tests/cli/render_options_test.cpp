@@ -96,8 +96,8 @@ TEST_F(RenderOptionsTest, LightsWithoutASurfaceNeedLightSamples) {
     };
     EXPECT_EQ(
         warnings("bsdf", scene),
-        "candela: warning: the estimator bsdf does not find the point, spot and directional lights of this "
-        "scene, which no surface shows; use mis or light\n");
+        "candela: warning: the estimator bsdf cannot find the point, spot and directional lights of this "
+        "scene, which have no surface; use mis or light\n");
     EXPECT_EQ(warnings("mis", scene), "");
     EXPECT_EQ(warnings("light", scene), "");
     EXPECT_EQ(warnings("bsdf", CORNELL_BOX), "");

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 const std::string CAMERA =
     R"({"cameras": {"main": {"position": [0, 0, 3], "look_at": [0, 0, 0], "vertical_fov": 40}}, )";
 const std::string TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-// Of a triangle, in base64.
+// The buffer of a triangle, in base64.
 const std::string POSITIONS = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
 const std::string SECRET = "hunter2";
 
@@ -106,7 +106,7 @@ TEST_F(StrangersFiles, ShowNoValuesOfOtherFiles) {
     expect_hidden(in_scene("ply"), "secret.ply:2: unknown statement (not shown) (known: ");
     write("in/secret.mtl", SECRET + ":x:0\n");
     write("in/m.obj", "mtllib secret.mtl\n" + TRIANGLE + "usemtl a\nf 1 2 3\n");
-    expect_hidden(file("in/m.obj"), "secret.mtl:1: (not shown) stands before the first newmtl");
+    expect_hidden(file("in/m.obj"), "secret.mtl:1: (not shown) comes before the first newmtl");
     write("in/secret.gltf", '"' + SECRET + '"');
     expect_hidden(scene(R"("scene": "secret.gltf")"),
                   "the scene: expected an object { ... }, as every glTF file is, found (not shown)");
@@ -126,7 +126,7 @@ std::string black_webp(uint32_t size) {
     return std::string("RIFF\x14\0\0\0WEBPVP8L\x08\0\0\0", 20) + pixels;
 }
 
-// That many copies of a text, with commas between them.
+// `count` copies of a text, with commas between them.
 std::string repeated(const std::string& text, size_t count) {
     std::string list;
     for (size_t i = 0; i < count; ++i)
@@ -146,7 +146,7 @@ class CostOfFiles : public StrangersFiles {
         const ProcessResult result = info_of(members);
         EXPECT_EQ(result.exit_code, 5) << result.err;
         EXPECT_CONTAINS(result.err, place);
-        EXPECT_CONTAINS(result.err, "there is not enough memory for " + what + ", which takes at least ");
+        EXPECT_CONTAINS(result.err, "there is not enough memory for " + what + ", which needs at least ");
         EXPECT_CONTAINS(result.err, " are in use and --memory-limit allows 95.4 MiB");
     }
 };
@@ -215,7 +215,7 @@ TEST_F(CostOfFiles, OfPrimitivesIsThatOfTheirVertices) {
                    "m.gltf#/nodes/0: ", "what the node shows");
 }
 
-// Of the device, too, where that is the computer itself.
+// Memory of the device, too, if that is the computer itself.
 TEST_F(CostOfFiles, OfAPictureIsItsPixels) {
     const std::string file = scene(R"("film": {"size": [4096, 4096]}, "shapes": [])");
     const ProcessResult result =

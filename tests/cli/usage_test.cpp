@@ -61,8 +61,7 @@ TEST_F(Usage, HelpOfRenderListsEveryOption) {
 
 TEST_F(Usage, UnknownWordsAreNamed) {
     const std::vector<std::pair<Words, const char*>> cases = {
-        {{},
-         "there is no command; give render, view, info, devices, compare, merge, plot, selftest or bench"},
+        {{}, "no command given; use render, view, info, devices, compare, merge, plot, selftest or bench"},
         {{"trace"}, "unknown command \"trace\""},
         {{"--trace"}, "unknown argument \"--trace\""},
         {{"render", CORNELL_BOX, "-o", "x.png", "--trace"},
@@ -138,7 +137,7 @@ TEST_F(Usage, OutputsAreCheckedBeforeTheSceneIsRead) {
         EXPECT_EQ(result.exit_code, exit_code);
         return result.err;
     };
-    EXPECT_CONTAINS(error({}, 2), "there is no output; give -o FILE.exr or -o FILE.png");
+    EXPECT_CONTAINS(error({}, 2), "no output given; use -o FILE.exr, -o FILE.png, or both");
     EXPECT_CONTAINS(error({"-o", "a.jpg"}, 2), "image file \"a.jpg\" has the unknown extension \".jpg\"");
     EXPECT_CONTAINS(error({"-o", file("a.png"), "-o", "b"}, 2), "image file \"b\" has no extension");
     EXPECT_CONTAINS(error({"-o", file("none/a.png")}, 1), "none\" does not exist; create it first");

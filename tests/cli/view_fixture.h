@@ -45,7 +45,7 @@ class ViewTest : public CliTest {
     }
 
     std::map<std::string, std::string> environment() const {
-        // Windows belong to that display, whatever session the tests run in.
+        // Windows belong to that display, regardless of the tests' own session.
         return {{"DISPLAY", display_},
                 {"XDG_SESSION_TYPE", "x11"},
                 {"CANDELA_VALIDATION", "1"},

@@ -133,7 +133,7 @@ TEST_F(View, ALostDeviceIsOpenedAgain) {
     EXPECT_CONTAINS(result.err, "VK_ERROR_DEVICE_LOST (-4)");
     EXPECT_CONTAINS(result.err, "VK_ERROR_INITIALIZATION_FAILED (-3)");
     std::vector<int> kept;
-    const std::string words = "; opening the device again, and going on from ";
+    const std::string words = "; reopening the device and continuing from ";
     for (size_t at = 0; (at = result.err.find(words, at)) != std::string::npos; ++at)
         kept.push_back(std::stoi(result.err.substr(at + words.size())));
     ASSERT_GE(kept.size(), 2u) << result.err;
@@ -165,7 +165,7 @@ TEST_F(View, OtherErrorsAreNotTriedAgain) {
     Process& process = view({"--size", "16x16"}, CORNELL_BOX, failing_device(1, 12, INITIALIZATION_FAILED));
     const ProcessResult result = process.finish();
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_EQ(result.err.find("opening the device again"), std::string::npos);
+    EXPECT_EQ(result.err.find("reopening the device"), std::string::npos);
     EXPECT_CONTAINS(result.err, "VK_ERROR_INITIALIZATION_FAILED (-3)");
 }
 

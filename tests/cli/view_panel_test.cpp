@@ -142,7 +142,7 @@ TEST_F(ViewControls, WhatIsSetInThePanelIsRendered) {
     expect_clean_end();
 }
 
-// Everything that is done while the program is stalled reaches it at once, and counts as if it had waited for
+// Everything that is done while the program is stalled reaches it at once, and acts as if it had waited for
 // each.
 TEST_F(ViewControls, WhatIsDoneDuringAStallIsDoneInItsOrder) {
     const Words settings{"--size", "310x380", "--spp", "1", "--max-depth", "1"};
@@ -167,7 +167,7 @@ TEST_F(ViewControls, WhatIsDoneDuringAStallIsDoneInItsOrder) {
     const Words development{"--exposure", "1.5", "--tonemap", "agx", "--estimator", "light"};
     expect_same_rgb(image, rendered(settings + development, write("scene.json", scene.dump())));
 
-    // A key that went down and up meanwhile counts as pressed.
+    // A key that went down and up meanwhile has been pressed.
     std::filesystem::remove(file("cornell-box-1-camera.json"));
     const dvec3 home = saved_camera().position;
     process.send(SIGSTOP);

@@ -269,9 +269,10 @@ TEST_F(ViewUsage, OptionsThatDoNotGoTogetherAreNamed) {
     expect_error({CORNELL_BOX, "--crop", "0,0,8,8"}, 2,
                  "--crop: a window shows the whole picture; leave it out, or use candela render");
     expect_error({CORNELL_BOX, "--frames", "2", "--spp", "2"}, 2,
-                 "--frames and --spp both say how many samples there shall be; give one");
-    expect_error({CORNELL_BOX, "--screenshot", "a.png"}, 2,
-                 "--screenshot: give --frames N too, which says when; P and X write pictures at any time");
+                 "--frames and --spp both set the number of samples; give only one");
+    expect_error(
+        {CORNELL_BOX, "--screenshot", "a.png"}, 2,
+        "--screenshot: also give --frames N, after which it is taken; P and X save a picture at any time");
     expect_error({CORNELL_BOX, "--frames", "2", "--screenshot", "a.jpg"}, 2, "a.jpg");
     expect_error({CORNELL_BOX, "--frames", "2", "--screenshot", "/nonexistent/a.png"}, 1,
                  "/nonexistent/a.png");
@@ -302,7 +303,7 @@ TEST_F(View, WithoutADriverItSaysWhatToInstall) {
 TEST_F(ViewUsage, AProgramBuiltWithoutAWindowSaysSo) {
     expect_error(
         {CORNELL_BOX}, 1,
-        "view: this program was built without a window, which takes GLFW and Dear ImGui; install "
+        "view: this program was built without a window, which needs GLFW and Dear ImGui; install "
         "libglfw3-dev and libimgui-dev and build it with cmake -DCANDELA_VIEW=ON, or use candela render");
 }
 

@@ -26,7 +26,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIMIT = 512_000_000
-SLACK = 160_000_000  # Of the program itself, and of what malloc keeps.
+SLACK = 160_000_000  # Memory of the program itself, and kept by malloc.
 MOST_BYTES = 65536
 HANG = 60.0
 NUMBERS = [0, 1, -1, 2, 3, 255, 65535, 65536, 1 << 31, (1 << 32) - 1, 1 << 32, 1 << 53, 0.5, -0.0, 1e-300, 1e30, -1e38,

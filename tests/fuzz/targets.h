@@ -12,13 +12,13 @@ void mtl(std::string_view bytes);
 void ply(std::string_view bytes);
 // Posed at a moment; their tree and their records.
 void gltf(std::string_view bytes);
-void glb(std::string_view bytes);  // With lengths that are right, whatever they are.
+void glb(std::string_view bytes);  // With lengths corrected.
 // A glTF file with its images, its tree and its records, within 128 MiB; more is an Error.
 void cost(std::string_view bytes);
 void hdr(std::string_view bytes);
 void exr(std::string_view bytes);
 // Images of textures.
-void png(std::string_view bytes);  // With checksums that are right, whatever they are.
+void png(std::string_view bytes);  // With checksums corrected.
 void jpeg(std::string_view bytes);
 void webp(std::string_view bytes);
 void targa(std::string_view bytes);

@@ -77,7 +77,7 @@ def violations(claim, picture):
     for rect in claim["shown"]:
         gap, _ = furthest_from(picture, rect, DARK)
         if gap <= 4 * most:
-            lines.append(f"{rect} shows nothing but the backdrop")
+            lines.append(f"{rect} shows only the backdrop")
     return lines
 
 

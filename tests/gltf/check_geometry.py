@@ -25,7 +25,7 @@ import triangles
 import wire
 from validator_files import parse, write_wired
 
-TOLERANCE = 1e-6  # Of the greatest coordinate.
+TOLERANCE = 1e-6  # Relative to the greatest coordinate.
 COMPRESSED = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"}
 
 
@@ -103,7 +103,7 @@ def check(dump, file):
         return "skipped", [reason], len(ours)
     try:
         theirs = of_trimesh(file)
-    except Exception as error:  # trimesh raises whatever happens within it.
+    except Exception as error:  # trimesh raises any error that occurs within it.
         return "skipped", [f"trimesh fails: {type(error).__name__}"], len(ours)
     tolerance = TOLERANCE * max(triangles.extent(ours), triangles.extent(theirs))
     wrong, with_uv = triangles.differences(ours, theirs, tolerance)

@@ -19,7 +19,7 @@ import make_models
 import pose
 import triangles
 
-TOLERANCE = 1e-6  # Of the greatest coordinate.
+TOLERANCE = 1e-6  # Relative to the greatest coordinate.
 # Of an animation's duration; odd numbers, so that most lie between keys.
 TIMES = (-0.1, 0.0, 0.0713, 0.1931, 0.3307, 0.4519, 0.5, 0.6607, 0.8123, 0.9371, 1.1)
 

@@ -135,7 +135,7 @@ def simple_sparse_accessor(stage):
 def mesh_primitive_modes(stage):
     """Triangles, strips and fans, with indices and without, all face the viewer and fill the same square, in colours
     that come from their vertices; so do indices of all three sizes. Points and lines, in the lower right corner,
-    are no surfaces: a renderer of surfaces leaves them out and says so."""
+    are not surfaces: a renderer of surfaces leaves them out and says so."""
     file = stage.file
     corners = [(0, 0), (0, 1), (1, 0), (1, 1)]  # s and t: down, then to the right.
     colour = {(0, 0): (0.8, 0.1, 0.1), (0, 1): (0.1, 0.7, 0.1), (1, 0): (0.1, 0.2, 0.9), (1, 1): (0.8, 0.7, 0.1)}

@@ -97,8 +97,8 @@ def point_light_intensity_test(stage):
 
 @model("DirectionalLight")
 def directional_light(stage):
-    """A directional light shines along -Z of its node, whose turn alone counts. Sheets that are turned away from it
-    darken with the cosine: the right tile of each pair is painted in the brightness of the left one."""
+    """A directional light shines along -Z of its node, and only the node's rotation matters. Sheets that are turned
+    away from it darken with the cosine: the right tile of each pair is painted in the brightness of the left one."""
     file = stage.file
     stage.backdrop_z = -50.0  # So that tilted sheets do not see it.
     direction = (0.3, 0.4, 0.866)

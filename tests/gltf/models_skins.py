@@ -96,8 +96,8 @@ def put_reference(stage, mesh, material, shift):
 @model("SimpleSkin")
 def simple_skin(stage):
     """Joints bend strips by the weights of vertices: with joints as bytes or shorts, weights as floats, bytes or
-    shorts; without inverse bind matrices; with a transform of the mesh's own node, which counts for nothing, or one
-    above the joints, which counts; with four joints to a vertex; with normals that turn; with an animation of the
+    shorts; without inverse bind matrices; with a transform of the mesh's own node, which has no effect, or one
+    above the joints, which has; with four joints to a vertex; with normals that turn; with an animation of the
     joint at 1 s. The right strip of each pair is bent beforehand."""
     file, rig = stage.file, Rig(stage.file)
     stage.sun((-0.3, 0.75, 0.6))
@@ -173,7 +173,7 @@ def recursive_skeletons(stage):
             inverses = [matrices.IDENTITY, matrices.translation(0, -tall / 2)]
             influences = two_joints(mesh, tall)
             skin = add_skin(file, [lower, upper], inverses)
-            # Its node stands below a joint, which counts for nothing.
+            # Its node stands below a joint, which has no effect.
             put_skinned(file, mesh, influences, skin, colours[level], parent=upper if level else None)
             places = [rig.globals[lower], rig.globals[upper]]
             put_reference(stage, bent(mesh, influences, places, inverses), colours[level], shift)

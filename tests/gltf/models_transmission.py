@@ -108,8 +108,8 @@ BODY = (0.2, 0.7, 0.9)  # What is left of white light after one distance.
 @model("AttenuationTest")
 def attenuation_test(stage):
     """Light that passes a solid keeps the attenuation colour to the power of the way over the distance: a way as long
-    as the distance shows the colour itself, twice the way its square. It is the way in the world, whatever
-    `thicknessFactor` says, also under a scaled node; a factor of 0 is a thin sheet, which keeps all light. In each
+    as the distance shows the colour itself, twice the way its square. It is the way in the world, regardless of
+    `thicknessFactor`, also under a scaled node; a factor of 0 is a thin sheet, which keeps all light. In each
     pair, the right tile is painted as the left one must look."""
     def body(distance=0.5, thickness=0.5, colour=BODY, base=(1, 1, 1)):
         volume = {"thicknessFactor": thickness, "attenuationColor": list(colour)}
@@ -130,7 +130,7 @@ def attenuation_test(stage):
     stage.backdrop_z = -2.0
     for (left, right, depth, material, power), (label, *_) in zip(stage.pairs(cases), cases):
         stage.canvas.fill(left, codes(behind))
-        # The colour of the surface counts where light goes in and where it comes out.
+        # The colour of the surface applies where light enters and where it leaves.
         base = [c * c for c in tint] if label == "base colour" else (1, 1, 1)
         stage.canvas.fill(right, codes(b * c ** power * f for b, c, f in zip(behind, BODY, base)))
         stage.put(slab(stage, left, depth), material, scale=[1, 1, 2 if label == "scaled node" else 1])
@@ -140,8 +140,8 @@ def attenuation_test(stage):
 
 @model("DiffuseTransmissionTest")
 def diffuse_transmission_test(stage):
-    """Sheets that a sun lights from behind let through the share that the factor says, or an image's alpha, in the
-    colour of transmission, whatever their own one. In each pair, the right tile is painted as the left one must
+    """Sheets that a sun lights from behind let through the fraction that the factor or an image's alpha states,
+    in the colour of transmission, not in their own. In each pair, the right tile is painted as the left one must
     look; where all is reflected, it is black."""
     angle = math.radians(50)
     stage.backdrop_z = -50.0  # Out of the sun's way.

@@ -7,9 +7,9 @@
 CHECKOUT is a copy of https://github.com/KhronosGroup/glTF-Validator, which has a report beside each file. validator.md
 states for each code, in places within a file if need be, whether a flaw is refused, warned of or ignored, and why; it
 also has the exceptions, file by file. Each file is read twice: as it stands, and with a scene that shows everything in
-the file (wire.py), with its animations and variants. A flaw counts if it lies in what is read (reach.py).
+the file (wire.py), with its animations and variants. A flaw is considered if it lies in what is read (reach.py).
 
-The class of a file is that of the strictest flaw that counts. The pointer of an error must match that of a flaw to be
+The class of a file is that of the strictest flaw considered. The pointer of an error must match that of a flaw to be
 refused. Each flaw to be warned of must match a warning, and each warning such a flaw. Pointers match if they are equal;
 if one lies within the other and both name an element of a top-level array; or if one is a reference to what the other
 lies in, over any number of steps within data and images. Ends with 1 if anything differs.
@@ -80,7 +80,7 @@ def rule_for(rules, code, pointer):
 def matches(document, ours, theirs):
     """Whether two pointers are about the same thing."""
     if theirs in (None, "", "/") or ours is None:
-        return True  # Of the file as a whole, or of text that is no JSON.
+        return True  # Of the file as a whole, or text that is not JSON.
 
     def nested(a, b):
         return a == b or (a.count("/") >= 2 and b.startswith(a + "/"))
@@ -93,7 +93,7 @@ def matches(document, ours, theirs):
 
 
 def check(result, document, counting):
-    """What is wrong with a result, given the flaws that count, as (rule, pointer)."""
+    """What is wrong with a result, given the considered flaws, as (rule, pointer)."""
     if result.problem:
         return result.problem
     expected = max((rule.outcome for rule, _ in counting), key=CLASSES.index, default="ignore")
@@ -160,7 +160,7 @@ def test_file(candela, file, rules, excused):
         reader = reach.Reader(document, timed, variant) if document is not None else None
         return [(rule, pointer) for rule, pointer in flaws
                 if not pointer or reader is None or reader.is_reached(pointer)
-                or reach.value_at(document, pointer) in (math.inf, -math.inf)]  # These are no numbers of JSON.
+                or reach.value_at(document, pointer) in (math.inf, -math.inf)]  # These are not numbers of JSON.
 
     ways = [("as it stands", lambda: (file, document), False, None)]
     always = [rule for rule, pointer in counting(document, False, None) if rule.outcome == "refuse"]

@@ -50,7 +50,7 @@ class DielectricTest : public BsdfTest {
         return run(items);
     }
     // The error of a reflectance R = ((a - b) / (a + b))^2 whose cosine of refraction b is off by 2^-22 / b,
-    // since its square has 8 roundings of a number up to 1 (a division counts 5); dR / db <= 4 / a, and a >=
+    // since its square has 8 roundings of a number up to 1 (a division has 5); dR / db <= 4 / a, and a >=
     // 0.25 where eta < 1 and b is small. All else is relative to terms up to 1: 2^-20.
     static double tolerance(double cos_t) { return 16.0 * 0x1p-22 / cos_t + 0x1p-20; }
 };

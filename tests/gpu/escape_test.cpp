@@ -22,7 +22,7 @@ struct EscapeItem {
 struct EscapeResult {
     uint32_t shot;
     uint32_t escapes;
-    vec3 o, d;  // Of the last ray that escaped.
+    vec3 o, d;  // The last ray that escaped.
 };
 
 // A closed mesh, and points within it: no surface is nearer to them than `room`.

@@ -181,7 +181,7 @@ TEST_F(InstanceTest, BakedCopiesHaveTheSameHits) {
         }
         if (baked[i].t == NO_HIT) continue;
         ++hits;
-        // Of floats around 1; a grazing ray meets a surface that lies off by that much later.
+        // Rounding of floats around 1; a grazing ray hits a surface that lies off by that much later.
         const float cosine = std::abs(dot(baked[i].n, items[i].d));
         ASSERT_NEAR(instanced[i].t, baked[i].t, 2e-6f / cosine) << i;
         ASSERT_LT(length(instanced[i].p - baked[i].p), 2e-6f / cosine) << i;
@@ -219,7 +219,7 @@ TEST_F(InstanceTest, OffsetsShrinkWithTheBody) {
     }
 }
 
-// Of a convex body, a ray that leaves it outside meets nothing, and one that goes in meets its other side.
+// A ray that leaves a convex body outwards hits nothing, and one that goes in hits its other side.
 TEST_F(InstanceTest, RaysLeaveTheSurfaceThatTheyBeginOn) {
     const TriangleMesh mesh = sphere_mesh(24, 32);
     for (const auto& [name, transform] : transforms()) {

@@ -12,8 +12,8 @@ namespace {
 
 // Parts of a scene that light it.
 struct Parts {
-    std::vector<float> lamps;  // Powers over pi,
-    std::vector<float> suns;   // of each.
+    std::vector<float> lamps;  // Powers over pi of the lamps.
+    std::vector<float> suns;   // Powers over pi of the suns.
     bool sky = false;
 };
 
@@ -27,7 +27,7 @@ Scene scene_of(const Parts& parts) {
     for (const float power : parts.lamps)
         add_square(float(scene.shapes.size()), Emission{vec3(power), false});
     if (parts.lamps.empty()) add_square(0.0f, std::nullopt);
-    const double radius_squared =  // Of the sphere around the squares' box.
+    const double radius_squared =  // For the sphere around the squares' box.
         0.25 * (2.0 + std::pow(double(scene.shapes.size()) - 1.0, 2));
     for (const float power : parts.suns)
         scene.lights.push_back({"", DirectionalLight{.irradiance = vec3(float(power / radius_squared))}});

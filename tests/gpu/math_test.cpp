@@ -21,7 +21,7 @@ class MathTest : public DeviceTest {
         uint32_t finite;
         float cos, sin;
         float cos_turn, sin_turn;
-        float angle;  // Of the point (x, y) [turns].
+        float angle;  // Angle of the point (x, y) [turns].
         float weight;
         float sum, compensation;
     };

@@ -43,9 +43,9 @@ TEST_F(PhongTest, ValuesAgreeWithDoublePrecision) {
     }
 }
 
-// The lobe around the normal lies above the horizon, so that all that it reflects counts: (n + 2) / (2 pi)
-// cos^(n + 1) integrates to 1. The mean of the weights is the albedo within 4 of its standard deviations (one
-// false alarm in 16 000, for each of 63 tests).
+// The lobe around the normal lies above the horizon, so that all of its reflection is included: (n + 2) / (2
+// pi) cos^(n + 1) integrates to 1. The mean of the weights is the albedo within 4 of its standard deviations
+// (one false alarm in 16 000, for each of 63 tests).
 TEST_F(PhongTest, TheAlbedoAtNormalIncidenceIsTheSumOfBaseAndLobe) {
     const vec3 ks(0.4f, 0.8f, 0.1f);
     for (const float n : EXPONENTS) {
@@ -66,7 +66,7 @@ TEST_F(PhongTest, TheAlbedoAtNormalIncidenceIsTheSumOfBaseAndLobe) {
 
 // What the lobe reflects of light from all around. With a = 1 - cos(alpha)^(n + 1), uniform over the lobe,
 // and the angle b around it, (n + 2) / (2 pi) cos(alpha)^n d(wi) is (n + 2) / (n + 1) da db; what is below
-// the horizon does not count. The midpoint rule is good to 10^-5.
+// the horizon is excluded. The midpoint rule is good to 10^-5.
 double lobe_albedo(vec3 wo, double n) {
     constexpr int ALONG = 512;
     const double cosine = double(wo.z), sine = std::sqrt(1.0 - cosine * cosine);

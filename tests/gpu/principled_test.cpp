@@ -12,7 +12,7 @@ namespace candela {
 namespace {
 
 // Floats and their roundings: some forty operations; where alpha is small, D has the eighth power of them.
-// Beyond that, pairs of directions far from a narrow lobe do not count.
+// Beyond that, pairs of directions far from a narrow lobe are ignored.
 constexpr double ROUNDING = 1e-4;
 
 // What sheen leaves to the layers below is a fit: bsdf/sheen_albedo.glsl.

@@ -27,7 +27,7 @@ TEST_F(PunctualLightTest, NothingArrivesAtTheLightItself) {
 
 // What lies on a ceiling or a wall does not hide in it. Its plane is rounded by some multiples of 4 * 2^-24,
 // the greatest coordinate, which is less than 2^-19 of a height above 1; seen from there at a cosine of 0.3
-// or more, the rounding of the ray's direction does not count.
+// or more, the rounding of the ray's direction is negligible.
 TEST_F(PunctualLightTest, ALightOnASurfaceIsNotHiddenByIt) {
     Scene scene = scene_of_mesh({});
     scene.shapes.clear();

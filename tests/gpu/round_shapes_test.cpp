@@ -9,8 +9,8 @@ namespace {
 
 struct RoundScene {
     Scene scene;
-    std::vector<Sphere> spheres;  // Primitives 0 ..., then
-    std::vector<Disk> disks;      // the disks, then a soup of triangles.
+    std::vector<Sphere> spheres;  // The first primitives.
+    std::vector<Disk> disks;      // The next primitives; a soup of triangles follows.
 };
 
 // Spheres and disks from 1 mm to 1 m in [-1, 1]^3, among triangles.

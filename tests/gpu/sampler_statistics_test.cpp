@@ -104,9 +104,9 @@ TEST_F(SamplerStatisticsTest, SamplesOfPixelsSeedsAndPairsAreIndependent) {
     }
 }
 
-// A picture shows the error of a pixel's first samples, which must not follow its neighbour's. Of independent
-// errors, whatever their distribution, the correlation coefficient times the root of their number is nearly
-// normal.
+// A picture shows the error of a pixel's first samples, which must not follow its neighbour's. For
+// independent errors of any distribution, the correlation coefficient times the root of their number is
+// nearly normal.
 TEST_F(SamplerStatisticsTest, ErrorsOfPixelsSeedsAndPairsAreIndependent) {
     const double level = sidak_level(CHI_SQUARED_ALPHA, ALL_SAMPLERS.size() * RELATIONS.size());
     const auto errors = [&](uint32_t sampler, const Relation& relation) {
@@ -133,10 +133,10 @@ TEST_F(SamplerStatisticsTest, ErrorsOfPixelsSeedsAndPairsAreIndependent) {
 }
 
 // Pairs are shuffled against each other, so that the first half of one does not go with the first half of
-// another. Of the first 16 samples, 2 m and 2 m + 1 are in different halves of the square, along either axis;
-// which of them is where depends on m by bits that are random and each pair's own. So the number of the 8
-// couples that are alike in two pairs has a binomial distribution: all would be alike, or none, if the pairs
-// were visited in one order.
+// another. Among the first 16 samples, 2 m and 2 m + 1 are in different halves of the square, along either
+// axis; which of them is where depends on m by bits that are random and each pair's own. So the number of the
+// 8 couples that are alike in two pairs has a binomial distribution: all would be alike, or none, if the
+// pairs were visited in one order.
 TEST_F(SamplerStatisticsTest, SobolPairsAreShuffledAgainstEachOther) {
     constexpr uint32_t COUPLES = 8;
     const std::array<Relation, 3> relations{RELATIONS[4], RELATIONS[5],

@@ -1,4 +1,4 @@
-// Textures: look-ups against double precision, and the same bits whatever buffers the texels are in.
+// Textures: look-ups against double precision, and the same bits for all kinds of buffers.
 #include <span>
 
 #include "base/hash.h"

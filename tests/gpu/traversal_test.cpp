@@ -130,9 +130,9 @@ TEST_F(TraversalTest, OneTriangle) {
                                 .normals = {},
                                 .triangles = {uvec3(0, 1, 2)}};
     Rays rays = random_rays(1000, vec3(0), 2.0f, 25);
-    add(rays, vec3(0), vec3(0, 0, -1));        // The centre of the front,
-    add(rays, vec3(0), vec3(0, 0, 1));         // away from it,
-    add(rays, vec3(0, 0, -4), vec3(0, 0, 1));  // and from behind.
+    add(rays, vec3(0), vec3(0, 0, -1));        // The centre of the front.
+    add(rays, vec3(0), vec3(0, 0, 1));         // Away from it.
+    add(rays, vec3(0, 0, -4), vec3(0, 0, 1));  // From behind.
     const std::vector<TraversalResult> results = expect_brute_force(scene_of_mesh(triangle), rays);
     EXPECT_EQ(results[1000].t, 2.0f);
     EXPECT_EQ(results[1000].b, vec2(0.25f, 0.5f));

@@ -369,7 +369,7 @@ def sampled_energy(bsdf, cosine, count=1 << 20):
 
 
 def check_energy():
-    """Raises AssertionError unless white materials return all light, whatever their layers, within five standard errors
+    """Raises AssertionError unless white materials return all light, for any layers, within five standard errors
     and 5e-4 for the tables."""
     solid = {"thin_walled": False}
     cases = [

@@ -8,7 +8,7 @@ namespace candela {
 namespace {
 
 constexpr float ETA = 1.5f;
-constexpr float THICKNESS = 0.5f;  // Of the slabs [m].
+constexpr float THICKNESS = 0.5f;  // Thickness of the slabs [m].
 
 double fresnel(double ior, double theta) {
     return fresnel_exact(std::cos(theta), ior);
@@ -136,7 +136,7 @@ TEST_F(DielectricTest, ALampWithinTheGlass) {
     scene.materials.back().model = DiffuseMaterial{vec3(1)};
     add_shape(scene, Sphere{center, LAMP_RADIUS}, add_diffuse(scene, vec3(0)), Emission{RADIANCE, false});
 
-    constexpr int POINTS = 10000;  // Of the midpoint rule: x = sin^2(t), 2 sin(t) cos(t) dt = dx.
+    constexpr int POINTS = 10000;  // Midpoint rule: x = sin^2(t), 2 sin(t) cos(t) dt = dx.
     const double sin2_max = std::pow(LAMP_RADIUS / distance, 2.0);
     glm::dvec3 irradiance_over_pi(0.0);
     for (int i = 0; i < POINTS; ++i) {

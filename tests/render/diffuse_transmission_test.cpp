@@ -40,7 +40,7 @@ TEST_F(DiffuseTransmissionTest, ALampBehindTheSheetShinesThroughIt) {
     const vec3 transmittance(0.2f, 0.5f, 0.6f);
     for (const bool absorbs : {false, true}) {
         const glm::dvec3 absorption = absorbs ? glm::dvec3(ABSORPTION) : glm::dvec3(0);
-        constexpr int POINTS = 10000;  // Of the midpoint rule.
+        constexpr int POINTS = 10000;  // Points of the midpoint rule.
         constexpr double SIN2_MAX = LAMP_RADIUS * LAMP_RADIUS / (DISTANCE * DISTANCE);
         glm::dvec3 irradiance_over_pi(0.0);
         for (int i = 0; i < POINTS; ++i) {

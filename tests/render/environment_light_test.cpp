@@ -133,7 +133,7 @@ TEST_F(EnvironmentLightTest, AHiddenSkyShowsInAMirror) {
     expect_pixels(image_of(render(scene, settings(Estimator::mis), 4)), RADIANCE);
 }
 
-// Neither a black sky nor a scene with nothing but sky divides by zero.
+// Neither a black sky nor a scene with only a sky divides by zero.
 TEST_F(EnvironmentLightTest, ABlackSkyAndAnEmptySceneAreRendered) {
     expect_form_factor(floor_under(constant_environment(vec3(0))), 0.0, 4, 4);
     Scene empty = floor_under(constant_environment(RADIANCE));

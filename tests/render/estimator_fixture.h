@@ -6,8 +6,8 @@
 namespace candela {
 
 // Means of an image's channels, and of its blocks of COMPARE_BLOCK squared pixels: one value per rendering,
-// each with a seed of its own. These values are independent of each other whatever the sampler does within a
-// pixel.
+// each with a seed of its own. These values are independent of each other, regardless of what the sampler
+// does within a pixel.
 struct Replicates {
     std::vector<RunningMoments> means;
     std::vector<RunningMoments> blocks;

@@ -46,7 +46,7 @@ TEST_F(FurnaceTest, EveryRaySeesTheGeometricSeries) {
     }
 }
 
-// Emission hit by the ray that leaves vertex D still counts: D + 1 terms.
+// Emission hit by the ray that leaves vertex D is still included: D + 1 terms.
 TEST_F(FurnaceTest, MaxDepthTruncatesTheSeries) {
     uint32_t seed = 20;
     for (const uint32_t depth : {0u, 1u, 2u, 5u}) {

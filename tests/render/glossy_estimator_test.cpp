@@ -55,7 +55,7 @@ TEST_F(GlossyEstimatorTest, AgreeOnPhongAndMetal) {
     expect_estimators_agree(scene, 512, 2048);
 }
 
-// Light samples do not find what lies behind a mirror or glass: there, emission that a path hits counts in
+// Light samples do not find what lies behind a mirror or glass: there, emission that a path hits is added in
 // full.
 TEST_F(GlossyEstimatorTest, AgreeOnMirrorsAndGlass) {
     Scene scene = open_room();

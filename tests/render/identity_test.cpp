@@ -284,7 +284,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, LayeredIdentityTest, testing::Values(layered_sc
 
 class ArrayIdentityTest : public IdentityTest {};
 
-// Each array is read through a texel buffer if that may hold it, whatever the others need, and storage
+// Each array is read through a texel buffer if that may hold it, regardless of the others, and storage
 // buffers are shared where there are only as many as Vulkan promises.
 TEST_P(ArrayIdentityTest, BuffersThatSuitEachArray) {
     const Accumulation whole = in_one_go(settings());

@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Gallery, InstanceTest,
 // A square with images of normals and of heights, in spaces that mirror, shear and scale it.
 class InstancedNormalsTest : public RenderTest {
   protected:
-    // Of each pixel's first hit, from the same camera rays.
+    // The layers of each pixel's first hit, from the same camera rays.
     std::vector<vec3> normals(const Scene& scene, const InstancingRule& rule) const {
         RenderSettings settings = settings_for(32, 32);
         settings.max_depth = 0;

@@ -13,7 +13,7 @@ constexpr float BRIGHT = 100.0f;
 class LensTest : public RenderTest {
   protected:
     static constexpr uint32_t SIZE = 64;
-    static constexpr double HALF_WIDTH = 0.045;  // Of the film, at distance 1.
+    static constexpr double HALF_WIDTH = 0.045;  // Half width of the film, at distance 1.
 
     static RenderSettings settings(uint32_t seed) { return independent_settings(SIZE, Estimator::mis, seed); }
 
@@ -130,8 +130,8 @@ TEST_P(BlurTest, IsAnImageOfTheAperture) {
             << what << ": " << mean.first << " +- " << mean.second << ", not " << expected;
     };
 
-    // All light of the lamp arrives: whatever the point of the aperture, it covers (radius / distance)^2 pi
-    // of the film.
+    // All light of the lamp arrives: from every point of the aperture, it covers (radius / distance)^2 pi of
+    // the film.
     const double lamp_area = M_PI * double(LAMP_SLOPE) * double(LAMP_SLOPE);
     const double film_area = 4.0 * HALF_WIDTH * HALF_WIDTH;
     const ImageMean energy = image_mean(image, 0);

@@ -103,8 +103,8 @@ TEST_F(LimitsTest, MoreShapesInOnePlaceThanADriverLoopsOverAreNamed) {
 
 using FiniteTest = RenderTest;
 
-// The square of 1e30 is no float, that of 1e15 is. Four work groups count, as those of lavapipe and as those
-// of other devices.
+// The square of 1e30 is not a float, that of 1e15 is. Four work groups count, as those of lavapipe and as
+// those of other devices.
 TEST_F(FiniteTest, SamplesThatAreNotFiniteAddNothingAndAreCounted) {
     vk::DeviceInfo info = info_;
     info.driver_id = info_.is_lavapipe() ? VkDriverId{} : VK_DRIVER_ID_MESA_LLVMPIPE;

@@ -61,7 +61,7 @@ TEST_F(NestedMediaTest, ABubbleInAbsorbingGlass) {
     expect_share(scene, 8, left_after(ABSORPTION, 1.0));
 }
 
-// Of equal priority, what was entered last.
+// If priorities are equal, the medium entered last fills the space.
 TEST_F(NestedMediaTest, OverlapsBelongToTheHighestPriority) {
     const auto scene_of = [](uint32_t first, uint32_t second) {
         Scene scene = seen_along(dvec3(0, 0, 5), dvec3(0));
@@ -82,9 +82,9 @@ TEST_F(NestedMediaTest, OverlapsBelongToTheHighestPriority) {
 // normal incidence: the shares that it reflects and passes, by adding one boundary after the other. Ref:
 // Stokes 1862, On the Intensity of the Light Reflected from or Transmitted through a Pile of Plates.
 struct Pile {
-    double ior = 1.0, a = 1.0;         // Of the last slab.
-    double reflected = 0, passed = 1;  // Seen from the front,
-    double reflected_back = 0;         // and from the back.
+    double ior = 1.0, a = 1.0;         // Index and absorption of the last slab.
+    double reflected = 0, passed = 1;  // Seen from the front.
+    double reflected_back = 0;         // Seen from the back.
 
     void add(double next_ior, double next_a) {
         const double r = std::pow((ior - next_ior) / (ior + next_ior), 2.0), t = 1.0 - r;
@@ -180,7 +180,7 @@ TEST_F(NestedMediaTest, WaterThatOverlapsItsGlass) {
         sky_seen_through({{1.33, left_after(ABSORPTION, 1.0)}, {1.9, left_after(OTHER_ABSORPTION, 0.5)}}));
 }
 
-// An exterior index that is stated holds, whatever is there.
+// A stated exterior index is used regardless of the medium there.
 TEST_F(NestedMediaTest, AStatedExteriorIndex) {
     Scene scene = seen_along(dvec3(0, 4, 0), dvec3(0));
     add_slab(scene, tint(ABSORPTION), -1, 1);
@@ -198,7 +198,7 @@ TEST_F(NestedMediaTest, ACameraInTwoMedia) {
     expect_share(scene, 8, left_after(OTHER_ABSORPTION, 0.25) * left_after(ABSORPTION, 0.75));
 }
 
-// A glass ball that holds water that holds a bubble: whatever way a ray takes, it comes from the white sky.
+// A glass ball that holds water that holds a bubble: every ray comes from the white sky.
 TEST_F(NestedMediaTest, NestedClearBallsAreInvisible) {
     Scene scene = scene_with_camera(dvec3(0.5, 1, 4), dvec3(0), 0.6f);
     scene.environment = constant_environment(vec3(1));

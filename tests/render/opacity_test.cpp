@@ -1,4 +1,4 @@
-// Surfaces that rays pass: shares of light have closed forms, whatever the shapes and the order in which they
+// Surfaces that rays pass: fractions of light have closed forms, for any shapes and any order in which they
 // are hit.
 #include <cmath>
 

@@ -217,7 +217,7 @@ TEST_F(PrincipledPictureTest, ValuesOfImagesAreThoseOfNumbers) {
             m.metalness = m.coat = m.fuzz = channel(0);
             m.roughness = m.coat_roughness = m.fuzz_roughness = channel(1);
             m.specular = channel(2);
-            // (0.25, 0.5) stands for the opposite of the tangent, blue for 0.75 of the strength.
+            // (0.25, 0.5) is the opposite of the tangent, and blue is 0.75 of the strength.
             m.anisotropy = 1.0f;
             m.anisotropy_rotation += float(M_PI);
             m.anisotropy_map = image;

@@ -93,7 +93,7 @@ TEST_F(PunctualLightTest, ADirectionalLightDependsOnTheCosineAlone) {
         expect_black(floor_under(DirectionalLight{dvec3(1, rise, 0), INTENSITY}));
 }
 
-// Lights add up, whatever their powers; errors of the choice would not cancel.
+// Lights of any powers add up; errors of the choice would not cancel.
 TEST_F(PunctualLightTest, DimAndBrightLightsAddUp) {
     const dvec3 dim(0, 2, 1), bright(1, 1, 0), above(0, 2, 0);
     Scene scene = floor_under(PointLight{dim, 0.01f * INTENSITY});
@@ -201,8 +201,8 @@ TEST_F(PunctualLightTest, ALightOnTheSurfaceIsHarmless) {
     }
 }
 
-// Powers of two pass through everything but the choice of lights: the picture has the same digits, as long as
-// the squares of samples are finite.
+// Powers of two do not change anything except the choice of lights: the picture has the same digits, as long
+// as the squares of samples are finite.
 TEST_F(PunctualLightTest, AnyIntensityMakesTheSamePicture) {
     const auto picture = [&](float factor) {
         Scene scene = floor_under(PointLight{dvec3(0, 2, 0), factor * INTENSITY});

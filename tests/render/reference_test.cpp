@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 struct Reference {
     const char* name;
     uint32_t spp;                 // Samples per pixel, for largest_pixel_error().
-    const char* image = nullptr;  // Of the scene that has the same picture, if it has none of its own.
+    const char* image = nullptr;  // Image of the scene with the same picture, if it has none of its own.
 };
 
 void PrintTo(const Reference& reference, std::ostream* os) {

@@ -1,4 +1,4 @@
-// Russian roulette does not change the mean of any image, whatever the probabilities with which it ends
+// Russian roulette does not change the mean of any image, regardless of the probabilities with which it ends
 // paths: these show in the number of rays, which has closed forms.
 #include <cmath>
 
@@ -80,7 +80,7 @@ TEST_F(RouletteTest, WithinClearGlassNoMorePathsEndThanMust) {
 }
 
 // Only the path itself can find what a mirror shows: it goes on, however dark the mirror is. After the next
-// hit, on a wall, its throughput counts.
+// hit, on a wall, its throughput is used.
 TEST_F(RouletteTest, AMirrorEndsNoMorePathsThanItMust) {
     constexpr float GREY = 0.25f;
     Scene scene = scene_with_camera(dvec3(0, 2, 0), dvec3(0), 1e-3f);

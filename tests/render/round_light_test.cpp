@@ -58,8 +58,9 @@ TEST_F(RoundLightTest, ASphereAboveTheHorizon) {
 }
 
 // Half of the sphere is below the floor: the form factor of a cap that the horizon cuts in half, for a point
-// in the plane of its centre. Ref: Howell, B-38 with the sphere's centre in the plane of the element:
-// (asin(r/d) - (r/d) sqrt(1 - (r/d)^2)) / pi.
+// in the plane of its centre.
+// Ref: Howell, B-38 with the sphere's centre in the plane of the element: (asin(r/d) - (r/d) sqrt(1 -
+// (r/d)^2)) / pi.
 TEST_F(RoundLightTest, ASphereThatTheFloorCuts) {
     const double s = 0.9;
     const double form_factor = (std::asin(s) - s * std::sqrt(1.0 - s * s)) / M_PI;
@@ -140,7 +141,7 @@ TEST_F(RoundLightTest, ALightThatIsLookedAtShowsItsRadiance) {
 }
 
 // A veil that half of the rays pass: three quarters of those towards it meet it on one side or the other,
-// whatever finds them.
+// for every estimator.
 TEST_F(RoundLightTest, ASphereThatRaysMayPassShinesFromItsFarSide) {
     Scene scene = floor_under(Sphere{dvec3(0, 2, 0), 1.0}, true);
     scene.materials.push_back(scene.materials[1]);

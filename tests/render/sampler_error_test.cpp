@@ -22,9 +22,9 @@ class SamplerErrorTest : public RenderTest {
 };
 
 // Squared errors of an image, one for each of 16 replicates. The samples of a pixel are independent of those
-// of all others, whatever the sampler (SamplerStatisticsTest); so the 16 pixels of a block 4 x 4 are
-// replicates like 16 seeds, each of which would have to compile a kernel of its own. Colours are first mapped
-// to x / (1 + x), so that the few brightest samples do not decide.
+// of all others, for every sampler (SamplerStatisticsTest); so the 16 pixels of a block 4 x 4 are replicates
+// like 16 seeds, each of which would have to compile a kernel of its own. Colours are first mapped to x / (1
+// + x), so that the few brightest samples do not decide.
 RunningMoments squared_errors(const Image& image, const Image& reference) {
     constexpr size_t BLOCK = 4;
     const auto bounded = [](float x) { return double(x) / (1.0 + double(x)); };

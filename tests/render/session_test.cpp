@@ -135,9 +135,9 @@ TEST_F(SessionTest, RendersOnAndWithOtherPicturesToTheSameBits) {
 
 TEST_F(SessionTest, AFailureLeavesSceneAndPicture) {
     Session session(options());
-    EXPECT_EQ(error_of([&] { session.render(1); }), "there is no scene yet; call load() first");
+    EXPECT_EQ(error_of([&] { session.render(1); }), "no scene has been loaded yet; call load() first");
     session.load(file(scene_text(CAMERA, FLOOR, LAMP, SKY)));
-    EXPECT_EQ(error_of([&] { session.layers(); }), "there is no picture yet; call render() first");
+    EXPECT_EQ(error_of([&] { session.layers(); }), "nothing has been rendered yet; call render() first");
     EXPECT_TRUE(session.render(SPP));
     const Layers before = layers(session);
     const auto expect_refused = [&](const std::string& change, const std::string& message) {

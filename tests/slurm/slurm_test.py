@@ -172,13 +172,13 @@ class Slurm(unittest.TestCase):
             return result.stderr
 
         self.assertIn("--spp is missing", refusal(SCENE, "-o", "a.exr"))
-        self.assertIn("there is no output", refusal(SCENE, "--spp", 4))
+        self.assertIn("no output given", refusal(SCENE, "--spp", 4))
         self.assertIn('--spp: cannot use "0"', refusal(SCENE, "--spp", 0, "-o", "a.exr"))
         self.assertIn('--part: cannot use "x"', refusal("--part", "x", SCENE, "--spp", 4, "-o", "a.exr"))
         self.assertIn("--adaptive is not for parts", refusal(SCENE, "--adaptive", "--spp", 4, "-o", "a.exr"))
         self.assertIn("no.json does not exist", refusal("no.json", "--spp", 4, "-o", "a.exr"))
-        self.assertIn("--spp is no option of submit.sh", refusal("--spp", 4, SCENE))
-        self.assertIn("2000 tasks of 1 sample(s) are more than Slurm takes",
+        self.assertIn("--spp is not an option of submit.sh", refusal("--spp", 4, SCENE))
+        self.assertIn("2000 tasks of 1 sample(s) are more than Slurm allows",
                       refusal("--part", 1, SCENE, "--spp", 2000, "-o", "a.exr"))
         # While jobs of a picture wait, it is not submitted once more.
         self.drain()

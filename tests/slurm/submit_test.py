@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Tests the scripts of integrations/slurm with stand-ins for Slurm and candela: which numbers and names they take, and
-what they hand on.   usage: submit_test.py"""
+"""Tests the scripts of integrations/slurm with stand-ins for Slurm and candela: the numbers and names that they
+accept, and the arguments that they pass on.   usage: submit_test.py"""
 import os
 import subprocess
 import tempfile

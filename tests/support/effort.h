@@ -1,4 +1,4 @@
-// How many samples the tests take: one of two fixed sizes, by the variable CANDELA_TEST_EFFORT, never by a
+// The number of the tests' samples: one of two fixed sizes, by the variable CANDELA_TEST_EFFORT, never by a
 // clock.
 #pragma once
 
@@ -11,7 +11,7 @@ namespace candela {
 // "quick" or, unless the variable is set, "full". The first call says on stdout which.
 Effort test_effort();
 
-// The samples per pixel, or rays, to take in place of `full`: at least a few, so that they have a variance.
+// The samples per pixel, or rays, to use instead of `full`: at least a few, so that they have a variance.
 inline uint32_t samples(uint32_t full) {
     return std::max(sized(test_effort(), full), std::min(full, 8u));
 }

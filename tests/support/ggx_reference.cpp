@@ -109,7 +109,7 @@ double fresnel_normal(double eta) {
 }
 
 double fresnel_edge(double cosine, double eta) {
-    constexpr double GREATEST_ETA = 100;  // Beyond it, what is not reflected does not count: Schlick's curve.
+    constexpr double GREATEST_ETA = 100;  // Beyond it, the unreflected light is negligible: Schlick's curve.
     if (eta > GREATEST_ETA) return std::pow(1 - cosine, 5);
     if (refracted_cosine_squared(cosine, eta) <= 0) return 1;
     const double f0 = fresnel_normal(eta);

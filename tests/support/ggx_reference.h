@@ -54,7 +54,7 @@ dvec3 refract(dvec3 wo, dvec3 h, double eta);
 dvec3 mean_over_visible_normals(const Facets& facets, dvec3 wo, double eta,
                                 const std::function<dvec3(dvec3)>& g);
 
-// Of the light that a facet of normal h, seen by wo, reflects or refracts: the share that no other facet
+// The fraction of the light reflected or refracted by a facet of normal h, seen by wo, that no other facet
 // shadows ("s_R", "s_T"); 0 where it goes to the wrong side of the surface or, refracted, nowhere.
 double reflected_share(const Facets& facets, dvec3 wo, dvec3 h);
 double refracted_share(const Facets& facets, dvec3 wo, dvec3 h, double eta);

@@ -34,7 +34,7 @@ double sheen_distribution(double cosine, double alpha_g) {
     return (2 + 1 / alpha_g) * std::pow(sine_squared, 0.5 / alpha_g) / (2 * PI_D);
 }
 
-// What takes the directions that fuzz scatters to those of Lambert's law, for wo in the half-plane of x > 0.
+// The map from the directions of fuzz to those of Lambert's law, for wo in the half-plane of x > 0.
 // Ref: Zeltner, Burley and Chiang 2022, "Practical multiple-scattering sheen using linearly transformed
 // cosines", with the fits of its two numbers that MaterialX 1.39 has (mx_microfacet_sheen.glsl).
 glm::dmat3 fuzz_to_lambert(double roughness, double cosine) {
@@ -45,8 +45,8 @@ glm::dmat3 fuzz_to_lambert(double roughness, double cosine) {
     return {dvec3(a, 0, 0), dvec3(0, a, 0), dvec3(b, 0, 1)};  // Columns.
 }
 
-// Coefficients of Fujii's form of Oren and Nayar's model. Ref: Portsmouth, Kutz and Hill 2024, "EON: A
-// practical energy-preserving rough diffuse BRDF", section 2.
+// Coefficients of Fujii's form of Oren and Nayar's model.
+// Ref: Portsmouth, Kutz and Hill 2024, "EON: A practical energy-preserving rough diffuse BRDF", section 2.
 double fon_a(double sigma) {
     return 1 / (1 + (0.5 - 2 / (3 * PI_D)) * sigma);
 }

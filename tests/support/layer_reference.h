@@ -33,7 +33,8 @@ double fon_albedo(double sigma, double cosine);
 dvec3 iridescent_fresnel(double film_ior, dvec3 base_f0, double thickness, double cosine);
 
 // What a coat leaves of the light that the base under it sends back: what is reflected into the base again
-// is partly absorbed there. Of the base: its reflectance at normal incidence, in [0, 1], and its roughness.
+// is partly absorbed there. The base is given by its reflectance at normal incidence, in [0, 1], and its
+// roughness.
 dvec3 coat_darkening(double coat_ior, double cosine, dvec3 base_albedo, double base_roughness);
 
 // Indices of refraction for red, green and blue.

@@ -126,7 +126,7 @@ class PrincipledReference {
     bool has_fuzz_ = false;
     double film_ = 0;  // Weight of iridescence.
     double eta_ = 1, alpha_g_ = 1, fuzz_roughness_ = 1;
-    dvec3 f0_{0};                               // Of the dielectric at normal incidence, before `specular`.
+    dvec3 f0_{0};  // Reflectance of the dielectric at normal incidence, before `specular`.
     dvec3 film_metal_{0}, film_dielectric_{0};  // Reflectance of the film on either.
     dvec3 metal_f0_{0}, dielectric_f0_{0};      // With the film.
     Shares shares_{};

@@ -169,7 +169,7 @@ void Process::block_err() const {
 
 bool Process::waits_for_reader() const {
     std::ifstream file("/proc/" + std::to_string(pid_) + "/wchan");
-    std::string function;  // Of the kernel, in which the main thread sleeps.
+    std::string function;  // The kernel's function in which the main thread sleeps.
     return std::getline(file, function) && function.find("pipe_write") != std::string::npos;
 }
 

@@ -17,7 +17,7 @@ struct ProcessOptions {
 
 struct ProcessResult {
     int exit_code = -1;  // -1 if a signal ended the program.
-    int signal = 0;      // Which one, or 0.
+    int signal = 0;      // The signal, or 0.
     std::string out;
     std::string err;
 };

@@ -1,4 +1,4 @@
-// Waiting for what must happen, however long it takes on a machine that is slow or has other work.
+// Waiting for events that must happen, for as long as necessary on a slow or busy machine.
 #pragma once
 
 #include <chrono>

@@ -115,7 +115,7 @@ TEST_F(Vk, LimitsOfMemoryAndBindingsAreNamed) {
 }
 
 TEST_F(Vk, AvailableMemoryBoundsAllocations) {
-    info_.type = DeviceType::discrete;  // Its heap counts then, even on a CPU.
+    info_.type = DeviceType::discrete;  // Its heap is then used, even on a CPU.
     info_.device_heap = 1 << 20;
     const Device device(instance_, info_);
     EXPECT_EQ(device.available_memory(), uint64_t{1} << 20);
@@ -127,7 +127,7 @@ TEST_F(Vk, AvailableMemoryBoundsAllocations) {
 TEST_F(Vk, ADeviceThatWillNotDoIsNotOpened) {
     info_.reason = "it has no compute queue";
     EXPECT_EQ(error_of(ExitCode::no_device, [&] { Device(instance_, info_); }),
-              "device \"" + info_.name + "\" will not do: it has no compute queue");
+              "device \"" + info_.name + "\" is unsuitable: it has no compute queue");
 }
 
 TEST(VkInstance, WithoutADriverNamesTheRemedy) {
@@ -158,7 +158,8 @@ TEST(VkInstance, WithABrokenDriverNamesItsFile) {
         const std::string message = error_of(ExitCode::no_device, [] { Instance instance({}); });
         EXPECT_TRUE(message.starts_with("no Vulkan driver can be loaded: ")) << message;
         EXPECT_NE(message.find(named), std::string::npos) << message;
-        EXPECT_TRUE(message.ends_with("; mend or remove that file, or install the driver again")) << message;
+        EXPECT_TRUE(message.ends_with("; repair or remove that file, or install the driver again"))
+            << message;
         EXPECT_EQ(message.find("memory"), std::string::npos) << message;
     }
     std::filesystem::remove(driver);
@@ -166,10 +167,9 @@ TEST(VkInstance, WithABrokenDriverNamesItsFile) {
 
 TEST(VkInstance, WithoutTheValidationLayerNamesTheRemedy) {
     const ScopedVariable layers("VK_LAYER_PATH", "/nonexistent");
-    EXPECT_EQ(
-        error_of(ExitCode::failed, [] { Instance instance({.validation = true}); }),
-        "validation was asked for, but the Vulkan layer VK_LAYER_KHRONOS_validation is not there; install "
-        "vulkan-validationlayers");
+    EXPECT_EQ(error_of(ExitCode::failed, [] { Instance instance({.validation = true}); }),
+              "validation was asked for, but the Vulkan layer VK_LAYER_KHRONOS_validation is missing; "
+              "install vulkan-validationlayers");
     EXPECT_FALSE(Instance({}).devices().empty());
 }
 
@@ -344,7 +344,7 @@ TEST_F(VkPipelineCache, WhatOthersMayHaveWrittenIsNotUsed) {
     EXPECT_EQ(contents(file()), "old");
 }
 
-// As large as no cache is; the file takes no room on the disk.
+// Larger than any cache; the file uses no space on the disk.
 TEST_F(VkPipelineCache, AHugeFileIsIgnoredAndReplaced) {
     use_cache();
     std::filesystem::resize_file(file(), uintmax_t{1} << 40);

@@ -188,7 +188,7 @@ TEST_F(Vk, AResourceCanBeBoundInPlaceOfAnother) {
     EXPECT_EQ(download(test.image, 0, 1), std::vector<float>(test.texel_words.size(), 0.0f));
 }
 
-// Two kernels of the same parts are one program with resources of their own; whatever differs makes another.
+// Two kernels of the same parts share one program, with their own resources; any difference makes another.
 TEST_F(Vk, OnlyKernelsOfTheSamePartsShareAProgram) {
     const Device device(instance_, info_);
     const TestKernel first(device), second(device);

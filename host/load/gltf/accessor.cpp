@@ -90,7 +90,7 @@ float as_float(T value, bool normalized) {
         return value;
     } else {
         if (!normalized) return float(value);
-        // Ref: section 3.6.2.2; the most negative value, which has no positive one, counts as -1.
+        // Ref: section 3.6.2.2; the most negative value, which has no positive counterpart, is -1.
         return std::max(float(double(value) / double(std::numeric_limits<T>::max())), -1.0f);
     }
 }
@@ -114,16 +114,18 @@ Accessor::Accessor(File& file, const Node& reference, std::initializer_list<std:
     count_ = count.integer(1, UINT32_MAX);
     if (const auto normalized = node_.find("normalized")) normalized_ = normalized->boolean();
     if (normalized_ && (component_ == Component::float32 || component_ == Component::uint32)) {
-        file.warn(node_, "\"normalized\" says nothing of floats and of 32-bit integers, and is ignored");
+        file.warn(node_, "\"normalized\" does not apply to floats or 32-bit integers, and is ignored");
         normalized_ = false;
     }
     const size_t size = width_ * size_of_component(component_);
     if (node_.find("bufferView")) {
         bytes_ = element_bytes(file, node_, count_, size, stride_);
     } else if (count_ > file.bytes_read()) {
-        // Zeros cost a file nothing, but memory. Whatever goes along with others has as many as they.
-        count.fail(concat("an accessor without a bufferView is all zeros, and has no more elements than the ",
-                          file.bytes_read(), " bytes that were read; name the view of its bytes"));
+        // Zeros take no bytes in the file, but they do take memory. An attribute cannot have more elements
+        // than the data it accompanies.
+        count.fail(
+            concat("an accessor without a bufferView is all zeros, and may not have more elements than the ",
+                   file.bytes_read(), " bytes that were read; name the view of its bytes"));
     }
     if (const auto sparse = node_.find("sparse")) read_sparse(file, *sparse);
 }
@@ -145,8 +147,8 @@ void Accessor::read_sparse(File& file, const Node& sparse) {
             return double(value);
         });
         if (!(index >= 0.0 && index < double(count_))) {
-            indices.fail(concat("number ", i, " replaces an element that the accessor, which has ", count_,
-                                ", lacks; is the file damaged?"));
+            indices.fail(concat("number ", i, " replaces an element beyond the accessor's ", count_,
+                                "; is the file damaged?"));
         }
         sparse_->indices.push_back(uint32_t(index));
     }

@@ -1,6 +1,6 @@
 // Accessors: typed arrays in the buffers of a glTF file. All that they state is checked before any byte is
-// read. Messages tell of their places alone, not of their values: buffers may be in other files, whose
-// contents are not for whoever reads the messages.
+// read. Messages give places but not values: buffers may be in other files, whose contents the reader of the
+// messages may not be allowed to see.
 #pragma once
 
 #include <cstddef>
@@ -19,9 +19,9 @@ enum class Component : uint32_t { int8 = 5120, uint8, int16, uint16, uint32 = 51
 
 // The part of an accessor whose elements replace others.
 struct Sparse {
-    std::vector<uint32_t> indices;  // Below the count of the whole; of equal ones, the last counts.
+    std::vector<uint32_t> indices;  // Below the count of the whole; if two are equal, the last is used.
     std::span<const std::byte> values;
-    size_t stride = 0;  // From one of them to the next [bytes].
+    size_t stride = 0;  // From one element to the next [bytes].
 };
 
 class Accessor {
@@ -41,7 +41,7 @@ class Accessor {
     std::vector<float> floats() const;
     // The same for some elements alone; each of `rows` is below count().
     std::vector<float> floats(std::span<const uint32_t> rows) const;
-    // floats() of all elements, kept with the file's contents for further readings.
+    // floats() of all elements, kept with the file's contents so that later readings can share them.
     const std::vector<float>& kept_floats(File& file) const;
     // Elements as whole numbers. Throws Error unless they are unsigned integers that are not normalised.
     std::vector<uint32_t> integers() const;
@@ -54,7 +54,7 @@ class Accessor {
     uint32_t width_ = 1;
     bool normalized_ = false;
     uint32_t count_ = 0;
-    std::span<const std::byte> bytes_;  // From the first element on; empty: all elements are zero.
+    std::span<const std::byte> bytes_;  // Begins at the first element; empty: all elements are zero.
     size_t stride_ = 0;
     std::optional<Sparse> sparse_;
 };

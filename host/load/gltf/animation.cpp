@@ -47,15 +47,15 @@ Interpolation read_interpolation(const Node& sampler) {
     return node ? node->choice(NAMES) : Interpolation::linear;
 }
 
-// Notes the first key of a rotation that is no unit quaternion. Those of integers have a length of about 1.
+// Notes the first key of a rotation that is not a unit quaternion. Quaternions of integers have a length of
+// about 1.
 void check_rotations(File& file, const Node& output, const Sampler& sampler) {
     for (size_t key = 0; key < sampler.times.size(); ++key) {
         const float* q = sampler.value(key);
         const double size = length(glm::dvec4(q[0], q[1], q[2], q[3]));
         if (std::abs(size - 1.0) <= ROTATION_TOLERANCE) continue;
-        file.warn(output,
-                  concat("the rotation of key ", key,
-                         " is a quaternion of another length than 1; all are divided by their lengths"));
+        file.warn(output, concat("the rotation of key ", key,
+                                 " is a quaternion whose length is not 1; all are normalised"));
         return;
     }
 }
@@ -124,7 +124,7 @@ void apply_channel(File& file, const Node& animation, const Node& channel, float
     if (!reference) {
         if (extension_of(target, "KHR_animation_pointer"))
             file.warn(target,
-                      "ignored what KHR_animation_pointer moves: only nodes and weights are animated");
+                      "ignored the targets of KHR_animation_pointer: only nodes and weights are animated");
         return;
     }
     PosedNode& node = nodes[file.index("nodes", *reference)];
@@ -141,7 +141,7 @@ void apply_channel(File& file, const Node& animation, const Node& channel, float
     if (i >= samplers.size()) number.fail(concat("the animation has only ", samplers.size(), " samplers"));
     const std::vector<double> v = sample(read_sampler(file, samplers[i], width), time, width == 4);
     if (node.matrix && kind != "weights") {
-        file.warn(channel, "the node has a matrix, which cannot be animated; the animation takes its place");
+        file.warn(channel, "the node has a matrix, which cannot be animated; the animation replaces it");
         node.matrix.reset();
     }
     if (kind == "translation") node.trs.translation = {v[0], v[1], v[2]};
@@ -153,7 +153,7 @@ void apply_channel(File& file, const Node& animation, const Node& channel, float
     }
 }
 
-// Notes channels of an animation that move the same: the last one counts.
+// Notes channels of an animation with the same target: the last one is used.
 void check_targets(File& file, const std::vector<Node>& channels) {
     std::map<std::pair<uint32_t, std::string>, size_t> known;
     for (size_t i = 0; i < channels.size(); ++i) {
@@ -164,7 +164,7 @@ void check_targets(File& file, const std::vector<Node>& channels) {
             known.try_emplace({file.index("nodes", *node), target.require("path").string()}, i);
         if (is_new) continue;
         file.warn(channels[first->second].require("target"),
-                  concat("channel ", i, " has the same target, and takes the place of this one"));
+                  concat("channel ", i, " has the same target, and replaces this one"));
         first->second = i;
     }
 }
@@ -183,13 +183,13 @@ void animate(File& file, const std::optional<std::string>& name, double time, st
     } else if (count > 0) {
         chosen.push_back(0);
     }
-    if (count == 0) file.warn(file.path().string() + ": the file has no animations: --time changes nothing");
+    if (count == 0) file.warn(file.path().string() + ": the file has no animations: --time has no effect");
     if (count > 1 && !name) {
         file.warn(file.path().string() + ": posed by the first animation, " +
                   quote(name_of(file.element("animations", 0), "0")) + ", of " + std::to_string(count) +
                   "; choose by --animation NAME, or all");
     }
-    // Rounded as the times of keys are: the moment of a key is its own.
+    // Rounded as the times of keys are, so that the time of a key selects exactly that key.
     const auto moment = float(std::clamp(time, -double(FLOAT_MAX), double(FLOAT_MAX)));
     for (const size_t i : chosen) {
         const Node animation = file.element("animations", i);

@@ -1,4 +1,4 @@
-// Animations of a glTF file: they put nodes where they are at a moment.
+// Animations of a glTF file, which pose nodes at a time.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace candela::gltf {
 
-// Poses the nodes at `time` [s]: by the animation of that name or index, by all of them ("all"), or, if none
-// is stated, by the first. Before its first key and after its last one, an animation stands still. Throws
+// Poses the nodes at `time` [s]: by the animation of that name or index, by all animations ("all"), or, if no
+// name is given, by the first. An animation is constant before its first key and after its last one. Throws
 // Error (usage) for an animation that the file lacks.
 void animate(File& file, const std::optional<std::string>& name, double time, std::vector<PosedNode>& nodes);
 

@@ -35,8 +35,8 @@ constexpr std::array<std::string_view, 23> READ{"EXT_lights_image_based",
                                                 "KHR_xmp_json_ld",
                                                 "VRMC_materials_hdr_emissiveMultiplier"};
 
-// What these say does not show in a picture: metadata, sound, physics, behaviour, hints, lines. Where a name
-// ends in *, all that begin so.
+// These extensions do not affect a picture: metadata, sound, physics, behaviour, hints, lines. A name that
+// ends in * matches all names that begin so.
 constexpr std::array<std::string_view, 38> UNSEEN{"AGI_articulations",
                                                   "AGI_stk_metadata",
                                                   "BENTLEY_materials_line_style",
@@ -76,9 +76,9 @@ constexpr std::array<std::string_view, 38> UNSEEN{"AGI_articulations",
                                                   "VRMC_springBone*",
                                                   "VRMC_vrm*"};
 
-// What is not read, and what is missing then.
-constexpr const char* UNCOMPRESSED = "uncompressed data take the place of compressed ones";
-constexpr const char* OTHER_IMAGES = "images in PNG, JPEG or WebP take the place of those that it adds";
+// Extensions that are not read, and what is then missing.
+constexpr const char* UNCOMPRESSED = "the uncompressed data is used instead";
+constexpr const char* OTHER_IMAGES = "images in PNG, JPEG or WebP are used instead";
 constexpr const char* NO_TOON = "toon shading looks as the material does without it";
 constexpr std::array<std::pair<std::string_view, std::string_view>, 16> NOT_READ{
     {{"EXT_lights_ies", "lights shine evenly, without a profile"},
@@ -102,7 +102,7 @@ bool fits(std::string_view name, std::string_view known) {
     return known.ends_with('*') ? name.starts_with(known.substr(0, known.size() - 1)) : name == known;
 }
 
-// Whether a picture lacks nothing of what the extension says.
+// Whether a picture shows everything that the extension describes.
 bool needs_no_warning(std::string_view name) {
     return std::ranges::find(READ, name) != READ.end() ||
            std::ranges::any_of(UNSEEN, [&](std::string_view known) { return fits(name, known); });

@@ -18,7 +18,7 @@ namespace {
 
 using gltf::File;
 
-// What the file says of itself goes into images.
+// The file's description of itself becomes attributes of images.
 void read_attributes(const File& file, Scene& scene) {
     const Node asset = file.root().require("asset");
     for (const char* key : {"generator", "copyright", "version"}) {
@@ -41,12 +41,12 @@ void warn_of_units(File& file, const GltfOptions& options, const Scene& scene) {
     const LightUnits units = units_of(file, options);
     if (units == LightUnits::blender)
         file.warn(file.path().string() +
-                  ": Blender wrote the file, so that its lights count as watts times 683 lm/W; where that is "
-                  "too dark, give --light-units spec or raw");
+                  ": Blender wrote the file, so its lights are read as watts times 683 lm/W; if that is too "
+                  "dark, use --light-units spec or raw");
     if (units == LightUnits::raw)
         file.warn(file.path().string() +
-                  ": a Blender before 3.4 wrote the file, so that its lights count as watts; where that is "
-                  "too dark, give --light-units spec");
+                  ": a Blender before 3.4 wrote the file, so its lights are read as watts; if that is too "
+                  "dark, use --light-units spec");
 }
 
 }  // namespace

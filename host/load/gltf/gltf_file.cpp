@@ -70,11 +70,11 @@ std::optional<std::string> mended(std::string_view text) {
     return result;
 }
 
-// Throws Error for a buffer that is to be filled by an extension alone.
+// Throws Error for a buffer that only an extension can fill.
 void check_meshopt(const Node& buffer) {
     for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
         if (!extension_of(buffer, name)) continue;
-        buffer.fail(concat("the data are compressed by meshopt (", name,
+        buffer.fail(concat("the data is compressed by meshopt (", name,
                            "), which is not read; export the file without compression"));
     }
 }
@@ -90,7 +90,7 @@ void check_version(const Node& root) {
     const auto least = asset.find("minVersion");
     const Node& decisive = least ? *least : version;
     if (major(decisive) != "2" || (least && least->string() != "2.0")) {
-        decisive.fail("files of version 2.0 are read, not of " + quote(decisive.string()) +
+        decisive.fail("only glTF 2.0 is read, not " + quote(decisive.string()) +
                       "; export the scene as glTF 2.0");
     }
 }
@@ -106,10 +106,10 @@ Contents::Contents(const std::filesystem::path& path, FileReach reach, const Loa
     bytes_ = reach_.read(path, UINT64_MAX, bytes_of(progress));
     document_.file = path.string();
     document_.places = json::Document::Places::pointers;
-    document_.nulls_are_absent = true;  // Some programs write null for what they do not know.
+    document_.nulls_are_absent = true;  // Some programs write null for unknown values.
     std::string_view text = bytes_.starts_with(GLB_MAGIC) ? split_glb() : std::string_view(bytes_);
     if (text.starts_with(BYTE_ORDER_MARK))
-        text.remove_prefix(BYTE_ORDER_MARK.size());  // Of careless programs.
+        text.remove_prefix(BYTE_ORDER_MARK.size());  // Some programs write a byte order mark.
     const std::optional<std::string> in_utf8 = mended(text);
     if (in_utf8)
         warnings_.push_back(document_.file + ": the text is not UTF-8; other bytes are read as Latin-1");
@@ -155,7 +155,7 @@ std::string_view Contents::split_glb() {
         warnings_.push_back(concat(name, ": the header states ", length, " bytes, but the chunks have ",
                                    offset, "; all are read"));
     }
-    // Filled up with spaces; some programs fill with zeros.
+    // Padded with spaces; some programs pad with zeros.
     return text->substr(0, text->find_last_not_of('\0') + 1);
 }
 
@@ -196,9 +196,10 @@ uint32_t File::index(std::string_view array, const Node& reference) const {
     const uint32_t i = reference.integer(0, UINT32_MAX);
     const size_t of = count(array);
     if (i < of) return i;
-    reference.fail(concat("there is no ", i, " in \"", array, "\", which ",
-                          of == 0 ? std::string("is empty or missing") : "has 0 to " + std::to_string(of - 1),
-                          "; name one that the file has"));
+    reference.fail(
+        concat('"', array, "\" has no element ", i,
+               of == 0 ? std::string(": it is empty or missing") : ", only 0 to " + std::to_string(of - 1),
+               "; name one that the file has"));
 }
 
 std::span<const std::byte> File::view_bytes(const Node& view) {

@@ -1,4 +1,4 @@
-// A glTF file: its JSON document and its buffers, and a reading of them with its complaints.
+// A glTF file: its JSON document and its buffers, and a reading of them with its warnings.
 #pragma once
 
 #include <any>
@@ -18,13 +18,13 @@
 
 namespace candela::gltf {
 
-// What does not depend on what is shown of a file: its document, its buffers, and what was made of them.
-// Reads .gltf (JSON) and .glb (JSON and a buffer in one file), told apart by their first bytes; a buffer when
-// it is first needed. Places in messages are JSON pointers: `room.glb#/accessors/3/count`.
+// The part of a file that every scene of it shares: its document, its buffers, and values made from them.
+// Reads .gltf (JSON) and .glb (JSON and a buffer in one file), which differ in their first bytes. A buffer is
+// read when it is first needed. Places in messages are JSON pointers: `room.glb#/accessors/3/count`.
 class Contents {
   public:
-    // Throws Error if the file cannot be read, is cut off, or is of another version than 2. This file and
-    // those that it names must be within `reach`.
+    // Throws Error if the file cannot be read, is cut off, or is not of version 2. This file and all files
+    // that it names must be within `reach`.
     Contents(const std::filesystem::path& path, FileReach reach, const LoadProgress& progress);
     Contents(const Contents&) = delete;
     Contents& operator=(const Contents&) = delete;
@@ -37,7 +37,7 @@ class Contents {
     const std::optional<std::string_view>& chunk() const { return chunk_; }
     const std::vector<std::string>& warnings() const { return warnings_; }
 
-    // What make() returned when it was first called for this key; each key is of one type.
+    // The result of the first call of make() for this key; each key has one type.
     template <class Make>
     const auto& keep(const std::string& key, const Make& make) {
         using Value = decltype(make());
@@ -51,17 +51,17 @@ class Contents {
 
     FileReach reach_;
     std::filesystem::path path_;
-    std::string bytes_;  // Of the file.
+    std::string bytes_;  // Bytes of the file.
     std::optional<std::string_view> chunk_;
     json::Document document_;
     std::vector<std::string> warnings_;
     std::unordered_map<std::string, std::any> kept_;
 };
 
-// A reading of a file, from which a scene comes: the same whether it is the first one or not.
+// A reading of a file, from which a scene is made. Every reading gives the same scene.
 class File {
   public:
-    // Tells of the bytes of each buffer's file that it is the first to read.
+    // Reports progress for the bytes of each buffer's file that it reads first.
     File(Contents& contents, LoadProgress progress);
     File(const File&) = delete;
     File& operator=(const File&) = delete;
@@ -85,8 +85,7 @@ class File {
         return element(array, index(array, reference));
     }
 
-    // The bytes that a bufferView stands for; valid as long as the contents. Throws Error if they are not
-    // there.
+    // The bytes of a bufferView; valid as long as the contents. Throws Error if they are missing.
     std::span<const std::byte> view_bytes(const Node& view);
 
     // The index in Scene::images of the file's image `i`, once it has one.
@@ -114,7 +113,7 @@ class File {
     std::vector<std::optional<uint32_t>> images_;
     std::vector<std::filesystem::path> files_;
     std::vector<std::string> warnings_;
-    std::unordered_set<std::string> warned_;  // The same, to be found.
+    std::unordered_set<std::string> warned_;  // The same, for lookup.
 };
 
 }  // namespace candela::gltf

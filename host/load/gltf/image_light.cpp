@@ -21,7 +21,7 @@ namespace candela::gltf {
 namespace {
 
 constexpr size_t FACES = 6;
-constexpr uint32_t MOST_LINES = 2048;  // Of the environment.
+constexpr uint32_t MOST_LINES = 2048;  // The most rows of the environment.
 
 // Radiance of one face, row-major from the top.
 struct Face {
@@ -32,7 +32,7 @@ struct Face {
         const int last = int(size) - 1;
         return radiance[size_t(std::clamp(y, 0, last)) * size + size_t(std::clamp(x, 0, last))];
     }
-    // Linearly between texels; u to the right and v downwards, in [0, 1].
+    // Interpolated linearly between texels; u to the right and v downwards, in [0, 1].
     vec3 look_up(double u, double v) const {
         const double x = u * size - 0.5, y = v * size - 0.5;
         const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
@@ -53,14 +53,14 @@ std::string image_bytes(File& file, const Node& reference) {
     return file.read_named(uri);
 }
 
-// RGBD if there is an alpha: the colour over it.
+// If there is an alpha, RGBD: the colour divided by alpha.
 Face read_face(File& file, const Node& reference) {
     std::vector<std::string> warnings;
     const TexelImage image =
         decode_texels(image_bytes(file, reference), reference.place(), warnings, {.formats = "PNG or JPEG"});
     if (image.size.x != image.size.y)
-        reference.fail(concat("the face of a cube is square, not ", image.size.x, " by ", image.size.y));
-    // No more than the environment shows of it; each of fewer texels is the mean of those in its place.
+        reference.fail(concat("the face of a cube must be square, not ", image.size.x, " by ", image.size.y));
+    // No more texels than the environment shows; each is the mean of the original texels that it replaces.
     const uint32_t size = std::min(image.size.x, MOST_LINES / 2);
     Face face{.size = size, .radiance = std::vector<vec3>(size_t{size} * size)};
     std::vector<uint32_t> counts(face.radiance.size());
@@ -120,7 +120,7 @@ Environment sky_of(File& file, const Node& light, float intensity) {
     return environment;
 }
 
-// Notes that this reading needs the buffer of an image, although its faces may be known.
+// Notes that this reading needs the buffer of an image, although its faces may be known already.
 void use_buffer(File& file, const Node& reference) {
     const Node image = file.resolve("images", reference);
     if (const auto view = image.find("bufferView")) file.view_bytes(file.resolve("bufferViews", *view));

@@ -8,8 +8,8 @@
 
 namespace candela::gltf {
 
-// The environment of a scene of the file; nothing if it has none. Its sharpest images count; the smoother
-// ones and the coefficients, which say the same for renderers that do not trace rays, do not.
+// The environment of a scene of the file; nothing if it has none. Only the sharpest images are used; the
+// smoother ones and the coefficients are for renderers that do not trace rays.
 std::optional<Environment> read_image_light(File& file, const Node& scene);
 
 }  // namespace candela::gltf

@@ -13,7 +13,7 @@
 namespace candela::gltf {
 namespace {
 
-// The numbers of one attribute, and how many copies they are for.
+// The numbers of one attribute, and the number of copies.
 struct InstanceAttribute {
     std::vector<float> numbers;
     uint32_t count = 0;
@@ -36,15 +36,14 @@ glm::dquat four(const std::vector<float>& numbers, size_t i) {
     return {q[3], q[0], q[1], q[2]};
 }
 
-// Notes the first rotation that is no unit quaternion.
+// Notes the first rotation that is not a unit quaternion.
 void check_rotations(File& file, const Node& attributes, const InstanceAttribute& rotations) {
     for (size_t i = 0; i < rotations.count; ++i) {
         const double size = length(four(rotations.numbers, i));
         if (std::abs(size - 1.0) <= ROTATION_TOLERANCE) continue;
-        file.warn(attributes.require("ROTATION"),
-                  concat("the rotation of instance ", i,
-                         " is a quaternion of another length than 1; all are divided by their lengths, and "
-                         "one of length 0 counts as none"));
+        file.warn(attributes.require("ROTATION"), concat("the rotation of instance ", i,
+                                                         " is a quaternion whose length is not 1; all are "
+                                                         "normalised, and length 0 means no rotation"));
         return;
     }
 }

@@ -1,4 +1,4 @@
-// Where a node shows its mesh many times: EXT_mesh_gpu_instancing.
+// Nodes that show their mesh many times: EXT_mesh_gpu_instancing.
 #pragma once
 
 #include <vector>

@@ -19,7 +19,7 @@ constexpr float HALF_PI = PI / 2;
 // Blender writes watts as lumens of light with 683 lm/W.
 constexpr double LUMENS_PER_WATT = 683.0;
 
-// What an intensity [cd] stands for [W/sr].
+// The intensity [W/sr] for a file's intensity [cd].
 double intensity_factor(LightUnits units) {
     switch (units) {
         case LightUnits::spec:
@@ -32,7 +32,7 @@ double intensity_factor(LightUnits units) {
     return 1.0 / (4.0 * double(PI));
 }
 
-// What an illuminance [lx] stands for [W/m^2].
+// The irradiance [W/m^2] for a file's illuminance [lx].
 double illuminance_factor(LightUnits units) {
     return units == LightUnits::blender ? 1.0 / LUMENS_PER_WATT : 1.0;
 }
@@ -51,7 +51,7 @@ SpotLight read_cone(File& file, const Node& light) {
     const float inner = cone ? number_of(file, *cone, "innerConeAngle", 0.0f, HALF_PI, 0.0f) : 0.0f;
     const float outer = cone ? number_of(file, *cone, "outerConeAngle", 0.0f, HALF_PI, PI / 4) : PI / 4;
     if (inner > outer)
-        file.warn(*cone, "the inner angle of a spot is greater than the outer one, and counts as equal");
+        file.warn(*cone, "the inner angle of a spot is greater than the outer one, and is treated as equal");
     spot.outer_angle = std::max(outer, 2.0f * LEAST_EDGE);
     spot.inner_angle = std::min(inner, spot.outer_angle - LEAST_EDGE);
     return spot;

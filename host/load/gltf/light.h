@@ -7,7 +7,7 @@
 
 namespace candela::gltf {
 
-// The units of the file's numbers: those that are asked for, or its program's.
+// The units of the file's lights: as chosen, or else by the program that wrote the file.
 LightUnits units_of(const File& file, const GltfOptions& options);
 
 // The light that a node of that placement carries; `reference` holds its index.

@@ -15,7 +15,7 @@
 namespace candela::gltf {
 namespace {
 
-// Of an image whose alpha, times `factor`, is glossiness: one channel, 1 - that.
+// From an image whose alpha, times `factor`, is glossiness: one channel, 1 minus that product.
 TexelImage roughness_of(const TexelImage& image, float factor) {
     TexelImage result{
         .size = image.size, .channels = 1, .type = TexelType::unorm8, .texels = {}, .gamma = {}};
@@ -102,8 +102,7 @@ class MaterialReader {
         if (const auto node = object.find(factor)) {
             const std::vector<double> rgba = node->numbers(4);
             const bool in_range = std::ranges::all_of(rgba, [](double v) { return v >= 0.0 && v <= 1.0; });
-            if (!in_range)
-                file_.warn(*node, "a component is not between 0 and 1; the nearest takes its place");
+            if (!in_range) file_.warn(*node, "a component is not between 0 and 1; it is clamped");
             const auto limited = [&](size_t i) { return std::clamp(float(rgba[i]), 0.0f, 1.0f); };
             m.base_color = vec3(limited(0), limited(1), limited(2));
             opacity.value = limited(3);
@@ -123,8 +122,7 @@ class MaterialReader {
         m.roughness = weight(*pbr, "roughnessFactor", 1.0f, "metallicRoughnessTexture", GREEN);
     }
 
-    // As KHR_materials_ior says: an index of 0 stands for a reflection of 1, of which "specular" is the
-    // colour.
+    // As KHR_materials_ior says: an index of 0 means a reflectance of 1, and "specular" is its colour.
     void read_specular_glossiness(const Node& old, PrincipledMaterial& m, Opacity& opacity) {
         read_base_color(old, "diffuseFactor", "diffuseTexture", m, opacity);
         if (m.unlit) return;
@@ -186,18 +184,18 @@ class MaterialReader {
         read_specular_above_one(m);
     }
 
-    // A body with a thickness has a medium inside, of which light takes its real path; one without is a thin
-    // wall.
+    // With a thickness the body is solid, and light is absorbed along its true path inside; without one the
+    // surface is a thin wall.
     void read_volume(const Node& volume, PrincipledMaterial& m) {
         if (number(volume, "thicknessFactor", 0.0f, FLOAT_MAX, 0.0f) == 0.0f) return;
         m.inside.emplace();
         const auto distance = volume.find("attenuationDistance");
         if (!distance) return;          // Infinite.
-        constexpr float LEAST = 1e-6f;  // Black would take up all light at once, and not as an exponential.
+        constexpr float LEAST = 1e-6f;  // Black would need infinite absorption.
         const vec3 left = color_of(file_, volume, "attenuationColor", 1.0f, vec3(1.0f));
         const double length = distance->number();
         if (!(length >= double(FLOAT_MIN))) {
-            file_.warn(*distance, "the distance is not above 0, and counts as infinite");
+            file_.warn(*distance, "the distance is not above 0, and is treated as infinite");
             return;
         }
         for (glm::length_t i = 0; i < 3; ++i) {
@@ -206,8 +204,8 @@ class MaterialReader {
         }
     }
 
-    // A specular colour above 1 raises the reflection of the index. If no light is refracted, another index
-    // and colour say the same.
+    // A specular colour above 1 raises the reflectance of the index. If no light is refracted, another index
+    // and colour give the same.
     void read_specular_above_one(PrincipledMaterial& m) {
         const vec3 c = m.specular_color.factor;
         const float most = std::max({c.x, c.y, c.z});

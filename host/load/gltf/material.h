@@ -9,10 +9,10 @@ namespace candela::gltf {
 // A material of the file, without its name, with the images of its textures in scene.images.
 Material read_material(File& file, Scene& scene, const Node& material);
 
-// Whether it lets the alpha of its colours count.
+// Whether it uses the alpha of its colours.
 bool alpha_counts(const Node& material);
 
-// What primitives without a material are made of.
+// The material of primitives without one.
 Material default_material();
 
 }  // namespace candela::gltf

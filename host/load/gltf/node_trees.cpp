@@ -59,19 +59,19 @@ void NodeTrees::meet_root_again(uint32_t root) {
     if (nodes_[root].parent) {
         twice_.push_back({root, *nodes_[root].parent});
     } else {
-        file_.warn(file_.element("nodes", root), "the node is twice in the scene, and shown once");
+        file_.warn(file_.element("nodes", root), "the node is listed twice in the scene, and shown once");
     }
 }
 
 void NodeTrees::meet_child_again(const Visit& above, uint32_t child) {
     if (states_[child] == State::open)
-        file_.element("nodes", child).fail("the node is within itself; nodes form trees");
+        file_.element("nodes", child).fail("the node is its own descendant; nodes must form trees");
     const std::optional<uint32_t>& parent = nodes_[child].parent;
     const Node reference = file_.element("nodes", above.node).require("children")[above.next];
     if (!parent) {
         twice_.push_back({child, above.node});
     } else if (*parent == above.node) {
-        file_.warn(reference, concat("node ", child, " is twice among the children, and shown once"));
+        file_.warn(reference, concat("node ", child, " is listed twice among the children, and shown once"));
     } else {
         reference.fail(concat("node ", child, " has a parent already, node ", *parent,
                               "; copy the node, so that each has one"));

@@ -1,4 +1,4 @@
-// Which nodes of a glTF file are below which: the trees of a scene, and those beside it.
+// The hierarchy of a glTF file's nodes: the trees of a scene, and the other trees.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@ namespace candela::gltf {
 class NodeTrees {
   public:
     // Sets the parents of the nodes, which the lists of children name. A root has none, even if a node
-    // outside of the scene lists it. Throws Error if a node below the roots has two parents or is within
-    // itself. Other nodes are not shown, but skins may need their places; if there is a scene, what is wrong
-    // with them does not matter.
+    // outside of the scene lists it. Throws Error if a node below the roots has two parents or is its own
+    // descendant. Other nodes are not shown, but skins may need their positions; if there is a scene, their
+    // faults are ignored.
     NodeTrees(File& file, const std::vector<uint32_t>& roots, bool has_scene, std::vector<PosedNode>& nodes);
 
     // The nodes below the roots, in the order of the file.
     const std::vector<uint32_t>& shown() const { return shown_; }
 
-    // Computes PosedNode::world of all nodes. Throws Error for a root that is below another one, too, where
-    // it would be at another place.
+    // Computes PosedNode::world of all nodes. Throws Error for a root that is also below another root, and
+    // would have a second position there.
     void place();
 
   private:

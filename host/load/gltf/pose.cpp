@@ -19,7 +19,7 @@ glm::dmat4 matrix_of(const Trs& trs) {
 }
 
 bool make_affine(glm::dmat4& matrix) {
-    constexpr double ROUNDING = 1e-6;  // Of numbers that were floats.
+    constexpr double ROUNDING = 1e-6;  // Rounding of numbers that were floats.
     bool was_affine = true;
     for (glm::length_t column = 0; column < 4; ++column) {
         const double right = column == 3 ? 1.0 : 0.0;
@@ -45,12 +45,12 @@ glm::dquat read_rotation_of(File& file, const Node& node) {
     const glm::dquat rotation(q[3], q[0], q[1], q[2]);
     const double size = length(rotation);
     if (!(size > 0.0)) {
-        file.warn(node, "the rotation is a quaternion of length 0, and counts as none");
+        file.warn(node, "the rotation is a quaternion of length 0, and is ignored");
         return {1, 0, 0, 0};
     }
     if (std::abs(size - 1.0) > ROTATION_TOLERANCE) {
         file.warn(node, concat("the rotation is a quaternion of length ", number_text(size, 6),
-                               ", not 1; it is divided by that"));
+                               ", not 1; it is normalised"));
     }
     return rotation / size;
 }

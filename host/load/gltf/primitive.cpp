@@ -16,6 +16,76 @@
 namespace candela::gltf {
 namespace {
 
+constexpr uint32_t TRIANGLES = 4;
+constexpr uint32_t TRIANGLE_FAN = 6;
+
+// The indices of all corners, or 0, 1, 2 ... if the primitive has none. Each is below `vertices`.
+std::vector<uint32_t> read_corners(File& file, const Node& primitive, uint32_t vertices) {
+    const auto reference = primitive.find("indices");
+    if (!reference) {
+        std::vector<uint32_t> corners(vertices);
+        for (uint32_t i = 0; i < vertices; ++i)
+            corners[i] = i;
+        return corners;
+    }
+    const Accessor accessor(file, *reference, {"SCALAR"});
+    std::vector<uint32_t> corners = accessor.integers();
+    const auto wrong = std::ranges::find_if(corners, [&](uint32_t i) { return i >= vertices; });
+    if (wrong != corners.end()) {
+        accessor.node().fail(concat("index ", wrong - corners.begin(),
+                                    " is not one of the primitive's vertices, which are 0 to ", vertices - 1,
+                                    "; is the file damaged?"));
+    }
+    const uint32_t restart = accessor.component() == Component::uint8    ? UINT8_MAX
+                             : accessor.component() == Component::uint16 ? UINT16_MAX
+                                                                         : UINT32_MAX;
+    const auto odd = std::ranges::find(corners, restart);
+    if (odd != corners.end()) {
+        file.warn(accessor.node(), concat("index ", odd - corners.begin(), " is ", restart,
+                                          ", which may restart a strip elsewhere; here it is a vertex"));
+    }
+    return corners;
+}
+
+std::vector<uvec3> triangles_of(const std::vector<uint32_t>& corners, uint32_t mode) {
+    std::vector<uvec3> triangles;
+    if (corners.size() < 3) return triangles;
+    if (mode == TRIANGLES) {
+        triangles.reserve(corners.size() / 3);
+        for (size_t i = 0; i + 3 <= corners.size(); i += 3)
+            triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
+        return triangles;
+    }
+    triangles.reserve(corners.size() - 2);
+    for (size_t i = 0; i + 3 <= corners.size(); ++i) {
+        if (mode == TRIANGLE_FAN) {
+            triangles.emplace_back(corners[i + 1], corners[i + 2], corners[0]);
+        } else {
+            triangles.emplace_back(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
+        }
+    }
+    return triangles;
+}
+
+// Renumbers the vertices of triangles so that only used ones remain; returns the old number of each.
+std::vector<uint32_t> keep_used(std::vector<uvec3>& triangles, uint32_t vertices) {
+    constexpr uint32_t UNUSED = UINT32_MAX;
+    std::vector<uint32_t> number(vertices, UNUSED);
+    for (const uvec3 t : triangles) {
+        for (glm::length_t i = 0; i < 3; ++i)
+            number[t[i]] = 0;
+    }
+    std::vector<uint32_t> rows;
+    for (uint32_t i = 0; i < vertices; ++i) {
+        if (number[i] == UNUSED) continue;
+        number[i] = uint32_t(rows.size());
+        rows.push_back(i);
+    }
+    for (uvec3& t : triangles)
+        t = {number[t.x], number[t.y], number[t.z]};
+    return rows;
+}
+
 // Reads one primitive, attribute by attribute, for the vertices that its triangles use.
 class PrimitiveReader {
   public:
@@ -26,7 +96,7 @@ class PrimitiveReader {
         const std::vector<Node> all = targets->elements();
         if (deformation.weights.size() != all.size()) {
             file.warn(*targets, concat("there are ", deformation.weights.size(), " weights for ", all.size(),
-                                       " morph targets; those that are missing count as 0"));
+                                       " morph targets; missing ones are 0"));
         }
         for (size_t i = 0; i < std::min(all.size(), deformation.weights.size()); ++i) {
             if (deformation.weights[i] != 0.0) targets_.emplace_back(all[i], deformation.weights[i]);
@@ -46,7 +116,7 @@ class PrimitiveReader {
         check_finite("POSITION", positions);
         for (const glm::dvec3 n : normals) {
             const double size = length(n);
-            // Of length zero: none, and that of the triangle takes its place.
+            // Length zero means no normal, and the triangle's is used instead.
             mesh.normals.emplace_back(size > 0.0 && std::isfinite(size) ? vec3(n / size) : vec3(0.0f));
         }
         set_positions(mesh, std::move(positions));
@@ -150,7 +220,7 @@ class PrimitiveReader {
         }
         if (!in_range) {
             file_.warn(attributes_.require("COLOR_0"),
-                       "some colours are not between 0 and 1; the nearest take their place");
+                       "some colours are not between 0 and 1; they are clamped");
         }
     }
 
@@ -159,16 +229,16 @@ class PrimitiveReader {
         std::vector<glm::dmat4> blended(rows_.size(), glm::dmat4(0.0));
         std::vector<double> sums(rows_.size(), 0.0);
         if (!attributes_.find("JOINTS_0") || !attributes_.find("WEIGHTS_0")) {
-            file_.warn(attributes_,
-                       "the mesh has a skin, but the primitive no joints; all of it follows the "
-                       "first one");
+            file_.warn(
+                attributes_,
+                "the mesh has a skin, but the primitive has no joints; all of it follows the first joint");
         }
         for (int set = 0;; ++set) {
             const auto joints = attributes_.find("JOINTS_" + std::to_string(set));
             const auto weights = attributes_.find("WEIGHTS_" + std::to_string(set));
             if (set > 0 && joints.has_value() != weights.has_value()) {
                 file_.warn(joints ? *joints : *weights,
-                           concat("JOINTS_", set, " and WEIGHTS_", set, " count only together"));
+                           concat("JOINTS_", set, " and WEIGHTS_", set, " are only used together"));
             }
             if (!joints || !weights) break;
             const Accessor joint_accessor(file_, *joints, {"VEC4"});
@@ -178,13 +248,13 @@ class PrimitiveReader {
             const std::vector<uint32_t> joint = joint_accessor.integers();
             const std::vector<float> weight = weight_accessor.floats();
             if (std::ranges::any_of(weight, [](float w) { return w < 0.0f; }))
-                file_.warn(*weights, "some weights are below 0, and count as 0");
+                file_.warn(*weights, "some weights are below 0, and are read as 0");
             for (size_t i = 0; i < rows_.size(); ++i) {
                 for (size_t k = 4 * size_t(rows_[i]); k < 4 * (size_t(rows_[i]) + 1); ++k) {
                     if (!(weight[k] > 0.0f) || !std::isfinite(weight[k])) continue;
                     if (joint[k] >= deformation_.joints.size()) {
-                        joints->fail(concat("vertex ", rows_[i], " follows a joint that the skin, which has ",
-                                            deformation_.joints.size(), ", lacks"));
+                        joints->fail(concat("vertex ", rows_[i], " follows a joint beyond the skin's ",
+                                            deformation_.joints.size()));
                     }
                     blended[i] += double(weight[k]) * deformation_.joints[joint[k]];
                     sums[i] += double(weight[k]);
@@ -224,7 +294,7 @@ class PrimitiveReader {
     std::vector<uint32_t> rows_;  // The vertices that triangles use.
 };
 
-// Throws Error for a primitive whose data are compressed, and not given without compression, too.
+// Throws Error for a primitive whose data is only available compressed.
 void check_draco(const File& file, const Node& primitive) {
     if (!extension_of(primitive, "KHR_draco_mesh_compression")) return;
     const auto check = [&](const Node& reference) {

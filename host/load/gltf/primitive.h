@@ -10,16 +10,16 @@
 
 namespace candela::gltf {
 
-// What bends a primitive.
+// What deforms a primitive.
 struct Deformation {
-    std::span<const double> weights{};     // Of its morph targets.
-    std::span<const glm::dmat4> joints{};  // Of its skin, to the scene's space; empty: none.
-    bool mirrors = false;                  // Whether they turn the triangles round.
+    std::span<const double> weights{};     // Weights of its morph targets.
+    std::span<const glm::dmat4> joints{};  // Joints of its skin, to the scene's space; empty: none.
+    bool mirrors = false;                  // Whether they reverse the winding of triangles.
 };
 
 // Reads a primitive: in its own space, or the scene's if it has a skin. Texture coordinates get v upwards.
-// Nothing, with a warning, for one that shows no surface: of points or lines, or without area. Throws Error
-// for what cannot be read.
+// Returns nothing, with a warning, for a primitive without a surface: points or lines, or triangles without
+// area. Throws Error for what cannot be read.
 std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive, const Deformation& deformation);
 
 }  // namespace candela::gltf

@@ -26,8 +26,8 @@
 namespace candela::gltf {
 namespace {
 
-// Leaves the attributes that a material looks up, and adds those that are missing. `has_alpha`: whether the
-// file's material lets alpha count.
+// Keeps only the attributes that a material looks up, and adds missing ones. `has_alpha`: whether the file's
+// material uses alpha.
 void fit_attributes(File& file, const Node& primitive, const Material& material, bool has_alpha,
                     TriangleMesh& mesh) {
     uint32_t sets = 0;
@@ -52,14 +52,14 @@ void fit_attributes(File& file, const Node& primitive, const Material& material,
         color.w = 1.0f;
 }
 
-// The transform with a little thickness where it flattens bodies into plane figures, so that their front and
-// back do not share a plane. Nothing if it leaves them no area.
+// The transform, with a little thickness added if it flattens bodies into plane figures, so that their front
+// and back do not share a plane. Nothing if it leaves no area.
 std::optional<glm::dmat4> thickened(const glm::dmat4& world) {
-    constexpr double THIN = 1e-12;      // As Transform has it.
+    constexpr double THIN = 1e-12;      // As in Transform.
     constexpr double THICKNESS = 1e-5;  // Relative to the longest edge of a cube's image.
     const glm::dmat3 m(world);
     const double longest = std::max({length(m[0]), length(m[1]), length(m[2])});
-    // Of a matrix of rank 2, the cofactors are the product of the figures' normal and the axis that vanishes.
+    // The cofactors of a matrix of rank 2 are the product of the figures' normal and the axis that vanishes.
     const glm::dmat3 cofactor(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
     const double size = length(dvec3(length(cofactor[0]), length(cofactor[1]), length(cofactor[2])));
     if (!(size > THIN * longest * longest) || !std::isfinite(size)) return std::nullopt;
@@ -161,7 +161,7 @@ void SceneReader::read_node(uint32_t index) {
     const Node node = file_.element("nodes", index);
     const PosedNode& posed = nodes_[index];
     if (const auto camera = node.find("camera")) read_camera(node, file_.resolve("cameras", *camera), posed);
-    if (!posed.is_visible) return;  // Cameras see from there nonetheless.
+    if (!posed.is_visible) return;  // Its camera is used even so.
     if (const auto mesh = node.find("mesh")) read_mesh(node, posed);
     if (const auto light = extension_of(node, "KHR_lights_punctual")) {
         if (const auto reference = light->find("light"))
@@ -188,7 +188,8 @@ void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
         const auto [known, is_new] = joints_.try_emplace(file_.index("skins", *skin));
         if (is_new) known->second = joint_matrices(file_, file_.resolve("skins", *skin), nodes_);
         const std::vector<glm::dmat4>& joints = known->second;
-        // The node's transform moves nothing here, and yet says which side is the front (3.7.4).
+        // The node's transform does not move a skinned mesh, but does determine which side is the front
+        // (3.7.4).
         const bool mirrors = determinant(glm::dmat3(posed.world)) < 0.0;
         for (const Node& primitive : primitives.elements()) {
             add_primitive(primitive, {weights, joints, mirrors}, Transform());
@@ -273,10 +274,10 @@ void SceneReader::read_camera(const Node& node, const Node& camera, const PosedN
         const Node sizes = camera.require("orthographic");
         const auto half = [&](const char* key) {
             const Node value = sizes.require(key);
-            if (value.number() < 0.0) file_.warn(value, "the size of what is seen counts without its sign");
+            if (value.number() < 0.0) file_.warn(value, "the sign of the view's size is ignored");
             const double size = std::abs(value.number());
             if (size < double(FLOAT_MIN) || size > double(MAX_COORDINATE))
-                value.fail_expected("a number from 1.2e-38 to 1e37, half the size of what is seen");
+                value.fail_expected("a number from 1.2e-38 to 1e37, half the size of the view");
             return size;
         };
         const double half_width = half("xmag"), half_height = half("ymag");

@@ -60,14 +60,14 @@ class SceneReader {
     SceneBuilder builder_;
     LightUnits units_;
     std::optional<uint32_t> variant_;
-    std::unordered_map<std::string, uint32_t> known_materials_;  // Those of the scene before this file's.
+    std::unordered_map<std::string, uint32_t> known_materials_;  // The scene's materials before this file's.
     UniqueNames camera_names_;
     std::vector<PosedNode> nodes_;
-    size_t primitives_ = 0;                                              // That are shown.
-    size_t done_ = 0;                                                    // Of them.
+    size_t primitives_ = 0;                                              // Number shown.
+    size_t done_ = 0;                                                    // Number read so far.
     std::map<MaterialUse, uint32_t> materials_;                          // Indices into scene_.materials.
-    std::map<uint32_t, std::vector<glm::dmat4>> joints_;                 // Of skins.
-    std::map<StandingMesh, std::vector<std::optional<size_t>>> shapes_;  // Of each primitive.
+    std::map<uint32_t, std::vector<glm::dmat4>> joints_;                 // Matrices of skins.
+    std::map<StandingMesh, std::vector<std::optional<size_t>>> shapes_;  // Shapes of each primitive.
 };
 
 }  // namespace candela::gltf

@@ -32,8 +32,8 @@ std::vector<glm::dmat4> joint_matrices(File& file, const Node& skin, const std::
         matrices[i] = matrices[i] * inverse_bind;
     }
     if (first_odd) {
-        file.warn(*reference,
-                  concat("matrix ", *first_odd, " is not affine; the last row of each counts as 0, 0, 0, 1"));
+        file.warn(*reference, concat("matrix ", *first_odd,
+                                     " is not affine; the last row of each is read as 0, 0, 0, 1"));
     }
     return matrices;
 }

@@ -13,20 +13,20 @@
 namespace candela {
 namespace {
 
-// The least light, relative to the studio's, by which people would see a scene.
+// The least light, relative to the studio's, in which the scene would be visible.
 constexpr double LEAST_LIGHT = 0.1;
 
-// What lights a scene besides the studio.
+// The light of a scene besides the studio.
 enum class Lit {
     dark,     // Nothing.
-    dimly,    // What emits is too small or too dark.
-    by_name,  // The same, but it is brighter than white, as lights are.
+    dimly,    // The emitters are too small or too dark.
+    by_name,  // The same, but an emitter is brighter than white, as lights are.
     fully,
 };
 
 Lit light_of(const Scene& scene, const Environment& studio) {
     const auto needs_no_light = [&](const Shape& shape) { return is_unlit(scene.materials[shape.material]); };
-    // Meshes may glow as toys do. A native scene's other shapes emit since it says so.
+    // Meshes may only glow, as toys do. A native scene's other shapes are meant as lights.
     const auto is_lamp = [](const Shape& shape) {
         return shape.emission && !std::holds_alternative<MeshInstance>(shape.geometry);
     };
@@ -59,10 +59,10 @@ void add_studio(Scene& scene, const std::string& name, std::optional<StudioChoic
         return;
     }
     if (lit == Lit::by_name) {
-        warn("only small or dim surfaces emit light; where that is too dark, give --studio default");
+        warn("only small or dim surfaces emit light; if that is too dark, use --studio default");
         return;
     }
-    warn(lit == Lit::dark ? "there is no light; a studio lights the scene, which the camera does not see"
+    warn(lit == Lit::dark ? "there is no light; a studio, which the camera does not see, lights the scene"
                           : "only small or dim surfaces emit light; a studio, which the camera does not see, "
                             "lights the scene (--studio off leaves it out)");
     scene.environment = std::move(studio);
@@ -80,7 +80,7 @@ Environment studio() {
     const Box boxes[] = {{normalize(dvec3(-0.6, 0.9, 0.6)), 0.85, 2.5},
                          {normalize(dvec3(1.0, 0.35, 0.5)), 0.9, 0.85},
                          {normalize(dvec3(0.2, 0.6, -1.0)), 0.93, 1.25}};
-    constexpr double SOFTNESS = 0.03;  // Of edges, in cosines.
+    constexpr double SOFTNESS = 0.03;  // Softness of edges, in cosines.
     Environment environment{.size = SIZE, .radiance = {}, .visible = false};
     for (uint32_t y = 0; y < SIZE.y; ++y) {
         for (uint32_t x = 0; x < SIZE.x; ++x) {

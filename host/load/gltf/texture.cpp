@@ -28,8 +28,8 @@ Wrap read_wrap_mode(File& file, const Node& sampler, std::string_view key) {
     if (mode == MIRRORED_REPEAT) return Wrap::mirror;
     if (mode == REPEAT) return Wrap::repeat;
     const bool clamps = mode == CLAMP || mode == CLAMP_TO_BORDER;
-    file.warn(*node, concat(mode, " is not 33071, 33648 or 10497; ", clamps ? CLAMP_TO_EDGE : REPEAT,
-                            " takes its place"));
+    file.warn(*node,
+              concat(mode, " is not 33071, 33648 or 10497; ", clamps ? CLAMP_TO_EDGE : REPEAT, " is used"));
     return clamps ? Wrap::clamp : Wrap::repeat;
 }
 
@@ -41,7 +41,7 @@ void read_texture_sampler(File& file, const Node& sampler, Texture& texture) {
 }
 
 // The rows of KHR_texture_transform for coordinates with v upwards. The extension's v grows downwards:
-// u' = a u + b v + c, v' = d u + e v + f, where v and v' stand for 1 - v and 1 - v'.
+// u' = a u + b v + c, v' = d u + e v + f, with 1 - v and 1 - v' for v and v'.
 void read_transform_of_uvs(const Node& transform, Texture& texture) {
     dvec3 offset(0.0), scale(1.0);
     const auto pair = [&](std::string_view key, dvec3& value) {
@@ -63,7 +63,7 @@ void read_transform_of_uvs(const Node& transform, Texture& texture) {
     texture.rows[1] = vec3(dvec3(-d, e, 1.0 - e - offset.y));
 }
 
-// Where an image comes from: the index of the image; nothing if no image can be read.
+// The index of a texture's image; nothing if no image can be read.
 std::optional<Node> image_of(const Node& texture) {
     if (const auto webp = extension_of(texture, "EXT_texture_webp")) {
         if (const auto source = webp->find("source")) return source;
@@ -75,7 +75,7 @@ std::optional<Node> image_of(const Node& texture) {
 std::string reason_without_image(const Node& texture) {
     for (const char* name : {"KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"}) {
         if (extension_of(texture, name))
-            return concat("the texture has an image of ", name, " alone, which is not read");
+            return concat("the texture has an image of ", name, " only, which is not read");
     }
     return "the texture has no image";
 }
@@ -109,7 +109,7 @@ uint32_t read_image(File& file, Scene& scene, const Node& reference) {
     std::optional<uint32_t>& known = file.image_index(index);
     if (known) return *known;
     known = add();
-    scene.images[*known].of_gltf = true;  // Section 3.8.3: colour profiles do not count.
+    scene.images[*known].of_gltf = true;  // Section 3.8.3: colour profiles are ignored.
     return *known;
 }
 
@@ -141,7 +141,7 @@ std::optional<Texture> read_texture(File& file, Scene& scene, const Node& info, 
     }
     texture.uv_set = set ? set->integer(0, UINT32_MAX) : 0;
     if (texture.uv_set > 1) {
-        file.warn(*set, "only TEXCOORD_0 and TEXCOORD_1 are read; TEXCOORD_0 takes its place");
+        file.warn(*set, "only TEXCOORD_0 and TEXCOORD_1 are read; TEXCOORD_0 is used");
         texture.uv_set = 0;
     }
     return texture;

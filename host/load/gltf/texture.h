@@ -9,9 +9,9 @@
 
 namespace candela::gltf {
 
-// The texture that a material's `info` (textureInfo) refers to, with its sampler and transform. Its image
-// joins scene.images. `channel` is where a single number comes from. Nothing, with a warning, for an image
-// that cannot be read because it only exists in a format of an extension.
+// The texture that a material's `info` (textureInfo) refers to, with its sampler and transform. Its image is
+// added to scene.images. A single number comes from `channel`. Nothing, with a warning, for an image that
+// cannot be read because it only exists in a format of an extension.
 std::optional<Texture> read_texture(File& file, Scene& scene, const Node& info, TextureEncoding encoding,
                                     uint32_t channel = RED);
 

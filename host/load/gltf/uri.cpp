@@ -93,7 +93,7 @@ std::optional<std::string> inline_data(const Node& uri) {
     if (lower_case(text.substr(0, SCHEME.size())) != SCHEME) return std::nullopt;
     const size_t comma = text.find(',');
     if (comma == std::string_view::npos || !text.substr(0, comma).ends_with(";base64"))
-        uri.fail("data in a URI are read as base64, data:TYPE;base64,DATA; encode them so");
+        uri.fail("data in a URI must be base64, data:TYPE;base64,DATA; encode it so");
     const std::string_view data = text.substr(comma + 1);
     std::optional<std::string> bytes;
     if (data.find('%') == std::string_view::npos) {
@@ -101,7 +101,7 @@ std::optional<std::string> inline_data(const Node& uri) {
     } else if (const auto decoded = decode_percents(std::string(data))) {
         bytes = decode_base64(*decoded);
     }
-    if (!bytes) uri.fail("the data of the URI are not base64; is the file cut off?");
+    if (!bytes) uri.fail("the data of the URI is not base64; is the file cut off?");
     return bytes;
 }
 
@@ -118,7 +118,7 @@ std::filesystem::path file_of(const Node& uri, const std::filesystem::path& fold
     }
     if (decoded && decoded->find('\0') != std::string::npos)
         uri.fail("a file name cannot hold the character U+0000; remove it");
-    // Some programs write names as they are, or as Windows has them.
+    // Some programs write names unescaped, or with Windows' separators.
     std::vector<std::string> names{text};
     if (decoded) names.insert(names.begin(), *decoded);
     for (size_t i = 0, count = names.size(); i < count; ++i) {
@@ -127,7 +127,7 @@ std::filesystem::path file_of(const Node& uri, const std::filesystem::path& fold
         names.push_back(with_slashes);
     }
     const auto is_within_reach = [&](const std::string& name) { return reach.holds(folder / name); };
-    // Whether there is a file elsewhere must not show.
+    // The message must not reveal whether a file elsewhere exists.
     const auto is_there = [&](const std::string& name) {
         std::error_code ignored;
         return is_within_reach(name) && std::filesystem::exists(folder / name, ignored);

@@ -12,7 +12,7 @@
 namespace candela::gltf {
 
 // What a `data:` URI holds, decoded from base64; nothing if the URI is of another kind. Throws Error at the
-// place of `uri` if it is no base64.
+// place of `uri` if it is not base64.
 std::optional<std::string> inline_data(const Node& uri);
 
 // The file that a relative URI names, in `folder`: percent-encoded characters are decoded, unless there is a

@@ -13,7 +13,7 @@ float limited(File& file, const Node& node, double value, float lo, float hi) {
     if (float(value) >= lo && float(value) <= hi) return float(value);
     const double nearest = std::clamp(value, double(lo), double(hi));
     file.warn(node, concat(number_text(value, 9), " is not between ", number_text(double(lo), 6), " and ",
-                           number_text(double(hi), 6), "; it counts as ", number_text(nearest, 6)));
+                           number_text(double(hi), 6), "; it is read as ", number_text(nearest, 6)));
     return float(nearest);
 }
 

@@ -1,4 +1,4 @@
-// Values of a glTF file that a range limits: what lies outside is clamped, with a warning.
+// Values of a glTF file with a range: values outside are clamped, with a warning.
 #pragma once
 
 #include <optional>
@@ -18,10 +18,10 @@ float number_of(File& file, const Node& object, std::string_view key, float lo, 
 // The same for three numbers.
 vec3 color_of(File& file, const Node& object, std::string_view key, float hi, vec3 otherwise);
 
-// The position to which a node's matrix takes its origin. Throws Error at `place` if it lies too far away.
+// The position to which a node's matrix moves its origin. Throws Error at `place` if it lies too far away.
 dvec3 position_of(const Node& place, const glm::dmat4& world);
 
-// Whether a vector is neither zero nor too long for its length.
+// Whether a vector is not zero, and its length does not overflow.
 bool has_direction(dvec3 v);
 
 // The extension of that name that an element has.

@@ -21,7 +21,7 @@ std::optional<Node> variant_material(File& file, const Node& primitive, uint32_t
         for (const Node& number : mapping.require("variants").elements()) {
             if (number.integer(0, UINT32_MAX) != variant) continue;
             if (material) {
-                file.warn(number, "the variant has a material already, which counts");
+                file.warn(number, "the variant already has a material, which is used");
             } else {
                 material = mapping.require("material");
             }

@@ -9,11 +9,12 @@
 
 namespace candela::gltf {
 
-// The variant of that name or index. Throws Error (usage) that lists the names if the file has none such.
+// The variant of that name or index. If the file has no such variant, throws Error (usage) that lists the
+// names.
 uint32_t find_variant(const File& file, const std::string& name);
 
-// The material that a primitive has in a variant; nothing: the one that it always has. Of several, the first
-// counts, with a warning.
+// The material that a primitive has in a variant; nothing: its usual one. If there are several, the first is
+// used, with a warning.
 std::optional<Node> variant_material(File& file, const Node& primitive, uint32_t variant);
 
 }  // namespace candela::gltf

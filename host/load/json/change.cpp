@@ -16,7 +16,7 @@
 namespace candela {
 namespace {
 
-// A material of the change, and the one of the scene whose place it takes.
+// A material of the change, and the one of the scene that it replaces.
 struct MaterialChange {
     Node node;
     size_t index;
@@ -35,8 +35,8 @@ std::vector<MaterialChange> materials_of(const Node& materials, const Scene& sce
     return changes;
 }
 
-// Throws Error if a mesh of the material `before` lacks what its new one needs, or would have been read in
-// another way.
+// Throws Error if a mesh of the material `before` lacks what the new material needs, or would have been read
+// in another way.
 void check_mesh(const Node& node, const Material& before, const Shape& shape, Scene& scene) {
     const auto* const instance = std::get_if<MeshInstance>(&shape.geometry);
     if (instance == nullptr) return;
@@ -61,7 +61,7 @@ void for_each_texture_of(Scene& scene, const Visit& visit) {
     }
 }
 
-// Removes the images that no texture looks up, so that the scene takes no more memory with each change.
+// Removes the images that no texture looks up, so that memory does not grow with each change.
 void drop_unused_images(Scene& scene) {
     std::vector<uint32_t> indices(scene.images.size(), 0);
     for_each_texture_of(scene, [&](const Texture& texture) { indices[texture.image] = 1; });
@@ -82,8 +82,8 @@ void exchange_materials(Scene& scene, Scene& change, const std::vector<MaterialC
         std::swap(scene.materials[changes[i].index], change.materials[i]);
 }
 
-// Gives the scene the materials of the change, which gets those that they replace; throws Error if meshes
-// cannot have them.
+// Swaps the materials of the change with those of the scene that they replace; throws Error if meshes cannot
+// have the new ones.
 void take_materials(Scene& scene, Scene& change, const std::vector<MaterialChange>& changes) {
     for_each_texture_of(change, [&](Texture& texture) { texture.image += uint32_t(scene.images.size()); });
     exchange_materials(scene, change, changes);

@@ -11,18 +11,18 @@
 
 namespace candela {
 
-// A scene whose images have not been read, which decide whether it has light.
+// A scene before its images are read. (They decide whether it has light.)
 struct JsonScene {
     Scene scene;
-    std::string place;     // What messages about its light begin with.
+    std::string place;     // Messages about its light begin with this.
     bool is_gltf = false;  // Whether it is a glTF file, or names one.
 };
 
 // Reads a scene and the files that it names, relative to its folder. Throws Error, beginning with
 // `file:line:column:` unless the scene file itself cannot be read, for everything that the schema or the
-// meaning of a value forbids. What is odd but usable goes to Scene::warnings. `gltf` is for the glTF file
-// that it may name, which joins `files` unless it is there. Tells of that file's progress, and then of its
-// own in shapes. `reach` is what the scene may name besides what is in its folder.
+// meaning of a value forbids. Scene::warnings gets what is odd but usable. `gltf` is for the glTF file that
+// the scene may name, which is added to `files` unless it is there. Reports that file's progress, and then
+// its own in shapes. `reach` allows files outside the scene's folder.
 JsonScene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf,
                           const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files);
 

@@ -58,7 +58,7 @@ Lens read_lens(const Node& node) {
     return lens;
 }
 
-// The height of the view of a camera with parallel rays, which has nothing else of a perspective one.
+// The height of the view of a camera with parallel rays, which has none of the keys of a perspective one.
 double read_ortho_height(const Node& node, const Node& height) {
     for (const char* key : {"vertical_fov", "film_size", "focal_length", "lens"}) {
         if (const auto other = node.find(key)) {

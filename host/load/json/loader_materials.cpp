@@ -13,8 +13,9 @@ MaterialModel read_diffuse(const Node& node, const ImageFolder& images) {
     return DiffuseMaterial{read_color(node.require("reflectance"), images)};
 }
 
-// Throws Error at `place`, that of b, if a channel would send out more light than it receives; `names` names
-// the sum of a and b. Images count as white: which of their pixels meet on a surface is not known here.
+// Throws Error at `place`, the place of b, if a channel would send out more light than it receives; `names`
+// names the sum of a and b. Images are treated as white, since it is not known here which of their pixels
+// meet on a surface.
 void check_sum(const Node& place, std::string_view names, const Textured<dvec3>& a,
                const Textured<dvec3>& b) {
     const bool textured = a.texture || b.texture;
@@ -58,7 +59,7 @@ MaterialModel read_conductor(const Node& node, const ImageFolder& images) {
     const Textured<vec3> reflectance = read_color(node.require("reflectance"), images);
     const Node alpha = node.require("alpha");
     if (alpha.is_number() && alpha.number() == 0.0) {
-        alpha.fail(R"(a metal without any roughness is no "conductor"; use the type "mirror")");
+        alpha.fail(R"(a "conductor" needs some roughness; without any, use the type "mirror")");
     }
     return ConductorMaterial{reflectance,
                              read_number(alpha, images, scene_key("conductor", "alpha").range())};
@@ -95,7 +96,7 @@ MaterialModel read_dielectric(const Node& node, const ImageFolder&) {
 
 }  // namespace
 
-// By Beer and Lambert, from the share of light that is left after a distance.
+// By Beer and Lambert, from the fraction of light that is left after a distance.
 Medium read_absorption(const Node& node) {
     node.allow_only({}, keys_of({"absorption"}));
     const Node transmittance = node.require("transmittance");

@@ -34,7 +34,7 @@ void warn(const Node& file, const std::vector<std::string>& warnings, Scene& sce
         scene.warnings.push_back(file.place() + ": " + warning);
 }
 
-// Adds an OBJ file with the materials that it names itself.
+// Adds an OBJ file with its own materials.
 void read_obj_with_materials(const Node& node, ShapeList& shapes) {
     const Node file = node.require("file");
     const Transform transform = ShapeList::transform_of(node);

@@ -22,17 +22,21 @@ Camera read_camera(const Node& node, const Film& film);
 // Reads a material, whose key is its name.
 Material read_material(const Node& node, const ImageFolder& images);
 
-// Reads the object "absorption": what takes up light inside a surface.
+// The keys that every material may have in addition to those of its model.
+inline constexpr std::array<std::string_view, 4> MATERIAL_KEYS{"normal_map", "bump_map", "opacity",
+                                                               "vertex_colors"};
+
+// Reads the object "absorption": the absorbing medium behind a surface.
 Medium read_absorption(const Node& node);
 
 using MaterialModel = decltype(Material::model);
 
-// Each reads a PrincipledMaterial: with all of its keys, or as metal or glass with the few that these need.
+// Each reads a PrincipledMaterial: with all of its keys, or as a metal or glass with a few.
 MaterialModel read_principled(const Node& node, const ImageFolder& images);
 MaterialModel read_rough_conductor(const Node& node, const ImageFolder& images);
 MaterialModel read_rough_dielectric(const Node& node, const ImageFolder& images);
 
-// Reads the list of lights without a surface, in its order. What is odd goes to scene.warnings.
+// Reads the list of lights without a surface, in its order. scene.warnings gets what is odd.
 std::vector<Light> read_lights(const Node& node, Scene& scene);
 
 // Reads the environment. Its file is relative to `folder` and goes to scene.files; what is odd goes to

@@ -1,4 +1,4 @@
-// Materials in layers: the keys of "principled", and metal and glass under names of their own.
+// Layered materials: "principled", "rough_conductor" and "rough_dielectric".
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -61,11 +61,11 @@ void read_inside(const Node& node, bool thin, PrincipledMaterial& material) {
     }
 }
 
-// Throws Error for what does not go with the medium inside, or with its absence.
+// Throws Error for keys that contradict the medium inside, or its absence.
 void check_inside(const Node& node, const PrincipledMaterial& material) {
     if (const auto dispersion = node.find("dispersion"); dispersion && !material.inside) {
         dispersion->fail(
-            "a thin wall bends no light, and so disperses none; add \"absorption\" or "
+            "a thin wall does not bend light, so it does not disperse it; add \"absorption\" or "
             "\"thin_walled\": false, or remove dispersion");
     }
     if (!material.inside) return;
@@ -112,7 +112,7 @@ typename ValueOf<kind>::Type read_value(const Node& node, const ImageFolder& ima
     if constexpr (kind == normal_map) return read_normal_map(node, images);
 }
 
-// Reads the values that are there.
+// Reads the values that are present.
 void read_values(const Node& node, const ImageFolder& images, PrincipledMaterial& m) {
 #define VALUE(kind, name, initial, least, most, needs, text) \
     if (const auto found = node.find(#name))                 \
@@ -162,7 +162,7 @@ MaterialModel read_rough_conductor(const Node& node, const ImageFolder& images) 
     return material;
 }
 
-// Like the type "dielectric", it encloses a medium unless it says otherwise.
+// Like "dielectric", it encloses a medium unless its keys say otherwise.
 MaterialModel read_rough_dielectric(const Node& node, const ImageFolder& images) {
     node.allow_only({"type"}, keys_of({"rough_dielectric", "material"}));
     PrincipledMaterial material;

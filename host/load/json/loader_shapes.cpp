@@ -56,7 +56,7 @@ void read_box(const Node& node, ShapeList& shapes) {
     // Bits 0, 1 and 2 of a corner choose between min and max along x, y and z.
     constexpr uint8_t SIDES[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                      {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    // Which of a side's corners is at the lower left of an image that stands upright, seen from outside.
+    // The corner of a side at the lower left of an upright image, seen from outside.
     constexpr uint8_t LOWER_LEFT[6] = {0, 3, 0, 1, 3, 0};
     node.allow_only({"type"}, keys_of({"box", "shape"}));
     const Appearance appearance = shapes.appearance_of(node);

@@ -8,18 +8,18 @@
 
 namespace candela {
 
-// The file that `name` names, in `folder`. Throws Error at its place if it is out of reach.
+// The file called `name` in `folder`. Throws Error at its place if it is out of reach.
 std::filesystem::path find_file(const Node& name, const std::filesystem::path& folder,
                                 const FileReach& reach);
 
-// Where the images of a scene file are.
+// The location of a scene file's images.
 struct ImageFolder {
     std::filesystem::path path;  // To which the names of images are relative.
     Scene& scene;                // Gets the images.
 };
 
-// Reads a texture, which may have the keys of the object `more_keys` in scene_keys.inc besides its own. Its
-// encoding is `encoding` unless it says otherwise.
+// Reads a texture; `more_keys` are allowed in addition to its own. Its encoding is `encoding` unless the file
+// states another.
 Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncoding encoding,
                      std::string_view more_keys = {});
 

@@ -10,7 +10,8 @@
 namespace candela {
 namespace {
 
-// Each places a geometry once more, by a transform from the space that it is in; false if it cannot.
+// Each places a geometry once more, by a transform from the geometry's space; returns false if that is not
+// possible.
 bool place(MeshInstance& instance, const Transform& transform) {
     return instance.transform.append(transform.matrix());
 }

@@ -14,7 +14,7 @@ namespace candela {
 using ObjectMap = std::map<std::string, std::vector<Shape>, std::less<>>;
 
 // Reads an instance and adds a copy of each shape of its object, placed by its transforms. Its material and
-// emission, where it has them, take the place of the shapes' own.
+// emission, if any, replace the shapes' own.
 void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes);
 
 }  // namespace candela

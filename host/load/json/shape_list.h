@@ -27,12 +27,12 @@ class ShapeList : public SceneBuilder {
     // The file that a node names. Throws Error if it is out of reach.
     std::filesystem::path path_of(const Node& file) { return find_file(file, folder_, scene().reach); }
 
-    // The material and emission that a shape's node names. An emitter without a material gets a black one,
-    // zero emission is none, and what states none takes its material's. Throws Error if the node has neither,
-    // or names an unknown material.
+    // The material and emission that a shape's node names. An emitter without a material gets a black one.
+    // Zero emission means none; a shape without the key uses its material's. Throws Error if the node has
+    // neither, or names an unknown material.
     Appearance appearance_of(const Node& node);
-    // The material and emission of a shape of an object that an instance's node shows: what the node names
-    // takes the place of the shape's own.
+    // The material and emission of a shape of an object that an instance's node shows: those that the node
+    // names replace the shape's own.
     Appearance appearance_of(const Node& node, const Shape& shape);
     // The emission of a shape's node; none if it is absent or zero. Throws Error for two_sided without it.
     std::optional<Emission> emission_of(const Node& node);
@@ -43,7 +43,8 @@ class ShapeList : public SceneBuilder {
     uint32_t index_of(const Node& material);
 
     std::filesystem::path folder_;
-    std::map<std::string, uint32_t, std::less<>> indices_;  // Of the materials that the scene file defines.
+    std::map<std::string, uint32_t, std::less<>> indices_;  // Indices of the materials that the scene file
+                                                            // defines.
 };
 
 // Returns a point in world space. Throws Error at the place of `node`, where it came from, if it lies too far

@@ -9,10 +9,10 @@ namespace candela {
 
 class CountedWarnings {
   public:
-    // Of the warnings of a kind, the first has its text shown; the others are counted.
+    // The first warning of each kind is shown; the others are counted.
     void add(const std::string& kind, const std::string& text);
 
-    // In the order in which their kinds came: `text`, or `text (12 times)`.
+    // In the order of the first of each kind: `text`, or `text (12 times)`.
     std::vector<std::string> texts() const;
 
   private:

@@ -1,5 +1,5 @@
-// One pass over the lines. tinyobjloader could read these files as well, but it takes malformed numbers for 0
-// and does not say what is absent.
+// One pass over the lines. tinyobjloader could read these files as well, but it reads malformed numbers as 0
+// and does not report what is absent.
 #include "load/obj/mtl.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace candela {
 namespace {
 
-// Statements that are read, or ignored without a word.
+// Statements that are read, or ignored without a warning.
 constexpr std::array<std::string_view, 33> KNOWN{
     "newmtl", "Ka",     "Kd",     "Ks",       "Ke",       "Tf",       "Ns",     "Ni",     "illum",
     "d",      "Tr",     "Pr",     "Pm",       "Ps",       "Pc",       "Pcr",    "aniso",  "anisor",
@@ -37,7 +37,7 @@ bool is_one_of(const std::array<std::string_view, N>& names, std::string_view na
     return std::ranges::find(names, name) != names.end();
 }
 
-// A command as the format spells it.
+// A command in the spelling of the format.
 std::string_view spelled(std::string_view command) {
     if (is_one_of(KNOWN, command)) return command;
     const std::string lower = lower_case(command);
@@ -80,7 +80,7 @@ class Reader {
             current_->line = line_;
             current_->by_blender = by_blender_;
         } else if (!current_) {
-            fail(shown(quote(command)) + " stands before the first newmtl; is it an MTL file?");
+            fail(shown(quote(command)) + " comes before the first newmtl; is it an MTL file?");
         } else {
             read_statement(*current_, command, rest);
         }
@@ -96,7 +96,7 @@ class Reader {
         } else if (command == "Ke") {
             set(s.ke, colour(command, rest));
         } else if (command == "Ka" || command == "Tf") {
-            // Spectra do not matter here.
+            // Spectra are ignored here.
             std::string_view words = rest;
             if (parse_number(next_word(words))) set(command == "Ka" ? s.ka : s.tf, colour(command, rest));
         } else if (command == "Ns") {
@@ -161,7 +161,7 @@ class Reader {
         s.textures[std::string(command)] = std::move(texture);
     }
 
-    // Keeps what was stated before where there is nothing.
+    // Keeps the earlier value if there is no new one.
     template <class Value>
     static void set(std::optional<Value>& value, const std::optional<Value>& stated) {
         if (stated) value = stated;
@@ -197,7 +197,7 @@ class Reader {
             auto value = finite(command, word);
             if (!value) return std::nullopt;
             if (*value < 0.0)
-                warn(std::string(command) + " below 0", std::string(command) + " is negative; 0 is taken");
+                warn(std::string(command) + " below 0", std::string(command) + " is negative; 0 is used");
             values.push_back(std::max(*value, 0.0));
         }
         if (values.size() == 1) return dvec3(values[0]);
@@ -224,7 +224,7 @@ class Reader {
             library_.materials.emplace(s.name, mtl_material(s, file_, ignored_));
         } else {
             warnings_.add("again", concat(file_, ':', s.line, ": material ", quote(s.name),
-                                          " is defined again; the first definition counts"));
+                                          " is defined again; the first definition is used"));
         }
     }
 

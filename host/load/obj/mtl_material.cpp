@@ -17,12 +17,13 @@ namespace {
 
 using Model = decltype(Material::model);
 
-constexpr double GREY = 0.5;          // The reflectance where a file states no colour ...
-constexpr double DULL = 0.5;          // ... the roughness where it states none ...
-constexpr double COMMON_GLASS = 1.5;  // ... and the index of refraction.
+constexpr double GREY = 0.5;          // The reflectance if a file states no colour.
+constexpr double DULL = 0.5;          // The roughness if it states none.
+constexpr double COMMON_GLASS = 1.5;  // The index of refraction if it states none.
 constexpr double SHEEN_ROUGHNESS = 0.5;
 constexpr double MOST_NS = 1000.0;     // The greatest exponent that the format foresees: a mirror.
-constexpr double SUM_ROUNDING = 2e-6;  // Of a sum of two numbers of six digits, as most programs write them.
+constexpr double SUM_ROUNDING = 2e-6;  // Rounding of a sum of two numbers of six digits, as most programs
+                                       // write them.
 
 double largest_of(dvec3 v) {
     return std::max({v.x, v.y, v.z});
@@ -64,7 +65,7 @@ class Converter {
         return found == s_.textures.end() ? nullptr : &found->second;
     }
 
-    // The texture of a statement, of which there is one.
+    // The texture of a statement, which must exist.
     Texture use(const std::string& statement, TextureEncoding encoding) {
         const MtlTexture& stated = *find(statement);
         Texture texture = stated.texture;
@@ -102,7 +103,7 @@ class Converter {
     // Whether statements of the PBR extension decide.
     bool states_pbr() const { return s_.pr || s_.pm || s_.ps || s_.pc || find("map_Pr") || find("map_Pm"); }
 
-    // What cannot be a sum of diffuse light and reflection is a metal, as Blender writes it.
+    // A material that cannot be a sum of diffuse light and reflection is a metal, as Blender writes it.
     bool must_be_metal() const {
         return reflects() && kd_ != dvec3(0.0) && ks_ != dvec3(0.0) &&
                largest_of(kd_ + ks_) > 1.0 + SUM_ROUNDING;
@@ -144,7 +145,7 @@ class Converter {
         PrincipledMaterial m{.base_color = colour_of(kd, "map_Kd"), .ior = ior()};
         m.metalness = metalness();
         m.roughness = roughness();
-        // Twice Ks is what Blender calls the tint of the reflection; what others mean by Ks is not said.
+        // Blender writes half of the reflection's tint as Ks; other programs do not say what they mean by it.
         if (s_.ks && (s_.by_blender || !states_pbr())) m.specular = float(std::min(1.0, 2.0 * mean_of(ks_)));
         if (s_.ps) m.sheen_color = vec3(float(*s_.ps));
         m.sheen_roughness = float(SHEEN_ROUGHNESS);
@@ -168,7 +169,7 @@ class Converter {
         if (s_.pr || find("map_Pr")) return number_of(s_.pr.value_or(1.0), "map_Pr");
         if (s_.by_blender && find("map_Ns")) return number_of(1.0, "map_Ns");  // It holds roughness.
         if (states_pbr() && !s_.by_blender) {
-            warn("no Pr", "it has no roughness (Pr); " + number_text(DULL, 6) + " is taken");
+            warn("no Pr", "it has no roughness (Pr); " + number_text(DULL, 6) + " is used");
             return float(DULL);
         }
         const double ns = s_.ns.value_or(reflects() ? MOST_NS : 0.0);
@@ -181,7 +182,7 @@ class Converter {
         if (!states_pbr() || !s_.tf || s_.tr || s_.illum > 2 || s_.ni.value_or(1.0) <= 1.0) return 0.0f;
         const double share = std::min(1.0, mean_of(*s_.tf));
         if (share > 0.0 && !s_.by_blender) {
-            warn("Tf", "Tf beside Pr or Pm is read as a share of " + number_text(share, 6) +
+            warn("Tf", "Tf beside Pr or Pm is read as a fraction " + number_text(share, 6) +
                            " of the light that passes, as through glass");
         }
         return float(share);
@@ -208,11 +209,11 @@ class Converter {
         return MOST;
     }
 
-    // A lamp or a shiny thing may well reflect nothing diffusely; anything else was meant to be seen.
+    // A lamp or a shiny object may reflect nothing diffusely; anything else was meant to be visible.
     dvec3 default_kd(bool has_highlight) {
         if (find("map_Kd")) return dvec3(1.0);
         if (has_highlight || vec3(ke_) != vec3(0.0f)) return dvec3(0.0);
-        warn("no Kd", "it has no colour (Kd); grey of " + number_text(GREY, 6) + " is taken");
+        warn("no Kd", "it has no colour (Kd); grey of " + number_text(GREY, 6) + " is used");
         return dvec3(GREY);
     }
 
@@ -229,7 +230,7 @@ class Converter {
 
     // May be out of range.
     double stated_opacity() const {
-        // Where both are given, d counts: Tr is not in the specification.
+        // If both are given, d is used: Tr is not in the specification.
         if (s_.d || s_.tr) return s_.d ? *s_.d : 1.0 - *s_.tr;
         return is_opacity_of_maya() ? mean_of(*s_.tf) : 1.0;
     }
@@ -244,15 +245,15 @@ class Converter {
         const double d = is_glass_ ? 1.0 : std::clamp(opacity_, 0.0, 1.0);
         if (d != opacity_ && !is_glass_) {
             warn("opacity", (s_.d ? "d " + number_text(*s_.d, 6) : "Tr " + number_text(*s_.tr, 6)) +
-                                " is not from 0 to 1; the material is taken to be " +
+                                " is not from 0 to 1; the material is read as " +
                                 (d > 0.0 ? "opaque" : "transparent"));
         } else if (!s_.d && !s_.tr && d < 1.0) {
             warn("Maya", "Tf is read as an opacity of " + number_text(d, 6) + ", since Ni is not above 1");
         }
-        if (d == 0.0) warn("invisible", "nothing is seen of it: d is 0, or Tr is 1");
+        if (d == 0.0) warn("invisible", "it is invisible: d is 0, or Tr is 1");
         Textured<float> result = number_of(d, "map_d");
         if (result.texture && !find("map_d")->channel) {
-            // The name of the colours, once more, means their alpha, and no hole where they are red.
+            // If the colour's image is named again, its alpha is meant, not its red channel.
             const MtlTexture* colours = find("map_Kd");
             const bool is_alpha = colours && colours->file == find("map_d")->file;
             result.texture->channel = is_alpha ? ALPHA : ALPHA_OR_RED;
@@ -279,15 +280,14 @@ class Converter {
     void note_ignored() {
         for (const auto& [statement, texture] : s_.textures) {
             if (used_.contains(statement)) continue;
-            ignored_.add(statement,
-                         "their materials have no use for them: illum or Pm says so, or a factor of 0");
+            ignored_.add(statement, "their materials do not use them, because of illum, Pm or a factor of 0");
         }
     }
 
     const MtlStatements& s_;
     const std::string& file_;
     MtlIgnored& ignored_;
-    dvec3 kd_, ks_, ke_;  // As stated; 1 where there is only a texture.
+    dvec3 kd_, ks_, ke_;  // As stated; 1 if there is only a texture.
     double opacity_ = 1.0;
     bool is_glass_ = false;
     std::set<std::string, std::less<>> used_;  // Statements that name textures.

@@ -17,7 +17,7 @@ namespace candela {
 // A material as the file states it; what is absent is empty.
 struct MtlStatements {
     std::string name;
-    uint64_t line = 0;             // Of newmtl.
+    uint64_t line = 0;             // Line of newmtl.
     bool by_blender = false;       // The file says that Blender wrote it.
     std::optional<glm::dvec3> ka;  // Finite and >= 0, as are all colours.
     std::optional<glm::dvec3> kd;
@@ -30,7 +30,7 @@ struct MtlStatements {
     std::optional<double> d;
     std::optional<double> tr;
     std::optional<double> pr;  // Roughness, in [0, 1], as are the following.
-    std::optional<double> pm;  // How much of a metal it is.
+    std::optional<double> pm;  // Metalness.
     std::optional<double> ps;  // Sheen.
     std::optional<double> pc;  // Coat, and its roughness.
     std::optional<double> pcr;
@@ -40,27 +40,27 @@ struct MtlStatements {
 
 // An image that a statement names.
 struct MtlImage {
-    std::filesystem::path folder;  // Of the library.
+    std::filesystem::path folder;  // Folder of the library.
     std::string file;              // As the library names it, with slashes.
-    std::string place;             // Of the statement, as `file:line`.
+    std::string place;             // Place of the statement, as `file:line`.
 };
 
-// A warning, of interest if the material is used.
+// A warning, shown only if the material is used.
 struct MtlWarning {
-    std::string kind;  // Equal for those that are to be counted as one.
+    std::string kind;  // Warnings of the same kind are counted together.
     std::string text;  // `file:line: ...`.
 };
 
 // What one `newmtl` describes.
 struct MtlMaterial {
-    Material material;                 // Under its name in the file.
+    Material material;                 // It has its name in the file.
     Textured<vec3> emission{vec3(0)};  // Ke [W/(m^2 sr)].
-    std::vector<MtlImage> images{};    // What Texture::image means, up to add_images().
+    std::vector<MtlImage> images{};    // Texture::image is an index into these until add_images().
     std::vector<MtlWarning> warnings{};
 };
 
 // The material that statements describe; docs/mtl.md says which, and why. `file` is the file's name in
-// messages; `ignored` gets what the material has no use for.
+// messages; `ignored` gets the statements that the material does not use.
 // Ref: Alias|Wavefront, "MTL material format" (1995); Exocortex, "PBR extension to MTL" (2014).
 MtlMaterial mtl_material(const MtlStatements& statements, const std::string& file, MtlIgnored& ignored);
 

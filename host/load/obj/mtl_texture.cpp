@@ -39,7 +39,7 @@ class OptionReader {
     MtlTexture read() {
         read_options(is_option);
         read_name();
-        read_options(is_known);  // Some programs write them after the name.
+        read_options(is_known);  // Some programs write options after the name.
         std::ranges::replace(result_.file, '\\', '/');
         return std::move(result_);
     }
@@ -54,7 +54,7 @@ class OptionReader {
         }
     }
 
-    // Cuts off what stands before the next known option.
+    // Cuts off the text before the next known option.
     void read_name() {
         std::string_view after = rest_;
         size_t length = rest_.size();

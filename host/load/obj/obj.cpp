@@ -69,12 +69,12 @@ class Vertices {
 
     const ObjFile& obj_;
     bool with_normals_;
-    std::vector<uint32_t> newest_;  // Of each position: its newest vertex, or NONE.
+    std::vector<uint32_t> newest_;  // For each position, its newest vertex, or NONE.
     std::vector<Vertex> vertices_;
-    std::vector<uint32_t> uvs_;  // Of each vertex, or NONE; empty if no corner has any.
+    std::vector<uint32_t> uvs_;  // For each vertex, or NONE; empty if no corner has any.
 };
 
-// Leaves `obj` without corners and what they refer to, to save memory.
+// Frees the corners of `obj` and what they refer to, to save memory.
 TriangleMesh build_mesh(ObjFile& obj, MeshNormals normals) {
     std::vector<uint32_t> corners;
     corners.reserve(obj.corners.size());
@@ -113,7 +113,7 @@ TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals, co
 ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach) {
     ObjFile obj = parse_obj(reach.read(file), file.string());
     ObjParts result{std::move(obj.libraries), {}, std::move(obj.warnings)};
-    std::map<std::string_view, uint32_t> indices;  // Of the parts, by name; empty for no material.
+    std::map<std::string_view, uint32_t> indices;  // Indices of the parts, by name; empty for no material.
     std::vector<uint32_t> part_of;                 // For each triangle.
     std::vector<bool> has_uvs;                     // For each part: whether a corner has some.
     size_t corner = 0;

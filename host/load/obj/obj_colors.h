@@ -13,10 +13,10 @@ namespace candela {
 
 class ObjColors {
   public:
-    // Adds the three numbers after a position, which is number `position`; others may have none.
+    // Adds the three numbers after the position of index `position`; other positions may have none.
     void add(size_t position, vec3 numbers);
 
-    // Adds what follows `#MRGB`, as ZBrush writes it: for each position, in their order, two hexadecimal
+    // Adds the text after `#MRGB`, as ZBrush writes it: for each position, in their order, two hexadecimal
     // digits each of mask, red, green and blue.
     void add_mrgb(std::string_view digits);
 

@@ -1,4 +1,4 @@
-// Two passes over the lines of an OBJ file: one counts what faces may refer to, the other reads.
+// Two passes over the lines of an OBJ file: one counts the vertices, the other reads.
 #include "load/obj/obj_file.h"
 
 #include <algorithm>
@@ -113,7 +113,7 @@ class ObjReader {
             }
             color[i] = float(*number);
         }
-        if (!is_finite(color)) return warn("the colour of a vertex is not finite; white takes its place");
+        if (!is_finite(color)) return warn("the colour of a vertex is not finite; white is used");
         colors_.add(obj_.positions.size() - 1, color);
     }
 
@@ -130,7 +130,7 @@ class ObjReader {
             if (std::abs(*number) <= MAX_UV) {
                 uv[i] = float(*number);
             } else {
-                warn("a texture coordinate is not from -1e30 to 1e30; 0 takes its place");
+                warn("a texture coordinate is not from -1e30 to 1e30; 0 is used");
             }
         }
         obj_.uvs.push_back(uv);
@@ -138,11 +138,11 @@ class ObjReader {
 
     void read_normal(std::string_view rest) {
         const glm::dvec3 normal = read_numbers(rest, OBJ_KINDS[OBJ_NORMAL]);
-        if (!is_finite(normal)) warn("a normal is not finite; that of the triangle takes its place");
+        if (!is_finite(normal)) warn("a normal is not finite; the triangle's is used");
         obj_.normals.emplace_back(is_finite(normal) ? normal : glm::dvec3(0.0));
     }
 
-    // Whether no number is NaN, as those are that floats cannot hold.
+    // Whether no number is NaN; numbers too large for floats are NaN.
     template <class Vector>
     static bool is_finite(Vector v) {
         return !glm::any(glm::isnan(v));
@@ -210,9 +210,8 @@ class ObjReader {
         if (index != 0 && index >= -counts_[kind] && index <= totals_[kind])
             return uint32_t(index > 0 ? index - 1 : counts_[kind] + index);
         if (kind == OBJ_POSITION) fail_range(index);
-        warn(kind == OBJ_NORMAL
-                 ? "a corner has a normal that the file lacks; that of the triangle takes its place"
-                 : "a corner has texture coordinates that the file lacks; (0, 0) takes their place");
+        warn(kind == OBJ_NORMAL ? "a corner has a normal that the file lacks; the triangle's is used"
+                                : "a corner has texture coordinates that the file lacks; (0, 0) is used");
         return ObjCorner::NONE;
     }
 
@@ -222,7 +221,7 @@ class ObjReader {
         if (index == 0) fail(use + "; indices count from 1, or backwards from -1");
         if (index > 0)
             fail(use + ", but the file has " + std::to_string(totals_[OBJ_POSITION]) + " vertices");
-        fail(use + ", but only " + std::to_string(counts_[OBJ_POSITION]) + " vertices stand before it");
+        fail(use + ", but only " + std::to_string(counts_[OBJ_POSITION]) + " vertices come before it");
     }
 
     [[noreturn]] void fail_malformed(std::string_view corner) const {
@@ -263,8 +262,8 @@ class ObjReader {
 
     std::string_view text_;
     const std::string& file_;
-    std::array<int64_t, 3> totals_{};  // Of each kind, in the whole file.
-    std::array<int64_t, 3> counts_{};  // Of each kind, so far.
+    std::array<int64_t, 3> totals_{};  // Numbers of each kind, in the whole file.
+    std::array<int64_t, 3> counts_{};  // Numbers of each kind, so far.
     uint64_t line_ = 0;
     uint64_t faces_ = 0;      // So far.
     bool has_uvs_ = false;    // Whether a corner has texture coordinates.

@@ -10,7 +10,7 @@
 
 namespace candela {
 
-// A name that an OBJ file mentions, and the line where it does, counted from 1.
+// A name in an OBJ file, and its line, counted from 1.
 struct ObjName {
     std::string name;
     uint64_t line = 0;
@@ -28,13 +28,13 @@ struct ObjFile {
     std::vector<glm::dvec3> positions;  // Numbers that floats can hold, or NaN; faces use none of the latter.
     std::vector<vec3> colors;           // Empty, or linear and in [0, 1] for each position.
     std::vector<vec2> uvs;              // Texture coordinates, v upwards, each within +-MAX_UV.
-    std::vector<vec3> normals;          // Of any length.
-    std::vector<ObjCorner> corners;     // Of all faces, one after the other.
+    std::vector<vec3> normals;          // Normals of any length.
+    std::vector<ObjCorner> corners;     // Corners of all faces, one after the other.
     std::vector<uint32_t> corner_uvs;   // Empty, or for each corner an index into `uvs`, or ObjCorner::NONE.
     std::vector<uint32_t> sizes;        // Corners of each face, 3 .. MOST_CORNERS.
 
-    // Statements about materials, in the order of the file. `uses` begins with that of the faces before any
-    // `usemtl`, which has no name and line 0.
+    // Statements about materials, in the order of the file. `uses` begins with an entry for the faces before
+    // any `usemtl`, without a name and with line 0.
     std::vector<ObjName> libraries;
     std::vector<ObjName> uses{{}};
     std::vector<uint32_t> use_of;  // For each face, an index into `uses`.

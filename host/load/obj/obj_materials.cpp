@@ -18,13 +18,13 @@ namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
-// A library that is not there: its name, and where that leads.
+// A missing library: its name, and where it would be.
 struct Lost {
     std::string name;
     std::filesystem::path path;
 };
 
-// Cuts the next name off `text`: a word, or what is in quotation marks.
+// Cuts the next name off `text`: a word, or the text in quotation marks.
 std::string_view next_name(std::string_view& text) {
     text = trimmed(text);
     const size_t end = text.starts_with('"') ? text.find('"', 1) : std::string_view::npos;
@@ -34,8 +34,7 @@ std::string_view next_name(std::string_view& text) {
     return name;
 }
 
-// Adds the files that one `mtllib` stands for: its name as a whole, or one name after the other. Returns the
-// first of them that is not there.
+// Adds the files of one `mtllib`, whose text is one name or several. Returns the first file that is missing.
 std::optional<Lost> find_libraries(const std::filesystem::path& folder, const std::string& names,
                                    const FileReach& reach, Paths& paths) {
     const NamedFile whole = find_named_file(folder, names, reach);
@@ -84,7 +83,7 @@ ObjLibraries load_mtl_libraries(const std::filesystem::path& obj, const std::vec
         if (!known_files.insert(path.string()).second) continue;
         all.materials.files.push_back(path);
         MtlLibrary library = load_mtl(path, reach);
-        all.materials.materials.merge(library.materials);  // Keeps those that are already there.
+        all.materials.materials.merge(library.materials);  // Keeps materials that are already there.
         std::ranges::move(library.warnings, std::back_inserter(all.materials.warnings));
     }
     return all;

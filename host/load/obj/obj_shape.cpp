@@ -1,4 +1,4 @@
-// OBJ files with the materials that they name.
+// OBJ files with their own materials.
 #include <algorithm>
 #include <iterator>
 
@@ -13,7 +13,7 @@
 namespace candela {
 namespace {
 
-// The name by which the builder finds a part's material.
+// The builder's name for a part's material.
 std::string name_of(const std::string& shape, const ObjPart& part) {
     return part.material ? shape + '/' + part.material->name : shape + " (no material)";
 }
@@ -88,7 +88,7 @@ class MaterialAdder {
     const std::string& name_;
     SceneBuilder& builder_;
     ObjLibraries libraries_;
-    std::string known_;  // What they define, for messages.
+    std::string known_;  // The materials that the libraries define, for messages.
     CountedWarnings warnings_;
 };
 

@@ -39,8 +39,8 @@ inline std::optional<size_t> obj_kind_of(std::string_view command) {
     return std::nullopt;
 }
 
-// The number that a word is, infinite or NaN if no float can hold it; none if it is something else. A word
-// such as -1.#IND is what older programs of Windows write for NaN.
+// The number that a word spells, infinite or NaN if no float can hold it; nothing if it is not a number.
+// Older programs for Windows write NaN as -1.#IND and the like.
 inline std::optional<double> obj_number(std::string_view word) {
     if (word.find(".#") != std::string_view::npos) return std::numeric_limits<double>::quiet_NaN();
     const std::optional<double> number = parse_number(word);

@@ -19,7 +19,7 @@
 namespace candela {
 namespace {
 
-// The elements that hold indices of vertices. The models of Stanford's archive have strips.
+// The elements that hold indices of vertices. Models of the Stanford archive have strips.
 constexpr std::string_view FACE = "face", STRIPS = "tristrips";
 
 bool has_rows(const PlyHeader& header, std::string_view name) {
@@ -168,7 +168,7 @@ class BodyReader {
     void read_strips(const PlyProperty& indices) {
         const double numbers = read_length(indices);
         std::array<uint32_t, 3> t{};  // The last corners.
-        size_t corners = 0;           // Of the strip so far.
+        size_t corners = 0;           // Corners of the strip so far.
         for (double i = 0.0; i < numbers; ++i) {
             const double index = rows_.next(indices.type);
             if (index == -1.0) {
@@ -208,10 +208,10 @@ class BodyReader {
     Rows rows_;
     PlyPosition& position_;
     PlyPolygons polygons_;
-    size_t small_faces_ = 0;  // Of fewer than 3 corners.
+    size_t small_faces_ = 0;  // Faces of fewer than 3 corners.
 };
 
-// Warns of what the file says about its look beyond the vertices, which is not read.
+// Warns of appearance that is not read: colours and texture coordinates of faces, and textures.
 void warn_of_looks(const PlyHeader& header, const std::string& file, std::vector<std::string>& warnings) {
     const PlyElement* face = header.find(FACE);
     const auto has = [&](const char* name) { return face != nullptr && face->find(name) != nullptr; };

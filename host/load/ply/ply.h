@@ -11,9 +11,9 @@
 namespace candela {
 
 // Reads the elements "vertex" (x y z, and what find_vertex_fields() finds), "face" and "tristrips" (each
-// vertex_indices or vertex_index) of a file in any of the three formats, in the units of the file; all else
-// is skipped. Polygons are cut into triangles. Normals may have any length, and one of length zero stands for
-// none. `warnings` gets what is odd but usable, each beginning with the file's name. Throws Error as
+// vertex_indices or vertex_index) of a file in any of the three formats, in the units of the file; everything
+// else is skipped. Polygons are cut into triangles. Normals may have any length; length zero means that there
+// is none. `warnings` gets what is odd but usable, each beginning with the file's name. Throws Error as
 // FileReach::read(), read_ply_header() and finish_vertices() do, and `file: cause`, or `file:line: cause` in
 // a header or an ASCII file, if the file lacks vertices or faces, ends early, or has rows that do not match
 // the header, a face with more than MOST_CORNERS corners, or an index that is out of range.

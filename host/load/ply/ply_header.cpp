@@ -56,7 +56,7 @@ class HeaderReader {
         throw Error(file_ + ':' + std::to_string(header_.lines) + ": " + cause);
     }
 
-    // Binary rows may begin with any byte, even of a line's end: so the first line says how lines end.
+    // Binary rows may begin with any byte, even a line feed, so the first line determines how lines end.
     void find_line_end() {
         constexpr std::string_view BYTE_ORDER_MARK = "\xEF\xBB\xBF";
         if (rest_.starts_with(BYTE_ORDER_MARK)) rest_.remove_prefix(BYTE_ORDER_MARK.size());
@@ -129,7 +129,7 @@ class HeaderReader {
     }
 
     void read_property(std::string_view rest) {
-        if (header_.elements.empty()) fail("a property stands before the first element");
+        if (header_.elements.empty()) fail("a property comes before the first element");
         PlyElement& element = header_.elements.back();
         PlyProperty property;
         std::string_view type = next_word(rest);
@@ -166,12 +166,12 @@ class HeaderReader {
     }
 
     std::string_view bytes_;
-    std::string_view rest_;  // What follows the lines read so far.
+    std::string_view rest_;  // The text after the lines read so far.
     const std::string& file_;
     char line_end_ = '\n';
     bool has_format_ = false;
     std::unordered_set<std::string> elements_;    // The names of all.
-    std::unordered_set<std::string> properties_;  // Those of the last element.
+    std::unordered_set<std::string> properties_;  // Names of the last element's properties.
     PlyHeader header_;
 };
 

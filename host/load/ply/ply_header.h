@@ -19,18 +19,18 @@ bool is_integer(PlyType type);
 struct PlyProperty {
     std::string name;
     PlyType type = PlyType::float32;
-    std::optional<PlyType> length;  // Of a list's length, an integer type; none: a single number.
+    std::optional<PlyType> length;  // Type of a list's length, an integer; none: a single number.
 };
 
 // A table with a row for, say, each vertex.
 struct PlyElement {
     std::string name;
     uint64_t rows = 0;
-    std::vector<PlyProperty> properties;  // Of each row, in this order.
+    std::vector<PlyProperty> properties;  // Properties of each row, in this order.
     uint64_t line = 0;                    // Where the header declares it.
 
     const PlyProperty* find(std::string_view property) const;  // Null if there is none.
-    size_t least_size(PlyFormat format) const;                 // Of a row whose lists are empty [bytes].
+    size_t least_size(PlyFormat format) const;                 // Size of a row whose lists are empty [bytes].
 };
 
 struct PlyHeader {

@@ -73,7 +73,7 @@ class Finisher {
     }
 
     void finish_color(uint32_t i) {
-        constexpr float ROUNDING = 1e-5f;  // Of programs that convert colours.
+        constexpr float ROUNDING = 1e-5f;  // Rounding of programs that convert colours.
         vec4& color = polygons_.colors[i];
         for (glm::length_t c = 0; c < 4; ++c) {
             if (!(color[c] >= -ROUNDING && color[c] <= 1.0f + ROUNDING)) {

@@ -1,4 +1,4 @@
-// What is not worth inlining: messages, and text.
+// The parts that need not be inlined: messages, and text.
 #include "load/ply/ply_rows.h"
 
 #include <cmath>

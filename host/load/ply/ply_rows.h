@@ -12,7 +12,7 @@
 
 namespace candela {
 
-// Where a reader of rows is, for messages. Rows count from 0, as the indices in the file do.
+// The position of a reader of rows, for messages. Rows are numbered from 0, as the indices in the file are.
 struct PlyPosition {
     std::string file;
     uint64_t line = 0;  // 0 in binary files, which have none.
@@ -27,7 +27,8 @@ struct PlyPosition {
 // Rows of text: each is a line of numbers. Empty lines are skipped.
 class PlyAsciiRows {
   public:
-    // `text` is what follows the header, `position` has the line of the header's end; both must outlive this.
+    // `text` is the rest after the header, `position` has the line of the header's end; both must outlive
+    // this.
     PlyAsciiRows(std::string_view text, PlyPosition& position) : text_(text), position_(position) {}
 
     // Throws Error if no row is left.

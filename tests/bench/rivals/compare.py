@@ -4,7 +4,7 @@
 All three read the same scene files and do the same work: size, depth, Russian roulette, box filter, no denoiser, no
 adaptive sampling. Runs take turns, because machines are noisy; figures are medians, and CPU time is that of rendering
 alone, over all threads. relMSE (see pictures.py) compares each renderer with its own converged picture, so that a
-difference of models does not count as noise; how far these pictures are apart is printed with them. The README beside
+difference of models is not treated as noise; how far these pictures are apart is printed with them. The README beside
 this folder says more.
 
 usage: compare.py CANDELA [SCENE...], e.g. compare.py build/release/candela cornell-box --runs 5

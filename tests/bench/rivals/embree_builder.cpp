@@ -12,10 +12,10 @@
 namespace candela {
 namespace {
 
-// What Embree's callbacks make: a node with children, or a leaf with primitives of the array that Embree was
+// Made by Embree's callbacks: a node with children, or a leaf with primitives of the array that Embree was
 // given.
 struct EmbreeNode {
-    unsigned count = 0;  // Of either.
+    unsigned count = 0;  // Number of either.
     const RTCBuildPrimitive* primitives = nullptr;
     std::array<const EmbreeNode*, BVH_WIDTH> children{};
     std::array<Box, BVH_WIDTH> boxes;

@@ -12,7 +12,7 @@
 namespace candela {
 namespace {
 
-// Rays that a thread takes at a time.
+// Rays in a thread's chunk of work.
 constexpr size_t CHUNK = 4096;
 
 RTCRay embree_ray(const BenchRay& ray) {
@@ -67,7 +67,7 @@ void attach_instance(RTCDevice device, RTCScene scene, RTCScene mesh,
     rtcReleaseGeometry(geometry);
 }
 
-// Geometry 0 of its scene is that of the baked triangles, i + 1 is instance i.
+// Geometry 0 of its scene has the baked triangles; geometry i + 1 is instance i.
 class EmbreeTracer : public RayTracer {
   public:
     explicit EmbreeTracer(const BenchTriangles& triangles)

@@ -58,7 +58,7 @@ def read(path):
     """Width, height, and the channels R, G and B, each an array of floats, row-major from the top."""
     data = Path(path).read_bytes()
     if struct.unpack_from("<i", data)[0] != MAGIC:
-        sys.exit(f"{path} is no OpenEXR file")
+        sys.exit(f"{path} is not an OpenEXR file")
     attributes, at = header(data)
     if attributes["compression"][0] != ZIP:
         sys.exit(f"{path}: exr.py reads ZIP compression alone")

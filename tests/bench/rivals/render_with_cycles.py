@@ -5,7 +5,7 @@
 
 Renders with one sample per pixel, twice, and then with SPP, and writes the last picture. Its last line is JSON:
 Blender's version, and CPU time and wall time [s] of the second rendering and of the last, each with preparing the
-scene. Tested with Blender 3.4 and 5.0. (As `cycles.py`, the script would take the place of Blender's module `cycles`.)
+scene. Tested with Blender 3.4 and 5.0. (As `cycles.py`, the script would replace Blender's module `cycles`.)
 """
 
 import json

@@ -2,7 +2,7 @@
 
 Each renderer's render() writes an OpenEXR picture and returns {"cpu", "wall": seconds; "rays": per sample, or None
 where they are not counted}. Seconds are those that all samples after the first of each pixel took, over all threads,
-scaled to all samples, so that neither starting, nor compiling, nor preparing the scene counts.
+scaled to all samples, so that starting, compiling and preparing the scene are excluded.
 """
 
 import json

@@ -77,7 +77,8 @@ class Tracer {
         float eta_scale =
             1.0f;  // Product of the squared relative indices of refraction, by which beta was divided.
         vec3 L{0};
-        float pdf = 0.0f;  // Of the ray's direction [1/sr]; 0: light samples cannot find what it hits.
+        float pdf = 0.0f;  // Density of the ray's direction [1/sr]; 0: light samples cannot find what it
+                           // hits.
     };
     struct Vertex {
         vec3 p, wo, n, ns;  // Normals on the viewer's side; n is geometric.

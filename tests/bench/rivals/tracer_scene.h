@@ -16,7 +16,7 @@ enum class Model { diffuse, glass, metal };
 struct Surface {
     Model model = Model::diffuse;
     vec3 colour{0};          // Reflectance; of metal at normal incidence.
-    float parameter = 0.0f;  // Of glass, the index of refraction inside over outside; of metal, alpha.
+    float parameter = 0.0f;  // For glass, the index of refraction inside over outside; for metal, alpha.
 };
 
 // A parallelogram p + u e1 + v e2 with u and v in [0, 1], or its half with u + v <= 1. Its front emits.
@@ -91,7 +91,7 @@ class TracerScene {
     std::vector<Surface> surfaces;
     std::vector<Lamp> lamps;
     bool has_lights = false;
-    float diagonal = 0.0f;  // Of the box around the scene [m].
+    float diagonal = 0.0f;  // Diagonal of the box around the scene [m].
 
   private:
     void add(const Shape& shape, const std::vector<TriangleMesh>& meshes);
@@ -102,9 +102,8 @@ class TracerScene {
 
     Environment environment_;
     EnvironmentMap map_;
-    std::vector<float> row_cosines_;     // Of the angles from +Y between the map's rows of texels.
-    std::vector<AliasEntry> alias_;      // Of the lamps and, last, the environment.
-    std::vector<AliasEntry> sky_alias_;  // Of its texels.
+    std::vector<float> row_cosines_;  // Cosines of the angles from +Y between the map's rows of texels.
+    std::vector<AliasEntry> alias_;   // Table of the lamps and, last, the environment.
     RTCDevice device_ = nullptr;
 };
 

@@ -119,7 +119,7 @@ TEST_F(AnothersFile, LetsWhatIsFinishedTakeANameBesideIt) {
         EXPECT_EQ(error_of([&] { write_finished_work(file_, name); }),
                   "cannot write \"" + file_.string() +
                       "\": no file can be put in its place (Operation not permitted); choose another place; "
-                      "what was to be written is in \"" +
+                      "the data is saved in \"" +
                       (directory_ / name).string() + '"');
         EXPECT_EQ(read_file(directory_ / name), name);
     }

@@ -84,7 +84,7 @@ TEST_F(FileReachTest, ReadsNoMoreThanIsAskedFor) {
     EXPECT_EQ(reach.read(in_scene("a"), 5), "bytes");
     EXPECT_EQ(reach.read(in_scene("a"), 0), "");
     EXPECT_EQ(reach.read(in_scene("a"), 100), "bytes of scene/a");
-    // A terabyte that takes no room on the disk.
+    // A terabyte that uses no space on the disk.
     fs::resize_file(in_scene("a"), uintmax_t(1) << 40);
     EXPECT_EQ(reach.read(in_scene("a"), 5), "bytes");
 }
@@ -99,11 +99,9 @@ TEST_F(FileReachTest, IsOfRegularFilesWithAnEnd) {
     }
     // The kernel says that they are regular and empty, and goes on writing them.
     for (const char* path : {"/proc/self/status", "/proc/self/maps"}) {
-        EXPECT_EQ(
-            error_of([&] { reach.read(path); }),
-            "cannot read \"" + std::string(path) +
-                "\": it holds another number of bytes than its size says; is it a file of the system, or "
-                "still being written?");
+        EXPECT_EQ(error_of([&] { reach.read(path); }),
+                  "cannot read \"" + std::string(path) +
+                      "\": its contents do not match its size; is it a system file, or still being written?");
     }
     EXPECT_EQ(error_of([&] { reach.read(in_scene("none")); }),
               "cannot read \"" + in_scene("none").string() + "\": the file does not exist; check the name");

@@ -36,7 +36,7 @@ class FinishedWork : public testing::Test {
     static fs::path kept(const fs::path& path, const std::string& reason) {
         const std::string message = error_of([&] { write_finished_work(path, "work"); });
         const std::string start =
-            "cannot write \"" + path.string() + "\": " + reason + "; what was to be written is in \"";
+            "cannot write \"" + path.string() + "\": " + reason + "; the data is saved in \"";
         EXPECT_TRUE(message.starts_with(start)) << message;
         if (!message.starts_with(start)) return {};
         const fs::path place = message.substr(start.size(), message.size() - start.size() - 1);

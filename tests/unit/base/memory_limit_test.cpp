@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint64_t MEBI = uint64_t(1) << 20;
 
-// As long as it lives, the process takes no more than that many bytes besides those that it has.
+// As long as it lives, the process may allocate only that many bytes in addition to its current ones.
 class LimitFromHere {
   public:
     explicit LimitFromHere(uint64_t bytes) { set_memory_limit(memory_in_use() + bytes); }
@@ -87,8 +87,8 @@ TEST(MemoryLimit, TheErrorSaysWhatTakesHowMuch) {
         EXPECT_EQ(error.code(), ExitCode::out_of_memory);
         const std::string message = error.what();
         EXPECT_TRUE(
-            message.starts_with("a.glb#/nodes/3: there is not enough memory for what the node shows, "
-                                "which takes at least 70 MiB, where "))
+            message.starts_with("a.glb#/nodes/3: there is not enough memory for what the node shows, which "
+                                "needs at least 70 MiB, where "))
             << message;
         EXPECT_NE(message.find(" MiB are in use and --memory-limit allows "), std::string::npos) << message;
         EXPECT_TRUE(message.ends_with(" MiB; make it smaller, or use a larger machine")) << message;

@@ -61,11 +61,11 @@ TEST(Printable, ShowsBytesThatAreNotUtf8) {
     EXPECT_EQ(printable("M\xFCller"), "M\\xfcller");
     EXPECT_EQ(printable("\xC3"), "\\xc3");  // Cut off.
     EXPECT_EQ(printable("\xE2\x80"), "\\xe2\\x80");
-    EXPECT_EQ(printable("\xC0\x9B"), "\\xc0\\x9b");           // Two bytes for U+001B,
-    EXPECT_EQ(printable("\xE0\x82\x9B"), "\\xe0\\x82\\x9b");  // three for U+009B,
+    EXPECT_EQ(printable("\xC0\x9B"), "\\xc0\\x9b");           // Two bytes for U+001B.
+    EXPECT_EQ(printable("\xE0\x82\x9B"), "\\xe0\\x82\\x9b");  // Three bytes for U+009B.
     EXPECT_EQ(printable("\xF0\x80\x82\x9B"), "\\xf0\\x80\\x82\\x9b");
-    EXPECT_EQ(printable("\xED\xA0\x80"), "\\xed\\xa0\\x80");           // a surrogate,
-    EXPECT_EQ(printable("\xF4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // and more than U+10FFFF.
+    EXPECT_EQ(printable("\xED\xA0\x80"), "\\xed\\xa0\\x80");           // A surrogate.
+    EXPECT_EQ(printable("\xF4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // More than U+10FFFF.
     EXPECT_EQ(printable("\xFF"), "\\xff");
 }
 
@@ -201,7 +201,7 @@ TEST(WarningSummary, HasABound) {
     for (const std::string& line : summary)
         bytes += line.size();
     EXPECT_LE(bytes, 65536u + 100);
-    EXPECT_EQ(summary.size(), 22u);  // Of 3000 bytes each, 21 fit into 64 KiB.
+    EXPECT_EQ(summary.size(), 22u);  // 21 messages of 3000 bytes fit into 64 KiB.
     EXPECT_EQ(summary.back(), "4980 more warnings");
 }
 

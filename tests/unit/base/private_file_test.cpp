@@ -99,7 +99,7 @@ TEST_F(PrivateFile, OfManyBytesIsNotRead) {
     write("old");
     fs::resize_file(file_, MOST + 1);
     EXPECT_EQ(read(), std::nullopt);
-    fs::resize_file(file_, uintmax_t{1} << 40);  // It takes no room on the disk.
+    fs::resize_file(file_, uintmax_t{1} << 40);  // It uses no space on the disk.
     EXPECT_EQ(read(), std::nullopt);
     write();
     EXPECT_EQ(read(), "new");

@@ -69,10 +69,9 @@ TEST_F(BenchFirstPixel, AProgramThatFailsIsNamedWithItsCall) {
         (directory_ / "program").string() + " render some/scene.json --spp 1 --size 64x64 --quiet";
     const std::string exited = error_of([&] { bench(program("exit 3")); });
     EXPECT_EQ(exited.rfind("first-pixel: `" + call, 0), 0u) << exited;
-    EXPECT_NE(exited.find("` exited with 3; see above for what it said"), std::string::npos) << exited;
+    EXPECT_NE(exited.find("` exited with 3; see its messages above"), std::string::npos) << exited;
     const std::string killed = error_of([&] { bench(program("kill -9 $$")); });
-    EXPECT_NE(killed.find("` was ended by signal 9; see above for what it said"), std::string::npos)
-        << killed;
+    EXPECT_NE(killed.find("` was ended by signal 9; see its messages above"), std::string::npos) << killed;
     EXPECT_EQ(error_of([] { bench("/nonexistent/candela"); }),
               "cannot start /nonexistent/candela: " + std::generic_category().message(ENOENT));
 }

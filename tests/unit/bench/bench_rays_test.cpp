@@ -68,7 +68,7 @@ class BenchRays : public testing::Test {
     const Scene scene_ = cornell_box();
     const GpuScene gpu_ = build_gpu_scene(scene_, SceneFrame{});
     std::vector<BenchTriangle> triangles_ = BenchTriangles(gpu_).baked();
-    std::vector<std::vector<uint32_t>> hits_;  // Of the first two sets.
+    std::vector<std::vector<uint32_t>> hits_;  // Hits of the first two sets.
     std::vector<RaySet> sets_;
 };
 

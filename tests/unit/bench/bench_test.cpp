@@ -80,7 +80,7 @@ TEST(BenchReport, JsonHasEveryRun) {
 }
 
 // For a reference r that is the same everywhere, m is r: an image that is off by the share e everywhere has
-// the error e^2 r^2 / (r^2 + 0.01 r^2), whatever r.
+// the error e^2 r^2 / (r^2 + 0.01 r^2), for any r.
 TEST(BenchRender, RelativeErrorOfAConstantImageHasAClosedForm) {
     for (const float r : {0.01f, 1.0f, 500.0f}) {
         const std::vector<float> reference(20, r), image(20, 1.25f * r);
@@ -144,9 +144,8 @@ TEST(BenchTraversal, TracersThatDisagreeAreAnError) {
     EXPECT_NO_THROW(check_same_hits("box, primary rays", 1, 64));
     EXPECT_NO_THROW(check_same_hits("box, primary rays", 2, 1000));
     EXPECT_EQ(error_of([] { check_same_hits("box, primary rays", 3, 1000); }),
-              "box, primary rays: 3 of 1000 rays have another hit than Embree's, so that the speeds are not "
-              "those of "
-              "one task; `candela selftest` tells what is wrong on this device");
+              "box, primary rays: 3 of 1000 rays hit something else than in Embree, so the speeds cannot be "
+              "compared; run `candela selftest` on this device");
 }
 
 TEST(BenchMeshes, NumbersOfTrianglesHaveThreeDigits) {
@@ -208,7 +207,7 @@ TEST(BenchMeshes, ASceneHasAboutTheTrianglesAskedFor) {
     EXPECT_EQ(triangle_count(displaced_scene(1000000)), 60u * 129 * 129 + 12);
 }
 
-// Whose wood is at most a quarter.
+// The wood is at most a quarter of the triangles.
 TEST(BenchMeshes, ATreeHasTheTrianglesAskedForAndTheSizeOfATree) {
     for (const uint32_t triangles : {100u, 5000u, 100'000u}) {
         const TriangleMesh tree = tree_mesh(triangles, 1);

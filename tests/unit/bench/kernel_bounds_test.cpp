@@ -75,7 +75,7 @@ TEST(KernelBounds, ABoundWithoutAKernelIsNamed) {
     CompiledKernel other = make_kernel(50, 0, 0);
     other.kernel = "position";
     const auto found = violations({other});
-    ASSERT_EQ(found.size(), 2u) << "the bound of another device counts as well";
+    ASSERT_EQ(found.size(), 2u) << "the bound of another device is found as well";
     EXPECT_NE(found[1].find("render (texel buffers) of box on"), std::string::npos) << found[1];
     EXPECT_NE(found[1].find("no such kernel was compiled"), std::string::npos) << found[1];
     other.buffers = "storage";

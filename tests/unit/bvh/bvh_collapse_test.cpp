@@ -33,7 +33,7 @@ Tree random_tree(uint32_t leaves, std::mt19937& generator) {
 // The least sum of areas of wide nodes with at most `places` nodes or leaves in the place of a binary node.
 double least_cost(const Tree& tree, uint32_t index, uint32_t places);
 
-// The same in the place of its two children, whatever the share of each.
+// The same in place of its two children, with any division between them.
 double least_cost_of_children(const Tree& tree, uint32_t index, uint32_t places) {
     double least = std::numeric_limits<double>::infinity();
     for (uint32_t left = 1; left < places; ++left) {
@@ -97,8 +97,8 @@ TEST(BvhCollapse, ALeafIsItsOwnOnlyChild) {
     EXPECT_EQ(children.indices[0], 0u);
 }
 
-// Without areas all trees cost the same. Of 4096 leaves, halved again and again, a node has an eighth in each
-// of six children and a quarter in one.
+// Without areas all trees cost the same. With 4096 leaves, halved again and again, a node has an eighth in
+// each of six children and a quarter in one.
 TEST(BvhCollapse, IsFlatAmongEquals) {
     Tree tree{{}};
     for (uint32_t i = 0; i < 4095; ++i) {

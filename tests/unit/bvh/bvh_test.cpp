@@ -191,7 +191,7 @@ TEST(Bvh, SahCostIsThatOfTheFormula) {
 TEST(Bvh, RefusesBoxesThatAreNoBoxes) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::string rule =
-        "; coordinates must be numbers from -1e37 to 1e37, and none of the first above the second";
+        "; coordinates must be numbers from -1e37 to 1e37, and no lower one above its upper one";
     std::vector<Box> boxes(3, Box{vec3(0), vec3(1)});
     boxes[2].lo.y = nan;
     expect_refused(boxes, "BVH: primitive 2 has the box [0 nan 0] to [1 1 1]" + rule);

@@ -16,7 +16,7 @@ namespace {
 struct Found {
     std::map<uint32_t, Box> primitives;   // By position in leaf order.
     std::map<uint32_t, Box> instances;    // By node.
-    std::map<uint32_t, uint32_t> levels;  // Of nodes.
+    std::map<uint32_t, uint32_t> levels;  // Levels of nodes.
 };
 
 // `sorted`: by bvh_longest_axis().
@@ -58,7 +58,7 @@ void expect_equal(const Box& a, const Box& b) {
     EXPECT_EQ(a.hi, b.hi);
 }
 
-// Of the boxes, those from `primitives` on are instances.
+// The boxes from index `primitives` on are instances.
 void expect_separated(size_t count, uint32_t primitives) {
     SCOPED_TRACE(count);
     SCOPED_TRACE(primitives);

@@ -1,4 +1,4 @@
-// The accumulation state: the means and variances that it stands for.
+// The accumulation state: its means and variances.
 #include "film/accumulation.h"
 
 #include <cmath>

@@ -111,8 +111,8 @@ TEST_F(CheckpointFile, ChangesThatLeaveAValidFileAreNoticed) {
     const std::string name = file_.string() + ": ";
     const std::string damaged =
         name +
-        "the checkpoint is damaged: its contents do not have its checksum; use an undamaged "
-        "copy, or remove the file to start anew";
+        "the checkpoint is damaged: its contents do not match its checksum; use an undamaged "
+        "copy, or remove the file to start over";
     EXPECT_EQ(after([](Image& image) { image.channels[9].values[4] += 0x1p-10f; }), damaged);
     for (const char* attribute :
          {"candela.seed", "candela.firstSample", "candela.rays", "candela.renderSeconds", "candela.driver",
@@ -134,8 +134,7 @@ TEST_F(CheckpointFile, ChangesThatLeaveAValidFileAreNoticed) {
               }),
               name +
                   "the checkpoint is damaged: it does not hold as many states as it says; use an undamaged "
-                  "copy, or "
-                  "remove the file to start anew");
+                  "copy, or remove the file to start over");
 }
 
 // The checksum of these files is right.
@@ -144,7 +143,7 @@ TEST_F(CheckpointFile, WhatNoRendererLeavesIsRefused) {
         save(states);
         EXPECT_EQ(error_of([&] { load_checkpoint(file_); }),
                   file_.string() + ": the checkpoint is damaged: " + what +
-                      "; use an undamaged copy, or remove the file to start anew");
+                      "; use an undamaged copy, or remove the file to start over");
     };
     for (const size_t count : {2u, 3u, 5u}) {
         expect_refused(States(count, sampled(LAYER_COUNT_COLOUR).state),
@@ -179,7 +178,7 @@ TEST_F(CheckpointFile, HeadersThatNoRendererLeavesAreRefused) {
     for (const double seconds : {-1.0, double(INFINITE), std::nan("")}) {
         CheckpointHeader header = HEADER;
         header.render_seconds = seconds;
-        EXPECT_NE(message(header).find("its rendering time is none"), std::string::npos);
+        EXPECT_NE(message(header).find("its rendering time is not valid"), std::string::npos);
     }
     CheckpointHeader header = HEADER;
     header.planned = (1u << 24) + 1;
@@ -194,8 +193,7 @@ TEST_F(CheckpointFile, ANewerFormatIsRefused) {
     EXPECT_EQ(error_of([&] { load_checkpoint(file_); }),
               file_.string() +
                   ": the checkpoint was made by a newer version of candela (its format is 2, and 1 is the "
-                  "newest known "
-                  "here); go on with that version");
+                  "newest known here); continue with that version");
 }
 
 TEST_F(CheckpointFile, UnreadableAndUnwritableFilesAreNamed) {

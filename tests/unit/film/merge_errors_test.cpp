@@ -30,7 +30,7 @@ TEST_F(Merge, WhatIsNoPartIsRefused) {
     EXPECT_EQ(message([](Image& image) { image.attributes["candela.samples"] = std::string("4-8"); }),
               "b.exr: the attribute candela.samples is \"4-8\"" + unchanged);
     EXPECT_EQ(message([](Image& image) { image.channels.erase(image.channels.begin()); }),
-              "b.exr: it has no channel R; give images (-o), no checkpoints or other files");
+              "b.exr: it has no channel R; give images (-o), not checkpoints or other files");
     for (const float count : {5.0f, -1.0f, 0.5f, NAN}) {
         EXPECT_EQ(
             message([&](Image& image) { image.channels[8].values[3] = count; }),
@@ -76,7 +76,7 @@ TEST_F(Merge, OddPartsAreWarnings) {
     EXPECT_EQ(
         warnings({a, write_changed("b.exr", {4, 8}, [](Image& image) { image.channels[0].half = true; })}),
         std::vector<std::string>{
-            "b.exr holds 16-bit floats: of its digits only three are right; render parts without --half"});
+            "b.exr holds 16-bit floats: only three of its digits are right; render parts without --half"});
     // Another device rounds positions differently.
     const auto other = write_changed("b.exr", {4, 8}, [](Image& image) {
         image.attributes["candela.driver"] = std::string("2");

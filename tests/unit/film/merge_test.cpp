@@ -155,7 +155,7 @@ TEST_F(Merge, MissingSamplesAreThoseOfNoPart) {
     const auto a = write("a.exr", {4, 8}), b = write("b.exr", {12, 16}), c = write("c.exr", {8, 12}, 1);
     EXPECT_EQ(to_text(missing_samples({b, a}, {0, 20}).samples), "0..4,8..12,16..20");
     EXPECT_TRUE(missing_samples({b, a}, {4, 8}).samples.empty());
-    // Of an interrupted part, the samples that all pixels hold count.
+    // In an interrupted part, only samples that all pixels have are counted.
     EXPECT_EQ(to_text(missing_samples({b, a, c}, {4, 16}).samples), "8..12");
     const auto d =
         write_changed("d.exr", {8, 12}, [](Image& image) { image.attributes["samplesPerPixel"] = 3.0f; });

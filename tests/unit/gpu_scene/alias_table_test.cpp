@@ -1,4 +1,4 @@
-// Alias tables stand for exactly the distribution that they were made from.
+// Alias tables represent exactly the distribution from which they were made.
 #include "gpu_scene/alias_table.h"
 
 #include <cmath>
@@ -22,7 +22,7 @@ std::vector<double> drawn(const std::vector<AliasEntry>& table) {
 }
 
 // Each threshold is rounded to 2^-32 of a column, 1 being rounded to 1 - 2^-32. The index of the largest
-// weight may be the alias of all columns, which gives its bound; for the others one column counts.
+// weight may be the alias of all columns, which gives its bound; the others need only one column.
 void expect_distribution(const std::vector<double>& weights) {
     const std::vector<AliasEntry> table = build_alias_table(weights);
     ASSERT_EQ(table.size(), weights.size());

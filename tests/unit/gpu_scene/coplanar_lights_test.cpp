@@ -85,7 +85,6 @@ TEST_F(CoplanarLight, IsAWarningOfTheScene) {
     add_lamp(scene, square(dvec3(0), 0.5));
     const std::string text =
         "shape 1 (material \"plaster\"): the light lies in the plane of shape 0 (material \"plaster\"), so "
-        "that "
         "either may hide the other; move it off that plane";
     EXPECT_EQ(build_gpu_scene(scene).warnings, std::vector<std::string>{text});
     add_lamp(scene, square(dvec3(3, 0, 0), 0.5));

@@ -35,8 +35,8 @@ Environment random_environment(uvec2 size, uint32_t seed) {
     return environment;
 }
 
-// A radiance of 1 everywhere, whatever the resolution: the texels fill the sphere. Luminance in floats is off
-// by some 2^-23.
+// A radiance of 1 everywhere, at any resolution: the texels fill the sphere. Luminance in floats is off by
+// some 2^-23.
 TEST(EnvironmentMap, TexelsFillTheSphere) {
     for (const uvec2 size : {uvec2(1, 1), uvec2(1, 7), uvec2(16, 1), uvec2(3, 5), uvec2(512, 256)}) {
         const std::vector<vec3> ones(size_t(size.x) * size.y, vec3(1.0f));

@@ -307,7 +307,7 @@ TEST(GpuScene, LimitsOfMaterialsAreThoseOfTheShaders) {
 }
 
 // Behind the records of all materials, those of principled ones, each with the images that it takes values
-// from: textures that differ in nothing but the channel are one.
+// from: textures that differ only in the channel are one.
 TEST(GpuScene, PrincipledMaterialsHaveRecordsBehindTheOthers) {
     Scene scene;
     scene.images.emplace_back().image = std::make_shared<TexelImage>(

@@ -1,4 +1,4 @@
-// Which meshes get trees of their own, what their instances' records say, and what the arrays hold.
+// The choice of meshes with their own trees, their instances' records, and the arrays.
 #include "gpu_scene/instancing.h"
 
 #include <array>
@@ -109,8 +109,8 @@ TEST(Instancing, RecordsBringPointsToTheSceneAndBackWithinTheirError) {
                 (transform.point(mesh_frame.origin + mesh_frame.unit * dvec3(q)) - frame.origin) / frame.unit;
             ASSERT_TRUE(all(lessThanEqual(dvec3(placed.box.lo), exact)));
             ASSERT_TRUE(all(lessThanEqual(exact, dvec3(placed.box.hi))));
-            // What the kernel takes for the point, and where a ray that begins there begins in the mesh's
-            // space, seen from the scene again.
+            // The kernel's point, and where a ray that begins there begins in the mesh's space, seen from the
+            // scene again.
             const vec3 p = record.centre + vector_to_scene(record, q);
             const dvec3 off = dvec3(point_to_mesh(record, p)) - dvec3(q);
             const dvec3 in_scene = transform.linear() * off * (mesh_frame.unit / frame.unit);

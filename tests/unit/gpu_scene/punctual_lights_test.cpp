@@ -107,7 +107,7 @@ TEST(PunctualLights, DoNotCountIfTheyAreBlackOrThereIsNothingToLight) {
     EXPECT_EQ(build_gpu_scene(empty).light_count, 0u);
 }
 
-// Of angles whose cosines no float, and no double, tells apart; or that are equal.
+// Spots with angles whose cosines are the same float, or the same double, or that are equal.
 TEST(PunctualLights, ASpotMayBeAsNarrowAndHardAsFloatsCanSay) {
     const std::pair<float, float> cones[] = {
         {0.0f, 1e-30f}, {1e-12f, 1.0000001e-12f}, {0.5f, std::nextafter(0.5f, 1.0f)}, {0.5f, 0.5f}};

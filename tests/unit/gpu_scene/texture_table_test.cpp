@@ -159,13 +159,13 @@ TEST(TextureMean, NoLightWithABrightTexelHasNoPower) {
     }
 }
 
-// A triangle far from all that is bright is no light.
+// A triangle far from all bright texels is not a light.
 TEST(TextureMean, WhatIsBlackHasNoPower) {
     const std::vector<vec2> uvs{vec2(0.8f, 0.8f), vec2(0.82f, 0.8f), vec2(0.8f, 0.82f)};
     EXPECT_EQ(power_of({}, {10, 50}, {12, 52}, uvs), 0.0);
 }
 
-// Levels of an image whose sides are no powers of two are larger than half of the one before. The piece lies
+// Levels of an image whose sides are not powers of two are larger than half of the one before. The piece lies
 // within the last bright column.
 TEST(TextureMean, ALevelThatWasRoundedUpIsLookedUpWhereItIs) {
     Scene scene = scene_with_camera(dvec3(0), dvec3(0, 0, -1), 1.0f);

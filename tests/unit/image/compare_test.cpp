@@ -124,7 +124,7 @@ TEST(Compare, RejectsAQuarterOfAChannelThatIsTwoPercentOff) {
             off.channels[1].values[i] *= 1.02f;
         rejected += compare(off, noisy(64, 64, 2 * seed + 1), {.alpha = 0.01}).passed ? 0 : 1;
     }
-    EXPECT_GE(rejected, 44);  // Of 50, each with 92 % by the mean alone: 46 +- 2.
+    EXPECT_GE(rejected, 44);  // 50 images, each with 92 % by the mean alone: 46 +- 2.
 }
 
 TEST(Compare, RejectsAMeanThatNoBlockCanTell) {

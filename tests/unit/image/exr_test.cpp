@@ -248,7 +248,7 @@ TEST(Exr, AHeaderIsReadWithoutThePixels) {
     ASSERT_EQ(::mkfifo((directory / "pipe").c_str(), 0600), 0);
     EXPECT_EQ(error_of([&] { read_exr_header(directory / "pipe"); }),
               "cannot read \"" + (directory / "pipe").string() +
-                  "\": it is a pipe, and is to be read more than once; give the name of a file");
+                  "\": it is a pipe, but must be read more than once; give the name of a file");
 }
 
 TEST(Exr, ReadsNoValuesOfOtherChannelsThanThoseAskedFor) {
@@ -289,7 +289,7 @@ TEST(Exr, ReportsAnAttributeThatOpenExrRefuses) {
 }
 
 TEST(Exr, RefusesMoreChannelsThanAnyProgramWrites) {
-    // Of 300 000 bytes, in a file that ends before them.
+    // A chunk of 300 000 bytes, in a file that ends before them.
     const std::string file = std::string("\x76\x2f\x31\x01\x02\0\0\0", 8) +
                              std::string("a\0int\0\4\0\0\0\0\0\0\0", 14) +
                              std::string("channels\0chlist\0\xe0\x93\x04\0", 20);

@@ -271,7 +271,7 @@ TEST_F(Hdr, RefusesSizesThatCannotBe) {
                              "-Y 1 +X 1048577", "-Y 99999999999999999999 +X 1", "-Y 1 +Z 1", "-Y 1 +Y 1",
                              "+X 1 -X 1", "-Y a +X 1", "-Y 1", "", "1 1"}) {
         EXPECT_EQ(error("#?RADIANCE\n\n" + std::string(size) + '\n' + rgbe(128, 128, 128, 129)),
-                  damaged('"' + std::string(size) + "\" is no size"));
+                  damaged('"' + std::string(size) + "\" is not a size"));
     }
 }
 
@@ -307,7 +307,7 @@ TEST_F(Hdr, AHugePictureWithoutPixelsNeedsNoMemory) {
     EXPECT_EQ(error(hdr_header(1024, 1024)), damaged("it ends in row 1"));
     const std::string huge = hdr_header(32'768, 32'768);
     EXPECT_EQ(error(huge), "its 32768x32768 pixels are more than " + std::to_string(huge.size()) +
-                               " bytes are taken for; make the image smaller");
+                               " bytes can plausibly hold; make the image smaller");
 }
 
 TEST_F(Hdr, ReportsDamagedRuns) {

@@ -92,7 +92,7 @@ TEST_F(RelativeErrorEstimate, IsNotBlindedByFireflies) {
     EXPECT_NEAR(found, 0.93, 4 * 0.02);
 }
 
-// Halves whose errors compensate, as those of Sobol points do in part, are no reason to stop too early.
+// Halves whose errors compensate, as those of Sobol points do in part, must not stop a rendering too early.
 TEST_F(RelativeErrorEstimate, IsNeverTooSmallWhereHalvesCompensate) {
     std::normal_distribution<double> noise(0.0, 0.01);
     double last = 0.0;

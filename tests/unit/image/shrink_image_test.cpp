@@ -1,5 +1,5 @@
-// Images made smaller: means over areas, of light where codes stand for it.
-#include "image/shrink_image.h"
+// Images made smaller: means over areas, of light if the image is encoded.
+#include "base/shrink_image.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,4 @@
-// Which format a texture's file has, what is refused, and that no damage goes further than an Error.
+// The formats of textures' files, the refused ones, and that damage causes only an Error.
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -161,7 +161,7 @@ TEST(TexelIo, EveryChangedByteIsUsedOrRefused) {
                 refused += is_refused(bytes) ? 1 : 0;
             }
         }
-        // Every byte of a PNG file counts for one of its checksums.
+        // Every byte of a PNG file affects one of its checksums.
         const bool is_png = sample.kind == std::string("a PNG image");
         EXPECT_GE(refused, is_png ? 3 * sample.bytes.size() : 20u) << sample.kind;
     }

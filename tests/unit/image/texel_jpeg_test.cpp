@@ -172,7 +172,7 @@ TEST(TexelJpeg, RefusesColoursForPrinting) {
     }
     EXPECT_EQ(
         texel_error(encode_jpeg(JPEG_SIZE, random_bytes(size_t{2} * JPEG_SIZE.x * JPEG_SIZE.y), JCS_UNKNOWN)),
-        "it has 2 channels of no known meaning; save it as grey or RGB");
+        "it has 2 channels of unknown meaning; save it as grey or RGB");
 }
 
 TEST(TexelJpeg, RefusesKindsThatLibjpegDoesNotDecode) {

@@ -24,7 +24,7 @@ PngPicture make_picture(PngColor color, uint32_t bits, uvec2 size = PNG_SIZE) {
     return picture;
 }
 
-// Samples as the texels that stand for the same fractions of 1.
+// Samples as the texels of the same fractions of 1.
 std::vector<uint32_t> scaled(std::vector<uint32_t> samples, uint32_t bits) {
     for (uint32_t& sample : samples) {
         if (bits < 8) sample = uint32_t(std::lround(255.0 * sample / ((1u << bits) - 1)));
@@ -169,7 +169,7 @@ TEST(TexelPng, TellsAGammaThatIsNotTheUsualOne) {
          {std::pair{0u, "0"}, {9999u, "0.09999"}, {1000001u, "10"}, {~0u >> 1, "21474.8"}}) {
         const std::string file = encode_png(picture, png_chunk("gAMA", big_endian_bytes(value)));
         EXPECT_EQ(texel_warning(file),
-                  "a: its gamma of " + std::string(text) + " cannot be meant, and is ignored");
+                  "a: its gamma of " + std::string(text) + " is implausible, and is ignored");
     }
 }
 
@@ -202,7 +202,7 @@ TEST(TexelPng, RefusesSizesThatCannotBe) {
                   damaged_file("its header says " + std::to_string(size.x) + 'x' + std::to_string(size.y) +
                                " pixels"));
     }
-    // Of 1032 * 100 bytes, 100 could tell; a file of a byte less cannot.
+    // 100 bytes can expand to 1032 * 100 bytes; a byte less cannot.
     PngPicture picture{.size = {1032, 100}, .bits = 8, .color = png_grey};
     const std::string file = PNG_SIGNATURE + png_header(picture);
     expect_damaged(file + std::string(100 - file.size(), '\0'));

@@ -66,9 +66,9 @@ TEST(TexelWebp, SaysWhatIsDamaged) {
         EXPECT_EQ(texel_error(file.substr(0, file.size() - 1)), damaged_file("it ends early"));
         EXPECT_EQ(texel_error(file.substr(0, 12)), damaged_file("it ends early"));
         EXPECT_EQ(texel_error(riff("abcdefghijklmnopqrstuvwxyz")),
-                  damaged_file("its bytes are no valid WebP"));
+                  damaged_file("its bytes are not valid WebP"));
     }
-    EXPECT_EQ(texel_error("XXXX" + riff("VP8 ").substr(4)), damaged_file("its bytes are no valid WebP"));
+    EXPECT_EQ(texel_error("XXXX" + riff("VP8 ").substr(4)), damaged_file("its bytes are not valid WebP"));
 }
 
 }  // namespace

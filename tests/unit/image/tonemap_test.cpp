@@ -1,6 +1,6 @@
 // Tone curves: properties that their publications promise, values computed separately in double precision,
-// and what becomes of inputs that are no colours.
-#include "image/tonemap.h"
+// and the results for inputs that are not colours.
+#include "base/tonemap.h"
 
 #include <cmath>
 #include <limits>
@@ -31,7 +31,7 @@ TEST(Tonemap, EveryCodeOfSrgbSurvivesDecodingAndEncoding) {
 }
 
 TEST(Tonemap, EncodingRoundsToTheNearestCode) {
-    const float step = 1.0f / (255.0f * 12.92f);  // Of the linear part of the transfer function.
+    const float step = 1.0f / (255.0f * 12.92f);  // Step of the linear part of the transfer function.
     EXPECT_EQ(encode_srgb8({1.49f * step, 1.51f * step, 9.49f * step}), (std::array<uint8_t, 3>{1, 2, 9}));
     EXPECT_EQ(encode_srgb8({0.18f, 0.5f, 1.0f}), (std::array<uint8_t, 3>{118, 188, 255}));
 }

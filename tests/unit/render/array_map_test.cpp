@@ -1,4 +1,4 @@
-// Which buffers hold the arrays of a scene, on devices of all limits.
+// The buffers of a scene's arrays, on devices of all limits.
 #include "render/array_map.h"
 
 #include <algorithm>

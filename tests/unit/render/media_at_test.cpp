@@ -1,4 +1,4 @@
-// Which media the host finds at a point, and when media may lie within each other.
+// The media that the host finds at a point, and media that may lie within each other.
 #include "render/media_at.h"
 
 #include <gtest/gtest.h>
@@ -112,11 +112,11 @@ TEST(MediaMayNest, HolesAreNamed) {
     add_shape(scene, ball, 0);
     EXPECT_TRUE(build_gpu_scene(scene).warnings.empty());
     add_shape(scene, ball, 1);
-    EXPECT_EQ(build_gpu_scene(scene).warnings,
-              std::vector<std::string>{
-                  "shape 3 (material \"tea\"): the mesh is not closed, so that rays may leave the "
-                  "medium inside without passing its surface, and stay in it; close the mesh"});
-    // Of clear glass, it does not matter, unless something else is in it.
+    EXPECT_EQ(
+        build_gpu_scene(scene).warnings,
+        std::vector<std::string>{"shape 3 (material \"tea\"): the mesh is not closed, so rays may leave the "
+                                 "medium without crossing its surface, and remain in it; close the mesh"});
+    // For clear glass, it does not matter, unless something else is in it.
     scene.materials[1].model = DielectricMaterial{};
     scene.shapes.erase(scene.shapes.begin() + 1);
     EXPECT_TRUE(build_gpu_scene(scene).warnings.empty());
@@ -224,10 +224,9 @@ TEST(MediaMayNest, FiveWithinEachOtherAreTooMany) {
         add_shape(scene, Sphere{dvec3(0), double(i)}, glass);
     EXPECT_TRUE(build_gpu_scene(scene).warnings.empty());
     add_shape(scene, Sphere{dvec3(0), 0.5}, glass);
-    EXPECT_EQ(
-        build_gpu_scene(scene).warnings,
-        std::vector<std::string>{"shape 4 may lie within 4 other solids; a path keeps 4 media in mind, and "
-                                 "forgets the one with the lowest priority that it entered first"});
+    EXPECT_EQ(build_gpu_scene(scene).warnings,
+              std::vector<std::string>{"shape 4 may lie within 4 other solids; a path can track 4 media, and "
+                                       "drops the one with the lowest priority that it entered first"});
 }
 
 // The walls of a box are one solid, though none of them overlaps another's box.
@@ -291,7 +290,7 @@ TEST(MediaMayNest, WhereASolidIsTooThin) {
     EXPECT_TRUE(build_gpu_scene(scene_of(1e-4)).warnings.empty());
     EXPECT_TRUE(may_nest(scene_of(1e-6)));
     const std::string text =
-        " m of the scene and its cameras, so that rays may miss one of its sides; make it thicker, or use a "
+        " m of the scene and its cameras, so rays may miss one of its sides; make it thicker, or use a "
         "thin "
         "wall";
     EXPECT_EQ(build_gpu_scene(scene_of(1e-6)).warnings,

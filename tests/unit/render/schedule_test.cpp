@@ -128,9 +128,9 @@ TEST(Schedule, PassesAreShortWhileTheImageIsYoung) {
     }
 }
 
-// Of 512 x 512 pixels only every sixteenth row of groups goes on; all others have reached their limits. A
-// submission that includes such a row takes no longer than it may, however little the previous ones had to
-// do, and those are not made smaller.
+// In 512 x 512 pixels, only every sixteenth row of groups continues; all others have reached their limits. A
+// submission that includes such a row is no longer than allowed, however little the previous ones had to do,
+// and those are not made smaller.
 TEST(Schedule, PixelsAtTheirLimitsNeitherHideWorkNorMakeSubmissionsSmall) {
     constexpr double SECONDS_PER_SAMPLE = 1e-6, OVERHEAD = 1e-4;
     constexpr uint32_t BEFORE = 64, TARGET = 128;

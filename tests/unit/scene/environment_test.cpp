@@ -107,12 +107,14 @@ TEST_F(EnvironmentFile, UnusableTexelsAreBlackAndCounted) {
     for (const size_t i : {1, 2, 4})
         EXPECT_EQ(environment.radiance[i], vec3(float(17 + i), float(9 + i), float(1 + i))) << i;
     EXPECT_EQ(environment.radiance[5], vec3(22, 14, 0)) << "zero is a fine value";
-    EXPECT_EQ(warnings_, std::vector{named("4 of 8 texels are negative or not finite and count as black")});
+    EXPECT_EQ(warnings_,
+              std::vector{named("4 of 8 texels are negative or not finite, and are treated as black")});
 
     image = make_image(4, 2, {"Y"});
     image.channels[0].values[0] = -1.0f;
     load(image);
-    EXPECT_EQ(warnings_, std::vector{named("1 of 8 texels is negative or not finite and counts as black")});
+    EXPECT_EQ(warnings_,
+              std::vector{named("1 of 8 texels is negative or not finite, and is treated as black")});
 }
 
 TEST_F(EnvironmentFile, WarnsOfAStretchedMap) {
@@ -130,7 +132,7 @@ TEST_F(EnvironmentFile, WarnsThatBlackGivesNoLight) {
     EXPECT_EQ(warnings_, std::vector{black});
     std::ranges::fill(image.channels[0].values, -1.0f);
     load(image);
-    const std::string count = named("8 of 8 texels are negative or not finite and count as black");
+    const std::string count = named("8 of 8 texels are negative or not finite, and are treated as black");
     EXPECT_EQ(warnings_, (std::vector{count, black}));
     image.channels[0].values[7] = 1e-30f;
     load(image);

@@ -106,7 +106,7 @@ TEST(Geometry, AnswersForTheWholeScene) {
     EXPECT_EQ(emitter_count(scene), 1u);
     const DoubleBox box = bounds(scene);
     EXPECT_EQ(box.lo, dvec3(0, 0, -3));
-    EXPECT_EQ(box.hi, dvec3(1, 2, 0));  // The unused position does not count.
+    EXPECT_EQ(box.hi, dvec3(1, 2, 0));  // The unused position is ignored.
     EXPECT_TRUE(bounds(Scene()).is_empty());
     EXPECT_EQ(triangle_count(Scene()), 0u);
 }

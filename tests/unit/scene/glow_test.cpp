@@ -11,8 +11,8 @@ namespace {
 
 using std::numbers::pi;
 
-const double RADIUS = std::sqrt(3.0);  // Of the sphere around the box from (-1, -1, -1) to (1, 1, 1).
-constexpr double AREA = 1e-10;         // Of each emitter.
+const double RADIUS = std::sqrt(3.0);  // Radius of the sphere around the box from (-1, -1, -1) to (1, 1, 1).
+constexpr double AREA = 1e-10;         // Area of each emitter.
 
 // Scenes within that box, whose corners two tiny triangles hold.
 class GlowTest : public testing::Test {
@@ -118,7 +118,7 @@ TEST_F(GlowTest, ImagesGiveTheirMean) {
     EXPECT_EQ(glow_of(scene_, 0.6).area, 0.0);
 }
 
-// Of a million triangles, some are looked at: as many as matter.
+// Among a million triangles, only some are looked at.
 TEST_F(GlowTest, ManyTrianglesAreSampled) {
     emit({0, 0, 0}, {0, 0, 1});
     std::vector<uvec3>& triangles = scene_.meshes.back().triangles;

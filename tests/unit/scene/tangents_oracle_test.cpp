@@ -25,7 +25,7 @@ namespace {
 
 struct Expected {
     TriangleMesh mesh;                   // Without tangents.
-    std::vector<glm::i16vec4> tangents;  // Of the corners; x, y, z times 32767.
+    std::vector<glm::i16vec4> tangents;  // Tangents of the corners; x, y, z times 32767.
 };
 
 template <class T>
@@ -90,7 +90,7 @@ TEST_P(BlenderTangents, AreTheSameAtEveryCorner) {
             ++unknown;
             continue;
         }
-        // Where nothing is known, Blender's is (1, 0, 0) whatever the normal is.
+        // Where the tangent is unknown, Blender's is (1, 0, 0), regardless of the normal.
         const dvec3 wanted = blender - dot(blender, n) * n;
         ASSERT_LT(std::atan2(length(cross(wanted, dvec3(tangent))), dot(wanted, dvec3(tangent))),
                   LARGEST_ANGLE)
@@ -114,7 +114,7 @@ TEST_P(BlenderTangents, OnlyTheSplitVerticesAreAdded) {
     const TriangleMesh before = read_expected(GetParam()).mesh;
     TriangleMesh mesh = before;
     add_tangents(mesh);
-    std::map<uint32_t, std::set<std::array<float, 4>>> tangents;  // Of each vertex there was.
+    std::map<uint32_t, std::set<std::array<float, 4>>> tangents;  // Tangents of each original vertex.
     for (size_t c = 0; c < 3 * mesh.triangles.size(); ++c) {
         const uint32_t old = vertex_of(before, c);
         const uint32_t vertex = vertex_of(mesh, c);

@@ -1,4 +1,4 @@
-// Names that no two things share, and lists of a file in which many have one name.
+// Unique names, and lists of a file in which many have one name.
 #include "scene/unique_names.h"
 
 #include <gtest/gtest.h>

@@ -35,7 +35,7 @@ TEST(Evidence, CountsComparisonsAndKeepsTheFirstThatIsWrong) {
     EXPECT_FALSE(evidence.passes(0.0));
 }
 
-// Of n tests, the least p-value is below x with a probability of 1 - (1 - x)^n.
+// With n tests, the least p-value is below x with a probability of 1 - (1 - x)^n.
 TEST(Evidence, CorrectsTheLeastPValueForTheNumberOfTests) {
     Evidence evidence;
     EXPECT_EQ(evidence.p_value(), 1.0);

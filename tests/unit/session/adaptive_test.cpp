@@ -97,8 +97,8 @@ TEST(Adaptive, AndToThatOfTheirCost) {
     EXPECT_EQ(limit_at(extra, COLUMNS - 5) + EVEN, 96u);
 }
 
-// What counts is the error relative to the picture: three times as bright and three times as noisy is the
-// same. The darkness that is added to the square, 0.01 of the mean's, changes little.
+// Only the error relative to the picture matters: three times as bright and three times as noisy is the same.
+// The darkness that is added to the square, 0.01 of the mean's, changes little.
 TEST(Adaptive, TheErrorIsRelative) {
     Accumulation extra = no_samples();
     const auto brightness = [](uint32_t x) { return x < COLUMNS / 2 ? 1.0 : 3.0; };

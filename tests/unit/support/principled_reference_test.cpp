@@ -346,7 +346,7 @@ TEST(PrincipledReference, RoughDiffuseReflectionOfWhiteLosesNoLight) {
     }
 }
 
-// At normal incidence: at others, the extension's outer interface reflects by Schlick's curve, whatever its
+// At normal incidence: at others, the extension's outer interface reflects by Schlick's curve, for any
 // index. The amplitude of interference is at least sqrt(1e-5), its sensitivity at most 1.5.
 TEST(PrincipledReference, FilmOfAirIsNoneAtNormalIncidence) {
     const dvec3 f0(0.04, 0.5, 0.9);

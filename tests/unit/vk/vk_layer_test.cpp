@@ -90,7 +90,7 @@ TEST(SelectDevice, NoMatchListsWhatThereIs) {
             "no device matches \"" + std::string(request) +
                 "\"; give the index or a part of the name of one of: "
                 "0: \"llvmpipe (LLVM 15.0.6, 256 bits)\" (CPU), "
-                "1: \"Old Radeon\" (discrete GPU; will not do: it offers Vulkan 1.1.70, and 1.2 is needed), "
+                "1: \"Old Radeon\" (discrete GPU; unsuitable: it offers Vulkan 1.1.70, and 1.2 is needed), "
                 "2: \"Intel UHD 630\" (integrated GPU), 3: \"Radeon RX 6600\" (discrete GPU)");
     }
 }
@@ -108,7 +108,7 @@ TEST(SelectDevice, ADeviceThatWillNotDoIsRefusedWithItsReason) {
         const auto [message, code] = error_and_code_of([&] { selected(request); });
         EXPECT_EQ(code, ExitCode::no_device);
         EXPECT_EQ(message,
-                  "device 1 \"Old Radeon\" will not do: it offers Vulkan 1.1.70, and 1.2 is needed; choose "
+                  "device 1 \"Old Radeon\" is unsuitable: it offers Vulkan 1.1.70, and 1.2 is needed; choose "
                   "another device or install a newer driver");
     }
 }
@@ -123,7 +123,7 @@ TEST(SelectDevice, WithoutAUsableDeviceItNamesTheRemedy) {
     const auto [unfit, unfit_code] =
         error_and_code_of([] { select_device(std::span(DEVICES).subspan(1, 1), std::nullopt); });
     EXPECT_EQ(unfit_code, ExitCode::no_device);
-    EXPECT_NE(unfit.find("no Vulkan device here will do: 1: \"Old Radeon\""), std::string::npos) << unfit;
+    EXPECT_NE(unfit.find("no suitable Vulkan device:  1: \"Old Radeon\""), std::string::npos) << unfit;
     EXPECT_NE(unfit.find("install a newer driver, or mesa-vulkan-drivers"), std::string::npos) << unfit;
 }
 

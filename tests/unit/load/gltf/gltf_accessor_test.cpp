@@ -175,8 +175,8 @@ TEST_F(GltfAccessor, RefusesSparseElementsThatAreNotThere) {
     file.add<float>("SCALAR", {1, 2, 3}, {{"sparse", sparse_of(indices, 5121, values, 2)}});
     Json& sparse = file.root["accessors"][0]["sparse"];
     expect_refused(file,
-                   "#/accessors/0/sparse/indices: number 1 replaces an element that the accessor, which has "
-                   "3, lacks; is the file damaged?");
+                   "#/accessors/0/sparse/indices: number 1 replaces an element beyond the accessor's "
+                   "3; is the file damaged?");
     sparse["count"] = 4;
     expect_refused(file,
                    "#/accessors/0/sparse/count: \"count\": expected a whole number from 1 to 3, found 4");
@@ -197,8 +197,8 @@ TEST_F(GltfAccessor, RefusesSparseElementsThatAreNotThere) {
                    "5125, found 5120");
     sparse["indices"]["componentType"] = 5121;
     expect_refused(file,
-                   "#/accessors/0/sparse/indices: number 1 replaces an element that the accessor, which has "
-                   "2, lacks; is the file damaged?");
+                   "#/accessors/0/sparse/indices: number 1 replaces an element beyond the accessor's "
+                   "2; is the file damaged?");
     sparse.erase("values");
     sparse["count"] = 1;
     expect_refused(file, "#/accessors/0/sparse: the key \"values\" is missing here; add it");
@@ -237,7 +237,7 @@ TEST_F(GltfAccessor, RefusesElementsBeyondTheirView) {
     expect("count", 1.5,
            "#/accessors/0/count: \"count\": expected a whole number from 1 to 4294967295, found 1.5");
     expect("bufferView", 1,
-           "#/accessors/0/bufferView: there is no 1 in \"bufferViews\", which has 0 to 0; name one that the "
+           "#/accessors/0/bufferView: \"bufferViews\" has no element 1, only 0 to 0; name one that the "
            "file has");
     // The greatest product: (2^32 - 2) (2^32 - 1) + 12 + 2^32 - 1 is below 2^64.
     file.root["accessors"][0]["count"] = file.root["bufferViews"][0]["byteStride"] = 4294967295;
@@ -285,11 +285,11 @@ TEST_F(GltfAccessor, FloatsCannotBeNormalised) {
     const size_t positions = file.add_normalized("VEC3", std::vector<float>{0, 0, 0, 4, 0, 0, 0, 4, 0});
     file.show({{"attributes", {{"POSITION", positions}}}});
     const Scene scene = expect_warning(
-        file, "#/accessors/0: \"normalized\" says nothing of floats and of 32-bit integers, and is ignored");
+        file, "#/accessors/0: \"normalized\" does not apply to floats or 32-bit integers, and is ignored");
     EXPECT_EQ(world_mesh(scene).positions[1], vec3(4, 0, 0));
 }
 
-// What costs a file nothing must not cost memory: whatever goes along with others has as many elements as
+// Zeros take no bytes in a file, so they must not take unlimited memory: an attribute has as many elements as
 // they, and so not more than the file has bytes.
 TEST_F(GltfAccessor, AsManyZerosAsTheFileHasBytesAreAllowed) {
     GltfFile file;
@@ -298,7 +298,7 @@ TEST_F(GltfAccessor, AsManyZerosAsTheFileHasBytesAreAllowed) {
     EXPECT_EQ(integers(file), std::vector<uint32_t>(6, 0));
     const auto message = [](size_t bytes) {
         return concat(
-            "#/accessors/0/count: an accessor without a bufferView is all zeros, and has no more "
+            "#/accessors/0/count: an accessor without a bufferView is all zeros, and may not have more "
             "elements than the ",
             bytes, " bytes that were read; name the view of its bytes");
     };

@@ -1,4 +1,4 @@
-// Animations of glTF files: what nodes do between keys, and which animation counts.
+// Animations of glTF files: nodes between keys, and the choice of the animation.
 // Ref: Khronos, "glTF 2.0 Specification", section 3.11 and appendix C.
 #include <cmath>
 #include <functional>
@@ -171,7 +171,7 @@ TEST_F(GltfAnimation, PosesByTheAnimationsThatAreAskedFor) {
     expect_text_error(file.gltf(),
                       "--animation: m.gltf has nothing called \"run\" among its animations (known: walk, 1)",
                       "m.gltf", {.animation = "run", .time = 0.0});
-    const std::string none = ": the file has no animations: --time changes nothing";
+    const std::string none = ": the file has no animations: --time has no effect";
     expect_warning(corner_file(), none, {.time = 1.0});
     expect_warning(corner_file(), none, {.animation = "all", .time = 1.0});
     expect_text_error(corner_file().gltf(),
@@ -184,7 +184,7 @@ TEST_F(GltfAnimation, WhatItCannotAnimateIsNoted) {
     file.root["nodes"][0]["matrix"] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1};
     const Scene scene = expect_warning(file,
                                        "#/animations/0/channels/0: the node has a matrix, which cannot be "
-                                       "animated; the animation takes its place",
+                                       "animated; the animation replaces it",
                                        {.time = 0.0});
     EXPECT_EQ(world_mesh(scene).positions[1], vec3(6, 0, 0));
     file = animated("pointer", {0}, "STEP", "VEC3", std::vector<float>{5, 0, 0});
@@ -196,28 +196,26 @@ TEST_F(GltfAnimation, WhatItCannotAnimateIsNoted) {
         {"pointer", "/materials/0/emissiveFactor"}};
     expect_warning(
         file,
-        "#/animations/0/channels/0/target: ignored what KHR_animation_pointer moves: only nodes and "
+        "#/animations/0/channels/0/target: ignored the targets of KHR_animation_pointer: only nodes and "
         "weights are animated",
         {.time = 0.0});
     EXPECT_TRUE(load(file).warnings.empty());
 }
 
 TEST_F(GltfAnimation, NotesRotationsOfAnotherLength) {
-    // Of a spline, tangents have any length.
+    // The tangents of a spline may have any length.
     const std::vector<float> halves{9, 0, 0, 0, 0, 0, 0,    1,    0, 9, 0, 0,
                                     0, 0, 0, 0, 0, 0, 0.5f, 0.5f, 9, 9, 9, 9};
     const GltfFile file = animated("rotation", {0, 1}, "CUBICSPLINE", "VEC4", halves);
-    const Scene scene =
-        expect_warning(file,
-                       "#/animations/0/samplers/0/output: the rotation of key 1 is a quaternion "
-                       "of another length than 1; all are divided by their lengths",
-                       {.time = 2.0});
+    const Scene scene = expect_warning(file,
+                                       "#/animations/0/samplers/0/output: the rotation of key 1 is a "
+                                       "quaternion whose length is not 1; all are normalised",
+                                       {.time = 2.0});
     EXPECT_LE(distance(world_mesh(scene).positions[1], vec3(0, 1, 0)), 1e-6f);
-    expect_warning(
-        animated("rotation", {0}, "STEP", "VEC4", std::vector<float>{0, 0, 0, 0}),
-        "#/animations/0/samplers/0/output: the rotation of key 0 is a quaternion of another length than 1; "
-        "all are divided by their lengths",
-        {.time = 0.0});
+    expect_warning(animated("rotation", {0}, "STEP", "VEC4", std::vector<float>{0, 0, 0, 0}),
+                   "#/animations/0/samplers/0/output: the rotation of key 0 is a quaternion whose length is "
+                   "not 1; all are normalised",
+                   {.time = 0.0});
 }
 
 TEST_F(GltfAnimation, OfTwoChannelsWithOneTargetTheLastCounts) {
@@ -228,10 +226,9 @@ TEST_F(GltfAnimation, OfTwoChannelsWithOneTargetTheLastCounts) {
     animation["channels"].push_back({{"sampler", 1}, {"target", {{"node", 0}, {"path", "scale"}}}});
     EXPECT_TRUE(load(file, {.time = 0.0}).warnings.empty());
     animation["channels"][1]["target"]["path"] = "translation";
-    const Scene scene = expect_warning(file,
-                                       "#/animations/0/channels/0/target: channel 1 has the same target, and "
-                                       "takes the place of this one",
-                                       {.time = 0.0});
+    const Scene scene = expect_warning(
+        file, "#/animations/0/channels/0/target: channel 1 has the same target, and replaces this one",
+        {.time = 0.0});
     EXPECT_EQ(world_mesh(scene).positions[0], vec3(7));
 }
 
@@ -266,9 +263,8 @@ TEST_F(GltfAnimation, RefusesSamplersThatAreNoneOrDamaged) {
     channel["sampler"] = 1;
     expect(file, "channels/0/sampler: the animation has only 1 samplers");
     channel["target"]["node"] = 1;
-    expect(
-        file,
-        "channels/0/target/node: there is no 1 in \"nodes\", which has 0 to 0; name one that the file has");
+    expect(file,
+           "channels/0/target/node: \"nodes\" has no element 1, only 0 to 0; name one that the file has");
     channel.erase("target");
     expect(file, "channels/0: the key \"target\" is missing here; add it");
     file.root["animations"][0].erase("channels");

@@ -100,7 +100,7 @@ TEST_F(GltfFileTest, ReadsVersionTwoAlone) {
     const auto expect_refused = [&](const Json& asset, const std::string& key, const std::string& version) {
         GltfFile file;
         file.root["asset"] = asset;
-        expect_error(file, "#/asset/" + key + ": files of version 2.0 are read, not of \"" + version +
+        expect_error(file, "#/asset/" + key + ": only glTF 2.0 is read, not \"" + version +
                                "\"; export the scene as glTF 2.0");
     };
     expect_refused({{"version", "1.0"}}, "version", "1.0");
@@ -196,13 +196,13 @@ TEST_F(GltfFileTest, RefusesDataThatAreNoBase64) {
     const auto expect = [&](const std::string& uri, const std::string& message) {
         expect_text_error(naming(uri), "m.gltf#/buffers/0/uri: " + message);
     };
-    const std::string not_base64 = "the data of the URI are not base64; is the file cut off?";
+    const std::string not_base64 = "the data of the URI is not base64; is the file cut off?";
     expect("data:;base64,AAAA*", not_base64);
     expect("data:;base64,AAAAA", not_base64);
     expect("data:;base64,AA=A", not_base64);
     expect("data:;base64,AAA===", not_base64);
     expect("data:;base64,AAA%3", not_base64);
-    const std::string kind = "data in a URI are read as base64, data:TYPE;base64,DATA; encode them so";
+    const std::string kind = "data in a URI must be base64, data:TYPE;base64,DATA; encode it so";
     expect("data:text/plain,hello", kind);
     expect("data:;base64", kind);
     // Without the padding, and of any type.
@@ -249,12 +249,12 @@ TEST_F(GltfFileTest, RefusesBuffersAndViewsThatAreTooShort) {
     view["byteLength"] = 36;
     view["buffer"] = 1;
     expect(
-        "#/bufferViews/0/buffer: there is no 1 in \"buffers\", which has 0 to 0; name one that the file "
+        "#/bufferViews/0/buffer: \"buffers\" has no element 1, only 0 to 0; name one that the file "
         "has");
     file.root.erase("buffers");
     file.bytes.clear();
     expect(
-        "#/bufferViews/0/buffer: there is no 1 in \"buffers\", which is empty or missing; name one that the "
+        "#/bufferViews/0/buffer: \"buffers\" has no element 1: it is empty or missing; name one that the "
         "file has");
 }
 
@@ -262,7 +262,7 @@ TEST_F(GltfFileTest, BuffersThatExtensionsFillAreRefusedByTheirNames) {
     for (const std::string name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
         GltfFile file = corner_file();
         file.root["buffers"] = {{{"byteLength", 36}, {"extensions", {{name, {{"fallback", true}}}}}}};
-        expect_error(file, "#/buffers/0: the data are compressed by meshopt (" + name +
+        expect_error(file, "#/buffers/0: the data is compressed by meshopt (" + name +
                                "), which is not read; export the file without compression");
     }
 }

@@ -17,9 +17,9 @@ namespace candela {
 
 using Json = nlohmann::json;
 
-inline constexpr double ROOT = 0.70710678118654752;  // Of 1/2.
+inline constexpr double ROOT = 0.70710678118654752;  // The root of 1/2.
 
-// The number that stands for a component type.
+// The number of a component type.
 template <class T>
 constexpr int component_type() {
     if constexpr (std::is_same_v<T, int8_t>) return 5120;

@@ -68,14 +68,12 @@ TEST_F(GltfCamera, AnOrthographicOneSeesTwiceItsMagnification) {
     EXPECT_EQ(camera.ortho_height, 3.0);
     const Scene mirrored =
         expect_warning(seen_by(orthographic(3, -1.5)),
-                       "#/cameras/0/orthographic/ymag: the size of what is seen counts without its sign");
+                       "#/cameras/0/orthographic/ymag: the sign of the view's size is ignored");
     EXPECT_EQ(mirrored.cameras.at(0).ortho_height, 3.0);
     for (const auto& [size, text] :
          {std::pair(0.0, "0"), std::pair(1e38, "1e+38"), std::pair(1e-40, "1e-40")}) {
-        const std::string message = std::string(
-                                        ": expected a number from 1.2e-38 to 1e37, half the size of what is "
-                                        "seen, found ") +
-                                    text;
+        const std::string message =
+            std::string(": expected a number from 1.2e-38 to 1e37, half the size of the view, found ") + text;
         expect_error(seen_by(orthographic(size, 1)), "#/cameras/0/orthographic/xmag: \"xmag\"" + message);
         expect_error(seen_by(orthographic(1, size)), "#/cameras/0/orthographic/ymag: \"ymag\"" + message);
     }
@@ -115,7 +113,7 @@ TEST_F(GltfCamera, RefusesOnesThatSeeNothing) {
     GltfFile file = seen_by(perspective());
     file.root["nodes"][1]["camera"] = 1;
     expect_error(file,
-                 "#/nodes/1/camera: there is no 1 in \"cameras\", which has 0 to 0; name one that the file "
+                 "#/nodes/1/camera: \"cameras\" has no element 1, only 0 to 0; name one that the file "
                  "has");
 }
 
@@ -181,19 +179,17 @@ TEST_F(GltfLight, CountsInTheUnitsThatAreAskedFor) {
     // Those of the program that wrote the file, unless others are asked for.
     GltfFile file = lit_by(lamp);
     file.root["asset"]["generator"] = "Khronos glTF Blender I/O v3.6.5";
-    const Scene scene = expect_warning(
-        file,
-        ": Blender wrote the file, so that its lights count as watts times 683 lm/W; where that is too dark, "
-        "give --light-units spec or raw");
+    const Scene scene = expect_warning(file,
+                                       ": Blender wrote the file, so its lights are read as watts times 683 "
+                                       "lm/W; if that is too dark, use --light-units spec or raw");
     expect_near(std::get<PointLight>(scene.lights.at(0).model).intensity, dvec3(1));
     // Blender multiplies since its exporter 3.4.35; names without a version are of today.
     for (const char* generator : {"Khronos glTF Blender I/O v1.2.75", "Khronos glTF Blender I/O v3.3.27",
                                   "Khronos Blender glTF 2.0 I/O"}) {
         file.root["asset"]["generator"] = generator;
-        const Scene old = expect_warning(
-            file,
-            ": a Blender before 3.4 wrote the file, so that its lights count as watts; where that is "
-            "too dark, give --light-units spec");
+        const Scene old = expect_warning(file,
+                                         ": a Blender before 3.4 wrote the file, so its lights are read as "
+                                         "watts; if that is too dark, use --light-units spec");
         expect_near(std::get<PointLight>(old.lights.at(0).model).intensity, dvec3(683 / sphere));
     }
     for (const char* generator :
@@ -215,14 +211,14 @@ TEST_F(GltfLight, NotesWhatIsOdd) {
                        "/range: the range of a light is ignored: its "
                        "intensity falls with the squared distance");
     expect_warning(lit_by({{"type", "point"}, {"intensity", -1}}),
-                   light + "/intensity: -1 is not between 0 and 1e+30; it counts as 0");
+                   light + "/intensity: -1 is not between 0 and 1e+30; it is read as 0");
     expect_warning(lit_by({{"type", "point"}, {"color", {1, 2, 1}}}),
-                   light + "/color: 2 is not between 0 and 1; it counts as 1");
+                   light + "/color: 2 is not between 0 and 1; it is read as 1");
     expect_warning(lit_by({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}),
-                   light + "/spot/outerConeAngle: 2 is not between 0 and 1.5708; it counts as 1.5708");
+                   light + "/spot/outerConeAngle: 2 is not between 0 and 1.5708; it is read as 1.5708");
     const Scene scene = expect_warning(
         lit_by({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.25}}}}),
-        light + "/spot: the inner angle of a spot is greater than the outer one, and counts as equal");
+        light + "/spot: the inner angle of a spot is greater than the outer one, and is treated as equal");
     for (const Json& cone : {Json{{"innerConeAngle", 0.25}, {"outerConeAngle", 0.25}},
                              Json{{"innerConeAngle", 0}, {"outerConeAngle", 0}}}) {
         const auto spot = read<SpotLight>({{"type", "spot"}, {"spot", cone}});
@@ -262,7 +258,7 @@ TEST_F(GltfLight, FilesWithoutCameraOrLightGetBoth) {
     const std::string camera =
         "m.gltf: there is no camera; the scene is seen from the front, a little from the right and above\n";
     const std::string light =
-        "m.gltf: there is no light; a studio lights the scene, which the camera does not see\n";
+        "m.gltf: there is no light; a studio, which the camera does not see, lights the scene\n";
     const Scene bare = complete(corner_file());
     EXPECT_EQ(warnings(bare), camera + light);
     EXPECT_EQ(bare.cameras.size(), 1u);
@@ -396,9 +392,9 @@ TEST_F(GltfStudio, WhatIsBrighterThanWhiteIsALightOfAnySize) {
     file_.root["materials"][1]["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", 2}};
     const Scene scene = complete();
     EXPECT_FALSE(scene.environment);
-    EXPECT_EQ(scene.warnings,
-              Warnings{"m.gltf: only small or dim surfaces emit light; where that is too dark, give --studio "
-                       "default"});
+    EXPECT_EQ(
+        scene.warnings,
+        Warnings{"m.gltf: only small or dim surfaces emit light; if that is too dark, use --studio default"});
     // As old files of VRM say it.
     file_.root["materials"][1]["extensions"] = {
         {"VRMC_materials_hdr_emissiveMultiplier", {{"emissiveMultiplier", 2}}}};

@@ -111,7 +111,7 @@ TEST_F(GltfMaterial, ReadsMetallicRoughness) {
     EXPECT_EQ(material.normal_map->texture.image, 1u);
     EXPECT_EQ(material.normal_map->texture.uv_set, 1u);
     EXPECT_EQ(material.normal_map->texture.encoding, TextureEncoding::linear);
-    // Opaque, whatever its alpha.
+    // Opaque, regardless of its alpha.
     EXPECT_EQ(material.opacity.value, Textured<float>(1.0f));
 }
 
@@ -241,7 +241,7 @@ TEST_F(GltfMaterial, ReadsExtensionsOfBodies) {
                              {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
                               {"KHR_materials_volume", endless}}}}),
                    "#/materials/0/extensions/KHR_materials_volume/attenuationDistance: the distance is not "
-                   "above 0, and counts as infinite");
+                   "above 0, and is treated as infinite");
 }
 
 TEST_F(GltfMaterial, AnUnlitOneShowsItsColourAlone) {
@@ -261,7 +261,7 @@ TEST_F(GltfMaterial, AnUnlitOneShowsItsColourAlone) {
     EXPECT_FALSE(material.normal_map);
 }
 
-// As KHR_materials_ior has it: an index of 0 reflects all light, of which the specular colour is the share.
+// As KHR_materials_ior has it: an index of 0 reflects all light, times the specular colour.
 TEST_F(GltfMaterial, GlossinessIsTheOppositeOfRoughness) {
     Json old = {{"diffuseFactor", {0.1, 0.2, 0.3, 0.5}},
                 {"diffuseTexture", A},
@@ -291,24 +291,24 @@ TEST_F(GltfMaterial, GlossinessIsTheOppositeOfRoughness) {
 
 TEST_F(GltfMaterial, ValuesOutsideOfTheirRangesAreClampedWithAWarning) {
     EXPECT_EQ(clamped({{"pbrMetallicRoughness", {{"roughnessFactor", 1.5}}}},
-                      "pbrMetallicRoughness/roughnessFactor: 1.5 is not between 0 and 1; it counts as 1")
+                      "pbrMetallicRoughness/roughnessFactor: 1.5 is not between 0 and 1; it is read as 1")
                   .roughness.factor,
               1.0f);
     EXPECT_EQ(clamped({{"pbrMetallicRoughness", {{"metallicFactor", -0.5}}}},
-                      "pbrMetallicRoughness/metallicFactor: -0.5 is not between 0 and 1; it counts as 0")
+                      "pbrMetallicRoughness/metallicFactor: -0.5 is not between 0 and 1; it is read as 0")
                   .metalness.factor,
               0.0f);
-    EXPECT_EQ(clamped({{"pbrMetallicRoughness", {{"baseColorFactor", {2, 0.5, -1, 1}}}}},
-                      "pbrMetallicRoughness/baseColorFactor: a component is not between 0 and 1; the nearest "
-                      "takes its place")
-                  .base_color.factor,
-              vec3(1, 0.5f, 0));
+    EXPECT_EQ(
+        clamped({{"pbrMetallicRoughness", {{"baseColorFactor", {2, 0.5, -1, 1}}}}},
+                "pbrMetallicRoughness/baseColorFactor: a component is not between 0 and 1; it is clamped")
+            .base_color.factor,
+        vec3(1, 0.5f, 0));
     EXPECT_EQ(clamped({{"emissiveFactor", {0, -1, 2}}},
-                      "emissiveFactor: -1 is not between 0 and 1e+30; it counts as 0")
+                      "emissiveFactor: -1 is not between 0 and 1e+30; it is read as 0")
                   .emission.factor,
               vec3(0, 0, 2));
     EXPECT_EQ(clamped(extension("KHR_materials_ior", {{"ior", 0.5}}),
-                      "extensions/KHR_materials_ior/ior: 0.5 is not between 1 and 1e+06; it counts as 1")
+                      "extensions/KHR_materials_ior/ior: 0.5 is not between 1 and 1e+06; it is read as 1")
                   .ior,
               1.0f);
     expect_error(

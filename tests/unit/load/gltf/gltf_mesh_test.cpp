@@ -184,11 +184,11 @@ TEST_F(GltfMesh, ReadsColoursOfEachKind) {
     EXPECT_EQ(
         colors("VEC3", std::vector<uint16_t>{65535, 0, 13107, 0, 26214, 0, 39321, 65535, 65535}, "OPAQUE"),
         expected);
-    // Beyond 1 they are 1, and what is no number is 0.
+    // Values above 1 become 1, and NaN becomes 0.
     const float nan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(colors("VEC3", std::vector<float>{7, -1, 0.2f, nan, 0.4f, 0, 0.6f, 1, INFINITE}, "OPAQUE"),
               expected);
-    // Alpha counts unless the material is opaque (sections 3.9.2 and 3.9.4).
+    // Alpha is used unless the material is opaque (sections 3.9.2 and 3.9.4).
     const std::vector<uint8_t> rgba{255, 0, 51, 255, 0, 102, 0, 0, 153, 255, 255, 51};
     const Colors with_alpha{vec4(1, 0, 0.2f, 1), vec4(0, 0.4f, 0, 0), vec4(0.6f, 1, 1, 0.2f)};
     EXPECT_EQ(colors("VEC4", rgba, "BLEND"), with_alpha);
@@ -202,10 +202,9 @@ TEST_F(GltfMesh, NotesColoursBeyondTheirRange) {
         file.show({{"attributes",
                     {{"POSITION", file.add_corner()},
                      {"COLOR_0", file.add<float>("VEC3", {1, 0, 1, 0, 1, 0, 0, beyond, 1})}}}});
-        expect_warning(
-            file,
-            "#/meshes/0/primitives/0/attributes/COLOR_0: some colours are not between 0 and 1; the "
-            "nearest take their place");
+        expect_warning(file,
+                       "#/meshes/0/primitives/0/attributes/COLOR_0: some colours are not between 0 and 1; "
+                       "they are clamped");
     }
 }
 
@@ -219,8 +218,7 @@ TEST_F(GltfMesh, NotesTheIndexThatWouldRestartAStrip) {
     EXPECT_TRUE(load(file).warnings.empty());
     file.root["meshes"][0]["primitives"][0]["indices"] = file.add<uint8_t>("SCALAR", {0, 1, 255});
     const Scene scene = expect_warning(
-        file,
-        "#/accessors/2: index 2 is 255, at which a strip may begin anew elsewhere; here it is a vertex");
+        file, "#/accessors/2: index 2 is 255, which may restart a strip elsewhere; here it is a vertex");
     EXPECT_EQ(world_mesh(scene).positions.at(2), vec3(255, 65025, 0));
 }
 
@@ -234,7 +232,7 @@ TEST_F(GltfMesh, RefusesCoordinatesThatAreNotFinite) {
                      "#/meshes/0/primitives/0/attributes/POSITION: the coordinates of vertex 1 are not "
                      "finite; export the mesh again");
     }
-    // Of vertices that a triangle uses; normals of no use are completed.
+    // Only vertices that a triangle uses are checked; useless normals are completed.
     const size_t positions = file.add<float>("VEC3", {nan, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0});
     const size_t normals = file.add<float>("VEC3", {0, 0, 1, nan, 0, 1, 0, 0, 0, 0, 1, 0});
     file.show({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}},
@@ -271,8 +269,8 @@ TEST_F(GltfMesh, RefusesIndicesAndAttributesThatDoNotFit) {
                  "is the file damaged?");
     primitive["attributes"] = {{"POSITION", 7}};
     expect_error(file,
-                 "#/meshes/0/primitives/0/attributes/POSITION: there is no 7 in \"accessors\", which has 0 "
-                 "to 1; name one that the file has");
+                 "#/meshes/0/primitives/0/attributes/POSITION: \"accessors\" has no element 7, only 0 to 1; "
+                 "name one that the file has");
     primitive["attributes"] = {{"POSITION", file.add<float>("VEC2", {0, 0, 1, 0, 0, 1})}};
     expect_error(file, "#/accessors/2/type: \"type\": expected \"VEC3\" for what it is used, found \"VEC2\"");
     primitive["attributes"] = {{"POSITION", positions}};

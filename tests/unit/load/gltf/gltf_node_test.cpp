@@ -96,9 +96,7 @@ TEST_F(GltfNode, RotationsOfItsInstancesAreDividedByTheirLengths) {
     const Scene scene = expect_warning(
         file,
         "#/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/ROTATION: the rotation of instance 1 is a "
-        "quaternion of another length than 1; all are divided by their lengths, and one of length 0 counts "
-        "as "
-        "none");
+        "quaternion whose length is not 1; all are normalised, and length 0 means no rotation");
     ASSERT_EQ(scene.shapes.size(), 3u);
     expect_corners(scene, 1, {dvec3(0), dvec3(0, 1, 0), dvec3(-1, 0, 0)});
     expect_corners(scene, 2, {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)});
@@ -135,7 +133,7 @@ TEST_F(GltfNode, MatricesStandColumnByColumn) {
 TEST_F(GltfNode, RotationsThatAreNoUnitQuaternionsAreMadeSome) {
     const Scene scene = expect_warning(
         corner_file({{"rotation", {0, 0, 3, 3}}}),
-        "#/nodes/0/rotation: the rotation is a quaternion of length 4.24264, not 1; it is divided by that");
+        "#/nodes/0/rotation: the rotation is a quaternion of length 4.24264, not 1; it is normalised");
     expect_corners(scene, 0, {dvec3(0), dvec3(0, 1, 0), dvec3(-1, 0, 0)});
     // Rounded to three digits, which needs no warning.
     const Scene rounded = load(corner_file({{"rotation", {0, 0, 0.707, 0.707}}}));
@@ -143,7 +141,7 @@ TEST_F(GltfNode, RotationsThatAreNoUnitQuaternionsAreMadeSome) {
     expect_corners(rounded, 0, {dvec3(0), dvec3(0, 1, 0), dvec3(-1, 0, 0)});
     const Scene none =
         expect_warning(corner_file({{"rotation", {0, 0, 0, 0}}}),
-                       "#/nodes/0/rotation: the rotation is a quaternion of length 0, and counts as none");
+                       "#/nodes/0/rotation: the rotation is a quaternion of length 0, and is ignored");
     expect_corners(none, 0, {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)});
 }
 
@@ -246,7 +244,7 @@ TEST_F(GltfNode, ShowsTheSceneThatIsAskedFor) {
                           "m.gltf", {.scene = wrong});
     }
     file.root["scene"] = 3;
-    expect_error(file, "#/scene: there is no 3 in \"scenes\", which has 0 to 2; name one that the file has");
+    expect_error(file, "#/scene: \"scenes\" has no element 3, only 0 to 2; name one that the file has");
     file.root.erase("scene");
     file.root.erase("scenes");
     // Without scenes, all nodes.
@@ -267,11 +265,12 @@ TEST_F(GltfNode, RefusesNodesThatFormNoTrees) {
     expect_error(tree({{2}, {2}, {}}),
                  "#/nodes/1/children/0: node 2 has a parent already, node 0; copy the "
                  "node, so that each has one");
-    expect_error(tree({{}, {1}}), "#/nodes/1: the node is within itself; nodes form trees");
-    expect_error(tree({{}, {3}, {1}, {2}}), "#/nodes/1: the node is within itself; nodes form trees");
+    expect_error(tree({{}, {1}}), "#/nodes/1: the node is its own descendant; nodes must form trees");
+    expect_error(tree({{}, {3}, {1}, {2}}),
+                 "#/nodes/1: the node is its own descendant; nodes must form trees");
     // A tree that hangs on a cycle has two parents; so does a cycle that hangs on a tree.
     expect_error(tree({{4}, {}}),
-                 "#/nodes/0/children/0: there is no 4 in \"nodes\", which has 0 to 1; name one "
+                 "#/nodes/0/children/0: \"nodes\" has no element 4, only 0 to 1; name one "
                  "that the file has");
     GltfFile file = tree({{1}, {}});
     for (const Json& roots : {Json{0, 1}, Json{1, 0}}) {
@@ -283,10 +282,10 @@ TEST_F(GltfNode, RefusesNodesThatFormNoTrees) {
     }
     GltfFile cyclic = tree({{1}, {0}});
     cyclic.root["scenes"] = {{{"nodes", {0}}}};
-    expect_error(cyclic, "#/nodes/0: the node is within itself; nodes form trees");
+    expect_error(cyclic, "#/nodes/0: the node is its own descendant; nodes must form trees");
     file.root["scenes"] = {{{"nodes", {2}}}};
     expect_error(file,
-                 "#/scenes/0/nodes/0: there is no 2 in \"nodes\", which has 0 to 1; name one that the file "
+                 "#/scenes/0/nodes/0: \"nodes\" has no element 2, only 0 to 1; name one that the file "
                  "has");
 }
 
@@ -309,12 +308,13 @@ TEST_F(GltfNode, RootsMayHaveParentsOutsideOfTheScene) {
 TEST_F(GltfNode, NodesThatAreNamedTwiceAtOnePlaceAreShownOnce) {
     GltfFile file = tree({{1, 1}, {}});
     EXPECT_EQ(places(expect_warning(
-                  file, "#/nodes/0/children/1: node 1 is twice among the children, and shown once")),
+                  file, "#/nodes/0/children/1: node 1 is listed twice among the children, and shown once")),
               (std::vector<float>{1, 11}));
     file = tree({{1}, {}});
     file.root["scenes"] = {{{"nodes", {0, 0}}}};
-    EXPECT_EQ(places(expect_warning(file, "#/nodes/0: the node is twice in the scene, and shown once")),
-              (std::vector<float>{1, 11}));
+    EXPECT_EQ(
+        places(expect_warning(file, "#/nodes/0: the node is listed twice in the scene, and shown once")),
+        (std::vector<float>{1, 11}));
     // All nodes are listed as roots.
     file.root["nodes"][0].erase("translation");
     for (const Json& roots : {Json{0, 1}, Json{1, 0}}) {

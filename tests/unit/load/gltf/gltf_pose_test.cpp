@@ -95,7 +95,8 @@ TEST_F(GltfPose, ManyTimesFromOneReadingAreAsMuchAsManyReadings) {
     }
 }
 
-// The scene with the fewest bytes decides how many zeros an accessor may have, whatever else was read before.
+// The scene with the fewest bytes decides how many zeros an accessor may have, regardless of what was read
+// before.
 TEST_F(GltfPose, WhatOtherScenesReadDoesNotCount) {
     GltfFile file = moving();
     const size_t zeros = file.push("accessors", {{"componentType", 5126}, {"count", 3000}, {"type", "VEC3"}});

@@ -30,7 +30,7 @@ TEST_F(GltfScene, RefusesExtensionsThatItRequiresAndNotesTheOthers) {
     file.root["extensionsUsed"] = {"KHR_texture_transform", "KHR_draco_mesh_compression"};
     expect_warning(file,
                    "#/extensionsUsed/1: the extension \"KHR_draco_mesh_compression\" is not read: "
-                   "uncompressed data take the place of compressed ones");
+                   "the uncompressed data is used instead");
     file.root["extensionsUsed"] = Json::array({"ACME_teapots"});
     expect_warning(file,
                    "#/extensionsUsed/0: the extension \"ACME_teapots\" is not read: what it adds is missing");
@@ -71,7 +71,7 @@ TEST_F(GltfScene, ExtensionsThatChangeNoPictureNeedNoWarning) {
 TEST_F(GltfScene, WhatOtherExtensionsWouldChangeIsSaid) {
     for (const auto& [name, missing] :
          {std::pair("EXT_lights_ies", "lights shine evenly, without a profile"),
-          std::pair("EXT_texture_avif", "images in PNG, JPEG or WebP take the place of those that it adds"),
+          std::pair("EXT_texture_avif", "images in PNG, JPEG or WebP are used instead"),
           std::pair("VRMC_materials_mtoon", "toon shading looks as the material does without it"),
           std::pair("VRM", "toon shading looks as the material does without it")}) {
         GltfFile file = corner_file();
@@ -114,8 +114,9 @@ TEST_F(GltfScene, ANativeSceneAddsWhatTheFormatCannotSay) {
     EXPECT_EQ(plain.film.size, uvec2(1280, 720));
     EXPECT_EQ(plain.cameras.at(0).film_size, uvec2(1440, 720));
     ASSERT_EQ(plain.warnings.size(), 1u);
-    EXPECT_EQ(folder_.without_folder(plain.warnings[0]),
-              "scene.json:1:11: there is no light; a studio lights the scene, which the camera does not see");
+    EXPECT_EQ(
+        folder_.without_folder(plain.warnings[0]),
+        "scene.json:1:11: there is no light; a studio, which the camera does not see, lights the scene");
     const Scene scene = native(file, R"(,
 "film": {"size": [300, 200]},
 "cameras": {"eye": {"position": [0, 0, 5], "look_at": [0, 0, 0], "vertical_fov": 40}},
@@ -146,7 +147,7 @@ TEST_F(GltfScene, ANativeScenePassesOptionsAndErrorsOn) {
               "scene.json:1:11: --scene: m.gltf has nothing called \"x\" among its scenes (known: 0, none)");
     file.root["scene"] = 2;
     EXPECT_EQ(message({}),
-              "scene.json:1:11: m.gltf#/scene: there is no 2 in \"scenes\", which has 0 to 1; name one "
+              "scene.json:1:11: m.gltf#/scene: \"scenes\" has no element 2, only 0 to 1; name one "
               "that the file has");
     folder_.write("scene.json", R"({"scene": "m.obj"})");
     EXPECT_EQ(folder_.without_folder(error_of([&] { load_scene(folder_.path() / "scene.json"); })),

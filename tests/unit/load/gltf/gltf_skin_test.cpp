@@ -80,14 +80,12 @@ TEST_F(GltfMorph, TangentsMorphWithoutTheirSign) {
 TEST_F(GltfMorph, NotesWeightsThatAreTooFewAndRefusesTargetsThatDoNotFit) {
     GltfFile file = morphing();
     file.root["nodes"][0]["weights"] = {0.5};
-    const Scene scene = expect_warning(file,
-                                       "#/meshes/0/primitives/0/targets: there are 1 weights for 2 morph "
-                                       "targets; those that are missing count as 0");
+    const Scene scene = expect_warning(
+        file, "#/meshes/0/primitives/0/targets: there are 1 weights for 2 morph targets; missing ones are 0");
     expect_weights(scene, 0, 0.5, 0);
     file.root["nodes"][0]["weights"] = {0, 0, 7};
-    expect_warning(file,
-                   "#/meshes/0/primitives/0/targets: there are 3 weights for 2 morph targets; those that "
-                   "are missing count as 0");
+    expect_warning(
+        file, "#/meshes/0/primitives/0/targets: there are 3 weights for 2 morph targets; missing ones are 0");
     file.root["nodes"][0]["weights"] = {1, 1};
     Json& target = file.root["meshes"][0]["primitives"][0]["targets"][0];
     target["POSITION"] = file.add<float>("VEC3", {0, 0, 1});
@@ -258,7 +256,7 @@ TEST_F(GltfSkin, VerticesThatFollowNothingFollowTheFirstJoint) {
     attributes.erase("WEIGHTS_0");
     const Scene scene = expect_warning(file,
                                        "#/meshes/0/primitives/0/attributes: the mesh has a skin, but the "
-                                       "primitive no joints; all of it follows the first one");
+                                       "primitive has no joints; all of it follows the first joint");
     EXPECT_EQ(world_mesh(scene).positions, moved);
 }
 
@@ -268,14 +266,14 @@ TEST_F(GltfSkin, NotesWeightsAndMatricesThatItMends) {
     const size_t good = attributes["WEIGHTS_0"];
     attributes["WEIGHTS_0"] = file.add<float>("VEC4", {-1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
     const std::string place = "#/meshes/0/primitives/0/attributes/";
-    Scene scene = expect_warning(file, place + "WEIGHTS_0: some weights are below 0, and count as 0");
+    Scene scene = expect_warning(file, place + "WEIGHTS_0: some weights are below 0, and are read as 0");
     EXPECT_EQ(world_mesh(scene).positions.at(0), vec3(0, 0, 5));
     attributes["WEIGHTS_0"] = good;
     attributes["JOINTS_1"] = attributes["JOINTS_0"];
-    expect_warning(file, place + "JOINTS_1: JOINTS_1 and WEIGHTS_1 count only together");
+    expect_warning(file, place + "JOINTS_1: JOINTS_1 and WEIGHTS_1 are only used together");
     attributes.erase("JOINTS_1");
     attributes["WEIGHTS_1"] = good;
-    expect_warning(file, place + "WEIGHTS_1: JOINTS_1 and WEIGHTS_1 count only together");
+    expect_warning(file, place + "WEIGHTS_1: JOINTS_1 and WEIGHTS_1 are only used together");
     attributes.erase("WEIGHTS_1");
 
     std::vector<float> matrices(32, 0.0f);
@@ -287,10 +285,9 @@ TEST_F(GltfSkin, NotesWeightsAndMatricesThatItMends) {
     EXPECT_TRUE(load(file).warnings.empty());
     matrices[16 + 3] = 0.5f;
     file.root["skins"][0]["inverseBindMatrices"] = file.add("MAT4", matrices);
-    scene =
-        expect_warning(file,
-                       "#/skins/0/inverseBindMatrices: matrix 1 is not affine; the last row of each counts "
-                       "as 0, 0, 0, 1");
+    scene = expect_warning(
+        file,
+        "#/skins/0/inverseBindMatrices: matrix 1 is not affine; the last row of each is read as 0, 0, 0, 1");
     EXPECT_EQ(world_mesh(scene).positions, expected);
 }
 
@@ -299,13 +296,12 @@ TEST_F(GltfSkin, RefusesSkinsThatAreNoneOrDamaged) {
     Json& skin = file.root["skins"][0];
     skin["joints"] = {1};
     expect_error(file,
-                 "#/meshes/0/primitives/0/attributes/JOINTS_0: vertex 0 follows a joint that the skin, which "
-                 "has 1, lacks");
+                 "#/meshes/0/primitives/0/attributes/JOINTS_0: vertex 0 follows a joint beyond the skin's 1");
     skin["joints"] = Json::array();
     expect_error(file, "#/skins/0/joints: a skin needs at least one joint; export it again");
     skin["joints"] = {1, 3};
     expect_error(file,
-                 "#/skins/0/joints/1: there is no 3 in \"nodes\", which has 0 to 2; name one that the file "
+                 "#/skins/0/joints/1: \"nodes\" has no element 3, only 0 to 2; name one that the file "
                  "has");
     skin.erase("joints");
     expect_error(file, "#/skins/0: the key \"joints\" is missing here; add it");
@@ -323,8 +319,7 @@ TEST_F(GltfSkin, RefusesSkinsThatAreNoneOrDamaged) {
                  "#/meshes/0/primitives/0/attributes/POSITION: the coordinates of vertex 0 are not finite; "
                  "export the mesh again");
     file.root["nodes"][0]["skin"] = 1;
-    expect_error(file,
-                 "#/nodes/0/skin: there is no 1 in \"skins\", which has 0 to 0; name one that the file has");
+    expect_error(file, "#/nodes/0/skin: \"skins\" has no element 1, only 0 to 0; name one that the file has");
     file = two_joints();
     Json& attributes = file.root["meshes"][0]["primitives"][0]["attributes"];
     attributes["JOINTS_0"] = file.add<uint8_t>("VEC4", {0, 1, 0, 0});

@@ -51,14 +51,14 @@ TEST_F(GltfTexture, SamplersSayWhatLiesBetweenAndBeyondTexels) {
          {std::tuple(0, 10497, Wrap::repeat), std::tuple(10496, 33071, Wrap::clamp),
           std::tuple(33069, 33071, Wrap::clamp)}) {
         file.root["samplers"][0]["wrapT"] = mode;
-        const Scene scene =
-            expect_warning(file, concat("#/samplers/0/wrapT: ", mode, " is not 33071, 33648 or 10497; ",
-                                        nearest, " takes its place"));
+        const Scene scene = expect_warning(
+            file,
+            concat("#/samplers/0/wrapT: ", mode, " is not 33071, 33648 or 10497; ", nearest, " is used"));
         EXPECT_EQ(texture_of(scene).value().wrap_v, wrap);
     }
     file.root["textures"][0]["sampler"] = 1;
     expect_error(file,
-                 "#/textures/0/sampler: there is no 1 in \"samplers\", which has 0 to 0; name one that the "
+                 "#/textures/0/sampler: \"samplers\" has no element 1, only 0 to 0; name one that the "
                  "file has");
     file.root.erase("samplers");
     const Scene without =
@@ -86,7 +86,7 @@ TEST_F(GltfTexture, ImagesMayBeMissing) {
     EXPECT_EQ(read.emission, vec3(0));  // It is not white.
     EXPECT_FALSE(scene.materials[0].normal_map);
     const std::string expected =
-        "m.gltf#/images/0/uri: 2 images do not exist; white takes their place: \"a.png\", \"b.png\"";
+        "m.gltf#/images/0/uri: 2 images do not exist; white is used instead: \"a.png\", \"b.png\"";
     EXPECT_TRUE(std::ranges::any_of(scene.warnings, [&](const std::string& warning) {
         return folder_.without_folder(warning) == expected;
     }));
@@ -112,7 +112,7 @@ TEST_F(GltfTexture, ReadsTwoSetsOfCoordinates) {
     EXPECT_EQ(read(textured(other)).uv_set, 1u);
     const Scene scene = expect_warning(textured({{"texCoord", 2}}),
                                        "#/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord: only "
-                                       "TEXCOORD_0 and TEXCOORD_1 are read; TEXCOORD_0 takes its place");
+                                       "TEXCOORD_0 and TEXCOORD_1 are read; TEXCOORD_0 is used");
     EXPECT_EQ(texture_of(scene)->uv_set, 0u);
 }
 
@@ -168,7 +168,7 @@ TEST_F(GltfTexture, ImagesAreFilesDataInLineOrViews) {
     const Scene beside = load(file);
     EXPECT_EQ(beside.images.at(0).path, folder_.path() / "two words.png");
     EXPECT_TRUE(beside.images[0].bytes.empty());
-    EXPECT_TRUE(beside.images[0].of_gltf);  // Section 3.8.3: colour profiles do not count.
+    EXPECT_TRUE(beside.images[0].of_gltf);  // Section 3.8.3: colour profiles are ignored.
     file.root["images"][0] = {{"uri", "data:image/png;base64," + base64("a file")}};
     EXPECT_EQ(load(file).images.at(0).bytes, "a file");
     file.root["images"][0] = {{"bufferView", file.add_view<char>({'a', ' ', 'v', 'i', 'e', 'w'})},
@@ -192,12 +192,12 @@ TEST_F(GltfTexture, ImagesAreFilesDataInLineOrViews) {
                  "\"https://example.org/a.png\"; put the file beside this one");
     file.root["textures"][0]["source"] = 1;
     expect_error(file,
-                 "#/textures/0/source: there is no 1 in \"images\", which has 0 to 0; name one that the file "
+                 "#/textures/0/source: \"images\" has no element 1, only 0 to 0; name one that the file "
                  "has");
     file.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
     expect_error(file,
-                 "#/materials/0/pbrMetallicRoughness/baseColorTexture/index: there is no 1 in \"textures\", "
-                 "which has 0 to 0; name one that the file has");
+                 "#/materials/0/pbrMetallicRoughness/baseColorTexture/index: \"textures\" has no element 1, "
+                 "only 0 to 0; name one that the file has");
 }
 
 // The place of an image that cannot be read is where the file names it.
@@ -280,7 +280,7 @@ TEST_F(GltfTexture, WebpComesFirstAndUnreadFormatsAreLeftOut) {
     for (const std::string name : {"KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"}) {
         file.root["textures"][0]["extensions"] = {{name, {{"source", 1}}}};
         EXPECT_FALSE(texture_of(expect_warning(file, "#/textures/0: the texture has an image of " + name +
-                                                         " alone, which is not read; it is white")));
+                                                         " only, which is not read; it is white")));
     }
     file.root["textures"][0].erase("extensions");
     EXPECT_FALSE(texture_of(expect_warning(file, "#/textures/0: the texture has no image; it is white")));
@@ -312,20 +312,19 @@ TEST_F(GltfTexture, VariantsReplaceMaterials) {
     Json& mappings = primitive["extensions"]["KHR_materials_variants"]["mappings"];
     mappings.push_back({{"material", 0}, {"variants", {0, 2}}});
     EXPECT_EQ(name("cold"), "steel");
-    const Scene scene = expect_warning(
-        file,
-        "#/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/1/variants/1: the variant has a "
-        "material already, which counts",
-        {.variant = "blank"});
+    const Scene scene = expect_warning(file,
+                                       "#/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/1/"
+                                       "variants/1: the variant already has a material, which is used",
+                                       {.variant = "blank"});
     EXPECT_EQ(scene.materials.at(scene.shapes.at(0).material).name, "steel");
     mappings[0]["material"] = 2;
     expect_error(file,
-                 "#/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/0/material: there is no "
-                 "2 in \"materials\", which has 0 to 1; name one that the file has",
+                 "#/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/0/material: "
+                 "\"materials\" has no element 2, only 0 to 1; name one that the file has",
                  {.variant = "cold"});
     primitive["material"] = 5;
     expect_error(file,
-                 "#/meshes/0/primitives/0/material: there is no 5 in \"materials\", which has 0 to 1; name "
+                 "#/meshes/0/primitives/0/material: \"materials\" has no element 5, only 0 to 1; name "
                  "one that the file has");
 }
 

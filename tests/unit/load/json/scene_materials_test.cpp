@@ -137,7 +137,7 @@ TEST(SceneMaterials, ReadMirrorsAndConductors) {
         return material(R"({"type": "conductor", "reflectance": 1, "alpha": @)" + alpha + "}");
     };
     folder.expect_error(conductor("0"),
-                        "a metal without any roughness is no \"conductor\"; use the type \"mirror\"");
+                        "a \"conductor\" needs some roughness; without any, use the type \"mirror\"");
     folder.expect_error(conductor("0.0009"), "\"alpha\": expected a number from 0.001 to 1, found 9e-04");
     folder.expect_error(conductor("-0.5"), "\"alpha\": expected a number from 0.001 to 1, found -0.5");
     folder.expect_error(conductor("1.5"), "\"alpha\": expected a number from 0.001 to 1, found 1.5");

@@ -49,7 +49,7 @@ TEST(SceneObjects, AreSeenOnlyWhereInstancesPlaceThem) {
     }
 }
 
-// A material takes the place of the material alone, and so does emission.
+// A material replaces only the material, and an emission only the emission.
 TEST(SceneObjects, AnInstanceReplacesOnlyWhatItNames) {
     SceneFolder folder;
     const Scene scene =

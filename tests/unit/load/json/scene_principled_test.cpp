@@ -260,9 +260,10 @@ TEST_F(ScenePrincipled, IsAThinWallUnlessItHasAMediumInside) {
                  "\"thin_walled\": false, or remove priority");
     expect_error(TRANSPARENT + "\"priority\": @16",
                  "\"priority\": expected a whole number from 0 to 15, found 16");
-    expect_error("\"transmission\": 1, \"dispersion\": @0.1",
-                 "a thin wall bends no light, and so disperses none; add \"absorption\" or \"thin_walled\": "
-                 "false, or remove dispersion");
+    expect_error(
+        "\"transmission\": 1, \"dispersion\": @0.1",
+        "a thin wall does not bend light, so it does not disperse it; add \"absorption\" or \"thin_walled\": "
+        "false, or remove dispersion");
     const std::string unreached =
         "no light reaches the medium inside; add \"transmission\" or \"diffuse_transmission\", or make the "
         "surface a thin wall";
@@ -309,7 +310,7 @@ TEST_F(ScenePrincipled, ShapesEmitWhatTheirMaterialDoes) {
     EXPECT_EQ(front->radiance.factor, vec3(7));
     EXPECT_TRUE(front->radiance.texture);
     EXPECT_FALSE(front->two_sided);
-    // What a shape states counts.
+    // A shape's own emission is used.
     const auto own = emission(R"("emission": 1)", ", \"emission\": 5");
     ASSERT_TRUE(own);
     EXPECT_EQ(own->radiance, vec3(5));

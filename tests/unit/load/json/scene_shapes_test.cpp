@@ -171,7 +171,7 @@ TEST(SceneShapes, CheckDisks) {
         "the transform makes the disk too small or too narrow for 32-bit floats; use greater factors";
     folder.expect_error(marked(R"("transform": [{"scale": [1, 1e-8, 1]}])"), narrow);
     folder.expect_error(marked(R"("radius": 1e-20, "transform": [{"scale": 1e-20}])"), narrow);
-    // Sheared until both radii all but coincide.
+    // Sheared until both radii nearly coincide.
     folder.expect_error(
         marked(R"("transform": [{"matrix": [1, 1e8, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}])"), narrow);
     const std::string reach =

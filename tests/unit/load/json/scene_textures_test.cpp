@@ -282,7 +282,7 @@ TEST_F(SceneTextures, AreJudgedByTheirMeanWhateverTheirPattern) {
     }
     folder_.write("ribs.png", encode_png(picture));
     const Scene scene = folder_.load(material(R"({"type": "mirror", "normal_map": {"image": "ribs.png"}})"));
-    EXPECT_EQ(scene.warnings.size(), 1u);  // That the scene is empty.
+    EXPECT_EQ(scene.warnings.size(), 1u);  // The scene is empty.
 }
 
 TEST_F(SceneTextures, WarnOfANormalMapThatIsNoneAndOfOpacityWithoutAlpha) {

@@ -74,7 +74,7 @@ TEST(Transform, KnowsWhatKeepsSpheres) {
     EXPECT_NEAR(scale(R"([{"rotate": 77, "axis": [3, 1, 2]}, {"scale": -0.5}])").value(), 0.5, 1e-15);
     EXPECT_NEAR(scale(R"([{"scale": 1e-30}])").value(), 1e-30, 1e-45);
     EXPECT_NEAR(scale(R"([{"scale": 1e30}])").value(), 1e30, 1e15);
-    // Uneven steps that cancel out: only the whole counts.
+    // Uneven steps that cancel out: only the whole matters.
     EXPECT_EQ(scale(R"([{"scale": [1, 2, 4]}, {"scale": [4, 2, 1]}])"), 4.0);
 
     EXPECT_FALSE(scale(R"([{"scale": [1, 1, 2]}])"));

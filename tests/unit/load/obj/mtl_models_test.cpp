@@ -65,7 +65,7 @@ TEST_F(MtlModels, ReflectsByKsBesideKd) {
         for (const char* sharp : {"", "\nNs 1000"})
             EXPECT_EQ(model<PhongMaterial>("Kd 0.9 0 0\nKs 0.1" + text + sharp).exponent, 1e5f);
         EXPECT_TRUE(material("Kd 0.9 0 0\nKs 0.1\nNs 50" + text).warnings.empty());
-        expect_warning(text, "it has no colour (Kd); grey of 0.5 is taken");
+        expect_warning(text, "it has no colour (Kd); grey of 0.5 is used");
     }
     for (const char* illum : {"9", "10"}) {
         const std::string text = std::string("Kd 0.5\nKs 0.5\nillum ") + illum;
@@ -148,7 +148,7 @@ TEST_F(MtlModels, PbrStatementsDecide) {
     EXPECT_EQ(model<PrincipledMaterial>("Kd 1\nPr 0.4").ior, 1.5f);
     EXPECT_EQ(model<PrincipledMaterial>("Kd 1\nPr 0.4\nNi 1").ior, 1.5f);
     EXPECT_EQ(model<PrincipledMaterial>("Kd 1\nPm 1").roughness, 0.5f);
-    expect_warning("Kd 1\nPm 1", "it has no roughness (Pr); 0.5 is taken");
+    expect_warning("Kd 1\nPm 1", "it has no roughness (Pr); 0.5 is used");
     expect_library_warnings("newmtl a\nKd 1\nPr 0.4\naniso 0\nanisor 0\n", {});
     expect_library_warnings("newmtl a\nKd 1\nPr 0.4\naniso 0.5\nanisor 0.2\n",
                             {"m.mtl: ignored aniso (brushed metal is not supported)"});
@@ -159,7 +159,7 @@ TEST_F(MtlModels, PbrStatementsMayComeWithTransmission) {
     EXPECT_EQ(model<PrincipledMaterial>(text).transmission, 0.5f);
     EXPECT_TRUE(model<PrincipledMaterial>(text).inside);
     expect_warning(text,
-                   "Tf beside Pr or Pm is read as a share of 0.5 of the light that passes, as through glass");
+                   "Tf beside Pr or Pm is read as a fraction 0.5 of the light that passes, as through glass");
     for (const char* opaque : {"Tf 1 1 1\nTr 0\nNi 1.5", "Tf 0 0 0\nNi 1.5", "Tf 1 1 1\nNi 1", "Tf 1 1 1",
                                "Tf 1 1 1\nNi 1.5\nillum 4"}) {
         SCOPED_TRACE(opaque);
@@ -217,7 +217,7 @@ TEST_F(MtlModels, EmissionIsTakenAsItIs) {
 
 TEST_F(MtlModels, WithoutColourIsGrey) {
     for (const char* text : {"Ka 1 1 1", "Ks 0 0 0", "Ke 0", "map_d a.png"}) {
-        expect_warning(text, "it has no colour (Kd); grey of 0.5 is taken");
+        expect_warning(text, "it has no colour (Kd); grey of 0.5 is used");
         EXPECT_EQ(model<DiffuseMaterial>(text).reflectance, vec3(0.5f));
     }
 }
@@ -236,20 +236,20 @@ TEST_F(MtlModels, OpacityIsDOrElseWhatTrLeaves) {
     EXPECT_EQ(opacity("illum 3\nd 0.25"), 0.25f);
     EXPECT_EQ(opacity("illum 7\nd 0.25"), 1.0f);  // It is glass, which lets light through.
     EXPECT_EQ(opacity("illum 7\nKd 0\nd 7"), 1.0f);
-    for (const char* text : {"d 0.5\nTr 0", "Tr 1\nd 0.5"})  // d counts: it is in the specification.
+    for (const char* text : {"d 0.5\nTr 0", "Tr 1\nd 0.5"})  // d is used: it is in the specification.
         EXPECT_EQ(opacity(text), 0.5f);
 }
 
 TEST_F(MtlModels, WarnsOfOddOpacity) {
-    expect_warning("Kd 1\nd 0", "nothing is seen of it: d is 0, or Tr is 1");
-    expect_warning("Kd 1\nTr 1", "nothing is seen of it: d is 0, or Tr is 1");
-    expect_warning("Kd 1\nd 1.5", "d 1.5 is not from 0 to 1; the material is taken to be opaque");
-    expect_warning("Kd 1\nTr -3", "Tr -3 is not from 0 to 1; the material is taken to be opaque");
+    expect_warning("Kd 1\nd 0", "it is invisible: d is 0, or Tr is 1");
+    expect_warning("Kd 1\nTr 1", "it is invisible: d is 0, or Tr is 1");
+    expect_warning("Kd 1\nd 1.5", "d 1.5 is not from 0 to 1; the material is read as opaque");
+    expect_warning("Kd 1\nTr -3", "Tr -3 is not from 0 to 1; the material is read as opaque");
     EXPECT_EQ(material("d 1.5").material.opacity.value, 1.0f);
     const MtlMaterial none = material("Kd 1\nTr 2");
     EXPECT_EQ(none.material.opacity.value, 0.0f);
     ASSERT_EQ(none.warnings.size(), 2u);
-    EXPECT_NE(none.warnings[0].text.find("Tr 2 is not from 0 to 1; the material is taken to be transparent"),
+    EXPECT_NE(none.warnings[0].text.find("Tr 2 is not from 0 to 1; the material is read as transparent"),
               std::string::npos);
 }
 

@@ -37,10 +37,10 @@ TEST_F(Mtl, TakesTheFirstOfEqualNames) {
     const MtlLibrary library = load("newmtl a\nKd 0\nnewmtl b\nKd 1\nnewmtl a\nKd 1\n");
     EXPECT_EQ(std::get<DiffuseMaterial>(library.materials.at("a").material.model).reflectance, vec3(0));
     expect_library_warnings("newmtl a\nKd 0\nnewmtl b\nKd 1\nnewmtl a\nKd 1\n",
-                            {"m.mtl:5: material \"a\" is defined again; the first definition counts"});
+                            {"m.mtl:5: material \"a\" is defined again; the first definition is used"});
     expect_library_warnings(
         "newmtl a\nKd 0\nnewmtl a\nKd 1\nnewmtl a\nKd 1\n",
-        {"m.mtl:3: material \"a\" is defined again; the first definition counts (2 times)"});
+        {"m.mtl:3: material \"a\" is defined again; the first definition is used (2 times)"});
 }
 
 TEST_F(Mtl, StatementsMayBeInUpperOrLowerCase) {
@@ -77,7 +77,7 @@ TEST_F(Mtl, CountsWhatIsNotFiniteOrOutOfRange) {
                             {"m.mtl:3: d has no finite number, and is ignored",
                              "m.mtl:4: Tr has no finite number, and is ignored"});
     expect_library_warnings("newmtl a\nKd 1 -0.5 1\nNs -3\nPr 1.5\nPm -1",
-                            {"m.mtl:2: Kd is negative; 0 is taken", "m.mtl:3: Ns -3 is read as 0",
+                            {"m.mtl:2: Kd is negative; 0 is used", "m.mtl:3: Ns -3 is read as 0",
                              "m.mtl:4: Pr 1.5 is read as 1", "m.mtl:5: Pm -1 is read as 0"});
     EXPECT_EQ(model<PrincipledMaterial>("Kd 1 -0.5 1\nPr 1.5").base_color, vec3(1, 0, 1));
     EXPECT_EQ(model<PrincipledMaterial>("Kd 1 -0.5 1\nPr 1.5").roughness, 1.0f);
@@ -95,7 +95,7 @@ TEST_F(Mtl, MayBeEmpty) {
     const MtlLibrary library = load("\xEF\xBB\xBFnewmtl a\nKd 1\nnewmtl\nKd 0\nnewmtl b\nKd 1");
     EXPECT_EQ(library.materials.size(), 2u);
     EXPECT_TRUE(library.warnings.empty());
-    expect_error("# b\nKd 1\nnewmtl a", "m.mtl:2: \"Kd\" stands before the first newmtl; is it an MTL file?");
+    expect_error("# b\nKd 1\nnewmtl a", "m.mtl:2: \"Kd\" comes before the first newmtl; is it an MTL file?");
 }
 
 TEST_F(Mtl, LoadsOrIsRefusedAfterAnyChangeOfAByte) {

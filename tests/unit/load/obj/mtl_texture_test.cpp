@@ -61,7 +61,7 @@ class MtlTextures : public testing::Test {
 
 constexpr TextureEncoding SRGB = TextureEncoding::srgb;
 constexpr TextureEncoding LINEAR = TextureEncoding::linear;
-const std::string UNUSED = " (their materials have no use for them: illum or Pm says so, or a factor of 0)";
+const std::string UNUSED = " (their materials do not use them, because of illum, Pm or a factor of 0)";
 
 TEST_F(MtlTextures, ColoursAreMultipliedByTheirStatement) {
     const auto plain = model<DiffuseMaterial>("map_Kd a.png").reflectance;
@@ -206,7 +206,7 @@ TEST_F(MtlTextures, PbrStatementsMayHaveTextures) {
     EXPECT_EQ(glass.roughness, (Textured<float>(1.0f, Texture{.encoding = LINEAR})));
     expect_ignored("Kd 1\nPm 1\nPr 0.5\nKs 1\nmap_Ks a.png", {"map_Ks" + UNUSED});
     expect_ignored("Kd 1\nPm 0\nmap_Pm a.png\nPr 0.5", {"map_Pm" + UNUSED});
-    expect_warnings("Pm 1\nPr 1", {"it has no colour (Kd); grey of 0.5 is taken"});
+    expect_warnings("Pm 1\nPr 1", {"it has no colour (Kd); grey of 0.5 is used"});
     expect_warnings("Kd 2\nPm 1\nPr 1", {"Kd is 2 in a channel; it is scaled to 1"});
 }
 

@@ -35,7 +35,7 @@ class ObjAttributes : public testing::Test {
         EXPECT_EQ(folder_.without_folder(error_of([&] { load(text); })), message);
     }
 
-    // Of the corners of a triangle, by `array`.
+    // The values at the corners of a triangle, by `array`.
     template <class Value>
     static std::vector<Value> corners(const TriangleMesh& mesh, std::vector<Value> TriangleMesh::*array,
                                       size_t triangle = 0) {
@@ -78,7 +78,7 @@ TEST_F(ObjAttributes, VerticesAreSplitAtSeams) {
     EXPECT_EQ(load(square + seam).positions.size(), 5u);
     EXPECT_EQ(load(square + seam + "f 1/1/2 2/2/1 3/3/1\n").positions.size(), 6u);
     EXPECT_EQ(load(square + seam + "f 1/1/2 2/2/1 3/3/1\n", MeshNormals::flat).positions.size(), 5u);
-    // Equal numbers under other indices are no reason to look further.
+    // Equal numbers under other indices are not searched for.
     EXPECT_EQ(load(square + "vt 1 1\nf 1/1 2/2 3/3\nf 1/1 3/5 4/4\n").positions.size(), 5u);
     const TriangleMesh smooth = load(square + seam, MeshNormals::smooth);
     EXPECT_EQ(smooth.normals, std::vector<vec3>(5, vec3(0, 0, 1)));
@@ -121,7 +121,7 @@ TEST_F(ObjAttributes, TextureCoordinatesThatAreNotFiniteAreZero) {
     const std::string faces = "\nf 1/1 2/1 3/1\n";
     for (const std::string word : {"nan", "-nan(ind)", "inf", "1.1e30", "-1.1e30", "1e39", "-1.#IND"}) {
         expect_warnings(CORNERS + "vt " + word + " 0.5" + faces,
-                        {"m.obj:5: a texture coordinate is not from -1e30 to 1e30; 0 takes its place"});
+                        {"m.obj:5: a texture coordinate is not from -1e30 to 1e30; 0 is used"});
         EXPECT_EQ(load(CORNERS + "vt " + word + " 0.5" + faces).uv0[0], vec2(0, 0.5f));
     }
     EXPECT_TRUE((load(CORNERS + "vt 0 0 nan" + faces), warnings_.empty()));
@@ -131,15 +131,14 @@ TEST_F(ObjAttributes, TextureCoordinatesThatAreNotFiniteAreZero) {
 TEST_F(ObjAttributes, CornersMayNameWhatTheFileLacks) {
     for (const char* index : {"0", "3", "-3", "9999999999"}) {
         const std::string i = index;
-        expect_warnings(CORNERS + "vt 1 1\nvt 0.5 1\nf 1/" + i + " 2/1 3/2\nf 1/" + i + " 3/1 4/2\n",
-                        {"m.obj:7: a corner has texture coordinates that the file lacks; (0, 0) takes their "
-                         "place (2 times)"});
+        expect_warnings(
+            CORNERS + "vt 1 1\nvt 0.5 1\nf 1/" + i + " 2/1 3/2\nf 1/" + i + " 3/1 4/2\n",
+            {"m.obj:7: a corner has texture coordinates that the file lacks; (0, 0) is used (2 times)"});
         EXPECT_EQ(load(CORNERS + "vt 1 1\nvt 0.5 1\nf 1/" + i + " 2/1 3/2\n").uv0,
                   (std::vector<vec2>{vec2(0), vec2(1), vec2(0.5f, 1)}));
         const std::string normals = CORNERS + "vn 1 0 1\nvn 0 1 1\nf 1//" + i + " 2//1 3//2\n";
-        expect_warnings(
-            normals,
-            {"m.obj:7: a corner has a normal that the file lacks; that of the triangle takes its place"});
+        expect_warnings(normals,
+                        {"m.obj:7: a corner has a normal that the file lacks; the triangle's is used"});
         EXPECT_EQ(load(normals).normals, (std::vector<vec3>{vec3(0), vec3(1, 0, 1), vec3(0, 1, 1)}));
     }
     EXPECT_TRUE(load(CORNERS + "f 1/1 2/2 3/3\n").uv0.empty());
@@ -184,7 +183,7 @@ TEST_F(ObjAttributes, NumbersThatCannotBeColoursAreLeftOut) {
     EXPECT_EQ(load(rounded).colors[0], vec4(1, 0, 0, 1));
     EXPECT_TRUE(warnings_.empty());
     expect_warnings("v 0 0 0 nan 1 1\nv 1 0 0 0 0 0\nv 1 1 0\nf 1 2 3\n",
-                    {"m.obj:1: the colour of a vertex is not finite; white takes its place"});
+                    {"m.obj:1: the colour of a vertex is not finite; white is used"});
     EXPECT_EQ(load("v 0 0 0 nan 1 1\nv 1 0 0 0 0 0\nv 1 1 0\nf 1 2 3\n").colors[0], vec4(1));
     expect_error("v 0 0 0 0 red 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
                  "m.obj:1: the colour of a vertex needs three numbers, found \"red\"");

@@ -158,7 +158,7 @@ TEST_F(Obj, IgnoresTheLocale) {
 TEST_F(Obj, RefusesIndicesOutOfRange) {
     const std::string text = TRIANGLE;
     expect_error(text + "f 1 2 3\nf 1 2 99", "m.obj:5: face 2 uses vertex 99, but the file has 3 vertices");
-    expect_error(text + "f 1 2 -4", "m.obj:4: face 1 uses vertex -4, but only 3 vertices stand before it");
+    expect_error(text + "f 1 2 -4", "m.obj:4: face 1 uses vertex -4, but only 3 vertices come before it");
     expect_error(text + "f 1 2 0",
                  "m.obj:4: face 1 uses vertex 0; indices count from 1, or backwards from -1");
     expect_error(text + "f 1 2 3000000000",
@@ -220,7 +220,7 @@ TEST_F(Obj, LeavesOutFacesThatAreNotFinite) {
 TEST_F(Obj, TakesTheNormalsOfTrianglesWhereTheirsAreNotFinite) {
     for (const std::string word : NOT_FINITE) {
         const std::string text = std::string(TRIANGLE) + "vn 0 " + word + " 1\nvn 1 0 1\nf 1//1 2//1 3//2";
-        expect_warnings(text, {"m.obj:4: a normal is not finite; that of the triangle takes its place"});
+        expect_warnings(text, {"m.obj:4: a normal is not finite; the triangle's is used"});
         const TriangleMesh mesh = load(text);
         EXPECT_EQ(mesh.normals[mesh.triangles[0].x], vec3(0, 0, 1));
         EXPECT_NEAR(mesh.normals[mesh.triangles[0].z].x, std::sqrt(0.5f),

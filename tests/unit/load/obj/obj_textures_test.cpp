@@ -111,7 +111,7 @@ TEST_F(ObjTextures, HeightsGrowWithTheMesh) {
     EXPECT_EQ(scene.warnings.size(), 1u);  // There is no light.
 }
 
-// Blender writes normal maps as map_Bump, and -bm is then their strength, whatever the scale.
+// Blender writes normal maps as map_Bump, and -bm is then their strength, regardless of the scale.
 TEST_F(ObjTextures, ABlueBumpMapIsANormalMap) {
     folder_.write("n.png",
                   encode_png({.size = uvec2(1), .bits = 8, .color = png_rgb, .samples = {128, 128, 255}}));
@@ -143,9 +143,8 @@ TEST_F(ObjTextures, ImagesMayBeMissing) {
     EXPECT_EQ(
         folder_.without_folder(scene.warnings[1]),
         "scene.json:3:11: the scene has no light: the image will be black");  // With that image, it had.
-    EXPECT_EQ(
-        folder_.without_folder(scene.warnings[0]),
-        "m.mtl:3: 3 images do not exist; white takes their place: \"no.png\", \"n.png\", \"gone/e.png\"");
+    EXPECT_EQ(folder_.without_folder(scene.warnings[0]),
+              "m.mtl:3: 3 images do not exist; white is used instead: \"no.png\", \"n.png\", \"gone/e.png\"");
     const auto error = [&](const std::string& text, const ImageOptions& options) {
         folder_.write("m.mtl", text);
         return folder_.without_folder(error_of([&] { folder_.load(scene_of(SHAPE), options); }));
@@ -184,7 +183,7 @@ TEST_F(ObjTextures, ImagesOutOfReachAreAsGoodAsMissing) {
         const std::string refusal =
             "in/m.mtl:3: cannot read \"" + path + "\": with links followed, it is not ";
         EXPECT_EQ(folder_.without_folder(scene.warnings.at(0)).substr(0, refusal.size()), refusal);
-        EXPECT_TRUE(scene.warnings[0].ends_with("(--allow-any-folder); white takes its place"));
+        EXPECT_TRUE(scene.warnings[0].ends_with("(--allow-any-folder); white is used instead"));
         const LoadOptions strict{.images = {.if_missing = IfMissing::error}};
         const std::string error = error_of([&] { load_scene(file, strict); });
         EXPECT_EQ(folder_.without_folder(error).substr(0, refusal.size()), refusal);

@@ -33,7 +33,7 @@ TEST_F(Ply, RefusesBadHeaders) {
     bad("vertex 4", "vertex 4.5", "m.ply:3: " + element);
     bad("vertex 4", "vertex 99999999999999999999", "m.ply:3: " + element);
     bad("element face", "element vertex", "m.ply:7: element \"vertex\" is declared twice");
-    bad("element vertex 4\n", "", "m.ply:3: a property stands before the first element");
+    bad("element vertex 4\n", "", "m.ply:3: a property comes before the first element");
     bad("float z", "float x", "m.ply:6: property \"x\" is declared twice");
     bad("float z", "float", "m.ply:6: a property needs a type and a name, as \"property float x\"");
     bad("float z", "half z",

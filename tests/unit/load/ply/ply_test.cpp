@@ -101,7 +101,7 @@ TEST_F(Ply, CutsPolygons) {
         EXPECT_GT(twice, 0.0f);
         area += 0.5 * double(twice);
     }
-    EXPECT_EQ(area, 2.0);  // Of small whole numbers: exact.
+    EXPECT_EQ(area, 2.0);  // Exact, for small whole numbers.
 }
 
 TEST_F(Ply, KeepsTheOrderOfFacesOfAnySize) {
@@ -120,7 +120,7 @@ TEST_F(Ply, TakesNormalsFromTheFileOrNot) {
     EXPECT_EQ(load(text).normals, (std::vector<vec3>{vec3(0, 0, 1), vec3(0, 1, 0), vec3(0), vec3(1, 0, 0)}));
     EXPECT_TRUE(load(text, MeshNormals::flat).normals.empty());
     EXPECT_EQ(load(text, MeshNormals::smooth).normals, std::vector<vec3>(4, vec3(0, 0, 1)));
-    // Two components of three are no normal.
+    // Two components of three are not a normal.
     EXPECT_TRUE(load(replaced(text, "float nz", "float nw")).normals.empty());
 }
 
