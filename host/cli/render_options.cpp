@@ -59,26 +59,15 @@ static void add_checkpoint_options(CLI::App& app, CheckpointOptions& checkpoint)
         ->needs(file);
 }
 
-void RenderOptions::add_sampling_options(CLI::App& app) {
-    app.option_defaults()->group(SAMPLING_GROUP);
-    add_value(app, "--spp", spp, parse_spp, "a whole number from 1 to " + std::to_string(MAX_SPP),
-              "Samples per pixel")
-        ->type_name("N");
-    add_value(app, "--seed", seed, parse_seed, "a whole number from 0 to 4294967295",
-              "Seed of the random numbers; each gives different noise")
-        ->type_name("S");
-    const std::string depths = "a whole number from 0 to " + std::to_string(DEPTH_SAFETY_LIMIT);
-    add_value(app, "--max-depth", max_depth, parse_max_depth, depths + ", or unlimited",
-              "Maximum number of bounces, or unlimited; 0 shows only lights")
-        ->type_name("D");
-    add_value(app, "--rr-depth", rr_depth, parse_depth, depths, "Bounces before Russian roulette begins")
-        ->type_name("N");
-    add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
-               "How direct light is sampled; mis has the least noise, bsdf misses lights without a surface");
-    add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
-    add_choice(app, "--terminator", terminator, TERMINATOR_NAMES,
-               "Where light ends on meshes with smooth normals: along the smooth surface, or along the flat "
-               "triangles");
+void RenderOptions::add_to(CLI::App& app) {
+    app.option_defaults()->take_last();  // Later options override a script's.
+    scene.add_file_to(app);
+    outputs.add_to(app);
+    rendering.add_to(app);
+    scene.add_camera_to(app);
+    stopping.add_to(app);
+    add_checkpoint_options(app, checkpoint);
+    messages.add_to(app);
 }
 
 RenderJob RenderOptions::job(const Scene& loaded) const {

@@ -64,8 +64,8 @@ void ViewArguments::check() const {
         throw Error("--crop: a window shows the whole picture; leave it out, or use candela render",
                     ExitCode::usage);
     }
-    if (frames && render.spp) {
-        throw Error("--frames and --spp both set the number of samples; give only one", ExitCode::usage);
+    if (frames && rendering.sampling.spp) {
+        throw Error("--frames and --spp both say how many samples there shall be; give one", ExitCode::usage);
     }
     if (!screenshots.empty() && !frames) {
         throw Error(

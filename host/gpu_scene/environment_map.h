@@ -20,9 +20,9 @@ struct EnvironmentMap : SkyLight {
     // Row-major from the top. pdf is the density [1/sr], before the choice among lights, of texels chosen in
     // proportion to luminance times solid angle, as whole numbers of random words allow.
     std::vector<EnvironmentTexel> texels;
-    std::vector<AliasEntry> alias;  // Chooses a texel; empty for a black environment.
-    double irradiance = 0.0;        // Luminance, integrated over the whole sphere [W/m^2].
-    bool even = false;              // Radiance is the same in all directions.
+    // For each row of texels a table that chooses a column, and at the end one that chooses a row; empty for
+    // a black environment.
+    std::vector<CdfEntry> cdf;
 };
 
 EnvironmentMap build_environment_map(const Environment& environment);

@@ -30,9 +30,9 @@ int rank(const LightRecord& light) {
     return light.kind == LIGHT_ENVIRONMENT ? 2 : light.kind == LIGHT_DIRECTIONAL ? 1 : 0;
 }
 
-// Sorts lights and their powers by rank, keeping the order of equal ones.
-void sort_by_rank(std::vector<LightRecord>& lights, std::vector<double>& powers) {
-    std::vector<uint32_t> order(lights.size());
+// Sorts lights and their powers by rank, otherwise in the order in which they are.
+void sort_by_rank(PoweredLights& lights) {
+    std::vector<uint32_t> order(lights.records.size());
     std::iota(order.begin(), order.end(), 0u);
     std::ranges::stable_sort(order, {}, [&](uint32_t i) { return rank(lights.records[i]); });
     PoweredLights sorted;

@@ -16,12 +16,6 @@ inline constexpr std::string_view EXR_MAGIC("\x76\x2f\x31\x01"), HDR_MAGIC("#?")
 // The most pixels along either side of an image that is read; a larger number means a damaged header.
 inline constexpr uint32_t MAX_IMAGE_SIDE = 1 << 20;
 
-// The text with the letters A to Z in lower case, independent of the locale.
-std::string lower_case(std::string_view text);
-
-// The extension of a path in lower case, with its dot.
-std::string extension_of(const std::filesystem::path& path);
-
 // Throws Error if width * height exceeds `max_pixels`; both sides are at most MAX_IMAGE_SIDE.
 void check_pixel_count(const std::filesystem::path& path, uint64_t width, uint64_t height,
                        uint64_t max_pixels);

@@ -16,7 +16,10 @@ namespace candela {
 // The largest magnitude of a texture coordinate, so that no transform of one leaves the range of floats.
 inline constexpr double MAX_UV = 1e30;
 
-// How a missing image file is handled.
+// No number of such a transform is further from 0, for the same reason.
+inline constexpr double MAX_UV_TRANSFORM = 1e6;
+
+// What becomes of an image file that does not exist.
 enum class IfMissing { white, error };
 
 // An image file that textures look up, or one within a scene file.

@@ -116,8 +116,11 @@ void Viewer::begin() {
         intensity_ = state_.environment_intensity;
         for (size_t i = 0; i < radiance_.size(); ++i)
             scene_.environment->radiance[i] = intensity_ * radiance_[i];
-        gpu_scene_ = build_gpu_scene(scene_);
-        renderer_.reset();  // Before the next one allocates memory.
+        changed = stages_.update(scene_, {.environment = true});
+    }
+    if (scene_.environment && scene_.environment->rotation != state_.environment_rotation) {
+        scene_.environment->rotation = state_.environment_rotation;
+        stages_.update(scene_, {.rotation = true});
     }
     if (restart_) {
         copy_.clear();

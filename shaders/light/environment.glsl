@@ -67,11 +67,9 @@ EnvironmentChoice environment_choose(uint first, uint n, uint bits) {
 // A direction towards the sky, from 2 x 32 random bits.
 LightSample environment_light_sample_li(uvec2 u) {
     uvec2 size = scene_parameters().environment_size;
-    uvec2 column = warp_alias_column(u.x, size.x * size.y);
-    // The unused randomness of the choices is uniform, and places the point within the texel.
-    AliasChoice choice = warp_alias_choice(uvec2(column.x, u.y), scene_environment_alias(column.x));
-    vec2 within = vec2(float(column.y >> 8u) * (1.0 / 16777216.0), choice.rest);
-    EnvironmentTexel texel = scene_environment_texel(choice.i);
+    EnvironmentChoice row = environment_choose(size.x * size.y, size.y, u.y);
+    EnvironmentChoice column = environment_choose(row.i * size.x, size.x, u.x);
+    EnvironmentTexel texel = scene_environment_texel(row.i * size.x + column.i);
     LightSample s;
     s.wi = environment_direction(uvec2(column.i, row.i), vec2(column.rest, row.rest));
     s.Li = texel.radiance;

@@ -23,18 +23,18 @@ namespace candela {
 const uint LIGHT_WORDS = 4u;
 const uint LIGHT_GROUPS_WORDS = 1u;
 const uint ENVIRONMENT_TEXEL_WORDS = 1u;
-const uint ALIAS_WORDS = 1u;  // Words of two entries.
+const uint ALIAS_WORDS = 1u;  // Of two entries.
+const uint CDF_WORDS = 1u;    // Of two entries.
 
 const uint LIGHT_TRIANGLE = 0u;       // p + b1 e1 + b2 e2 with b1, b2 >= 0, b1 + b2 <= 1.
 const uint LIGHT_PARALLELOGRAM = 1u;  // p + b1 e1 + b2 e2 with b1, b2 in [0, 1].
 const uint LIGHT_DISK = 2u;           // p + b1 e1 + b2 e2 with b1^2 + b2^2 <= 1.
 const uint LIGHT_SPHERE = 3u;         // Centre p, radius e1.x.
-const uint LIGHT_ENVIRONMENT = 4u;    // In all directions, infinitely far away; its texels are in their own
-                                      // tables.
+const uint LIGHT_ENVIRONMENT = 4u;    // All around, infinitely far away; its texels are in tables of their own.
 const uint LIGHT_POINT = 5u;          // At p, equal in all directions.
-const uint LIGHT_SPOT = 6u;  // At p, around the unit axis e1. For a direction with 1 - cos of its angle to
-                             // the axis equal to h, its intensity has the factor saturate((e2.x - h) e2.y)^2.
-const uint LIGHT_DIRECTIONAL = 7u;  // Infinitely far away in the unit direction e1.
+const uint LIGHT_SPOT = 6u;           // At p, around the unit axis e1. For a direction of which 1 - cos of the angle
+                                      // to the axis is h, its intensity has the factor saturate((e2.x - h) e2.y)^2.
+const uint LIGHT_DIRECTIONAL = 7u;    // Infinitely far away in the unit direction e1.
 
 // An emitter. The front of a flat one is the side that cross(e1, e2) points to, that of a sphere is outside.
 // No ray hits the last three. In the frame of the scene.
@@ -64,8 +64,8 @@ struct LightGroups {
 // A piece of the sky in latitude and longitude.
 struct EnvironmentTexel {
     vec3 radiance;  // [W/(m^2 sr)], constant over the texel.
-    float pdf;  // Density of sampling a direction in it, by luminance [1/sr]; 0 if the environment is not a
-                // light.
+    float pdf;      // Of sampling a direction in it, in proportion to luminance [1/sr]; 0 if the environment is
+                    // not a light.
 };
 
 // Entry i of an alias table of n: column i is kept with probability threshold / 2^32, otherwise the sample is

@@ -22,11 +22,7 @@ Camera read_camera(const Node& node, const Film& film);
 // Reads a material, whose key is its name.
 Material read_material(const Node& node, const ImageFolder& images);
 
-// The keys that every material may have in addition to those of its model.
-inline constexpr std::array<std::string_view, 4> MATERIAL_KEYS{"normal_map", "bump_map", "opacity",
-                                                               "vertex_colors"};
-
-// Reads the object "absorption": the absorbing medium behind a surface.
+// Reads the object "absorption": what takes up light inside a surface.
 Medium read_absorption(const Node& node);
 
 using MaterialModel = decltype(Material::model);

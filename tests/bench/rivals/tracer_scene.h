@@ -102,8 +102,9 @@ class TracerScene {
 
     Environment environment_;
     EnvironmentMap map_;
-    std::vector<float> row_cosines_;  // Cosines of the angles from +Y between the map's rows of texels.
-    std::vector<AliasEntry> alias_;   // Table of the lamps and, last, the environment.
+    std::vector<float> row_cosines_;     // Of the angles from +Y between the map's rows of texels.
+    std::vector<AliasEntry> alias_;      // Of the lamps and, last, the environment.
+    std::vector<AliasEntry> sky_alias_;  // Of its texels.
     RTCDevice device_ = nullptr;
 };
 
