@@ -1,5 +1,5 @@
 // Recognises the formats of texture files, and rejects the rest. See texel_io.h.
-#include "base/texel_io.h"
+#include "image/texel_io.h"
 
 #include <algorithm>
 #include <array>

@@ -20,13 +20,13 @@ const bool PRINCIPLED_TRANSMITS = (PRINCIPLED & (PRINCIPLED_HAS_THIN | PRINCIPLE
 struct PrincipledSurface {
     PrincipledRecord record;
     vec3 base_color;
-    float eta;       // Index of refraction on the other side over that on the viewer's.
-    vec3 spread;     // Factor of eta for red, green and blue.
-    bool encloses;   // The surface encloses a medium and refracts light. Otherwise it is a thin wall.
-    bool inside;     // The viewer is in that medium.
-    vec3 coat_n;     // Normal of the coat, in the local frame.
-    vec3 hue;        // Probabilities of the colours in the choice of a direction; they add up to 1.
-    vec4 random;     // Uniform in [0, 1), for two lattices.
+    float eta;      // Index of refraction on the other side over that on the viewer's.
+    vec3 spread;    // Factor of eta for red, green and blue.
+    bool encloses;  // The surface encloses a medium and refracts light. Otherwise it is a thin wall.
+    bool inside;    // The viewer is in that medium.
+    vec3 coat_n;    // Normal of the coat, in the local frame.
+    vec3 hue;       // Probabilities of the colours in the choice of a direction; they add up to 1.
+    vec4 random;    // Uniform in [0, 1), for two lattices.
 };
 
 // The lobes of such a point, seen from wo.
@@ -35,22 +35,22 @@ struct Principled {
     // normal, and transmit transmit (t_0 - t_edge t) of it: S is schlick_weight(c), t rises from 0 to 1 as Fresnel's
     // equations do.
     vec2 alpha;
-    bool ideal;      // The surface itself is the only facet.
+    bool ideal;  // The surface itself is the only facet.
     bool refracts;
-    vec3 eta;        // For red, green and blue.
+    vec3 eta;  // For red, green and blue.
     vec3 r_0;
     vec3 r_edge;
     vec3 r_schlick;
-    float r_total;   // Added if reflection is total, so that the transmitting fraction does not lose light.
+    float r_total;  // Added if reflection is total, so that the transmitting fraction does not lose light.
     vec3 transmit;
     vec3 t_0;
     vec3 t_edge;
 
     vec3 base_color;  // Colour of the diffuse base.
     float roughness;
-    vec3 diffuse;     // Weight of the diffuse base.
-    vec3 again;       // Reflectance of Lambert's lobe for light that facets scatter more than once.
-    vec3 through;     // Transmittance of that lobe and of the diffuse base.
+    vec3 diffuse;  // Weight of the diffuse base.
+    vec3 again;    // Reflectance of Lambert's lobe for light that facets scatter more than once.
+    vec3 through;  // Transmittance of that lobe and of the diffuse base.
     vec3 sheen;
     float sheen_alpha;
     vec3 fuzz;        // Reflectance of the fuzz.

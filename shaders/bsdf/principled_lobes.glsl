@@ -124,7 +124,7 @@ struct BaseReflectance {
     vec3 d_edge;
     vec3 m_0;
     vec3 m_edge;
-    vec3 most_0;  // The greatest channel of the dielectric, with the index of red, of green and of blue light:
+    vec3 most_0;         // The greatest channel of the dielectric, with the index of red, of green and of blue light:
     vec3 most_edge;      // most_0 + most_edge t.
     float smooth_share;  // The greatest channel of the mirror reflection of the dielectric without a film.
 };

@@ -30,10 +30,10 @@ float light_end_error(float error, float distance) {
 
 // A point on a light, as seen from a point that is lit.
 struct LightSample {
-    vec3 wi;      // Unit direction from the lit point.
-    vec3 Li;      // Radiance that arrives if nothing is in between [W/(m^2 sr)]; if delta, its integral over directions.
-    float pdf;    // Density over solid angle at the lit point [1/sr]; 0 means that no light arrives.
-    bool delta;   // Only light sampling can find it: pdf is the probability of choosing the light.
+    vec3 wi;     // Unit direction from the lit point.
+    vec3 Li;     // Radiance that arrives if nothing is in between [W/(m^2 sr)]; if delta, its integral over directions.
+    float pdf;   // Density over solid angle at the lit point [1/sr]; 0 means that no light arrives.
+    bool delta;  // Only light sampling can find it: pdf is the probability of choosing the light.
     vec3 shadow;  // Direction, of any length, of the shadow ray from the lit point.
     float t_max;  // The light is hidden if the shadow ray hits something with t in (0, t_max).
     uint light;   // Its place in the table of lights.

@@ -21,16 +21,16 @@ struct Traversal {
     Ray ray;     // In the space of the nodes that it visits: the scene's, or that of an instance's mesh.
     vec3 inv_d;  // reciprocals(ray.d)
     RayShear shear;
-    bool any_hit;    // The first hit ends the traversal.
-    Hit hit;         // The nearest so far.
-    uint node;       // The next node to be visited.
-    uint pending;    // Its siblings, which come after it; those further up are on the stack.
-    uint leaves;     // Leaves to be tested before `node`; bit i: primitive first_leaf + i.
-    uint first_leaf; // Position in leaf order.
+    bool any_hit;         // The first hit ends the traversal.
+    Hit hit;              // The nearest so far.
+    uint node;            // The next node to be visited.
+    uint pending;         // Its siblings, which come after it; those further up are on the stack.
+    uint leaves;          // Leaves to be tested before `node`; bit i: primitive first_leaf + i.
+    uint first_leaf;      // Position in leaf order.
     Candidate candidate;  // For bvh_decide.
-    Ray outside;     // In the frame of the scene.
-    uint instance;   // The instance that the ray is in, or NO_INSTANCE.
-    uint root;       // The root of its mesh, followed by all nodes of the mesh; 0 outside instances.
+    Ray outside;          // In the frame of the scene.
+    uint instance;        // The instance that the ray is in, or NO_INSTANCE.
+    uint root;            // The root of its mesh, followed by all nodes of the mesh; 0 outside instances.
 };
 
 // A traversal at the root that looks for hits with t in (0, t_max). bvh_prepare comes first.

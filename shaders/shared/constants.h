@@ -18,10 +18,9 @@ const uint DEPTH_SAFETY_LIMIT = 4096u;
 const uint NO_LIGHT = 0xFFFFFFFFu;
 
 // Estimators of direct light.
-const uint ESTIMATOR_BSDF = 0u;  // Emission is only found by BSDF samples.
-const uint ESTIMATOR_LIGHT =
-    1u;                         // Emission is only found by light samples (except where they cannot find it).
-const uint ESTIMATOR_MIS = 2u;  // Both, weighted by the power heuristic.
+const uint ESTIMATOR_BSDF = 0u;   // Emission is only found by BSDF samples.
+const uint ESTIMATOR_LIGHT = 1u;  // Emission is only found by light samples (except where they cannot find it).
+const uint ESTIMATOR_MIS = 2u;    // Both, weighted by the power heuristic.
 
 // Samplers.
 const uint SAMPLER_INDEPENDENT = 0u;

@@ -73,15 +73,15 @@ struct MaterialTextures {
     uint base;  // Factors of the record's fields of these names.
     uint specular;
     uint parameter;
-    uint normal;  // Tangent space: x along the tangent, y along the bitangent, z along the normal; in [0, 1].
-    uint bump;    // 1: the channel of `normal` is a height instead.
+    uint normal;           // Tangent space: x along the tangent, y along the bitangent, z along the normal; in [0, 1].
+    uint bump;             // 1: the channel of `normal` is a height instead.
     float normal_scale;    // Factor of its x and y, or the height for 1, in the frame of the scene.
     uint opacity_texture;  // Its channel is a factor of `opacity`.
     float opacity;         // Probability that a ray does not pass the surface as if it were not there.
-    float cutoff;        // If it is not negative, no ray passes where opacity is at least this, and every ray
-                         // elsewhere.
-    uint vertex_colors;  // 1: `base` and opacity are multiplied by the colours of vertices.
-    uint culled;         // 1: rays pass the surface from behind.
+    float cutoff;          // If it is not negative, no ray passes where opacity is at least this, and every ray
+                           // elsewhere.
+    uint vertex_colors;    // 1: `base` and opacity are multiplied by the colours of vertices.
+    uint culled;           // 1: rays pass the surface from behind.
 };
 
 // The surface of a light, and the factors of its radiance.
@@ -104,10 +104,9 @@ const uint TEXTURED_MATERIALS = TEXTURED_BASE | TEXTURED_SPECULAR | TEXTURED_PAR
 
 // Attributes of the corners a, b, c, d of primitives, a bit each: the specialization constant ATTRIBUTES. A
 // primitive has the words of each attribute that is present, in this order.
-const uint ATTRIBUTE_UV0 = 1u << 0u;  // 2 words: u, v of a and b; of c and d.
-const uint ATTRIBUTE_UV1 = 1u << 1u;  // 2 words.
-const uint ATTRIBUTE_COLOR =
-    1u << 2u;  // 2 words: red, green, blue, alpha of a and b; of c and d; half floats.
+const uint ATTRIBUTE_UV0 = 1u << 0u;      // 2 words: u, v of a and b; of c and d.
+const uint ATTRIBUTE_UV1 = 1u << 1u;      // 2 words.
+const uint ATTRIBUTE_COLOR = 1u << 2u;    // 2 words: red, green, blue, alpha of a and b; of c and d; half floats.
 const uint ATTRIBUTE_TANGENT = 1u << 3u;  // 1 word: at a, b, c, d, packed by pack_tangent().
 const uint ATTRIBUTES_ALL = 15u;
 

@@ -1,5 +1,5 @@
 // Images made smaller: means over areas, of light if the image is encoded.
-#include "base/shrink_image.h"
+#include "image/shrink_image.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,6 +1,6 @@
 // Tone curves: properties that their publications promise, values computed separately in double precision,
 // and the results for inputs that are not colours.
-#include "base/tonemap.h"
+#include "image/tonemap.h"
 
 #include <cmath>
 #include <limits>
