@@ -21,6 +21,8 @@ struct Medium {
 struct NormalMap {
     Texture texture{};
     float scale = 1.0f;  // Factor of red and green.
+
+    bool operator==(const NormalMap&) const = default;
 };
 
 // The kinds of values in principled_values.inc, and what holds one.
@@ -80,6 +82,8 @@ struct PrincipledMaterial {
 #include "scene/principled_values.inc"
 #undef VALUE
 #undef KEY
+
+    bool operator==(const PrincipledMaterial&) const = default;
 };
 
 // What a value may be, or what the factor of its image may be.

@@ -39,9 +39,9 @@ class SteadyRenderer {
     SteadyRenderer(Source source, OnFailure on_failure);
 
     // Starts over, on the same device, with other settings and states, and with the camera that the source's
-    // pointer shows now; if `scene_changed`, with the scene that its pointer shows, too. Throws Error if that
-    // fails, and is then of no more use.
-    void restart(bool scene_changed, const RenderSettings& settings, std::vector<Accumulation> states);
+    // pointer shows now; also with the scene that its pointer shows, of which these buffers have changed.
+    // Throws Error if that fails, and is then of no more use.
+    void restart(const BufferSet& changed, const RenderSettings& settings, std::vector<Accumulation> states);
 
     // Continues with this one of the states(), as it is there now. At the start, the first is selected.
     void select(size_t state);
@@ -70,7 +70,7 @@ class SteadyRenderer {
 
   private:
     void open();
-    void load();
+    void load(const BufferSet& changed = {});
     void look_up_positions();
     Accumulation& state() { return source_.states[selected_]; }
     void recover(const Error& error);
