@@ -100,7 +100,7 @@ void SceneStages::make_nesting(const Work& work) {
     if (work.all || work.change.of_geometry()) coplanar_lights_ = warn_of_coplanar_lights(work.scene);
 }
 
-// Whether flatten() would make something else of the shapes that are no instances.
+// Whether flatten() would make something else of the shapes that are not instances.
 bool SceneStages::has_other_surfaces(const Work& work, const Instancing& instancing,
                                      const std::vector<bool>& lets_pass) const {
     if (work.all || work.frame || work.attributes || work.normals) return true;

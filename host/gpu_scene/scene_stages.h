@@ -4,7 +4,7 @@
 //
 //   textures, materials   of materials, emissions and images, and the unit of the frame
 //   texels                of images
-//   surfaces              of shapes that are no instances, in the frame: primitives, and pieces that emit
+//   surfaces              of shapes that are not instances, in the frame: primitives, and pieces that emit
 //   area lights           of surfaces, emissions, materials and images
 //   mesh trees            of meshes that instances show, in frames of their own
 //   tree above            of the boxes around surfaces and instances, in the frame
@@ -23,23 +23,9 @@
 
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/nesting.h"
+#include "scene/scene_change.h"
 
 namespace candela {
-
-// What of a scene is other than before. There are as many materials, meshes, shapes and images as there were.
-struct SceneChange {
-    bool environment = false;  // All of it, or whether there is one.
-    bool rotation = false;     // Of the environment.
-    bool lights = false;       // The punctual ones.
-    bool radiance = false;     // Factors and sides of emissions; neither their textures nor what emits.
-    bool materials = false;
-    bool images = false;
-    std::vector<uint32_t> moved{};   // Shapes that are meshes in another place.
-    std::vector<uint32_t> shapes{};  // Shapes that differ in any other way.
-    std::vector<uint32_t> meshes{};
-
-    bool of_geometry() const { return !moved.empty() || !shapes.empty() || !meshes.empty(); }
-};
 
 class SceneStages {
   public:

@@ -21,6 +21,8 @@ struct Medium {
 struct NormalMap {
     Texture texture{};
     float scale = 1.0f;  // Factor of red and green, within +-MAX_NORMAL_SCALE.
+
+    bool operator==(const NormalMap&) const = default;
 };
 inline constexpr float MAX_NORMAL_SCALE = 1e3f;
 
@@ -81,6 +83,8 @@ struct PrincipledMaterial {
 #include "scene/principled_values.inc"
 #undef VALUE
 #undef KEY
+
+    bool operator==(const PrincipledMaterial&) const = default;
 };
 
 // The range of a value, or of the factor of its image.

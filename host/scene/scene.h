@@ -69,6 +69,8 @@ struct IntegratorSettings {
 // Lambert: f = reflectance / pi on both sides.
 struct DiffuseMaterial {
     Textured<vec3> reflectance{vec3(0.5f)};  // Each in [0, 1].
+
+    bool operator==(const DiffuseMaterial&) const = default;
 };
 
 // A diffuse base under a glossy lobe around the mirrored direction: modified Phong. diffuse + specular is at
@@ -77,18 +79,24 @@ struct PhongMaterial {
     Textured<vec3> diffuse{vec3(0)};   // kd.
     Textured<vec3> specular{vec3(0)};  // ks.
     Textured<float> exponent = 1.0f;   // n, in [0, MAX_PHONG_EXPONENT].
+
+    bool operator==(const PhongMaterial&) const = default;
 };
 inline constexpr float MAX_PHONG_EXPONENT = 1e5f;
 
 // An ideal mirror.
 struct MirrorMaterial {
     Textured<vec3> reflectance{vec3(1)};  // Each in [0, 1], at any angle.
+
+    bool operator==(const MirrorMaterial&) const = default;
 };
 
 // A metal with microfacets (GGX). Its reflectance rises to 1 towards grazing angles (Schlick).
 struct ConductorMaterial {
     Textured<vec3> reflectance{vec3(1)};  // At normal incidence, each in [0, 1].
     Textured<float> alpha = 0.1f;         // Roughness, in [MIN_ALPHA, 1].
+
+    bool operator==(const ConductorMaterial&) const = default;
 };
 inline constexpr float MIN_ALPHA = 1e-3f;
 
@@ -98,6 +106,8 @@ struct DiffuseTransmissionMaterial {
     Textured<vec3> reflectance{vec3(0.5f)};    // On the side that light comes from.
     Textured<vec3> transmittance{vec3(0.5f)};  // On the other side.
     std::optional<Medium> inside{};            // Behind the surface; none: the same as in front of it.
+
+    bool operator==(const DiffuseTransmissionMaterial&) const = default;
 };
 
 enum class Fresnel { schlick, exact };
@@ -111,6 +121,8 @@ struct DielectricMaterial {
     Fresnel fresnel = Fresnel::schlick;
     Medium inside{};        // Behind the surface.
     uint32_t priority = 0;  // Where media overlap, the highest fills the space.
+
+    bool operator==(const DielectricMaterial&) const = default;
 };
 inline constexpr uint32_t MAX_PRIORITY = 15;
 
@@ -121,6 +133,8 @@ struct BumpMap {
     // As stated by a mesh's own file: the height for a value of 1 in units of the mesh, or, if the image
     // turns out to hold normals, the scale of the normal map.
     std::optional<float> multiplier{};
+
+    bool operator==(const BumpMap&) const = default;
 };
 
 // Opacity: some rays pass a surface as if it were not there.
@@ -128,6 +142,8 @@ struct Opacity {
     Textured<float> value = 1.0f;   // The probability that a ray does not, in [0, 1].
     std::optional<float> cutoff{};  // If given, no ray passes where the value is at least this, and every ray
                                     // passes elsewhere.
+
+    bool operator==(const Opacity&) const = default;
 };
 
 struct Material {
@@ -140,6 +156,8 @@ struct Material {
     Opacity opacity{};
     bool vertex_colors =
         false;  // The colours of vertices are factors of the model's first colour and of opacity.
+
+    bool operator==(const Material&) const = default;
 };
 
 // Radiance that a surface emits [W/(m^2 sr)], from its front side (counter-clockwise) or from both.
@@ -168,18 +186,24 @@ struct TriangleMesh {
 struct MeshInstance {
     uint32_t mesh = 0;      // Index into Scene::meshes.
     Transform transform{};  // From the mesh's space to the world's.
+
+    bool operator==(const MeshInstance&) const = default;
 };
 
 // A planar, convex quadrilateral with counter-clockwise corners.
 struct Quad {
     dvec3 corners[4];
     vec2 uvs[4]{{0, 0}, {1, 0}, {1, 1}, {0, 1}};  // Texture coordinates.
+
+    bool operator==(const Quad&) const = default;
 };
 
 // A true sphere; its front is outside.
 struct Sphere {
     dvec3 center{0};
     double radius = 1.0;  // Above 0.
+
+    bool operator==(const Sphere&) const = default;
 };
 
 // center + x e1 + y e2 with x^2 + y^2 <= 1: a disk, or an ellipse. Its front is the side that cross(e1, e2)
@@ -191,6 +215,8 @@ struct Disk {
     vec2 uvs[3]{{0.5f, 0.5f},
                 {1.0f, 0.5f},
                 {0.5f, 1.0f}};  // Texture coordinates of the centre, and of the ends of e1, e2.
+
+    bool operator==(const Disk&) const = default;
 };
 
 struct Shape {

@@ -33,6 +33,8 @@ class Transform {
     // The same, or of an uneven transform the edge of a cube with the volume that it gives a cube of edge 1.
     double mean_scale() const;
 
+    bool operator==(const Transform&) const = default;
+
   private:
     glm::dmat4 matrix_{1.0};
     glm::dmat3 cofactor_{1.0};  // The inverse transpose of the linear part, up to a factor.

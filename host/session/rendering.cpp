@@ -43,11 +43,11 @@ Rendering::Rendering(Source source, RenderJob job, RenderRecord record)
     if (job_.write_every) images_.emplace(*job_.write_every);
 }
 
-void Rendering::restart(RenderJob job, RenderRecord record, bool scene_changed) {
+void Rendering::restart(RenderJob job, RenderRecord record, const BufferSet& changed) {
     job_ = std::move(job);
     record_ = std::move(record);
     std::optional<Checkpoint> none;
-    renderer_.restart(scene_changed, job_.settings, first_states(job_, none));
+    renderer_.restart(changed, job_.settings, first_states(job_, none));
     convergence_ = Convergence(job_.target_error, {});
     seconds_before_ = 0.0;
     planned_ = 0;

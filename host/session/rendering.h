@@ -57,9 +57,10 @@ class Rendering {
 
     // Changes the samples per pixel that run() renders to.
     void set_target(uint32_t spp) { job_.target = spp; }
-    // Starts over, on the same device, with another job, which may not ask for files; if `scene_changed`,
-    // with the source's scene as it is now. Throws Error if that fails; the object is then unusable.
-    void restart(RenderJob job, RenderRecord record, bool scene_changed);
+    // Starts over, on the same device, with another job, which may not ask for files, and with the source's
+    // scene as it is now, of which these buffers have changed. Throws Error if that fails; the object is then
+    // unusable.
+    void restart(RenderJob job, RenderRecord record, const BufferSet& changed);
 
     // The image of the samples so far, from which record() takes its hash.
     Image image();

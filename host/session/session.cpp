@@ -1,15 +1,13 @@
 // See session.h.
 #include "session/session.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 
 #include "base/error.h"
 #include "film/sample_range.h"
-#include "gpu_scene/gpu_scene.h"
-#include "load/json/change.h"
 #include "load/load.h"
+#include "session/live_scene.h"
 #include "session/rendering.h"
 #include "vk/instance.h"
 
@@ -29,25 +27,31 @@ class Session::Impl {
         options.gltf.time = file.time;
         options.gltf.animation = file.animation;
         options.reach.folders = file.folders;
-        scene_ = load_scene(file.path, options);
-        folder_ = file.path.parent_path();
+        scene_.load(file.path, options);
         picture_ = {};
-        pending_ = Pending::scene;
-        warn(std::exchange(scene_.warnings, {}));
+        is_new_ = true;
+        warn(scene_.take_warnings());
     }
 
     void change(std::string_view json) {
         require_scene();
-        const bool scene = change_scene(scene_, json, "change", folder_);
-        pending_ = scene ? Pending::scene : std::max(pending_, Pending::picture);
-        warn(std::exchange(scene_.warnings, {}));
+        scene_.change(json);
+        is_new_ = true;
+        warn(scene_.take_warnings());
+    }
+
+    void pose(std::optional<double> time, std::optional<std::string> animation) {
+        require_scene();
+        scene_.pose(time, std::move(animation));
+        is_new_ = true;
+        warn(scene_.take_warnings());
     }
 
     void choose(const PictureRequest& picture) {
         require_scene();
         job_for(picture, 1);
         picture_ = picture;
-        pending_ = std::max(pending_, Pending::picture);
+        is_new_ = true;
     }
 
     bool render(uint32_t spp, const std::function<bool(double)>& keep_going) {
@@ -76,11 +80,8 @@ class Session::Impl {
     }
 
   private:
-    // What has changed since the last rendering.
-    enum class Pending { nothing, picture, scene };
-
     void require_scene() const {
-        if (scene_.cameras.empty()) throw Error("no scene has been loaded yet; call load() first");
+        if (scene_.scene().cameras.empty()) throw Error("no scene has been loaded yet; call load() first");
     }
 
     void warn(const std::vector<std::string>& warnings) const {
@@ -94,8 +95,8 @@ class Session::Impl {
             throw Error("cannot render " + std::to_string(spp) + " samples per pixel; give 1 to " +
                         std::to_string(MAX_SPP));
         }
-        const Camera& camera = choose_camera(scene_, picture.camera, "");
-        RenderSettings settings = proposed_settings(scene_, camera);
+        const Camera& camera = choose_camera(scene_.scene(), picture.camera, "");
+        RenderSettings settings = proposed_settings(scene_.scene(), camera);
         settings.size = {picture.width.value_or(settings.size.x), picture.height.value_or(settings.size.y)};
         if (settings.size.x == 0 || settings.size.y == 0)
             throw Error("a picture without width or height cannot be rendered; give at least 1 for each");
@@ -110,41 +111,38 @@ class Session::Impl {
     // Makes rendering_ one of the current scene and picture.
     void prepare(uint32_t spp) {
         RenderJob job = job_for(picture_, spp);
-        if (rendering_ && pending_ == Pending::nothing) {
+        if (rendering_ && !is_new_) {
             rendering_->set_target(spp);
             return;
         }
-        if (pending_ == Pending::scene) {
-            gpu_scene_ = build_gpu_scene(scene_);
-            warn(gpu_scene_.warnings);
-        }
-        RenderRecord record = make_record(scene_, gpu_scene_, job);
-        std::unique_ptr<Rendering> rendering = std::move(rendering_);  // If this fails, the rendering is
-                                                                       // unusable.
+        changed_ |= scene_.update();
+        warn(scene_.take_warnings());
+        RenderRecord record = make_record(scene_.scene(), scene_.records(), job);
+        std::unique_ptr<Rendering> rendering = std::move(rendering_);  // If this fails, it is of no more use.
         if (rendering) {
-            rendering->restart(std::move(job), std::move(record), pending_ == Pending::scene);
+            rendering->restart(std::move(job), std::move(record), changed_);
         } else {
             rendering =
                 std::make_unique<Rendering>(Rendering::Source{.instance = &instance_,
                                                               .device = device_,
                                                               .pipeline_cache_folder = options_.kernel_cache,
-                                                              .scene = &gpu_scene_,
+                                                              .scene = &scene_.records(),
                                                               .resumed = {},
                                                               .reference = {}},
                                             std::move(job), std::move(record));
         }
         rendering_ = std::move(rendering);
-        pending_ = Pending::nothing;
+        changed_.reset();
+        is_new_ = false;
     }
 
     SessionOptions options_;
     vk::Instance instance_;
     vk::DeviceInfo device_;
-    Scene scene_;
-    std::filesystem::path folder_;
+    LiveScene scene_;
     PictureRequest picture_;
-    GpuScene gpu_scene_;
-    Pending pending_ = Pending::scene;
+    bool is_new_ = true;  // Scene or picture are others than at the last rendering,
+    BufferSet changed_;   // and so are these buffers of the scene.
     std::unique_ptr<Rendering> rendering_;
     double done_ = 0.0;
     size_t validation_messages_ = 0;  // Those already given to warn().
@@ -159,6 +157,10 @@ void Session::load(const SceneFile& file) {
 
 void Session::change(std::string_view json) {
     impl_->change(json);
+}
+
+void Session::pose(std::optional<double> time, std::optional<std::string> animation) {
+    impl_->pose(time, std::move(animation));
 }
 
 void Session::choose(const PictureRequest& picture) {

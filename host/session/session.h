@@ -73,6 +73,10 @@ class Session {
     // can neither get nor lose a normal map or anisotropy.
     void change(std::string_view json);
 
+    // Shows glTF at another time of its animation [s]; see SceneFile::time and ::animation. Its files are not
+    // read again, and what changes have replaced stays.
+    void pose(std::optional<double> time, std::optional<std::string> animation = {});
+
     // Chooses the picture. By default, and after load(), it is the one that the scene proposes.
     void choose(const PictureRequest& picture);
 

@@ -32,10 +32,12 @@ void SteadyRenderer::open() {
     loaded_ = true;
 }
 
-void SteadyRenderer::load() {
+void SteadyRenderer::load(const BufferSet& changed) {
     source_.settings.seed = state().seed;
-    renderer_->reset(*source_.scene, *source_.camera, source_.settings);
+    renderer_->reset(*source_.scene, *source_.camera, source_.settings, changed);
     renderer_->upload(state());
+    array_map_ = renderer_->array_map();
+    pipeline_seconds_ = renderer_->pipeline_seconds();
     loaded_ = true;
 }
 
@@ -43,14 +45,14 @@ void SteadyRenderer::look_up_positions() {
     if (source_.positions && positions_.empty()) positions_ = renderer_->positions();
 }
 
-void SteadyRenderer::restart(bool scene_changed, const RenderSettings& settings,
+void SteadyRenderer::restart(const BufferSet& changed, const RenderSettings& settings,
                              std::vector<Accumulation> states) {
     source_.settings = settings;
     source_.states = std::move(states);
     positions_.clear();
     selected_ = 0;
-    if (scene_changed) renderer_.reset();  // Before the next one allocates memory.
-    renderer_ ? load() : open();
+    if (changed.all()) renderer_.reset();  // Before the next one takes memory.
+    renderer_ ? load(changed) : open();
     look_up_positions();
 }
 

@@ -38,10 +38,10 @@ class SteadyRenderer {
     // Throws Error if that fails, or if a state does not fit.
     SteadyRenderer(Source source, OnFailure on_failure);
 
-    // Starts over, on the same device, with other settings and states, and with the source's camera as it is
-    // now; if `scene_changed`, also with its scene as it is now. Throws Error if that fails; the object is
-    // then unusable.
-    void restart(bool scene_changed, const RenderSettings& settings, std::vector<Accumulation> states);
+    // Starts over, on the same device, with other settings and states, with the source's camera and scene as
+    // they are now; of the scene, these buffers have changed. Throws Error if that fails; the object is then
+    // unusable.
+    void restart(const BufferSet& changed, const RenderSettings& settings, std::vector<Accumulation> states);
 
     // Selects one of the states() to continue with, as it is there now. At the start, the first is selected.
     void select(size_t state);
@@ -70,7 +70,7 @@ class SteadyRenderer {
 
   private:
     void open();
-    void load();
+    void load(const BufferSet& changed = {});
     void look_up_positions();
     Accumulation& state() { return source_.states[selected_]; }
     void recover(const Error& error);

@@ -69,6 +69,7 @@ FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
 TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*:*Reference*/textured*:*Reference*/mask")
 MEDIA = ("Records*", "NestedMedia*:*Reference*/nested_glass")
 LAYERED = ("PrincipledTest*:Records*", "PrincipledPicture*")
+CHANGES = ("Records*", "SessionTest*:UpdateTest*", "LiveScene*:SceneStages*")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
@@ -351,6 +352,12 @@ GROUPS = [
          "own->second.bvh.depth"),
         ("instances in no medium", "host/render/media_at.cpp", "medium_of(instance.material)", "MEDIUM_SAME"),
         ("sheared instances in spaces of their own", INSTANCING, "<= double{MAX_INSTANCE_CONDITION}", "<= 1e30"),
+    ]),
+    (CHANGES, [
+        ("what a change makes again not copied to the device", "host/session/steady_renderer.cpp",
+         "*source_.camera, source_.settings, changed);", "*source_.camera, source_.settings);"),
+        ("a pose that bends no mesh", "host/scene/scene_change.cpp",
+         "if (!is_same(before.meshes[i], now.meshes[i]))", "if (false)"),
     ]),
     (DEVICES, [
         ("a work group's counts in the place of those before", RENDER, "if (n > 0u) atomicAdd(counters[i], n);",

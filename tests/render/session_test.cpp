@@ -1,6 +1,7 @@
 // A scene that stays: after any change, the picture has the bits of a fresh load of that state.
 #include "session/session.h"
 
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "support/png_writer.h"
 #include "unit/base/base_fixture.h"
+#include "unit/load/gltf/gltf_fixture.h"
 
 namespace candela {
 namespace {
@@ -46,6 +48,23 @@ class SessionTest : public testing::Test {
         write("scene.json", text);
         return {.path = folder_ / "scene.json"};
     }
+    // A file whose triangle, of the material "paint", turns about z, and is half as large at 1 s.
+    void write_turning(const std::string& name) const {
+        GltfFile file;
+        file.root["materials"] = {{{"name", "paint"}}};
+        file.show({{"attributes", {{"POSITION", file.add_corner()}}}, {"material", 0}});
+        const size_t times = file.add<float>("SCALAR", {0, 1});
+        const size_t turns = file.add<float>("VEC4", {0, 0, 0, 1, 0, 0, 1, 0});
+        const size_t sizes = file.add<float>("VEC3", {1, 1, 1, 0.5f, 0.5f, 0.5f});
+        const auto channel = [](int sampler, const char* path) {
+            return Json{{"sampler", sampler}, {"target", {{"node", 0}, {"path", path}}}};
+        };
+        file.push(
+            "animations",
+            {{"samplers", {{{"input", times}, {"output", turns}}, {{"input", times}, {"output", sizes}}}},
+             {"channels", {channel(0, "rotation"), channel(1, "scale")}}});
+        write(name, file.gltf());
+    }
     static SessionOptions options() {
         return {.warn = [](const std::string& what) { ADD_FAILURE() << what; }, .validation = true};
     }
@@ -78,9 +97,12 @@ TEST_F(SessionTest, AfterEachChangeThePictureIsThatOfAFreshLoad) {
     struct Step {
         std::string change, state;
     };
+    const std::string paint = R"({"type": "diffuse", "reflectance": [0.2, 0.5, 0.7]})";
     const Step steps[] = {
         {R"({"cameras": {"main": )" + camera + "}}", scene_text(camera, FLOOR, LAMP, SKY)},
-        {R"({"environment": )" + sky + R"(, "materials": {"floor": )" + floor + R"(, "lamp": )" + lamp + "}}",
+        {R"({"environment": )" + sky + "}", scene_text(camera, FLOOR, LAMP, sky)},
+        {R"({"materials": {"floor": )" + paint + "}}", scene_text(camera, paint, LAMP, sky)},
+        {R"({"materials": {"floor": )" + floor + R"(, "lamp": )" + lamp + "}}",
          scene_text(camera, floor, lamp, sky)}};
     std::vector<Layers> pictures;
     {
@@ -106,6 +128,47 @@ TEST_F(SessionTest, AfterEachChangeThePictureIsThatOfAFreshLoad) {
     }
     EXPECT_TRUE(pictures.back() == pictures.front());
     EXPECT_EQ(pictures.front().size(), 18u);  // R G B A, and those of docs/files.md.
+}
+
+// A triangle of a glTF file turns and shrinks.
+TEST_F(SessionTest, AfterEachPoseThePictureIsThatOfAFreshLoad) {
+    const auto text = [](const std::string& paint) {
+        return R"({"scene": "m.gltf", "cameras": {"main": )" + CAMERA +
+               R"(}, "film": {"size": [24, 16]}, "materials": {"paint": )" + paint + R"(}, "environment": )" +
+               SKY + "}";
+    };
+    const std::string blue = R"({"type": "diffuse", "reflectance": [0.1, 0.2, 0.9]})";
+    write_turning("m.gltf");
+    std::array<Layers, 4> layers_at;
+    {
+        Session session(options());
+        EXPECT_EQ(error_of([&] { session.pose(0.5); }), "there is no scene yet; call load() first");
+        session.load(file(text(FLOOR)));
+        const auto render = [&](Layers& picture) {
+            EXPECT_TRUE(session.render(SPP));
+            picture = layers(session);
+        };
+        render(layers_at[0]);
+        session.pose(0.5);
+        render(layers_at[1]);
+        session.change(R"({"materials": {"paint": )" + blue + "}}");
+        session.pose(1.0);
+        render(layers_at[2]);
+        session.pose({});
+        session.change(R"({"materials": {"paint": )" + FLOOR + "}}");
+        render(layers_at[3]);
+    }
+    EXPECT_NE(layers_at[1], layers_at[0]);
+    EXPECT_NE(layers_at[2], layers_at[1]);
+    EXPECT_TRUE(layers_at[3] == layers_at[0]);
+    for (const bool last : {false, true}) {
+        Session session(options());
+        SceneFile posed = file(text(last ? blue : FLOOR));
+        posed.time = last ? 1.0 : 0.5;
+        session.load(posed);
+        EXPECT_TRUE(session.render(SPP));
+        EXPECT_TRUE(layers_at[last ? 2 : 1] == layers(session));
+    }
 }
 
 TEST_F(SessionTest, RendersOnAndWithOtherPicturesToTheSameBits) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "load/json/loader_parts.h"
 #include "scene/images.h"
 #include "scene/material_textures.h"
@@ -16,13 +17,15 @@
 namespace candela {
 namespace {
 
-// A material of the change, and the one of the scene that it replaces.
+// A material of the change: where it stands, for messages, and the one of the scene whose place it takes.
 struct MaterialChange {
-    Node node;
+    std::string place;
     size_t index;
 };
 
-std::vector<MaterialChange> materials_of(const Node& materials, const Scene& scene) {
+// Reads materials into `change`, which has read nothing else.
+std::vector<MaterialChange> read_materials(const Node& materials, const Scene& scene,
+                                           const std::filesystem::path& folder, Scene& change) {
     std::vector<std::string> names;
     for (const Material& material : scene.materials)
         names.push_back(material.name);
@@ -30,25 +33,26 @@ std::vector<MaterialChange> materials_of(const Node& materials, const Scene& sce
     for (const Node& node : materials.members()) {
         const auto found = std::ranges::find(names, node.key());
         if (found == names.end()) node.fail_unknown("material", node.key(), names, "defined");
-        changes.push_back({node, size_t(found - names.begin())});
+        changes.push_back({node.place(), size_t(found - names.begin())});
+        change.materials.push_back(read_material(node, {folder, change}));
     }
     return changes;
 }
 
-// Throws Error if a mesh of the material `before` lacks what the new material needs, or would have been read
-// in another way.
-void check_mesh(const Node& node, const Material& before, const Shape& shape, Scene& scene) {
+// Throws Error if a mesh of the material `before` lacks what its new one needs, or would have been read in
+// another way.
+void check_mesh(const std::string& place, const Material& before, const Shape& shape, Scene& scene) {
     const auto* const instance = std::get_if<MeshInstance>(&shape.geometry);
     if (instance == nullptr) return;
     const Material& now = scene.materials[shape.material];
     const bool tangents = needs_tangents(before);
     if (tangents != needs_tangents(now) || (tangents && tangent_uv_set(before) != tangent_uv_set(now)) ||
         (before.bump_map && before.bump_map->multiplier)) {
-        node.fail("the meshes of the material \"" + now.name +
-                  "\" were read for its normal map, its anisotropy or the lack of them, or for the heights "
-                  "of their file; change the scene's file, and load it again");
+        throw Error(place + ": the meshes of the material \"" + now.name +
+                    "\" were read for its normal map, its anisotropy or the lack of them, or for the heights "
+                    "of their file; change the scene's file, and load it again");
     }
-    SceneBuilder(scene).complete_mesh(node.place(), {shape.material, material_emission(now)}, instance->mesh);
+    SceneBuilder(scene).complete_mesh(place, {shape.material, material_emission(now)}, instance->mesh);
 }
 
 // Calls visit(texture) for each texture of the scene.
@@ -61,8 +65,9 @@ void for_each_texture_of(Scene& scene, const Visit& visit) {
     }
 }
 
-// Removes the images that no texture looks up, so that memory does not grow with each change.
-void drop_unused_images(Scene& scene) {
+// Removes the images that no texture looks up, so that the scene takes no more memory with each change.
+// Returns whether there were any.
+bool drop_unused_images(Scene& scene) {
     std::vector<uint32_t> indices(scene.images.size(), 0);
     for_each_texture_of(scene, [&](const Texture& texture) { indices[texture.image] = 1; });
     uint32_t count = 0;
@@ -74,6 +79,7 @@ void drop_unused_images(Scene& scene) {
     scene.images.erase(scene.images.begin() + count, scene.images.end());
     scene.image_indices.clear();
     for_each_texture_of(scene, [&](Texture& texture) { texture.image = indices[texture.image]; });
+    return count < indices.size();
 }
 
 // Exchanges the materials of the change with those of the scene.
@@ -82,16 +88,18 @@ void exchange_materials(Scene& scene, Scene& change, const std::vector<MaterialC
         std::swap(scene.materials[changes[i].index], change.materials[i]);
 }
 
-// Swaps the materials of the change with those of the scene that they replace; throws Error if meshes cannot
-// have the new ones.
-void take_materials(Scene& scene, Scene& change, const std::vector<MaterialChange>& changes) {
+// Gives the scene the materials of the change, which gets those that they replace; throws Error if meshes
+// cannot have them. Returns what of the scene is other than before.
+SceneChange take_materials(Scene& scene, Scene& change, const std::vector<MaterialChange>& changes) {
+    if (changes.empty()) return {};
+    SceneChange result{.materials = true, .images = !change.images.empty()};
     for_each_texture_of(change, [&](Texture& texture) { texture.image += uint32_t(scene.images.size()); });
     exchange_materials(scene, change, changes);
     try {
         for (size_t i = 0; i < changes.size(); ++i) {
             for (const Shape& shape : scene.shapes) {
                 if (shape.material == changes[i].index)
-                    check_mesh(changes[i].node, change.materials[i], shape, scene);
+                    check_mesh(changes[i].place, change.materials[i], shape, scene);
             }
         }
     } catch (...) {
@@ -100,12 +108,15 @@ void take_materials(Scene& scene, Scene& change, const std::vector<MaterialChang
     }
     std::ranges::move(change.images, std::back_inserter(scene.images));
     for (const MaterialChange& made : changes) {
-        for (Shape& shape : scene.shapes) {
-            if (shape.material == made.index && !shape.states_emission)
-                shape.emission = material_emission(scene.materials[made.index]);
+        for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
+            Shape& shape = scene.shapes[i];
+            if (shape.material != made.index || shape.states_emission) continue;
+            const auto before = std::exchange(shape.emission, material_emission(scene.materials[made.index]));
+            note_emission(result, i, before, shape.emission);
         }
     }
-    drop_unused_images(scene);
+    result.images |= drop_unused_images(scene);
+    return result;
 }
 
 // Replaces cameras of the same names; others join the scene's.
@@ -119,8 +130,8 @@ void take_cameras(Scene& scene, Scene& change) {
 
 }  // namespace
 
-bool change_scene(Scene& scene, std::string_view text, const std::string& name,
-                  const std::filesystem::path& folder) {
+SceneChange change_scene(Scene& scene, std::string_view text, const std::string& name,
+                         const std::filesystem::path& folder, SceneEdits& edits) {
     const json::Document document{name, json::parse(text, name)};
     const Node root(document);
     root.allow_only({"cameras", "materials", "environment"});
@@ -131,9 +142,7 @@ bool change_scene(Scene& scene, std::string_view text, const std::string& name,
     Scene change;
     change.reach = scene.reach;
     std::vector<MaterialChange> changes;
-    if (materials) changes = materials_of(*materials, scene);
-    for (const MaterialChange& material : changes)
-        change.materials.push_back(read_material(material.node, {folder, change}));
+    if (materials) changes = read_materials(*materials, scene, folder, change);
     if (cameras) {
         for (const Node& camera : cameras->members())
             change.cameras.push_back(read_camera(camera, scene.film));
@@ -142,12 +151,39 @@ bool change_scene(Scene& scene, std::string_view text, const std::string& name,
     DecodedImages decoded;
     load_images(change, {}, no_progress, decoded);
 
-    if (materials) take_materials(scene, change, changes);
+    SceneChange result = take_materials(scene, change, changes);
+    for (const MaterialChange& made : changes)
+        edits.materials.insert(scene.materials[made.index].name);
+    for (const Camera& camera : change.cameras)
+        edits.cameras.insert(camera.name);
     take_cameras(scene, change);
-    if (environment) scene.environment = std::move(change.environment);
+    if (environment) {
+        note_environment(result, scene.environment, change.environment);
+        scene.environment = std::move(change.environment);
+        edits.environment = true;
+    }
     std::ranges::move(change.files, std::back_inserter(scene.files));
     std::ranges::move(change.warnings, std::back_inserter(scene.warnings));
-    return materials || environment;
+    return result;
+}
+
+void carry_edits(const SceneEdits& edits, const Scene& from, const std::string& name, Scene& to) {
+    Scene change;
+    std::vector<MaterialChange> changes;
+    for (const Material& material : from.materials) {
+        if (!edits.materials.contains(material.name)) continue;
+        const auto place = std::ranges::find(to.materials, material.name, &Material::name);
+        if (place == to.materials.end()) continue;
+        changes.push_back({name, size_t(place - to.materials.begin())});
+        change.materials.push_back(material);
+    }
+    if (!changes.empty()) change.images = from.images;
+    take_materials(to, change, changes);
+    for (const Camera& camera : from.cameras) {
+        if (edits.cameras.contains(camera.name)) change.cameras.push_back(camera);
+    }
+    take_cameras(to, change);
+    if (edits.environment) to.environment = from.environment;
 }
 
 }  // namespace candela

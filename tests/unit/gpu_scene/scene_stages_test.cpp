@@ -129,7 +129,7 @@ void spoil_images(Scene& scene) {
     scene.images[0].image = std::make_shared<TexelImage>(std::move(black));
 }
 
-TEST(SceneStages, OfASkyRebuildNeitherSceneNorTree) {
+TEST(SceneStages, AnotherSkyRebuildsNeitherSceneNorTree) {
     const auto spoil = [](Scene& scene) {
         spoil_meshes(scene), spoil_materials(scene), spoil_images(scene);
         std::get<Quad>(scene.shapes[World::FLOOR].geometry).corners[0].y = 1.0;
@@ -147,7 +147,7 @@ TEST(SceneStages, OfASkyRebuildNeitherSceneNorTree) {
                   [&](Scene& scene) { spoil(scene), spoil_sky(scene), scene.lights.clear(); });
 }
 
-TEST(SceneStages, OfAMovedInstanceRebuildOnlyTheTreeAbove) {
+TEST(SceneStages, AMovedInstanceRebuildsOnlyTheTreeAbove) {
     const auto spoil = [](Scene& scene) {
         spoil_meshes(scene), spoil_materials(scene), spoil_images(scene), spoil_sky(scene);
         scene.shapes[World::LAMP].emission->radiance.factor *= 3.0f;
@@ -161,7 +161,7 @@ TEST(SceneStages, OfAMovedInstanceRebuildOnlyTheTreeAbove) {
 }
 
 // Then the frame is another one, and with it all but the meshes in spaces of their own.
-TEST(SceneStages, OfAnInstanceFarAwayHaveAnotherFrame) {
+TEST(SceneStages, AnInstanceFarAwayChangesTheFrame) {
     expect_update(
         [](Scene& scene) {
             std::get<MeshInstance>(scene.shapes[World::INSTANCE].geometry).transform = at(dvec3(-30, 1, 0));
@@ -171,7 +171,7 @@ TEST(SceneStages, OfAnInstanceFarAwayHaveAnotherFrame) {
         [](Scene& scene) { turn(scene.meshes[0]), turn(scene.meshes[1]), spoil_sky(scene); });
 }
 
-TEST(SceneStages, OfAMovedSurfaceRebuildSurfaces) {
+TEST(SceneStages, AMovedSurfaceRebuildsSurfaces) {
     expect_update(
         [](Scene& scene) {
             std::get<MeshInstance>(scene.shapes[World::BAKED].geometry).transform = at(dvec3(1, 2, 1));
@@ -183,7 +183,7 @@ TEST(SceneStages, OfAMovedSurfaceRebuildSurfaces) {
         });
 }
 
-TEST(SceneStages, OfAMeshRebuildItsTree) {
+TEST(SceneStages, AnotherMeshRebuildsItsTree) {
     const auto spoil = [](Scene& scene) { turn(scene.meshes[1]), turn(scene.meshes[2]), spoil_sky(scene); };
     expect_update([](Scene& scene) { turn(scene.meshes[0]); }, {.meshes = {0}}, set_of({BUFFER_PRIMITIVES}),
                   spoil);
@@ -195,7 +195,7 @@ TEST(SceneStages, OfAMeshRebuildItsTree) {
                   set_of({BUFFER_SURFACES, BUFFER_NORMALS}), spoil_sky);
 }
 
-TEST(SceneStages, OfMaterialsRebuildNoGeometry) {
+TEST(SceneStages, MaterialsRebuildNoGeometry) {
     const auto spoil = [](Scene& scene) { spoil_meshes(scene), spoil_sky(scene); };
     const auto of_grey = [](const decltype(Material::model)& model) {
         return [=](Scene& scene) { scene.materials[0].model = model; };
@@ -212,7 +212,7 @@ TEST(SceneStages, OfMaterialsRebuildNoGeometry) {
                   set_of({BUFFER_MATERIALS, BUFFER_ATTRIBUTES}), spoil_sky);
 }
 
-TEST(SceneStages, OfLampsRebuildLights) {
+TEST(SceneStages, LampsRebuildLights) {
     const auto spoil = [](Scene& scene) { spoil_meshes(scene), spoil_materials(scene), spoil_sky(scene); };
     expect_update([](Scene& scene) { scene.shapes[World::LAMP].emission->radiance.factor *= 3.0f; },
                   {.radiance = true}, set_of({BUFFER_LIGHTS}), spoil);
@@ -231,7 +231,7 @@ TEST(SceneStages, OfLampsRebuildLights) {
         [](Scene& scene) { turn(scene.meshes[0]), turn(scene.meshes[1]), spoil_sky(scene); });
 }
 
-TEST(SceneStages, OfImagesRebuildTexelsAndTheLightsThatLookThemUp) {
+TEST(SceneStages, ImagesRebuildTexelsAndTheLightsThatLookThemUp) {
     expect_update(
         [](Scene& scene) {
             add_texture(scene, {4, 4},

@@ -1,0 +1,56 @@
+// A scene that stays, with its records: after a change, only those are made again that depend on it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "gpu_scene/scene_stages.h"
+#include "load/json/change.h"
+#include "load/load.h"
+#include "scene/scene.h"
+#include "scene/scene_change.h"
+
+namespace candela {
+
+// Scene and records are functions of the state alone, whichever way led there. Where a function throws, the
+// scene is as before.
+class LiveScene {
+  public:
+    // Reads a scene, in place of any before it. Throws what load_scene() throws.
+    void load(const std::filesystem::path& path, const LoadOptions& options);
+    // Changes it as change_scene() does. Throws what that throws.
+    void change(std::string_view json);
+    // Shows the glTF files at another time, without reading them again; changes stay. Throws what
+    // load_scene() and change_scene() throw.
+    void pose(std::optional<double> time, std::optional<std::string> animation);
+
+    // Has no camera before the first load().
+    const Scene& scene() const { return scene_; }
+    // What of the scene the records do not show yet; none: all.
+    const std::optional<SceneChange>& pending() const { return pending_; }
+    // Makes the records those of the scene. Returns the buffers that hold other words than before. Throws
+    // what build_gpu_scene() throws; the next call then makes all records.
+    BufferSet update();
+    // The records of the last update(), always in the same place.
+    const GpuScene& records() const { return stages_->joined(); }
+    // What is odd in files and in records, since the last call.
+    std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+
+  private:
+    void keep_warnings(std::vector<std::string>& warnings);
+
+    std::filesystem::path path_;
+    LoadOptions options_;
+    LoadedFiles files_;
+    SceneEdits edits_;
+    Scene scene_;
+    std::optional<SceneStages> stages_;
+    std::optional<SceneChange> pending_;
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace candela
