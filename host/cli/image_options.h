@@ -37,7 +37,7 @@ struct ImageOutputs {
     void add_to(CLI::App& app);
     void add_aovs_to(CLI::App& app);
 
-    // The images besides R G B A that will be written: those selected if there is an EXR among the files,
+    // The images besides R G B A that will be written: those selected, if one of the files is an EXR;
     // otherwise none.
     AovSelection written_aovs() const;
 };

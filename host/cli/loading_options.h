@@ -19,7 +19,7 @@ inline constexpr const char* SCENE_FILES = "Scene file (.json, .gltf, .glb, .obj
 struct LoadingOptions {
     std::optional<uint32_t> texture_limit;  // Texels along a side of an image.
     IfMissing missing_images = IfMissing::white;
-    std::vector<std::string> folders;      // From which files may be read besides the scene's.
+    std::vector<std::string> folders;      // Files may be read from these, too.
     bool any_folder = false;               // Whether they may be read from anywhere.
     std::optional<uint64_t> memory_limit;  // Bytes; none: default_memory_limit().
     GltfOptions gltf;

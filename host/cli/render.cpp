@@ -101,8 +101,8 @@ std::optional<Checkpoint> resume(const RenderJob& job, const RenderRecord& recor
     return checkpoint;
 }
 
-// Writes all files. If one fails, still writes the others, and then throws the Error; or `failure`, if there
-// is one.
+// Writes all files. If one fails, still writes the others, and then throws the Error; throws `failure`
+// instead, if there is one.
 void write_files(Rendering& rendering, const OutputOptions& outputs, const MessageOptions& messages,
                  const vk::Instance& instance, const std::optional<Error>& failure, uint32_t target) {
     Image image = rendering.image();

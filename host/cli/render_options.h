@@ -48,8 +48,8 @@ struct RenderOptions {
     // Declares all options on `app`, which fills them in when it parses; this object must not move.
     void add_to(CLI::App& app);
 
-    // Joins them with what the scene proposes. Throws Error (usage) for a camera that the scene lacks, a crop
-    // that reaches beyond the picture, or --adaptive with an odd number of samples.
+    // Combines them with what the scene proposes. Throws Error (usage) for a camera that the scene lacks, a
+    // crop that reaches beyond the picture, or --adaptive with an odd number of samples.
     RenderJob job(const Scene& loaded) const;
 };
 

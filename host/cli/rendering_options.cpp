@@ -41,7 +41,7 @@ void SamplingOptions::add_to(CLI::App& app) {
               "Samples per pixel")
         ->type_name("N");
     add_value(app, "--seed", seed, parse_seed, "a whole number from 0 to 4294967295",
-              "Seed of the random numbers; each has other noise")
+              "Seed of the random numbers; each gives different noise")
         ->type_name("S");
     const std::string depths = "a whole number from 0 to " + std::to_string(DEPTH_SAFETY_LIMIT);
     add_value(app, "--max-depth", max_depth, parse_max_depth, depths + ", or unlimited",
@@ -52,9 +52,9 @@ void SamplingOptions::add_to(CLI::App& app) {
     add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
                "How direct light is sampled; mis has the least noise, bsdf misses lights without a surface");
     add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
-    add_choice(
-        app, "--terminator", terminator, TERMINATOR_NAMES,
-        "Where light ends on meshes with smooth normals: smooth as they are, or flat as their triangles");
+    add_choice(app, "--terminator", terminator, TERMINATOR_NAMES,
+               "Where light ends on meshes with smooth normals: along the smooth surface, or along the flat "
+               "triangles");
 }
 
 void DeviceOptions::add_to(CLI::App& app) {

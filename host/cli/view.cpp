@@ -65,7 +65,7 @@ void ViewArguments::check() const {
                     ExitCode::usage);
     }
     if (frames && rendering.sampling.spp) {
-        throw Error("--frames and --spp both say how many samples there shall be; give one", ExitCode::usage);
+        throw Error("--frames and --spp both set the number of samples; give only one", ExitCode::usage);
     }
     if (!screenshots.empty() && !frames) {
         throw Error(

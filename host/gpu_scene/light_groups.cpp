@@ -30,7 +30,7 @@ int rank(const LightRecord& light) {
     return light.kind == LIGHT_ENVIRONMENT ? 2 : light.kind == LIGHT_DIRECTIONAL ? 1 : 0;
 }
 
-// Sorts lights and their powers by rank, otherwise in the order in which they are.
+// Sorts lights and their powers by rank, keeping the order of equal ones.
 void sort_by_rank(PoweredLights& lights) {
     std::vector<uint32_t> order(lights.records.size());
     std::iota(order.begin(), order.end(), 0u);

@@ -9,8 +9,8 @@
 
 namespace candela {
 
-// Brings the lights, which are complete, into the order of LightGroups, and sets the probability of choosing
-// each: its part of the total power. The lights of surfaces stay in front.
+// Sorts all lights into the order of LightGroups, and sets the probability of choosing each: its fraction of
+// the total power. The lights of surfaces stay in front.
 LightGroups group_lights(PoweredLights& lights);
 
 // The alias tables of the groups, one after the other, for lights of these powers.

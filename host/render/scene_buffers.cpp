@@ -70,7 +70,7 @@ SceneBuffers::SceneBuffers(const vk::Device& device, const GpuScene& scene, cons
     set(parameters);
 }
 
-// All bindings of a kernel must be bound, so that those which it does not read get buffers of one word.
+// All bindings of a kernel must be bound, so those that it does not read get buffers of one word.
 uint32_t SceneBuffers::update(const GpuScene& scene, const ArrayMap& map, const BufferSet& changed) {
     const Sizes sizes = device_sizes(scene, map);
     const vk::Device& device = parameters_.device();

@@ -28,7 +28,7 @@ vec4 mean_codes(const TexelImage& image) {
     return sum / float(taken);
 }
 
-// Of the normals of any bumpy surface, the mean points away from it.
+// The mean normal of a bumpy surface points away from it.
 bool points_up(vec4 mean) {
     constexpr float FAR = 0.2f;
     return mean.z > 0.6f && std::abs(mean.x - 0.5f) < FAR && std::abs(mean.y - 0.5f) < FAR;
@@ -57,7 +57,7 @@ class MeanCodes {
     std::map<uint32_t, vec4> means_;
 };
 
-// `what` is what the messages call the map.
+// Messages call the map `what`.
 void check_normal_map(Scene& scene, MeanCodes& means, const Material& material, const NormalMap& map,
                       const char* what) {
     const ImageFile& file = scene.images[map.texture.image];
@@ -71,7 +71,7 @@ void check_normal_map(Scene& scene, MeanCodes& means, const Material& material, 
 
 // Whether an image of that mean is blue as a normal map in tangent space is.
 bool is_blue(vec4 mean) {
-    constexpr float LEAST = 0.15f;  // That of a map whose slopes are all of 70 degrees.
+    constexpr float LEAST = 0.15f;  // The value for a map with slopes of 70 degrees everywhere.
     return points_up(mean) && mean.z - std::max(mean.x, mean.y) > LEAST;
 }
 

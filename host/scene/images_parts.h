@@ -6,12 +6,12 @@
 
 namespace candela {
 
-// Whether the name of an image says where it is: within the file that names it.
+// Whether an image is within the file that names it, as its name then says.
 inline bool is_within(const ImageFile& file) {
     return file.place.starts_with(file.path.string());
 }
 
-// Drops images that may be missing and are, with one warning, and another one for those out of reach.
+// Drops missing images that may be missing, with one warning, and images out of reach, with another.
 void drop_missing_images(Scene& scene, const ImageOptions& options);
 
 // Chooses the channel of opacities that wait for their image, turns bump maps of mesh files into normal maps

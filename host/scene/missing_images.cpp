@@ -17,7 +17,8 @@
 namespace candela {
 namespace {
 
-// Whether an image that may be missing is, or is out of reach: nothing shall tell whether that one exists.
+// Whether an image that may be missing is missing or out of reach. Nothing may reveal whether an image out of
+// reach exists.
 bool is_lost(const Scene& scene, const ImageFile& file, const ImageOptions& options) {
     if (std::max(file.if_missing, options.if_missing) == IfMissing::error) return false;
     if (file.image || !file.bytes.empty()) return false;
@@ -26,7 +27,7 @@ bool is_lost(const Scene& scene, const ImageFile& file, const ImageOptions& opti
     return std::filesystem::status(file.path, ignored).type() == std::filesystem::file_type::not_found;
 }
 
-// Lets materials do without lost images, which become a white texel.
+// Replaces lost images by a white texel, and removes them from materials.
 void drop_lost_images(Scene& scene, const std::vector<bool>& lost) {
     const auto drop = [&](auto& texture) {
         if (texture && lost[texture->image]) texture.reset();
@@ -83,13 +84,13 @@ void drop_missing_images(Scene& scene, const ImageOptions& options) {
     if (count + outside > 0) drop_lost_images(scene, lost);
     if (outside > 0) {
         const std::string times = outside == 1 ? "" : concat(" (", outside, " times)");
-        scene.warnings.push_back(refusal + "; white takes its place" + times);
+        scene.warnings.push_back(refusal + "; white is used instead" + times);
     }
     if (count == 0) return;
     if (count > MOST_LISTED) names += ", ...";
     const std::string which = count == 1
-                                  ? concat("the image ", names, " does not exist; white takes its place")
-                                  : concat(count, " images do not exist; white takes their place: ", names);
+                                  ? concat("the image ", names, " does not exist; white is used instead")
+                                  : concat(count, " images do not exist; white is used instead: ", names);
     scene.warnings.push_back(place + ": " + which);
 }
 

@@ -19,7 +19,7 @@ inline constexpr double MAX_UV = 1e30;
 // No number of such a transform is further from 0, for the same reason.
 inline constexpr double MAX_UV_TRANSFORM = 1e6;
 
-// What becomes of an image file that does not exist.
+// How a missing image file is handled.
 enum class IfMissing { white, error };
 
 // An image file that textures look up, or one within a scene file.

@@ -118,7 +118,8 @@ class Session::Impl {
         changed_ |= scene_.update();
         warn(scene_.take_warnings());
         RenderRecord record = make_record(scene_.scene(), scene_.records(), job);
-        std::unique_ptr<Rendering> rendering = std::move(rendering_);  // If this fails, it is of no more use.
+        std::unique_ptr<Rendering> rendering = std::move(rendering_);  // If this fails, the rendering is
+                                                                       // unusable.
         if (rendering) {
             rendering->restart(std::move(job), std::move(record), changed_);
         } else {

@@ -81,8 +81,8 @@ class Viewer {
     Window& window_;
     const vk::Instance& instance_;
     Scene scene_;
-    std::vector<vec3> radiance_;  // Of the scene's environment, at intensity 1 ...
-    float intensity_ = 1.0f;      // ... and its factor in scene_.
+    std::vector<vec3> radiance_;  // The scene's environment, at intensity 1.
+    float intensity_ = 1.0f;      // The environment's factor in scene_.
     SceneStages stages_;
     const GpuScene& gpu_scene_ = stages_.joined();
     ViewState state_;

@@ -77,7 +77,7 @@ SHADER = """\
 #ifndef BSDF_SHEEN_ALBEDO_GLSL
 #define BSDF_SHEEN_ALBEDO_GLSL
 
-// For alpha in [0.0049, 1], as of sheen_alpha, and the cosine of wo in [1e-4, 1]; less is taken as 1e-4. Not below
+// For alpha in [0.0049, 1], as of sheen_alpha, and the cosine of wo in [1e-4, 1]; smaller ones become 1e-4. Not below
 // Es - 0.0003, not above Es + 0.002 or, where Es is above 1, 1.02 Es (up to 2.9, at grazing angles).
 // Ref: Conty Estevez and Kulla 2017, Production Friendly Microfacet Sheen BRDF.
 float sheen_albedo(float alpha, float cos_o) {

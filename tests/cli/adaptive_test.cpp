@@ -72,13 +72,16 @@ TEST_F(AdaptiveCli, ACheckpointIsOfOneKind) {
     ASSERT_EQ(candela(small + Words{"--spp", "4"}).exit_code, 0);
     const ProcessResult adaptive = candela(small + Words{"--spp", "64", "--adaptive"});
     EXPECT_EQ(adaptive.exit_code, 1);
-    EXPECT_CONTAINS(adaptive.err,
-                    "it was made without --adaptive; render what it was made of, or give another");
+    EXPECT_CONTAINS(
+        adaptive.err,
+        "it was made without --adaptive; render the same scene with the same options, or give another");
     std::filesystem::remove(file("state.exr"));
     ASSERT_EQ(candela(small + Words{"--spp", "64", "--adaptive"}).exit_code, 0);
     const ProcessResult uniform = candela(small + Words{"--spp", "128"});
     EXPECT_EQ(uniform.exit_code, 1);
-    EXPECT_CONTAINS(uniform.err, "it was made with --adaptive; render what it was made of, or give another");
+    EXPECT_CONTAINS(
+        uniform.err,
+        "it was made with --adaptive; render the same scene with the same options, or give another");
 }
 
 TEST_F(AdaptiveCli, ATargetErrorEndsIt) {

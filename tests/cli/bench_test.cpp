@@ -64,7 +64,7 @@ TEST_F(BenchCommand, MeasuresEverythingByDefault) {
     if (!has_rival(result)) {
         EXPECT_CONTAINS(
             result.out,
-            "none; for Embree beside it install libembree-dev and build with cmake -DCANDELA_EMBREE=ON");
+            "none; to compare with Embree, install libembree-dev and build with cmake -DCANDELA_EMBREE=ON");
     }
 
     const auto report = nlohmann::json::parse(read_file(file("bench.json")));

@@ -201,15 +201,15 @@ TEST_F(CheckpointTest, WhatDoesNotFitIsRefusedWithTheReason) {
                   "candela: error: --resume: cannot continue from \"" + state_ + "\": " + reason + "\n");
         EXPECT_EQ(read_file(state_), before);
     };
-    const std::string remedy = "; render what it was made of, or give another --checkpoint";
+    const std::string remedy = "; render the same scene with the same options, or give another --checkpoint";
     expect_refused({"--seed", "4"}, "its seed is 3, not 4" + remedy);
     expect_refused({"--size", "32x33"},
                    "its size is 32x32, not 32x33, its crop is 0,0,32,32, not 0,0,32,33" + remedy);
     expect_refused({"--sampler", "stratified", "--max-depth", "5"},
                    "its sampler is sobol, not stratified, its max depth is 4096, not 5" + remedy);
     expect_refused({"--aov", "none"},
-                   "it holds albedo and normals, which the outputs do not need; give the outputs "
-                   "and --aov that it was made with");
+                   "it holds albedo and normals, which the outputs do not need; give the same outputs and "
+                   "--aov as for the checkpoint");
     expect_refused({"--spp", "3"},
                    "it holds up to 4 samples per pixel, but 3 are asked for; ask for at least as many");
 

@@ -29,7 +29,7 @@ class DeviceFailure : public CliTest {
     std::string undisturbed() const { return report_of(picture_)["image_hash"]; }
     // What the warnings say: samples kept, and milliseconds of a submission from then on.
     static std::vector<std::pair<int, double>> recoveries(const std::string& err) {
-        const std::regex pattern("going on from (\\d+) samples per pixel in submissions of ([0-9.]+) ms\n");
+        const std::regex pattern("continuing from (\\d+) samples per pixel in submissions of ([0-9.]+) ms\n");
         std::vector<std::pair<int, double>> result;
         for (std::sregex_iterator match(err.begin(), err.end(), pattern), end; match != end; ++match)
             result.emplace_back(std::stoi((*match)[1]), std::stod((*match)[2]));
@@ -59,7 +59,7 @@ TEST_F(DeviceFailure, WhatTheHostHoldsIsNotRenderedAgain) {
     picture_ = {"--size", "8x8"};
     Process process = start_on_failing(
         6, 28, DEVICE_LOST, checkpoint + Words{"--checkpoint-every", "1e-9s", "--spp", "16777216"});
-    ASSERT_TRUE(process.wait_for_err("going on from ", 6)) << process.err();
+    ASSERT_TRUE(process.wait_for_err("continuing from ", 6)) << process.err();
     process.send(SIGINT);
     const ProcessResult result = process.finish();
     EXPECT_EQ(result.exit_code, 130);
@@ -103,7 +103,7 @@ TEST_F(DeviceFailure, AfterFiveFailuresWithoutProgressTheErrorStands) {
     EXPECT_EQ(result.exit_code, 5);
     EXPECT_EQ(recoveries(result.err).size(), 4u);
     EXPECT_CONTAINS(result.err, "VK_ERROR_OUT_OF_DEVICE_MEMORY (-2)");
-    EXPECT_CONTAINS(result.err, "going on from 3 samples per pixel");
+    EXPECT_CONTAINS(result.err, "continuing from 3 samples per pixel");
     EXPECT_CONTAINS(result.err, "rendered 3 of 128 spp");
     EXPECT_CONTAINS(result.err, "candela: error: vkQueueSubmit(");
     const Image image = read_exr(file("a.exr"));

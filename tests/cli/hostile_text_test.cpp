@@ -114,7 +114,7 @@ TEST_F(HostileText, OfGltfFilesIsEscapedAndCounted) {
     expect_harmless_error({"render", path, "-o", file("a.png"), "--camera", "?"}, "and 2980 more)", 2);
     expect_harmless_error({"info", path, "--scene", HARM}, "has nothing called", 2);
     expect_harmless_error({"info", write("b.gltf", Json({{"asset", {{"version", HARM + large_}}}}).dump())},
-                          "files of version 2.0 are read");
+                          "only glTF 2.0 is read");
     const Json beside = {
         {"asset", {{"version", "2.0"}}},
         {"buffers", {{{"byteLength", 9}, {"uri", HARM + large_}}}},

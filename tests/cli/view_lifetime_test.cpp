@@ -152,7 +152,7 @@ TEST_F(View, AfterFiveFailuresWithoutProgressItWritesWhatThereIs) {
     const Image image = read_exr(file("cornell-box-1.exr"));
     const auto spp = uint32_t(std::get<float>(image.attributes.at("samplesPerPixel")));
     ASSERT_GE(spp, 8u);
-    EXPECT_CONTAINS(result.err, "going on from " + std::to_string(spp) + " samples per pixel");
+    EXPECT_CONTAINS(result.err, "continuing from " + std::to_string(spp) + " samples per pixel");
     // A device that is slow because of other work is stopped between two submissions, when some pixels have
     // more samples.
     const std::vector<float>& counts = image.find("SampleCount.V")->values;

@@ -195,8 +195,9 @@ TEST_F(View, AWindowClosedTooEarlyIsAnError) {
     xdotool({"key", "Escape"});
     const ProcessResult result = process.finish();
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_CONTAINS(result.err,
-                    "the window was closed before it had shown 16777216 frames; no screenshot was written");
+    EXPECT_CONTAINS(
+        result.err,
+        "the window was closed before it had shown 16777216 frames, so no screenshot was written");
 }
 
 class MovingView : public View {

@@ -1,4 +1,4 @@
-// Records cross the bus unharmed: what the host packs, a kernel reads back field by field, bit for bit.
+// A kernel reads the records that the host packs, field by field, bit for bit.
 #include "selftest/records.h"
 
 #include "gpu/device_fixture.h"

@@ -304,7 +304,7 @@ PrincipledLobes PrincipledReference::lobes(dvec3 wi) const {
         l.again_up = under_layers() * darkening_ / PI_D * again_up_;
     } else {
         l.transmission = under_layers() * transmission_value(wi);
-        // Radiance is divided by eta^2, however light gets through.
+        // Radiance is divided by eta^2 for every kind of transmission.
         const double through = under_layers() / (PI_D * square(p_.thin ? 1 : eta_));
         l.diffuse_transmission = through * diffuse_ * p_.diffuse_transmission * p_.diffuse_transmission_color;
         l.again_down = through * again_down_;

@@ -31,9 +31,8 @@ std::vector<uint32_t> read_corners(File& file, const Node& primitive, uint32_t v
                                                                          : UINT32_MAX;
     const auto odd = std::ranges::find(corners, restart);
     if (odd != corners.end()) {
-        file.warn(accessor.node(),
-                  concat("index ", odd - corners.begin(), " is ", restart,
-                         ", at which a strip may begin anew elsewhere; here it is a vertex"));
+        file.warn(accessor.node(), concat("index ", odd - corners.begin(), " is ", restart,
+                                          ", which may restart a strip elsewhere; here it is a vertex"));
     }
     return corners;
 }

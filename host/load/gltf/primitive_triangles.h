@@ -18,7 +18,7 @@ uint32_t mode_of(const Node& primitive);
 // indices that are not.
 std::vector<uvec3> read_triangles(File& file, const Node& primitive, uint32_t mode, uint32_t vertices);
 
-// Renumbers the vertices of triangles to those that are used; returns the old number of each.
+// Renumbers the vertices of triangles so that only used ones remain; returns the old number of each.
 std::vector<uint32_t> keep_used(std::vector<uvec3>& triangles, uint32_t vertices);
 
 }  // namespace candela::gltf

@@ -39,8 +39,8 @@ std::vector<MaterialChange> read_materials(const Node& materials, const Scene& s
     return changes;
 }
 
-// Throws Error if a mesh of the material `before` lacks what its new one needs, or would have been read in
-// another way.
+// Throws Error if a mesh of the material `before` lacks what the new material needs, or would have been read
+// in another way.
 void check_mesh(const std::string& place, const Material& before, const Shape& shape, Scene& scene) {
     const auto* const instance = std::get_if<MeshInstance>(&shape.geometry);
     if (instance == nullptr) return;
@@ -65,7 +65,7 @@ void for_each_texture_of(Scene& scene, const Visit& visit) {
     }
 }
 
-// Removes the images that no texture looks up, so that the scene takes no more memory with each change.
+// Removes the images that no texture looks up, so that memory does not grow with each change.
 // Returns whether there were any.
 bool drop_unused_images(Scene& scene) {
     std::vector<uint32_t> indices(scene.images.size(), 0);

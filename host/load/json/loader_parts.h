@@ -22,7 +22,7 @@ Camera read_camera(const Node& node, const Film& film);
 // Reads a material, whose key is its name.
 Material read_material(const Node& node, const ImageFolder& images);
 
-// Reads the object "absorption": what takes up light inside a surface.
+// Reads the object "absorption": the absorbing medium behind a surface.
 Medium read_absorption(const Node& node);
 
 using MaterialModel = decltype(Material::model);

@@ -15,7 +15,7 @@ namespace {
 constexpr double INNER = 0.3;
 constexpr double OUTER = 0.9;
 
-// The factor of a spot's intensity, in the words of glTF's KHR_lights_punctual.
+// The factor of a spot's intensity, as in the text of glTF's KHR_lights_punctual.
 double falloff(double angle) {
     const double scale = 1.0 / (std::cos(INNER) - std::cos(OUTER));
     const double offset = -std::cos(OUTER) * scale;

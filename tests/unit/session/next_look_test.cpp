@@ -1,4 +1,4 @@
-// At which numbers of samples a rendering is looked at.
+// The numbers of samples at which the error of a rendering is measured.
 #include "session/next_look.h"
 
 #include <gtest/gtest.h>
