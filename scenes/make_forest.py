@@ -19,7 +19,7 @@ import textures
 SIDES = 5  # Of the tubes of branches.
 SPACING = 4.5  # Between trees, on average [m].
 SUN_AZIMUTH, SUN_ELEVATION = math.radians(-62), math.radians(12)  # From -Z towards +X; above the horizon.
-MOST_WOOD = 0.3  # Of a tree's triangles.
+MAX_WOOD = 0.3  # Of a tree's triangles.
 
 
 def unit(v):
@@ -165,7 +165,7 @@ def make_kind(folder, kind, triangles, alpha):
     is_conifer = kind % 5 < 2
     for fewer in range(5):
         branches, twigs = conifer(random, 64 >> fewer) if is_conifer else broadleaf(random, 4 - fewer)
-        if 2 * SIDES * len(branches) <= MOST_WOOD * triangles or fewer == 4:
+        if 2 * SIDES * len(branches) <= MAX_WOOD * triangles or fewer == 4:
             break
     count = max((triangles - 2 * SIDES * len(branches)) // 2, 1)
     length, width, spread = (0.10, 0.018, 0.04) if is_conifer else (0.11, 0.055, 0.14)

@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CAPTION = re.compile(r"`(candela\s+render\s[^`]*)`")
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 SPP = re.compile(r"--spp (\d+)")
-MOST_SPP = 64
+MAX_SPP = 64
 SHORTER = {"bench": " --runs 1 --spp 1 --triangles 72 --rays 64", "selftest": " --help"}  # What is added to a command.
 WRITES = ("-o", "--output", "--heatmap", "--report")  # Options whose value is a file that must exist afterwards.
 
@@ -31,7 +31,7 @@ def commands(text):
     """The commands of all ```sh blocks, continued lines joined, comments left out; the longest are cut short."""
     lines = "".join(BLOCK.findall(text)).replace("\\\n", " ").splitlines()
     found = [" ".join(re.sub(r"(^|\s)#.*", "", line).split()) for line in lines]
-    found = [SPP.sub(lambda spp: f"--spp {min(int(spp[1]), MOST_SPP)}", line) for line in found if line]
+    found = [SPP.sub(lambda spp: f"--spp {min(int(spp[1]), MAX_SPP)}", line) for line in found if line]
     return [line + SHORTER.get(subcommand(line), "") for line in found]
 
 

@@ -66,10 +66,10 @@ fs::path folder_of(const fs::path& file) {
 // The file that `path` leads to, following symbolic links, even if it does not exist yet; a link if they form
 // a circle.
 fs::path follow_links(const fs::path& path) {
-    constexpr int MOST_LINKS = 40;  // As in the Linux kernel.
+    constexpr int MAX_LINKS = 40;  // As in the Linux kernel.
     fs::path target = path;
     std::error_code ignored;
-    for (int i = 0; i < MOST_LINKS && fs::is_symlink(fs::symlink_status(target, ignored)); ++i)
+    for (int i = 0; i < MAX_LINKS && fs::is_symlink(fs::symlink_status(target, ignored)); ++i)
         target = target.parent_path() / fs::read_symlink(target, ignored);
     return target;
 }
@@ -191,13 +191,13 @@ class Descriptor {
         return ::fstat(file_, &status) == 0 && status.st_size > 0 ? uint64_t(status.st_size) : 0;
     }
 
-    // Appends the remaining bytes, at most `most`. Returns false, with errno, if reading fails.
-    bool read_all(std::string& bytes, uint64_t most = UINT64_MAX, const ReadProgress& progress = {}) const {
-        bytes.reserve(std::min<uint64_t>(size(), most));
+    // Appends the remaining bytes, at most `max`. Returns false, with errno, if reading fails.
+    bool read_all(std::string& bytes, uint64_t max = UINT64_MAX, const ReadProgress& progress = {}) const {
+        bytes.reserve(std::min<uint64_t>(size(), max));
         std::array<char, 65536> buffer;
         while (true) {
             const ssize_t count =
-                ::read(file_, buffer.data(), std::min<uint64_t>(buffer.size(), most - bytes.size()));
+                ::read(file_, buffer.data(), std::min<uint64_t>(buffer.size(), max - bytes.size()));
             if (count == 0) return true;
             if (count > 0) {
                 bytes.append(buffer.data(), size_t(count));
@@ -223,7 +223,7 @@ void refuse_pointer(const fs::path& path, std::string_view start) {
 }  // namespace
 
 std::string quoted(const fs::path& path) {
-    return '"' + printable(path.string(), MOST_PATH_BYTES) + '"';
+    return '"' + printable(path.string(), MAX_PATH_BYTES) + '"';
 }
 
 std::string extension_of(const fs::path& path) {
@@ -259,7 +259,7 @@ std::string read_file(const fs::path& path, const ReadProgress& progress) {
     return bytes;
 }
 
-std::string read_finite_file(const fs::path& path, const fs::path& real, uint64_t most,
+std::string read_finite_file(const fs::path& path, const fs::path& real, uint64_t max,
                              const ReadProgress& progress) {
     check_readable(path);
     constexpr const char* NO_FILE = "it is not a regular file, and files may name no others";
@@ -268,7 +268,7 @@ std::string read_finite_file(const fs::path& path, const fs::path& real, uint64_
     const Descriptor file(real, O_RDONLY | O_NONBLOCK | O_NOFOLLOW);
     if (file.is_open() && !file.is_regular()) fail_to_read(path, NO_FILE);
     const uint64_t size = file.is_open() ? file.size() : 0;
-    const uint64_t wanted = std::max<uint64_t>(most, START_OF_POINTER.size());
+    const uint64_t wanted = std::max<uint64_t>(max, START_OF_POINTER.size());
     std::string bytes;
     // Reads one byte beyond the size, to notice that there are more.
     if (!file.is_open() || !file.read_all(bytes, std::min(wanted, size + 1), progress))
@@ -278,17 +278,17 @@ std::string read_finite_file(const fs::path& path, const fs::path& real, uint64_
                      "its contents do not match its size; is it a system file, or still being written?");
     }
     refuse_pointer(path, bytes);
-    bytes.resize(std::min(bytes.size(), size_t(most)));
+    bytes.resize(std::min(bytes.size(), size_t(max)));
     return bytes;
 }
 
-FileStart read_file_start(const fs::path& path, size_t most) {
+FileStart read_file_start(const fs::path& path, size_t max) {
     check_readable(path);
     const Descriptor file(path, O_RDONLY | O_NONBLOCK);
     FileStart start;
     if (file.is_open() && !file.is_regular())
         fail_to_read(path, "it is a pipe, but must be read more than once; give the name of a file");
-    if (!file.is_open() || !file.read_all(start.bytes, most))
+    if (!file.is_open() || !file.read_all(start.bytes, max))
         fail_to_read(path, describe(errno) + "; check the file and its disk");
     refuse_pointer(path, start.bytes);
     start.size = file.size();

@@ -10,7 +10,7 @@
 
 namespace candela {
 
-// The path in quotation marks, as messages show it: printable, and cut at MOST_PATH_BYTES.
+// The path in quotation marks, as messages show it: printable, and cut at MAX_PATH_BYTES.
 std::string quoted(const std::filesystem::path& path);
 
 // The extension of a path in lower case, with its dot.
@@ -26,19 +26,19 @@ using ReadProgress = std::function<void(size_t done, size_t of)>;
 // file is a pointer of Git LFS.
 std::string read_file(const std::filesystem::path& path, const ReadProgress& progress = {});
 
-// Returns the first `most` bytes of a regular file, and no more than its size: pipes, devices and sockets are
+// Returns the first `max` bytes of a regular file, and no more than its size: pipes, devices and sockets are
 // refused before they are opened, and files that the kernel makes up while they are read, as in /proc, after
 // the first byte. `real` is the same file without symbolic links, and is opened; messages name `path`. Throws
 // Error otherwise, and as read_file() does.
 std::string read_finite_file(const std::filesystem::path& path, const std::filesystem::path& real,
-                             uint64_t most = UINT64_MAX, const ReadProgress& progress = {});
+                             uint64_t max = UINT64_MAX, const ReadProgress& progress = {});
 
-// The first bytes of a regular file, `most` at most. Throws Error as read_file() does, and for a pipe.
+// The first bytes of a regular file, `max` at most. Throws Error as read_file() does, and for a pipe.
 struct FileStart {
     std::string bytes;
     uint64_t size = 0;  // Size of the whole file.
 };
-FileStart read_file_start(const std::filesystem::path& path, size_t most);
+FileStart read_file_start(const std::filesystem::path& path, size_t max);
 
 // Throws Error if write_file_atomically(path, ...) could not succeed now: the directory is missing or may not
 // be written to, or the target is a directory, a device, write-protected, or a file that cannot be replaced:

@@ -64,11 +64,11 @@ fs::path FileReach::find(const fs::path& folder, const std::string& name) const 
     return path;
 }
 
-std::string FileReach::read(const fs::path& path, uint64_t most, const ReadProgress& progress) const {
+std::string FileReach::read(const fs::path& path, uint64_t max, const ReadProgress& progress) const {
     if (path == opened_) return read_file(path, progress);
     const fs::path real = real_path(path);
     if (!holds_real(real)) throw Error(refusal(path.string()));
-    return read_finite_file(path, real, most, progress);
+    return read_finite_file(path, real, max, progress);
 }
 
 }  // namespace candela

@@ -40,10 +40,10 @@ class FileReach {
     // The file that another one in `folder` calls `name`. Throws Error if it is out of reach.
     std::filesystem::path find(const std::filesystem::path& folder, const std::string& name) const;
 
-    // The first `most` bytes of a file. The file that the user opened is read as by read_file(). Any other
+    // The first `max` bytes of a file. The file that the user opened is read as by read_file(). Any other
     // must be within reach, and a regular file with as many bytes as its size, so that reading ends. Throws
     // Error otherwise, and if the file cannot be read.
-    std::string read(const std::filesystem::path& path, uint64_t most = UINT64_MAX,
+    std::string read(const std::filesystem::path& path, uint64_t max = UINT64_MAX,
                      const ReadProgress& progress = {}) const;
 
   private:

@@ -30,9 +30,9 @@ std::atomic<uint32_t> holders = 0;  // Live objects of LimitedMemory.
 void check_limit(uint64_t bytes) {
     if (holders.load(std::memory_order_relaxed) == 0) return;
     const uint64_t used = in_use.load(std::memory_order_relaxed);
-    const uint64_t most = limit.load(std::memory_order_relaxed);
-    if (most == NO_LIMIT || used + bytes <= most) return;
-    if (bytes > SMALL || used + bytes > most + RESERVE) throw LimitReached(bytes, used);
+    const uint64_t max = limit.load(std::memory_order_relaxed);
+    if (max == NO_LIMIT || used + bytes <= max) return;
+    if (bytes > SMALL || used + bytes > max + RESERVE) throw LimitReached(bytes, used);
 }
 
 void* counted(void* memory) {

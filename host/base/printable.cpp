@@ -58,7 +58,7 @@ Character first_character(std::string_view text) {
     const auto lead = uint8_t(text[0]);
     if (lead < 0x80) return {lead, 1};
     const size_t size = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-    constexpr std::array<uint32_t, 5> LEAST{0, 0, 0x80, 0x800, 0x10000};
+    constexpr std::array<uint32_t, 5> MIN{0, 0, 0x80, 0x800, 0x10000};
     if (lead < 0xC0 || lead >= 0xF8 || text.size() < size) return {};
     uint32_t code = lead & (0x7Fu >> size);
     for (size_t i = 1; i < size; ++i) {
@@ -66,7 +66,7 @@ Character first_character(std::string_view text) {
         code = code << 6 | (uint8_t(text[i]) & 0x3Fu);
     }
     const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
-    if (code < LEAST[size] || code > 0x10FFFF || is_surrogate) return {};
+    if (code < MIN[size] || code > 0x10FFFF || is_surrogate) return {};
     return {code, size};
 }
 
@@ -95,22 +95,22 @@ std::string take_character(std::string_view& text) {
     return is_escaped(*code) ? escape_of(*code) : std::string(bytes);
 }
 
-// As much of the beginning of `text` as fits into `most` bytes; the rest remains in `text`.
-std::string take_start(std::string_view& text, size_t most) {
+// As much of the beginning of `text` as fits into `max` bytes; the rest remains in `text`.
+std::string take_start(std::string_view& text, size_t max) {
     std::string start;
     while (!text.empty()) {
         std::string_view rest = text;
         const std::string character = take_character(rest);
-        if (start.size() + character.size() > most) break;
+        if (start.size() + character.size() > max) break;
         start += character;
         text = rest;
     }
     return start;
 }
 
-// As much of the end as fits into `most` bytes.
-std::string end_of(std::string_view text, size_t most) {
-    if (text.size() > most) text.remove_prefix(text.size() - most);
+// As much of the end as fits into `max` bytes.
+std::string end_of(std::string_view text, size_t max) {
+    if (text.size() > max) text.remove_prefix(text.size() - max);
     while (!text.empty() && (uint8_t(text[0]) & 0xC0u) == 0x80u)
         text.remove_prefix(1);  // The rest of a character.
     std::vector<std::string> characters;
@@ -119,7 +119,7 @@ std::string end_of(std::string_view text, size_t most) {
     auto begin = characters.end();
     for (size_t size = 0; begin != characters.begin(); --begin) {
         size += std::prev(begin)->size();
-        if (size > most) break;
+        if (size > max) break;
     }
     std::string end;
     for (; begin != characters.end(); ++begin)
@@ -129,12 +129,12 @@ std::string end_of(std::string_view text, size_t most) {
 
 }  // namespace
 
-std::string printable(std::string_view text, size_t most) {
+std::string printable(std::string_view text, size_t max) {
     std::string_view rest = text;
-    std::string shown = take_start(rest, most);
+    std::string shown = take_start(rest, max);
     if (rest.empty()) return shown;
     rest = text;
-    const size_t room = most - ELLIPSIS.size();
+    const size_t room = max - ELLIPSIS.size();
     shown = take_start(rest, room - room / 3);  // The end of a path or a message says more than its middle.
     return shown.append(ELLIPSIS) + end_of(rest, room / 3);
 }
@@ -153,11 +153,11 @@ std::string printable_json(std::string_view json) {
 }
 
 std::string joined(std::span<const std::string> names) {
-    constexpr size_t MOST_LISTED = 20;
+    constexpr size_t MAX_LISTED = 20;
     std::string text;
-    for (const std::string& name : names.first(std::min(names.size(), MOST_LISTED)))
-        text += (text.empty() ? "" : ", ") + printable(name, MOST_NAME_BYTES);
-    if (names.size() > MOST_LISTED) text += " and " + std::to_string(names.size() - MOST_LISTED) + " more";
+    for (const std::string& name : names.first(std::min(names.size(), MAX_LISTED)))
+        text += (text.empty() ? "" : ", ") + printable(name, MAX_NAME_BYTES);
+    if (names.size() > MAX_LISTED) text += " and " + std::to_string(names.size() - MAX_LISTED) + " more";
     return text;
 }
 

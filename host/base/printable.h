@@ -13,14 +13,14 @@ namespace candela {
 
 // The most bytes that are shown of a name or another text within a message, of the name of a file, and of a
 // whole message.
-inline constexpr size_t MOST_NAME_BYTES = 120;
-inline constexpr size_t MOST_PATH_BYTES = 1000;
-inline constexpr size_t MOST_MESSAGE_BYTES = 4000;
+inline constexpr size_t MAX_NAME_BYTES = 120;
+inline constexpr size_t MAX_PATH_BYTES = 1000;
+inline constexpr size_t MAX_MESSAGE_BYTES = 4000;
 
 // `text` with its control and invisible characters escaped as in JSON (`\u001b`, `\n`), and bytes that are
-// not UTF-8 as `\xff`. A text longer than `most` bytes (at least 40) loses its middle: `…` replaces whole
+// not UTF-8 as `\xff`. A text longer than `max` bytes (at least 40) loses its middle: `…` replaces whole
 // characters. A second call changes nothing.
-std::string printable(std::string_view text, size_t most = SIZE_MAX);
+std::string printable(std::string_view text, size_t max = SIZE_MAX);
 
 // The same JSON, in UTF-8, with the characters that printable() escapes escaped in its strings.
 std::string printable_json(std::string_view json);

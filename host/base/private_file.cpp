@@ -40,9 +40,9 @@ class Place {
     }
     fs::path path() const { return "/proc/self/fd/" + std::to_string(file_); }
 
-    // All bytes of a file; nothing if there are more than `most`, or reading fails.
-    std::optional<std::string> read(size_t most) const {
-        if (uint64_t(status_.st_size) > most) return std::nullopt;
+    // All bytes of a file; nothing if there are more than `max`, or reading fails.
+    std::optional<std::string> read(size_t max) const {
+        if (uint64_t(status_.st_size) > max) return std::nullopt;
         std::string bytes(size_t(status_.st_size), '\0');
         for (size_t done = 0; done < bytes.size();) {
             const ssize_t count = ::read(file_, bytes.data() + done, bytes.size() - done);
@@ -68,11 +68,11 @@ void create_folders(const fs::path& folder) {
 
 }  // namespace
 
-std::optional<std::string> read_private_file(const fs::path& folder, const std::string& name, size_t most) {
+std::optional<std::string> read_private_file(const fs::path& folder, const std::string& name, size_t max) {
     const Place there(folder, O_DIRECTORY);
     if (!there.is_private(S_IFDIR)) return std::nullopt;
     const Place file(there.path() / name, O_NONBLOCK);  // Else opening a pipe would wait for a writer.
-    return file.is_private(S_IFREG) ? file.read(most) : std::nullopt;
+    return file.is_private(S_IFREG) ? file.read(max) : std::nullopt;
 }
 
 void write_private_file(const fs::path& folder, const std::string& name, std::string_view bytes) {

@@ -11,9 +11,9 @@
 
 namespace candela {
 
-// The bytes of such a file; nothing if it is missing, is not such a file, or has more than `most` bytes.
+// The bytes of such a file; nothing if it is missing, is not such a file, or has more than `max` bytes.
 std::optional<std::string> read_private_file(const std::filesystem::path& folder, const std::string& name,
-                                             size_t most);
+                                             size_t max);
 
 // Writes such a file, whole or not at all; `folder` is absolute, and made if it is missing. Does nothing in a
 // folder that others own or may write to, or if the name belongs to something other than a file. Throws

@@ -17,7 +17,7 @@ namespace {
 constexpr double CONVERGED = 1e-15;
 // A bound against endless loops: about 10 sqrt(a) steps suffice, so only parameters beyond 10^10 would need
 // more.
-constexpr int MOST_STEPS = 1'000'000;
+constexpr int MAX_STEPS = 1'000'000;
 
 // A continued fraction b0 + a1 / (b1 + a2 / (b2 + ...)), evaluated from the front.
 // Ref: Thompson, Barnett, "Coulomb and Bessel Functions of Complex Arguments and Order", J. Comput. Phys. 64
@@ -47,7 +47,7 @@ class ContinuedFraction {
 double gamma_p_series(double a, double x) {
     double term = 1.0 / a;
     double sum = term;
-    for (int n = 1; n < MOST_STEPS && term > sum * CONVERGED; ++n) {
+    for (int n = 1; n < MAX_STEPS && term > sum * CONVERGED; ++n) {
         term *= x / (a + n);
         sum += term;
     }
@@ -57,7 +57,7 @@ double gamma_p_series(double a, double x) {
 // Upper function Q(a, x) by its continued fraction; fast for x > a + 1.
 double gamma_q_fraction(double a, double x) {
     ContinuedFraction fraction(x + 1.0 - a);
-    for (int n = 1; n < MOST_STEPS && fraction.step(n * (a - n), x + 2.0 * n + 1.0 - a); ++n) {
+    for (int n = 1; n < MAX_STEPS && fraction.step(n * (a - n), x + 2.0 * n + 1.0 - a); ++n) {
     }
     return std::exp(a * std::log(x) - x - std::lgamma(a)) / fraction.value();
 }
@@ -65,7 +65,7 @@ double gamma_q_fraction(double a, double x) {
 // I_x(a, b) by its continued fraction; fast for x < (a + 1) / (a + b + 2).
 double beta_i_fraction(double x, double a, double b) {
     ContinuedFraction fraction(1.0);
-    for (int m = 0; m < MOST_STEPS; ++m) {
+    for (int m = 0; m < MAX_STEPS; ++m) {
         const double odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
         const double even = (m + 1.0) * (b - m - 1.0) * x / ((a + 2.0 * m + 1.0) * (a + 2.0 * m + 2.0));
         fraction.step(odd, 1.0);
@@ -111,8 +111,8 @@ double chi_squared_p_value(double statistic, double degrees_of_freedom) {
 }
 
 double pearson_p_value(std::span<const double> counts, std::span<const double> expected) {
-    constexpr double LEAST_EXPECTED = 5.0;  // Least expectation of a pool, so that its count is nearly
-                                            // normal.
+    constexpr double MIN_EXPECTED = 5.0;  // Least expectation of a pool, so that its count is nearly
+                                          // normal.
     assert(counts.size() == expected.size());
     const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
     assert(total > 0.0);
@@ -128,11 +128,11 @@ double pearson_p_value(std::span<const double> counts, std::span<const double> e
     std::vector<Pool> pools(1);
     for (const size_t i : order) {
         if (expected[i] == 0.0 && counts[i] > 0.0) return 0.0;
-        if (pools.back().expected >= LEAST_EXPECTED) pools.emplace_back();
+        if (pools.back().expected >= MIN_EXPECTED) pools.emplace_back();
         pools.back().count += counts[i];
         pools.back().expected += expected[i] * scale;
     }
-    if (pools.size() > 1 && pools.back().expected < LEAST_EXPECTED) {
+    if (pools.size() > 1 && pools.back().expected < MIN_EXPECTED) {
         const Pool rest = pools.back();
         pools.pop_back();
         pools.back().count += rest.count;

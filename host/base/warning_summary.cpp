@@ -11,8 +11,8 @@
 namespace candela {
 namespace {
 
-constexpr size_t MOST_OF_A_KIND = 3;
-constexpr size_t MOST_BYTES = size_t{64} << 10;
+constexpr size_t MAX_OF_A_KIND = 3;
+constexpr size_t MAX_BYTES = size_t{64} << 10;
 constexpr size_t AROUND_LINE = 24;  // Bytes printed around each line.
 
 constexpr std::string_view DIGITS = "0123456789";
@@ -82,9 +82,9 @@ struct Kind {
 };
 
 std::string line_of(const Same& same) {
-    if (same.count == 1) return printable(*same.first, MOST_MESSAGE_BYTES);
+    if (same.count == 1) return printable(*same.first, MAX_MESSAGE_BYTES);
     const std::string times = " (" + std::to_string(same.count) + " times)";
-    return printable(*same.first, MOST_MESSAGE_BYTES - times.size()) + times;
+    return printable(*same.first, MAX_MESSAGE_BYTES - times.size()) + times;
 }
 
 std::vector<Kind> kinds_of(const std::vector<std::string>& warnings) {
@@ -101,7 +101,7 @@ std::vector<Kind> kinds_of(const std::vector<std::string>& warnings) {
         const auto [found, is_new] = kind_of.emplace(without_names(text), kinds.size());
         if (is_new) kinds.emplace_back();
         Kind& kind = kinds[found->second];
-        if (kind.shown.size() == MOST_OF_A_KIND) {
+        if (kind.shown.size() == MAX_OF_A_KIND) {
             ++kind.more;
             continue;
         }
@@ -120,11 +120,11 @@ std::vector<std::string> summary_of(const std::vector<std::string>& warnings) {
         for (const Same& same : kind.shown) {
             std::string line = line_of(same);
             bytes += line.size() + AROUND_LINE;
-            if (bytes > MOST_BYTES) break;
+            if (bytes > MAX_BYTES) break;
             lines.push_back(std::move(line));
             left -= same.count;
         }
-        if (bytes > MOST_BYTES) break;
+        if (bytes > MAX_BYTES) break;
         if (kind.more == 0) continue;
         lines.push_back(std::to_string(kind.more) + " more like the last, with other names or numbers");
         left -= kind.more;

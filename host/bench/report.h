@@ -22,7 +22,7 @@ struct Row {
 };
 
 struct Spread {
-    double median, least, largest;
+    double median, min, largest;
 };
 
 // For at least one value. The median of an even number of values is the mean of the two in the middle.

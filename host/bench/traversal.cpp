@@ -14,7 +14,7 @@ namespace {
 // A run repeats its rays for about this long, so that the clocks' resolution and idle threads at its end do
 // not matter.
 constexpr double RUN_SECONDS = 0.1;
-constexpr double MOST_REPEATS = 1000;
+constexpr double MAX_REPEATS = 1000;
 
 // One in this many rays may have a different hit in the rival.
 constexpr size_t RAYS_PER_OTHER_HIT = 1000;
@@ -28,7 +28,7 @@ class Contender {
         tracer_->prepare(set);
         tracer_->trace(1);
         const double seconds = tracer_->trace(1).wall;
-        repeats_ = uint32_t(std::clamp(std::ceil(RUN_SECONDS / seconds), 1.0, MOST_REPEATS));
+        repeats_ = uint32_t(std::clamp(std::ceil(RUN_SECONDS / seconds), 1.0, MAX_REPEATS));
     }
 
     // Adds the speed of one run [Mrays/s].

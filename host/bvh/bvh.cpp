@@ -148,7 +148,7 @@ BinaryTree build_binary(std::span<PrimitiveRef> refs, const Job& root) {
 // Builds the whole subtree of `root`.
 void build_subtree(std::span<PrimitiveRef> refs, const Job& root, Piece& piece) {
     BinaryTree tree = build_binary(refs, root);
-    find_least_costs(tree.nodes);
+    find_min_costs(tree.nodes);
     struct Pending {
         uint32_t binary;
         uint32_t index;

@@ -38,7 +38,7 @@ void add_children(std::span<const BinaryNode> tree, uint32_t index, uint32_t k, 
 
 }  // namespace
 
-void find_least_costs(std::span<BinaryNode> tree) {
+void find_min_costs(std::span<BinaryNode> tree) {
     for (size_t i = tree.size(); i-- > 0;) {
         BinaryNode& node = tree[i];
         if (node.left == 0) continue;

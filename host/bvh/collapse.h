@@ -14,7 +14,7 @@ struct BinaryNode {
     double area = 0.0;  // Half its surface.
     uint32_t left = 0;  // Index of its left child, which the right one follows; 0: it is a leaf.
 
-    // Filled by find_least_costs. There are many ways to replace this node by at most k nodes or leaves of
+    // Filled by find_min_costs. There are many ways to replace this node by at most k nodes or leaves of
     // the wide tree. cost[k], k >= 1: the least sum of the areas of these and all wide nodes below them.
     // left_share[k]: how many of the k then replace the left child; 0 if this node becomes a wide one itself.
     // The children of a wide node follow from left_share[BVH_WIDTH].
@@ -27,7 +27,7 @@ struct BinaryNode {
 // sides.
 // Ref: Ylitie, Karras and Laine 2017, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
 // BVHs.
-void find_least_costs(std::span<BinaryNode> tree);
+void find_min_costs(std::span<BinaryNode> tree);
 
 // Indices of binary nodes.
 struct WideChildren {
@@ -36,7 +36,7 @@ struct WideChildren {
 };
 
 // The children of the wide node that replaces `index`, from left to right: leaves, and nodes that become wide
-// ones. A leaf is its own only child. For use after find_least_costs.
+// ones. A leaf is its own only child. For use after find_min_costs.
 WideChildren wide_children(std::span<const BinaryNode> tree, uint32_t index);
 
 }  // namespace candela

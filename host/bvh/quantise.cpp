@@ -10,8 +10,8 @@ namespace candela {
 namespace {
 
 constexpr uint32_t LAST_STEP = 255;
-constexpr int LEAST_EXPONENT = -126;  // Least exponent of a normal float: devices may flush smaller ones to
-                                      // zero.
+constexpr int MIN_EXPONENT = -126;  // Least exponent of a normal float: devices may flush smaller ones to
+                                    // zero.
 
 // One axis of the grid. Estimates are made in double precision; decode() is the device's arithmetic and
 // decides. It rounds once, and rounding is monotonic, so step 0 decodes to `origin` itself and no step to
@@ -27,9 +27,9 @@ struct GridAxis {
         int exponent;  // frexp: mantissa in [0.5, 1), or 0 with exponent 0 for a flat box.
         const double extent = double(hi) - double(lo);
         const double mantissa = std::frexp(extent / LAST_STEP, &exponent);
-        if (mantissa == 0.0) exponent = LEAST_EXPONENT;
+        if (mantissa == 0.0) exponent = MIN_EXPONENT;
         if (mantissa == 0.5) --exponent;
-        scale = std::ldexp(1.0f, std::max(exponent, LEAST_EXPONENT));
+        scale = std::ldexp(1.0f, std::max(exponent, MIN_EXPONENT));
         while (decode(LAST_STEP) < hi)
             scale *= 2.0f;  // `extent` was rounded, as for [-255, 1e-30].
     }

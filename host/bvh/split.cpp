@@ -95,7 +95,7 @@ Cut best_cut(const Bins& bins, const Binning& binning, const PrimitiveRange& ran
         right_cost[i] = right.cost(unit);
     }
     // The best cut on each axis.
-    Float4 least_cost = all4(INFINITE), least_imbalance = all4(INFINITE);
+    Float4 min_cost = all4(INFINITE), min_imbalance = all4(INFINITE);
     Int4 best_bin{};
     BinUnion left;
     for (int i = 1; i < binning.count; ++i) {
@@ -103,17 +103,15 @@ Cut best_cut(const Bins& bins, const Binning& binning, const PrimitiveRange& ran
         const Float4 cost = left.cost(unit) + right_cost[i];
         const Float4 excess = left.count + left.count - float(range.count);
         const Float4 imbalance = max4(excess, -excess);
-        const Int4 better = (cost < least_cost) | ((cost == least_cost) & (imbalance < least_imbalance));
-        least_cost = better ? cost : least_cost;
-        least_imbalance = better ? imbalance : least_imbalance;
+        const Int4 better = (cost < min_cost) | ((cost == min_cost) & (imbalance < min_imbalance));
+        min_cost = better ? cost : min_cost;
+        min_imbalance = better ? imbalance : min_imbalance;
         best_bin = better ? Int4{i, i, i, i} : best_bin;
     }
     Cut best;
     for (int a = 0; a < 3; ++a) {
         if (binning.scale[a] == 0.0f) continue;
-        const auto rank = [&](int axis) {
-            return std::array<float, 2>{least_cost[axis], least_imbalance[axis]};
-        };
+        const auto rank = [&](int axis) { return std::array<float, 2>{min_cost[axis], min_imbalance[axis]}; };
         if (best.axis < 0 || rank(a) < rank(best.axis)) best = {a, best_bin[a]};
     }
     return best;

@@ -20,11 +20,11 @@ std::vector<std::string> split(const std::string& text, char separator) {
     return parts;
 }
 
-std::optional<uint32_t> parse_uint(const std::string& text, uint32_t least, uint32_t most) {
+std::optional<uint32_t> parse_uint(const std::string& text, uint32_t min, uint32_t max) {
     uint32_t value = 0;
     const char* const end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc{} || stop != end || value < least || value > most) return std::nullopt;
+    if (error != std::errc{} || stop != end || value < min || value > max) return std::nullopt;
     return value;
 }
 

@@ -27,7 +27,7 @@ std::vector<std::string> split(const std::string& text, char separator);
 // Each parses all of `text`; returns nothing if it does not have the form described.
 
 // A whole decimal number in [least, most].
-std::optional<uint32_t> parse_uint(const std::string& text, uint32_t least, uint32_t most);
+std::optional<uint32_t> parse_uint(const std::string& text, uint32_t min, uint32_t max);
 // A finite decimal number.
 std::optional<double> parse_number(const std::string& text);
 // "WxH": width and height in pixels, each from 1 to MAX_PICTURE_SIZE.

@@ -78,7 +78,7 @@ void print_progress(const std::string& text, bool table) {
     const bool terminal = stderr_is_terminal();
     if (terminal) std::fputs("\r\x1b[K", stderr);
     if (text.empty() || !(terminal || !table)) return;
-    std::fprintf(stderr, "%s%s", printable(text, MOST_PATH_BYTES).c_str(), terminal ? "" : "\n");
+    std::fprintf(stderr, "%s%s", printable(text, MAX_PATH_BYTES).c_str(), terminal ? "" : "\n");
 }
 
 std::string rival_text() {
@@ -88,9 +88,9 @@ std::string rival_text() {
 
 void print_heading(const vk::DeviceInfo& device, const BenchOptions& options) {
     std::printf("candela %s bench\n", CANDELA_VERSION);
-    std::printf("device   %u: %s (%s)\n", device.index, printable(device.name, MOST_NAME_BYTES).c_str(),
+    std::printf("device   %u: %s (%s)\n", device.index, printable(device.name, MAX_NAME_BYTES).c_str(),
                 vk::to_string(device.type));
-    std::printf("driver   %s\n", printable(device.driver, MOST_NAME_BYTES).c_str());
+    std::printf("driver   %s\n", printable(device.driver, MAX_NAME_BYTES).c_str());
     std::printf("system   %s, %.0f cores\n", system_text().c_str(), cores());
     std::printf("rival    %s\n\n", rival_text().c_str());
     std::printf("Median (least .. largest) of %u run(s); ratio: candela over Embree, run by run.\n",

@@ -6,11 +6,11 @@
 namespace candela {
 namespace {
 
-constexpr uint32_t MOST_RUNS = 1000;
-constexpr uint32_t LEAST_RAYS = 64, MOST_RAYS = 1u << 24;
-constexpr uint32_t LEAST_TRIANGLES = 72, MOST_TRIANGLES = 100'000'000;
-constexpr uint32_t MOST_TREES = 40'000;  // 4 G triangles: ids have 32 bits.
-constexpr uint32_t LEAST_INSTANCES = 2'000, MOST_INSTANCES = 10'000'000;
+constexpr uint32_t MAX_RUNS = 1000;
+constexpr uint32_t MIN_RAYS = 64, MAX_CAMERA_RAYS = 1u << 24;
+constexpr uint32_t MIN_TRIANGLES = 72, MAX_TRIANGLES = 100'000'000;
+constexpr uint32_t MAX_TREES = 40'000;  // 4 G triangles: ids have 32 bits.
+constexpr uint32_t MIN_INSTANCES = 2'000, MOST_INSTANCES = 10'000'000;
 
 // The values of a comma-separated list, if parse() accepts all of them.
 template <class T>
@@ -36,8 +36,8 @@ std::optional<uint32_t> parse_triangles(const std::string& text) {
     const char unit = text.empty() ? '\0' : text.back();
     const uint32_t scale = unit == 'k' ? 1000 : unit == 'M' ? 1'000'000 : 1;
     const std::string digits = scale == 1 ? text : text.substr(0, text.size() - 1);
-    const auto count = parse_uint(digits, 0, MOST_TRIANGLES / scale);
-    return count && *count * scale >= LEAST_TRIANGLES ? std::optional(*count * scale) : std::nullopt;
+    const auto count = parse_uint(digits, 0, MAX_TRIANGLES / scale);
+    return count && *count * scale >= MIN_TRIANGLES ? std::optional(*count * scale) : std::nullopt;
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ void BenchArguments::add_to(CLI::App& app) {
         "What to measure: a list (default: all)")
         ->type_name("traversal,instances,build,render,first-pixel");
     add_value(
-        app, "--runs", bench.runs, [](const std::string& text) { return parse_uint(text, 1, MOST_RUNS); },
+        app, "--runs", bench.runs, [](const std::string& text) { return parse_uint(text, 1, MAX_RUNS); },
         "a whole number from 1 to 1000", "Runs of everything (default: 5)")
         ->type_name("N");
     app.add_option("--json", json,
@@ -65,17 +65,17 @@ void BenchArguments::add_to(CLI::App& app) {
         "Approximate sizes of the meshes (default: 190k,1M)")
         ->type_name("N,...");
     add_value(
-        app, "--trees", bench.trees, [](const std::string& text) { return parse_uint(text, 1, MOST_TREES); },
+        app, "--trees", bench.trees, [](const std::string& text) { return parse_uint(text, 1, MAX_TREES); },
         "a whole number from 1 to 40000", "Instances of trees in the forest (default: 10000)")
         ->type_name("N");
     add_value(
         app, "--instances", bench.instances,
-        [](const std::string& text) { return parse_uint(text, LEAST_INSTANCES, MOST_INSTANCES); },
+        [](const std::string& text) { return parse_uint(text, MIN_INSTANCES, MAX_INSTANCES); },
         "a whole number from 2000 to 10000000", "Instances of a small mesh to build (default: 1000000)")
         ->type_name("N");
     add_value(
         app, "--rays", bench.rays,
-        [](const std::string& text) { return parse_uint(text, LEAST_RAYS, MOST_RAYS); },
+        [](const std::string& text) { return parse_uint(text, MIN_RAYS, MAX_CAMERA_RAYS); },
         "a whole number from 64 to 16777216", "Approximate number of camera rays (default: 1048576)")
         ->type_name("N");
     app.option_defaults()->group("Render");

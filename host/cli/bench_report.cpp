@@ -21,7 +21,7 @@ std::string spread_text(const std::vector<double>& values) {
     if (values.empty()) return "";
     const Spread s = spread(values);
     if (values.size() == 1) return number_text(s.median);
-    return number_text(s.median) + " (" + number_text(s.least) + " .. " + number_text(s.largest) + ')';
+    return number_text(s.median) + " (" + number_text(s.min) + " .. " + number_text(s.largest) + ')';
 }
 
 std::string median_text(const std::vector<double>& values) {
@@ -54,7 +54,7 @@ std::string table_text(const BenchTable& table) {
     std::string text = line(cells);
     std::string subject;
     for (const Row& row : table.rows) {
-        if (row.subject != subject) text += printable(row.subject, MOST_PATH_BYTES) + '\n';
+        if (row.subject != subject) text += printable(row.subject, MAX_PATH_BYTES) + '\n';
         subject = row.subject;
         cells = {"  " + row.what, row.unit, spread_text(row.ours), median_text(row.ours_wall)};
         if (const auto r = ratio(row))

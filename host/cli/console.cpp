@@ -19,7 +19,7 @@ namespace candela {
 void print_warning(const std::string& message) {
     // On a terminal it replaces a live line, if there is one.
     std::fprintf(stderr, "%scandela: warning: %s\n", stderr_is_terminal() ? "\r\x1b[K" : "",
-                 printable(message, MOST_MESSAGE_BYTES).c_str());
+                 printable(message, MAX_MESSAGE_BYTES).c_str());
 }
 
 void print_warnings(const std::vector<std::string>& messages) {
@@ -28,11 +28,11 @@ void print_warnings(const std::vector<std::string>& messages) {
 }
 
 void print_error(const std::string& message) {
-    std::fprintf(stderr, "candela: error: %s\n", printable(message, MOST_MESSAGE_BYTES).c_str());
+    std::fprintf(stderr, "candela: error: %s\n", printable(message, MAX_MESSAGE_BYTES).c_str());
 }
 
 void print_note(const std::string& message) {
-    std::fprintf(stderr, "%s\n", printable(message, MOST_MESSAGE_BYTES).c_str());
+    std::fprintf(stderr, "%s\n", printable(message, MAX_MESSAGE_BYTES).c_str());
 }
 
 bool stderr_is_terminal() {

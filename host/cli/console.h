@@ -7,7 +7,7 @@
 
 namespace candela {
 
-// Messages are lines: unprintable characters are escaped, and a message longer than MOST_MESSAGE_BYTES is
+// Messages are lines: unprintable characters are escaped, and a message longer than MAX_MESSAGE_BYTES is
 // cut.
 
 // Prints `candela: warning: MESSAGE` to stderr.

@@ -24,7 +24,7 @@ constexpr std::array<const char*, 8> COLOURS = {"#0072b2", "#d55e00", "#009e73",
 // A name as XML, which cannot hold all control characters.
 std::string escape(const std::string& text) {
     std::string escaped;
-    for (const char c : printable(text, MOST_NAME_BYTES)) {
+    for (const char c : printable(text, MAX_NAME_BYTES)) {
         if (c == '&') {
             escaped += "&amp;";
         } else if (c == '<') {
@@ -43,25 +43,25 @@ std::string escape(const std::string& text) {
 // A logarithmic axis: maps numbers to places in the drawing.
 class Axis {
   public:
-    // From `least` to `most` (more than 0), widened slightly and to at least one decade, so that there are
+    // From `min` to `max` (more than 0), widened slightly and to at least one decade, so that there are
     // three numbers to label. The ends lie at `from` and `to`.
-    Axis(double least, double most, double from, double to) : from_(from), to_(to) {
-        const double margin = std::max(MARGIN, 0.5 - 0.5 * std::log10(most / least));
-        least_ = std::log10(least) - margin;
-        most_ = std::log10(most) + margin;
+    Axis(double min, double max, double from, double to) : from_(from), to_(to) {
+        const double margin = std::max(MARGIN, 0.5 - 0.5 * std::log10(max / min));
+        min_ = std::log10(min) - margin;
+        max_ = std::log10(max) + margin;
     }
 
     double place(double value) const {
-        return from_ + (to_ - from_) * (std::log10(value) - least_) / (most_ - least_);
+        return from_ + (to_ - from_) * (std::log10(value) - min_) / (max_ - min_);
     }
     // Numbers to label: 1, 2 and 5 times powers of ten, or, if these are many, only the powers.
     std::vector<double> ticks() const {
-        const bool many = most_ - least_ > MOST_DECADES;
+        const bool many = max_ - min_ > MAX_DECADES;
         std::vector<double> ticks;
-        for (int power = int(std::floor(least_)); power <= int(std::ceil(most_)); ++power) {
+        for (int power = int(std::floor(min_)); power <= int(std::ceil(max_)); ++power) {
             for (const double digit : {1.0, 2.0, 5.0}) {
                 const double tick = digit * std::pow(10.0, power);
-                const bool within = std::log10(tick) >= least_ && std::log10(tick) <= most_;
+                const bool within = std::log10(tick) >= min_ && std::log10(tick) <= max_;
                 if (within && (digit == 1.0 || !many)) ticks.push_back(tick);
             }
         }
@@ -70,9 +70,9 @@ class Axis {
 
   private:
     static constexpr double MARGIN = 0.05;  // Decades.
-    static constexpr double MOST_DECADES = 3.5;
+    static constexpr double MAX_DECADES = 3.5;
 
-    double least_, most_, from_, to_;
+    double min_, max_, from_, to_;
 };
 
 std::string number(double value) {
@@ -141,15 +141,15 @@ std::string draw_legend(const std::vector<Curve>& curves) {
 }  // namespace
 
 std::string draw_curves(const std::vector<Curve>& curves) {
-    CurvePoint least{INFINITY, INFINITY}, most{};
+    CurvePoint min{INFINITY, INFINITY}, max{};
     for (const Curve& curve : curves) {
         for (const CurvePoint& point : curve.points) {
-            least = {std::min(least.seconds, point.seconds), std::min(least.error, point.error)};
-            most = {std::max(most.seconds, point.seconds), std::max(most.error, point.error)};
+            min = {std::min(min.seconds, point.seconds), std::min(min.error, point.error)};
+            max = {std::max(max.seconds, point.seconds), std::max(max.error, point.error)};
         }
     }
-    const Axis x(least.seconds, most.seconds, LEFT, WIDTH - RIGHT);
-    const Axis y(least.error, most.error, HEIGHT - BOTTOM, TOP);
+    const Axis x(min.seconds, max.seconds, LEFT, WIDTH - RIGHT);
+    const Axis y(min.error, max.error, HEIGHT - BOTTOM, TOP);
     const std::string size = fixed(WIDTH, 0) + ' ' + fixed(HEIGHT, 0);
     std::string svg = R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 )" + size + "\" width=\"" +
                       fixed(WIDTH, 0) + "\" height=\"" + fixed(HEIGHT, 0) +

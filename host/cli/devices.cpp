@@ -46,11 +46,11 @@ const char* yes_or_no(bool value) {
 }
 
 void print_row(const char* key, const std::string& value) {
-    std::printf("    %-26s%s\n", key, printable(value, MOST_MESSAGE_BYTES).c_str());
+    std::printf("    %-26s%s\n", key, printable(value, MAX_MESSAGE_BYTES).c_str());
 }
 
 void print(const vk::DeviceInfo& info, bool is_default) {
-    std::printf("%u: %s (%s)%s\n", info.index, printable(info.name, MOST_NAME_BYTES).c_str(),
+    std::printf("%u: %s (%s)%s\n", info.index, printable(info.name, MAX_NAME_BYTES).c_str(),
                 vk::to_string(info.type), is_default ? ", used by default" : "");
     print_row("suitable", info.reason.empty() ? "yes" : "no: " + info.reason);
     print_row("Vulkan", vk::version_text(info.api_version));

@@ -174,7 +174,7 @@ std::string lights_text(const Json& info) {
 
 void print(const Json& info) {
     const auto row = [](const char* key, const std::string& value) {
-        std::printf("%-14s%s\n", key, printable(value, MOST_MESSAGE_BYTES).c_str());
+        std::printf("%-14s%s\n", key, printable(value, MAX_MESSAGE_BYTES).c_str());
     };
     const auto bytes = [&info](const std::string& part) {
         return bytes_text(info["device_bytes_by_part"][part].get<uint64_t>());

@@ -51,7 +51,7 @@ ExitCode run(const MergeArguments& arguments, const std::string& command_line) {
     const size_t count = arguments.parts.size();
     write_images(arguments.images, std::move(merged.image));
     std::printf("merged %zu part%s: samples %s\n", count, count == 1 ? "" : "s",
-                printable(samples, MOST_MESSAGE_BYTES).c_str());
+                printable(samples, MAX_MESSAGE_BYTES).c_str());
     flush_results();
     return ExitCode::done;
 }

@@ -40,9 +40,9 @@ std::string probability_text(double p) {
 
 void print_heading(const vk::DeviceInfo& device, Effort effort, double level) {
     std::printf("candela %s selftest\n", CANDELA_VERSION);
-    std::printf("device   %u: %s (%s)\n", device.index, printable(device.name, MOST_NAME_BYTES).c_str(),
+    std::printf("device   %u: %s (%s)\n", device.index, printable(device.name, MAX_NAME_BYTES).c_str(),
                 vk::to_string(device.type));
-    std::printf("driver   %s\n", printable(device.driver, MOST_NAME_BYTES).c_str());
+    std::printf("driver   %s\n", printable(device.driver, MAX_NAME_BYTES).c_str());
     std::printf("Vulkan   %s\n", vk::version_text(device.api_version).c_str());
     std::printf("system   %s\n", system_text().c_str());
     std::printf("effort   %s\n\n", name_of(effort, EFFORT_NAMES).c_str());

@@ -107,7 +107,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
 
     warn_of_unseen_lights(scene, state.settings.estimator);
     const std::string name = std::filesystem::path(arguments.scene.file).stem().string();
-    Window window(state.settings.size, !arguments.frames, printable(name, MOST_NAME_BYTES));
+    Window window(state.settings.size, !arguments.frames, printable(name, MAX_NAME_BYTES));
     vk::Instance::Options instance_wishes = instance_options();
     instance_wishes.extensions = window.instance_extensions();
     const vk::Instance instance(instance_wishes);

@@ -104,28 +104,28 @@ uint64_t Accumulation::total_samples() const {
     return count_samples({this, 1}).total;
 }
 
-uint32_t Accumulation::least_samples() const {
-    return count_samples({this, 1}).least;
+uint32_t Accumulation::min_samples() const {
+    return count_samples({this, 1}).min;
 }
 
-uint32_t Accumulation::most_samples() const {
-    return count_samples({this, 1}).most;
+uint32_t Accumulation::max_samples() const {
+    return count_samples({this, 1}).max;
 }
 
 SampleCounts count_samples(std::span<const Accumulation> states) {
-    SampleCounts counts{.total = 0, .least = UINT32_MAX, .most = 0};
+    SampleCounts counts{.total = 0, .min = UINT32_MAX, .max = 0};
     for (size_t i = 0; i < states.front().pixel_count(); ++i) {
         const uint32_t n = count_of(states, i);
         counts.total += n;
-        counts.least = std::min(counts.least, n);
-        counts.most = std::max(counts.most, n);
+        counts.min = std::min(counts.min, n);
+        counts.max = std::max(counts.max, n);
     }
     return counts;
 }
 
 uint32_t samples_per_pixel(std::span<const Accumulation> states) {
     const SampleCounts counts = count_samples(states);
-    return states.size() < 4 ? counts.least : uint32_t(counts.total / states.front().pixel_count());
+    return states.size() < 4 ? counts.min : uint32_t(counts.total / states.front().pixel_count());
 }
 
 RenderCounters total_counters(std::span<const Accumulation> states) {

@@ -47,8 +47,8 @@ struct Accumulation {
     // The samples of all pixels together.
     uint64_t total_samples() const;
     // The fewest and the most samples that a pixel holds.
-    uint32_t least_samples() const;
-    uint32_t most_samples() const;
+    uint32_t min_samples() const;
+    uint32_t max_samples() const;
 };
 
 // `states` below are one state; or two, whose samples are combined; or four, for the two halves of an
@@ -57,8 +57,8 @@ struct Accumulation {
 
 struct SampleCounts {
     uint64_t total = 0;  // Samples of all pixels.
-    uint32_t least = 0;  // Fewest samples of a pixel.
-    uint32_t most = 0;   // Most samples of a pixel.
+    uint32_t min = 0;    // Fewest samples of a pixel.
+    uint32_t max = 0;    // Most samples of a pixel.
 };
 SampleCounts count_samples(std::span<const Accumulation> states);
 // The number of samples that every pixel has; for two halves, the mean over the pixels, rounded down.

@@ -58,7 +58,7 @@ Number number_attribute(const Image& image, const std::string& attribute, const 
     Number number{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc{} && end == text.data() + text.size()) return number;
-    throw Error(name + ": the attribute " + attribute + " is \"" + printable(text, MOST_NAME_BYTES) +
+    throw Error(name + ": the attribute " + attribute + " is \"" + printable(text, MAX_NAME_BYTES) +
                 "\"; give a file that candela render wrote, unchanged");
 }
 
@@ -127,8 +127,8 @@ void check_format(const Image& image, const std::string& name) {
     if (states != count_states(image)) fail_damaged(name, "it does not hold as many states as it says");
 }
 
-bool is_count(float value, float most) {
-    return value >= 0.0f && value <= most && value == std::floor(value);
+bool is_count(float value, float max) {
+    return value >= 0.0f && value <= max && value == std::floor(value);
 }
 
 // Checks what a renderer relies on. The checksum does not ensure it, since a forger can compute one.

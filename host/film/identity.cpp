@@ -69,7 +69,7 @@ Identity identity_of(const Image& image, const std::string& name) {
     const std::string text = text_attribute(image, HASH_ATTRIBUTE, name);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), identity.hash, 16);
     if (error != std::errc{} || end != text.data() + text.size()) {
-        throw Error(name + ": the attribute " + HASH_ATTRIBUTE + " is \"" + printable(text, MOST_NAME_BYTES) +
+        throw Error(name + ": the attribute " + HASH_ATTRIBUTE + " is \"" + printable(text, MAX_NAME_BYTES) +
                     "\"; give a file that candela render wrote, unchanged");
     }
     for (size_t i = 0; i < NAMES.size(); ++i) {
@@ -96,8 +96,8 @@ Maker maker_of(const Image& image, const std::string& name) {
 }
 
 std::string to_text(const Maker& maker) {
-    return printable(maker.device, MOST_NAME_BYTES) + ", driver " + printable(maker.driver, MOST_NAME_BYTES) +
-           ", candela " + printable(maker.version, MOST_NAME_BYTES);
+    return printable(maker.device, MAX_NAME_BYTES) + ", driver " + printable(maker.driver, MAX_NAME_BYTES) +
+           ", candela " + printable(maker.version, MAX_NAME_BYTES);
 }
 
 std::string difference(const Identity& theirs, const Identity& ours) {
@@ -108,8 +108,8 @@ std::string difference(const Identity& theirs, const Identity& ours) {
         const bool older = theirs.settings[i] == OLDER || ours.settings[i] == OLDER;
         if (NAMES[i].attribute == FRAME_ATTRIBUTE && !older && text.empty()) text = ANOTHER_SCENE;
         text += (text.empty() ? "its " : ", its ") + std::string(NAMES[i].word) + " is " +
-                printable(theirs.settings[i], MOST_NAME_BYTES) + ", not " +
-                printable(ours.settings[i], MOST_NAME_BYTES);
+                printable(theirs.settings[i], MAX_NAME_BYTES) + ", not " +
+                printable(ours.settings[i], MAX_NAME_BYTES);
     }
     if (text.empty() && theirs.hash != ours.hash) text = ANOTHER_SCENE;
     return text;

@@ -39,7 +39,7 @@ float number_attribute(const Image& image, const char* attribute) {
 }
 
 std::string ranges_text(std::span<const SampleRange> samples) {
-    return printable(to_text(samples), MOST_NAME_BYTES);
+    return printable(to_text(samples), MAX_NAME_BYTES);
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
@@ -49,23 +49,23 @@ std::string ranges_text(std::span<const SampleRange> samples) {
 // Samples of each pixel, by the channel SampleCount.V or, without that, by the attributes.
 std::vector<uint32_t> sample_counts(const Image& image, const std::string& name,
                                     std::span<const SampleRange> samples) {
-    const uint32_t most = total_count(samples);
+    const uint32_t max = total_count(samples);
     const Channel* const channel = image.find(COUNT_CHANNEL);
     if (channel == nullptr) {
-        if (number_attribute(image, SPP) != float(most)) {
+        if (number_attribute(image, SPP) != float(max)) {
             refuse(
                 name,
                 "its pixels hold different numbers of samples, and it has no channel SampleCount.V to tell "
                 "them; render such parts with --aov samples among others");
         }
-        return std::vector<uint32_t>(image.pixel_count(), most);
+        return std::vector<uint32_t>(image.pixel_count(), max);
     }
     std::vector<uint32_t> counts;
     counts.reserve(image.pixel_count());
     for (const float count : channel->values) {
-        if (!(count >= 0.0f && count <= float(most)) || count != std::floor(count)) {
+        if (!(count >= 0.0f && count <= float(max)) || count != std::floor(count)) {
             refuse(name, "its channel SampleCount.V has the value " + std::to_string(count) +
-                             ", but it says to hold " + std::to_string(most) +
+                             ", but it says to hold " + std::to_string(max) +
                              " sample(s) per pixel at most; give files as candela wrote them");
         }
         counts.push_back(uint32_t(count));
@@ -94,7 +94,7 @@ Part describe(const std::filesystem::path& file, Image image) {
     const auto ranges = parse_ranges(samples);
     if (!ranges) {
         refuse(part.name, std::string("the attribute ") + SAMPLES + " is \"" +
-                              printable(samples, MOST_NAME_BYTES) +
+                              printable(samples, MAX_NAME_BYTES) +
                               "\"; give a file that candela render wrote, unchanged");
     }
     part.samples = *ranges;
@@ -149,7 +149,7 @@ std::vector<std::string> common_channels(const std::vector<Part>& parts, std::ve
     for (const std::string& name : names) {
         const auto lacking =
             std::ranges::find_if(parts, [&](const Part& part) { return part.header.find(name) == nullptr; });
-        const std::string quoted_name = '"' + printable(name, MOST_NAME_BYTES) + '"';
+        const std::string quoted_name = '"' + printable(name, MAX_NAME_BYTES) + '"';
         if (!PartSum::knows(name)) {
             warnings.push_back("the channel " + quoted_name +
                                " is left out: candela does not know how to merge it");
@@ -163,11 +163,11 @@ std::vector<std::string> common_channels(const std::vector<Part>& parts, std::ve
     return common;
 }
 
-// `least`: the samples of the pixel that has fewest.
-void warn_of_interruption(const Part& part, uint32_t least, std::vector<std::string>& warnings) {
-    if (least < total_count(part.samples)) {
+// `min`: the samples of the pixel that has fewest.
+void warn_of_interruption(const Part& part, uint32_t min, std::vector<std::string>& warnings) {
+    if (min < total_count(part.samples)) {
         warnings.push_back(part.name + " was interrupted: of the samples " + ranges_text(part.samples) +
-                           " some pixels hold only " + std::to_string(least));
+                           " some pixels hold only " + std::to_string(min));
     }
 }
 
@@ -206,7 +206,7 @@ Image read_values(const Part& part, const std::vector<std::string>& channels, co
     return image;
 }
 
-void set_attributes(Image& image, const std::vector<Part>& parts, uint64_t least) {
+void set_attributes(Image& image, const std::vector<Part>& parts, uint64_t min) {
     image.attributes = parts.front().header.attributes;
     std::vector<SampleRange> samples = samples_of(parts);
     float seconds = 0.0f;
@@ -223,7 +223,7 @@ void set_attributes(Image& image, const std::vector<Part>& parts, uint64_t least
     if (samples.empty()) samples.push_back({});
     set_maker(image, maker);
     image.attributes[SAMPLES] = to_text(samples);
-    image.attributes[SPP] = float(least);
+    image.attributes[SPP] = float(min);
     image.attributes[SECONDS] = seconds;
 }
 
@@ -297,12 +297,12 @@ Missing missing_samples(const std::vector<std::filesystem::path>& files, SampleR
     std::vector<SampleRange> complete;
     for (const Part& part : parts) {
         const float number = number_attribute(part.header, SPP);
-        const uint32_t least = number >= 0.0f && number <= float(MAX_SPP) ? uint32_t(number) : 0;
-        warn_of_interruption(part, least, missing.warnings);
-        if (least >= total_count(part.samples)) {
+        const uint32_t min = number >= 0.0f && number <= float(MAX_SPP) ? uint32_t(number) : 0;
+        warn_of_interruption(part, min, missing.warnings);
+        if (min >= total_count(part.samples)) {
             complete.insert(complete.end(), part.samples.begin(), part.samples.end());
         } else if (part.samples.size() == 1) {
-            complete.push_back({part.samples[0].first, part.samples[0].first + least});
+            complete.push_back({part.samples[0].first, part.samples[0].first + min});
         }  // With several ranges, nothing says which samples are missing.
     }
     missing.samples = gaps(complete, wanted);

@@ -92,15 +92,15 @@ AreaLights build_area_lights(const Scene& scene, const FlatScene& flat) {
 }
 
 void check_emitters(const Scene& scene) {
-    constexpr uint64_t MOST_LIGHTS = 1u << 24u;  // A gigabyte of records.
+    constexpr uint64_t MAX_LIGHTS = 1u << 24u;  // A gigabyte of records.
     uint64_t triangles = 0;
     for (const Shape& shape : scene.shapes) {
         const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
         if (instance != nullptr && shape.emission) triangles += scene.meshes[instance->mesh].triangles.size();
     }
-    if (triangles > MOST_LIGHTS) {
+    if (triangles > MAX_LIGHTS) {
         throw Error(concat("the scene has ", triangles,
-                           " triangles that emit, each of which is a light, but at most ", MOST_LIGHTS,
+                           " triangles that emit, each of which is a light, but at most ", MAX_LIGHTS,
                            " are possible; let fewer copies of a mesh emit, or simpler ones"));
     }
 }

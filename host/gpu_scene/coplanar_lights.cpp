@@ -80,10 +80,10 @@ bool share_an_area(const FlatPiece& a, const FlatPiece& b, double tolerance) {
             const auto range = [&](const FlatPiece& of) {
                 return std::ranges::minmax(of.corners, {}, [&](dvec3 p) { return dot(across, p); });
             };
-            const auto [a_least, a_most] = range(a);
-            const auto [b_least, b_most] = range(b);
-            const double shared = std::min(dot(across, a_most), dot(across, b_most)) -
-                                  std::max(dot(across, a_least), dot(across, b_least));
+            const auto [a_min, a_max] = range(a);
+            const auto [b_min, b_max] = range(b);
+            const double shared = std::min(dot(across, a_max), dot(across, b_max)) -
+                                  std::max(dot(across, a_min), dot(across, b_min));
             if (shared <= tolerance) return false;
         }
     }
@@ -91,13 +91,13 @@ bool share_an_area(const FlatPiece& a, const FlatPiece& b, double tolerance) {
 }
 
 std::vector<FlatPiece> find_lights(const Scene& scene) {
-    constexpr size_t MOST_LIGHTS = 100;
+    constexpr size_t MAX_LIGHTS = 100;
     const DoubleBox everywhere{dvec3(-double(INFINITE)), dvec3(double(INFINITE))};
     std::vector<FlatPiece> lights;
-    for (size_t i = 0; i < scene.shapes.size() && lights.size() < MOST_LIGHTS; ++i) {
+    for (size_t i = 0; i < scene.shapes.size() && lights.size() < MAX_LIGHTS; ++i) {
         if (!scene.shapes[i].emission) continue;
         for_each_piece(scene, i, everywhere, [&](FlatPiece&& piece) {
-            if (lights.size() < MOST_LIGHTS) lights.push_back(std::move(piece));
+            if (lights.size() < MAX_LIGHTS) lights.push_back(std::move(piece));
         });
     }
     return lights;

@@ -50,8 +50,8 @@ Instancing choose_instances(const Scene& scene, const InstancingRule& rule) {
         if (result.is_instance[i]) ++uses[instance->mesh];
     }
     const auto has_tree = [&](uint32_t mesh) {
-        return uses[mesh] >= std::max(rule.least_uses, 1u) && !scene.meshes[mesh].triangles.empty() &&
-               uses[mesh] * scene.meshes[mesh].triangles.size() >= rule.least_triangles;
+        return uses[mesh] >= std::max(rule.min_uses, 1u) && !scene.meshes[mesh].triangles.empty() &&
+               uses[mesh] * scene.meshes[mesh].triangles.size() >= rule.min_triangles;
     };
     for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
         if (has_tree(mesh)) result.meshes.push_back(mesh);

@@ -16,8 +16,8 @@ namespace candela {
 // their boxes are tighter and no ray changes its space, and slower beyond a million triangles
 // (tests/bench/NOTEBOOK.md).
 struct InstancingRule {
-    uint32_t least_uses = 2;
-    uint64_t least_triangles = 65536;  // Triangles of all copies together.
+    uint32_t min_uses = 2;
+    uint64_t min_triangles = 65536;  // Triangles of all copies together.
 };
 
 // The shapes that are instances.

@@ -101,9 +101,9 @@ std::vector<Solid> find_solids(const Scene& scene) {
 }
 
 // The least thickness of a mesh's parts: volume over half the surface, as for a pane.
-double least_thickness(const TriangleMesh& mesh, const std::vector<MeshSolid>& parts,
-                       const Transform& transform) {
-    double least = std::numeric_limits<double>::infinity();
+double min_thickness(const TriangleMesh& mesh, const std::vector<MeshSolid>& parts,
+                     const Transform& transform) {
+    double min = std::numeric_limits<double>::infinity();
     for (const MeshSolid& part : parts) {
         if (!part.closed) continue;
         double area = 0.0;
@@ -114,15 +114,15 @@ double least_thickness(const TriangleMesh& mesh, const std::vector<MeshSolid>& p
                                             transform.vector(dvec3(mesh.positions[t.z]) - a)));
         }
         const double volume = std::abs(part.volume * determinant(transform.linear()));
-        if (area > 0.0) least = std::min(least, 2.0 * volume / area);
+        if (area > 0.0) min = std::min(min, 2.0 * volume / area);
     }
-    return least;
+    return min;
 }
 
 double thickness(const Scene& scene, const Solid& solid, const MeshSolids& parts) {
     const auto* instance = std::get_if<MeshInstance>(&scene.shapes[solid.shape].geometry);
     if (instance != nullptr)
-        return least_thickness(scene.meshes[instance->mesh], parts.at(instance->mesh), instance->transform);
+        return min_thickness(scene.meshes[instance->mesh], parts.at(instance->mesh), instance->transform);
     return solid.area > 0.0 ? std::abs(solid.volume2) / solid.area : std::numeric_limits<double>::infinity();
 }
 
@@ -147,11 +147,11 @@ bool contains(const DoubleBox& outer, const DoubleBox& inner) {
 // the least x of their boxes. Gives up, and returns false, if that would take seconds.
 template <class Each>
 bool for_each_overlap(const std::vector<Solid>& solids, const Each& each) {
-    constexpr size_t MOST_LOOKS = size_t(1) << 26;
+    constexpr size_t MAX_LOOKS = size_t(1) << 26;
     size_t looks = 0;
     for (size_t i = 0; i < solids.size(); ++i) {
         for (size_t j = i + 1; j < solids.size() && solids[j].box.lo.x < solids[i].box.hi.x; ++j) {
-            if (++looks > MOST_LOOKS) return false;
+            if (++looks > MAX_LOOKS) return false;
             if (overlap(solids[i].box, solids[j].box) && !each(i, j)) return true;
         }
     }
@@ -171,7 +171,7 @@ MeshSolids find_parts(const Scene& scene, const std::vector<Solid>& solids) {
 // Whether closed parts of a mesh, other than cavities, have boxes that overlap; also true if there are too
 // many parts to find out quickly.
 bool parts_overlap(const std::vector<MeshSolid>& parts) {
-    constexpr uint64_t MOST_PAIRS = 1u << 24u;
+    constexpr uint64_t MAX_PAIRS = 1u << 24u;
     std::vector<Box> boxes;
     for (const MeshSolid& part : parts) {
         if (part.closed && part.volume > 0.0) boxes.push_back(part.box);
@@ -182,7 +182,7 @@ bool parts_overlap(const std::vector<MeshSolid>& parts) {
         for (size_t j = i + 1; j < boxes.size() && boxes[j].lo.x < boxes[i].hi.x; ++j) {
             const bool apart =
                 glm::any(glm::greaterThanEqual(max(boxes[i].lo, boxes[j].lo), min(boxes[i].hi, boxes[j].hi)));
-            if (!apart || ++pairs > MOST_PAIRS) return true;
+            if (!apart || ++pairs > MAX_PAIRS) return true;
         }
     }
     return false;
@@ -195,18 +195,18 @@ std::optional<std::string> warn_of_thin(const Scene& scene, const std::vector<So
     constexpr double STEPS = 16.0;
     const double reach = reach_of(scene);
     const Solid* thinnest = nullptr;
-    double least = STEPS * 0x1p-23 * reach;
+    double min = STEPS * 0x1p-23 * reach;
     size_t count = 0;
     for (const Solid& solid : solids) {
         const double d = thickness(scene, solid, parts);
         if (d >= STEPS * 0x1p-23 * reach) continue;
         ++count;
-        if (d >= least) continue;
-        least = d;
+        if (d >= min) continue;
+        min = d;
         thinnest = &solid;
     }
     if (thinnest == nullptr) return std::nullopt;
-    return concat(name_of_shape(scene, thinnest->shape), ": the solid is ", number_text(least, 3),
+    return concat(name_of_shape(scene, thinnest->shape), ": the solid is ", number_text(min, 3),
                   " m thick, less than 16 steps of 32-bit coordinates over the ", number_text(reach, 3),
                   " m of the scene and its cameras, so rays may miss one of its sides; make it thicker, or "
                   "use a thin wall",
@@ -251,11 +251,11 @@ Nesting find_nesting(const Scene& scene) {
         around[j] += contains(solids[i].box, solids[j].box);
         return true;
     });
-    const auto most = std::ranges::max_element(around);
-    if (most != around.end() && *most > MEDIA_AT_ONCE) {
+    const auto max = std::ranges::max_element(around);
+    if (max != around.end() && *max > MEDIA_AT_ONCE) {
         result.warnings.push_back(
-            concat(name_of_shape(scene, solids[size_t(most - around.begin())].shape), " may lie within ",
-                   *most - 1, " other solids; a path can track ", MEDIA_AT_ONCE,
+            concat(name_of_shape(scene, solids[size_t(max - around.begin())].shape), " may lie within ",
+                   *max - 1, " other solids; a path can track ", MEDIA_AT_ONCE,
                    " media, and drops the one with the lowest priority that it entered first"));
     }
     return result;

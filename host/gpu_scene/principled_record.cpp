@@ -26,7 +26,7 @@ uint32_t parts_of(const PrincipledMaterial& m) {
     const bool coated = m.coat.factor > 0.0f;
     const float roughness = std::max(m.roughness.factor, m.anisotropy.factor);
     has(m.metalness.factor > 0.0f, PRINCIPLED_HAS_METAL);
-    has(roughness * roughness >= LEAST_ALPHA, PRINCIPLED_HAS_ROUGH);
+    has(roughness * roughness >= MIN_FACET_ALPHA, PRINCIPLED_HAS_ROUGH);
     has(m.anisotropy.factor > 0.0f, PRINCIPLED_HAS_ANISOTROPY);
     if (!is_one(m.metalness) && !is_one(m.transmission)) {
         has(!is_one(m.diffuse_transmission), PRINCIPLED_HAS_DIFFUSE);

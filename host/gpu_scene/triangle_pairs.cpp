@@ -62,10 +62,10 @@ TrianglePair best_pair(const TriangleMesh& mesh, const Fans& fans, const std::ve
     for (int i = 0; i < 3; ++i) {
         const uint32_t c = t[i], a = t[(i + 1) % 3], b = t[(i + 2) % 3];
         // Any number of triangles may share a vertex; neighbours are mostly near in order.
-        constexpr size_t MOST_LOOKED_AT = 64;
+        constexpr size_t MAX_LOOKED_AT = 64;
         const std::span<const uint32_t> fan = fans.around(a);
         const auto after = size_t(std::ranges::upper_bound(fan, first) - fan.begin());
-        for (const uint32_t other : fan.subspan(after, std::min(fan.size() - after, MOST_LOOKED_AT))) {
+        for (const uint32_t other : fan.subspan(after, std::min(fan.size() - after, MAX_LOOKED_AT))) {
             if (taken[other]) continue;
             const std::optional<uint32_t> d = apex(mesh.triangles[other], a, c);
             if (!d) continue;

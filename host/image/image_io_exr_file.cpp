@@ -57,12 +57,12 @@ mat4 to_glm(const float* numbers) {
 }
 
 // The library's time grows with the square of the number of channels: a tenth of a second for ten thousand.
-constexpr uint32_t MOST_CHANNEL_BYTES = 1 << 18;
+constexpr uint32_t MAX_CHANNEL_BYTES = 1 << 18;
 
 // The size of the list of channels that the first header states; 0 if it has none.
 uint32_t channel_bytes(std::string_view file) {
     constexpr size_t ATTRIBUTES = 8;  // Offset of the attributes.
-    uint32_t most = 0;
+    uint32_t max = 0;
     std::string_view rest = file.substr(std::min(ATTRIBUTES, file.size()));
     while (!rest.empty() && rest[0] != '\0') {
         const size_t name = rest.find('\0');
@@ -70,18 +70,18 @@ uint32_t channel_bytes(std::string_view file) {
         uint32_t size = 0;
         if (type == std::string_view::npos || rest.size() - type - 1 < sizeof size) break;
         std::memcpy(&size, &rest[type + 1], sizeof size);
-        if (rest.substr(0, name) == "channels") most = std::max(most, size);
+        if (rest.substr(0, name) == "channels") max = std::max(max, size);
         rest.remove_prefix(type + 1 + sizeof size);
         rest.remove_prefix(std::min<size_t>(size, rest.size()));
     }
-    return most;
+    return max;
 }
 
 }  // namespace
 
 ExrFile::ExrFile(const ExrBytes& file, const fs::path& path) : bytes_(file.bytes), path_(path) {
     if (!bytes_.starts_with(EXR_MAGIC)) fail("it is not an OpenEXR file; give an .exr image");
-    if (channel_bytes(bytes_) > MOST_CHANNEL_BYTES) fail("it has thousands of channels; write fewer");
+    if (channel_bytes(bytes_) > MAX_CHANNEL_BYTES) fail("it has thousands of channels; write fewer");
     exr_context_initializer_t wishes = EXR_DEFAULT_CONTEXT_INITIALIZER;
     wishes.error_handler_fn = take_message;
     wishes.alloc_fn = allocate;
@@ -149,7 +149,7 @@ void ExrFile::read_channels(Image& image) const {
         const exr_attr_chlist_entry_t& entry = list->entries[i];
         const std::string name(entry.name.str, size_t(entry.name.length));
         if (entry.x_sampling != 1 || entry.y_sampling != 1)
-            fail("channel \"" + printable(name, MOST_NAME_BYTES) +
+            fail("channel \"" + printable(name, MAX_NAME_BYTES) +
                  "\" is subsampled; write it at full resolution");
         image.channels.push_back({name, {}, entry.pixel_type == EXR_PIXEL_HALF});
     }

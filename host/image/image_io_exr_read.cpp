@@ -61,8 +61,8 @@ class ExrPixels : public ExrFile {
 
     void for_each_chunk(const Image& image, const std::function<void(const Chunk&)>& each);
     uvec2 tile_size() const;
-    Imf::Header least_header() const;
-    std::string least_file(const Image& image);
+    Imf::Header min_header() const;
+    std::string min_file(const Image& image);
     void read_dwa(Image& image, const ImageLimits& limits);
     void decode(const Chunk& chunk, Image& image, const ImageLimits& limits);
 
@@ -74,8 +74,8 @@ class ExrPixels : public ExrFile {
 // Decodes a chunk into the channels, which it grows to the chunk's end.
 void ExrPixels::decode(const Chunk& chunk, Image& image, const ImageLimits& limits) {
     const exr_chunk_info_t& info = chunk.info;
-    const uint64_t most = info.packed_size * MAX_EXPANSION[info.compression] + EXPANSION_SLACK;
-    if (info.packed_size == 0 || info.unpacked_size > most || info.packed_size > bytes().size())
+    const uint64_t max = info.packed_size * MAX_EXPANSION[info.compression] + EXPANSION_SLACK;
+    if (info.packed_size == 0 || info.unpacked_size > max || info.packed_size > bytes().size())
         fail_damaged("a chunk is shorter than its pixels need");
     if (info.unpacked_size > MAX_CHUNK_BYTES) fail(TOO_LARGE_CHUNKS);
     if (decoder_is_ready_) {
@@ -146,7 +146,7 @@ uvec2 ExrPixels::tile_size() const {
 }
 
 // The smallest header that decoding needs, with checked values.
-Imf::Header ExrPixels::least_header() const {
+Imf::Header ExrPixels::min_header() const {
     exr_attr_box2i_t display{}, data{};
     check(exr_get_display_window(context(), PART, &display));
     check(exr_get_data_window(context(), PART, &data));
@@ -174,7 +174,7 @@ Imf::Header ExrPixels::least_header() const {
 }
 
 // An OpenEXR file with the smallest header and the original chunks.
-std::string ExrPixels::least_file(const Image& image) {
+std::string ExrPixels::min_file(const Image& image) {
     std::vector<Chunk> chunks;
     for_each_chunk(image, [&](const Chunk& chunk) {
         if (chunk.info.packed_size > bytes().size() ||
@@ -188,7 +188,7 @@ std::string ExrPixels::least_file(const Image& image) {
     };
     put(int32_t{Imf::MAGIC});
     put(int32_t{Imf::EXR_VERSION | (is_tiled() ? Imf::TILED_FLAG : 0)});
-    least_header().writeTo(file, is_tiled());
+    min_header().writeTo(file, is_tiled());
     uint64_t offset = file.tellp() + chunks.size() * sizeof(uint64_t);
     for (const Chunk& chunk : chunks) {
         put(offset);
@@ -212,7 +212,7 @@ void ExrPixels::read_dwa(Image& image, const ImageLimits& limits) {
     check(exr_get_chunk_unpacked_size(context(), PART, &chunk_bytes));
     if (chunk_bytes > MAX_CHUNK_BYTES) fail(TOO_LARGE_CHUNKS);
     try {
-        decode_exr_by_rows(least_file(image), image, limits);
+        decode_exr_by_rows(min_file(image), image, limits);
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {

@@ -18,7 +18,7 @@ double relative_mse(const RgbPlanes& image, const RgbPlanes& reference);
 double darkness_of(const RgbPlanes& reference);
 
 // No error should be estimated from fewer samples per pixel: they may not have found the light yet.
-inline constexpr uint32_t LEAST_ESTIMATED_SPP = 16;
+inline constexpr uint32_t MIN_ESTIMATED_SPP = 16;
 
 // Estimates the relative error of `now`, the square root of relative_mse() to a perfect reference, from how
 // far it moved while the samples were doubled: `before` is the image of the first half of them. Both have R,

@@ -84,12 +84,12 @@ void check_png_size(const TexelSource& source, const PngStart& start) {
 
 // The exponent of a gAMA chunk, unless it is that of sRGB.
 std::optional<double> png_gamma(const TexelSource& source, const PngStart& start) {
-    constexpr double USUAL = 45455;           // 1/2.2.
-    constexpr double ROUNDING = 50;           // Rounding of a gamma with three decimals.
-    constexpr double LEAST = 0.1, MOST = 10;  // Beyond, it is a mistake.
+    constexpr double USUAL = 45455;        // 1/2.2.
+    constexpr double ROUNDING = 50;        // Rounding of a gamma with three decimals.
+    constexpr double MIN = 0.1, MAX = 10;  // Beyond, it is a mistake.
     if (start.srgb || !start.gamma || std::abs(*start.gamma - USUAL) <= ROUNDING) return std::nullopt;
     const double gamma = *start.gamma / double{PNG_FP_1};
-    if (gamma >= LEAST && gamma <= MOST) return gamma;
+    if (gamma >= MIN && gamma <= MAX) return gamma;
     source.warn("its gamma of " + number_text(gamma, 6) + " is implausible, and is ignored");
     return std::nullopt;
 }

@@ -28,9 +28,9 @@ uint32_t little_endian(std::string_view bytes, size_t at, size_t count) {
 }
 
 void check_size(const TexelSource& source, uvec2 size) {
-    constexpr size_t MOST_BYTES = size_t{1} << 30;  // stb_image counts them in an int.
+    constexpr size_t MAX_BYTES = size_t{1} << 30;  // stb_image counts them in an int.
     check_pixel_count(source.name, size.x, size.y, source.limits.max_pixels);
-    if (source.bytes.size() > MOST_BYTES) source.fail("it is larger than 1 GiB; convert it to PNG");
+    if (source.bytes.size() > MAX_BYTES) source.fail("it is larger than 1 GiB; convert it to PNG");
 }
 
 // Decodes a file that has been checked. With `drop_alpha`, RGBA becomes RGB.

@@ -17,7 +17,7 @@
 namespace candela::json {
 namespace {
 
-constexpr size_t MOST_NESTING = 256;  // A value's destructor recurses this deep.
+constexpr size_t MAX_NESTING = 256;  // A value's destructor recurses this deep.
 
 class Cursor {
   public:
@@ -161,9 +161,9 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     template <class Container>
     bool open() {
         const Place place = next_token();
-        if (open_.size() == MOST_NESTING) {
+        if (open_.size() == MAX_NESTING) {
             fail(file_, place,
-                 "arrays and objects are nested deeper than " + std::to_string(MOST_NESTING) +
+                 "arrays and objects are nested deeper than " + std::to_string(MAX_NESTING) +
                      "; nest them less");
         }
         Value& value = open_.emplace_back().value;
@@ -241,7 +241,7 @@ void append_pointer(const Value* value, Place place, std::string& pointer) {
             const auto next = last_until(*object, place, [](const Member& m) { return m.value.place; });
             if (next == object->end()) return;
             pointer += '/';
-            for (const char c : printable(next->key, MOST_NAME_BYTES)) {
+            for (const char c : printable(next->key, MAX_NAME_BYTES)) {
                 if (c == '~' || c == '/') {
                     pointer += c == '~' ? "~0" : "~1";
                 } else {
@@ -323,9 +323,9 @@ std::string describe(const Value& value) {
         std::string operator()(const std::string& text) const { return quote(text); }
         std::string operator()(const Object&) const { return "an object"; }
         std::string operator()(const Array& array) const {
-            constexpr size_t MOST_SHOWN = 4;
+            constexpr size_t MAX_SHOWN = 4;
             const auto is_number = [](const Value& v) { return std::holds_alternative<double>(v.data); };
-            if (array.size() > MOST_SHOWN || !std::all_of(array.begin(), array.end(), is_number)) {
+            if (array.size() > MAX_SHOWN || !std::all_of(array.begin(), array.end(), is_number)) {
                 return "an array of " + std::to_string(array.size());
             }
             std::string text;

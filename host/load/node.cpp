@@ -32,14 +32,14 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 // The name that was probably meant, or null if none is close.
 const std::string* nearest(std::string_view name, std::span<const std::string> known) {
     const std::string* best = nullptr;
-    if (name.size() > MOST_NAME_BYTES) return nullptr;  // Not a name that anybody typed.
-    size_t least = std::min<size_t>(3, name.size());    // At most two slips, and not the whole name.
+    if (name.size() > MAX_NAME_BYTES) return nullptr;  // Not a name that anybody typed.
+    size_t min = std::min<size_t>(3, name.size());     // At most two slips, and not the whole name.
     for (const std::string& candidate : known) {
         const size_t longer = std::max(candidate.size(), name.size());
-        if (longer - std::min(candidate.size(), name.size()) >= least) continue;
+        if (longer - std::min(candidate.size(), name.size()) >= min) continue;
         const size_t distance = edit_distance(name, candidate);
-        if (distance < least) {
-            least = distance;
+        if (distance < min) {
+            min = distance;
             best = &candidate;
         }
     }

@@ -28,7 +28,7 @@ std::string quote(std::string_view text) {
         if (c == '"' || c == '\\') escaped += '\\';
         escaped += c;
     }
-    return '"' + printable(escaped, MOST_NAME_BYTES) + '"';
+    return '"' + printable(escaped, MAX_NAME_BYTES) + '"';
 }
 
 std::string json_string(std::string_view text) {

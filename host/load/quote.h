@@ -9,7 +9,7 @@
 
 namespace candela {
 
-// `text` in quotation marks, as messages show it: printable, and cut at MOST_NAME_BYTES.
+// `text` in quotation marks, as messages show it: printable, and cut at MAX_NAME_BYTES.
 std::string quote(std::string_view text);
 
 // `text` as a whole string of JSON. Bytes that are not UTF-8 become U+FFFD.

@@ -16,7 +16,7 @@ namespace {
 // The storage buffers that the scene may use: a kernel has one more, for counters or results. MoltenVK takes
 // the length of an array of buffers from the default of its constant (MoltenVK issue 1421).
 uint32_t available_buffers(const vk::DeviceInfo& device) {
-    if (device.driver_id == VK_DRIVER_ID_MOLTENVK) return LEAST_STORAGE_BUFFERS;
+    if (device.driver_id == VK_DRIVER_ID_MOLTENVK) return MIN_STORAGE_BUFFERS;
     return device.limits.max_per_stage_descriptor_storage_buffers - 1;
 }
 
@@ -96,7 +96,7 @@ ArrayMap map_arrays(const vk::DeviceInfo& device, const GpuScene& scene, SceneAc
         check_range(device, scene, std::span(stored).subspan(alone));
     }
     map.storage_buffers = uint32_t(alone) + uint32_t{shared};
-    if (device.driver_id == VK_DRIVER_ID_MOLTENVK) map.storage_buffers = LEAST_STORAGE_BUFFERS;
+    if (device.driver_id == VK_DRIVER_ID_MOLTENVK) map.storage_buffers = MIN_STORAGE_BUFFERS;
     map.storage_buffers = std::max(map.storage_buffers, 1u);
     return map;
 }

@@ -82,13 +82,13 @@ PixelRect largest_part(const vk::DeviceLimits& limits, const RenderSettings& set
     const uint64_t bytes = std::min(limits.max_image_bytes, limits.max_memory_allocation_size);
     const uint64_t pixels = bytes / (sizeof(vec4) * layer_count(settings));
     const PixelRect& all = settings.crop;
-    const auto most = [&](uint32_t wanted, uint64_t allowed) {
+    const auto max = [&](uint32_t wanted, uint64_t allowed) {
         allowed = std::min<uint64_t>(allowed, limits.max_image_dimension_2d);
         return wanted <= allowed ? wanted : uint32_t(allowed / TILE * TILE);
     };
-    const uint32_t width = most(all.width(), limits.max_image_dimension_2d);
+    const uint32_t width = max(all.width(), limits.max_image_dimension_2d);
     const uint64_t filled_width = uint64_t{(width + TILE - 1) / TILE} * TILE;
-    const uint32_t height = most(all.height(), pixels / filled_width);
+    const uint32_t height = max(all.height(), pixels / filled_width);
     return {all.x0, all.y0, all.x0 + width, all.y0 + height};
 }
 
@@ -302,7 +302,7 @@ void Renderer::upload(const Accumulation& state) {
             "rendering's; render with the settings that it was made with");
     }
     if (!state.values.empty()) vk::upload(image_, 0, state.values);
-    samples_ = state.least_samples();
+    samples_ = state.min_samples();
     counters_ = state.counters;
 }
 

@@ -76,11 +76,11 @@ Tile Schedule::next() const {
 // submission itself hides that of the samples, and the budget need not shrink.
 void Schedule::advance(double seconds, uint64_t samples) {
     const Tile tile = next();
-    const uint64_t most = uint64_t{tile.size.x} * tile.size.y * (pass_target_ - pass_start_);
-    finished_ += most;
+    const uint64_t max = uint64_t{tile.size.x} * tile.size.y * (pass_target_ - pass_start_);
+    finished_ += max;
     const double affordable = submission_seconds_ * double(samples) / std::max(seconds, 1e-9);
     const double changed = std::min(budget_ * LARGEST_GROWTH, affordable);
-    const bool telling = samples == most || seconds > submission_seconds_ || changed > budget_;
+    const bool telling = samples == max || seconds > submission_seconds_ || changed > budget_;
     if (telling && samples > 0) budget_ = changed;
     at_.x += tile.size.x;
     if (at_.x < size_.x) return;

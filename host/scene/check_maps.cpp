@@ -16,14 +16,14 @@ namespace {
 // The mean of some thousand texels all over the image. They follow a sequence that agrees with no pattern of
 // rows and columns. Ref: Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences" (2018).
 vec4 mean_codes(const TexelImage& image) {
-    constexpr size_t MOST = 4096;
+    constexpr size_t MAX = 4096;
     constexpr double STEP_X = 0.7548776662466927, STEP_Y = 0.5698402909980532;
     const size_t count = size_t(image.size.x) * image.size.y;
-    const size_t taken = std::min(count, MOST);
+    const size_t taken = std::min(count, MAX);
     vec4 sum(0.0f);
     for (size_t i = 0; i < taken; ++i) {
         const glm::dvec2 p = fract(double(i) * glm::dvec2(STEP_X, STEP_Y)) * glm::dvec2(image.size);
-        sum += texel_codes(image, count <= MOST ? i : size_t(p.y) * image.size.x + size_t(p.x));
+        sum += texel_codes(image, count <= MAX ? i : size_t(p.y) * image.size.x + size_t(p.x));
     }
     return sum / float(taken);
 }
@@ -37,8 +37,8 @@ bool points_up(vec4 mean) {
 // `PLACE: the normal map of the material "x", FILE,`.
 std::string map_text(const ImageFile& file, const char* what, const Material& material) {
     const std::string name = is_within(file) ? "" : ", " + file.path.string() + ',';
-    return concat(file.place, ": the ", what, " of the material \"",
-                  printable(material.name, MOST_NAME_BYTES), '"', name);
+    return concat(file.place, ": the ", what, " of the material \"", printable(material.name, MAX_NAME_BYTES),
+                  '"', name);
 }
 
 // The mean codes of a scene's images, each computed once.
@@ -71,8 +71,8 @@ void check_normal_map(Scene& scene, MeanCodes& means, const Material& material, 
 
 // Whether an image of that mean is blue as a normal map in tangent space is.
 bool is_blue(vec4 mean) {
-    constexpr float LEAST = 0.15f;  // The value for a map with slopes of 70 degrees everywhere.
-    return points_up(mean) && mean.z - std::max(mean.x, mean.y) > LEAST;
+    constexpr float MIN = 0.15f;  // The value for a map with slopes of 70 degrees everywhere.
+    return points_up(mean) && mean.z - std::max(mean.x, mean.y) > MIN;
 }
 
 // Many files name normal maps as bump maps.
@@ -102,7 +102,7 @@ void check_opacity(Scene& scene, const Material& material) {
     const ImageFile& file = scene.images[texture.image];
     if (texture.channel != ALPHA || file.image->channels % 2 == 0) return;
     scene.warnings.push_back(
-        concat(file.place, ": the opacity of the material \"", printable(material.name, MOST_NAME_BYTES),
+        concat(file.place, ": the opacity of the material \"", printable(material.name, MAX_NAME_BYTES),
                "\" is the alpha of ", is_within(file) ? "the image" : file.path.string(),
                ", which has none: it is opaque", file.of_gltf ? "" : "; name another channel"));
 }

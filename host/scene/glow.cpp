@@ -21,9 +21,9 @@ struct ImageGlow {
 };
 
 ImageGlow glow_of(const TexelImage& image, TextureEncoding encoding) {
-    constexpr float BLACK = 0.05f;             // Codes up to this may be noise of compression.
-    constexpr size_t MOST = size_t{1} << 16u;  // Texels, spread over the image.
-    const size_t count = size_t(image.size.x) * image.size.y, step = count / MOST + 1;
+    constexpr float BLACK = 0.05f;            // Codes up to this may be noise of compression.
+    constexpr size_t MAX = size_t{1} << 16u;  // Texels, spread over the image.
+    const size_t count = size_t(image.size.x) * image.size.y, step = count / MAX + 1;
     dvec3 sum(0.0);
     size_t bright = 0, looks = 0;
     for (size_t i = 0; i < count; i += step, ++looks) {
@@ -59,8 +59,8 @@ double mean_way(dvec3 p, dvec3 n, double radius) {
 class GlowMeter {
   public:
     GlowMeter(const Scene& scene, double bright) : scene_(scene), bright_(bright) {
-        constexpr uint64_t MOST = uint64_t{1} << 18u;  // Triangles.
-        step_ = triangle_count(scene) / MOST + 1;
+        constexpr uint64_t MAX = uint64_t{1} << 18u;  // Triangles.
+        step_ = triangle_count(scene) / MAX + 1;
         const DoubleBox box = bounds(scene);
         center_ = box.centroid();
         radius_ = 0.5 * length(box.extent());

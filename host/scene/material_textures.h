@@ -24,7 +24,7 @@ void for_each_value(Model& m, const Visit& visit) {
         const auto visit_textured = [&](auto& value) {
             if constexpr (requires { value.factor; }) visit(value);
         };
-#define VALUE(kind, name, initial, least, most, needs, text) visit_textured(m.name);
+#define VALUE(kind, name, initial, min, max, needs, text) visit_textured(m.name);
 #define KEY(name, member, text)
 #include "scene/principled_values.inc"
 #undef VALUE

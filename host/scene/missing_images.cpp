@@ -58,7 +58,7 @@ void drop_lost_images(Scene& scene, const std::vector<bool>& lost) {
 }  // namespace
 
 void drop_missing_images(Scene& scene, const ImageOptions& options) {
-    constexpr size_t MOST_LISTED = 10;
+    constexpr size_t MAX_LISTED = 10;
     std::vector<bool> lost(scene.images.size());
     size_t count = 0, outside = 0;
     std::string names, place, refusal;
@@ -78,7 +78,7 @@ void drop_missing_images(Scene& scene, const ImageOptions& options) {
             continue;
         }
         if (count == 0) place = file.place;
-        if (count < MOST_LISTED) names += (count == 0 ? "" : ", ") + quoted(file.path);
+        if (count < MAX_LISTED) names += (count == 0 ? "" : ", ") + quoted(file.path);
         ++count;
     }
     if (count + outside > 0) drop_lost_images(scene, lost);
@@ -87,7 +87,7 @@ void drop_missing_images(Scene& scene, const ImageOptions& options) {
         scene.warnings.push_back(refusal + "; white is used instead" + times);
     }
     if (count == 0) return;
-    if (count > MOST_LISTED) names += ", ...";
+    if (count > MAX_LISTED) names += ", ...";
     const std::string which = count == 1
                                   ? concat("the image ", names, " does not exist; white is used instead")
                                   : concat(count, " images do not exist; white is used instead: ", names);

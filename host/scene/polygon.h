@@ -9,7 +9,7 @@
 namespace candela {
 
 // The most corners that a polygon of a file may have, since cutting it may take cubic time.
-inline constexpr size_t MOST_CORNERS = 1024;
+inline constexpr size_t MAX_CORNERS = 1024;
 
 // Cuts a polygon of n >= 3 corners, convex or concave, nearly planar, into n - 2 triangles of the same
 // winding, given as indices into `corners`. A polygon that crosses itself is cut arbitrarily. Time grows with

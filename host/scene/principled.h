@@ -78,7 +78,7 @@ struct ValueOf<ValueKind::normal_map> {
 // default switches its layer off. Angles are in radians. An `ior` of 0 reflects all light. Without a medium
 // inside, the surface is a thin wall.
 struct PrincipledMaterial {
-#define VALUE(kind, name, initial, least, most, needs, text) ValueOf<ValueKind::kind>::Type name = initial;
+#define VALUE(kind, name, initial, min, max, needs, text) ValueOf<ValueKind::kind>::Type name = initial;
 #define KEY(name, member, text) member
 #include "scene/principled_values.inc"
 #undef VALUE
@@ -89,12 +89,12 @@ struct PrincipledMaterial {
 
 // The range of a value, or of the factor of its image.
 struct Range {
-    float least;
-    float most;
+    float min;
+    float max;
 };
 
 struct PrincipledRanges {
-#define VALUE(kind, name, initial, least, most, needs, text) Range name{least, most};
+#define VALUE(kind, name, initial, min, max, needs, text) Range name{min, max};
 #define KEY(name, member, text)
 #include "scene/principled_values.inc"
 #undef VALUE

@@ -38,7 +38,7 @@ class Evidence {
 
   private:
     uint64_t compared_ = 0, wrong_ = 0, tests_ = 0;
-    double least_p_ = 1.0;
+    double min_p_ = 1.0;
     std::string first_wrong_, least_likely_;
 };
 

@@ -11,13 +11,13 @@
 namespace candela {
 namespace {
 
-// Negative numbers of every size from -2^-100 to `least`, on a logarithmic scale, `least` included.
-std::vector<float> of_every_size(double least) {
+// Negative numbers of every size from -2^-100 to `min`, on a logarithmic scale, `min` included.
+std::vector<float> of_every_size(double min) {
     std::vector<float> x;
     const int count = 100000;
     for (int i = 0; i <= count; ++i)
-        x.push_back(float(-std::exp2(-100.0 + (std::log2(-least) + 100.0) * i / count)));
-    x.back() = float(least);
+        x.push_back(float(-std::exp2(-100.0 + (std::log2(-min) + 100.0) * i / count)));
+    x.back() = float(min);
     return x;
 }
 
@@ -67,14 +67,14 @@ Evidence test_logarithm(const vk::Device& device) {
 // expm1 cancels most at k = -1, p = 0.41: 0.3 out of 0.5; less than 3. Both are doubled, since a device may
 // round to either neighbour.
 Evidence test_exponentials(const vk::Device& device) {
-    constexpr float LEAST = -87.0f;
-    std::vector<float> x = of_every_size(double(LEAST));
+    constexpr float MIN = -87.0f;
+    std::vector<float> x = of_every_size(double(MIN));
     for (int k = 0; k < 126; ++k)  // At the boundaries between powers of two.
         add_neighbours(x, float(-std::log(2.0) * (k + 0.5)));
     const std::vector<Exponentials> values = run_exponentials(device, x);
     Evidence evidence;
     for (size_t i = 0; i < x.size(); ++i) {
-        if (x[i] < LEAST) continue;
+        if (x[i] < MIN) continue;
         const double exp = std::exp(double(x[i])), expm1 = std::expm1(double(x[i]));
         evidence.expect(
             std::abs(double(values[i].exp) - exp) <= 4 * 0x1p-24 * exp &&

@@ -110,9 +110,9 @@ void plan_extra_samples(const Accumulation& other_even, uint32_t even, uint32_t 
     std::vector<double> before(pixels);
     for (size_t i = 0; i < pixels; ++i)
         before[i] = extra.limit(i) == UINT32_MAX ? 0.0 : extra.limit(i);
-    const double most = std::min(LARGEST_SHARE * half, MAX_SPP - 1.0);
+    const double max = std::min(LARGEST_SHARE * half, MAX_SPP - 1.0);
     const auto extra_of = [&](size_t i, double factor) {
-        return std::max(before[i], std::min(factor * weights[i], most) - even);
+        return std::max(before[i], std::min(factor * weights[i], max) - even);
     };
     const double factor = solve_factor(half - even, [&](double f) {
         double sum = 0.0;
@@ -135,7 +135,7 @@ bool render_pass(SteadyRenderer& renderer, uint32_t spp, uint32_t& planned,
         if (held.total >= samples) return true;
         const double before = double(count_samples(states).total) / all;
         const double missing = double(samples - held.total) / all;
-        const double start = double(held.least) / target;
+        const double start = double(held.min) / target;
         renderer.select(state);
         return renderer.render(target, [&](double done) {
             return keep_going(std::min(1.0, before + missing * (done - start) / (1.0 - start)));
@@ -150,13 +150,13 @@ bool render_pass(SteadyRenderer& renderer, uint32_t spp, uint32_t& planned,
         planned = spp;
     }
     for (size_t h = 0; half > even && h < HALVES; ++h) {
-        uint32_t most = 0;
+        uint32_t max = 0;
         uint64_t samples = 0;
         for (size_t i = 0; i < states[2 * h + 1].pixel_count(); ++i) {
-            most = std::max(most, states[2 * h + 1].limit(i));
+            max = std::max(max, states[2 * h + 1].limit(i));
             samples += states[2 * h + 1].limit(i);
         }
-        if (!render(2 * h + 1, most, samples)) return false;
+        if (!render(2 * h + 1, max, samples)) return false;
     }
     return true;
 }

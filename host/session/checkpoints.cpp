@@ -48,10 +48,10 @@ std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& i
                    "albedo and normals, which the outputs " + (job.settings.aovs ? "need" : "do not need"),
                "give the same outputs and --aov as for the checkpoint");
     }
-    const uint32_t most = adaptive ? std::max(checkpoint.header.planned, samples_per_pixel(checkpoint.states))
-                                   : state.most_samples();
-    if (most > job.target) {
-        refuse("it holds up to " + std::to_string(most) + " samples per pixel, but " +
+    const uint32_t max = adaptive ? std::max(checkpoint.header.planned, samples_per_pixel(checkpoint.states))
+                                  : state.max_samples();
+    if (max > job.target) {
+        refuse("it holds up to " + std::to_string(max) + " samples per pixel, but " +
                    std::to_string(job.target) + " are asked for",
                "ask for at least as many");
     }

@@ -39,9 +39,9 @@ Image load_reference(const std::string& path, const RenderSettings& settings) {
 Convergence::Convergence(std::optional<double> target, std::optional<Image> reference)
     : target_(target), reference_(std::move(reference)) {}
 
-uint32_t Convergence::next(uint32_t spp, uint32_t most) const {
-    if (!target_ && !reference_) return most;
-    return next_look(spp, most);
+uint32_t Convergence::next(uint32_t spp, uint32_t max) const {
+    if (!target_ && !reference_) return max;
+    return next_look(spp, max);
 }
 
 void Convergence::look(std::span<const Accumulation> states, double seconds) {
@@ -49,7 +49,7 @@ void Convergence::look(std::span<const Accumulation> states, double seconds) {
     Image image = make_image(states, {.sample_count = true}, {});
     ConvergencePoint point{
         .spp = samples_per_pixel(states), .seconds = seconds, .estimate = {}, .relmse = {}};
-    if (point.spp >= LEAST_ESTIMATED_SPP) {
+    if (point.spp >= MIN_ESTIMATED_SPP) {
         if (states.size() > 1) {
             point.estimate = estimate_relative_error_by_half(make_image(states.first(2), {}, {}), image);
         } else if (before_) {

@@ -31,9 +31,9 @@ class Convergence {
     // `target`: relative error to reach.
     Convergence(std::optional<double> target, std::optional<Image> reference);
 
-    // The samples per pixel of the next look(), after `spp` and at most `most`, from next_look(). If there is
-    // neither a target nor a reference: `most`.
-    uint32_t next(uint32_t spp, uint32_t most) const;
+    // The samples per pixel of the next look(), after `spp` and at most `max`, from next_look(). If there is
+    // neither a target nor a reference: `max`.
+    uint32_t next(uint32_t spp, uint32_t max) const;
     // Measures the image of the states after `seconds` of rendering.
     void look(std::span<const Accumulation> states, double seconds);
 

@@ -62,7 +62,7 @@ Maker make_maker(const vk::DeviceInfo& device) {
 }
 
 std::string samples_text(const RenderRecord& record) {
-    const SampleRange held{record.settings.first_sample, record.settings.first_sample + record.most_spp};
+    const SampleRange held{record.settings.first_sample, record.settings.first_sample + record.max_spp};
     return to_text({&held, 1});
 }
 

@@ -38,7 +38,7 @@ struct RenderRecord {
     double cpu_seconds = 0.0;       // CPU time of the process while rendering, since it was resumed.
     bool complete = false;          // All samples are there, or as many as the target error needs.
     uint32_t spp = 0;               // Samples that every pixel has; on average if adaptive.
-    uint32_t most_spp = 0;          // The largest number that a pixel has.
+    uint32_t max_spp = 0;           // The largest number that a pixel has.
     uint64_t samples = 0;           // Samples of all pixels together.
     uint64_t resumed_samples = 0;   // The part of `samples` that came from a checkpoint.
     std::optional<double> target_error{};

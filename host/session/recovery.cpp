@@ -15,7 +15,7 @@ bool Recovery::survives(const Error& error, bool open, uint64_t samples) {
     if (samples > samples_) in_a_row_ = 0;
     samples_ = samples;
     ++failures_;
-    return ++in_a_row_ < MOST_FAILURES;
+    return ++in_a_row_ < MAX_FAILURES;
 }
 
 void Recovery::pause() const {

@@ -9,10 +9,10 @@
 namespace candela {
 
 // A device that is lost or out of memory is reopened, and rendering continues from the host's copy of the
-// samples. Recovery gives up at the MOST_FAILURES-th failure in a row without progress of the copy.
+// samples. Recovery gives up at the MAX_FAILURES-th failure in a row without progress of the copy.
 class Recovery {
   public:
-    static constexpr uint32_t MOST_FAILURES = 5;
+    static constexpr uint32_t MAX_FAILURES = 5;
 
     // Notes a failure of a device that was `open`, when the copy held `samples`. Throws the error if it is of
     // another kind; but while the device is being reopened, any error is a failure, since a driver that is

@@ -78,7 +78,7 @@ Image Rendering::collect_image(RenderRecord& record) const {
     const SampleCounts counts = count_samples(states);
     record.samples = counts.total;
     record.spp = samples_per_pixel(states);
-    record.most_spp = counts.most;
+    record.max_spp = counts.max;
     Image image = make_image(states, job_.aovs, renderer_.positions());
     record.image_hash = image_hash(image);
     return image;

@@ -76,7 +76,7 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
             if (!renderer_) open();
             if (!loaded_) load();
             look_up_positions();
-            const double before = double(std::min(state().least_samples(), target)) / target;
+            const double before = double(std::min(state().min_samples(), target)) / target;
             const bool complete = renderer_->render(target, [&](double done) {
                 if (Clock::now() >= next_hold_) hold();
                 return keep_going(before + (1.0 - before) * done);
@@ -97,7 +97,7 @@ void SteadyRenderer::recover(const Error& error) {
     renderer_.reset();
     device_.reset();
     if (!again) throw Error(recovery_.cause());
-    on_failure_(error, samples.least, source_.settings.submission_seconds);
+    on_failure_(error, samples.min, source_.settings.submission_seconds);
     recovery_.pause();
 }
 

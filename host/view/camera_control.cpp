@@ -15,7 +15,7 @@ constexpr double POLE_DISTANCE = 0.02;
 
 // The point that a camera looks at stays at least this fraction of the coordinates away, so that the
 // direction remains defined.
-constexpr double LEAST_DISTANCE = 1e-9;
+constexpr double MIN_DISTANCE = 1e-9;
 
 struct Frame {
     dvec3 right, up, forward;
@@ -100,8 +100,8 @@ void dolly(Camera& camera, float factor) {
     }
     const dvec3 out = camera.position - camera.look_at;
     const double distance = length(out);
-    const double least = LEAST_DISTANCE * length(camera.look_at) + double(FLOAT_MIN);
-    camera.position = camera.look_at + out * (std::max(double(factor) * distance, least) / distance);
+    const double min = MIN_DISTANCE * length(camera.look_at) + double(FLOAT_MIN);
+    camera.position = camera.look_at + out * (std::max(double(factor) * distance, min) / distance);
 }
 
 void fly(Camera& camera, dvec3 shift) {

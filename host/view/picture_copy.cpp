@@ -36,7 +36,7 @@ void PictureCopy::look(const Renderer& renderer, uint32_t spp, double seconds) {
     const Clock::time_point start = Clock::now();
     take(renderer);
     Image image = make_image(*state_, {.sample_count = true}, {});
-    if (seen_ && spp >= LEAST_ESTIMATED_SPP) {
+    if (seen_ && spp >= MIN_ESTIMATED_SPP) {
         const std::optional<double> error = estimate_relative_error(*seen_, image);
         if (error) error_ = error;
     }

@@ -21,7 +21,7 @@ class PictureCopy {
     bool due() const { return Clock::now() >= next_; }
 
     // Copies the picture, all of whose pixels hold `spp` samples. Estimates its error, as `candela render
-    // --target-error` does, if the last look was at half as many and there are at least LEAST_ESTIMATED_SPP.
+    // --target-error` does, if the last look was at half as many and there are at least MIN_ESTIMATED_SPP.
     // Does nothing if a look would take more than a tenth of a second and more than a twentieth of `seconds`,
     // the picture's time so far. The time of a look is estimated by the last one's, halved each time that
     // nothing is done, so that one slow look does not end them.

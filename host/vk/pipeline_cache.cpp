@@ -13,7 +13,7 @@
 namespace candela::vk {
 
 // A driver's cache of our few kernels is far smaller.
-static constexpr size_t MOST_BYTES = size_t{64} << 20;
+static constexpr size_t MAX_BYTES = size_t{64} << 20;
 
 // FNV-1a, 64 bits. Vulkan checks only the header, and drivers trust the rest.
 static uint64_t hash(std::span<const char> data) {
@@ -37,7 +37,7 @@ static bool fits_device(std::span<const char> data, const VkPhysicalDeviceProper
 // The data of the file, or nothing if it is missing, damaged or foreign.
 static std::vector<char> load(const std::filesystem::path& folder, const std::string& name,
                               const VkPhysicalDeviceProperties& properties) {
-    const std::string bytes = read_private_file(folder, name, MOST_BYTES).value_or("");
+    const std::string bytes = read_private_file(folder, name, MAX_BYTES).value_or("");
     uint64_t expected = 0;
     if (bytes.size() < sizeof expected) return {};
     std::memcpy(&expected, bytes.data(), sizeof expected);
@@ -88,7 +88,7 @@ void PipelineCache::save() const {
     std::string bytes(sizeof checksum, '\0');
     std::memcpy(bytes.data(), &checksum, sizeof checksum);
     bytes.append(data.begin(), data.end());
-    if (bytes.size() <= MOST_BYTES) write_private_file(*folder_, name_, bytes);
+    if (bytes.size() <= MAX_BYTES) write_private_file(*folder_, name_, bytes);
 }
 
 }  // namespace candela::vk

@@ -35,12 +35,12 @@ struct Program {
 };
 
 // Some megabytes each on a CPU; a session of `candela view` may go through any number of settings.
-inline constexpr size_t MOST_PROGRAMS = 64;
+inline constexpr size_t MAX_PROGRAMS = 64;
 
 class Programs {
   public:
     // The program of these parts, as in Kernel; compiles it if it is not known. `name` is for messages. A
-    // program lives while it is in use; when there are MOST_PROGRAMS, all are forgotten.
+    // program lives while it is in use; when there are MAX_PROGRAMS, all are forgotten.
     std::shared_ptr<const Program> find_or_compile(const Device& device, std::span<const uint32_t> spirv,
                                                    std::span<const Binding> bindings,
                                                    uint32_t push_constant_size,

@@ -38,8 +38,8 @@ void apply_mouse(ViewState& state, ViewRequests& requests) {
         orbit(state.camera, ORBIT_PER_HEIGHT * moved.x, ORBIT_PER_HEIGHT * moved.y);
     }
     if (io.MouseWheel != 0.0f) dolly(state.camera, std::pow(DOLLY_PER_STEP, io.MouseWheel));
-    const float dragged_most = io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left];
-    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && dragged_most < CLICK_PIXELS * CLICK_PIXELS) {
+    const float max_dragged = io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left];
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && max_dragged < CLICK_PIXELS * CLICK_PIXELS) {
         requests.focus = vec2(io.MousePos.x, io.MousePos.y) / vec2(io.DisplaySize.x, io.DisplaySize.y);
     }
 }

@@ -40,7 +40,7 @@ void show_figures(const ViewFigures& figures) {
     ImGui::Text("%u x %u pixels, %.1f MiB on", figures.size.x, figures.size.y,
                 double(figures.device_bytes) / (1 << 20));
     ImGui::PushTextWrapPos();
-    ImGui::TextUnformatted(printable(figures.device, MOST_NAME_BYTES).c_str());
+    ImGui::TextUnformatted(printable(figures.device, MAX_NAME_BYTES).c_str());
     ImGui::PopTextWrapPos();
 }
 
@@ -56,7 +56,7 @@ void show_buttons(ViewState& state, ViewRequests& requests) {
 
 void show_camera(ViewState& state, ViewRequests& requests, std::span<const Camera> cameras,
                  const Camera& home) {
-    const auto name_of = [](const Camera& camera) { return printable(camera.name, MOST_NAME_BYTES); };
+    const auto name_of = [](const Camera& camera) { return printable(camera.name, MAX_NAME_BYTES); };
     if (ImGui::BeginCombo("camera", name_of(state.camera).c_str())) {
         for (size_t i = 0; i < cameras.size(); ++i) {
             ImGui::PushID(int(i));  // Names may look alike, or be empty.

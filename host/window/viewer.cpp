@@ -102,7 +102,7 @@ void Viewer::recover(const Error& error) {
         save_copy();
         throw Error(recovery_.cause());
     }
-    const uint32_t kept = copy_.state() && !restart_ ? copy_.state()->least_samples() : 0;
+    const uint32_t kept = copy_.state() && !restart_ ? copy_.state()->min_samples() : 0;
     tell(std::string(error.what()) + "; reopening the device and continuing from " + std::to_string(kept) +
          " samples per pixel");
     recovery_.pause();
@@ -139,7 +139,7 @@ void Viewer::begin() {
         renderer_ = std::make_unique<Renderer>(*device_, gpu_scene_, camera_, settings_);
     }
     if (copy_.state()) renderer_->upload(*copy_.state());
-    spp_ = copy_.state() ? copy_.state()->least_samples() : 0;
+    spp_ = copy_.state() ? copy_.state()->min_samples() : 0;
     figures_.size = settings_.size;
     figures_.device_bytes = device_bytes(gpu_scene_, settings_);
     figures_.samples = spp_;
@@ -153,7 +153,7 @@ void Viewer::begin() {
 // Renders until the picture has all samples, or something stops it. Returns whether it has all.
 bool Viewer::accumulate() {
     while (spp_ < options_.target) {
-        stop_ = scale_ > 1 ? options_.target : next_look(spp_, options_.target, LEAST_ESTIMATED_SPP / 2);
+        stop_ = scale_ > 1 ? options_.target : next_look(spp_, options_.target, MIN_ESTIMATED_SPP / 2);
         if (!renderer_->render(stop_, [this](double progress) { return step(progress); })) return false;
         spp_ = stop_;
         if (scale_ > 1 || restart_ || ended()) break;

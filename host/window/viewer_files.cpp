@@ -17,8 +17,8 @@ void Viewer::write_radiance(const std::filesystem::path& path, const Accumulatio
     record.command_line = options_.command_line;
     record.maker = make_maker(options_.device);
     record.render_seconds = render_seconds_;
-    record.spp = state.least_samples();
-    record.most_spp = state.most_samples();
+    record.spp = state.min_samples();
+    record.max_spp = state.max_samples();
     add_attributes(image, record);
     write_exr(path, image, write_finished_work);
 }

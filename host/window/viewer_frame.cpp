@@ -89,7 +89,7 @@ void Viewer::set_focus(vec2 place) {
 }
 
 void Viewer::update_title() {
-    std::string title = printable(options_.name, MOST_NAME_BYTES) + ": " +
+    std::string title = printable(options_.name, MAX_NAME_BYTES) + ": " +
                         std::to_string(uint32_t(figures_.samples)) + " samples per pixel";
     if (figures_.error) {
         char text[48];
@@ -100,7 +100,7 @@ void Viewer::update_title() {
 }
 
 void Viewer::tell(const std::string& message) {
-    figures_.message = printable(message, MOST_MESSAGE_BYTES);
+    figures_.message = printable(message, MAX_MESSAGE_BYTES);
     options_.say(message);
 }
 

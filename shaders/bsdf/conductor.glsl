@@ -24,8 +24,8 @@ float ggx_reach(float alpha, vec3 w) {
 
 // True for directions that see the surface. Below the least cosine, floats cannot tell on which side a direction is.
 bool conductor_sees(vec3 w) {
-    const float least_cosine = 1e-6;
-    return w.z > least_cosine;
+    const float min_cosine = 1e-6;
+    return w.z > min_cosine;
 }
 
 // Zero unless both directions see the surface. The density is G1 D / (4 cos(theta_o)): the density of the facets that

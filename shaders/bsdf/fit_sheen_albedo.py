@@ -19,7 +19,7 @@ import numpy as np
 from scipy.optimize import linprog
 
 FILE = Path(__file__).with_name("sheen_albedo.glsl")
-LEAST_ALPHA, LEAST_COSINE = 0.07**2, 1e-4
+MIN_FACET_ALPHA, MIN_FACET_COSINE = 0.07**2, 1e-4
 BELOW, ABOVE, ABOVE_ONE = 3e-4, 0.002, 0.02  # Es - BELOW <= fit <= Es + ABOVE, or Es (1 + ABOVE_ONE) where Es > 1.
 SPLIT = 0.5  # The cosine between the two polynomials.
 K0, K1 = 0.2, 0.8  # The shape of x below SPLIT, chosen for the least error.
@@ -53,8 +53,8 @@ def grid(n_alpha, n_cosine, shift):
     """Points alpha, cos_o and Es there, denser at small values; `shift` in (0, 1) moves those within the range."""
     a = np.concatenate([[0], (np.arange(n_alpha) + shift) / n_alpha, [1]])
     c = np.concatenate([[0], (np.arange(n_cosine) + shift) / n_cosine, [1]])
-    a = LEAST_ALPHA**(1 - a)
-    c = np.maximum(c**3, LEAST_COSINE)
+    a = MIN_FACET_ALPHA**(1 - a)
+    c = np.maximum(c**3, MIN_FACET_COSINE)
     a, c = (v.ravel() for v in np.meshgrid(a, c, indexing="ij"))
     return a, c, albedo(a, c)
 
@@ -126,7 +126,7 @@ def polynomial(alpha, cos_o, es, above):
 def fit():
     a, c, es = grid(60, 120, 0.5)
     below, above = polynomial(a, c, es, False), polynomial(a, c, es, True)
-    FILE.write_text(SHADER % (SPLIT, LEAST_COSINE, K0, K1, below, above))
+    FILE.write_text(SHADER % (SPLIT, MIN_FACET_COSINE, K0, K1, below, above))
 
 
 def check():

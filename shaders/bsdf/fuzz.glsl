@@ -10,7 +10,7 @@
 #include "base/warp.glsl"
 
 // The fits are not made for smaller values, where fuzz reflects at most a ten-thousandth.
-const float LEAST_FUZZ_ROUGHNESS = 0.01;
+const float MIN_FUZZ_ROUGHNESS = 0.01;
 
 // Fraction of light from wo, given by its cosine, that white fuzz reflects: 0 to 0.75. Roughness as above, up to 1.
 float fuzz_albedo(float roughness, float cos_o) {

@@ -8,7 +8,7 @@
 #include "base/math.glsl"
 
 // Below the least cosine, floats cannot tell on which side of the surface a direction is.
-const float LEAST_COSINE = 1e-6;
+const float MIN_FACET_COSINE = 1e-6;
 
 // Density of facets with the normal h, per area of surface [1/sr]; alpha in (0, 1], h.z > 0.
 float ggx_d(vec2 alpha, vec3 h) {

@@ -83,7 +83,7 @@ BsdfValue principled_reflection(Principled p, vec3 wo, vec3 wi, bool through) {
 BsdfValue principled_coat_evaluate(Principled p, vec3 wo, vec3 wi, float cosine) {
     if (p.coat_ideal || p.pmf.x <= 0.0) return bsdf_zero();
     vec3 o = to_coat(p, wo), i = to_coat(p, wi);
-    if (o.z <= LEAST_COSINE || i.z <= LEAST_COSINE) return bsdf_zero();
+    if (o.z <= MIN_FACET_COSINE || i.z <= MIN_FACET_COSINE) return bsdf_zero();
     vec3 sum = o + i;
     float d = ggx_d(vec2(p.coat_alpha), normalize(sum));
     float reach_o = ggx_reach(vec2(p.coat_alpha), o);
@@ -96,7 +96,7 @@ BsdfValue principled_coat_evaluate(Principled p, vec3 wo, vec3 wi, float cosine)
 // Value and density of all lobes that are not ideal.
 BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
     BsdfValue value = bsdf_zero();
-    if (wo.z <= LEAST_COSINE || abs(wi.z) <= LEAST_COSINE) return value;
+    if (wo.z <= MIN_FACET_COSINE || abs(wi.z) <= MIN_FACET_COSINE) return value;
     bool above = wi.z > 0.0;
     float cosine_pdf = warp_cosine_hemisphere_pdf(abs(wi.z));
     if (above) value.f += p.again * INV_PI;
@@ -192,9 +192,9 @@ BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
         float fresnel = coat_fresnel(p, o.z);
         s = principled_ideal(normalize(from_coat(p, i)), vec3(p.coat * fresnel), p.pmf.x, 1.0);
         s.above = true;
-        if (i.z <= LEAST_COSINE) return bsdf_sample_failed();
+        if (i.z <= MIN_FACET_COSINE) return bsdf_sample_failed();
         // Below the horizon of the other layers, the coat is alone.
-        if (principled_has(PRINCIPLED_HAS_COAT_NORMAL) && !ideal && s.wi.z <= LEAST_COSINE) {
+        if (principled_has(PRINCIPLED_HAS_COAT_NORMAL) && !ideal && s.wi.z <= MIN_FACET_COSINE) {
             BsdfValue coat = principled_coat_evaluate(p, wo, s.wi, 1.0);
             if (coat.pdf == 0.0) return bsdf_sample_failed();
             return BsdfSample(s.wi, coat.f / coat.pdf, coat.pdf, false, 1.0, true);

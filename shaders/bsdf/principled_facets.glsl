@@ -77,11 +77,11 @@ const float GREATEST_ETA = 100.0;
 const uint FACETS = 4u;
 
 // Factors of an index of refraction for red, green and blue; dispersion is 20 / Abbe number. No index falls closer to 1
-// than LEAST_ALPHA: wo and wi are then so nearly opposite that rounding decides which facet lies between them.
+// than MIN_FACET_ALPHA: wo and wi are then so nearly opposite that rounding decides which facet lies between them.
 // Ref: KHR_materials_dispersion, where the limit is 1 itself.
 vec3 dispersion_spread(float ior, float dispersion) {
     float h = (ior - 1.0) * 0.025 * dispersion;
-    return vec3(max(ior - h, min(ior, 1.0 + LEAST_ALPHA)), ior, ior + h) / ior;
+    return vec3(max(ior - h, min(ior, 1.0 + MIN_FACET_ALPHA)), ior, ior + h) / ior;
 }
 
 // The material m at a point where it has the values of `record`, seen from its front or from its back; its coat does
@@ -142,7 +142,7 @@ float principled_transmitted_share(Principled p, vec3 reflected, vec3 transmitte
 
 // The lobes that a roughness makes ideal.
 bool is_ideal(float alpha) {
-    return alpha < LEAST_ALPHA;
+    return alpha < MIN_FACET_ALPHA;
 }
 
 // Point i of a lattice of FACETS points in the unit square, moved by `shift` in [0, 1)^2.
@@ -160,12 +160,12 @@ float facet_shadowed(vec2 alpha, vec3 wo, vec3 wi, float reach_o) {
 
 // Means over the facets that wo sees.
 struct FacetMeans {
-    vec3 edge;        // Mean of t: see Principled.
-    float schlick;    // Mean of S: see Principled.
-    float most;       // The greatest channel of the dielectric's reflection.
-    float most_lost;  // The part of `most` that is shadowed.
-    float lost;       // The light shadowed if all is reflected.
-    vec3 glass_lost;  // The light that the dielectric loses in reflection and transmission, per colour.
+    vec3 edge;            // Mean of t: see Principled.
+    float schlick;        // Mean of S: see Principled.
+    float max_reflected;  // The greatest channel of the dielectric's reflection.
+    float max_lost;       // The part of `max_reflected` that is shadowed.
+    float lost;           // The light shadowed if all is reflected.
+    vec3 glass_lost;      // The light that the dielectric loses in reflection and transmission, per colour.
 };
 
 // Fraction of the light that a dielectric facet with the normal h loses, for one relative index: neither its
@@ -191,11 +191,11 @@ FacetMeans principled_measure(Principled p, vec3 d_0, vec3 d_edge, vec3 wo, vec2
         float cos_o = dot(wo, h);
         float shadowed = facet_shadowed(p.alpha, wo, 2.0 * cos_o * h - wo, reach_o);
         vec3 edge = principled_edge(p, cos_o);
-        float most = min(d_0.y + d_edge.y * edge.y, 1.0);
+        float max_reflected = min(d_0.y + d_edge.y * edge.y, 1.0);
         sum.edge += edge;
         sum.schlick += schlick_weight(cos_o);
-        sum.most += most;
-        sum.most_lost += most * shadowed;
+        sum.max_reflected += max_reflected;
+        sum.max_lost += max_reflected * shadowed;
         sum.lost += shadowed;
         if (!PRINCIPLED_TRANSMITS) continue;
         float green = glass_lost(p, p.eta.y, d_0.y, d_edge.y, shadowed, wo, h);
@@ -207,8 +207,8 @@ FacetMeans principled_measure(Principled p, vec3 d_0, vec3 d_edge, vec3 wo, vec2
         sum.glass_lost += lost;
     }
     const float EACH = 1.0 / float(FACETS);
-    return FacetMeans(EACH * sum.edge, EACH * sum.schlick, EACH * sum.most, EACH * sum.most_lost, EACH * sum.lost,
-                      EACH * sum.glass_lost);
+    return FacetMeans(EACH * sum.edge, EACH * sum.schlick, EACH * sum.max_reflected, EACH * sum.max_lost,
+                      EACH * sum.lost, EACH * sum.glass_lost);
 }
 
 // Colour of light that metal facets scatter more than once, m_0 + m_edge S each time: after each time except the first

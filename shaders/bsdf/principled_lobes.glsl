@@ -29,7 +29,7 @@ float principled_fuzz(inout Principled p, PrincipledSurface s, vec3 wo) {
     p.fuzz_shape = vec2(1.0, 0.0);
     p.fuzz_pmf = 0.0;
     if (!principled_has(PRINCIPLED_HAS_FUZZ) || s.inside) return 1.0;
-    float roughness = max(s.record.fuzz_roughness, LEAST_FUZZ_ROUGHNESS);
+    float roughness = max(s.record.fuzz_roughness, MIN_FUZZ_ROUGHNESS);
     float reflected = s.record.fuzz * fuzz_albedo(roughness, wo.z);
     p.fuzz = reflected * s.record.fuzz_color;
     p.fuzz_shape = fuzz_shape(roughness, wo.z);
@@ -48,7 +48,7 @@ float principled_coat(inout Principled p, PrincipledSurface s, vec3 wo) {
     p.coat_f0 = square((p.coat_ior - 1.0) / (p.coat_ior + 1.0));
     float alpha = square(s.record.coat_roughness);
     p.coat_ideal = is_ideal(alpha);
-    p.coat_alpha = max(alpha, LEAST_ALPHA);
+    p.coat_alpha = max(alpha, MIN_FACET_ALPHA);
     p.coat = s.record.coat;
     float reflected = coat_fresnel(p, cos_o);
     p.pmf.x = p.coat * reflected;
@@ -109,11 +109,11 @@ void principled_base_facets(inout Principled p, PrincipledSurface s, float trans
     p.alpha = vec2(alpha);
     if (principled_has(PRINCIPLED_HAS_ANISOTROPY)) p.alpha.x = mix(alpha, 1.0, square(r.anisotropy));
     p.refracts = principled_has(PRINCIPLED_HAS_VOLUME) && s.encloses;
-    // Facets between nearly equal indices turn light by less than LEAST_ALPHA, too.
-    bool matched = p.refracts && transmission > 0.0 && abs(s.eta - 1.0) < LEAST_ALPHA;
+    // Facets between nearly equal indices turn light by less than MIN_FACET_ALPHA, too.
+    bool matched = p.refracts && transmission > 0.0 && abs(s.eta - 1.0) < MIN_FACET_ALPHA;
     p.ideal = is_ideal(p.alpha.x) || matched;
     if (!principled_has(PRINCIPLED_HAS_ROUGH)) p.ideal = true;
-    p.alpha = max(p.alpha, LEAST_ALPHA);
+    p.alpha = max(p.alpha, MIN_FACET_ALPHA);
     p.eta = vec3(s.eta);
     if (principled_has(PRINCIPLED_HAS_DISPERSION) && p.refracts) p.eta *= s.spread;
 }
@@ -124,8 +124,8 @@ struct BaseReflectance {
     vec3 d_edge;
     vec3 m_0;
     vec3 m_edge;
-    vec3 most_0;         // The greatest channel of the dielectric, with the index of red, of green and of blue light:
-    vec3 most_edge;      // most_0 + most_edge t.
+    vec3 max_0;          // The greatest channel of the dielectric, with the index of red, of green and of blue light:
+    vec3 max_edge;       // max_0 + max_edge t.
     float smooth_share;  // The greatest channel of the mirror reflection of the dielectric without a film.
 };
 
@@ -136,13 +136,13 @@ BaseReflectance principled_base_reflectance(Principled p, PrincipledSurface s, v
     vec3 f0 = root * root;
     f.d_0 = f0;
     f.d_edge = 1.0 - f0;
-    f.most_0 = f0;
+    f.max_0 = f0;
     if (principled_has(PRINCIPLED_HAS_SPECULAR)) {
         f.d_0 = r.specular * min(f0 * r.specular_color, 1.0);
         f.d_edge = max(r.specular - f.d_0, 0.0);
-        f.most_0 = r.specular * min(f0 * max_component(r.specular_color), 1.0);
+        f.max_0 = r.specular * min(f0 * max_component(r.specular_color), 1.0);
     }
-    f.most_edge = (principled_has(PRINCIPLED_HAS_SPECULAR) ? r.specular : 1.0) - f.most_0;
+    f.max_edge = (principled_has(PRINCIPLED_HAS_SPECULAR) ? r.specular : 1.0) - f.max_0;
     f.smooth_share = max_component(f.d_0 + f.d_edge * fresnel_edge(s.eta, wo.z));
     f.m_0 = s.base_color;
     f.m_edge = 1.0 - s.base_color;
@@ -150,8 +150,8 @@ BaseReflectance principled_base_reflectance(Principled p, PrincipledSurface s, v
         float thickness = r.thickness + r.thickness_range;
         vec3 film = fresnel_film(wo.z, r.iridescence_ior, thickness, f.d_0);
         f.d_0 = mix(f.d_0, film, r.iridescence);
-        f.most_0 = mix(f.most_0, vec3(max_component(film)), r.iridescence);
-        f.most_edge *= 1.0 - r.iridescence;
+        f.max_0 = mix(f.max_0, vec3(max_component(film)), r.iridescence);
+        f.max_edge *= 1.0 - r.iridescence;
         f.d_edge *= 1.0 - r.iridescence;
         if (principled_has(PRINCIPLED_HAS_METAL)) {
             f.m_0 = mix(f.m_0, fresnel_film(wo.z, r.iridescence_ior, thickness, f.m_0), r.iridescence);
@@ -164,9 +164,9 @@ BaseReflectance principled_base_reflectance(Principled p, PrincipledSurface s, v
 // The light that the facets lose and leave, by the means over the facets that wo sees.
 FacetMeans principled_base_means(Principled p, PrincipledSurface s, BaseReflectance f, vec3 wo) {
     FacetMeans mean = FacetMeans(principled_edge(p, wo.z), schlick_weight(wo.z), 0.0, 0.0, 0.0, vec3(0.0));
-    mean.most = min(f.most_0.y + f.most_edge.y * mean.edge.y, 1.0);
+    mean.max_reflected = min(f.max_0.y + f.max_edge.y * mean.edge.y, 1.0);
     if (principled_has(PRINCIPLED_HAS_ROUGH) && !p.ideal) {
-        mean = principled_measure(p, f.most_0, f.most_edge, wo, s.random.xy);
+        mean = principled_measure(p, f.max_0, f.max_edge, wo, s.random.xy);
     }
     return mean;
 }
@@ -183,21 +183,21 @@ void principled_base_weights(inout Principled p, PrincipledSurface s, BaseReflec
     p.r_schlick = vec3(0.0);
     p.r_total = 0.0;
     if (principled_has(PRINCIPLED_HAS_SPECULAR)) p.r_total = dielectric * transmission * (1.0 - r.specular);
-    p.again = s.inside ? vec3(0.0) : opaque * mean.most_lost * f.d_0;
+    p.again = s.inside ? vec3(0.0) : opaque * mean.max_lost * f.d_0;
     if (principled_has(PRINCIPLED_HAS_METAL)) {
         float metal = above * metalness;
         p.r_0 += metal * f.m_0;
         p.r_schlick = metal * f.m_edge;
         p.again += metal * mean.lost * metal_again(f.m_0, f.m_edge, p.alpha);
     }
-    float below = max(1.0 - mean.most + mean.most_lost * (1.0 - max_component(f.d_0)), 0.0);
+    float below = max(1.0 - mean.max_reflected + mean.max_lost * (1.0 - max_component(f.d_0)), 0.0);
     below = s.inside ? opaque : opaque * below;
     p.base_color = s.base_color;
     p.roughness = r.diffuse_roughness;
     p.diffuse = vec3(below * (1.0 - diffuse_transmission));
     p.through = below * diffuse_transmission * r.diffuse_transmission_color;
-    p.t_0 = 1.0 - f.most_0;
-    p.t_edge = f.most_edge;
+    p.t_0 = 1.0 - f.max_0;
+    p.t_edge = f.max_edge;
     p.transmit = dielectric * transmission * s.base_color;
     if (PRINCIPLED_TRANSMITS) {
         vec3 lost = dielectric * transmission * mean.glass_lost;
@@ -261,7 +261,7 @@ Principled principled_lobes(PrincipledSurface s, vec3 wo) {
     p.pmf.x *= below_fuzz;
     float sum = p.pmf.x + p.pmf.y + p.pmf.z + p.pmf.w;
     if (principled_has(PRINCIPLED_HAS_FUZZ)) sum += p.fuzz_pmf;
-    bool scatters = wo.z > LEAST_COSINE && sum > 0.0;
+    bool scatters = wo.z > MIN_FACET_COSINE && sum > 0.0;
     p.pmf = scatters ? p.pmf / sum : vec4(0.0);
     p.fuzz_pmf = scatters ? p.fuzz_pmf / sum : 0.0;
     return p;

@@ -8,10 +8,10 @@
 #include "base/math.glsl"
 
 // Below this roughness, floats cannot hold the distribution's peak.
-const float LEAST_SHEEN_ROUGHNESS = 0.07;
+const float MIN_SHEEN_ROUGHNESS = 0.07;
 
 float sheen_alpha(float roughness) {
-    return square(max(roughness, LEAST_SHEEN_ROUGHNESS));
+    return square(max(roughness, MIN_SHEEN_ROUGHNESS));
 }
 
 // log(1 + Lambda), nearly, for a cosine x of at most 1/2.

@@ -57,7 +57,7 @@ MaterialRecord material_at(uint i, Attributes at, Ray ray) {
     }
     if ((TEXTURED & TEXTURED_PARAMETER) != 0u) {
         m.parameter *= texture_number(textures.parameter, at);
-        if (m.model == MATERIAL_CONDUCTOR) m.parameter = clamp(m.parameter, LEAST_ALPHA, 1.0);
+        if (m.model == MATERIAL_CONDUCTOR) m.parameter = clamp(m.parameter, MIN_FACET_ALPHA, 1.0);
         if (m.model == MATERIAL_PHONG) m.parameter = min(m.parameter, GREATEST_EXPONENT);
     }
     return m;

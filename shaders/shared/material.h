@@ -33,7 +33,7 @@ const uint MATERIAL_UNLIT = 8u;       // Shows its colour in any light, and scat
 const uint MATERIAL_COUNT = 9u;
 
 // Limits of `parameter`.
-const float LEAST_ALPHA = 1e-3f;
+const float MIN_FACET_ALPHA = 1e-3f;
 const float GREATEST_EXPONENT = 1e5f;
 
 struct MaterialRecord {

@@ -24,7 +24,7 @@ namespace candela {
 const uint NO_SLOT = 0xFFFFFFFFu;
 
 // Storage buffers that every device has for the arrays: Vulkan promises four, and one is for counters.
-const uint LEAST_STORAGE_BUFFERS = 3u;
+const uint MIN_STORAGE_BUFFERS = 3u;
 
 #define ARRAY(number, buffer, name, words) const uint ARRAY_##name = number;
 #include "shared/scene_arrays.inc"

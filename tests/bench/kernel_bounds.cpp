@@ -40,11 +40,11 @@ std::string number(double value) {
 std::vector<std::string> inspect(const CompiledKernel& kernel, const KernelBound* bound,
                                  const std::string& file) {
     std::vector<std::string> complaints;
-    const auto limit = [&](const std::string& name, double most, const std::string& remedy) {
+    const auto limit = [&](const std::string& name, double max, const std::string& remedy) {
         const std::optional<double> value = kernel.find(name);
         if (!value) complaints.push_back("the driver does not tell \"" + name + "\"");
-        if (value && *value > most) {
-            complaints.push_back("\"" + name + "\" is " + number(*value) + ", the bound is " + number(most) +
+        if (value && *value > max) {
+            complaints.push_back("\"" + name + "\" is " + number(*value) + ", the bound is " + number(max) +
                                  "; " + remedy);
         }
     };

@@ -68,7 +68,7 @@ class CheckpointTest : public CliTest {
             samples = now;
         }
         EXPECT_GE(advances, kills / 4);
-        const std::string spp = std::to_string(load_checkpoint(state_).states.at(0).most_samples() + 1);
+        const std::string spp = std::to_string(load_checkpoint(state_).states.at(0).max_samples() + 1);
         EXPECT_EQ(run_process(call(arguments + Words{spp} + checkpoint), options()).exit_code, 0);
         EXPECT_EQ(run_process(call(arguments + Words{spp, "-o", file("whole.exr")}), options()).exit_code, 0);
         expect_same_bits(file("a.exr"), file("whole.exr"));

@@ -33,7 +33,7 @@ void expect_harmless(const std::string& text) {
 class HostileText : public CliTest {
   protected:
     // What docs/files.md promises for the messages of a run.
-    static constexpr size_t MOST_BYTES = 128 << 10;
+    static constexpr size_t MAX_BYTES = 128 << 10;
 
     ProcessResult expect_harmless_run(const Words& arguments, int exit_code, const std::string& part) const {
         SCOPED_TRACE(arguments[0] + ' ' + arguments[1].substr(0, 100));
@@ -41,7 +41,7 @@ class HostileText : public CliTest {
         EXPECT_EQ(result.exit_code, exit_code) << result.err.substr(0, 1000);
         expect_harmless(result.err);
         expect_harmless(result.out);
-        EXPECT_LE(result.err.size(), MOST_BYTES);
+        EXPECT_LE(result.err.size(), MAX_BYTES);
         EXPECT_NE((result.err + result.out).find(part), std::string::npos) << result.err.substr(0, 1000);
         return result;
     }

@@ -40,7 +40,7 @@ class Progressive : public CliTest {
             EXPECT_TRUE(line["estimated_error"].is_null());
         }
     }
-    static float least_samples(const std::string& path) {
+    static float min_samples(const std::string& path) {
         return std::ranges::min(read_exr(path).find("SampleCount.V")->values);
     }
     // The first submission gives every pixel a sample.
@@ -57,7 +57,7 @@ TEST_F(Progressive, OutputsAreValidImagesAllTheTime) {
     float samples = 0.0f;
     int advances = 0;
     for (int reads = 0; reads < 100 || advances < 3; ++reads) {
-        const float now = least_samples(file("a.exr"));
+        const float now = min_samples(file("a.exr"));
         ASSERT_GE(now, samples);
         advances += now > samples ? 1 : 0;
         samples = now;
@@ -66,7 +66,7 @@ TEST_F(Progressive, OutputsAreValidImagesAllTheTime) {
     EXPECT_EQ(process.finish().signal, SIGKILL);
     const Image image = read_exr(file("a.exr"));
     EXPECT_EQ(image.full, uvec2(64, 64));
-    EXPECT_EQ(std::get<float>(image.attributes.at("samplesPerPixel")), least_samples(file("a.exr")));
+    EXPECT_EQ(std::get<float>(image.attributes.at("samplesPerPixel")), min_samples(file("a.exr")));
     EXPECT_GT(std::get<float>(image.attributes.at("renderTimeSeconds")), 0.0f);
     EXPECT_TRUE(std::filesystem::exists(file("a.png")));
 }
@@ -103,8 +103,8 @@ TEST_F(Progressive, AnImageThatCannotBeWrittenIsAWarning) {
     wait_for(file("b.exr"));
     std::filesystem::rename(file("gone"), file("elsewhere"));
     ASSERT_TRUE(process.wait_for_err("rendering continues without this image"));
-    const float samples = least_samples(file("b.exr"));
-    wait_until("the other goes on", [&] { return least_samples(file("b.exr")) > samples; });
+    const float samples = min_samples(file("b.exr"));
+    wait_until("the other goes on", [&] { return min_samples(file("b.exr")) > samples; });
     std::filesystem::create_directory(file("gone"));
     wait_for(file("gone/a.png"));
     process.send(SIGINT);
@@ -115,7 +115,7 @@ TEST_F(Progressive, AnImageThatCannotBeWrittenIsAWarning) {
                                     "\" does not exist; create it first; rendering continues without this "
                                     "image");
     EXPECT_TRUE(std::filesystem::exists(file("gone/a.png")));
-    EXPECT_GT(least_samples(file("b.exr")), samples);
+    EXPECT_GT(min_samples(file("b.exr")), samples);
 }
 
 TEST_F(Progressive, JsonTellsHowItStandsAndHowItEnded) {

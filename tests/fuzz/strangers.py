@@ -27,7 +27,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIMIT = 512_000_000
 SLACK = 160_000_000  # Memory of the program itself, and kept by malloc.
-MOST_BYTES = 65536
+MAX_BYTES = 65536
 HANG = 60.0
 NUMBERS = [0, 1, -1, 2, 3, 255, 65535, 65536, 1 << 31, (1 << 32) - 1, 1 << 32, 1 << 53, 0.5, -0.0, 1e-300, 1e30, -1e38,
            3.4e38, 1e300]
@@ -184,7 +184,7 @@ def main():
             waiting = set()
             for number in range(options.count):
                 gltf, text = mutate(rng, others)
-                while len(text) > MOST_BYTES:
+                while len(text) > MAX_BYTES:
                     gltf, text = mutate(rng, others)
                 waiting.add(pool.submit(step, number, gltf, text))
                 if len(waiting) >= 4 * os.cpu_count():

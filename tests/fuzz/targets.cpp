@@ -115,9 +115,9 @@ void glb(std::string_view bytes) {
 }
 
 void cost(std::string_view bytes) {
-    constexpr uint64_t MOST_BYTES = uint64_t(128) << 20;
+    constexpr uint64_t MAX_BYTES = uint64_t(128) << 20;
     const MemoryFile file(bytes);
-    set_memory_limit(memory_in_use() + MOST_BYTES);
+    set_memory_limit(memory_in_use() + MAX_BYTES);
     const LimitedMemory limited;
     const auto name = [] { return std::string("fuzz.gltf"); };
     with_memory_for("the scene", name, [&] {

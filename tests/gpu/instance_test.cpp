@@ -14,8 +14,8 @@ namespace candela {
 namespace {
 
 // Every mesh gets a tree of its own, or none.
-constexpr InstancingRule ALL{.least_uses = 1, .least_triangles = 1};
-constexpr InstancingRule NONE{.least_uses = ~0u, .least_triangles = ~0u};
+constexpr InstancingRule ALL{.min_uses = 1, .min_triangles = 1};
+constexpr InstancingRule NONE{.min_uses = ~0u, .min_triangles = ~0u};
 
 // A transform that turns, scales by `scale`, shears, and moves.
 Transform transform_of(Random& random, dvec3 scale, double shear, dvec3 shift) {
@@ -257,8 +257,8 @@ TEST_F(InstanceTest, RaysLeaveTheSurfaceThatTheyBeginOn) {
                 ASSERT_TRUE(r.next_t < NO_HIT || !began_within) << "slipped out";
             }
         }
-        const double most = double(items.size()) / 1000;  // By chance, a few more.
-        EXPECT_LE(double(slips), most + 4 * std::sqrt(most));
+        const double max = double(items.size()) / 1000;  // By chance, a few more.
+        EXPECT_LE(double(slips), max + 4 * std::sqrt(max));
     }
 }
 

@@ -114,16 +114,16 @@ TEST_F(PhongTest, TheAlbedoElsewhereIsThatOfQuadrature) {
 // how narrow the lobe is.
 TEST_F(PhongTest, SamplesVaryAlikeAtEveryExponent) {
     for (const vec3 wo : {VIEWS[0], normalize(vec3(1, 0, 1))}) {
-        double least = 1e9, greatest = 0.0;
+        double min = 1e9, greatest = 0.0;
         for (const float n : EXPONENTS) {
             RunningMoments moments;
             for (const BsdfResult& s : samples(phong(vec3(0.5f), vec3(0.5f), n), wo, 100000, 22))
                 moments.add(double(s.weight.x));
             const double relative = 1.0 + moments.variance() / (moments.mean() * moments.mean());
-            least = std::min(least, relative);
+            min = std::min(min, relative);
             greatest = std::max(greatest, relative);
         }
-        EXPECT_LE(greatest, 1.5 * least);
+        EXPECT_LE(greatest, 1.5 * min);
     }
 }
 

@@ -268,7 +268,7 @@ TEST_F(PrincipledTest, NoRedIsLostWhereItsIndexIsLeast) {
             items[i].random = i;
         }
         RunningMoments red;
-        const double eta = 1.0 + double(LEAST_ALPHA);
+        const double eta = 1.0 + double(MIN_FACET_ALPHA);
         for (const BsdfResult& s : run(items))
             red.add(s.pdf > 0.0f ? double(s.weight.x) * (s.wi.z < 0.0f ? eta * eta : 1.0) : 0.0);
         const double error = std::sqrt(red.variance() / double(items.size()));

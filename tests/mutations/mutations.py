@@ -237,7 +237,7 @@ GROUPS = [
         ("heights that a mirrored image turns not turned", FILTER, "turned ? -float(n) : float(n)", "float(n)"),
         ("the frame's unit forgotten for heights", MATERIAL_ARRAYS, "frame.length(double(bump->scale))",
          "frame.length(frame.unit * double(bump->scale))"),
-        ("a facet seen from behind", BENT_NORMAL, "if (up >= LEAST) return dot(wo, ns) < 0.0 ? -ns : ns;", "return ns;"),
+        ("a facet seen from behind", BENT_NORMAL, "if (up >= MIN) return dot(wo, ns) < 0.0 ? -ns : ns;", "return ns;"),
     ]),
     (MEDIA, [
         ("a medium of a higher priority hidden by a lower one", MEDIUM, "lessThanEqual(m >> MEDIUM_INDEX_BITS",
@@ -289,7 +289,7 @@ GROUPS = [
         ("fuzz that sends light on instead of back", FUZZ, "shape.x * wi.xy + shape.y", "shape.x * wi.xy - shape.y"),
         ("fuzz sampled by Lambert's law", PRINCIPLED, "fuzz_direction(p.fuzz_shape, wo, u)",
          "warp_cosine_hemisphere(u)"),
-        ("red bent more than blue", PRINCIPLED_FACETS, "ior - h, min(ior, 1.0 + LEAST_ALPHA)), ior, ior + h)",
+        ("red bent more than blue", PRINCIPLED_FACETS, "ior - h, min(ior, 1.0 + MIN_FACET_ALPHA)), ior, ior + h)",
          "ior + h, 1.0), ior, ior - h)"),
         ("all colours go where one is bent", PRINCIPLED, "transmitted *= along;", ""),
         ("the coat's darkening forgotten for the diffuse base", PRINCIPLED_LOBES, "p.diffuse *= factor;", ""),

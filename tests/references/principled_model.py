@@ -16,7 +16,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-LEAST_ALPHA = 1e-3  # Below, facets are mirrors.
+MIN_FACET_ALPHA = 1e-3  # Below, facets are mirrors.
 MEAN_OF_SCHLICK = 1 / 21  # Mean of (1 - cos)^5 over the cosine-weighted hemisphere.
 
 
@@ -24,7 +24,7 @@ def alphas(roughness, anisotropy):
     """Along and across the tangent; none of both for mirrors."""
     across = roughness**2
     along = across + (1 - across) * anisotropy**2
-    return None if max(along, across) < LEAST_ALPHA else (max(along, LEAST_ALPHA), max(across, LEAST_ALPHA))
+    return None if max(along, across) < MIN_FACET_ALPHA else (max(along, MIN_FACET_ALPHA), max(across, MIN_FACET_ALPHA))
 
 
 def eta_of(ior):

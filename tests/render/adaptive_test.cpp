@@ -122,15 +122,15 @@ TEST_F(AdaptiveTest, TheExpectationStaysThoughTheSamplesGoWhereLightWasFound) {
     settings.max_depth = 1;
     Adaptive adaptive(*this, scene, settings);
     RunningMoments means;
-    uint32_t least = UINT32_MAX, most = 0;
+    uint32_t min = UINT32_MAX, max = 0;
     for (uint32_t seed = 0; seed < SEEDS; ++seed) {
         const std::vector<Accumulation>& states = adaptive.render(SPP, seed);
         means.add(image_mean(make_image(states, {.variance = true}, {}), 0).mean);
-        least = std::min(least, count_samples(states).least);
-        most = std::max(most, count_samples(states).most);
+        min = std::min(min, count_samples(states).min);
+        max = std::max(max, count_samples(states).max);
     }
-    EXPECT_LT(least, SPP / 2) << "all pixels get the same, and nothing is tested";
-    EXPECT_GT(most, 3 * SPP / 2);
+    EXPECT_LT(min, SPP / 2) << "all pixels get the same, and nothing is tested";
+    EXPECT_GT(max, 3 * SPP / 2);
     const double error = std::sqrt(means.variance_of_mean());
     EXPECT_LT(error, 0.04 * means.mean());
     const double t = (means.mean() - 0.8 * FORM_FACTOR) / error;

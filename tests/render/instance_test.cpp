@@ -14,8 +14,8 @@
 namespace candela {
 namespace {
 
-constexpr InstancingRule ALL{.least_uses = 1, .least_triangles = 1};
-constexpr InstancingRule NONE{.least_uses = ~0u, .least_triangles = ~0u};
+constexpr InstancingRule ALL{.min_uses = 1, .min_triangles = 1};
+constexpr InstancingRule NONE{.min_uses = ~0u, .min_triangles = ~0u};
 
 // A transform that turns, shears, mirrors every other time, and scales by 10^-3 to 10^3.
 Transform random_transform(Random& random, bool mirrored) {
@@ -52,10 +52,10 @@ void cut_into_instances(Scene& scene, bool mirrored = false) {
 
 class InstanceTest : public RenderTest, public testing::WithParamInterface<const char*> {
   protected:
-    // Two pictures with samples of their own must have one expectation. `most_error` is the largest standard
+    // Two pictures with samples of their own must have one expectation. `max_error` is the largest standard
     // error of the mean over it.
     void expect_same_picture(const Scene& baked, const Scene& instanced, uint32_t spp,
-                             double most_error) const {
+                             double max_error) const {
         const GpuScene with = build_gpu_scene(instanced, choose_frame(instanced), ALL);
         EXPECT_FALSE(with.instances.empty());
         const GpuScene without = build_gpu_scene(baked, choose_frame(baked), NONE);
@@ -67,7 +67,7 @@ class InstanceTest : public RenderTest, public testing::WithParamInterface<const
         const Image b = image_of(render(without, baked.cameras.at(0), settings, samples(spp)));
         for (size_t c = 0; c < 3; ++c) {
             const ImageMean mean = image_mean(a, c);
-            EXPECT_LE(mean.error, (test_effort() == Effort::quick ? 4.0 : 1.0) * most_error * mean.mean);
+            EXPECT_LE(mean.error, (test_effort() == Effort::quick ? 4.0 : 1.0) * max_error * mean.mean);
         }
         const Comparison comparison = compare(a, b, {.alpha = TEST_ALPHA});
         ASSERT_TRUE(comparison.tests.has_value());

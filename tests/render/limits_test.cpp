@@ -90,7 +90,7 @@ TEST_F(LimitsTest, MoreShapesInOnePlaceThanADriverLoopsOverAreNamed) {
     const std::string error = vk::error_of(ExitCode::failed, [&] {
         Renderer renderer(device, build_gpu_scene(scene), scene.cameras.at(0), settings_for(8, 8));
         renderer.render(1, [](double) { return true; });
-        samples = renderer.download().least_samples();
+        samples = renderer.download().min_samples();
     });
     if (samples == 1) return;
     EXPECT_EQ(

@@ -62,7 +62,7 @@ double largest_pixel_error() {
 }
 
 // With fewer samples, the mean of a pixel is not nearly normal, as the test of pixels takes it.
-constexpr uint32_t LEAST_SPP = 128;
+constexpr uint32_t MIN_SPP = 128;
 
 // Each scene is tested three times (pixels, blocks, mean); the probability that a correct renderer fails any
 // of all these tests is TEST_ALPHA.
@@ -154,7 +154,7 @@ TEST_P(ReferenceTest, AnIndependentRendererMakesTheSamePicture) {
     RenderSettings settings = independent_settings(reference.full.x, Estimator::mis, 1);
     settings.max_depth = scene.integrator.max_depth.value_or(DEPTH_SAFETY_LIMIT);
     settings.terminator = scene.integrator.terminator;
-    const Image image = image_of(render(scene, settings, std::max(samples(spp), LEAST_SPP)));
+    const Image image = image_of(render(scene, settings, std::max(samples(spp), MIN_SPP)));
     EXPECT_LE(median_relative_error(image), largest_pixel_error());
     EXPECT_TRUE(agree(image, reference, fs::path(CANDELA_FAILURES) / name));
 }

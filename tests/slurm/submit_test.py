@@ -71,7 +71,7 @@ class Scripts(unittest.TestCase):
                 refused("box.parts/part-size: cannot use")
                 (parts / "part-size").unlink()
                 if "\n" not in text:
-                    refused("MaxArraySize of scontrol show config: cannot use", "--part", 8, MOST=text)
+                    refused("MaxArraySize of scontrol show config: cannot use", "--part", 8, MAX=text)
                 (parts / "part-size").unlink(missing_ok=True)
                 self.assert_refused("--spp", self.run_script("submit.sh", "box.json", "--spp", text, "-o", "box.exr"))
                 refused("--task-time: cannot use", "--task-time", text)

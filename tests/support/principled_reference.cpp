@@ -11,10 +11,10 @@
 namespace candela {
 namespace {
 
-constexpr double LEAST_ALPHA = 1e-3;              // Below it, reflection is ideal.
-constexpr double LEAST_STEP_OF_THE_INDEX = 1e-3;  // The same, in a volume.
-constexpr double LEAST_SHEEN_ROUGHNESS = 0.07;    // The model has no value at 0.
-constexpr double LEAST_FUZZ_ROUGHNESS = 0.01;     // The least that its fits are for.
+constexpr double MIN_FACET_ALPHA = 1e-3;        // Below it, reflection is ideal.
+constexpr double MIN_STEP_OF_THE_INDEX = 1e-3;  // The same, in a volume.
+constexpr double MIN_SHEEN_ROUGHNESS = 0.07;    // The model has no value at 0.
+constexpr double MIN_FUZZ_ROUGHNESS = 0.01;     // The least that its fits are for.
 constexpr double ETA_OF_A_PERFECT_REFLECTOR = 1e6;
 
 double max_channel(dvec3 v) {
@@ -91,12 +91,12 @@ void PrincipledReference::find_optics() {
     eta_ = p_.inside ? 1 / ior : ior;
     // Facets between equal indices turn no light, however rough they are.
     const bool is_unrefracting =
-        !p_.thin && p_.transmission > 0 && std::abs(eta_ - 1) < LEAST_STEP_OF_THE_INDEX;
+        !p_.thin && p_.transmission > 0 && std::abs(eta_ - 1) < MIN_STEP_OF_THE_INDEX;
 
     const double alpha = square(p_.roughness);
     facets_ = {std::lerp(alpha, 1.0, square(p_.anisotropy)), alpha};
-    ideal_ = is_unrefracting || std::max(facets_.alpha_x, facets_.alpha_y) < LEAST_ALPHA;
-    facets_ = {std::max(facets_.alpha_x, LEAST_ALPHA), std::max(facets_.alpha_y, LEAST_ALPHA)};
+    ideal_ = is_unrefracting || std::max(facets_.alpha_x, facets_.alpha_y) < MIN_FACET_ALPHA;
+    facets_ = {std::max(facets_.alpha_x, MIN_FACET_ALPHA), std::max(facets_.alpha_y, MIN_FACET_ALPHA)};
 
     f0_ = min(fresnel_normal(eta_) * p_.specular_color, dvec3(1));
 
@@ -168,13 +168,13 @@ void PrincipledReference::find_diffuse_parts() {
 void PrincipledReference::find_layers() {
     has_fuzz_ = !p_.inside && p_.fuzz > 0;
     if (has_fuzz_) {
-        fuzz_roughness_ = std::max(p_.fuzz_roughness, LEAST_FUZZ_ROUGHNESS);
+        fuzz_roughness_ = std::max(p_.fuzz_roughness, MIN_FUZZ_ROUGHNESS);
         fuzz_transmittance_ = 1 - p_.fuzz * fuzz_albedo(fuzz_roughness_, wo_.z);
     }
 
     has_sheen_ = !p_.inside && max_channel(p_.sheen_color) > 0;
     if (has_sheen_) {
-        alpha_g_ = square(std::max(p_.sheen_roughness, LEAST_SHEEN_ROUGHNESS));
+        alpha_g_ = square(std::max(p_.sheen_roughness, MIN_SHEEN_ROUGHNESS));
         shares_.es = sheen_albedo(alpha_g_, wo_.z);
         // The model reflects more than all light where fibres are smooth and light grazes them: it is scaled.
         sheen_scale_ = 1 / std::max(1.0, shares_.es);
@@ -188,8 +188,8 @@ void PrincipledReference::find_layers() {
     coat_y_ = normalize(cross(p_.coat_normal, side));
     coat_x_ = cross(coat_y_, p_.coat_normal);
     const double alpha = square(p_.coat_roughness);
-    coat_ideal_ = alpha < LEAST_ALPHA;
-    coat_facets_ = {std::max(alpha, LEAST_ALPHA), std::max(alpha, LEAST_ALPHA)};
+    coat_ideal_ = alpha < MIN_FACET_ALPHA;
+    coat_facets_ = {std::max(alpha, MIN_FACET_ALPHA), std::max(alpha, MIN_FACET_ALPHA)};
     const dvec3 wo = to_coat(wo_);
     shares_.rc = coat_ideal_
                      ? coat_fresnel(cosine)

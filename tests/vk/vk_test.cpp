@@ -225,9 +225,9 @@ TEST_F(Vk, OnlyKernelsOfTheSamePartsShareAProgram) {
 TEST_F(Vk, AProgramLivesAsLongAsItsKernel) {
     const Device device(instance_, info_);
     const TestKernel test(device);
-    for (uint32_t i = 0; i < 2 * MOST_PROGRAMS; ++i)
+    for (uint32_t i = 0; i < 2 * MAX_PROGRAMS; ++i)
         Kernel(device, kernels::vk_test, TEST_BINDINGS, sizeof(TestPush), {{i}}, "vk_test");
-    EXPECT_LE(device.programs().count(), MOST_PROGRAMS);
+    EXPECT_LE(device.programs().count(), MAX_PROGRAMS);
     Commands commands(device);
     test.dispatch(commands, {.layer = 1, .gain = 2.0f});
     commands.submit_and_wait();
@@ -253,15 +253,15 @@ TEST_F(Vk, TooManyWorkGroupsAreRefused) {
     const Device device(instance_, info_);
     const TestKernel test(device);
     Commands commands(device);
-    const uint32_t most = info_.limits.max_compute_work_group_count[1];
+    const uint32_t max = info_.limits.max_compute_work_group_count[1];
     const TestPush push{};
     EXPECT_EQ(
         error_of(ExitCode::out_of_memory,
                  [&] {
-                     commands.dispatch(test.kernel, std::as_bytes(std::span(&push, 1)), {1, most + 1, 1});
+                     commands.dispatch(test.kernel, std::as_bytes(std::span(&push, 1)), {1, max + 1, 1});
                  }),
-        "a dispatch of kernel \"vk_test\" needs " + std::to_string(most + 1) +
-            " work groups along one axis, but \"" + info_.name + "\" allows " + std::to_string(most) +
+        "a dispatch of kernel \"vk_test\" needs " + std::to_string(max + 1) +
+            " work groups along one axis, but \"" + info_.name + "\" allows " + std::to_string(max) +
             " (maxComputeWorkGroupCount); use less or choose another device");
 }
 

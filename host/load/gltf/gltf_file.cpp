@@ -87,9 +87,9 @@ void check_version(const Node& root) {
         return text.substr(0, text.find('.'));
     };
     const Node version = asset.require("version");
-    const auto least = asset.find("minVersion");
-    const Node& decisive = least ? *least : version;
-    if (major(decisive) != "2" || (least && least->string() != "2.0")) {
+    const auto min = asset.find("minVersion");
+    const Node& decisive = min ? *min : version;
+    if (major(decisive) != "2" || (min && min->string() != "2.0")) {
         decisive.fail("only glTF 2.0 is read, not " + quote(decisive.string()) +
                       "; export the scene as glTF 2.0");
     }
@@ -172,12 +172,12 @@ std::filesystem::path File::named(const Node& uri) const {
     return file_of(uri, path().parent_path(), contents_.reach());
 }
 
-std::string File::read_named(const Node& uri, uint64_t most) const {
+std::string File::read_named(const Node& uri, uint64_t max) const {
     const std::filesystem::path path = named(uri);
     try {
         return with_memory_for(
             "the bytes of the file", [&] { return path.string(); },
-            [&] { return contents_.reach().read(path, most, bytes_of(progress_)); });
+            [&] { return contents_.reach().read(path, max, bytes_of(progress_)); });
     } catch (const Error& error) {
         throw Error(uri.place() + ": " + error.what(), error.code());
     }

@@ -71,8 +71,8 @@ class File {
     const std::filesystem::path& path() const { return contents_.path(); }
     // The file that a relative URI names, as file_of() finds it.
     std::filesystem::path named(const Node& uri) const;
-    // Its first `most` bytes, or all. Throws Error at the place of `uri` if it cannot be read.
-    std::string read_named(const Node& uri, uint64_t most = UINT64_MAX) const;
+    // Its first `max` bytes, or all. Throws Error at the place of `uri` if it cannot be read.
+    std::string read_named(const Node& uri, uint64_t max = UINT64_MAX) const;
 
     // How many elements a top-level array has, such as "meshes"; 0 if it is missing.
     size_t count(std::string_view array) const;

@@ -21,7 +21,7 @@ namespace candela::gltf {
 namespace {
 
 constexpr size_t FACES = 6;
-constexpr uint32_t MOST_LINES = 2048;  // The most rows of the environment.
+constexpr uint32_t MAX_LINES = 2048;  // The most rows of the environment.
 
 // Radiance of one face, row-major from the top.
 struct Face {
@@ -61,16 +61,16 @@ Face read_face(File& file, const Node& reference) {
     if (image.size.x != image.size.y)
         reference.fail(concat("the face of a cube must be square, not ", image.size.x, " by ", image.size.y));
     // No more texels than the environment shows; each is the mean of the original texels that it replaces.
-    const uint32_t size = std::min(image.size.x, MOST_LINES / 2);
+    const uint32_t size = std::min(image.size.x, MAX_LINES / 2);
     Face face{.size = size, .radiance = std::vector<vec3>(size_t{size} * size)};
     std::vector<uint32_t> counts(face.radiance.size());
     const auto place = [&](size_t i) { return i * size / image.size.x; };
     for (size_t i = 0; i < size_t{image.size.x} * image.size.y; ++i) {
-        constexpr float LEAST = 1.0f / 255.0f;
+        constexpr float MIN = 1.0f / 255.0f;
         const vec4 codes = texel_codes(image, i);
         const vec3 color(srgb_decode(codes.x), srgb_decode(codes.y), srgb_decode(codes.z));
         const size_t texel = place(i / image.size.x) * size + place(i % image.size.x);
-        face.radiance[texel] += color / std::max(codes.w, LEAST);
+        face.radiance[texel] += color / std::max(codes.w, MIN);
         ++counts[texel];
     }
     for (size_t i = 0; i < counts.size(); ++i)
@@ -107,7 +107,7 @@ Environment sky_of(File& file, const Node& light, float intensity) {
         if (length(given) > 0.0) rotation = normalize(given);
     }
     Environment environment;
-    const uint32_t lines = std::min(2 * faces[0].size, MOST_LINES);
+    const uint32_t lines = std::min(2 * faces[0].size, MAX_LINES);
     environment.size = {2 * lines, lines};
     environment.radiance.clear();
     environment.radiance.reserve(2 * size_t(lines) * lines);

@@ -45,15 +45,15 @@ Node lights_of(const File& file, const Node& reference) {
 }
 
 SpotLight read_cone(File& file, const Node& light) {
-    constexpr float LEAST_EDGE = 1e-4f;  // [rad]: between the angles, so that the edge has a width.
+    constexpr float MIN_EDGE = 1e-4f;  // [rad]: between the angles, so that the edge has a width.
     SpotLight spot;
     const auto cone = light.find("spot");
     const float inner = cone ? number_of(file, *cone, "innerConeAngle", 0.0f, HALF_PI, 0.0f) : 0.0f;
     const float outer = cone ? number_of(file, *cone, "outerConeAngle", 0.0f, HALF_PI, PI / 4) : PI / 4;
     if (inner > outer)
         file.warn(*cone, "the inner angle of a spot is greater than the outer one, and is treated as equal");
-    spot.outer_angle = std::max(outer, 2.0f * LEAST_EDGE);
-    spot.inner_angle = std::min(inner, spot.outer_angle - LEAST_EDGE);
+    spot.outer_angle = std::max(outer, 2.0f * MIN_EDGE);
+    spot.inner_angle = std::min(inner, spot.outer_angle - MIN_EDGE);
     return spot;
 }
 

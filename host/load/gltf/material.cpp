@@ -63,7 +63,7 @@ class MaterialReader {
         return number_of(file_, object, key, lo, hi, otherwise);
     }
     float number(const Node& object, std::string_view key, Range range, float otherwise) {
-        return number(object, key, range.least, range.most, otherwise);
+        return number(object, key, range.min, range.max, otherwise);
     }
 
     std::optional<Texture> texture(const Node& object, std::string_view key, TextureEncoding encoding,
@@ -154,8 +154,8 @@ class MaterialReader {
         }
         if (const auto e = extension("KHR_materials_specular")) {
             m.specular = weight(*e, "specularFactor", 1.0f, "specularTexture", ALPHA);
-            constexpr float MOST = 1e6f;
-            m.specular_color = color_of(file_, *e, "specularColorFactor", MOST, vec3(1.0f));
+            constexpr float MAX = 1e6f;
+            m.specular_color = color_of(file_, *e, "specularColorFactor", MAX, vec3(1.0f));
             m.specular_color.texture = texture(*e, "specularColorTexture", TextureEncoding::srgb);
         }
         if (const auto e = extension("KHR_materials_anisotropy")) {
@@ -190,8 +190,8 @@ class MaterialReader {
         if (number(volume, "thicknessFactor", 0.0f, FLOAT_MAX, 0.0f) == 0.0f) return;
         m.inside.emplace();
         const auto distance = volume.find("attenuationDistance");
-        if (!distance) return;          // Infinite.
-        constexpr float LEAST = 1e-6f;  // Black would need infinite absorption.
+        if (!distance) return;        // Infinite.
+        constexpr float MIN = 1e-6f;  // Black would need infinite absorption.
         const vec3 left = color_of(file_, volume, "attenuationColor", 1.0f, vec3(1.0f));
         const double length = distance->number();
         if (!(length >= double(FLOAT_MIN))) {
@@ -199,7 +199,7 @@ class MaterialReader {
             return;
         }
         for (glm::length_t i = 0; i < 3; ++i) {
-            const double share = std::clamp(double(left[i]), double(LEAST), 1.0);
+            const double share = std::clamp(double(left[i]), double(MIN), 1.0);
             m.inside->absorption[i] = float(std::min(-std::log(share) / length, double(FLOAT_MAX)));
         }
     }
@@ -208,11 +208,11 @@ class MaterialReader {
     // and colour give the same.
     void read_specular_above_one(PrincipledMaterial& m) {
         const vec3 c = m.specular_color.factor;
-        const float most = std::max({c.x, c.y, c.z});
-        if (most <= 1.0f) return;
+        const float max = std::max({c.x, c.y, c.z});
+        if (max <= 1.0f) return;
         const float r = m.ior == 0.0f ? 1.0f : (m.ior - 1.0f) / (m.ior + 1.0f);
         // The greatest factor that leaves the reflection below 1.
-        const float factor = m.inside || r == 0.0f ? 1.0f : std::min(most, 0.999f / (r * r));
+        const float factor = m.inside || r == 0.0f ? 1.0f : std::min(max, 0.999f / (r * r));
         if (factor > 1.0f) {
             const float root = r * std::sqrt(factor);
             m.ior = (1.0f + root) / (1.0f - root);

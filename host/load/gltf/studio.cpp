@@ -14,7 +14,7 @@ namespace candela {
 namespace {
 
 // The least light, relative to the studio's, in which the scene would be visible.
-constexpr double LEAST_LIGHT = 0.1;
+constexpr double MIN_LIGHT = 0.1;
 
 // The light of a scene besides the studio.
 enum class Lit {
@@ -35,10 +35,10 @@ Lit light_of(const Scene& scene, const Environment& studio) {
         (!scene.shapes.empty() && std::ranges::all_of(scene.shapes, needs_no_light)))
         return Lit::fully;
     if (emitter_count(scene) == 0) return Lit::dark;
-    constexpr double MOST_OF_THE_AREA = 0.5;
-    const double least = LEAST_LIGHT * mean_radiance(studio);
-    const Glow glow = glow_of(scene, least);
-    if (glow.radiance >= least || glow.area >= MOST_OF_THE_AREA) return Lit::fully;
+    constexpr double GLOWING_AREA = 0.5;
+    const double min = MIN_LIGHT * mean_radiance(studio);
+    const Glow glow = glow_of(scene, min);
+    if (glow.radiance >= min || glow.area >= GLOWING_AREA) return Lit::fully;
     return glow.above_white ? Lit::by_name : Lit::dimly;
 }
 

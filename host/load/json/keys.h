@@ -17,17 +17,15 @@ struct SceneKey {
     std::string_view object;
     std::string_view name;
     std::string_view initial;
-    double least = 0.0;  // Of a number.
-    double most = 0.0;
+    double min = 0.0;  // Of a number.
+    double max = 0.0;
 
-    Range range() const { return {float(least), float(most)}; }
+    Range range() const { return {float(min), float(max)}; }
 };
 
 inline constexpr auto SCENE_KEYS = std::to_array<SceneKey>({
-#define NUMBER(object, name, least, most, initial, text) \
-    {#object, #name, initial, double(least), double(most)},
-#define INTEGER(object, name, least, most, initial, text) \
-    {#object, #name, initial, double(least), double(most)},
+#define NUMBER(object, name, min, max, initial, text) {#object, #name, initial, double(min), double(max)},
+#define INTEGER(object, name, min, max, initial, text) {#object, #name, initial, double(min), double(max)},
 #define CHOICE(object, name, names, initial, text) {#object, #name, initial},
 #define KEY(object, name, initial, text) {#object, #name, initial},
 #include "load/json/scene_keys.inc"
@@ -55,12 +53,12 @@ inline std::vector<std::string_view> keys_of(std::initializer_list<std::string_v
 
 // The whole number of a key, within its limits.
 inline uint32_t read_integer(const Node& node, const SceneKey& key) {
-    return node.integer(uint32_t(key.least), uint32_t(key.most));
+    return node.integer(uint32_t(key.min), uint32_t(key.max));
 }
 
 // The same for any number.
 inline float read_number(const Node& node, const SceneKey& key) {
-    return node.number(float(key.least), float(key.most));
+    return node.number(float(key.min), float(key.max));
 }
 
 }  // namespace candela

@@ -77,14 +77,14 @@ MaterialModel read_diffuse_transmission(const Node& node, const ImageFolder& ima
 }
 
 MaterialModel read_dielectric(const Node& node, const ImageFolder&) {
-    constexpr double MOST_CONTRAST = 1e6;  // Its square, which scales radiance, fits into floats.
+    constexpr double MAX_CONTRAST = 1e6;  // Its square, which scales radiance, fits into floats.
     node.allow_only({"type"}, keys_of({"dielectric", "material"}));
     DielectricMaterial material;
     const Node ior = node.require("ior");
     material.ior = float(ior.positive());
     if (const auto exterior = node.find("exterior_ior")) material.exterior_ior = float(exterior->positive());
     const double contrast = double(material.ior) / material.exterior_ior.value_or(1.0f);
-    if (contrast > MOST_CONTRAST || contrast < 1.0 / MOST_CONTRAST) {
+    if (contrast > MAX_CONTRAST || contrast < 1.0 / MAX_CONTRAST) {
         ior.fail("ior and exterior_ior differ by a factor above a million; give both as those of real media");
     }
     if (const auto fresnel = node.find("fresnel")) material.fresnel = fresnel->choice(FRESNEL_NAMES);

@@ -12,7 +12,7 @@ namespace {
 // Throws Error for a key that has no effect without another, which is absent.
 void check_companions(const Node& node) {
     constexpr auto COMPANIONS = std::to_array<std::pair<std::string_view, std::string_view>>({
-#define VALUE(kind, name, initial, least, most, needs, text) {#name, #needs},
+#define VALUE(kind, name, initial, min, max, needs, text) {#name, #needs},
 #define KEY(name, member, text)
 #include "scene/principled_values.inc"
 #undef VALUE
@@ -86,7 +86,7 @@ void check_inside(const Node& node, const PrincipledMaterial& material) {
 // An index of refraction in a range, or 0.
 float read_index(const Node& node, Range range) {
     const double index = node.number();
-    if (index != 0.0 && !(index >= double(range.least) && index <= double(range.most)))
+    if (index != 0.0 && !(index >= double(range.min) && index <= double(range.max)))
         node.fail_expected("a number from 1 to 1e6, or 0 for a surface that reflects all light");
     return float(index);
 }
@@ -104,7 +104,7 @@ typename ValueOf<kind>::Type read_value(const Node& node, const ImageFolder& ima
     if constexpr (kind == radiance) return read_radiance(node, images);
     if constexpr (kind == weight) return read_number(node, images, range);
     if constexpr (kind == thickness) return read_thickness(node, images, range);
-    if constexpr (kind == number) return node.number(range.least, range.most);
+    if constexpr (kind == number) return node.number(range.min, range.max);
     if constexpr (kind == index) return read_index(node, range);
     if constexpr (kind == angle) return float(node.angle());
     if constexpr (kind == flag) return node.boolean();
@@ -114,16 +114,15 @@ typename ValueOf<kind>::Type read_value(const Node& node, const ImageFolder& ima
 
 // Reads the values that are present.
 void read_values(const Node& node, const ImageFolder& images, PrincipledMaterial& m) {
-#define VALUE(kind, name, initial, least, most, needs, text) \
-    if (const auto found = node.find(#name))                 \
+#define VALUE(kind, name, initial, min, max, needs, text) \
+    if (const auto found = node.find(#name))              \
         m.name = read_value<ValueKind::kind>(*found, images, PRINCIPLED_RANGES.name);
 #define KEY(name, member, text)
 #include "scene/principled_values.inc"
 #undef VALUE
 #undef KEY
-    if (const auto least = node.find("iridescence_thickness_min");
-        least && !m.iridescence_thickness.texture) {
-        least->fail(
+    if (const auto min = node.find("iridescence_thickness_min"); min && !m.iridescence_thickness.texture) {
+        min->fail(
             "iridescence_thickness_min is the thickness where an image is 0; give "
             "\"iridescence_thickness\" an image, or remove this key");
     }
@@ -135,7 +134,7 @@ MaterialModel read_principled(const Node& node, const ImageFolder& images) {
     node.allow_only(
         {
             "type",
-#define VALUE(kind, name, initial, least, most, needs, text) #name,
+#define VALUE(kind, name, initial, min, max, needs, text) #name,
 #define KEY(name, member, text) #name,
 #include "scene/principled_values.inc"
 #undef VALUE

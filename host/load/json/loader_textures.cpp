@@ -128,9 +128,9 @@ Textured<vec3> read_color(const Node& node, const ImageFolder& folder) {
 }
 
 Textured<float> read_number(const Node& node, const ImageFolder& folder, Range range) {
-    if (!node.is_object()) return node.number(range.least, range.most);
+    if (!node.is_object()) return node.number(range.min, range.max);
     const auto factor = node.find("factor");
-    return {factor ? factor->number(0.0f, range.most) : 1.0f,
+    return {factor ? factor->number(0.0f, range.max) : 1.0f,
             read_texture(node, folder, TextureEncoding::linear, "textured")};
 }
 

@@ -88,7 +88,7 @@ class Reader {
 
     void read_statement(MtlStatements& s, std::string_view command, std::string_view rest) {
         constexpr double NONE = -std::numeric_limits<double>::infinity();
-        constexpr double MOST = std::numeric_limits<double>::infinity();
+        constexpr double MAX = std::numeric_limits<double>::infinity();
         if (command == "Kd") {
             set(s.kd, colour(command, rest));
         } else if (command == "Ks") {
@@ -100,19 +100,19 @@ class Reader {
             std::string_view words = rest;
             if (parse_number(next_word(words))) set(command == "Ka" ? s.ka : s.tf, colour(command, rest));
         } else if (command == "Ns") {
-            set(s.ns, number(command, rest, 0.0, MOST));
+            set(s.ns, number(command, rest, 0.0, MAX));
         } else if (command == "Ni") {
-            set(s.ni, number(command, rest, NONE, MOST));
+            set(s.ni, number(command, rest, NONE, MAX));
         } else if (command == "illum") {
             s.illum = illumination(next_word(rest));
         } else if (command == "d") {
-            set(s.d, number(command, rest, NONE, MOST));
+            set(s.d, number(command, rest, NONE, MAX));
         } else if (command == "Tr") {
-            set(s.tr, number(command, rest, NONE, MOST));
+            set(s.tr, number(command, rest, NONE, MAX));
         } else if (command.starts_with('P')) {
             read_share(s, command, rest);
         } else if (command == "aniso" || command == "anisor") {
-            if (command == "aniso" && number(command, rest, NONE, MOST).value_or(0.0) != 0.0)
+            if (command == "aniso" && number(command, rest, NONE, MAX).value_or(0.0) != 0.0)
                 ignored_.add(command, "brushed metal is not supported");
         } else {
             read_other(s, command, rest);
@@ -178,12 +178,12 @@ class Reader {
         return std::nullopt;
     }
 
-    std::optional<double> number(std::string_view command, std::string_view rest, double least, double most) {
+    std::optional<double> number(std::string_view command, std::string_view rest, double min, double max) {
         std::string_view word = next_word(rest);
         if (command == "d" && word == "-halo") word = next_word(rest);
         const auto value = finite(command, word);
-        if (!value || (*value >= least && *value <= most)) return value;
-        const double nearest = std::clamp(*value, least, most);
+        if (!value || (*value >= min && *value <= max)) return value;
+        const double nearest = std::clamp(*value, min, max);
         warn(std::string(command) + " out of range",
              concat(command, ' ', shown(number_text(*value, 6)), " is read as ", number_text(nearest, 6)));
         return nearest;

@@ -21,7 +21,7 @@ constexpr double GREY = 0.5;          // The reflectance if a file states no col
 constexpr double DULL = 0.5;          // The roughness if it states none.
 constexpr double COMMON_GLASS = 1.5;  // The index of refraction if it states none.
 constexpr double SHEEN_ROUGHNESS = 0.5;
-constexpr double MOST_NS = 1000.0;     // The greatest exponent that the format foresees: a mirror.
+constexpr double MAX_NS = 1000.0;      // The greatest exponent that the format foresees: a mirror.
 constexpr double SUM_ROUNDING = 2e-6;  // Rounding of a sum of two numbers of six digits, as most programs
                                        // write them.
 
@@ -135,7 +135,7 @@ class Converter {
 
     float ior() const {
         const double ni = s_.ni.value_or(COMMON_GLASS);
-        return float(ni > 1.0 ? std::min(ni, double(PRINCIPLED_RANGES.ior.most)) : COMMON_GLASS);
+        return float(ni > 1.0 ? std::min(ni, double(PRINCIPLED_RANGES.ior.max)) : COMMON_GLASS);
     }
 
     Model principled() {
@@ -172,8 +172,8 @@ class Converter {
             warn("no Pr", "it has no roughness (Pr); " + number_text(DULL, 6) + " is used");
             return float(DULL);
         }
-        const double ns = s_.ns.value_or(reflects() ? MOST_NS : 0.0);
-        return float(1.0 - std::sqrt(std::min(ns, MOST_NS) / MOST_NS));  // As Blender converts it.
+        const double ns = s_.ns.value_or(reflects() ? MAX_NS : 0.0);
+        return float(1.0 - std::sqrt(std::min(ns, MAX_NS) / MAX_NS));  // As Blender converts it.
     }
 
     // With the PBR extension, Blender writes it as Tf. 3ds Max, which writes a Tf of 1 for all materials,
@@ -200,13 +200,13 @@ class Converter {
     }
 
     double exponent() {
-        constexpr auto MOST = double(MAX_PHONG_EXPONENT);
-        if (reflects() && s_.ns.value_or(MOST_NS) >= MOST_NS) return MOST;
+        constexpr auto MAX = double(MAX_PHONG_EXPONENT);
+        if (reflects() && s_.ns.value_or(MAX_NS) >= MAX_NS) return MAX;
         const double ns = s_.ns.value_or(1.0);
-        if (ns <= MOST) return ns;
+        if (ns <= MAX) return ns;
         warn("Ns",
-             "Ns " + number_text(ns, 6) + " is read as " + number_text(MOST, 6) + ", the greatest exponent");
-        return MOST;
+             "Ns " + number_text(ns, 6) + " is read as " + number_text(MAX, 6) + ", the greatest exponent");
+        return MAX;
     }
 
     // A lamp or a shiny object may reflect nothing diffusely; anything else was meant to be visible.

@@ -120,16 +120,16 @@ class OptionReader {
         if (changes) result_.ignored.emplace_back(option_);
     }
 
-    std::optional<float> read_number(std::string_view word, double most) const {
+    std::optional<float> read_number(std::string_view word, double max) const {
         const std::optional<double> number = parse_finite(word);
         if (!number) return std::nullopt;
-        if (std::abs(*number) > most) fail_value("numbers of at most " + number_text(most, 6), word);
+        if (std::abs(*number) > max) fail_value("numbers of at most " + number_text(max, 6), word);
         return float(*number);
     }
 
-    float number(double most) {
+    float number(double max) {
         const std::string_view word = next_word(rest_);
-        if (const auto value = read_number(word, most)) return *value;
+        if (const auto value = read_number(word, max)) return *value;
         fail_value("a finite number", word);
     }
 

@@ -26,9 +26,9 @@ class Vertices {
         const uint32_t uv = with_uvs ? obj_.corner_uvs[i] : NONE;
         uint32_t& newest = newest_[corner.position];
         // A file may give one position to any number of vertices.
-        constexpr int MOST_LOOKED_AT = 64;
+        constexpr int MAX_LOOKED_AT = 64;
         int looked_at = 0;
-        for (uint32_t v = newest; v != NONE && looked_at < MOST_LOOKED_AT;
+        for (uint32_t v = newest; v != NONE && looked_at < MAX_LOOKED_AT;
              v = vertices_[v].next, ++looked_at) {
             if (vertices_[v].corner.normal == corner.normal && (!with_uvs || uvs_[v] == uv)) return v;
         }

@@ -29,7 +29,7 @@ void ObjColors::add(size_t position, vec3 numbers) {
     codes_.resize(position, NO_COLOR);
     codes_.push_back(numbers);
     for (glm::length_t i = 0; i < 3; ++i) {
-        least_ = std::min(least_, numbers[i]);
+        min_ = std::min(min_, numbers[i]);
         greatest_ = std::max(greatest_, numbers[i]);
         whole_ = whole_ && std::trunc(numbers[i]) == numbers[i];
     }
@@ -55,13 +55,13 @@ std::vector<vec3> ObjColors::linear(size_t count, std::optional<std::string>& wa
         }
         return {};
     }
-    const bool in_bytes = whole_ && least_ >= 0.0f && greatest_ > 1.0f && greatest_ <= BYTE;
+    const bool in_bytes = whole_ && min_ >= 0.0f && greatest_ > 1.0f && greatest_ <= BYTE;
     if (in_bytes) {
         warning = "the colours of vertices are read as numbers from 0 to 255";
         for (vec3& code : codes)
             code /= BYTE;
-    } else if (least_ < -ROUNDING || greatest_ > 1.0f + ROUNDING) {
-        warning = concat("left out the numbers after positions, from ", shown(number_text(double(least_), 6)),
+    } else if (min_ < -ROUNDING || greatest_ > 1.0f + ROUNDING) {
+        warning = concat("left out the numbers after positions, from ", shown(number_text(double(min_), 6)),
                          " to ", shown(number_text(double(greatest_), 6)),
                          ": colours would be from 0 to 1, or whole numbers from 0 to 255");
         return {};

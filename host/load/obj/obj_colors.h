@@ -28,7 +28,7 @@ class ObjColors {
   private:
     std::vector<vec3> codes_;  // NaN: none.
     std::vector<vec3> mrgb_;
-    float least_ = 0.0f, greatest_ = 0.0f;
+    float min_ = 0.0f, greatest_ = 0.0f;
     bool whole_ = true;  // All numbers are.
 };
 

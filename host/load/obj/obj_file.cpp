@@ -168,7 +168,7 @@ class ObjReader {
         uint32_t corners = 0;
         for (std::string_view corner = next_word(rest); !is_obj_end(corner); corner = next_word(rest)) {
             const Indices read = read_corner(corner);
-            if (corners++ >= MOST_CORNERS) continue;
+            if (corners++ >= MAX_CORNERS) continue;
             obj_.corners.push_back({read[OBJ_POSITION], read[OBJ_NORMAL]});
             if (totals_[OBJ_UV] > 0) obj_.corner_uvs.push_back(read[OBJ_UV]);
             has_uvs_ = has_uvs_ || read[OBJ_UV] != ObjCorner::NONE;
@@ -179,10 +179,9 @@ class ObjReader {
             if (totals_[OBJ_UV] > 0) obj_.corner_uvs.resize(begin);
             return warn("a face with fewer than three corners is left out");
         }
-        if (corners > MOST_CORNERS) {
+        if (corners > MAX_CORNERS) {
             fail("face " + std::to_string(faces_) + " has " + std::to_string(corners) +
-                 " corners, but at most " + std::to_string(MOST_CORNERS) +
-                 " are read; cut it into triangles");
+                 " corners, but at most " + std::to_string(MAX_CORNERS) + " are read; cut it into triangles");
         }
         obj_.sizes.push_back(corners);
         obj_.use_of.push_back(uint32_t(obj_.uses.size() - 1));

@@ -31,7 +31,7 @@ struct ObjFile {
     std::vector<vec3> normals;          // Normals of any length.
     std::vector<ObjCorner> corners;     // Corners of all faces, one after the other.
     std::vector<uint32_t> corner_uvs;   // Empty, or for each corner an index into `uvs`, or ObjCorner::NONE.
-    std::vector<uint32_t> sizes;        // Corners of each face, 3 .. MOST_CORNERS.
+    std::vector<uint32_t> sizes;        // Corners of each face, 3 .. MAX_CORNERS.
 
     // Statements about materials, in the order of the file. `uses` begins with an entry for the faces before
     // any `usemtl`, without a name and with line 0.
@@ -49,7 +49,7 @@ struct ObjFile {
 //   corners have no normal, and texture coordinates (0, 0), where theirs are not in the file or not finite;
 //   colours are read as ObjColors::linear() does.
 // Throws Error `file:line: cause` for a vertex or normal without three numbers, a colour or texture
-// coordinate that is not a number, a face with more than MOST_CORNERS corners, a malformed index, and a
+// coordinate that is not a number, a face with more than MAX_CORNERS corners, a malformed index, and a
 // vertex that is not in the file, and Error `file: cause` if no face is left.
 ObjFile parse_obj(std::string_view text, const std::string& file);
 

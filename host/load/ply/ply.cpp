@@ -69,7 +69,7 @@ class BodyReader {
 
     PlyPolygons read(std::vector<std::string>& warnings) {
         for (const PlyElement& element : header_.elements) {
-            const size_t row_size = element.least_size(header_.format);
+            const size_t row_size = element.min_size(header_.format);
             if (row_size > 0) read_element(element, row_size);
         }
         if (const size_t bytes = rows_.trailing_bytes()) {
@@ -123,10 +123,10 @@ class BodyReader {
 
     // Reserves memory for this many triangles, or for as many as the rest of the file can hold.
     void begin_faces(const PlyElement& face, const PlyProperty& indices) {
-        const size_t least_size = header_.format == PlyFormat::ascii ? 2 : size_of(indices.type);
-        const size_t most = rows_.bytes_left() / least_size;
-        polygons_.corners.reserve(std::min<size_t>(3 * face.rows, most));
-        polygons_.sizes.reserve(std::min<size_t>(face.rows, most / 3));
+        const size_t min_size = header_.format == PlyFormat::ascii ? 2 : size_of(indices.type);
+        const size_t max = rows_.bytes_left() / min_size;
+        polygons_.corners.reserve(std::min<size_t>(3 * face.rows, max));
+        polygons_.sizes.reserve(std::min<size_t>(face.rows, max / 3));
     }
 
     void read_vertex(const PlyElement& vertex) {
@@ -150,9 +150,9 @@ class BodyReader {
 
     void read_face(const PlyProperty& indices) {
         const double corners = read_length(indices);
-        if (corners > double(MOST_CORNERS)) {
+        if (corners > double(MAX_CORNERS)) {
             position_.fail("has " + shown(number_text(corners, 10)) + " corners, but at most " +
-                           std::to_string(MOST_CORNERS) + " are read; cut it into triangles");
+                           std::to_string(MAX_CORNERS) + " are read; cut it into triangles");
         }
         for (double i = 0.0; i < corners; ++i)
             polygons_.corners.push_back(vertex_at(rows_.next(indices.type)));

@@ -16,7 +16,7 @@ namespace candela {
 // is none. `warnings` gets what is odd but usable, each beginning with the file's name. Throws Error as
 // FileReach::read(), read_ply_header() and finish_vertices() do, and `file: cause`, or `file:line: cause` in
 // a header or an ASCII file, if the file lacks vertices or faces, ends early, or has rows that do not match
-// the header, a face with more than MOST_CORNERS corners, or an index that is out of range.
+// the header, a face with more than MAX_CORNERS corners, or an index that is out of range.
 TriangleMesh load_ply(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach,
                       std::vector<std::string>& warnings);
 

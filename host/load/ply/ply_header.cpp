@@ -196,7 +196,7 @@ const PlyProperty* PlyElement::find(std::string_view property) const {
     return find_named(properties, property);
 }
 
-size_t PlyElement::least_size(PlyFormat format) const {
+size_t PlyElement::min_size(PlyFormat format) const {
     if (format == PlyFormat::ascii) return 2 * properties.size();  // A digit and a blank.
     size_t size = 0;
     for (const PlyProperty& property : properties)

@@ -30,7 +30,7 @@ struct PlyElement {
     uint64_t line = 0;                    // Where the header declares it.
 
     const PlyProperty* find(std::string_view property) const;  // Null if there is none.
-    size_t least_size(PlyFormat format) const;                 // Size of a row whose lists are empty [bytes].
+    size_t min_size(PlyFormat format) const;                   // Size of a row whose lists are empty [bytes].
 };
 
 struct PlyHeader {

@@ -15,8 +15,8 @@ bool fits(double number, PlyType type) {
     if (!is_integer(type)) return true;
     const bool is_signed = type == PlyType::int8 || type == PlyType::int16 || type == PlyType::int32;
     const double values = std::ldexp(1.0, int(8 * size_of(type)));
-    const double least = is_signed ? -0.5 * values : 0.0;
-    return std::trunc(number) == number && number >= least && number < least + values;
+    const double min = is_signed ? -0.5 * values : 0.0;
+    return std::trunc(number) == number && number >= min && number < min + values;
 }
 
 }  // namespace

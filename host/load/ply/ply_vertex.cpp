@@ -85,8 +85,8 @@ PlyVertexFields find_vertex_fields(const PlyElement& vertex, bool with_normals, 
 
 double vertex_number(PlyType type, size_t field, double number) {
     if (field >= PLY_RED) return color_number(type, field == PLY_ALPHA, number);
-    const double most = field >= PLY_U ? MAX_UV : double(std::numeric_limits<float>::max());
-    return field < PLY_NX || std::abs(number) <= most ? number : std::numeric_limits<double>::quiet_NaN();
+    const double max = field >= PLY_U ? MAX_UV : double(std::numeric_limits<float>::max());
+    return field < PLY_NX || std::abs(number) <= max ? number : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace candela

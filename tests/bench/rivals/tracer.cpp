@@ -267,12 +267,12 @@ void render(const Settings& settings) {
                 double(total.rays) / samples);
 }
 
-uint32_t number(const std::string& text, const char* what, uint32_t least) {
+uint32_t number(const std::string& text, const char* what, uint32_t min) {
     uint32_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value < least)
+    if (error != std::errc() || end != text.data() + text.size() || value < min)
         throw Error(std::string(what) + ": cannot use \"" + text + "\"; expected a whole number from " +
-                        std::to_string(least),
+                        std::to_string(min),
                     ExitCode::usage);
     return value;
 }

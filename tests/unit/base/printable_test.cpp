@@ -84,8 +84,8 @@ TEST(Printable, CutsTheMiddleAndNoCharacter) {
     EXPECT_EQ(escapes, "\\u001b\\u001b\\u001b\\u001b…\\u001b\\u001b");
     EXPECT_EQ(printable(escapes, 40), escapes);
     const std::string huge = std::string(10'000'000, 'a') + "; remedy";
-    EXPECT_EQ(printable(huge, MOST_MESSAGE_BYTES).size(), MOST_MESSAGE_BYTES);
-    EXPECT_TRUE(printable(huge, MOST_MESSAGE_BYTES).ends_with("; remedy"));
+    EXPECT_EQ(printable(huge, MAX_MESSAGE_BYTES).size(), MAX_MESSAGE_BYTES);
+    EXPECT_TRUE(printable(huge, MAX_MESSAGE_BYTES).ends_with("; remedy"));
 }
 
 // All code points, one at a time: what is not escaped neither begins a control sequence nor is invalid.
@@ -132,12 +132,12 @@ TEST(Joined, SaysHowManyNamesItLeavesOut) {
     const std::vector<std::string> many(2010, "x");
     EXPECT_TRUE(joined(many).ends_with("x, x and 1990 more"));
     EXPECT_EQ(joined(many).size(), 20 * 3 - 2 + std::string(" and 1990 more").size());
-    EXPECT_LE(joined(std::vector<std::string>{std::string(100'000, 'x')}).size(), MOST_NAME_BYTES);
+    EXPECT_LE(joined(std::vector<std::string>{std::string(100'000, 'x')}).size(), MAX_NAME_BYTES);
 }
 
 TEST(Quote, ShowsATextAndJsonKeepsIt) {
     EXPECT_EQ(quote("a \"b\" \\ \n\u009B\xFF"), R"("a \"b\" \\ \n\u009b\xff")");
-    EXPECT_EQ(quote(std::string(1'000'000, 'x')).size(), MOST_NAME_BYTES + 2);
+    EXPECT_EQ(quote(std::string(1'000'000, 'x')).size(), MAX_NAME_BYTES + 2);
     EXPECT_EQ(json_string("a \"b\" \\ \n"), R"("a \"b\" \\ \n")");
     EXPECT_EQ(json_string(std::string(1'000'000, 'x')).size(), 1'000'002u);
 }

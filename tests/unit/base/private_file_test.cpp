@@ -15,13 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t MOST = 1000;
+constexpr size_t MAX = 1000;
 constexpr uid_t NOBODY = 65534;
 
 class PrivateFile : public testing::Test {
   protected:
     void write(const std::string& bytes = "new") const { write_private_file(folder_, "file", bytes); }
-    std::optional<std::string> read() const { return read_private_file(folder_, "file", MOST); }
+    std::optional<std::string> read() const { return read_private_file(folder_, "file", MAX); }
     // Neither reads the file nor changes it, which anybody would have done with an ordinary one.
     void expect_unused() const {
         const std::string before = read_file(file_);
@@ -37,7 +37,7 @@ class PrivateFile : public testing::Test {
 
 TEST_F(PrivateFile, IsReadAsItWasWritten) {
     EXPECT_EQ(read(), std::nullopt);
-    for (const std::string& bytes : {std::string("old"), std::string(), std::string(MOST, 'x')}) {
+    for (const std::string& bytes : {std::string("old"), std::string(), std::string(MAX, 'x')}) {
         write(bytes);
         EXPECT_EQ(read(), bytes);
     }
@@ -97,7 +97,7 @@ TEST_F(PrivateFile, IsNoLinkAndNotBelowOne) {
 
 TEST_F(PrivateFile, OfManyBytesIsNotRead) {
     write("old");
-    fs::resize_file(file_, MOST + 1);
+    fs::resize_file(file_, MAX + 1);
     EXPECT_EQ(read(), std::nullopt);
     fs::resize_file(file_, uintmax_t{1} << 40);  // It uses no space on the disk.
     EXPECT_EQ(read(), std::nullopt);

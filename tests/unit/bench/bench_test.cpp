@@ -21,7 +21,7 @@ namespace {
 TEST(BenchReport, AMedianIsTheMiddleValueOrTheMeanOfTheTwo) {
     const Spread odd = spread(std::vector<double>{3.0, 9.0, 1.0});
     EXPECT_EQ(odd.median, 3.0);
-    EXPECT_EQ(odd.least, 1.0);
+    EXPECT_EQ(odd.min, 1.0);
     EXPECT_EQ(odd.largest, 9.0);
     EXPECT_EQ(spread(std::vector<double>{8.0, 1.0, 2.0, 4.0}).median, 3.0);
     EXPECT_EQ(spread(std::vector<double>{5.0}).median, 5.0);
@@ -180,14 +180,14 @@ TEST(BenchMeshes, ADisplacedSphereIsClosed) {
 
 TEST(BenchMeshes, ADisplacedSphereIsRoughAndItsFrontIsOutside) {
     const TriangleMesh mesh = displaced_sphere(30, 3);
-    float least = 9.0f, largest = 0.0f;
+    float min = 9.0f, largest = 0.0f;
     for (const vec3 p : mesh.positions) {
-        least = std::min(least, length(p));
+        min = std::min(min, length(p));
         largest = std::max(largest, length(p));
     }
-    EXPECT_GE(least, 0.8f);
+    EXPECT_GE(min, 0.8f);
     EXPECT_LE(largest, 1.2f);
-    EXPECT_GT(largest - least, 0.1f);
+    EXPECT_GT(largest - min, 0.1f);
     // A star-shaped body, seen from 0: the front of every triangle is on its far side.
     for (const uvec3 t : mesh.triangles) {
         const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
@@ -239,8 +239,8 @@ TEST(BenchMeshes, AForestHasItsTrees) {
 TEST(BenchTriangles, AreThoseOfTheScene) {
     Scene scene = scattered_scene(50);
     add_shape(scene, parallelogram(vec3(-2), vec3(4, 0, 0), vec3(0, 0, 4)), 0);
-    const BenchTriangles instanced(build_gpu_scene(scene, SceneFrame{}, {.least_triangles = 1}));
-    const BenchTriangles baked(build_gpu_scene(scene, SceneFrame{}, {.least_uses = UINT32_MAX}));
+    const BenchTriangles instanced(build_gpu_scene(scene, SceneFrame{}, {.min_triangles = 1}));
+    const BenchTriangles baked(build_gpu_scene(scene, SceneFrame{}, {.min_uses = UINT32_MAX}));
     ASSERT_EQ(instanced.instances().size(), 50u);
     ASSERT_EQ(instanced.baked().size(), 2u);
     ASSERT_EQ(baked.baked().size(), 50u * 48 + 2);

@@ -31,22 +31,22 @@ Tree random_tree(uint32_t leaves, std::mt19937& generator) {
 }
 
 // The least sum of areas of wide nodes with at most `places` nodes or leaves in the place of a binary node.
-double least_cost(const Tree& tree, uint32_t index, uint32_t places);
+double min_cost(const Tree& tree, uint32_t index, uint32_t places);
 
 // The same in place of its two children, with any division between them.
-double least_cost_of_children(const Tree& tree, uint32_t index, uint32_t places) {
-    double least = std::numeric_limits<double>::infinity();
+double min_cost_of_children(const Tree& tree, uint32_t index, uint32_t places) {
+    double min = std::numeric_limits<double>::infinity();
     for (uint32_t left = 1; left < places; ++left) {
-        least = std::min(least, least_cost(tree, tree[index].left, left) +
-                                    least_cost(tree, tree[index].left + 1, places - left));
+        min = std::min(min, min_cost(tree, tree[index].left, left) +
+                                min_cost(tree, tree[index].left + 1, places - left));
     }
-    return least;
+    return min;
 }
 
-double least_cost(const Tree& tree, uint32_t index, uint32_t places) {
+double min_cost(const Tree& tree, uint32_t index, uint32_t places) {
     if (tree[index].left == 0) return 0.0;
-    const double as_node = tree[index].area + least_cost_of_children(tree, index, BVH_WIDTH);
-    return places == 1 ? as_node : std::min(as_node, least_cost_of_children(tree, index, places));
+    const double as_node = tree[index].area + min_cost_of_children(tree, index, BVH_WIDTH);
+    return places == 1 ? as_node : std::min(as_node, min_cost_of_children(tree, index, places));
 }
 
 // What wide_children makes of the tree at a wide node and below.
@@ -80,10 +80,10 @@ TEST(BvhCollapse, CostsAsLittleAsAnyOther) {
     for (uint32_t leaves = 2; leaves <= 14; ++leaves) {
         for (int trial = 0; trial < 20; ++trial) {
             Tree tree = random_tree(leaves, generator);
-            const double least = least_cost(tree, 0, 1);
-            find_least_costs(tree);
+            const double min = min_cost(tree, 0, 1);
+            find_min_costs(tree);
             const Wide wide = walk(tree, 0);
-            EXPECT_NEAR(wide.cost, least, 1e-12);
+            EXPECT_NEAR(wide.cost, min, 1e-12);
             EXPECT_EQ(wide.leaves, leaves);
         }
     }
@@ -91,7 +91,7 @@ TEST(BvhCollapse, CostsAsLittleAsAnyOther) {
 
 TEST(BvhCollapse, ALeafIsItsOwnOnlyChild) {
     Tree tree{{.area = 1.0}};
-    find_least_costs(tree);
+    find_min_costs(tree);
     const WideChildren children = wide_children(tree, 0);
     ASSERT_EQ(children.count, 1u);
     EXPECT_EQ(children.indices[0], 0u);
@@ -105,7 +105,7 @@ TEST(BvhCollapse, IsFlatAmongEquals) {
         tree[i].left = uint32_t(tree.size());
         tree.resize(tree.size() + 2);
     }
-    find_least_costs(tree);
+    find_min_costs(tree);
     const Wide wide = walk(tree, 0);
     EXPECT_EQ(wide.leaves, 4096u);
     EXPECT_LE(wide.depth, 6u);

@@ -91,16 +91,16 @@ TEST(BvhSplit, FindsTheBestCutOfAllAxes) {
             }
             boxes.push_back({centre - extent, centre + extent});
         }
-        double least = std::numeric_limits<double>::infinity();
+        double min = std::numeric_limits<double>::infinity();
         for (int axis = 0; axis < 3; ++axis) {
             for (int at = 0; at < 11; ++at)
-                least = std::min(least, cost_of_cut(boxes, axis, float(at)));
+                min = std::min(min, cost_of_cut(boxes, axis, float(at)));
         }
         std::vector<PrimitiveRef> refs = make_refs(boxes);
         double found = 0.0;
         for (const PrimitiveRange& part : split_sah(refs, range_of(refs)))
             found += half_area(Box(part.bounds)) * part.count;
-        EXPECT_LE(found, least * (1.0 + 20 * 0x1p-24)) << "trial " << trial;
+        EXPECT_LE(found, min * (1.0 + 20 * 0x1p-24)) << "trial " << trial;
     }
 }
 

@@ -123,8 +123,8 @@ TEST(Bvh, SplitsEqualCentroidsInHalvesByIndex) {
     // The root's children are eighths but for one quarter; the quarter's are a pair or two and single ones.
     EXPECT_EQ(bvh.depth, 3u);
     for (auto quarter = bvh.order.begin(); quarter != bvh.order.end(); quarter += 16) {
-        const auto [least, greatest] = std::minmax_element(quarter, quarter + 16);
-        EXPECT_EQ(*greatest - *least, 15u);
+        const auto [min, greatest] = std::minmax_element(quarter, quarter + 16);
+        EXPECT_EQ(*greatest - *min, 15u);
     }
 }
 

@@ -118,8 +118,8 @@ TEST(Accumulation, StatesAreCountedTogether) {
     const std::vector states{one, none, one, one};
     const SampleCounts counts = count_samples(states);
     EXPECT_EQ(counts.total, 3u * 15);
-    EXPECT_EQ(counts.least, 0u);
-    EXPECT_EQ(counts.most, 3u * 5);
+    EXPECT_EQ(counts.min, 0u);
+    EXPECT_EQ(counts.max, 3u * 5);
     EXPECT_EQ(samples_per_pixel(states), 3u * 15 / 6);
     EXPECT_EQ(samples_per_pixel({&one, 1}), 0u);
     EXPECT_EQ(total_counters(states).rays, 3u * one.counters.rays);

@@ -80,19 +80,19 @@ class Merge : public testing::Test {
         }
         Channel& count = image.add("SampleCount.V");
         Channel& depth = image.add("Z");
-        size_t least = SIZE_MAX;
+        size_t min = SIZE_MAX;
         for (size_t i = 0; i < PIXELS; ++i) {
             const size_t n = samples.of[0][i].values.size();
             count.values[i] = float(n);
             depth.values[i] = 1.0f + float(i);
-            least = std::min(least, n);
+            min = std::min(min, n);
         }
         Identity identity{.settings = {"40x30", "10,20,13,22", "7", "sobol", "mis", "4096", "3", "at 1 2 3"},
                           .hash = 0x123456789abcdef0u};
         set_identity(image, identity);
         set_maker(image, {.device = "GPU", .driver = "1.2", .version = "0.1"});
         image.attributes["candela.samples"] = to_text({&samples.range, 1});
-        image.attributes["samplesPerPixel"] = float(least);
+        image.attributes["samplesPerPixel"] = float(min);
         image.attributes["renderTimeSeconds"] = 2.0f;
         return image;
     }

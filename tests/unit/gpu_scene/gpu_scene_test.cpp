@@ -302,7 +302,7 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
 
 // Shaders clamp what images give to the limits that loaders check.
 TEST(GpuScene, LimitsOfMaterialsAreThoseOfTheShaders) {
-    EXPECT_EQ(LEAST_ALPHA, MIN_ALPHA);
+    EXPECT_EQ(MIN_FACET_ALPHA, MIN_ALPHA);
     EXPECT_EQ(GREATEST_EXPONENT, MAX_PHONG_EXPONENT);
 }
 

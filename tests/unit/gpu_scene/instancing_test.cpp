@@ -40,7 +40,7 @@ Scene empty_scene() {
 }
 
 TEST(Instancing, MeshesThatAreUsedOnceOrAreTinyAreBaked) {
-    const InstancingRule rule{.least_uses = 2, .least_triangles = 1000};
+    const InstancingRule rule{.min_uses = 2, .min_triangles = 1000};
     Scene scene = empty_scene();
     add_copies(scene, triangle_soup(5000, 0.1f, 1), 1);
     add_copies(scene, triangle_soup(499, 0.1f, 1), 2);
@@ -53,7 +53,7 @@ TEST(Instancing, MeshesThatAreUsedOnceOrAreTinyAreBaked) {
 }
 
 TEST(Instancing, EmittersAndWhatIsShearedTooFarAreBaked) {
-    const InstancingRule rule{.least_uses = 2, .least_triangles = 1};
+    const InstancingRule rule{.min_uses = 2, .min_triangles = 1};
     Scene scene = empty_scene();
     add_copies(scene, triangle_soup(10, 0.1f, 1), 4);
     scene.shapes[1].emission = Emission{vec3(1), false};
@@ -130,7 +130,7 @@ TEST(Instancing, AMeshIsStoredOnce) {
     scene.shapes[7].material = red;
     add_shape(scene, parallelogram(vec3(-9, -1, 9), vec3(400, 0, 0), vec3(0, 0, -18)), 0);
     const GpuScene one = build_gpu_scene(scene_of_mesh(mesh));
-    const GpuScene gpu = build_gpu_scene(scene, choose_frame(scene), {.least_uses = 2, .least_triangles = 1});
+    const GpuScene gpu = build_gpu_scene(scene, choose_frame(scene), {.min_uses = 2, .min_triangles = 1});
     EXPECT_EQ(gpu.instances.size(), 100u);
     EXPECT_EQ(gpu.baked_primitives, 1u);
     EXPECT_EQ(gpu.primitive_count, one.primitive_count + 1);
@@ -155,7 +155,7 @@ TEST(Instancing, AMeshIsStoredOnce) {
 
     // What is baked instead has the same surfaces.
     const GpuScene baked =
-        build_gpu_scene(scene, choose_frame(scene), {.least_uses = ~0u, .least_triangles = ~0u});
+        build_gpu_scene(scene, choose_frame(scene), {.min_uses = ~0u, .min_triangles = ~0u});
     EXPECT_TRUE(baked.instances.empty());
     EXPECT_EQ(baked.id_count, gpu.id_count);
 }

@@ -18,7 +18,7 @@
 namespace candela {
 namespace {
 
-const InstancingRule RULE{.least_uses = 2, .least_triangles = 1};
+const InstancingRule RULE{.min_uses = 2, .min_triangles = 1};
 
 Transform at(dvec3 place) {
     Transform transform;

@@ -70,7 +70,7 @@ TEST(MediaAt, InstancesHaveAnInside) {
     ASSERT_TRUE(transform.append(glm::dmat4(-2, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1)));
     scene.shapes.push_back({.geometry = MeshInstance{0, transform}, .material = other, .emission = {}});
     const GpuScene instanced =
-        build_gpu_scene(scene, choose_frame(scene), {.least_uses = 1, .least_triangles = 1});
+        build_gpu_scene(scene, choose_frame(scene), {.min_uses = 1, .min_triangles = 1});
     ASSERT_EQ(instanced.instances.size(), 2u);
     for (const dvec3 p : {dvec3(0.1), dvec3(0.9, 0.1, 0), dvec3(0, 1.1, 0), dvec3(3.1, 0.01, 0),
                           dvec3(2.9, 0, 0), dvec3(5.5, 0.8, 0.1), dvec3(3.9, 0.8, 0.1), dvec3(5, 0, 1.1)})

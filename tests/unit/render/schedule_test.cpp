@@ -101,9 +101,9 @@ TEST(Schedule, SubmissionsAreAsLongAsWanted) {
 // 4096 pixels at first, then four times as many at most in each submission.
 TEST(Schedule, GrowthIsBoundedWhenSubmissionsTakeNoTime) {
     Schedule schedule(uvec2(4096, 4096), 0, 1, 0.05, PASS_GROWTH);
-    for (double most = 4096; !schedule.done(); most *= 4) {
+    for (double max = 4096; !schedule.done(); max *= 4) {
         const Tile tile = schedule.next();
-        EXPECT_LE(double(tile.size.x) * tile.size.y, most);
+        EXPECT_LE(double(tile.size.x) * tile.size.y, max);
         schedule.advance(0.0, uint64_t{tile.size.x} * tile.size.y);
     }
 }

@@ -42,15 +42,15 @@ class GltfAccessor : public Gltf {
     // specification's equations: c / max, and for signed types max(c / max, -1).
     template <class T>
     void expect_type() {
-        constexpr T MOST = std::numeric_limits<T>::max(), LEAST = std::numeric_limits<T>::lowest();
-        const std::vector<T> values{T(0), T(1), MOST, LEAST, T(MOST / 3), T(LEAST + T(1))};
+        constexpr T MAX = std::numeric_limits<T>::max(), MIN = std::numeric_limits<T>::lowest();
+        const std::vector<T> values{T(0), T(1), MAX, MIN, T(MAX / 3), T(MIN + T(1))};
         GltfFile plain, normalized;
         plain.add("SCALAR", values);
         normalized.add_normalized("SCALAR", values);
         std::vector<float> as_is, scaled;
         for (const T c : values) {
             as_is.push_back(float(c));
-            scaled.push_back(float(std::max(double(c) / double(MOST), -1.0)));
+            scaled.push_back(float(std::max(double(c) / double(MAX), -1.0)));
         }
         EXPECT_EQ(floats(plain), as_is);
         EXPECT_EQ(floats(normalized), scaled);

@@ -13,9 +13,9 @@ namespace {
 
 // The numbers of a component in memory, and their normalisation by the specification's equations.
 double component(int type, const uint8_t* bytes, bool normalized) {
-    const auto as = [&](auto zero, double most) {
+    const auto as = [&](auto zero, double max) {
         std::memcpy(&zero, bytes, sizeof zero);
-        return normalized ? std::max(double(zero) / most, -1.0) : double(zero);
+        return normalized ? std::max(double(zero) / max, -1.0) : double(zero);
     };
     switch (type) {
         case TINYGLTF_COMPONENT_TYPE_BYTE:
@@ -112,7 +112,7 @@ class Maker {
 
   private:
     uint32_t below(uint32_t n) { return random_.bits() % n; }
-    double number(double most) { return most * (2.0 * double(random_.unit()) - 1.0); }
+    double number(double max) { return max * (2.0 * double(random_.unit()) - 1.0); }
 
     Json placement() {
         if (below(3) == 0) {

@@ -278,8 +278,8 @@ TEST_F(MtlTextures, RefusesMalformedOptions) {
         const std::string first = name.substr(0, name.find(' '));
         option(name, first + " of map_Kd needs a finite number, found \"a.png\"");
         option(name + " nan", first + " of map_Kd needs a finite number, found \"nan\"");
-        const std::string most = name == "-bm" ? "1000" : "1e+06";
-        option(name + " -2e6", first + " of map_Kd needs numbers of at most " + most + ", found \"-2e6\"");
+        const std::string max = name == "-bm" ? "1000" : "1e+06";
+        option(name + " -2e6", first + " of map_Kd needs numbers of at most " + max + ", found \"-2e6\"");
     }
     option("-s 1 2e6", "-s of map_Kd needs numbers of at most 1e+06, found \"2e6\"");
     for (const std::string name : {"-clamp", "-blendu", "-blendv", "-cc"})
