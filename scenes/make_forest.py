@@ -48,13 +48,13 @@ def conifer(random, whorls=64):
     branches, twigs = [np.array([[0, 0, 0, 0, height, 0, 0.016 * height]])], []
     count = 7
     for i in range(whorls):
-        share = (i + random.uniform(0, 1)) / whorls  # Of the way up the crown.
+        fraction = (i + random.uniform(0, 1)) / whorls  # Of the way up the crown.
         turns = random.uniform(0, 1) + (np.arange(count) + random.uniform(-0.3, 0.3, count)) / count
         angle = 2 * math.pi * turns
-        rise = -0.35 + 0.6 * share + random.uniform(-0.1, 0.1, count)
+        rise = -0.35 + 0.6 * fraction + random.uniform(-0.1, 0.1, count)
         out = np.stack([np.cos(angle), rise, np.sin(angle)], axis=1)
-        length = (0.25 * height * (1 - share) ** 0.9 + 0.2) * random.uniform(0.75, 1.1, (count, 1))
-        start = np.tile([0, height * (0.06 + 0.93 * share), 0], (count, 1))
+        length = (0.25 * height * (1 - fraction) ** 0.9 + 0.2) * random.uniform(0.75, 1.1, (count, 1))
+        start = np.tile([0, height * (0.06 + 0.93 * fraction), 0], (count, 1))
         end = start + length * out
         branches.append(np.hstack([start, end, np.full((count, 1), 0.02)]))
         across = np.stack([-np.sin(angle), np.zeros(count), np.cos(angle)], axis=1)

@@ -269,10 +269,10 @@ def add_hills(sky, d, elevation, veil):
     for number, (mean, variation, frequency, far) in enumerate(HILLS):
         x, y = frequency * math.cos(azimuth) + 31 * number, frequency * math.sin(azimuth) + 57
         top = mean + variation * fractal(x, y, 6, frequency * TEXEL, 0.45)
-        share = smoothstep(-0.6 * TEXEL, 0.6 * TEXEL, top - elevation)
-        if share > 0:
+        fraction = smoothstep(-0.6 * TEXEL, 0.6 * TEXEL, top - elevation)
+        if fraction > 0:
             colour = mix(scale(GROUND, 0.55), veil, far * (1 - 0.25 * smoothstep(0.0, 0.05, elevation)))
-            sky = mix(sky, colour, share)
+            sky = mix(sky, colour, fraction)
     return sky
 
 
@@ -294,7 +294,7 @@ def texel_direction(column, row):
     return direction(2 * math.pi * (column / WIDTH - 0.5), math.pi * (0.5 - row / HEIGHT))
 
 
-def sun_share(column, row, samples=24):
+def sun_fraction(column, row, samples=24):
     """The share of a texel that the sun's disk covers."""
     if dot(texel_direction(column + 0.5, row + 0.5), SUN) < math.cos(SUN_RADIUS + 2 * TEXEL):
         return 0.0
@@ -314,10 +314,10 @@ def radiance(column, row):
         colour = ground(d, veil)
     else:
         colour = add_clouds(clear_sky(d), d)
-        share = sun_share(column, row)
-        if share > 0:
+        fraction = sun_fraction(column, row)
+        if fraction > 0:
             solid_angle = 2 * math.pi * (1 - math.cos(SUN_RADIUS))
-            colour = add(colour, scale(SUN_IRRADIANCE, share / solid_angle))
+            colour = add(colour, scale(SUN_IRRADIANCE, fraction / solid_angle))
     return add_hills(colour, d, elevation, veil) if 0 < elevation < 0.15 else colour
 
 

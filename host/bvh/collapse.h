@@ -16,10 +16,10 @@ struct BinaryNode {
 
     // Filled by find_min_costs. There are many ways to replace this node by at most k nodes or leaves of
     // the wide tree. cost[k], k >= 1: the least sum of the areas of these and all wide nodes below them.
-    // left_share[k]: how many of the k then replace the left child; 0 if this node becomes a wide one itself.
-    // The children of a wide node follow from left_share[BVH_WIDTH].
+    // left_fraction[k]: how many of the k then replace the left child; 0 if this node becomes a wide one
+    // itself. The children of a wide node follow from left_fraction[BVH_WIDTH].
     std::array<double, BVH_WIDTH> cost{};
-    std::array<uint8_t, BVH_WIDTH + 1> left_share{};
+    std::array<uint8_t, BVH_WIDTH + 1> left_fraction{};
 };
 
 // Finds the wide tree with the least sum of areas of nodes, which is the cost of its nodes for a random ray;

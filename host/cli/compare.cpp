@@ -58,9 +58,9 @@ void print(const Comparison& comparison, const CompareOptions& options) {
     }
     const ZTests& tests = *comparison.tests;
     std::printf("pixels   %.3f %% within |z| %.2f (at least %.2f %%), worst z %+.2f in %c of %u,%u: %s\n",
-                100.0 * tests.passing_pixels, tests.pixel.critical, 100.0 * REQUIRED_PIXEL_SHARE,
+                100.0 * tests.passing_pixels, tests.pixel.critical, 100.0 * REQUIRED_PIXEL_FRACTION,
                 tests.pixel.z, tests.pixel.channel, tests.pixel.place.x0, tests.pixel.place.y0,
-                verdict(tests.passing_pixels >= REQUIRED_PIXEL_SHARE));
+                verdict(tests.passing_pixels >= REQUIRED_PIXEL_FRACTION));
     print("blocks", tests.block);
     print("mean", tests.mean);
     if (relmse_decides) std::printf("--relmse decides, not the z-tests\n");

@@ -26,9 +26,9 @@ class LoadingLine {
         if (what != what_ || done < done_) line_.emplace(style_, 0.0);
         what_ = what;
         done_ = done;
-        const double share = of == 0 ? 0.0 : double(done) / double(of);
-        if (!line_->is_due(share)) return;
-        line_->print(line_->is_json() ? json_text(of) : text(of), share);
+        const double fraction = of == 0 ? 0.0 : double(done) / double(of);
+        if (!line_->is_due(fraction)) return;
+        line_->print(line_->is_json() ? json_text(of) : text(of), fraction);
     }
 
   private:

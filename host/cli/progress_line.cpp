@@ -12,7 +12,7 @@ namespace candela {
 static constexpr double LIVE_SECONDS = 0.1;
 static constexpr double JSON_SECONDS = 0.5;
 static constexpr double PLAIN_SECONDS = 10.0;
-static constexpr double PLAIN_SHARE = 0.1;
+static constexpr double PLAIN_FRACTION = 0.1;
 
 ProgressLine::Output ProgressLine::choose(ProgressStyle style) {
     switch (style) {
@@ -42,7 +42,7 @@ bool ProgressLine::is_due(double done) const {
         case Output::live:
             return since >= LIVE_SECONDS;
         case Output::plain:
-            return since >= PLAIN_SECONDS && done - printed_done_ >= PLAIN_SHARE;
+            return since >= PLAIN_SECONDS && done - printed_done_ >= PLAIN_FRACTION;
         case Output::json:
             return since >= JSON_SECONDS;
         case Output::none:

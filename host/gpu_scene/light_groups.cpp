@@ -19,7 +19,7 @@ double sum(std::span<const double> powers) {
 
 // The fraction for a group with that power, out of what is left for it and the other groups; at least 1, and
 // it leaves at least 1 for each of them.
-uint32_t share(double power, double others_power, uint32_t left, uint32_t others) {
+uint32_t fraction(double power, double others_power, uint32_t left, uint32_t others) {
     if (power == 0.0) return 0;
     if (others == 0) return left;
     const auto part = uint32_t(std::floor(double(left) * (power / (power + others_power)) + 0.5));
@@ -50,26 +50,26 @@ LightGroups group_lights(PoweredLights& lights) {
     const auto count = [&](int of_rank) {
         return uint32_t(std::ranges::count(lights.records, of_rank, rank));
     };
-    LightGroups groups{.placed = count(0), .suns = count(1), .sun_share = 0, .sky_share = 0};
+    LightGroups groups{.placed = count(0), .suns = count(1), .sun_fraction = 0, .sky_fraction = 0};
     const std::span<const double> powers = lights.powers;
     const double placed = sum(powers.first(groups.placed));
     const double suns = sum(powers.subspan(groups.placed, groups.suns));
     const double sky = sum(powers.subspan(groups.placed + groups.suns));
     const uint32_t any_placed = groups.placed > 0, any_suns = groups.suns > 0;
-    groups.sky_share = share(sky, suns + placed, WHOLE, any_suns + any_placed);
-    groups.sun_share = share(suns, placed, WHOLE - groups.sky_share, any_placed);
+    groups.sky_fraction = fraction(sky, suns + placed, WHOLE, any_suns + any_placed);
+    groups.sun_fraction = fraction(suns, placed, WHOLE - groups.sky_fraction, any_placed);
     for (uint32_t i = 0; i < lights.records.size(); ++i) {
         LightRecord& light = lights.records[i];
-        uint32_t group_share = WHOLE - groups.sun_share - groups.sky_share;
+        uint32_t group_fraction = WHOLE - groups.sun_fraction - groups.sky_fraction;
         double group_power = placed;
         if (rank(light) == 1) {
-            group_share = groups.sun_share;
+            group_fraction = groups.sun_fraction;
             group_power = suns;
         } else if (rank(light) == 2) {
-            group_share = groups.sky_share;
+            group_fraction = groups.sky_fraction;
             group_power = sky;
         }
-        light.pmf = float(powers[i] / group_power * (double(group_share) / WHOLE));
+        light.pmf = float(powers[i] / group_power * (double(group_fraction) / WHOLE));
     }
     return groups;
 }

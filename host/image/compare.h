@@ -20,7 +20,7 @@ struct CompareOptions {
 // The limit of relmse if there are neither variances nor CompareOptions::relmse.
 inline constexpr double DEFAULT_RELMSE = 1e-3;
 // Fraction of pixels that must pass. Not all: estimates of the variance from few samples have heavy tails.
-inline constexpr double REQUIRED_PIXEL_SHARE = 0.9975;
+inline constexpr double REQUIRED_PIXEL_FRACTION = 0.9975;
 // Edge of the square blocks whose means are tested, in pixels; those at the right and lower edges may be
 // smaller.
 inline constexpr uint32_t COMPARE_BLOCK = 8;
@@ -41,7 +41,9 @@ struct ZTests {
     WorstDeviation block;
     WorstDeviation mean;
 
-    bool passed() const { return passing_pixels >= REQUIRED_PIXEL_SHARE && block.passed() && mean.passed(); }
+    bool passed() const {
+        return passing_pixels >= REQUIRED_PIXEL_FRACTION && block.passed() && mean.passed();
+    }
 };
 
 struct Comparison {

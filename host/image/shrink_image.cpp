@@ -85,10 +85,10 @@ void add_row(const TexelImage& image, const std::byte* texels, std::span<const S
     for (uint32_t x = 0; x < small; ++x) {
         const Stretch across(x, small, image.size.x);
         for (uint32_t i = across.first(); i < across.last(image.size.x); ++i) {
-            const double share = weight * across.weight(i);
+            const double fraction = weight * across.weight(i);
             for (uint32_t c = 0; c < image.channels; ++c) {
                 sums[size_t{x} * image.channels + c] +=
-                    share * double(scales[c]->read(texels + (size_t{i} * image.channels + c) * bytes));
+                    fraction * double(scales[c]->read(texels + (size_t{i} * image.channels + c) * bytes));
             }
         }
     }

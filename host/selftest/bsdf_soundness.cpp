@@ -42,69 +42,69 @@ class Adversary {
         return std::clamp(lo * std::pow(hi / lo, random_.unit()), lo, hi);
     }
     // In [0, 1], often one of the ends.
-    float share() {
+    float fraction() {
         const uint32_t choice = random_.bits() % 6;
         return choice == 0 ? 0.0f : choice == 1 ? 1.0f : random_.unit();
     }
-    vec3 shares() {
-        const float x = share(), y = share();
-        return {x, y, share()};
+    vec3 fractions() {
+        const float x = fraction(), y = fraction();
+        return {x, y, fraction()};
     }
     // In [0, 1), often one of the ends.
-    float number() { return std::min(share(), LAST); }
+    float number() { return std::min(fraction(), LAST); }
 
     ProbedMaterial material(uint32_t model) {
         switch (model) {
             case MATERIAL_DIFFUSE:
-                return diffuse(shares());
+                return diffuse(fractions());
             case MATERIAL_PHONG: {
-                const vec3 ks = shares();
+                const vec3 ks = fractions();
                 const float n = random_.bits() % 8 == 0 ? 0.0f : of_any_size(1e-3f, 1e5f);
-                return phong((vec3(1.0f) - ks) * shares(), ks, n);
+                return phong((vec3(1.0f) - ks) * fractions(), ks, n);
             }
             case MATERIAL_MIRROR:
-                return mirror(shares());
+                return mirror(fractions());
             case MATERIAL_CONDUCTOR:
-                return conductor(shares(), of_any_size(1e-3f, 1.0f));
+                return conductor(fractions(), of_any_size(1e-3f, 1.0f));
             case MATERIAL_DIELECTRIC_SCHLICK:
             case MATERIAL_DIELECTRIC_EXACT:
                 return dielectric(model, random_.bits() % 8 == 0 ? 1.0f : of_any_size(0.1f, 10.0f));
             case MATERIAL_DIFFUSE_TRANSMISSION: {
-                const vec3 reflectance = shares();
-                return diffuse_transmission(reflectance, (vec3(1.0f) - reflectance) * shares());
+                const vec3 reflectance = fractions();
+                return diffuse_transmission(reflectance, (vec3(1.0f) - reflectance) * fractions());
             }
             case MATERIAL_PRINCIPLED:
                 return principled(layers());
             case MATERIAL_UNLIT:
-                return encode_material(PrincipledMaterial{.base_color = shares(), .unlit = true}).record;
+                return encode_material(PrincipledMaterial{.base_color = fractions(), .unlit = true}).record;
             default:
                 assert(false);
                 return {};
         }
     }
     PrincipledMaterial layers() {
-        PrincipledMaterial m{.base_color = shares(),
-                             .metalness = share(),
-                             .roughness = share(),
-                             .diffuse_roughness = share(),
+        PrincipledMaterial m{.base_color = fractions(),
+                             .metalness = fraction(),
+                             .roughness = fraction(),
+                             .diffuse_roughness = fraction(),
                              .ior = random_.bits() % 8 == 0 ? 0.0f : of_any_size(1.0f, 10.0f),
-                             .specular = share(),
-                             .specular_color = shares(),
-                             .anisotropy = share(),
-                             .transmission = share(),
-                             .dispersion = share(),
-                             .diffuse_transmission = share(),
-                             .diffuse_transmission_color = shares(),
-                             .coat = share(),
-                             .coat_roughness = share(),
+                             .specular = fraction(),
+                             .specular_color = fractions(),
+                             .anisotropy = fraction(),
+                             .transmission = fraction(),
+                             .dispersion = fraction(),
+                             .diffuse_transmission = fraction(),
+                             .diffuse_transmission_color = fractions(),
+                             .coat = fraction(),
+                             .coat_roughness = fraction(),
                              .coat_ior = of_any_size(1.0f, 3.0f),
-                             .coat_darkening = share(),
-                             .sheen_color = shares(),
-                             .sheen_roughness = share(),
-                             .fuzz = share(),
-                             .fuzz_color = shares(),
-                             .fuzz_roughness = share(),
-                             .iridescence = share(),
+                             .coat_darkening = fraction(),
+                             .sheen_color = fractions(),
+                             .sheen_roughness = fraction(),
+                             .fuzz = fraction(),
+                             .fuzz_color = fractions(),
+                             .fuzz_roughness = fraction(),
+                             .iridescence = fraction(),
                              .iridescence_ior = of_any_size(1.0f, 3.0f),
                              .iridescence_thickness = of_any_size(1.0f, 2000.0f)};
         if (random_.bits() % 2 == 0) m.inside = Medium{};

@@ -171,9 +171,9 @@ void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evid
                 holds = holds && std::abs(double(s.weight[i]) - weight) <= weight * 0x1p-15 + 0x1p-19;
             }
             // Refraction divides radiance by eta^2, but does not change energy.
-            const glm::dvec3 share = glm::dvec3(s.weight) * (double(s.eta) * double(s.eta));
-            albedo += share;
-            squares += share * share;
+            const glm::dvec3 fraction = glm::dvec3(s.weight) * (double(s.eta) * double(s.eta));
+            albedo += fraction;
+            squares += fraction * fraction;
         }
         evidence.expect(holds, [&] {
             return concat(c.name, ": wi ", s.wi.x, ' ', s.wi.y, ' ', s.wi.z, ", pdf ", s.pdf, " and ",

@@ -45,22 +45,22 @@ class LobeChart {
   public:
     LobeChart(glm::dvec3 axis, double n) : z_(axis), n_(n) { std::tie(x_, y_) = axes_around(axis); }
     ChartPoint at(double a, double b) const {
-        const double log_cosine = std::log1p(-SHARE * a) / (n_ + 1.0), h = -std::expm1(log_cosine);
+        const double log_cosine = std::log1p(-FRACTION * a) / (n_ + 1.0), h = -std::expm1(log_cosine);
         const double r = std::sqrt(h * (2.0 - h)), phi = 2.0 * M_PI * (b - 0.5);
         return {r * std::cos(phi) * x_ + r * std::sin(phi) * y_ + (1.0 - h) * z_,
-                SHARE * 2.0 * M_PI / (n_ + 1.0) * std::exp(-n_ * log_cosine)};
+                FRACTION * 2.0 * M_PI / (n_ + 1.0) * std::exp(-n_ * log_cosine)};
     }
     // Nothing outside the cone.
     std::optional<glm::dvec2> find(glm::dvec3 w) const {
         const glm::dvec3 chord = w - z_;
         const double h = std::min(0.5 * dot(chord, chord), 1.0);
-        const double a = -std::expm1((n_ + 1.0) * std::log1p(-h)) / SHARE;
+        const double a = -std::expm1((n_ + 1.0) * std::log1p(-h)) / FRACTION;
         if (a >= 1.0) return std::nullopt;
         return glm::dvec2(a, turn_of(dot(w, y_), dot(w, x_)));
     }
 
   private:
-    static constexpr double SHARE = 15.0 / 16.0;
+    static constexpr double FRACTION = 15.0 / 16.0;
 
     glm::dvec3 x_, y_, z_;
     double n_;

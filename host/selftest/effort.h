@@ -17,8 +17,8 @@ inline constexpr std::array<std::pair<std::string_view, Effort>, 2> EFFORT_NAMES
 // The number of samples or rays, out of `full`. A sixteenth finds errors that are four times as large, and
 // needs minutes on a driver that needs half an hour for all, such as SwiftShader.
 inline uint32_t sized(Effort effort, uint32_t full) {
-    constexpr uint32_t QUICK_SHARE = 16;
-    return effort == Effort::quick ? full / QUICK_SHARE : full;
+    constexpr uint32_t QUICK_FRACTION = 16;
+    return effort == Effort::quick ? full / QUICK_FRACTION : full;
 }
 
 }  // namespace candela

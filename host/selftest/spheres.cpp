@@ -79,8 +79,8 @@ std::string name_of(const Sphere& sphere) {
 }
 
 // More than this fraction of the rays must have hit the shape; otherwise the test would prove nothing.
-void expect_most_meet(const std::string& name, size_t met, double share, size_t rays, Evidence& evidence) {
-    evidence.expect(double(met) > share * double(rays),
+void expect_most_meet(const std::string& name, size_t met, double fraction, size_t rays, Evidence& evidence) {
+    evidence.expect(double(met) > fraction * double(rays),
                     [&] { return concat(name, ": only ", met, " of ", rays, " rays meet it"); });
 }
 

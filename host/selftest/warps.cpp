@@ -65,8 +65,8 @@ std::vector<double> visible_normals(vec3 w, float alpha) {
         const glm::dvec3 n = normalize(glm::dvec3(r * std::cos(phi), r * std::sin(phi), 1.0));
         // D n.z^4 is the density of slopes, uniform in (a, b); d(normal) has n.z^3 of it, which leaves 1 /
         // n.z.
-        const double share = std::max(0.0, dot(glm::dvec3(w), n)) / n.z * 2.0 * t;
-        expected[row / FINE * WARP_CELLS + column / FINE] += share;
+        const double fraction = std::max(0.0, dot(glm::dvec3(w), n)) / n.z * 2.0 * t;
+        expected[row / FINE * WARP_CELLS + column / FINE] += fraction;
     }
     return expected;
 }

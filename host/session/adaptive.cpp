@@ -23,7 +23,7 @@ constexpr uint32_t FIRST_EVEN = 16;
 constexpr uint32_t EVEN_PART = 8;
 
 // A pixel gets at most this many times the average, since its error may come from a single bright sample.
-constexpr double LARGEST_SHARE = 16.0;
+constexpr double LARGEST_FRACTION = 16.0;
 
 // Replaces each value of a row-major plane by the mean over its work group. A single pixel has too few
 // samples to estimate its error; and the pixels of a group wait for each other, so that they should have the
@@ -110,7 +110,7 @@ void plan_extra_samples(const Accumulation& other_even, uint32_t even, uint32_t 
     std::vector<double> before(pixels);
     for (size_t i = 0; i < pixels; ++i)
         before[i] = extra.limit(i) == UINT32_MAX ? 0.0 : extra.limit(i);
-    const double max = std::min(LARGEST_SHARE * half, MAX_SPP - 1.0);
+    const double max = std::min(LARGEST_FRACTION * half, MAX_SPP - 1.0);
     const auto extra_of = [&](size_t i, double factor) {
         return std::max(before[i], std::min(factor * weights[i], max) - even);
     };

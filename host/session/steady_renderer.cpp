@@ -10,7 +10,7 @@ using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 // Copying the state may use this fraction of the time.
-static constexpr double LARGEST_SHARE_OF_HOLDING = 0.05;
+static constexpr double LARGEST_FRACTION_OF_HOLDING = 0.05;
 
 SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
     : source_(std::move(source)), on_failure_(std::move(on_failure)) {
@@ -66,7 +66,7 @@ void SteadyRenderer::hold() {
     state() = renderer_->download();
     const Clock::time_point now = Clock::now();
     const Seconds pause =
-        std::max(Seconds(source_.hold_seconds), Seconds(now - start) / LARGEST_SHARE_OF_HOLDING);
+        std::max(Seconds(source_.hold_seconds), Seconds(now - start) / LARGEST_FRACTION_OF_HOLDING);
     next_hold_ = now + std::chrono::duration_cast<Clock::duration>(pause);
 }
 

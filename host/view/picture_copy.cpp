@@ -9,7 +9,7 @@
 namespace candela {
 
 static constexpr double COPY_SECONDS = 10.0;
-static constexpr double LARGEST_SHARE = 0.05;
+static constexpr double LARGEST_FRACTION = 0.05;
 
 // A look that keeps the window waiting no longer than this is never skipped [s].
 static constexpr double SHORT_LOOK = 0.1;
@@ -25,11 +25,11 @@ void PictureCopy::take(const Renderer& renderer) {
     const Clock::time_point start = Clock::now();
     state_ = renderer.download();
     const Clock::time_point now = Clock::now();
-    next_ = later(now, std::max(COPY_SECONDS, seconds_between(start, now) / LARGEST_SHARE));
+    next_ = later(now, std::max(COPY_SECONDS, seconds_between(start, now) / LARGEST_FRACTION));
 }
 
 void PictureCopy::look(const Renderer& renderer, uint32_t spp, double seconds) {
-    if (look_seconds_ > std::max(SHORT_LOOK, LARGEST_SHARE * seconds)) {
+    if (look_seconds_ > std::max(SHORT_LOOK, LARGEST_FRACTION * seconds)) {
         look_seconds_ /= 2;
         return;
     }

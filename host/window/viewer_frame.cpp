@@ -13,7 +13,7 @@ namespace candela {
 namespace {
 
 // Drawing may use this fraction of the time, unless the user acts.
-constexpr double DRAWING_SHARE = 0.1;
+constexpr double DRAWING_FRACTION = 0.1;
 
 // After a pause, the camera flies no farther than in this time [s].
 constexpr double LONGEST_FRAME = 0.1;
@@ -46,7 +46,7 @@ void Viewer::frame() {
         display_->draw(renderer_->accumulation(), size, state_.tonemap, state_.exposure_ev, gui_.draw(size));
         presenter_->show(display_->screen(), size.x, size.y);
     }
-    next_draw_ = later(Clock::now(), seconds_between(start, Clock::now()) / DRAWING_SHARE);
+    next_draw_ = later(Clock::now(), seconds_between(start, Clock::now()) / DRAWING_FRACTION);
 }
 
 // One turn of the user interface: the mouse and keys, then the panel.

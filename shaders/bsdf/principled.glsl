@@ -53,8 +53,8 @@ BsdfValue principled_refraction(Principled p, vec3 wo, vec3 wi) {
         principled_facet(p, cos_o, reflected, transmitted);
         bool exists = cos_o > 0.0 && cos_i > 0.0;
         float f = 4.0 * d * jacobian / ((wo.z + reach_o) * (-wi.z + reach_i));
-        float share = principled_transmitted_share(p, reflected, transmitted);
-        float pdf = 2.0 * d * jacobian * square(eta) / (wo.z + reach_o) * share;
+        float fraction = principled_transmitted_fraction(p, reflected, transmitted);
+        float pdf = 2.0 * d * jacobian * square(eta) / (wo.z + reach_o) * fraction;
         vec3 here = principled_has(PRINCIPLED_HAS_DISPERSION) ? vec3(equal(ivec3(i), ivec3(0, 1, 2))) : vec3(1.0);
         if (exists) {
             sum.f += here * transmitted * f;
@@ -73,9 +73,9 @@ BsdfValue principled_reflection(Principled p, vec3 wo, vec3 wi, bool through) {
     float visibility = ggx_visibility(wo.z, wi.z, reach_o, ggx_reach(p.alpha, wi));
     vec3 reflected, transmitted;
     principled_facet(p, 0.5 * length(sum), reflected, transmitted);
-    float share = PRINCIPLED_TRANSMITS ? principled_transmitted_share(p, reflected, transmitted) : 0.0;
+    float fraction = PRINCIPLED_TRANSMITS ? principled_transmitted_fraction(p, reflected, transmitted) : 0.0;
     return BsdfValue((through ? transmitted : reflected) * (d * visibility),
-                     ggx_reflected_pdf(d, wo.z, reach_o) * (through ? share : 1.0 - share));
+                     ggx_reflected_pdf(d, wo.z, reach_o) * (through ? fraction : 1.0 - fraction));
 }
 
 // Value and density of a coat that is not ideal, with its own normal, which also decides the side of a direction. The
@@ -147,22 +147,22 @@ BsdfSample principled_sample_facets(Principled p, vec3 wo, float uc, vec2 u) {
     float cos_o = dot(wo, h);
     vec3 reflected, transmitted;
     principled_facet(p, cos_o, reflected, transmitted);
-    float share = PRINCIPLED_TRANSMITS ? principled_transmitted_share(p, reflected, transmitted) : 0.0;
-    if (!PRINCIPLED_TRANSMITS || uc >= share) {
+    float fraction = PRINCIPLED_TRANSMITS ? principled_transmitted_fraction(p, reflected, transmitted) : 0.0;
+    if (!PRINCIPLED_TRANSMITS || uc >= fraction) {
         vec3 wi = p.ideal ? mirror_direction(wo) : normalize(2.0 * cos_o * h - wo);
         if (wi.z <= 0.0) return bsdf_sample_failed();
-        return principled_ideal(wi, reflected, p.pmf.y * (1.0 - share), 1.0);
+        return principled_ideal(wi, reflected, p.pmf.y * (1.0 - fraction), 1.0);
     }
     if (!p.refracts) {
         vec3 wi = p.ideal ? mirror_direction(wo) : normalize(2.0 * cos_o * h - wo);
         if (wi.z <= 0.0) return bsdf_sample_failed();
-        return principled_ideal(vec3(wi.xy, -wi.z), transmitted, p.pmf.y * share, 1.0);
+        return principled_ideal(vec3(wi.xy, -wi.z), transmitted, p.pmf.y * fraction, 1.0);
     }
     // One colour decides the direction; the others follow if they scatter into it, too.
     float eta = p.eta.y;
-    float chosen = share;
+    float chosen = fraction;
     if (principled_has(PRINCIPLED_HAS_DISPERSION)) {
-        float rest = uc / share;
+        float rest = uc / fraction;
         eta = rest < p.hue.x ? p.eta.x : rest < p.hue.x + p.hue.y ? p.eta.y : p.eta.z;
         vec3 along = vec3(equal(p.eta, vec3(eta)));
         chosen *= dot(along, p.hue);

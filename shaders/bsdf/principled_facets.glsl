@@ -135,7 +135,7 @@ void principled_facet(Principled p, float cos_o, out vec3 reflected, out vec3 tr
 }
 
 // The probability of transmission by facets that reflect and transmit this much.
-float principled_transmitted_share(Principled p, vec3 reflected, vec3 transmitted) {
+float principled_transmitted_fraction(Principled p, vec3 reflected, vec3 transmitted) {
     float r = dot(p.hue, reflected), t = dot(p.hue, transmitted);
     return t > 0.0 ? t / (r + t) : 0.0;
 }

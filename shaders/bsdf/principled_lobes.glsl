@@ -124,9 +124,9 @@ struct BaseReflectance {
     vec3 d_edge;
     vec3 m_0;
     vec3 m_edge;
-    vec3 max_0;          // The greatest channel of the dielectric, with the index of red, of green and of blue light:
-    vec3 max_edge;       // max_0 + max_edge t.
-    float smooth_share;  // The greatest channel of the mirror reflection of the dielectric without a film.
+    vec3 max_0;     // The greatest channel of the dielectric, with the index of red, of green and of blue light:
+    vec3 max_edge;  // max_0 + max_edge t.
+    float smooth_fraction;  // The greatest channel of the mirror reflection of the dielectric without a film.
 };
 
 BaseReflectance principled_base_reflectance(Principled p, PrincipledSurface s, vec3 wo) {
@@ -143,7 +143,7 @@ BaseReflectance principled_base_reflectance(Principled p, PrincipledSurface s, v
         f.max_0 = r.specular * min(f0 * max_component(r.specular_color), 1.0);
     }
     f.max_edge = (principled_has(PRINCIPLED_HAS_SPECULAR) ? r.specular : 1.0) - f.max_0;
-    f.smooth_share = max_component(f.d_0 + f.d_edge * fresnel_edge(s.eta, wo.z));
+    f.smooth_fraction = max_component(f.d_0 + f.d_edge * fresnel_edge(s.eta, wo.z));
     f.m_0 = s.base_color;
     f.m_edge = 1.0 - s.base_color;
     if (principled_has(PRINCIPLED_HAS_IRIDESCENCE) && !s.inside && r.iridescence > 0.0) {
@@ -235,7 +235,7 @@ void principled_base(inout Principled p, PrincipledSurface s, vec3 wo, float abo
     if (principled_has(PRINCIPLED_HAS_COAT_DARKENING)) {
         // The light that the metal and the dielectric send up at normal incidence.
         vec3 base = p.t_0 * ((1.0 - transmission) * (1.0 - diffuse_transmission)) * s.base_color;
-        float roughness = mix(mix(1.0, r.roughness, transmission), r.roughness, f.smooth_share);
+        float roughness = mix(mix(1.0, r.roughness, transmission), r.roughness, f.smooth_fraction);
         principled_darken(p, s, wo, mix(f.d_0 + base, f.m_0, metalness), mix(roughness, r.roughness, metalness));
     }
     principled_base_choices(p, s, mean);

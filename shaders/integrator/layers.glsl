@@ -50,7 +50,7 @@ Frame principled_frame(PrincipledRecord p, Interaction s) {
 
 // Fraction of material i's emission that passes its fuzz, coat and sheen at that cosine to its normal; unbiased over
 // `random`, uniform in [0, 1)^2.
-float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
+float emitted_fraction(uint i, Attributes at, float cosine, vec2 random) {
     MaterialRecord m = scene_material(i);
     if (!is_principled(m)) return 1.0;
     PrincipledRecord record = principled_at(m, at);
@@ -59,11 +59,11 @@ float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
 }
 
 // The same for a sample of a light.
-float emitted_share(LightSample light, LitPoint lit) {
+float emitted_fraction(LightSample light, LitPoint lit) {
     if (!light_has_surface(light_at(light.light))) return 1.0;
     uvec4 bits = hash_pcg4d(uvec4(floatBitsToUint(light.wi), floatBitsToUint(lit.p.x)));
-    return emitted_share(scene_light_textures(light.light).material, light_sample_attributes(light, lit),
-                         light_sample_cosine(light, lit), unit_float(bits.xy));
+    return emitted_fraction(scene_light_textures(light.light).material, light_sample_attributes(light, lit),
+                            light_sample_cosine(light, lit), unit_float(bits.xy));
 }
 
 // Whether the material's coat has its own normal map.
@@ -104,11 +104,11 @@ bool has_coat_map(MaterialRecord m) {
     return false;
 }
 
-float emitted_share(uint i, Attributes at, float cosine, vec2 random) {
+float emitted_fraction(uint i, Attributes at, float cosine, vec2 random) {
     return 1.0;
 }
 
-float emitted_share(LightSample light, LitPoint lit) {
+float emitted_fraction(LightSample light, LitPoint lit) {
     return 1.0;
 }
 

@@ -107,18 +107,18 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     LitPoint lit = path_lit_point(path);
     float distance_squared = LIT_FROM_BEHIND ? dot(s.p - lit.p, s.p - lit.p) : square(t);
     float pdf_light = light_pdf_li(s.light, lit, distance_squared, dot(s.wo, s.n), s.front);
-    float share = 1.0;
+    float fraction = 1.0;
     if (HAS_COATED_EMISSION) {
-        share = emitted_share(s.material, s.attributes, dot(s.wo, s.n), unit_float(hit_random(path.ray).xy));
+        fraction = emitted_fraction(s.material, s.attributes, dot(s.wo, s.n), unit_float(hit_random(path.ray).xy));
     }
-    estimate.L += emission_weight(path, path.pdf_bsdf, pdf_light) * share * path.beta *
+    estimate.L += emission_weight(path, path.pdf_bsdf, pdf_light) * fraction * path.beta *
                   area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
 }
 
 // A sample of a light for the surface, as lit; layers above the emitter pass a fraction of its radiance.
 LightSample sample_light(LitPoint lit, Sampler random, uint pair) {
     LightSample light = light_sample_li(lit, sampler_triple(random, pair + PAIR_LIGHT));
-    if (HAS_COATED_EMISSION) light.Li *= emitted_share(light, lit);
+    if (HAS_COATED_EMISSION) light.Li *= emitted_fraction(light, lit);
     return light;
 }
 

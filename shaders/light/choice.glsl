@@ -65,8 +65,8 @@ uint light_stretch(uint bits, uint half_width) {
 uint light_choose(LitPoint lit, uint bits) {
     if (ONE_LIGHT) return 0u;
     LightGroups groups = scene_parameters().lights;
-    uint sky = SKY_IS_LIGHT ? groups.sky_share : 0u;
-    uint suns = HAS_SUNS ? groups.sun_share : 0u;
+    uint sky = SKY_IS_LIGHT ? groups.sky_fraction : 0u;
+    uint suns = HAS_SUNS ? groups.sun_fraction : 0u;
     bool is_sky = bits >> 1u < sky;
     bool is_sun = HAS_SUNS && !is_sky && (bits >> 1u) - sky < suns;
     uint first = is_sun ? groups.placed : 0u;

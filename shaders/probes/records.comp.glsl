@@ -19,8 +19,8 @@ void put_parameters(Parameters p) {
     put(p.rr_depth);
     put(p.lights.placed);
     put(p.lights.suns);
-    put(p.lights.sun_share);
-    put(p.lights.sky_share);
+    put(p.lights.sun_fraction);
+    put(p.lights.sky_fraction);
     put(p.environment_size);
     put(p.environment_turn);
     put(p.lens_x);

@@ -9,7 +9,7 @@
 //                                                                       entry 2i + 1: last_word, range
 //
 //   LightGroups
-//     0: placed, suns, sun_share, sky_share
+//     0: placed, suns, sun_fraction, sky_fraction
 #ifndef SHARED_LIGHT_H
 #define SHARED_LIGHT_H
 
@@ -57,8 +57,8 @@ struct LightRecord {
 struct LightGroups {
     uint placed;
     uint suns;
-    uint sun_share;  // Probability of choosing some sun, in units of 2^-31.
-    uint sky_share;  // Probability of choosing the sky. The others have the rest.
+    uint sun_fraction;  // Probability of choosing some sun, in units of 2^-31.
+    uint sky_fraction;  // Probability of choosing the sky. The others have the rest.
 };
 
 // A piece of the sky in latitude and longitude.
@@ -96,7 +96,7 @@ inline std::array<uvec4, LIGHT_WORDS> pack(const LightRecord& l) {
 }
 
 inline std::array<uvec4, LIGHT_GROUPS_WORDS> pack(const LightGroups& g) {
-    return {uvec4(g.placed, g.suns, g.sun_share, g.sky_share)};
+    return {uvec4(g.placed, g.suns, g.sun_fraction, g.sky_fraction)};
 }
 
 inline std::array<uvec4, ENVIRONMENT_TEXEL_WORDS> pack(const EnvironmentTexel& t) {

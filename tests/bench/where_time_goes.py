@@ -81,19 +81,19 @@ def main():
         command = [arguments.candela, "render", arguments.scene, "-o", str(Path(folder, "out.png")), "--quiet", *options]
         samples, regions = sampled(command, arguments.seconds, folder)
 
-        def share(first, last):
+        def fraction(first, last):
             return 100.0 * (bisect.bisect(samples, last) - bisect.bisect_left(samples, first)) / len(samples)
 
-        blocks = [block for start, code in regions if share(start, start + len(code)) > 1.0
+        blocks = [block for start, code in regions if fraction(start, start + len(code)) > 1.0
                   for block in basic_blocks(disassembled(start, code, folder))]
-    blocks.sort(key=lambda block: -share(block[0][0], block[-1][0]))
+    blocks.sort(key=lambda block: -fraction(block[0][0], block[-1][0]))
     print(f"{len(samples)} samples\n  share  instructions")
     for block in blocks[:20]:
-        print(f"{share(block[0][0], block[-1][0]):6.2f} % {len(block):8d}  {block[0][0]:x} .. {block[-1][1]}")
+        print(f"{fraction(block[0][0], block[-1][0]):6.2f} % {len(block):8d}  {block[0][0]:x} .. {block[-1][1]}")
     if arguments.listing:
         arguments.listing.write_text("".join(
-            f"\nblock {block[0][0]:x}, {share(block[0][0], block[-1][0]):.2f} %\n"
-            + "".join(f"{share(address, address):6.2f} {address:x}: {text}\n" for address, text in block)
+            f"\nblock {block[0][0]:x}, {fraction(block[0][0], block[-1][0]):.2f} %\n"
+            + "".join(f"{fraction(address, address):6.2f} {address:x}: {text}\n" for address, text in block)
             for block in blocks), encoding="utf-8")
 
 

@@ -48,8 +48,8 @@ def poses(dump, file):
     read = pose.File(file)
     for index, animation in enumerate(read.items("animations")):
         start, end = pose.duration(read, animation)
-        for share in TIMES:
-            time = float(start + share * (end - start))
+        for fraction in TIMES:
+            time = float(start + fraction * (end - start))
             yield f"animation {index} at {time:.6g}", *compare(dump, file, index, time)
 
 

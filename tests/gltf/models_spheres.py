@@ -14,7 +14,7 @@ CODES = (0, 64, 128, 191, 255)
 GOLD, RED, TEAL, BLACK = (0.6, 0.44, 0.17), (0.3, 0.02, 0.02), (0.02, 0.12, 0.13), (0.02,) * 3
 
 
-def share(code):
+def fraction(code):
     return code / 255
 
 
@@ -69,7 +69,7 @@ def metal_rough_spheres(stage):
     balls = Balls(stage, 5, 4)
     rows = []
     for metallic, colour in ((255, GOLD), (0, TEAL)):
-        rows.append([(f"{share(code):.2f}", stage.surface(colour, share(metallic), share(code))) for code in CODES])
+        rows.append([(f"{fraction(code):.2f}", stage.surface(colour, fraction(metallic), fraction(code))) for code in CODES])
         rows.append([("image", stage.surface(colour, 1, 1, base={"metallicRoughnessTexture": grey(
             stage, 37, code, metallic)})) for code in CODES])
     rects = balls.rows(*rows)
@@ -89,9 +89,9 @@ def clear_coat_test(stage):
     def coat(**values):
         return stage.surface(RED, 0, 0.9, {"clearcoat": values} if values else None)
 
-    rows = [[(f"{share(c):.2f}", coat(clearcoatFactor=share(c)) if c else coat()) for c in CODES],
+    rows = [[(f"{fraction(c):.2f}", coat(clearcoatFactor=fraction(c)) if c else coat()) for c in CODES],
             [("image", coat(clearcoatFactor=1, clearcoatTexture=grey(stage, c, 90, 50))) for c in CODES],
-            [(f"{share(c):.2f}", coat(clearcoatFactor=1, clearcoatRoughnessFactor=share(c))) for c in CODES],
+            [(f"{fraction(c):.2f}", coat(clearcoatFactor=1, clearcoatRoughnessFactor=fraction(c))) for c in CODES],
             [("image", coat(clearcoatFactor=1, clearcoatRoughnessFactor=1,
                             clearcoatRoughnessTexture=grey(stage, 90, c, 50))) for c in CODES]]
     rects = balls.rows(*rows)
@@ -134,10 +134,10 @@ def sheen_test_grid(stage):
     blue = (100, 120, 250)
     factor = [decoded(c) for c in blue]
     white = [1, 1, 1]
-    rows = [[(f"white {share(c):.1f}", cloth(sheenColorFactor=white, sheenRoughnessFactor=share(c))) for c in codes],
-            [(f"blue {share(c):.1f}", cloth(sheenColorFactor=factor, sheenRoughnessFactor=share(c))) for c in codes],
+    rows = [[(f"white {fraction(c):.1f}", cloth(sheenColorFactor=white, sheenRoughnessFactor=fraction(c))) for c in codes],
+            [(f"blue {fraction(c):.1f}", cloth(sheenColorFactor=factor, sheenRoughnessFactor=fraction(c))) for c in codes],
             [("image", cloth(sheenColorFactor=white, sheenColorTexture=grey(stage, *blue),
-                             sheenRoughnessFactor=share(c))) for c in codes],
+                             sheenRoughnessFactor=fraction(c))) for c in codes],
             [("alpha", cloth(sheenColorFactor=white, sheenRoughnessFactor=1,
                              sheenRoughnessTexture=grey(stage, 200, 90, 10, c))) for c in codes]]
     rects = balls.rows(*rows)
@@ -155,14 +155,14 @@ def iridescence(stage, metallic):
 
     nm = (150, 275, 400, 525, 650)
     image = [round(255 * (t - 100) / 600) for t in nm]  # Between 100 and 700 nm.
-    exact = [100 + 600 * share(c) for c in image]
+    exact = [100 + 600 * fraction(c) for c in image]
     rows = [[(f"1.3 {t}", film(iridescenceThicknessMaximum=t)) for t in nm],
             [(f"1.8 {t}", film(iridescenceIor=1.8, iridescenceThicknessMaximum=x)) for t, x in zip(nm, exact)],
             [("image", film(iridescenceIor=1.8, iridescenceThicknessMinimum=100, iridescenceThicknessMaximum=700,
                             iridescenceThicknessTexture=grey(stage, 200, c, 30))) for c in image],
             [("none", stage.surface(*base)), ("weight 0", film(iridescenceFactor=0)),
              ("image 0", film(iridescenceTexture=grey(stage, 0, 200, 90))),
-             ("weight .5", film(iridescenceFactor=share(128), iridescenceIor=1.8)),
+             ("weight .5", film(iridescenceFactor=fraction(128), iridescenceIor=1.8)),
              ("image .5", film(iridescenceIor=1.8, iridescenceTexture=grey(stage, 128, 10, 255)))]]
     rects = balls.rows(*rows)
     alike(stage, rects, (1, 2))
@@ -197,7 +197,7 @@ def specular_test(stage):
         return stage.surface(BLACK, 0, 0.15, {"ior": {"ior": 1.8}, "specular": values})
 
     colours = [(255, 255, 255), (250, 200, 110), (240, 80, 80), (90, 140, 250), (0, 0, 0)]
-    rows = [[(f"{share(c):.2f}", plastic(specularFactor=share(c))) for c in CODES],
+    rows = [[(f"{fraction(c):.2f}", plastic(specularFactor=fraction(c))) for c in CODES],
             [("alpha", plastic(specularTexture=grey(stage, 200, 90, 10, c))) for c in CODES],
             [("colour", plastic(specularColorFactor=[decoded(c) for c in colour])) for colour in colours],
             [("image", plastic(specularColorTexture=grey(stage, *colour))) for colour in colours]]

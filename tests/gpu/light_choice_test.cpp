@@ -108,11 +108,11 @@ TEST_F(LightChoiceTest, EveryWordOfARareGroupIsUsed) {
     const float power = EACH / 2 * 0x1p-28f;
     const Parts parts{.lamps = {1, 1, 1, 1}, .suns = {power, power, power}, .sky = true};
     const GpuScene gpu = build_gpu_scene(scene_of(parts), SceneFrame{});
-    ASSERT_EQ(gpu.light_groups.sky_share, 1u << 30);
-    ASSERT_EQ(gpu.light_groups.sun_share, 3 * EACH / 2);
+    ASSERT_EQ(gpu.light_groups.sky_fraction, 1u << 30);
+    ASSERT_EQ(gpu.light_groups.sun_fraction, 3 * EACH / 2);
     std::vector<LightChoiceItem> items;
     for (uint32_t i = 0; i < 3 * EACH + 2; ++i)
-        items.push_back({.choice = 2 * gpu.light_groups.sky_share - 1 + i});
+        items.push_back({.choice = 2 * gpu.light_groups.sky_fraction - 1 + i});
     const std::vector<LightChoice> choices = choose(gpu, items);
     EXPECT_EQ(choices.front().chosen, 7u);  // The sky.
     EXPECT_EQ(choices.back().chosen, 0u);   // A lamp.

@@ -134,8 +134,8 @@ TEST_F(PhongTest, LobeAndBaseAreChosenByTheirAlbedo) {
     const vec3 aside = normalize(vec3(1, 0, 1));
     const BsdfResult at_aside =
         run({{.material = pack(phong(kd, ks, 1e5f)), .wo = VIEWS[0], .wi = aside}})[0];
-    const double share = double(dot(kd, rgb)) / (double(dot(kd, rgb)) + double(dot(ks, rgb)));
-    EXPECT_NEAR(at_aside.pdf_of_wi, share * std::sqrt(0.5) / M_PI, 0x1p-21);
+    const double fraction = double(dot(kd, rgb)) / (double(dot(kd, rgb)) + double(dot(ks, rgb)));
+    EXPECT_NEAR(at_aside.pdf_of_wi, fraction * std::sqrt(0.5) / M_PI, 0x1p-21);
 }
 
 // A material without lobe or base samples the other one alone.

@@ -138,34 +138,34 @@ class PrincipledTest : public BsdfTest {
 
 // Random materials of all layers: the seed decides which of them there are.
 PrincipledMaterial random_material(Random& random) {
-    const auto share = [&]() { return random.bits() % 3 == 0 ? 0.0f : random.unit(); };
+    const auto fraction = [&]() { return random.bits() % 3 == 0 ? 0.0f : random.unit(); };
     const auto color = [&]() { return vec3(random.unit(), random.unit(), random.unit()); };
     const bool prism = random.bits() % 4 == 0;
     PrincipledMaterial m{
         .base_color = color(),
-        .metalness = share(),
+        .metalness = fraction(),
         .roughness = 0.15f + 0.85f * random.unit(),
-        .diffuse_roughness = share(),
+        .diffuse_roughness = fraction(),
         .ior = 1.1f + random.unit(),
-        .specular = 1.0f - share(),
-        .specular_color = vec3(1.0f) - share() * color(),
-        .anisotropy = share(),
+        .specular = 1.0f - fraction(),
+        .specular_color = vec3(1.0f) - fraction() * color(),
+        .anisotropy = fraction(),
         // On the device, what lies under a dielectric that parts colours takes green's share, and a film on
         // it has three base indices at once; in the reference, each colour has a material of its own.
-        .transmission = prism ? 1.0f : share(),
+        .transmission = prism ? 1.0f : fraction(),
         .dispersion = prism ? random.unit() : 0.0f,
-        .diffuse_transmission = share(),
+        .diffuse_transmission = fraction(),
         .diffuse_transmission_color = color(),
-        .coat = share(),
+        .coat = fraction(),
         .coat_roughness = 0.15f + 0.85f * random.unit(),
         .coat_ior = 1.2f + random.unit(),
-        .coat_darkening = share(),
-        .sheen_color = share() * color(),
+        .coat_darkening = fraction(),
+        .sheen_color = fraction() * color(),
         .sheen_roughness = 0.3f + 0.7f * random.unit(),
-        .fuzz = share(),
+        .fuzz = fraction(),
         .fuzz_color = color(),
         .fuzz_roughness = 0.1f + 0.9f * random.unit(),
-        .iridescence = prism ? 0.0f : share(),
+        .iridescence = prism ? 0.0f : fraction(),
         .iridescence_ior = 1.1f + random.unit(),
         .iridescence_thickness = 100.0f + 900.0f * random.unit()};
     if (random.bits() % 2 == 0) m.inside = Medium{};

@@ -181,7 +181,7 @@ ExpectedHit in_double(const RayItem& ray, const TriangleMesh& mesh, uint32_t id)
 }
 
 TEST_F(TraversalTest, DistancesAgreeWithDoublePrecision) {
-    const auto check = [&](const TriangleMesh& mesh, const Rays& rays, double required_share) {
+    const auto check = [&](const TriangleMesh& mesh, const Rays& rays, double required_fraction) {
         const GpuScene gpu = build_gpu_scene(scene_of_mesh(mesh), SceneFrame{});
         const std::vector<TraversalResult> results = trace(gpu, rays, SceneAccess::texel_buffers);
         size_t checked = 0;
@@ -192,7 +192,7 @@ TEST_F(TraversalTest, DistancesAgreeWithDoublePrecision) {
             ++checked;
             ASSERT_NEAR(results[i].t, expected.t, expected.bound) << i;
         }
-        EXPECT_GT(double(checked), required_share * double(rays.size()));
+        EXPECT_GT(double(checked), required_fraction * double(rays.size()));
     };
     check(sphere_mesh(32, 32), random_rays(samples(10000), vec3(0), 0.5f, 26), 0.99);
     const TriangleMesh soup = triangle_soup(1000, 0.2f, 27);

@@ -207,25 +207,25 @@ class Principled(mi.BSDF):
         fresnel = s * (top + (1 - top) * t)
         lost = s * (top * (1 - leaves) + (1 - top) * (t - t_leaves))
         opaque, glass = (1 - m) * (1 - self.transmission), (1 - m) * self.transmission
-        up_share = dr.select(enters, self.up_outside, self.up_inside)
+        up_fraction = dr.select(enters, self.up_outside, self.up_inside)
         eta = dr.select(enters, self.ior, 1 / self.ior)
         spread = mi.Float(1) if self.thin else 1 / (eta * eta)  # Of radiance that is transmitted.
 
         coat = self.coat_facets.means(wi)
         coat_f0 = self.coat_facets.f0
-        coat_share = dr.select(enters, self.coat * (coat_f0 * coat[0] + (1 - coat_f0) * coat[2]), 0)
-        below = 1 - coat_share
+        coat_fraction = dr.select(enters, self.coat * (coat_f0 * coat[0] + (1 - coat_f0) * coat[2]), 0)
+        below = 1 - coat_fraction
 
         white = s * self.f0  # What the dielectric reflects of what its facets lose.
         diffuse = opaque * (1 - fresnel + lost * (1 - float(white.max())))
         up = m * literal(self.metal_lost) * (1 - leaves) + opaque * lost * literal(white)
-        up += glass * (1 - returned) * up_share + diffuse * (1 - self.diffuse_transmission) * literal(self.base)
-        down = glass * (1 - returned) * (1 - up_share) * literal(self.base)
+        up += glass * (1 - returned) * up_fraction + diffuse * (1 - self.diffuse_transmission) * literal(self.base)
+        down = glass * (1 - returned) * (1 - up_fraction) * literal(self.base)
         down += diffuse * self.diffuse_transmission * literal(self.diffuse_transmission_color)
         up, down = below * up, below * spread * down
 
         facets = below * (m + opaque * fresnel + glass)
-        weights = [coat_share, facets, dr.max(up), dr.max(down)]
+        weights = [coat_fraction, facets, dr.max(up), dr.max(down)]
         total = weights[0] + weights[1] + weights[2] + weights[3]
         pmf = [w / total for w in weights]
         return {"eta": eta, "spread": spread, "below": below, "enters": enters, "up": up, "down": down, "pmf": pmf}
@@ -237,10 +237,10 @@ class Principled(mi.BSDF):
         dielectric = lambda f0: self.specular * (f0 + (1 - f0) * t)  # noqa: E731
         clear = lambda f0: dr.select(total, 1, dielectric(f0))  # noqa: E731
         schlick = literal(self.base) + literal(1 - self.base) * (1 - cosine) ** 5
-        m, share = self.metalness, self.transmission
+        m, fraction = self.metalness, self.transmission
         f0 = literal(self.f0)
-        reflected = m * schlick + (1 - m) * ((1 - share) * dielectric(f0) + share * clear(f0))
-        return reflected, (1 - m) * share * (1 - clear(float(self.f0.max())))
+        reflected = m * schlick + (1 - m) * ((1 - fraction) * dielectric(f0) + fraction * clear(f0))
+        return reflected, (1 - m) * fraction * (1 - clear(float(self.f0.max())))
 
     def chance_to_transmit(self, parts, cosine):
         """Probability that a sampled facet of the base transmits."""
@@ -277,7 +277,7 @@ class Principled(mi.BSDF):
             h = dr.normalize(wi + mirrored)
             c = dr.dot(wi, h)
             jacobian = 1 / (4 * c)
-            share, transmitted = facets.ggx.eval(h) * facets.shadowing(wi, mirrored, h) / (4 * wi.z), jacobian
+            fraction, transmitted = facets.ggx.eval(h) * facets.shadowing(wi, mirrored, h) / (4 * wi.z), jacobian
             allowed = mi.Bool(True)
         else:
             h = dr.normalize(dr.select(reflects, wi + wo, wi + eta * wo))
@@ -287,11 +287,11 @@ class Principled(mi.BSDF):
             denominator = (c + eta * c_light) ** 2
             jacobian = dr.select(reflects, 1 / (4 * c), eta * eta * abs(c_light) / denominator)
             # Walter's equation 21 for radiance; its index of refraction is that of the viewer's side.
-            share = facets.ggx.eval(h) * facets.shadowing(wi, wo, h)
-            share *= dr.select(reflects, 1 / (4 * wi.z), c * abs(c_light) / (wi.z * denominator))
+            fraction = facets.ggx.eval(h) * facets.shadowing(wi, wo, h)
+            fraction *= dr.select(reflects, 1 / (4 * wi.z), c * abs(c_light) / (wi.z * denominator))
         reflected, transmitted = self.reflectance(parts, c)
         down = self.chance_to_transmit(parts, c)
-        value = dr.select(reflects, reflected, transmitted * literal(self.base)) * share
+        value = dr.select(reflects, reflected, transmitted * literal(self.base)) * fraction
         pdf = facets.ggx.pdf(wi, h) * jacobian * dr.select(reflects, 1 - down, down)
         return value & allowed, dr.select(allowed, pdf, 0)
 
@@ -364,8 +364,8 @@ def sampled_energy(bsdf, cosine, count=1 << 20):
     random = mi.PCG32(size=count)
     numbers = [random.next_float32() for _ in range(3)]
     sample, weight = bsdf.sample(mi.BSDFContext(), si, numbers[0], mi.Point2f(numbers[1], numbers[2]))
-    share = np.array(weight.x * sample.eta * sample.eta, dtype=float)
-    return share.mean(), share.std() / np.sqrt(count)
+    fraction = np.array(weight.x * sample.eta * sample.eta, dtype=float)
+    return fraction.mean(), fraction.std() / np.sqrt(count)
 
 
 def check_energy():

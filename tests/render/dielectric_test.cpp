@@ -58,9 +58,9 @@ class DielectricTest : public RenderTest {
         return scene;
     }
     // Light of RADIANCE must reach the camera with that share. Roundings: some ten vertices of some ten each.
-    void expect_share(const Scene& scene, uint32_t spp, glm::dvec3 share) const {
+    void expect_fraction(const Scene& scene, uint32_t spp, glm::dvec3 fraction) const {
         const RenderSettings settings = independent_settings(32, Estimator::mis, 1);
-        expect_mean(image_of(render(scene, settings, samples(spp))), glm::dvec3(RADIANCE) * share, 1e-5);
+        expect_mean(image_of(render(scene, settings, samples(spp))), glm::dvec3(RADIANCE) * fraction, 1e-5);
     }
 };
 
@@ -78,10 +78,10 @@ TEST_F(DielectricTest, ASlabTransmitsAndReflects) {
             add_slab(scene, {.ior = ETA, .fresnel = kind}, THICKNESS);
             Scene behind = scene;
             add_panel(behind, -2, false, RADIANCE);
-            expect_share(behind, 1024, glm::dvec3(transmitted));
+            expect_fraction(behind, 1024, glm::dvec3(transmitted));
             Scene in_front = scene;
             add_panel(in_front, 4, true, RADIANCE);
-            expect_share(in_front, 3200, glm::dvec3(1.0 - transmitted));
+            expect_fraction(in_front, 3200, glm::dvec3(1.0 - transmitted));
         }
     }
 }
@@ -92,7 +92,7 @@ TEST_F(DielectricTest, OnlyTheRatioOfTheIndicesCounts) {
     add_slab(scene, {.ior = 1.2f, .exterior_ior = 1.8f, .fresnel = Fresnel::exact}, THICKNESS);
     add_panel(scene, -2, false, RADIANCE);
     const double r = fresnel(1.8 / 1.2, 0.0);
-    expect_share(scene, 1024, glm::dvec3((1.0 - r) / (1.0 + r)));
+    expect_fraction(scene, 1024, glm::dvec3((1.0 - r) / (1.0 + r)));
 }
 
 // Each pass leaves the share a = exp(-sigma d): T = (1 - R)^2 a (1 + R^2 a^2 + ...).
@@ -107,7 +107,7 @@ TEST_F(DielectricTest, ASlabAbsorbs) {
         Scene scene = scene_seen_at(theta, 2.0);
         add_slab(scene, {.ior = ETA, .fresnel = Fresnel::exact, .inside = {ABSORPTION}}, THICKNESS);
         add_panel(scene, -2, false, RADIANCE);
-        expect_share(scene, 4096, (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a));
+        expect_fraction(scene, 4096, (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a));
     }
 }
 
@@ -119,7 +119,7 @@ TEST_F(DielectricTest, AnEmitterWithinTheGlass) {
     add_panel(scene, -DEPTH, false, RADIANCE);
     const double r = fresnel(double(ETA), 0.0);
     const glm::dvec3 a = glm::exp(-glm::dvec3(ABSORPTION) * double(DEPTH));
-    expect_share(scene, 1024, (1.0 - r) * a / double(ETA * ETA));
+    expect_fraction(scene, 1024, (1.0 - r) * a / double(ETA * ETA));
 }
 
 // A white floor and a lamp in the glass: what reaches the floor is absorbed on its way from the lamp, and
@@ -168,7 +168,7 @@ TEST_F(DielectricTest, ACameraWithinTheGlass) {
         scene.environment = constant_environment(RADIANCE);
         add_slab(scene, {.ior = ETA, .fresnel = Fresnel::exact}, 20.0f);
         add_panel(scene, -10, false, 0.5f * RADIANCE);
-        expect_share(scene, 1024, glm::dvec3((1.0 - r) * double(ETA * ETA) + 0.5 * r));
+        expect_fraction(scene, 1024, glm::dvec3((1.0 - r) * double(ETA * ETA) + 0.5 * r));
     }
 }
 

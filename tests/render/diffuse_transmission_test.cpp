@@ -27,9 +27,9 @@ class DiffuseTransmissionTest : public EstimatorTest {
         return scene;
     }
     // Light of RADIANCE must reach the camera with that share. Roundings: a few vertices of some ten each.
-    void expect_share(const Scene& scene, Estimator estimator, uint32_t spp, glm::dvec3 share) const {
+    void expect_fraction(const Scene& scene, Estimator estimator, uint32_t spp, glm::dvec3 fraction) const {
         const Image image = image_of(render(scene, independent_settings(32, estimator, 4), samples(spp)));
-        expect_mean(image, glm::dvec3(RADIANCE) * share, 1e-5);
+        expect_mean(image, glm::dvec3(RADIANCE) * fraction, 1e-5);
     }
 };
 
@@ -56,8 +56,8 @@ TEST_F(DiffuseTransmissionTest, ALampBehindTheSheetShinesThroughIt) {
                   Emission{RADIANCE, false});
         for (const Estimator estimator : ESTIMATORS) {
             SCOPED_TRACE(testing::Message() << int(estimator) << ' ' << absorbs);
-            expect_share(scene, estimator, estimator == Estimator::bsdf ? 4096 : 512,
-                         glm::dvec3(transmittance) * irradiance_over_pi);
+            expect_fraction(scene, estimator, estimator == Estimator::bsdf ? 4096 : 512,
+                            glm::dvec3(transmittance) * irradiance_over_pi);
         }
     }
 }
@@ -78,7 +78,7 @@ TEST_F(DiffuseTransmissionTest, EitherSideIsLitByEither) {
                 std::sqrt(0.5) * double(LAMP_RADIUS) * double(LAMP_RADIUS) / 2.0;
             for (const Estimator estimator : ESTIMATORS) {
                 SCOPED_TRACE(testing::Message() << int(estimator) << ' ' << camera << ' ' << lamp);
-                expect_share(
+                expect_fraction(
                     scene, estimator, estimator == Estimator::bsdf ? 8192 : 512,
                     glm::dvec3(camera * lamp > 0 ? reflectance : transmittance) * irradiance_over_pi);
             }
@@ -109,7 +109,7 @@ TEST_F(DiffuseTransmissionTest, ALeafWithinAMediumLeavesItAsItIs) {
                             vec3(2 * HALF_WIDTH, 0, 0)),
               add_diffuse(scene, vec3(0)), Emission{RADIANCE, false});
     const glm::dvec3 layer = diffuse_transmittance(double(DEPTH));
-    expect_share(scene, Estimator::bsdf, 1024, 0.5 * layer * layer);
+    expect_fraction(scene, Estimator::bsdf, 1024, 0.5 * layer * layer);
 }
 
 // Nothing is lost: a ball of such a sheet cannot be seen under a constant sky.

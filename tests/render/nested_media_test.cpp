@@ -41,11 +41,11 @@ class NestedMediaTest : public RenderTest {
         scene.environment = constant_environment(vec3(1));
         return scene;
     }
-    void expect_share(const Scene& scene, uint32_t spp, glm::dvec3 share) const {
+    void expect_fraction(const Scene& scene, uint32_t spp, glm::dvec3 fraction) const {
         for (const Estimator estimator : {Estimator::bsdf, Estimator::mis}) {
             SCOPED_TRACE(int(estimator));
-            expect_mean(image_of(render(scene, independent_settings(32, estimator, 1), samples(spp))), share,
-                        2e-6);
+            expect_mean(image_of(render(scene, independent_settings(32, estimator, 1), samples(spp))),
+                        fraction, 2e-6);
         }
     }
     static glm::dvec3 left_after(vec3 absorption, double length) {
@@ -58,7 +58,7 @@ TEST_F(NestedMediaTest, ABubbleInAbsorbingGlass) {
     Scene scene = seen_along(dvec3(0, 0, 3), dvec3(0));
     add_shape(scene, Sphere{dvec3(0), 1.0}, add_material(scene, tint(ABSORPTION)));
     add_shape(scene, Sphere{dvec3(0.0, 0.0, 0.2), 0.5}, add_material(scene, tint(vec3(0))));
-    expect_share(scene, 8, left_after(ABSORPTION, 1.0));
+    expect_fraction(scene, 8, left_after(ABSORPTION, 1.0));
 }
 
 // If priorities are equal, the medium entered last fills the space.
@@ -69,13 +69,13 @@ TEST_F(NestedMediaTest, OverlapsBelongToTheHighestPriority) {
         add_shape(scene, Sphere{dvec3(0, 0, -0.5), 1.0}, add_material(scene, tint(OTHER_ABSORPTION, second)));
         return scene;
     };
-    const auto share = [](double near_length) {
+    const auto fraction = [](double near_length) {
         return left_after(ABSORPTION, near_length) * left_after(OTHER_ABSORPTION, 3.0 - near_length);
     };
-    expect_share(scene_of(0, 0), 8, share(1.0));
-    expect_share(scene_of(1, 1), 8, share(1.0));
-    expect_share(scene_of(0, 15), 8, share(1.0));
-    expect_share(scene_of(7, 6), 8, share(2.0));
+    expect_fraction(scene_of(0, 0), 8, fraction(1.0));
+    expect_fraction(scene_of(1, 1), 8, fraction(1.0));
+    expect_fraction(scene_of(0, 15), 8, fraction(1.0));
+    expect_fraction(scene_of(7, 6), 8, fraction(2.0));
 }
 
 // A stack of boundaries with slabs between them, each as deep as its medium's share `a` of light says, at
@@ -99,22 +99,22 @@ struct Pile {
 
 // The share of a white sky on both sides that the pile sends to the viewer.
 glm::dvec3 sky_seen_through(const std::vector<std::pair<double, glm::dvec3>>& layers) {
-    glm::dvec3 share(0);
+    glm::dvec3 fraction(0);
     for (int c = 0; c < 3; ++c) {
         Pile pile;
         for (const auto& [ior, a] : layers)
             pile.add(ior, a[c]);
         pile.add(1.0, 1.0);
-        share[c] = pile.reflected + pile.passed;
+        fraction[c] = pile.reflected + pile.passed;
     }
-    return share;
+    return fraction;
 }
 
 TEST_F(NestedMediaTest, AMediumWithinItselfChangesNothing) {
     Scene scene = seen_along(dvec3(0, 4, 0), dvec3(0));
     add_slab(scene, glass(1.5f, ABSORPTION), -1, 1);
     add_shape(scene, Sphere{dvec3(0, 0.1, 0), 0.3}, add_material(scene, glass(1.5f, ABSORPTION)));
-    expect_share(scene, 4096, sky_seen_through({{1.5, left_after(ABSORPTION, 2.0)}}));
+    expect_fraction(scene, 4096, sky_seen_through({{1.5, left_after(ABSORPTION, 2.0)}}));
 }
 
 // Two balls that overlap, as one mesh and as two: the same bits.
@@ -164,10 +164,10 @@ TEST_F(NestedMediaTest, ASlabOfGlassInWater) {
     Scene scene = seen_along(dvec3(0, 4, 0), dvec3(0));
     add_slab(scene, glass(1.33f, ABSORPTION), -1, 1);
     add_slab(scene, glass(1.9f, OTHER_ABSORPTION), -0.25f, 0.5f);
-    expect_share(scene, 1024,
-                 sky_seen_through({{1.33, left_after(ABSORPTION, 0.5)},
-                                   {1.9, left_after(OTHER_ABSORPTION, 0.75)},
-                                   {1.33, left_after(ABSORPTION, 0.75)}}));
+    expect_fraction(scene, 1024,
+                    sky_seen_through({{1.33, left_after(ABSORPTION, 0.5)},
+                                      {1.9, left_after(OTHER_ABSORPTION, 0.75)},
+                                      {1.33, left_after(ABSORPTION, 0.75)}}));
 }
 
 // Water that overlaps the bottom of its glass, as modellers make it, so that no gap can open.
@@ -175,7 +175,7 @@ TEST_F(NestedMediaTest, WaterThatOverlapsItsGlass) {
     Scene scene = seen_along(dvec3(0, 4, 0), dvec3(0));
     add_slab(scene, glass(1.33f, ABSORPTION), -0.3f, 1);
     add_slab(scene, glass(1.9f, OTHER_ABSORPTION, 1), -0.5f, 0);
-    expect_share(
+    expect_fraction(
         scene, 1024,
         sky_seen_through({{1.33, left_after(ABSORPTION, 1.0)}, {1.9, left_after(OTHER_ABSORPTION, 0.5)}}));
 }
@@ -187,15 +187,15 @@ TEST_F(NestedMediaTest, AStatedExteriorIndex) {
     DielectricMaterial inner = glass(1.9f);
     inner.exterior_ior = 1.9f;
     add_slab(scene, inner, 0.0f, 0.5f);
-    expect_share(scene, 8, left_after(ABSORPTION, 1.5));
+    expect_fraction(scene, 8, left_after(ABSORPTION, 1.5));
 }
 
 TEST_F(NestedMediaTest, ACameraInTwoMedia) {
     Scene scene = seen_along(dvec3(0), dvec3(0, 0, -1));
     add_shape(scene, Sphere{dvec3(0), 1.0}, add_material(scene, tint(ABSORPTION)));
-    expect_share(scene, 8, left_after(ABSORPTION, 1.0));
+    expect_fraction(scene, 8, left_after(ABSORPTION, 1.0));
     add_shape(scene, Sphere{dvec3(0), 0.25}, add_material(scene, tint(OTHER_ABSORPTION)));
-    expect_share(scene, 8, left_after(OTHER_ABSORPTION, 0.25) * left_after(ABSORPTION, 0.75));
+    expect_fraction(scene, 8, left_after(OTHER_ABSORPTION, 0.25) * left_after(ABSORPTION, 0.75));
 }
 
 // A glass ball that holds water that holds a bubble: every ray comes from the white sky.
@@ -218,7 +218,7 @@ TEST_F(NestedMediaTest, NoLightComesFromAMediumWithoutAnEnd) {
     scene.cameras[0].up = vec3(0, 0, 1);
     add_shape(scene, parallelogram(vec3(-9, 0, 9), vec3(18, 0, 0), vec3(0, 0, -18)),
               add_material(scene, tint(vec3(0.1f, 2, 0))));
-    expect_share(scene, 8, glm::dvec3(0, 0, 1));
+    expect_fraction(scene, 8, glm::dvec3(0, 0, 1));
 }
 
 }  // namespace

@@ -20,9 +20,9 @@ class OpacityTest : public EstimatorTest {
         scene.materials[material].opacity.value = opacity;
         return material;
     }
-    void expect_share(const Scene& scene, Estimator estimator, double share) const {
+    void expect_fraction(const Scene& scene, Estimator estimator, double fraction) const {
         expect_mean(image_of(render(scene, independent_settings(32, estimator, 3), samples(2048))),
-                    glm::dvec3(share), 1e-6);
+                    glm::dvec3(fraction), 1e-6);
     }
     // A quad at that depth that fills the view.
     static Quad pane(float z) { return parallelogram(vec3(-1, -1, z), vec3(2, 0, 0), vec3(0, 2, 0)); }
@@ -35,7 +35,7 @@ TEST_F(OpacityTest, NLayersPassTheNthPower) {
         const uint32_t veil = add_veil(scene, A);
         for (int i = 0; i < layers; ++i)
             add_shape(scene, pane(-0.1f * float(i)), veil);
-        expect_share(scene, Estimator::mis, std::pow(1.0 - double(A), layers));
+        expect_fraction(scene, Estimator::mis, std::pow(1.0 - double(A), layers));
     }
 }
 
@@ -45,19 +45,19 @@ TEST_F(OpacityTest, EveryKindOfShapeHasItsLayers) {
     constexpr float A = 0.4f;
     Scene sphere = sky_seen();
     add_shape(sphere, Sphere{dvec3(0), 2.0}, add_veil(sphere, A));
-    expect_share(sphere, Estimator::mis, std::pow(1.0 - double(A), 2));
+    expect_fraction(sphere, Estimator::mis, std::pow(1.0 - double(A), 2));
     Scene within = sky_seen();
     add_shape(within, Sphere{dvec3(0), 8.0}, add_veil(within, A));
-    expect_share(within, Estimator::mis, 1.0 - double(A));
+    expect_fraction(within, Estimator::mis, 1.0 - double(A));
     Scene disk = sky_seen();
     add_shape(disk, Disk{dvec3(0), dvec3(2, 0, 0), dvec3(0, 2, 0)}, add_veil(disk, A));
-    expect_share(disk, Estimator::mis, 1.0 - double(A));
+    expect_fraction(disk, Estimator::mis, 1.0 - double(A));
     Scene mesh = sky_seen();
     TriangleMesh triangles;
     add_triangle(triangles, vec3(-2, -2, 0), vec3(2, -2, 0), vec3(0, 3, 0));
     add_triangle(triangles, vec3(-2, -2, 0), vec3(2, -2, 0), vec3(0, 3, 0));
     add_shape(mesh, triangles, add_veil(mesh, A));
-    expect_share(mesh, Estimator::mis, std::pow(1.0 - double(A), 2));
+    expect_fraction(mesh, Estimator::mis, std::pow(1.0 - double(A), 2));
 }
 
 // The colours of vertices have an opacity, too.
@@ -69,7 +69,7 @@ TEST_F(OpacityTest, VerticesLetRaysPass) {
     add_triangle(mesh, vec3(-2, -2, 0), vec3(2, -2, 0), vec3(0, 3, 0));
     mesh.colors = {vec4(1, 1, 1, 0.25f), vec4(1, 1, 1, 0.25f), vec4(1, 1, 1, 0.25f)};
     add_shape(scene, mesh, painted);
-    expect_share(scene, Estimator::mis, 0.75);
+    expect_fraction(scene, Estimator::mis, 0.75);
 }
 
 // Shadow rays pass, too: a lamp through n panes.
@@ -121,7 +121,7 @@ TEST_F(OpacityTest, BothTrianglesOfAFoldedPairAreTested) {
                         vec2(far_u, 0),  vec2(far_u, 0),  vec2(far_u, 0)};
             mesh.triangles[1] = uvec3(4, 5, 3);
             add_shape(scene, mesh, leaf);
-            expect_share(scene, Estimator::mis, near_is_mask && far_is_mask ? 1.0 : 0.0);
+            expect_fraction(scene, Estimator::mis, near_is_mask && far_is_mask ? 1.0 : 0.0);
             // The same as one primitive, the value changing across the common edge.
             scene.shapes.pop_back();
             mesh.positions.resize(4);
@@ -129,7 +129,7 @@ TEST_F(OpacityTest, BothTrianglesOfAFoldedPairAreTested) {
                         vec2(far_is_mask ? 1.0f : 0.0f, 0)};
             mesh.triangles[1] = uvec3(1, 0, 3);
             add_shape(scene, mesh, leaf);
-            expect_share(scene, Estimator::mis, near_is_mask && far_is_mask ? 1.0 : 0.0);
+            expect_fraction(scene, Estimator::mis, near_is_mask && far_is_mask ? 1.0 : 0.0);
         }
     }
 }

@@ -43,11 +43,11 @@ TEST_F(RouletteTest, APathGoesOnWithWhatItCarries) {
             SCOPED_TRACE(testing::Message() << "albedo " << albedo << " from bounce " << rr_depth);
             const double certain = rr_depth + 1.0;
             CountMoments rays{certain, certain * certain};
-            double share = std::pow(double(albedo), rr_depth);
+            double fraction = std::pow(double(albedo), rr_depth);
             double reached = 1.0;  // The probability of n rays.
             for (double n = certain + 1.0; reached > 1e-12; ++n) {
-                share = std::sqrt(double(albedo) * share);
-                reached *= share;
+                fraction = std::sqrt(double(albedo) * fraction);
+                reached *= fraction;
                 rays.mean += reached;
                 rays.square += reached * (2.0 * n - 1.0);
             }

@@ -184,7 +184,7 @@ dvec3 mean_over_visible_normals(const Facets& facets, dvec3 wo, double eta,
 
 // Masking and shadowing of light reflected, over the masking of wo: Smith's, correlated by height. Ref: Heitz
 // 2014, "Understanding the masking-shadowing function", eq. 99.
-double reflected_share(const Facets& facets, dvec3 wo, dvec3 h) {
+double reflected_fraction(const Facets& facets, dvec3 wo, dvec3 h) {
     const dvec3 wi = reflect(wo, h);
     if (wi.z <= 0) return 0;
     const double lambda = smith_lambda(facets, wo);
@@ -192,7 +192,7 @@ double reflected_share(const Facets& facets, dvec3 wo, dvec3 h) {
 }
 
 // The same of light refracted: uncorrelated, G1(wo) G1(wi). Ref: Walter et al. 2007, eq. 23.
-double refracted_share(const Facets& facets, dvec3 wo, dvec3 h, double eta) {
+double refracted_fraction(const Facets& facets, dvec3 wo, dvec3 h, double eta) {
     if (refracted_cosine_squared(dot(wo, h), eta) < 0) return 0;
     const dvec3 wi = refract(wo, h, eta);
     return wi.z < 0 ? smith_g1(facets, wi) : 0;
@@ -201,7 +201,7 @@ double refracted_share(const Facets& facets, dvec3 wo, dvec3 h, double eta) {
 double ggx_albedo(double alpha_x, double alpha_y, dvec3 wo) {
     const Facets facets{alpha_x, alpha_y};
     return mean_over_visible_normals(facets, wo, 1,
-                                     [&](dvec3 h) { return dvec3(reflected_share(facets, wo, h)); })
+                                     [&](dvec3 h) { return dvec3(reflected_fraction(facets, wo, h)); })
         .x;
 }
 

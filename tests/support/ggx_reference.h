@@ -56,8 +56,8 @@ dvec3 mean_over_visible_normals(const Facets& facets, dvec3 wo, double eta,
 
 // The fraction of the light reflected or refracted by a facet of normal h, seen by wo, that no other facet
 // shadows ("s_R", "s_T"); 0 where it goes to the wrong side of the surface or, refracted, nowhere.
-double reflected_share(const Facets& facets, dvec3 wo, dvec3 h);
-double refracted_share(const Facets& facets, dvec3 wo, dvec3 h, double eta);
+double reflected_fraction(const Facets& facets, dvec3 wo, dvec3 h);
+double refracted_fraction(const Facets& facets, dvec3 wo, dvec3 h, double eta);
 
 // Share of light that leaves the surface after one reflection by facets that reflect everything.
 double ggx_albedo(double alpha_x, double alpha_y, dvec3 wo);

@@ -72,7 +72,7 @@ PrincipledReference::PrincipledReference(const PrincipledParameters& parameters,
     : p_(parameters), wo_(wo) {
     assert(wo.z > 0 && !(p_.thin && p_.inside));
     find_optics();
-    find_shares();
+    find_fractions();
     find_diffuse_parts();
     find_layers();
     if (p_.thin || p_.transmission == 0 || p_.dispersion == 0 || p_.ior == 0) return;
@@ -113,28 +113,30 @@ void PrincipledReference::find_optics() {
 }
 
 // Means over the facets that wo sees.
-void PrincipledReference::find_shares() {
+void PrincipledReference::find_fractions() {
     const auto mean = [&](const std::function<dvec3(dvec3)>& g) {
         return ideal_ ? g(dvec3(0, 0, 1)) : mean_over_visible_normals(facets_, wo_, p_.thin ? 1 : eta_, g);
     };
-    const auto reflection_lost = [&](dvec3 h) { return ideal_ ? 0 : 1 - reflected_share(facets_, wo_, h); };
+    const auto reflection_lost = [&](dvec3 h) {
+        return ideal_ ? 0 : 1 - reflected_fraction(facets_, wo_, h);
+    };
     const auto transmission_lost = [&](dvec3 h) {
         // What a thin wall transmits is shadowed as if reflected.
-        return ideal_ || p_.thin ? reflection_lost(h) : 1 - refracted_share(facets_, wo_, h, eta_);
+        return ideal_ || p_.thin ? reflection_lost(h) : 1 - refracted_fraction(facets_, wo_, h, eta_);
     };
     const dvec3 reflected = mean([&](dvec3 h) {
         const double fresnel = greatest_fresnel(dot(wo_, h));
         return dvec3(reflection_lost(h), fresnel, fresnel * reflection_lost(h));
     });
-    shares_.metal_lost = reflected[0];
-    shares_.dielectric_reflected = reflected[1];
-    shares_.dielectric_lost = reflected[2];
+    fractions_.metal_lost = reflected[0];
+    fractions_.dielectric_reflected = reflected[1];
+    fractions_.dielectric_lost = reflected[2];
     if (p_.transmission == 0) return;
     const dvec3 transmitted = mean([&](dvec3 h) {
         const double fresnel = greatest_transmitting_fresnel(dot(wo_, h));
         return dvec3(std::lerp(transmission_lost(h), reflection_lost(h), fresnel));
     });
-    shares_.glass_lost = transmitted[0];
+    fractions_.glass_lost = transmitted[0];
 }
 
 // What facets lose goes out diffusely, as much as metal reflects and on those sides to which glass sends
@@ -152,14 +154,14 @@ void PrincipledReference::find_diffuse_parts() {
     // What the dielectric over an opaque base does not reflect again joins the light that reaches the base.
     const double dielectric = (1 - p_.metalness) * (1 - p_.transmission);
     const double glass = (1 - p_.metalness) * p_.transmission;
-    again_up_ = p_.metalness * shares_.metal_lost * metal_again + glass * shares_.glass_lost * up;
-    again_down_ = glass * shares_.glass_lost * (1 - up) * p_.base_color;
+    again_up_ = p_.metalness * fractions_.metal_lost * metal_again + glass * fractions_.glass_lost * up;
+    again_down_ = glass * fractions_.glass_lost * (1 - up) * p_.base_color;
     // Nothing lies between the inside of a volume and the opaque base.
     diffuse_ = dielectric;
     if (p_.inside) return;
-    again_up_ += dielectric * shares_.dielectric_lost * dielectric_f0_;
+    again_up_ += dielectric * fractions_.dielectric_lost * dielectric_f0_;
     diffuse_ *=
-        1 - shares_.dielectric_reflected + shares_.dielectric_lost * (1 - max_channel(dielectric_f0_));
+        1 - fractions_.dielectric_reflected + fractions_.dielectric_lost * (1 - max_channel(dielectric_f0_));
 }
 
 // Sheen (KHR_materials_sheen, "Albedo-scaling technique", of wo alone), coat (KHR_materials_clearcoat, by
@@ -175,10 +177,10 @@ void PrincipledReference::find_layers() {
     has_sheen_ = !p_.inside && max_channel(p_.sheen_color) > 0;
     if (has_sheen_) {
         alpha_g_ = square(std::max(p_.sheen_roughness, MIN_SHEEN_ROUGHNESS));
-        shares_.es = sheen_albedo(alpha_g_, wo_.z);
+        fractions_.es = sheen_albedo(alpha_g_, wo_.z);
         // The model reflects more than all light where fibres are smooth and light grazes them: it is scaled.
-        sheen_scale_ = 1 / std::max(1.0, shares_.es);
-        sheen_transmittance_ = 1 - max_channel(p_.sheen_color) * sheen_scale_ * shares_.es;
+        sheen_scale_ = 1 / std::max(1.0, fractions_.es);
+        sheen_transmittance_ = 1 - max_channel(p_.sheen_color) * sheen_scale_ * fractions_.es;
     }
 
     const double cosine = dot(wo_, p_.coat_normal);
@@ -191,18 +193,18 @@ void PrincipledReference::find_layers() {
     coat_ideal_ = alpha < MIN_FACET_ALPHA;
     coat_facets_ = {std::max(alpha, MIN_FACET_ALPHA), std::max(alpha, MIN_FACET_ALPHA)};
     const dvec3 wo = to_coat(wo_);
-    shares_.rc = coat_ideal_
-                     ? coat_fresnel(cosine)
-                     : mean_over_visible_normals(coat_facets_, wo, 1, [&](dvec3 h) {
-                           return dvec3(coat_fresnel(dot(wo, h)) * reflected_share(coat_facets_, wo, h));
-                       }).x;
-    coat_transmittance_ = 1 - p_.coat * shares_.rc;
+    fractions_.rc =
+        coat_ideal_ ? coat_fresnel(cosine)
+                    : mean_over_visible_normals(coat_facets_, wo, 1, [&](dvec3 h) {
+                          return dvec3(coat_fresnel(dot(wo, h)) * reflected_fraction(coat_facets_, wo, h));
+                      }).x;
+    coat_transmittance_ = 1 - p_.coat * fractions_.rc;
 
     // Estimates of the base's roughness and reflectance. Where it transmits, no diffuse base lies below it.
-    const double specular_share = max_channel(dielectric_fresnel(wo_.z));
+    const double specular_fraction = max_channel(dielectric_fresnel(wo_.z));
     const double below = std::lerp(1.0, p_.roughness, p_.transmission);
     const double roughness =
-        std::lerp(std::lerp(below, p_.roughness, specular_share), p_.roughness, p_.metalness);
+        std::lerp(std::lerp(below, p_.roughness, specular_fraction), p_.roughness, p_.metalness);
     const double diffuse =
         (1 - max_channel(dielectric_f0_)) * (1 - p_.transmission) * (1 - p_.diffuse_transmission);
     const dvec3 albedo = mix(dielectric_f0_ + diffuse * p_.base_color, metal_f0_, p_.metalness);

@@ -89,18 +89,18 @@ class PrincipledReference {
 
     // The quadratures, of the green index if there is dispersion. Those that the parameters have no use for
     // are 0: of glass without transmission, of sheen or coat without any.
-    struct Shares {
+    struct Fractions {
         double metal_lost = 0;            // By facets that reflect everything, to shadowing.
         double glass_lost = 0;            // By clear glass, of the dielectric's reflectance.
         double dielectric_lost = 0;       // By the dielectric's reflection, over an opaque base.
         double dielectric_reflected = 0;  // By its facets, with what is lost: it does not reach the base.
         double es = 0, rc = 0;            // Reflected by the sheen; by the coat, at weight 1.
     };
-    const Shares& shares() const { return shares_; }
+    const Fractions& fractions() const { return fractions_; }
 
   private:
     void find_optics();
-    void find_shares();
+    void find_fractions();
     void find_diffuse_parts();
     void find_layers();
 
@@ -129,7 +129,7 @@ class PrincipledReference {
     dvec3 f0_{0};  // Reflectance of the dielectric at normal incidence, before `specular`.
     dvec3 film_metal_{0}, film_dielectric_{0};  // Reflectance of the film on either.
     dvec3 metal_f0_{0}, dielectric_f0_{0};      // With the film.
-    Shares shares_{};
+    Fractions fractions_{};
     dvec3 again_up_{0}, again_down_{0};  // Shares of light, before the layers.
     double diffuse_ = 0;                 // What reaches the opaque base.
     double fuzz_transmittance_ = 1, coat_transmittance_ = 1, sheen_transmittance_ = 1, sheen_scale_ = 1;

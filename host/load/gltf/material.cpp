@@ -199,8 +199,8 @@ class MaterialReader {
             return;
         }
         for (glm::length_t i = 0; i < 3; ++i) {
-            const double share = std::clamp(double(left[i]), double(MIN), 1.0);
-            m.inside->absorption[i] = float(std::min(-std::log(share) / length, double(FLOAT_MAX)));
+            const double fraction = std::clamp(double(left[i]), double(MIN), 1.0);
+            m.inside->absorption[i] = float(std::min(-std::log(fraction) / length, double(FLOAT_MAX)));
         }
     }
 

@@ -100,12 +100,12 @@ MaterialModel read_dielectric(const Node& node, const ImageFolder&) {
 Medium read_absorption(const Node& node) {
     node.allow_only({}, keys_of({"absorption"}));
     const Node transmittance = node.require("transmittance");
-    const dvec3 share = transmittance.reflectance();
-    if (glm::any(glm::equal(share, dvec3(0.0)))) {
+    const dvec3 fraction = transmittance.reflectance();
+    if (glm::any(glm::equal(fraction, dvec3(0.0)))) {
         transmittance.fail_expected("numbers above 0 and up to 1");
     }
     const Node distance = node.require("distance");
-    const dvec3 absorption = abs(log(share)) / distance.positive();
+    const dvec3 absorption = abs(log(fraction)) / distance.positive();
     if (glm::any(glm::greaterThan(absorption, dvec3(FLOAT_MAX)))) {
         distance.fail("the absorption exceeds the range of 32-bit floats; use a longer distance");
     }

@@ -110,7 +110,7 @@ class Reader {
         } else if (command == "Tr") {
             set(s.tr, number(command, rest, NONE, MAX));
         } else if (command.starts_with('P')) {
-            read_share(s, command, rest);
+            read_fraction(s, command, rest);
         } else if (command == "aniso" || command == "anisor") {
             if (command == "aniso" && number(command, rest, NONE, MAX).value_or(0.0) != 0.0)
                 ignored_.add(command, "brushed metal is not supported");
@@ -120,14 +120,15 @@ class Reader {
     }
 
     // Statements of the PBR extension, from 0 to 1.
-    void read_share(MtlStatements& s, std::string_view command, std::string_view rest) {
+    void read_fraction(MtlStatements& s, std::string_view command, std::string_view rest) {
         using Member = std::optional<double> MtlStatements::*;
-        constexpr std::array<std::pair<std::string_view, Member>, 5> SHARES{{{"Pr", &MtlStatements::pr},
-                                                                             {"Pm", &MtlStatements::pm},
-                                                                             {"Ps", &MtlStatements::ps},
-                                                                             {"Pc", &MtlStatements::pc},
-                                                                             {"Pcr", &MtlStatements::pcr}}};
-        for (const auto& [name, member] : SHARES) {
+        constexpr std::array<std::pair<std::string_view, Member>, 5> FRACTIONS{
+            {{"Pr", &MtlStatements::pr},
+             {"Pm", &MtlStatements::pm},
+             {"Ps", &MtlStatements::ps},
+             {"Pc", &MtlStatements::pc},
+             {"Pcr", &MtlStatements::pcr}}};
+        for (const auto& [name, member] : FRACTIONS) {
             if (command == name) return set(s.*member, number(command, rest, 0.0, 1.0));
         }
         ignored_.add(command, "unknown statements");

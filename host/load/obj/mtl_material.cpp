@@ -180,12 +180,12 @@ class Converter {
     // writes Tr beside it.
     float transmission() {
         if (!states_pbr() || !s_.tf || s_.tr || s_.illum > 2 || s_.ni.value_or(1.0) <= 1.0) return 0.0f;
-        const double share = std::min(1.0, mean_of(*s_.tf));
-        if (share > 0.0 && !s_.by_blender) {
-            warn("Tf", "Tf beside Pr or Pm is read as a fraction " + number_text(share, 6) +
+        const double fraction = std::min(1.0, mean_of(*s_.tf));
+        if (fraction > 0.0 && !s_.by_blender) {
+            warn("Tf", "Tf beside Pr or Pm is read as a fraction " + number_text(fraction, 6) +
                            " of the light that passes, as through glass");
         }
-        return float(share);
+        return float(fraction);
     }
 
     Model opaque() {

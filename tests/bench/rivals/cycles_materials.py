@@ -187,7 +187,7 @@ def principled(graph, material):
     assert transmission == 0 or not material.get("thin_walled", True), "Blender's transmission bounds solids"
     if bpy.app.version < (4, 0):
         return principled_node(graph, material, inputs_of_blender_3(graph, material))
-    parts = [t for t, share in ((0, 1 - transmission), (1, transmission)) if share > 0]
+    parts = [t for t, fraction in ((0, 1 - transmission), (1, transmission)) if fraction > 0]
     nodes = [principled_node(graph, material, inputs_of_blender_4(graph, material, t)) for t in parts]
     return nodes[0] if len(nodes) == 1 else graph.node("MixShader", transmission, *nodes).outputs[0]
 

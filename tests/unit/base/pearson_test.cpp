@@ -22,8 +22,8 @@ std::vector<double> draw(const std::vector<double>& weights, uint64_t samples, s
     double rest = std::accumulate(weights.begin(), weights.end(), 0.0);
     std::vector<double> counts;
     for (const double weight : weights) {
-        const double share = rest > weight ? weight / rest : 1.0;
-        std::binomial_distribution<uint64_t> binomial(samples, share);
+        const double fraction = rest > weight ? weight / rest : 1.0;
+        std::binomial_distribution<uint64_t> binomial(samples, fraction);
         const uint64_t count = samples == 0 || weight == 0.0 ? 0 : binomial(random);
         counts.push_back(double(count));
         samples -= count;

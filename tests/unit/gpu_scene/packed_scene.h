@@ -41,14 +41,14 @@ inline AliasEntry entry(const std::vector<uvec4>& table, uint32_t i) {
 // 2^32.
 inline std::vector<double> light_probabilities(const GpuScene& gpu) {
     const LightGroups& groups = gpu.light_groups;
-    const double suns = groups.sun_share * 0x1p-31, sky = groups.sky_share * 0x1p-31;
+    const double suns = groups.sun_fraction * 0x1p-31, sky = groups.sky_fraction * 0x1p-31;
     std::vector<double> probability(gpu.light_count);
-    const auto add_table = [&](uint32_t first, uint32_t count, double share) {
+    const auto add_table = [&](uint32_t first, uint32_t count, double fraction) {
         for (uint32_t i = 0; i < count; ++i) {
             const AliasEntry e = entry(gpu.arrays[ARRAY_LIGHT_ALIAS], first + i);
             const double kept = double(e.threshold) * 0x1p-32;
-            probability[first + i] += share * kept / count;
-            probability[first + e.alias] += share * (1.0 - kept) / count;
+            probability[first + i] += fraction * kept / count;
+            probability[first + e.alias] += fraction * (1.0 - kept) / count;
         }
     };
     add_table(0, groups.placed, 1.0 - suns - sky);

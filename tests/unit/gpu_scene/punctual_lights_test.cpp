@@ -68,12 +68,12 @@ TEST(PunctualLights, EveryGroupIsChosenNowAndThen) {
     Scene scene = scene_of_shapes({emitter(SQUARE, vec3(1e12f))});
     scene.lights = {{"sun", DirectionalLight{.irradiance = vec3(2)}}};
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
-    EXPECT_EQ(gpu.light_groups.sun_share, 1u);
+    EXPECT_EQ(gpu.light_groups.sun_fraction, 1u);
     EXPECT_EQ(light(gpu, 1).pmf, 0x1p-31f);
     scene = scene_of_shapes({emitter(SQUARE, vec3(1))});
     scene.lights = {{"sun", DirectionalLight{.irradiance = vec3(2e12f)}}};
     const GpuScene bright = build_gpu_scene(scene, SceneFrame{});
-    EXPECT_EQ(bright.light_groups.sun_share, (1u << 31) - 1u);
+    EXPECT_EQ(bright.light_groups.sun_fraction, (1u << 31) - 1u);
     EXPECT_EQ(light(bright, 0).pmf, 0x1p-31f);
 }
 

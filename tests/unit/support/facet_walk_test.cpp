@@ -91,7 +91,7 @@ TEST(PrincipledReferenceWalk, MetalGivesBackWhatWalksBringBack) {
 TEST(PrincipledReferenceWalk, TheReferenceCountsThatLight) {
     const PrincipledReference metal({.base_color = dvec3(0.5), .metalness = 1, .roughness = 0.6},
                                     normalize(dvec3(1, 0, 0.5)));
-    const double again = ggx_again(0.36, dvec3(0.5), dvec3(0.5)).x * metal.shares().metal_lost;
+    const double again = ggx_again(0.36, dvec3(0.5), dvec3(0.5)).x * metal.fractions().metal_lost;
     EXPECT_NEAR(metal.albedos().again_up.x, again, 1e-9);
 }
 

@@ -248,13 +248,13 @@ TEST(PrincipledReference, AlbedoOfTheRoughestFacetsHasAClosedForm) {
 // times the projected solid angle inside.
 TEST(PrincipledReference, GlassSendsOnAsMuchLostLightFromEitherSide) {
     PrincipledParameters glass{.base_color = dvec3(1), .roughness = 0.6, .transmission = 1, .thin = false};
-    const auto share_down = [&](bool inside) {
+    const auto fraction_down = [&](bool inside) {
         glass.inside = inside;
         const PrincipledReference reference(glass, view(0.4));
-        return reference.albedos().again_down.x / reference.shares().glass_lost;
+        return reference.albedos().again_down.x / reference.fractions().glass_lost;
     };
-    EXPECT_NEAR(share_down(false), 0.96 * 20 / 21, 1e-12);
-    EXPECT_NEAR(share_down(true) * 1.5 * 1.5, share_down(false), 1e-12);
+    EXPECT_NEAR(fraction_down(false), 0.96 * 20 / 21, 1e-12);
+    EXPECT_NEAR(fraction_down(true) * 1.5 * 1.5, fraction_down(false), 1e-12);
 }
 
 // Facets tilt by alpha, and their tails by more: what is lost goes down as alpha itself.
@@ -263,8 +263,8 @@ TEST(PrincipledReference, SmoothFacetsHaveFresnelsAlbedos) {
         const PrincipledReference glass(
             {.base_color = dvec3(1), .roughness = 0.032, .transmission = 1, .thin = false}, view(cosine));
         EXPECT_FALSE(glass.is_ideal());
-        EXPECT_NEAR(glass.shares().metal_lost, 0, 1e-4);
-        EXPECT_NEAR(glass.shares().glass_lost, 0, 1e-4);
+        EXPECT_NEAR(glass.fractions().metal_lost, 0, 1e-4);
+        EXPECT_NEAR(glass.fractions().glass_lost, 0, 1e-4);
         EXPECT_NEAR(glass.albedos().reflection.x, fresnel_exact(cosine, 1.5), 1e-3);
     }
     EXPECT_NEAR(fresnel_exact(1, 1.5), 0.04, 1e-12);
@@ -381,7 +381,7 @@ TEST(PrincipledReference, SheenReflectsAtMostAllLight) {
 TEST(PrincipledReference, SmoothSheenHidesTheBaseAtGrazingAngles) {
     const PrincipledReference cloth({.base_color = dvec3(1), .metalness = 1, .sheen_color = dvec3(1)},
                                     view(0.03));
-    EXPECT_GT(cloth.shares().es, 1);
+    EXPECT_GT(cloth.fractions().es, 1);
     expect_all(cloth.albedos().sheen, 1, QUADRATURE_ERROR, "sheen");
     expect_all(cloth.albedo(), 1, QUADRATURE_ERROR, "all");
 }
