@@ -99,7 +99,7 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
     if (wo.z <= MIN_FACET_COSINE || abs(wi.z) <= MIN_FACET_COSINE) return value;
     bool above = wi.z > 0.0;
     float cosine_pdf = warp_cosine_hemisphere_pdf(abs(wi.z));
-    if (above) value.f += p.again * INV_PI;
+    if (above) value.f += p.multiscatter * INV_PI;
     if (above && principled_has(PRINCIPLED_HAS_DIFFUSE)) {
         if (principled_has(PRINCIPLED_HAS_DIFFUSE_ROUGHNESS)) {
             value.f += p.diffuse * rough_diffuse_f(p.base_color, p.roughness, wo, wi);

@@ -48,9 +48,9 @@ struct Principled {
 
     vec3 base_color;  // Colour of the diffuse base.
     float roughness;
-    vec3 diffuse;  // Weight of the diffuse base.
-    vec3 again;    // Reflectance of Lambert's lobe for light that facets scatter more than once.
-    vec3 through;  // Transmittance of that lobe and of the diffuse base.
+    vec3 diffuse;       // Weight of the diffuse base.
+    vec3 multiscatter;  // Reflectance of Lambert's lobe for light that facets scatter more than once.
+    vec3 through;       // Transmittance of that lobe and of the diffuse base.
     vec3 sheen;
     float sheen_alpha;
     vec3 fuzz;        // Reflectance of the fuzz.
@@ -216,7 +216,7 @@ FacetMeans principled_measure(Principled p, vec3 d_0, vec3 d_edge, vec3 wo, vec2
 // roughness, within 0.001 of the albedo; the energy does not depend on them. Ref: Heitz et al. 2016,
 // Multiple-Scattering Microfacet BSDFs with the Smith Model, on the walks; Kulla and Conty 2017, on the sum over all
 // times.
-vec3 metal_again(vec3 m_0, vec3 m_edge, vec2 alpha) {
+vec3 metal_multiscatter(vec3 m_0, vec3 m_edge, vec2 alpha) {
     float a = sqrt(0.5 * dot(alpha, alpha));
     float stays = 0.397 * a;
     vec3 mean = m_0 + m_edge * (0.0378 / (a + 0.0459));

@@ -84,7 +84,7 @@ void principled_darken(inout Principled p, PrincipledSurface s, vec3 wo, vec3 up
     p.r_edge *= factor;
     p.r_schlick *= factor;
     p.diffuse *= factor;
-    p.again *= factor;
+    p.multiscatter *= factor;
     p.sheen *= factor;
 }
 
@@ -183,12 +183,12 @@ void principled_base_weights(inout Principled p, PrincipledSurface s, BaseReflec
     p.r_schlick = vec3(0.0);
     p.r_total = 0.0;
     if (principled_has(PRINCIPLED_HAS_SPECULAR)) p.r_total = dielectric * transmission * (1.0 - r.specular);
-    p.again = s.inside ? vec3(0.0) : opaque * mean.max_lost * f.d_0;
+    p.multiscatter = s.inside ? vec3(0.0) : opaque * mean.max_lost * f.d_0;
     if (principled_has(PRINCIPLED_HAS_METAL)) {
         float metal = above * metalness;
         p.r_0 += metal * f.m_0;
         p.r_schlick = metal * f.m_edge;
-        p.again += metal * mean.lost * metal_again(f.m_0, f.m_edge, p.alpha);
+        p.multiscatter += metal * mean.lost * metal_multiscatter(f.m_0, f.m_edge, p.alpha);
     }
     float below = max(1.0 - mean.max_reflected + mean.max_lost * (1.0 - max_component(f.d_0)), 0.0);
     below = s.inside ? opaque : opaque * below;
@@ -205,7 +205,7 @@ void principled_base_weights(inout Principled p, PrincipledSurface s, BaseReflec
         if (principled_has(PRINCIPLED_HAS_DISPERSION)) {
             back.xz = vec2(diffuse_reflectance(p.eta.x), diffuse_reflectance(p.eta.z));
         }
-        p.again += back * lost;
+        p.multiscatter += back * lost;
         p.through += (1.0 - back) * lost * s.base_color;
     }
 }
@@ -218,7 +218,7 @@ void principled_base_choices(inout Principled p, PrincipledSurface s, FacetMeans
     vec3 facets = p.r_0 + p.r_edge * edge + p.r_schlick * (mean.schlick + UNMEASURED);
     if (PRINCIPLED_TRANSMITS) facets += p.transmit * max(p.t_0 - p.t_edge * mean.edge, UNMEASURED);
     p.pmf.y = dot(p.hue, facets);
-    p.pmf.z += dot(p.hue, p.diffuse * s.base_color + p.again);
+    p.pmf.z += dot(p.hue, p.diffuse * s.base_color + p.multiscatter);
     p.pmf.w = dot(p.hue, p.through);
 }
 

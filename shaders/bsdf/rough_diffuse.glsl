@@ -22,11 +22,11 @@ vec3 rough_diffuse_f(vec3 reflectance, float roughness, vec3 wo, vec3 wi) {
     float facets = s > 0.0 ? s / max(wo.z, wi.z) : s;
     float scale = 1.0 / (1.0 + FON_A * roughness);
     float mean = scale * (1.0 + FON_B * roughness);
-    vec3 again = reflectance * reflectance * (mean / (vec3(1.0) - reflectance * (1.0 - mean)));
+    vec3 multiscatter = reflectance * reflectance * (mean / (vec3(1.0) - reflectance * (1.0 - mean)));
     float lost_o = max(0.0, 1.0 - fon_albedo(roughness, wo.z));
     float lost_i = max(0.0, 1.0 - fon_albedo(roughness, wi.z));
     vec3 f = reflectance * (scale * max(1.0 + roughness * facets, 0.0));
-    if (mean < 1.0) f += again * (lost_o * lost_i / (1.0 - mean));
+    if (mean < 1.0) f += multiscatter * (lost_o * lost_i / (1.0 - mean));
     return f * INV_PI;
 }
 

@@ -48,7 +48,7 @@ def rise(eta, cosine):
     return select(inside > 0, ((s * s + p * p) / 2 - f0) / (1 - f0), 1)
 
 
-def metal_again(ax, ay, color):
+def metal_multiscatter(ax, ay, color):
     """The share of light that comes back of what facets of a metal lose: candela's fit to random walks among them."""
     a = np.sqrt((ax**2 + ay**2) / 2)
     leaves = 1 - 0.397 * a
@@ -170,7 +170,7 @@ class Principled(mi.BSDF):
         self.coat_facets = Facets(alphas(number("coat_roughness", 0), 0), eta_of(number("coat_ior", 1.5)))
         self.ideal, self.ideal_coat = alpha is None, self.coat_facets.alpha is None
 
-        self.metal_lost = np.zeros(3) if self.ideal else metal_again(*alpha, self.base)
+        self.metal_lost = np.zeros(3) if self.ideal else metal_multiscatter(*alpha, self.base)
         mean_fresnel = f0 + (1 - f0) * MEAN_OF_SCHLICK
         self.up_outside = mean_fresnel
         self.up_inside = mean_fresnel if self.thin else 1 - (1 - mean_fresnel) / self.ior**2

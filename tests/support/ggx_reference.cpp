@@ -205,7 +205,7 @@ double ggx_albedo(double alpha_x, double alpha_y, dvec3 wo) {
         .x;
 }
 
-dvec3 ggx_again(double alpha, dvec3 f_0, dvec3 edge) {
+dvec3 ggx_multiscatter(double alpha, dvec3 f_0, dvec3 edge) {
     const double leaves = 1 - 0.397 * alpha;
     const dvec3 fresnel = f_0 + 0.0378 / (alpha + 0.0459) * edge;
     return fresnel * fresnel * leaves / (dvec3(1) - (1 - leaves) * fresnel);

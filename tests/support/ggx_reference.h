@@ -63,6 +63,6 @@ double refracted_fraction(const Facets& facets, dvec3 wo, dvec3 h, double eta);
 double ggx_albedo(double alpha_x, double alpha_y, dvec3 wo);
 // Of what they lose of an even sky, the share that comes back if each reflection leaves f_0 + edge S, S being
 // Schlick's power: fits to the mean of S and to how often light leaves, as PrincipledReferenceWalk finds it.
-dvec3 ggx_again(double alpha, dvec3 f_0, dvec3 edge);
+dvec3 ggx_multiscatter(double alpha, dvec3 f_0, dvec3 edge);
 
 }  // namespace candela

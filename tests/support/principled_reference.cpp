@@ -34,7 +34,7 @@ PrincipledLobes by_channel(const Material& lobes_of) {
         for (const auto lobe : {&PrincipledLobes::fuzz, &PrincipledLobes::coat, &PrincipledLobes::sheen,
                                 &PrincipledLobes::reflection, &PrincipledLobes::transmission,
                                 &PrincipledLobes::diffuse_reflection, &PrincipledLobes::diffuse_transmission,
-                                &PrincipledLobes::again_up, &PrincipledLobes::again_down})
+                                &PrincipledLobes::multiscatter_up, &PrincipledLobes::multiscatter_down})
             (l.*lobe)[k] = (c.*lobe)[k];
     }
     return l;
@@ -144,7 +144,8 @@ void PrincipledReference::find_fractions() {
 // function of wo alone.
 void PrincipledReference::find_diffuse_parts() {
     const double alpha = std::hypot(facets_.alpha_x, facets_.alpha_y) / std::numbers::sqrt2;
-    const dvec3 metal_again = ggx_again(alpha, metal_f0_, (1 - film_) * (dvec3(1) - p_.base_color));
+    const dvec3 metal_multiscatter =
+        ggx_multiscatter(alpha, metal_f0_, (1 - film_) * (dvec3(1) - p_.base_color));
 
     // Schlick's reflectance of an even sky. From inside, the share eta^2 of it is not totally reflected, and
     // of that, as much is transmitted as from outside.
@@ -154,12 +155,13 @@ void PrincipledReference::find_diffuse_parts() {
     // What the dielectric over an opaque base does not reflect again joins the light that reaches the base.
     const double dielectric = (1 - p_.metalness) * (1 - p_.transmission);
     const double glass = (1 - p_.metalness) * p_.transmission;
-    again_up_ = p_.metalness * fractions_.metal_lost * metal_again + glass * fractions_.glass_lost * up;
-    again_down_ = glass * fractions_.glass_lost * (1 - up) * p_.base_color;
+    multiscatter_up_ =
+        p_.metalness * fractions_.metal_lost * metal_multiscatter + glass * fractions_.glass_lost * up;
+    multiscatter_down_ = glass * fractions_.glass_lost * (1 - up) * p_.base_color;
     // Nothing lies between the inside of a volume and the opaque base.
     diffuse_ = dielectric;
     if (p_.inside) return;
-    again_up_ += dielectric * fractions_.dielectric_lost * dielectric_f0_;
+    multiscatter_up_ += dielectric * fractions_.dielectric_lost * dielectric_f0_;
     diffuse_ *=
         1 - fractions_.dielectric_reflected + fractions_.dielectric_lost * (1 - max_channel(dielectric_f0_));
 }
@@ -303,13 +305,13 @@ PrincipledLobes PrincipledReference::lobes(dvec3 wi) const {
         l.reflection = under_layers() * darkening_ * reflection_value(wi);
         l.diffuse_reflection = under_layers() * darkening_ * diffuse_ * (1 - p_.diffuse_transmission) *
                                eon_f(p_.base_color, p_.diffuse_roughness, wo_, wi);
-        l.again_up = under_layers() * darkening_ / PI_D * again_up_;
+        l.multiscatter_up = under_layers() * darkening_ / PI_D * multiscatter_up_;
     } else {
         l.transmission = under_layers() * transmission_value(wi);
         // Radiance is divided by eta^2 for every kind of transmission.
         const double through = under_layers() / (PI_D * square(p_.thin ? 1 : eta_));
         l.diffuse_transmission = through * diffuse_ * p_.diffuse_transmission * p_.diffuse_transmission_color;
-        l.again_down = through * again_down_;
+        l.multiscatter_down = through * multiscatter_down_;
     }
     return l;
 }
@@ -367,9 +369,9 @@ PrincipledLobes PrincipledReference::albedos() const {
     l.diffuse_reflection = integrate_over_cosine(wo_, [&](dvec3 wi) { return lobes(wi).diffuse_reflection; });
     // The others are Lambert's.
     const dvec3 above(0, 0, 1), below(0, 0, -1);
-    l.again_up = PI_D * lobes(above).again_up;
+    l.multiscatter_up = PI_D * lobes(above).multiscatter_up;
     const double energy = PI_D * square(p_.thin ? 1 : eta_);
-    l.again_down = energy * lobes(below).again_down;
+    l.multiscatter_down = energy * lobes(below).multiscatter_down;
     l.diffuse_transmission = energy * lobes(below).diffuse_transmission;
     return l;
 }

@@ -49,10 +49,10 @@ struct PrincipledParameters {
 struct PrincipledLobes {
     dvec3 fuzz{0}, coat{0}, sheen{0}, reflection{0}, transmission{0}, diffuse_reflection{0},
         diffuse_transmission{0};
-    dvec3 again_up{0}, again_down{0};
+    dvec3 multiscatter_up{0}, multiscatter_down{0};
     dvec3 sum() const {
         return fuzz + coat + sheen + reflection + transmission + diffuse_reflection + diffuse_transmission +
-               again_up + again_down;
+               multiscatter_up + multiscatter_down;
     }
 };
 
@@ -70,8 +70,8 @@ class PrincipledReference {
     dvec3 transmission(dvec3 wi) const { return lobes(wi).transmission; }
     dvec3 diffuse_reflection(dvec3 wi) const { return lobes(wi).diffuse_reflection; }
     dvec3 diffuse_transmission(dvec3 wi) const { return lobes(wi).diffuse_transmission; }
-    dvec3 again_up(dvec3 wi) const { return lobes(wi).again_up; }
-    dvec3 again_down(dvec3 wi) const { return lobes(wi).again_down; }
+    dvec3 multiscatter_up(dvec3 wi) const { return lobes(wi).multiscatter_up; }
+    dvec3 multiscatter_down(dvec3 wi) const { return lobes(wi).multiscatter_down; }
 
     // Share of energy that ideal parts send into their one direction; 0 where a lobe is rough.
     PrincipledLobes ideal() const;
@@ -130,8 +130,8 @@ class PrincipledReference {
     dvec3 film_metal_{0}, film_dielectric_{0};  // Reflectance of the film on either.
     dvec3 metal_f0_{0}, dielectric_f0_{0};      // With the film.
     Fractions fractions_{};
-    dvec3 again_up_{0}, again_down_{0};  // Shares of light, before the layers.
-    double diffuse_ = 0;                 // What reaches the opaque base.
+    dvec3 multiscatter_up_{0}, multiscatter_down_{0};  // Shares of light, before the layers.
+    double diffuse_ = 0;                               // What reaches the opaque base.
     double fuzz_transmittance_ = 1, coat_transmittance_ = 1, sheen_transmittance_ = 1, sheen_scale_ = 1;
     dvec3 darkening_{1};
     dvec3 coat_x_{1, 0, 0}, coat_y_{0, 1, 0};

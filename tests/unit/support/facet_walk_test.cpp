@@ -26,7 +26,7 @@ dvec3 met_normal(const Facets& facets, dvec3 w, double u, double v) {
 
 // Share of an even sky that leaves the surface after one reflection, and after more, with a standard error.
 struct Walks {
-    double once = 0, again = 0, error = 0;
+    double once = 0, multiscatter = 0, error = 0;
 };
 
 // Walks from views of cosine-weighted directions. Each reflection leaves f_0 + (1 - f_0) S of the light, S
@@ -35,7 +35,7 @@ Walks walk(double alpha, double f_0, size_t count) {
     const Facets facets{alpha, alpha};
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> unit;
-    double once = 0, again = 0, squares = 0;
+    double once = 0, multiscatter = 0, squares = 0;
     for (size_t i = 0; i < count; ++i) {
         const double cosine = std::sqrt(1 - unit(random));
         dvec3 d(std::sqrt(1 - cosine * cosine), 0, -cosine);
@@ -44,7 +44,7 @@ Walks walk(double alpha, double f_0, size_t count) {
             const double lambda = d.z > 0 ? smith_lambda(facets, d) : -1 - smith_lambda(facets, -d);
             const double u = 1 - unit(random);
             if (d.z > 0 && u <= std::pow(height, lambda)) {
-                (reflections == 1 ? once : again) += light;
+                (reflections == 1 ? once : multiscatter) += light;
                 if (reflections > 1) squares += light * light;
                 break;
             }
@@ -56,7 +56,7 @@ Walks walk(double alpha, double f_0, size_t count) {
         }
     }
     const auto n = double(count);
-    return {once / n, again / n, std::sqrt(squares) / n};
+    return {once / n, multiscatter / n, std::sqrt(squares) / n};
 }
 
 constexpr size_t WALKS = 500000;
@@ -64,7 +64,7 @@ constexpr size_t WALKS = 500000;
 // All light comes back from facets that reflect all, and the share that comes back at once is the albedo.
 TEST(PrincipledReferenceWalk, LosesNothingOfItsOwn) {
     const Walks walks = walk(1.0, 1.0, WALKS);
-    EXPECT_NEAR(walks.once + walks.again, 1.0, 1e-9);
+    EXPECT_NEAR(walks.once + walks.multiscatter, 1.0, 1e-9);
     double albedo = 0;
     constexpr int STEPS = 64;
     for (int i = 0; i < STEPS; ++i) {
@@ -80,8 +80,8 @@ TEST(PrincipledReferenceWalk, MetalGivesBackWhatWalksBringBack) {
         const Walks white = walk(alpha, 1.0, WALKS);
         for (const double f_0 : {0.1, 0.5, 0.9}) {
             const Walks metal = walk(alpha, f_0, WALKS);
-            const double promised = (1 - white.once) * ggx_again(alpha, dvec3(f_0), dvec3(1 - f_0)).x;
-            EXPECT_NEAR(promised, metal.again, 0.001 + 4 * (metal.error + white.error))
+            const double promised = (1 - white.once) * ggx_multiscatter(alpha, dvec3(f_0), dvec3(1 - f_0)).x;
+            EXPECT_NEAR(promised, metal.multiscatter, 0.001 + 4 * (metal.error + white.error))
                 << alpha << ' ' << f_0;
             EXPECT_LT(metal.error + white.error, 0.002);
         }
@@ -91,8 +91,9 @@ TEST(PrincipledReferenceWalk, MetalGivesBackWhatWalksBringBack) {
 TEST(PrincipledReferenceWalk, TheReferenceCountsThatLight) {
     const PrincipledReference metal({.base_color = dvec3(0.5), .metalness = 1, .roughness = 0.6},
                                     normalize(dvec3(1, 0, 0.5)));
-    const double again = ggx_again(0.36, dvec3(0.5), dvec3(0.5)).x * metal.fractions().metal_lost;
-    EXPECT_NEAR(metal.albedos().again_up.x, again, 1e-9);
+    const double multiscatter =
+        ggx_multiscatter(0.36, dvec3(0.5), dvec3(0.5)).x * metal.fractions().metal_lost;
+    EXPECT_NEAR(metal.albedos().multiscatter_up.x, multiscatter, 1e-9);
 }
 
 }  // namespace

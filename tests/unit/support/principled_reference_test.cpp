@@ -205,8 +205,9 @@ TEST(PrincipledReference, NoMaterialGainsLight) {
             PrincipledReference(material, view(0.01 + 0.99 * i / MATERIALS, 6.28 * i / 7)).albedos();
         for (int k = 0; k < 3; ++k) {
             EXPECT_LE(l.sum()[k], 1.0005) << "material " << i;
-            for (const dvec3 lobe : {l.fuzz, l.coat, l.sheen, l.reflection, l.transmission,
-                                     l.diffuse_reflection, l.diffuse_transmission, l.again_up, l.again_down})
+            for (const dvec3 lobe :
+                 {l.fuzz, l.coat, l.sheen, l.reflection, l.transmission, l.diffuse_reflection,
+                  l.diffuse_transmission, l.multiscatter_up, l.multiscatter_down})
                 EXPECT_GE(lobe[k], 0) << "material " << i;
         }
     }
@@ -251,7 +252,7 @@ TEST(PrincipledReference, GlassSendsOnAsMuchLostLightFromEitherSide) {
     const auto fraction_down = [&](bool inside) {
         glass.inside = inside;
         const PrincipledReference reference(glass, view(0.4));
-        return reference.albedos().again_down.x / reference.fractions().glass_lost;
+        return reference.albedos().multiscatter_down.x / reference.fractions().glass_lost;
     };
     EXPECT_NEAR(fraction_down(false), 0.96 * 20 / 21, 1e-12);
     EXPECT_NEAR(fraction_down(true) * 1.5 * 1.5, fraction_down(false), 1e-12);
