@@ -44,7 +44,7 @@ uint32_t Convergence::next(uint32_t spp, uint32_t max) const {
     return next_look(spp, max);
 }
 
-void Convergence::look(std::span<const Accumulation> states, double seconds) {
+void Convergence::measure(std::span<const Accumulation> states, double seconds) {
     if (!target_ && !reference_) return;
     Image image = make_image(states, {.sample_count = true}, {});
     ConvergencePoint point{

@@ -31,17 +31,17 @@ class Convergence {
     // `target`: relative error to reach.
     Convergence(std::optional<double> target, std::optional<Image> reference);
 
-    // The samples per pixel of the next look(), after `spp` and at most `max`, from next_look(). If there is
-    // neither a target nor a reference: `max`.
+    // The samples per pixel of the next measure(), after `spp` and at most `max`, from next_look(). If there
+    // is neither a target nor a reference: `max`.
     uint32_t next(uint32_t spp, uint32_t max) const;
     // Measures the image of the states after `seconds` of rendering.
-    void look(std::span<const Accumulation> states, double seconds);
+    void measure(std::span<const Accumulation> states, double seconds);
 
     // Whether the last estimate is at most the target.
     bool reached() const;
     // The last estimate; nothing if there is none yet.
     std::optional<double> estimate() const;
-    // One for each look().
+    // One for each measure().
     const std::vector<ConvergencePoint>& points() const { return points_; }
 
   private:

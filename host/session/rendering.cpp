@@ -121,7 +121,7 @@ bool Rendering::step(double done) {
 bool Rendering::render_and_look() {
     const uint32_t target = job_.target;
     uint32_t held = spp();
-    if (held > 0) convergence_.look(renderer_.states(), seconds());
+    if (held > 0) convergence_.measure(renderer_.states(), seconds());
     while (held < target && !convergence_.reached()) {
         const uint32_t next = job_.adaptive ? next_pass_end(held, target) : convergence_.next(held, target);
         const auto update = [&](double done) { return step(done * next / target); };
@@ -129,7 +129,7 @@ bool Rendering::render_and_look() {
             job_.adaptive ? render_pass(renderer_, next, planned_, update) : renderer_.render(next, update);
         if (!complete) return false;
         held = next;
-        convergence_.look(renderer_.states(), seconds());
+        convergence_.measure(renderer_.states(), seconds());
         callbacks_.progress(double(held) / target, convergence_.estimate());
     }
     return true;

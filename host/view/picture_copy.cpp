@@ -28,7 +28,7 @@ void PictureCopy::take(const Renderer& renderer) {
     next_ = later(now, std::max(COPY_SECONDS, seconds_between(start, now) / LARGEST_FRACTION));
 }
 
-void PictureCopy::look(const Renderer& renderer, uint32_t spp, double seconds) {
+void PictureCopy::estimate_error(const Renderer& renderer, uint32_t spp, double seconds) {
     if (look_seconds_ > std::max(SHORT_LOOK, LARGEST_FRACTION * seconds)) {
         look_seconds_ /= 2;
         return;

@@ -25,7 +25,7 @@ class PictureCopy {
     // Does nothing if a look would take more than a tenth of a second and more than a twentieth of `seconds`,
     // the picture's time so far. The time of a look is estimated by the last one's, halved each time that
     // nothing is done, so that one slow look does not end them.
-    void look(const Renderer& renderer, uint32_t spp, double seconds);
+    void estimate_error(const Renderer& renderer, uint32_t spp, double seconds);
 
     const std::optional<Accumulation>& state() const { return state_; }
     // Relative; the last estimate, if there is one.

@@ -157,7 +157,7 @@ bool Viewer::accumulate() {
         if (!renderer_->render(stop_, [this](double progress) { return step(progress); })) return false;
         spp_ = stop_;
         if (scale_ > 1 || restart_ || ended()) break;
-        copy_.look(*renderer_, spp_, seconds_between(begun_, Clock::now()));
+        copy_.estimate_error(*renderer_, spp_, seconds_between(begun_, Clock::now()));
         figures_.error = copy_.error();
         measured_from_ = Clock::now();
     }

@@ -27,7 +27,7 @@ class ConvergenceTest : public SteadyTest {
             EXPECT_TRUE(render_pass(renderer, end, planned, [](double) { return true; }));
         }
         Convergence convergence({}, reference);
-        convergence.look(renderer.states(), 1.0);
+        convergence.measure(renderer.states(), 1.0);
         return convergence.points().at(0);
     }
     static Image counted(const Accumulation& state) { return make_image(state, {.sample_count = true}, {}); }
