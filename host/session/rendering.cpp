@@ -95,12 +95,12 @@ void Rendering::finish_checkpoint() const {
 // Writes a checkpoint and the images if they are due.
 void Rendering::keep() {
     if (checkpoints_ && checkpoints_->due()) {
-        renderer_.hold();
+        renderer_.copy_state();
         record_.render_seconds = seconds();
         checkpoints_->write(checkpoint_header(), renderer_.states(), callbacks_.warn);
     }
     if (images_ && images_->over()) {
-        renderer_.hold();
+        renderer_.copy_state();
         RenderRecord current = record_;
         current.render_seconds = seconds();
         Image image = collect_image(current);

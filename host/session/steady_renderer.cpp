@@ -16,7 +16,7 @@ SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
     : source_(std::move(source)), on_failure_(std::move(on_failure)) {
     open();
     look_up_positions();
-    next_hold_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(source_.hold_seconds));
+    next_copy_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(source_.copy_seconds));
 }
 
 void SteadyRenderer::open() {
@@ -61,13 +61,13 @@ void SteadyRenderer::select(size_t state) {
     loaded_ = false;
 }
 
-void SteadyRenderer::hold() {
+void SteadyRenderer::copy_state() {
     const Clock::time_point start = Clock::now();
     state() = renderer_->download();
     const Clock::time_point now = Clock::now();
     const Seconds pause =
-        std::max(Seconds(source_.hold_seconds), Seconds(now - start) / LARGEST_FRACTION_OF_HOLDING);
-    next_hold_ = now + std::chrono::duration_cast<Clock::duration>(pause);
+        std::max(Seconds(source_.copy_seconds), Seconds(now - start) / LARGEST_FRACTION_OF_HOLDING);
+    next_copy_ = now + std::chrono::duration_cast<Clock::duration>(pause);
 }
 
 bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& keep_going) {
@@ -78,10 +78,10 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
             look_up_positions();
             const double before = double(std::min(state().min_samples(), target)) / target;
             const bool complete = renderer_->render(target, [&](double done) {
-                if (Clock::now() >= next_hold_) hold();
+                if (Clock::now() >= next_copy_) copy_state();
                 return keep_going(before + (1.0 - before) * done);
             });
-            hold();
+            copy_state();
             return complete;
         } catch (const Error& error) {
             recover(error);

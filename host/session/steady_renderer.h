@@ -28,7 +28,7 @@ class SteadyRenderer {
         RenderSettings settings;
         std::vector<Accumulation> states;  // To continue from; at least one, with different seeds.
         bool positions = false;            // Whether positions() will be called.
-        double hold_seconds = 10.0;        // Between two copies of the state.
+        double copy_seconds = 10.0;        // Between two copies of the state.
     };
     // Called after every failure that is survived, with its cause, the samples that every pixel still holds
     // at least, and how long submissions will take from now on [s].
@@ -52,8 +52,8 @@ class SteadyRenderer {
     bool render(uint32_t target, const std::function<bool(double progress)>& keep_going);
 
     // Copies the selected state from the device to the host. May only be called from keep_going(). render()
-    // itself copies every hold_seconds, less often where copying is slow, and at its end.
-    void hold();
+    // itself copies every copy_seconds, less often where copying is slow, and at its end.
+    void copy_state();
     // The states as last copied, or those of the source.
     std::vector<Accumulation>& states() { return source_.states; }
     const std::vector<Accumulation>& states() const { return source_.states; }
@@ -84,7 +84,7 @@ class SteadyRenderer {
     std::vector<float> positions_;
     ArrayMap array_map_;
     double pipeline_seconds_ = 0.0;
-    std::chrono::steady_clock::time_point next_hold_;
+    std::chrono::steady_clock::time_point next_copy_;
     Recovery recovery_;
 };
 

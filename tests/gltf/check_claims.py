@@ -100,7 +100,7 @@ def labels(folder):
 
 def check(candela, names, folder):
     """Makes, renders and judges models; prints what it found, and returns whether all claims hold."""
-    hold = True
+    copy_state = True
     for number, claim in enumerate(make_models.make(names, folder)):
         file = folder / f"{number:02}-{claim['model']}.png"
         problem = render(candela, folder / claim["file"], file, claim)
@@ -108,8 +108,8 @@ def check(candela, names, folder):
         print(" ".join([claim["model"], *claim["arguments"]]) + (": holds" if not lines else ""), flush=True)
         for line in lines:
             print(f"    {line}", flush=True)
-        hold = hold and not lines
-    return hold
+        copy_state = copy_state and not lines
+    return copy_state
 
 
 def main():

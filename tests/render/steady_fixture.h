@@ -14,7 +14,7 @@ class SteadyTest : public RenderTest {
     // A renderer for the scene's first camera that goes on from `states`. No device may fail.
     SteadyRenderer steady_renderer(const Scene& scene, const GpuScene& gpu_scene,
                                    const RenderSettings& settings, std::vector<Accumulation> states,
-                                   double hold_seconds = 10.0) const {
+                                   double copy_seconds = 10.0) const {
         return SteadyRenderer({.instance = &instance_,
                                .device = info_,
                                .pipeline_cache_folder = std::nullopt,
@@ -22,7 +22,7 @@ class SteadyTest : public RenderTest {
                                .camera = &scene.cameras[0],
                                .settings = settings,
                                .states = std::move(states),
-                               .hold_seconds = hold_seconds},
+                               .copy_seconds = copy_seconds},
                               [](const Error&, uint32_t, double) { FAIL() << "the device failed"; });
     }
 };

@@ -11,13 +11,13 @@ class SteadyRendererTest : public SteadyTest {
   protected:
     // Renders that many samples in many submissions, or until a new state has been held twice on the way;
     // returns how often that was.
-    int copies_on_the_way(double hold_seconds, uint32_t target) const {
+    int copies_on_the_way(double copy_seconds, uint32_t target) const {
         const Scene scene = cornell_box();
         const GpuScene gpu_scene = build_gpu_scene(scene);
         RenderSettings settings = settings_for(64, 64);
         settings.submission_seconds = 1e-6;
         SteadyRenderer renderer =
-            steady_renderer(scene, gpu_scene, settings, {empty_state(settings)}, hold_seconds);
+            steady_renderer(scene, gpu_scene, settings, {empty_state(settings)}, copy_seconds);
         EXPECT_EQ(count_samples(renderer.states()).total, 0u);
         int copies = 0;
         uint64_t samples = 0;
