@@ -175,7 +175,7 @@ void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index
 }
 
 // The hits of a sample's rays.
-struct Met {
+struct TraceResult {
     bool complete;  // False if the driver ended the loop early.
     bool lit;       // There is a shadow ray, and it is not blocked.
     Hit hit;        // The hit of the path's ray, if the path continues.
@@ -193,7 +193,7 @@ void sample_advance(Sample s, inout Traversal traversal, inout bool lit) {
 
 // Traces the shadow ray of a vertex and the path's next ray, one after the other, without waiting for neighbouring
 // lanes in between.
-Met sample_trace(Sample s) {
+TraceResult sample_trace(Sample s) {
     bool shadowed = s.shadow.t_max > 0.0;
     Ray first = s.path.ray;
     if (shadowed) first = s.shadow.ray;
@@ -216,7 +216,7 @@ Met sample_trace(Sample s) {
             sample_advance(s, traversal, lit);
     }
     bool turned = !(HAS_OPACITY && traversal.any_hit);  // To the path's ray, if there is one.
-    return Met(turned && bvh_ended(traversal), lit, traversal.hit);
+    return TraceResult(turned && bvh_ended(traversal), lit, traversal.hit);
 }
 
 // Advances the path past the hit of its ray, or past its miss.
@@ -258,7 +258,7 @@ void render_pixel() {
             sample_begin(s, parameters, parameters.crop + at, parameters.first_sample + begun);
             ++begun;
         }
-        Met met = sample_trace(s);
+        TraceResult met = sample_trace(s);
         if (!met.complete) break;
         if (met.lit) s.estimate.L += s.shadow.Ld;
         if (s.ended) {
