@@ -50,9 +50,9 @@ class Flattener {
         flat_.attributes.reserve(primitives * attribute_words(attributes_));
     }
 
-    void add(const Shape& shape, uint index, bool lets_pass) {
+    void add(const Shape& shape, uint index, bool passable) {
         index_ = index;
-        lets_pass_ = lets_pass ? 1 : 0;
+        passable_ = passable ? 1 : 0;
         std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
     }
 
@@ -77,7 +77,7 @@ class Flattener {
                                               error, emission_uv(shape, mesh, v));
             add_primitive({PRIMITIVE_TRIANGLES, p[v.x], p[v.y], p[v.z], p[v.w]},
                           {first_id + uvec2(first, second), shape.material, smooth, light,
-                           power_of_two_above(error), lets_pass_});
+                           power_of_two_above(error), passable_});
             if (smooth) flat_.normals.back() = pack_normals(n[v.x], n[v.y], n[v.z], n[v.w]);
             add_attributes(corner_values(mesh.uv0, v, vec2(0.0f)), corner_values(mesh.uv1, v, vec2(0.0f)),
                            corner_values(mesh.colors, v, vec4(1.0f)),
@@ -108,18 +108,18 @@ class Flattener {
             const uint light = add_flat_piece(shape, LIGHT_PARALLELOGRAM, c[0], e1, e2, error,
                                               piece_uv(uv[0], uv[1], uv[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[3]},
-                          {uvec2(id, id + 1), shape.material, 0, light, origin_error, lets_pass_});
+                          {uvec2(id, id + 1), shape.material, 0, light, origin_error, passable_});
             add_uvs({uv[0], uv[1], uv[2], uv[3]}, vec4(along_u, handedness));
         } else {
             uint light = add_flat_piece(shape, LIGHT_TRIANGLE, c[0], e1, diagonal, error,
                                         piece_uv(uv[0], uv[1], uv[2]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[1], c[2], c[2]},
-                          {uvec2(id), shape.material, 0, light, origin_error, lets_pass_});
+                          {uvec2(id), shape.material, 0, light, origin_error, passable_});
             add_uvs({uv[0], uv[1], uv[2], uv[2]}, vec4(along_u, handedness));
             light = add_flat_piece(shape, LIGHT_TRIANGLE, c[0], diagonal, e2, error,
                                    piece_uv(uv[0], uv[2], uv[3]));
             add_primitive({PRIMITIVE_TRIANGLES, c[0], c[2], c[3], c[3]},
-                          {uvec2(id + 1), shape.material, 0, light, origin_error, lets_pass_});
+                          {uvec2(id + 1), shape.material, 0, light, origin_error, passable_});
             add_uvs({uv[0], uv[2], uv[3], uv[3]}, vec4(along_u, handedness));
         }
     }
@@ -137,7 +137,7 @@ class Flattener {
             add_piece(shape, LIGHT_SPHERE, error, piece_uv(vec2(0, 0), vec2(1, 0), vec2(0, 1)));
         add_primitive(
             {PRIMITIVE_SPHERE, center, radius, vec3(0.0f), vec3(0.0f)},
-            {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error), lets_pass_});
+            {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error), passable_});
         add_uvs({}, vec4(1, 0, 0, 1));  // All computed from the normal.
     }
 
@@ -150,7 +150,7 @@ class Flattener {
                                           piece_uv(disk.uvs[0], disk.uvs[1], disk.uvs[2]));
         add_primitive(
             {PRIMITIVE_DISK, center, e1, e2, vec3(0.0f)},
-            {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error), lets_pass_});
+            {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error), passable_});
         const bool swapped = disk.uvs[1].x < disk.uvs[2].x;
         add_uvs({disk.uvs[0], disk.uvs[1], disk.uvs[2], disk.uvs[2]}, swapped ? vec4(e2, -1) : vec4(e1, 1));
     }
@@ -214,8 +214,8 @@ class Flattener {
     const SceneFrame& frame_;
     uint attributes_;
     bool has_normals_;
-    uint lets_pass_ = 0;  // Of the shape that is added,
-    uint index_ = 0;      // and which one it is.
+    uint passable_ = 0;  // Of the shape that is added,
+    uint index_ = 0;     // and which one it is.
     FlatScene flat_;
 };
 
@@ -239,11 +239,11 @@ FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes,
     return flattener.take();
 }
 
-FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool lets_pass,
+FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool passable,
                        const SceneFrame& frame, uint attributes, bool has_normals) {
     Flattener flattener(scene, frame, attributes, has_normals);
     flattener.reserve(scene.meshes[instance.mesh].triangles.size());
-    flattener.add({.geometry = instance, .material = 0, .emission = {}}, 0, lets_pass);
+    flattener.add({.geometry = instance, .material = 0, .emission = {}}, 0, passable);
     return flattener.take();
 }
 

@@ -49,7 +49,7 @@ FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes =
                   const std::vector<bool>& left_out = {});
 
 // A mesh by itself, of material 0; with records of normals if has_normals, zeros where it has none.
-FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool lets_pass,
+FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool passable,
                        const SceneFrame& frame, uint attributes, bool has_normals);
 
 // Whether a mesh that is shown has shading normals.

@@ -28,14 +28,14 @@ std::vector<Box> upper_boxes(const Bvh& bvh) {
     return boxes;
 }
 
-MeshTree build_mesh_tree(const Scene& scene, uint32_t mesh, uint attributes, bool lets_pass, bool normals) {
-    MeshTree tree{.lets_pass = lets_pass};
+MeshTree build_mesh_tree(const Scene& scene, uint32_t mesh, uint attributes, bool passable, bool normals) {
+    MeshTree tree{.passable = passable};
     DoubleBox box;
     const TriangleMesh& m = scene.meshes[mesh];
     for (const vec3 p : m.positions)
         box.extend(m.origin + dvec3(p));
     tree.frame = frame_around(box);
-    tree.flat = flatten_mesh(scene, MeshInstance{.mesh = mesh}, lets_pass, tree.frame, attributes, normals);
+    tree.flat = flatten_mesh(scene, MeshInstance{.mesh = mesh}, passable, tree.frame, attributes, normals);
     tree.bvh = build_bvh(boxes_of(tree.flat.primitives));
     if (!tree.flat.primitives.empty()) tree.boxes = upper_boxes(tree.bvh);
     return tree;
@@ -45,19 +45,19 @@ MeshTree build_mesh_tree(const Scene& scene, uint32_t mesh, uint attributes, boo
 
 MeshTrees build_mesh_trees(const Scene& scene, const Instancing& instancing, uint attributes,
                            MeshTrees&& known) {
-    std::map<uint32_t, bool> lets_pass;
+    std::map<uint32_t, bool> passable;
     for (const uint32_t i : instancing.shapes) {
         const Shape& shape = scene.shapes[i];
-        bool& passes = lets_pass[std::get<MeshInstance>(shape.geometry).mesh];
+        bool& passes = passable[std::get<MeshInstance>(shape.geometry).mesh];
         passes = passes || lets_rays_pass(scene, shape);
     }
     const bool normals = has_shading_normals(scene);
     MeshTrees trees;
     for (const uint32_t mesh : instancing.meshes) {
         const auto before = known.find(mesh);
-        const bool stays = before != known.end() && before->second.lets_pass == lets_pass[mesh];
+        const bool stays = before != known.end() && before->second.passable == passable[mesh];
         trees.emplace(mesh, stays ? std::move(before->second)
-                                  : build_mesh_tree(scene, mesh, attributes, lets_pass[mesh], normals));
+                                  : build_mesh_tree(scene, mesh, attributes, passable[mesh], normals));
     }
     return trees;
 }

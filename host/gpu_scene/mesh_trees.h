@@ -14,8 +14,8 @@
 namespace candela {
 
 struct MeshTree {
-    bool lets_pass = false;  // Rays may pass it in some instance.
-    SceneFrame frame{};      // Of its own space, in which all that follows is.
+    bool passable = false;  // Rays may pass it in some instance.
+    SceneFrame frame{};     // Of its own space, in which all that follows is.
     FlatScene flat{};
     Bvh bvh{};
     std::vector<Box> boxes{};  // Which together contain the mesh; none if no ray can meet it.

@@ -24,7 +24,7 @@ bool shows_one_of(const Shape& shape, const std::vector<uint32_t>& meshes) {
 std::vector<std::pair<uint32_t, bool>> kinds_of(const MeshTrees& trees) {
     std::vector<std::pair<uint32_t, bool>> kinds;
     for (const auto& [mesh, tree] : trees)
-        kinds.emplace_back(mesh, tree.lets_pass);
+        kinds.emplace_back(mesh, tree.passable);
     return kinds;
 }
 
@@ -102,16 +102,16 @@ void SceneStages::make_nesting(const Work& work) {
 
 // Whether flatten() would make something else of the shapes that are not instances.
 bool SceneStages::has_other_surfaces(const Work& work, const Instancing& instancing,
-                                     const std::vector<bool>& lets_pass) const {
+                                     const std::vector<bool>& passable) const {
     if (work.all || work.frame || work.attributes || work.normals) return true;
     if (instancing.is_instance != instancing_.is_instance) return true;
     const auto is_surface = [&](uint32_t i) { return !instancing.is_instance[i]; };
     if (std::ranges::any_of(work.change.moved, is_surface) ||
         std::ranges::any_of(work.change.shapes, is_surface))
         return true;
-    for (uint32_t i = 0; i < lets_pass.size(); ++i) {
+    for (uint32_t i = 0; i < passable.size(); ++i) {
         if (is_surface(i) &&
-            (lets_pass[i] != lets_pass_[i] || shows_one_of(work.scene.shapes[i], work.change.meshes)))
+            (passable[i] != passable_[i] || shows_one_of(work.scene.shapes[i], work.change.meshes)))
             return true;
     }
     return false;
@@ -124,13 +124,13 @@ void SceneStages::make_surfaces(Work& work) {
     Instancing instancing = choose_instances(scene, rule_);
     const bool has_normals = has_shading_normals(scene);
     work.normals = has_normals != has_normals_;
-    std::vector<bool> lets_pass;
+    std::vector<bool> passable;
     for (const Shape& shape : scene.shapes)
-        lets_pass.push_back(lets_rays_pass(scene, shape));
-    work.surfaces = has_other_surfaces(work, instancing, lets_pass);
+        passable.push_back(lets_rays_pass(scene, shape));
+    work.surfaces = has_other_surfaces(work, instancing, passable);
     instancing_ = std::move(instancing);
     has_normals_ = has_normals;
-    lets_pass_ = std::move(lets_pass);
+    passable_ = std::move(passable);
     if (work.surfaces)
         surfaces_ = flatten(scene, gpu_.frame, materials_.facts.attributes, instancing_.is_instance);
 }

@@ -69,7 +69,7 @@ class SceneStages {
     void make_geometry(const Work& work);
     void make_lights(const Work& work);
     bool has_other_surfaces(const Work& work, const Instancing& instancing,
-                            const std::vector<bool>& lets_pass) const;
+                            const std::vector<bool>& passable) const;
     void put(uint32_t array, std::vector<uvec4>&& words);
 
     std::optional<SceneFrame> given_frame_;
@@ -80,8 +80,8 @@ class SceneStages {
     Nesting nesting_;
     std::optional<std::string> coplanar_lights_;  // The warning about them.
     Instancing instancing_;
-    std::vector<bool> lets_pass_;  // Of each shape.
-    bool has_normals_ = false;     // Some mesh has shading normals.
+    std::vector<bool> passable_;  // Of each shape.
+    bool has_normals_ = false;    // Some mesh has shading normals.
     FlatScene surfaces_;
     AreaLights area_lights_;
     MeshTrees trees_;

@@ -145,7 +145,7 @@ Records filled(Fields& fields) {
                  .has_normals = fields.keep(1u),
                  .light = fields.u(),
                  .error = std::bit_cast<float>(fields.keep(floatBitsToUint(0x1p-21f))),
-                 .lets_pass = fields.keep(1u)};
+                 .passable = fields.keep(1u)};
     r.normals = pack_normals(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), vec3(0, -1, 0));
     for (const int i : {0, 1, 2, 3})
         fields.keep(r.normals[0][i]);

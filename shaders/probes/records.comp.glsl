@@ -58,7 +58,7 @@ void put_surface(Surface s) {
     put(s.has_normals);
     put(s.light);
     put(s.error);
-    put(s.lets_pass);
+    put(s.passable);
 }
 
 void put_material(MaterialRecord m) {

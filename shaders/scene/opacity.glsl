@@ -54,7 +54,7 @@ Candidate candidate_none() {
 // rays pass the primitive, the candidate, if it is nearer than the nearest hit.
 void meet(uint position, Hit found, inout Hit hit, inout Candidate candidate) {
     if (!is_nearer(found, hit)) return;
-    if (HAS_OPACITY && scene_surface(position).lets_pass != 0u) {
+    if (HAS_OPACITY && scene_surface(position).passable != 0u) {
         candidate = Candidate(found, true);
     } else {
         hit = found;

@@ -5,7 +5,7 @@
 //   Primitive, 3 words of uvec4   Surface, 1 word                   Normals, 1 word
 //     0: a.xyz, d.x or tag          0: id, id of the second           0: at a, b, c, d
 //     1: b.xyz, d.y                    triangle, material |              (octahedral, 2 x 16 bits)
-//     2: c.xyz, d.z                    lets_pass << 22 |
+//     2: c.xyz, d.z                    passable << 22 |
 //                                      error | smooth << 31,
 //                                      light
 #ifndef SHARED_PRIMITIVE_H
@@ -53,7 +53,7 @@ struct Surface {
     uint has_normals;  // 1: has shading normals.
     uint light;        // Index of a light record, or NO_LIGHT.
     float error;       // Distance at which rays must begin, along its normal: 0 or a power of two.
-    uint lets_pass;    // 1: some rays may pass it, by scene/opacity.glsl.
+    uint passable;     // 1: some rays may pass it, by scene/opacity.glsl.
 };
 
 #ifdef __cplusplus
@@ -64,7 +64,7 @@ inline std::array<uvec4, PRIMITIVE_WORDS> pack(const Primitive& p) {
 }
 
 inline std::array<uvec4, SURFACE_WORDS> pack(const Surface& s) {
-    const uint bits = s.has_normals * SURFACE_SMOOTH_BIT | s.lets_pass * SURFACE_OPACITY_BIT;
+    const uint bits = s.has_normals * SURFACE_SMOOTH_BIT | s.passable * SURFACE_OPACITY_BIT;
     return {uvec4(s.id.x, s.id.y, s.material | floatBitsToUint(s.error) | bits, s.light)};
 }
 
@@ -106,7 +106,7 @@ Surface surface_unpack(uvec4 u) {
     s.material = u.z & MAX_MATERIALS - 1u;
     s.error = uintBitsToFloat(u.z & SURFACE_ERROR_BITS);
     s.has_normals = u.z / SURFACE_SMOOTH_BIT;
-    s.lets_pass = u.z / SURFACE_OPACITY_BIT & 1u;
+    s.passable = u.z / SURFACE_OPACITY_BIT & 1u;
     s.light = u.w;
     return s;
 }

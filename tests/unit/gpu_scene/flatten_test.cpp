@@ -125,7 +125,7 @@ TEST(Flatten, SurfacesSayWhetherRaysMayPass) {
     add_shape(scene, mesh, 0);
     std::vector<uint32_t> found;
     for (const Surface& surface : flatten(scene, SceneFrame{}).surfaces)
-        found.push_back(surface.lets_pass);
+        found.push_back(surface.passable);
     EXPECT_EQ(found, (std::vector<uint32_t>{0, 1, 1, 0, 0, 1, 0}));
 }
 
