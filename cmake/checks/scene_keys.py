@@ -82,16 +82,16 @@ class Lists:
             if macro == "KEY":
                 values[words[0]] = {"kind": "key", "initial": PRINCIPLED_KEYS[words[0]], "text": words[-1]}
                 continue
-            kind, name, initial, least, most, needs, text = words
+            kind, name, initial, min, max, needs, text = words
             values[name] = {"kind": kind, "text": text, "needs": needs}
             values[name]["initial"] = "none" if kind in MAPS else initial if kind == "flag" \
                 else json.dumps(self.number(initial))
             if kind not in ("radiance", "angle"):
-                values[name] |= {"least": self.number(least), "most": self.number(most)}
+                values[name] |= {"min": self.number(min), "max": self.number(max)}
         for macro, (of, name, *more) in entries(read(KEYS)):
             key = {"kind": macro.lower(), "initial": more[-2], "text": more[-1]}
             if macro in ("NUMBER", "INTEGER"):
-                key |= {"least": self.number(more[0]), "most": self.number(more[1])}
+                key |= {"min": self.number(more[0]), "max": self.number(more[1])}
             if macro == "CHOICE":
                 key["names"] = self.choices[more[0]]
             self.objects.setdefault(of, {})[name] = key
@@ -127,7 +127,7 @@ def readable(number):
 def prose_of(key):
     if "{range}" not in key["text"]:
         return key["text"]
-    return key["text"].replace("{range}", f"from {readable(key['least'])} to {readable(key['most'])}")
+    return key["text"].replace("{range}", f"from {readable(key['min'])} to {readable(key['max'])}")
 
 
 # The page.
@@ -204,7 +204,7 @@ def set_key(fragment, key, schema):
     found = False
     for part in typed(fragment, schema):
         if key["kind"] in ("number", "integer") and part.get("type") == key["kind"]:
-            part["minimum"], part["maximum"] = key["least"], key["most"]
+            part["minimum"], part["maximum"] = key["min"], key["max"]
             found = True
         if key["kind"] == "choice" and "enum" in part:
             part["enum"] = key["names"]
@@ -228,7 +228,7 @@ def principled_schema(key, old):
     else:
         result = {"type": "number"}
         if kind != "angle":
-            result |= {"minimum": key["least"], "maximum": key["most"]}
+            result |= {"minimum": key["min"], "maximum": key["max"]}
         if kind == "index":
             result = {"oneOf": [result, {"const": 0}]}
     default = json_of(key["initial"])

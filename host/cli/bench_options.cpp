@@ -10,7 +10,7 @@ constexpr uint32_t MAX_RUNS = 1000;
 constexpr uint32_t MIN_RAYS = 64, MAX_CAMERA_RAYS = 1u << 24;
 constexpr uint32_t MIN_TRIANGLES = 72, MAX_TRIANGLES = 100'000'000;
 constexpr uint32_t MAX_TREES = 40'000;  // 4 G triangles: ids have 32 bits.
-constexpr uint32_t MIN_INSTANCES = 2'000, MOST_INSTANCES = 10'000'000;
+constexpr uint32_t MIN_INSTANCES = 2'000, MAX_INSTANCES = 10'000'000;
 
 // The values of a comma-separated list, if parse() accepts all of them.
 template <class T>
