@@ -49,7 +49,7 @@ struct Extent {
 };
 
 Extent extent_of(uint kind, const Primitive& primitive) {
-    const auto& [_, a, b, c, d] = primitive;
+    const vec3 a = primitive.a, b = primitive.b, c = primitive.c, d = primitive.d;
     const auto flat = [&](vec3 e1, vec3 e2, double fraction) {
         return Extent{a, e1, e2, fraction * length(cross(dvec3(e1), dvec3(e2)))};
     };
