@@ -36,7 +36,7 @@ constexpr std::array REFERENCES{
     Reference{"rough-metal", 1536},
     Reference{"phong", 1600},
     Reference{"depth-of-field", 1024},
-    Reference{"environment", 512},
+    Reference{"environment", 640},
     Reference{"small-sphere-light", 832},
     Reference{"many-lights", 2560},
     Reference{"mesh-light", 2688},

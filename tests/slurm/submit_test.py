@@ -71,7 +71,7 @@ class Scripts(unittest.TestCase):
                 refused("box.parts/part-size: cannot use")
                 (parts / "part-size").unlink()
                 if "\n" not in text:
-                    refused("MaxArraySize of scontrol show config: cannot use", "--part", 8, MAX=text)
+                    refused("MaxArraySize of scontrol show config: cannot use", "--part", 8, MOST=text)
                 (parts / "part-size").unlink(missing_ok=True)
                 self.assert_refused("--spp", self.run_script("submit.sh", "box.json", "--spp", text, "-o", "box.exr"))
                 refused("--task-time: cannot use", "--task-time", text)
@@ -125,7 +125,7 @@ class Scripts(unittest.TestCase):
         for name in ("two\nlines", "back\\slash"):
             self.assert_refused("has a line feed or a backslash", self.run_script(
                 "submit.sh", "box.json", "--spp", 8, "-o", f"{name}.exr"))
-        self.assert_refused("a file is ./-x.json", self.run_script(
+        self.assert_refused("a file as ./-x.json", self.run_script(
             "submit.sh", "-x.json", "--spp", 8, "-o", "box.exr"))
 
     def test_folders_of_one_name_have_jobs_of_their_own(self):
