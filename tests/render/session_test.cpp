@@ -142,7 +142,7 @@ TEST_F(SessionTest, AfterEachPoseThePictureIsThatOfAFreshLoad) {
     std::array<Layers, 4> layers_at;
     {
         Session session(options());
-        EXPECT_EQ(error_of([&] { session.pose(0.5); }), "there is no scene yet; call load() first");
+        EXPECT_EQ(error_of([&] { session.pose(0.5); }), "no scene has been loaded yet; call load() first");
         session.load(file(text(FLOOR)));
         const auto render = [&](Layers& picture) {
             EXPECT_TRUE(session.render(SPP));
