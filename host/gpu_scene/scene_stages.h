@@ -44,8 +44,7 @@ class SceneStages {
     GpuScene take() && { return std::move(gpu_); }
 
     // Makes the records those of `scene`, which differs by `change` from what it was. Returns the buffers
-    // that hold other words than before. Throws what build_gpu_scene() throws; then the stages are of no more
-    // use.
+    // whose words have changed. Throws what build_gpu_scene() throws; the stages are then unusable.
     BufferSet update(const Scene& scene, const SceneChange& change);
 
   private:

@@ -1,4 +1,4 @@
-// What of a scene is other than before.
+// The difference between two states of a scene.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace candela {
 
-// There are as many materials, meshes and shapes as there were.
+// The numbers of materials, meshes and shapes are unchanged.
 struct SceneChange {
     bool environment = false;  // All of it, or whether there is one.
-    bool rotation = false;     // Of the environment.
+    bool rotation = false;     // Only of the environment.
     bool lights = false;       // The punctual ones.
     bool radiance = false;     // Factors and sides of emissions; neither their textures nor what emits.
     bool materials = false;
@@ -24,18 +24,18 @@ struct SceneChange {
     bool operator==(const SceneChange&) const = default;
     bool any() const { return *this != SceneChange(); }
     bool of_geometry() const { return !moved.empty() || !shapes.empty() || !meshes.empty(); }
-    // Makes this one the change that both are together.
+    // Makes this the change of both, one after the other.
     void add(const SceneChange& later);
 };
 
-// Notes that a shape's emission, or the environment, was one and is another now, if they differ.
+// Notes a difference of a shape's emission, or of the environment, if there is one.
 void note_emission(SceneChange& change, uint32_t shape, const std::optional<Emission>& before,
                    const std::optional<Emission>& now);
 void note_environment(SceneChange& change, const std::optional<Environment>& before,
                       const std::optional<Environment>& now);
 
-// In what two scenes differ; none if they have different numbers of materials, meshes or shapes. Cameras, and
-// what scenes propose, are left aside; lights are never compared.
+// The difference of two scenes; none if their numbers of materials, meshes or shapes differ. Ignores cameras,
+// the settings that scenes propose, and punctual lights.
 std::optional<SceneChange> difference(const Scene& before, const Scene& now);
 
 }  // namespace candela

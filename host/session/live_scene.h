@@ -1,4 +1,4 @@
-// A scene that stays, with its records: after a change, only those are made again that depend on it.
+// A loaded scene with its records: after a change, only the records that depend on it are remade.
 #pragma once
 
 #include <filesystem>
@@ -16,11 +16,11 @@
 
 namespace candela {
 
-// Scene and records are functions of the state alone, whichever way led there. Where a function throws, the
-// scene is as before.
+// Scene and records are functions of the state alone, regardless of how it was reached. If a function throws,
+// the scene is unchanged.
 class LiveScene {
   public:
-    // Reads a scene, in place of any before it. Throws what load_scene() throws.
+    // Reads a scene, which replaces any previous one. Throws what load_scene() throws.
     void load(const std::filesystem::path& path, const LoadOptions& options);
     // Changes it as change_scene() does. Throws what that throws.
     void change(std::string_view json);
@@ -30,14 +30,14 @@ class LiveScene {
 
     // Has no camera before the first load().
     const Scene& scene() const { return scene_; }
-    // What of the scene the records do not show yet; none: all.
+    // The changes of the scene that are not yet in the records; none: all of it.
     const std::optional<SceneChange>& pending() const { return pending_; }
-    // Makes the records those of the scene. Returns the buffers that hold other words than before. Throws
-    // what build_gpu_scene() throws; the next call then makes all records.
+    // Brings the records up to date. Returns the buffers whose words have changed. Throws what
+    // build_gpu_scene() throws; the next call then makes all records.
     BufferSet update();
     // The records of the last update(), always in the same place.
     const GpuScene& records() const { return stages_->joined(); }
-    // What is odd in files and in records, since the last call.
+    // The warnings about files and records since the last call.
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
   private:

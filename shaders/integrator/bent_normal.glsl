@@ -48,22 +48,22 @@ bool bend_normal(inout Interaction s, Hit hit) {
 // The bent normal ns, turned so that it mirrors wo to a direction above the surface with the normal n. wo is not below
 // the surface.
 vec3 consistent_normal(vec3 wo, vec3 n, vec3 ns) {
-    const float MIN = 0.01;  // Least sine of the mirror direction's elevation; rounding is far smaller.
+    const float MIN_SINE = 0.01;  // Of the mirror direction's elevation; rounding is far smaller.
     vec3 mirror = 2.0 * dot(wo, ns) * ns - wo;
     float up = dot(mirror, n);
-    if (up >= MIN) return dot(wo, ns) < 0.0 ? -ns : ns;
+    if (up >= MIN_SINE) return dot(wo, ns) < 0.0 ? -ns : ns;
     vec3 along = mirror - up * n;
     float length_squared = dot(along, along);
     if (length_squared == 0.0) return n;
-    return normalize(wo + sqrt((1.0 - MIN * MIN) / length_squared) * along + MIN * n);
+    return normalize(wo + sqrt((1.0 - MIN_SINE * MIN_SINE) / length_squared) * along + MIN_SINE * n);
 }
 
 // The interpolated normal ns if wo sees its front, otherwise turned as a bent normal is. wo is not below the surface
 // with the normal n. A mirror may reflect light to below that surface. There it meets the surface once more, from
 // behind ns, and the turned normal reflects it away.
 vec3 facing_normal(vec3 wo, vec3 n, vec3 ns) {
-    const float MIN = 0.01;  // Least cosine, unless n itself has a smaller one.
-    return dot(wo, ns) < min(MIN, dot(wo, n)) ? consistent_normal(wo, n, ns) : ns;
+    const float MIN_COSINE = 0.01;  // Unless n itself has a smaller one.
+    return dot(wo, ns) < min(MIN_COSINE, dot(wo, n)) ? consistent_normal(wo, n, ns) : ns;
 }
 
 // w mirrored at the plane with the unit normal n.

@@ -24,7 +24,7 @@ const uint LIGHT_WORDS = 4u;
 const uint LIGHT_GROUPS_WORDS = 1u;
 const uint ENVIRONMENT_TEXEL_WORDS = 1u;
 const uint ALIAS_WORDS = 1u;  // Words of two entries.
-const uint CDF_WORDS = 1u;    // Of two entries.
+const uint CDF_WORDS = 1u;    // Words of two entries.
 
 const uint LIGHT_TRIANGLE = 0u;       // p + b1 e1 + b2 e2 with b1, b2 >= 0, b1 + b2 <= 1.
 const uint LIGHT_PARALLELOGRAM = 1u;  // p + b1 e1 + b2 e2 with b1, b2 in [0, 1].

@@ -237,7 +237,7 @@ GROUPS = [
         ("heights that a mirrored image turns not turned", FILTER, "turned ? -float(n) : float(n)", "float(n)"),
         ("the frame's unit forgotten for heights", MATERIAL_ARRAYS, "frame.length(double(bump->scale))",
          "frame.length(frame.unit * double(bump->scale))"),
-        ("a facet seen from behind", BENT_NORMAL, "if (up >= MIN) return dot(wo, ns) < 0.0 ? -ns : ns;", "return ns;"),
+        ("a facet seen from behind", BENT_NORMAL, "if (up >= MIN_SINE) return dot(wo, ns) < 0.0 ? -ns : ns;", "return ns;"),
     ]),
     (MEDIA, [
         ("a medium of a higher priority hidden by a lower one", MEDIUM, "lessThanEqual(m >> MEDIUM_INDEX_BITS",
