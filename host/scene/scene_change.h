@@ -34,8 +34,8 @@ void note_emission(SceneChange& change, uint32_t shape, const std::optional<Emis
 void note_environment(SceneChange& change, const std::optional<Environment>& before,
                       const std::optional<Environment>& now);
 
-// The difference of two scenes; none if their numbers of materials, meshes or shapes differ. Ignores cameras,
-// the settings that scenes propose, and punctual lights.
+// The difference of two scenes; none if their numbers of materials, meshes or shapes differ. Cameras and the
+// settings that scenes propose are ignored; punctual lights, if there are any, are always said to differ.
 std::optional<SceneChange> difference(const Scene& before, const Scene& now);
 
 }  // namespace candela
