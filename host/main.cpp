@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "cli/console.h"
+#include "cli/exit_code.h"
 #include "cli/program.h"
 
 int main(int argc, char** argv) {
@@ -18,7 +19,7 @@ int main(int argc, char** argv) {
         return int(candela::run_program(argc, argv));
     } catch (const candela::Error& error) {
         candela::print_error(error.what());
-        return int(error.code());
+        return int(exit_code(error.kind()));
     } catch (const std::bad_alloc&) {
         candela::print_error("the computer has too little memory; use a smaller picture or scene");
         return int(ExitCode::out_of_memory);

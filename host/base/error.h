@@ -1,4 +1,4 @@
-// The one exception of the program and the exit codes that a run can end with.
+// The one exception of the program.
 //
 // A programmer's error is an assert; the world's error (file, scene, device, memory) is an Error, caught once
 // in main(); an expected absence is a std::optional. The message of an Error names the thing, the place, the
@@ -10,26 +10,24 @@
 
 namespace candela {
 
-enum class ExitCode : int {
-    done = 0,
-    failed = 1,
-    usage = 2,
-    no_device = 3,
-    device_lost = 4,
-    out_of_memory = 5,
-    comparison_failed = 6,
-    interrupted = 130,
+// What callers tell apart.
+enum class ErrorKind {
+    other,
+    request,  // What was asked for makes no sense, or is not there: an option, the name of a camera.
+    no_device,
+    device_lost,
+    out_of_memory,
 };
 
 class Error : public std::runtime_error {
   public:
-    explicit Error(const std::string& message, ExitCode code = ExitCode::failed)
-        : std::runtime_error(message), code_(code) {}
+    explicit Error(const std::string& message, ErrorKind kind = ErrorKind::other)
+        : std::runtime_error(message), kind_(kind) {}
 
-    ExitCode code() const { return code_; }
+    ErrorKind kind() const { return kind_; }
 
   private:
-    ExitCode code_;
+    ErrorKind kind_;
 };
 
 }  // namespace candela

@@ -32,7 +32,7 @@ FileReach::FileReach(const fs::path& opened, const ReachOptions& options)
         std::error_code ignored;
         if (!fs::is_directory(folder, ignored))
             throw Error("--allow-folder: " + quoted(folder) + " is not a folder; name one that exists",
-                        ExitCode::usage);
+                        ErrorKind::request);
         folders_.push_back(real_path(folder));
     }
 }

@@ -73,7 +73,7 @@ auto with_memory_for(const char* what, const Place& place, const Action& action)
     } catch (const std::bad_alloc& error) {
         throw Error(place() + ": there is not enough memory for " + what + shortage_text(error, before) +
                         "; make it smaller, or use a larger machine",
-                    ExitCode::out_of_memory);
+                    ErrorKind::out_of_memory);
     }
 }
 

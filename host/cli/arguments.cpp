@@ -117,7 +117,7 @@ PixelRect PictureOptions::crop_within(uvec2 full) const {
                         std::to_string(crop->x1) + ',' + std::to_string(crop->y1) +
                         " reaches beyond the picture of " + std::to_string(full.x) + 'x' +
                         std::to_string(full.y) + " pixels; x1 is at most the width, y1 at most the height",
-                    ExitCode::usage);
+                    ErrorKind::request);
     }
     return *crop;
 }

@@ -53,7 +53,7 @@ CLI::Option* add_value(CLI::App& app, const std::string& names, Target& target, 
     const auto store = [&target, parse, expected, flag](const std::string& text) {
         const auto value = parse(text);
         if (!value)
-            throw Error(flag + ": cannot use \"" + text + "\"; expected " + expected, ExitCode::usage);
+            throw Error(flag + ": cannot use \"" + text + "\"; expected " + expected, ErrorKind::request);
         target = *value;
     };
     return app.add_option_function<std::string>(names, store, description);

@@ -202,7 +202,7 @@ ExitCode bench(const BenchArguments& arguments) {
     if (arguments.reference && arguments.scenes.size() > 1)
         throw Error("--reference: one image cannot be the reference of " +
                         std::to_string(arguments.scenes.size()) + " scenes; give one scene",
-                    ExitCode::usage);
+                    ErrorKind::request);
     std::vector<RenderTask> tasks = make_tasks(arguments);
     for (const RenderTask& task : tasks)
         files.read_all("the scene's file", task.scene.files);

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "base/error.h"
+#include "cli/exit_code.h"
 
 namespace candela {
 

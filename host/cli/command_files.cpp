@@ -23,7 +23,7 @@ void CommandFiles::add(const File& file) {
         if ((file.written || other.written) && is_same_file(file.path, other.path)) {
             throw Error(file.role + ": " + quoted(file.path) + " is the same file as " + other.role + ' ' +
                             quoted(other.path) + "; give it a name of its own",
-                        ExitCode::usage);
+                        ErrorKind::request);
         }
     }
     files_.push_back(file);

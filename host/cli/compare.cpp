@@ -71,7 +71,7 @@ ExitCode run(const CompareArguments& arguments) {
         if (image_format(*arguments.heatmap) != ImageFormat::png) {
             throw Error(
                 "--heatmap: cannot use \"" + *arguments.heatmap + "\"; expected a file name ending in .png",
-                ExitCode::usage);
+                ErrorKind::request);
         }
         CommandFiles files;
         files.read("A", arguments.a);

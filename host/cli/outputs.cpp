@@ -131,7 +131,7 @@ void write_report(const std::string& target, const Json& report) {
 
 void check_outputs(const ImageOutputs& outputs) {
     if (outputs.files.empty()) {
-        throw Error("no output given; use -o FILE.exr, -o FILE.png, or both", ExitCode::usage);
+        throw Error("no output given; use -o FILE.exr, -o FILE.png, or both", ErrorKind::request);
     }
     for (const std::string& path : outputs.files)
         image_format(path);

@@ -22,7 +22,7 @@ struct PlotArguments {
 ExitCode run(const PlotArguments& arguments) {
     if (std::filesystem::path(arguments.output).extension() != ".svg") {
         throw Error("-o: cannot use \"" + arguments.output + "\"; expected a file name ending in .svg",
-                    ExitCode::usage);
+                    ErrorKind::request);
     }
     CommandFiles files;
     for (const std::string& path : arguments.reports)

@@ -85,7 +85,7 @@ static bool parse_command_line(CLI::App& app, int argc, const char* const* argv)
         flush_results();
         return false;
     } catch (const CLI::ParseError& error) {
-        throw Error(explain(app, error), ExitCode::usage);
+        throw Error(explain(app, error), ErrorKind::request);
     }
     return true;
 }
@@ -100,7 +100,7 @@ ExitCode run_program(int argc, const char* const* argv) {
     throw Error(
         "no command given; use render, view, info, devices, compare, merge, plot, selftest or bench, or "
         "see candela --help",
-        ExitCode::usage);
+        ErrorKind::request);
 }
 
 }  // namespace candela

@@ -1,12 +1,12 @@
 // The command line as a whole: from its words to the command that they name.
 #pragma once
 
-#include "base/error.h"
+#include "cli/exit_code.h"
 
 namespace candela {
 
 // Parses the command line and runs the command; help and version go to stdout. Returns the exit code of a run
-// that did its work. Throws Error (usage) that says what is wrong with the command line, and the Errors of
+// that did its work. Throws Error (request) that says what is wrong with the command line, and the Errors of
 // the command.
 ExitCode run_program(int argc, const char* const* argv);
 

@@ -89,7 +89,7 @@ RenderJob RenderOptions::job(const Scene& loaded) const {
     if (job.adaptive && job.target % 2 != 0) {
         throw Error("--adaptive renders two halves: give an even number of samples per pixel (--spp), not " +
                         std::to_string(job.target),
-                    ExitCode::usage);
+                    ErrorKind::request);
     }
     return job;
 }

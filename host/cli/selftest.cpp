@@ -165,7 +165,7 @@ ExitCode run_selftest(const std::vector<Check>& checks, Effort effort, const vk:
         print_progress(checks.size(), checks, json);
         if (!json) print_row(result, level);
         flush_results();
-        if (result.error && result.error->code() == ExitCode::device_lost) lost = result.error;
+        if (result.error && result.error->kind() == ErrorKind::device_lost) lost = result.error;
         results.push_back(result);
     }
     // Skipped checks have not passed.

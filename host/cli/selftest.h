@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/error.h"
+#include "cli/exit_code.h"
 #include "selftest/selftest.h"
 #include "vk/device_info.h"
 

@@ -62,15 +62,15 @@ void ViewArguments::add_to(CLI::App& app) {
 void ViewArguments::check() const {
     if (rendering.picture.crop) {
         throw Error("--crop: a window shows the whole picture; leave it out, or use candela render",
-                    ExitCode::usage);
+                    ErrorKind::request);
     }
     if (frames && rendering.sampling.spp) {
-        throw Error("--frames and --spp both set the number of samples; give only one", ExitCode::usage);
+        throw Error("--frames and --spp both set the number of samples; give only one", ErrorKind::request);
     }
     if (!screenshots.empty() && !frames) {
         throw Error(
             "--screenshot: also give --frames N, after which it is taken; P and X save a picture at any time",
-            ExitCode::usage);
+            ErrorKind::request);
     }
     for (const std::string& path : screenshots)
         image_format(path);

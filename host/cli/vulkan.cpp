@@ -60,7 +60,7 @@ static void check_address_space() {
         throw Error(
             "cannot use Vulkan: its drivers need 768 MiB of address space and data, and less is left; raise "
             "the limit (ulimit -v, ulimit -d)",
-            ExitCode::out_of_memory);
+            ErrorKind::out_of_memory);
     }
     ::munmap(room, NEEDED);
 }

@@ -289,7 +289,7 @@ Missing missing_samples(const std::vector<std::filesystem::path>& files, SampleR
             read.image(file, {.channels = {COUNT_CHANNEL}});
             readable.push_back(file);
         } catch (const Error& error) {
-            if (error.code() != ExitCode::failed) throw;
+            if (error.kind() != ErrorKind::other) throw;
             missing.warnings.push_back(std::string("a part is left out: ") + error.what());
         }
     }

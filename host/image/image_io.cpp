@@ -29,7 +29,7 @@ ImageFormat image_format(const fs::path& path) {
     throw Error("image file " + quoted(path) + " has " +
                     (extension.empty() ? "no extension" : "the unknown extension \"" + extension + '"') +
                     " (supported: .exr, .png)",
-                ExitCode::usage);
+                ErrorKind::request);
 }
 
 Image decode_image(std::string_view bytes, const fs::path& name, const ImageLimits& limits) {

@@ -17,7 +17,7 @@ namespace candela {
 // Formats of images that are written.
 enum class ImageFormat { exr, png };
 
-// The format that the extension of `path` names, in upper or lower case. Throws Error (exit code usage) for
+// The format that the extension of `path` names, in upper or lower case. Throws Error (request) for
 // any other.
 ImageFormat image_format(const std::filesystem::path& path);
 

@@ -244,7 +244,7 @@ Image decode_exr(std::string_view bytes, const fs::path& name, const ImageLimits
     } catch (const std::bad_alloc& error) {
         throw Error("cannot read " + quoted(name) + ": there is not enough memory for its pixels" +
                         shortage_text(error, before) + "; use a smaller image or a larger machine",
-                    ExitCode::out_of_memory);
+                    ErrorKind::out_of_memory);
     }
 }
 

@@ -149,7 +149,7 @@ TexelImage decode_texels(std::string_view bytes, const fs::path& name, std::vect
     } catch (const std::bad_alloc& error) {
         throw Error("cannot read " + quoted(name) + ": there is not enough memory for its pixels" +
                         shortage_text(error, before) + "; use a smaller image or a larger machine",
-                    ExitCode::out_of_memory);
+                    ErrorKind::out_of_memory);
     }
 }
 

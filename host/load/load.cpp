@@ -19,7 +19,7 @@ namespace {
 // Throws Error for options that do not apply to a file.
 void refuse(const std::filesystem::path& file, const GltfOptions& options) {
     if (options == GltfOptions{}) return;
-    throw Error(file.string() + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
+    throw Error(file.string() + ": " + GLTF_OPTIONS_ALONE, ErrorKind::request);
 }
 
 enum class Format { gltf, obj, ply, json };

@@ -37,7 +37,7 @@ std::array<uint64_t, BUFFER_COUNT> buffer_sizes(const GpuScene& scene) {
                     std::to_string(device.limits.max_texel_buffer_elements) +
                     " and maxStorageBufferRange = " + std::to_string(device.limits.max_storage_buffer_range) +
                     " bytes; use a smaller scene, or another device (candela devices lists them)",
-                ExitCode::out_of_memory);
+                ErrorKind::out_of_memory);
 }
 
 // Throws Error if these buffers together are too long for one storage buffer.

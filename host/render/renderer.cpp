@@ -58,7 +58,7 @@ void check_host_memory(const vk::Device& device, const GpuScene& scene, const Re
                     gibibytes(memory_limit()) +
                     "; use a smaller picture (--size, --crop) or scene, or raise the "
                     "limit",
-                ExitCode::out_of_memory);
+                ErrorKind::out_of_memory);
 }
 
 const vk::Device& check_memory(const vk::Device& device, const GpuScene& scene,
@@ -70,7 +70,7 @@ const vk::Device& check_memory(const vk::Device& device, const GpuScene& scene,
                         ", the rest for a picture of " + std::to_string(settings.crop.width()) + "x" +
                         std::to_string(settings.crop.height()) + "), but " + device.info().name + " has " +
                         gibibytes(available) + "; use a smaller picture (--size, --crop) or scene",
-                    ExitCode::out_of_memory);
+                    ErrorKind::out_of_memory);
     }
     check_host_memory(device, scene, settings);
     return device;
@@ -99,12 +99,12 @@ vk::StorageImage make_accumulation(const vk::Device& device, const RenderSetting
                                       "accumulation");
     } catch (const Error& error) {
         const PixelRect part = largest_part(device.limits(), settings);
-        if (error.code() != ExitCode::out_of_memory || part == rect) throw;
+        if (error.kind() != ErrorKind::out_of_memory || part == rect) throw;
         const auto text = [](uint32_t number) { return std::to_string(number); };
         throw Error(std::string(error.what()) + "; or render the picture in parts of at most " +
                         text(part.width()) + 'x' + text(part.height()) + " (the first one by --crop " +
                         text(part.x0) + ',' + text(part.y0) + ',' + text(part.x1) + ',' + text(part.y1) + ')',
-                    error.code());
+                    error.kind());
     }
 }
 

@@ -160,7 +160,7 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
             with_memory_for(
                 "the image", [&] { return file.path.string(); }, load);
         } catch (const Error& error) {
-            throw Error(at_place(file, error.what()), error.code());
+            throw Error(at_place(file, error.what()), error.kind());
         }
         const std::lock_guard lock(mutex);
         progress("images", ++done, scene.images.size());

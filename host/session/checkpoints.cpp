@@ -17,7 +17,7 @@ void check_checkpoint(const CheckpointOptions& options) {
     if (!options.resume && std::filesystem::exists(path, unreadable)) {
         throw Error("--checkpoint: \"" + path +
                         "\" exists; add --resume to continue from it, or remove it to start over",
-                    ExitCode::usage);
+                    ErrorKind::request);
     }
 }
 

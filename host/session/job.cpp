@@ -17,7 +17,8 @@ const Camera& choose_camera(const Scene& scene, const std::optional<std::string>
         if (defined.name == *name) return defined;
         names.push_back(defined.name);
     }
-    throw Error(place + "unknown camera \"" + *name + "\" (defined: " + joined(names) + ")", ExitCode::usage);
+    throw Error(place + "unknown camera \"" + *name + "\" (defined: " + joined(names) + ")",
+                ErrorKind::request);
 }
 
 RenderSettings proposed_settings(const Scene& scene, const Camera& camera) {

@@ -9,7 +9,7 @@ namespace candela {
 static constexpr std::chrono::duration<double> FIRST_PAUSE{0.1};
 
 bool Recovery::survives(const Error& error, bool open, uint64_t samples) {
-    if (open && error.code() != ExitCode::device_lost && error.code() != ExitCode::out_of_memory)
+    if (open && error.kind() != ErrorKind::device_lost && error.kind() != ErrorKind::out_of_memory)
         throw Error(error);
     if (open || !cause_) cause_ = error;
     if (samples > samples_) in_a_row_ = 0;

@@ -1,4 +1,4 @@
-// Results of Vulkan calls as names, exit codes and errors.
+// Results of Vulkan calls as names and errors.
 #include "vk/check.h"
 
 #include <string>
@@ -39,25 +39,25 @@ const char* result_name(VkResult result) {
     }
 }
 
-static ExitCode exit_code(VkResult result) {
+static ErrorKind kind_of(VkResult result) {
     switch (result) {
         case VK_ERROR_DEVICE_LOST:
-            return ExitCode::device_lost;
+            return ErrorKind::device_lost;
         case VK_ERROR_OUT_OF_HOST_MEMORY:
         case VK_ERROR_OUT_OF_DEVICE_MEMORY:
         case VK_ERROR_OUT_OF_POOL_MEMORY:
-            return ExitCode::out_of_memory;
+            return ErrorKind::out_of_memory;
         default:
-            return ExitCode::failed;
+            return ErrorKind::other;
     }
 }
 
-static const char* remedy(ExitCode code) {
-    switch (code) {
-        case ExitCode::device_lost:
+static const char* remedy(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::device_lost:
             return "the driver stopped the device, see the system's log; try another device or a newer "
                    "driver";
-        case ExitCode::out_of_memory:
+        case ErrorKind::out_of_memory:
             return "use less data, free memory, or choose another device";
         default:
             return "try another device or a newer driver";
@@ -68,10 +68,10 @@ VkResult check(VkResult result, const char* text, const char* file, int line) {
     if (result >= 0) return result;
     const std::string_view path = file;
     const std::string_view name = path.substr(path.find_last_of("/\\") + 1);
-    const ExitCode code = exit_code(result);
+    const ErrorKind kind = kind_of(result);
     throw Error(std::string(text) + " failed at " + std::string(name) + ":" + std::to_string(line) + ": " +
-                    result_name(result) + " (" + std::to_string(result) + "); " + remedy(code),
-                code);
+                    result_name(result) + " (" + std::to_string(result) + "); " + remedy(kind),
+                kind);
 }
 
 }  // namespace candela::vk

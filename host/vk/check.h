@@ -9,7 +9,7 @@ namespace candela::vk {
 const char* result_name(VkResult result);
 
 // Returns `result` if it is a success code (VK_TIMEOUT and VK_INCOMPLETE are), else throws an Error that says
-// which call (`text`) at which place failed and why: exit code device_lost, out_of_memory or failed.
+// which call (`text`) at which place failed and why: kind device_lost, out_of_memory or other.
 VkResult check(VkResult result, const char* text, const char* file, int line);
 
 }  // namespace candela::vk

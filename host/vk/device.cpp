@@ -46,7 +46,7 @@ Device::Device(const Instance& instance, const DeviceInfo& info,
                const std::optional<std::filesystem::path>& pipeline_cache_folder)
     : info_(info), debug_names_(instance.validation()) {
     if (!info.reason.empty()) {
-        throw Error("device \"" + info.name + "\" is unsuitable: " + info.reason, ExitCode::no_device);
+        throw Error("device \"" + info.name + "\" is unsuitable: " + info.reason, ErrorKind::no_device);
     }
     vkGetPhysicalDeviceMemoryProperties(info.handle, &memory_);
     device_ = {create_device(info), vkDestroyDevice};
@@ -93,7 +93,7 @@ void Device::check_limit(const std::string& what, const char* unit, uint64_t nee
     throw Error(what + " needs " + std::to_string(needed) + " " + unit + ", but \"" + info_.name +
                     "\" allows " + std::to_string(allowed) + " (" + limit +
                     "); use less or choose another device",
-                ExitCode::out_of_memory);
+                ErrorKind::out_of_memory);
 }
 
 void Device::set_object_name(VkObjectType type, uint64_t handle, const std::string& name) const {

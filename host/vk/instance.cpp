@@ -96,13 +96,13 @@ static void check_created(VkResult result, const VkApplicationInfo& application)
     if (!complaints.empty()) {
         throw Error("no Vulkan driver can be loaded: " + complaints +
                         "; repair or remove that file, or install the driver again",
-                    ExitCode::no_device);
+                    ErrorKind::no_device);
     }
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
         throw Error(
             "no Vulkan driver is installed; install the driver of your GPU, or mesa-vulkan-drivers to render "
             "on the CPU",
-            ExitCode::no_device);
+            ErrorKind::no_device);
     }
     VK_CHECK(result);
 }
@@ -182,7 +182,7 @@ Instance::Instance(const Options& options) {
             "the Vulkan loader (libvulkan.so.1) is not installed; install libvulkan1, and the driver of your "
             "GPU "
             "or mesa-vulkan-drivers to render on the CPU",
-            ExitCode::no_device);
+            ErrorKind::no_device);
     }
     if (options.validation) log_ = std::make_unique<MessageLog>();
     VkInstance instance = create_instance(options.extensions, log_.get());

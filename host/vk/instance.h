@@ -22,7 +22,7 @@ class Instance {
         std::vector<std::string> extensions{};  // Required extensions, for windows.
     };
 
-    // Throws an Error: exit code no_device if there is no Vulkan loader or no driver, failed if validation is
+    // Throws an Error: kind no_device if there is no Vulkan loader or no driver, other if validation is
     // asked for and the layer is missing. Both name the packages to install.
     explicit Instance(const Options& options);
     ~Instance();

@@ -33,7 +33,7 @@ Memory::Memory(const Device& device, const VkMemoryRequirements& requirements, M
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY) {
         throw Error(name + " needs " + std::to_string(requirements.size) + " bytes, more than \"" +
                         device.info().name + "\" has left; use less or choose another device",
-                    ExitCode::out_of_memory);
+                    ErrorKind::out_of_memory);
     }
     VK_CHECK(result);
     memory_ = {memory, vkFreeMemory, device.handle()};

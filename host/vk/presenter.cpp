@@ -57,7 +57,7 @@ static VkSurfaceFormatKHR choose_format(const Device& device, VkSurfaceKHR surfa
     }
     throw Error("the window cannot show 8-bit sRGB pictures from device \"" + device.info().name +
                     "\"; choose another device (candela devices lists them), or use candela render",
-                ExitCode::no_device);
+                ErrorKind::no_device);
 }
 
 // A mode that never makes the program wait for the display, if there is one.
@@ -120,7 +120,7 @@ bool Presenter::make_swapchain(uint32_t width, uint32_t height) {
         throw Error("device \"" + device_->info().name +
                         "\" cannot copy pictures to this window; choose another device (candela devices "
                         "lists them), or use candela render",
-                    ExitCode::no_device);
+                    ErrorKind::no_device);
     }
     VkExtent2D extent = surface.currentExtent;
     if (extent.width == UINT32_MAX) extent = {width, height};  // The window adapts to the picture's size.

@@ -42,7 +42,7 @@ static const DeviceInfo& select_default(std::span<const DeviceInfo> devices) {
     if (best == nullptr) {
         throw Error("no suitable Vulkan device:  " + list(devices) +
                         "; install a newer driver, or mesa-vulkan-drivers to render on the CPU",
-                    ExitCode::no_device);
+                    ErrorKind::no_device);
     }
     return *best;
 }
@@ -68,7 +68,7 @@ const DeviceInfo& select_device(std::span<const DeviceInfo> devices,
         throw Error(
             "Vulkan finds no device; install the driver of your GPU, or mesa-vulkan-drivers to render on the "
             "CPU",
-            ExitCode::no_device);
+            ErrorKind::no_device);
     }
     if (!request) return select_default(devices);
 
@@ -76,13 +76,13 @@ const DeviceInfo& select_device(std::span<const DeviceInfo> devices,
     if (matches.size() != 1) {
         throw Error((matches.empty() ? "no device matches \"" : "more than one device matches \"") +
                         *request + "\"; give the index or a part of the name of one of: " + list(devices),
-                    ExitCode::no_device);
+                    ErrorKind::no_device);
     }
     const DeviceInfo& device = *matches.front();
     if (!device.reason.empty()) {
         throw Error("device " + std::to_string(device.index) + " \"" + device.name + "\" is unsuitable: " +
                         device.reason + "; choose another device or install a newer driver",
-                    ExitCode::no_device);
+                    ErrorKind::no_device);
     }
     return device;
 }

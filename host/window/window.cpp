@@ -92,7 +92,7 @@ vk::Surface Window::make_surface(VkInstance instance) const {
     if (result == VK_ERROR_EXTENSION_NOT_PRESENT) {
         throw Error("Vulkan cannot draw in windows here: " + last_error +
                         "; install the driver of your GPU, or use candela render",
-                    ExitCode::no_device);
+                    ErrorKind::no_device);
     }
     VK_CHECK(result);
     return {surface, vkDestroySurfaceKHR, instance};

@@ -175,7 +175,7 @@ TEST_F(PresenterTest, OtherFailuresAreErrorsThatNameTheCall) {
         show(0u);
         ADD_FAILURE() << "no error";
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::device_lost);
+        EXPECT_EQ(error.kind(), ErrorKind::device_lost);
         EXPECT_CONTAINS(std::string(error.what()), "vkQueuePresentKHR failed at presenter.cpp");
     }
 }
@@ -194,7 +194,7 @@ TEST_F(PresenterTest, AWindowThatTakesNoCopiesIsAnError) {
         show(0u);
         ADD_FAILURE() << "no error";
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::no_device);
+        EXPECT_EQ(error.kind(), ErrorKind::no_device);
         EXPECT_CONTAINS(std::string(error.what()),
                         "cannot copy pictures to this window; choose another device");
     }

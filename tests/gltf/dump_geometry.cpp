@@ -47,7 +47,7 @@ void append_triangles(const TriangleMesh& mesh, const Transform& transform, std:
 int run(const std::vector<std::string>& arguments) {
     if (arguments.size() < 2 || arguments.size() % 2 != 0) {
         throw Error("usage: dump_geometry FILE OUTPUT [--scene NAME] [--animation NAME] [--time SECONDS]",
-                    ExitCode::usage);
+                    ErrorKind::request);
     }
     GltfOptions options;
     for (size_t i = 2; i < arguments.size(); i += 2) {
@@ -59,7 +59,7 @@ int run(const std::vector<std::string>& arguments) {
         } else if (arguments[i] == "--time") {
             options.time = std::stod(value);
         } else {
-            throw Error("unknown option " + arguments[i], ExitCode::usage);
+            throw Error("unknown option " + arguments[i], ErrorKind::request);
         }
     }
     const Scene scene = load_gltf_scene(arguments[0], options);

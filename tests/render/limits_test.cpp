@@ -10,10 +10,10 @@ namespace {
 class LimitsTest : public vk::Vk {
   protected:
     // Builds a renderer of the Cornell box on a device that claims the limits of info_.
-    std::string message(ExitCode code) const {
+    std::string message(ErrorKind kind) const {
         const vk::Device device(instance_, info_);
         const Scene scene = cornell_box();
-        return vk::error_of(code, [&] {
+        return vk::error_of(kind, [&] {
             const Renderer renderer(device, build_gpu_scene(scene), scene.cameras.at(0), settings_for(8, 8));
         });
     }
@@ -29,19 +29,19 @@ uint32_t longest_array() {
 
 TEST_F(LimitsTest, ASceneForTexelBuffersAloneIsStillRead) {
     info_.limits.max_storage_buffer_range = 16 * longest_array() - 1;
-    EXPECT_EQ(message(ExitCode::failed), "no error");
+    EXPECT_EQ(message(ErrorKind::other), "no error");
 }
 
 TEST_F(LimitsTest, ASceneForStorageBuffersAloneIsStillRead) {
     info_.limits.max_texel_buffer_elements = longest_array() - 1;
-    EXPECT_EQ(message(ExitCode::failed), "no error");
+    EXPECT_EQ(message(ErrorKind::other), "no error");
 }
 
 TEST_F(LimitsTest, ASceneForNeitherSaysWhatItNeeds) {
     const uint32_t texels = longest_array();
     info_.limits.max_texel_buffer_elements = texels - 1;
     info_.limits.max_storage_buffer_range = 16 * texels - 1;
-    EXPECT_EQ(message(ExitCode::out_of_memory),
+    EXPECT_EQ(message(ErrorKind::out_of_memory),
               "the scene's array primitives needs " + std::to_string(texels) + " texels (" +
                   std::to_string(16 * texels) + " bytes), but " + info_.name +
                   " allows maxTexelBufferElements = " + std::to_string(texels - 1) +
@@ -61,7 +61,7 @@ TEST_F(LimitsTest, APictureThatIsTooLargeForOneImageSaysWhichPartFits) {
         RenderSettings settings = settings_for(600, 600);
         settings.crop = crop;
         settings.aovs = false;
-        return vk::error_of(ExitCode::out_of_memory, [&] {
+        return vk::error_of(ErrorKind::out_of_memory, [&] {
             const Renderer renderer(device, gpu_scene, scene.cameras.at(0), settings);
         });
     };
@@ -87,7 +87,7 @@ TEST_F(LimitsTest, MoreShapesInOnePlaceThanADriverLoopsOverAreNamed) {
     scene.shapes.assign(200'000, scene.shapes.front());
     const vk::Device device(instance_, info_);
     uint32_t samples = 0;
-    const std::string error = vk::error_of(ExitCode::failed, [&] {
+    const std::string error = vk::error_of(ErrorKind::other, [&] {
         Renderer renderer(device, build_gpu_scene(scene), scene.cameras.at(0), settings_for(8, 8));
         renderer.render(1, [](double) { return true; });
         samples = renderer.download().min_samples();

@@ -73,7 +73,7 @@ TEST_F(Vk, LimitsAreNamed) {
     info_.limits.max_push_constants_size = 4;
     const Device device(instance_, info_);
     const auto too_big = [](const std::function<void()>& action) {
-        return error_of(ExitCode::out_of_memory, action);
+        return error_of(ErrorKind::out_of_memory, action);
     };
 
     EXPECT_EQ(too_big([&] { Buffer(device, 1601, BufferUsage::texel, "nodes"); }),
@@ -102,7 +102,7 @@ TEST_F(Vk, LimitsOfMemoryAndBindingsAreNamed) {
     const std::string allows = ", but \"" + info_.name + "\" allows ";
     const std::string remedy = "; use less or choose another device";
     const auto too_big = [](const std::function<void()>& action) {
-        return error_of(ExitCode::out_of_memory, action);
+        return error_of(ErrorKind::out_of_memory, action);
     };
     info_.limits.max_per_stage_descriptor_storage_buffers = 1;
     info_.limits.max_memory_allocation_size = 4096;
@@ -119,21 +119,21 @@ TEST_F(Vk, AvailableMemoryBoundsAllocations) {
     info_.device_heap = 1 << 20;
     const Device device(instance_, info_);
     EXPECT_EQ(device.available_memory(), uint64_t{1} << 20);
-    EXPECT_EQ(error_of(ExitCode::out_of_memory, [&] { make_storage_image(device, 512, 512, 1, "film"); }),
+    EXPECT_EQ(error_of(ErrorKind::out_of_memory, [&] { make_storage_image(device, 512, 512, 1, "film"); }),
               "image \"film\" (512x512, 1 layers) needs 4194304 bytes, but \"" + info_.name +
                   "\" allows 1048576 (available memory); use less or choose another device");
 }
 
 TEST_F(Vk, ADeviceThatWillNotDoIsNotOpened) {
     info_.reason = "it has no compute queue";
-    EXPECT_EQ(error_of(ExitCode::no_device, [&] { Device(instance_, info_); }),
+    EXPECT_EQ(error_of(ErrorKind::no_device, [&] { Device(instance_, info_); }),
               "device \"" + info_.name + "\" is unsuitable: it has no compute queue");
 }
 
 TEST(VkInstance, WithoutADriverNamesTheRemedy) {
     const ScopedVariable old_name("VK_ICD_FILENAMES", "/dev/null");
     const ScopedVariable new_name("VK_DRIVER_FILES", "/dev/null");
-    EXPECT_EQ(error_of(ExitCode::no_device, [] { Instance instance({}); }),
+    EXPECT_EQ(error_of(ErrorKind::no_device, [] { Instance instance({}); }),
               "no Vulkan driver is installed; install the driver of your GPU, or mesa-vulkan-drivers to "
               "render on the "
               "CPU");
@@ -155,7 +155,7 @@ TEST(VkInstance, WithABrokenDriverNamesItsFile) {
         {with_library(driver.string()), driver.string()}};
     for (const auto& [text, named] : cases) {
         std::ofstream(driver) << text;
-        const std::string message = error_of(ExitCode::no_device, [] { Instance instance({}); });
+        const std::string message = error_of(ErrorKind::no_device, [] { Instance instance({}); });
         EXPECT_TRUE(message.starts_with("no Vulkan driver can be loaded: ")) << message;
         EXPECT_NE(message.find(named), std::string::npos) << message;
         EXPECT_TRUE(message.ends_with("; repair or remove that file, or install the driver again"))
@@ -167,7 +167,7 @@ TEST(VkInstance, WithABrokenDriverNamesItsFile) {
 
 TEST(VkInstance, WithoutTheValidationLayerNamesTheRemedy) {
     const ScopedVariable layers("VK_LAYER_PATH", "/nonexistent");
-    EXPECT_EQ(error_of(ExitCode::failed, [] { Instance instance({.validation = true}); }),
+    EXPECT_EQ(error_of(ErrorKind::other, [] { Instance instance({.validation = true}); }),
               "validation was asked for, but the Vulkan layer VK_LAYER_KHRONOS_validation is missing; "
               "install vulkan-validationlayers");
     EXPECT_FALSE(Instance({}).devices().empty());

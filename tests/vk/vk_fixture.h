@@ -21,12 +21,12 @@ extern const std::span<const std::uint32_t> vk_test;
 
 namespace candela::vk {
 
-// The message of the error that `action` must throw, which must have the exit code.
-inline std::string error_of(ExitCode code, const std::function<void()>& action) {
+// The message of the error that `action` must throw, which must have that kind.
+inline std::string error_of(ErrorKind kind, const std::function<void()>& action) {
     try {
         action();
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), code) << error.what();
+        EXPECT_EQ(error.kind(), kind) << error.what();
         return error.what();
     }
     return "no error";

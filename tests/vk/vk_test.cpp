@@ -256,7 +256,7 @@ TEST_F(Vk, TooManyWorkGroupsAreRefused) {
     const uint32_t max = info_.limits.max_compute_work_group_count[1];
     const TestPush push{};
     EXPECT_EQ(
-        error_of(ExitCode::out_of_memory,
+        error_of(ErrorKind::out_of_memory,
                  [&] {
                      commands.dispatch(test.kernel, std::as_bytes(std::span(&push, 1)), {1, max + 1, 1});
                  }),

@@ -179,7 +179,7 @@ std::string File::read_named(const Node& uri, uint64_t max) const {
             "the bytes of the file", [&] { return path.string(); },
             [&] { return contents_.reach().read(path, max, bytes_of(progress_)); });
     } catch (const Error& error) {
-        throw Error(uri.place() + ": " + error.what(), error.code());
+        throw Error(uri.place() + ": " + error.what(), error.kind());
     }
 }
 

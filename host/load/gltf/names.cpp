@@ -28,7 +28,7 @@ size_t find_by_name(const File& file, const std::optional<Node>& array, const st
     throw Error(std::string(option) + ": " + file.path().string() + " has nothing called " + quote(name) +
                     " among its " + std::string(what) + " (" +
                     (count == 0 ? "it has none" : "known: " + joined(names)) + ')',
-                ExitCode::usage);
+                ErrorKind::request);
 }
 
 }  // namespace candela::gltf

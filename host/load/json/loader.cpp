@@ -52,7 +52,7 @@ void read_base(const Node& node, const std::filesystem::path& folder, const Gltf
     try {
         add_gltf_scene(path, gltf, scene, progress, files);
     } catch (const Error& error) {
-        throw Error(node.place() + ": " + error.what(), error.code());
+        throw Error(node.place() + ": " + error.what(), error.kind());
     }
 }
 
@@ -66,7 +66,7 @@ JsonScene scene_of(const json::Document& document, const std::filesystem::path& 
     scene.reach = reach;
     const auto base = root.find("scene");
     if (!base && gltf != GltfOptions{})
-        throw Error(document.file + ": " + GLTF_OPTIONS_ALONE, ExitCode::usage);
+        throw Error(document.file + ": " + GLTF_OPTIONS_ALONE, ErrorKind::request);
     if (base) scene.film.size = GLTF_FILM_SIZE;
     if (const auto film = root.find("film")) scene.film = read_film(*film);
     if (const auto cameras = base ? root.find("cameras") : root.require("cameras")) {

@@ -17,7 +17,7 @@ Environment load(const Node& file, const std::filesystem::path& folder, Scene& s
             scene.warnings.push_back(file.place() + ": " + warning);
         return environment;
     } catch (const Error& error) {
-        throw Error(file.place() + ": " + error.what(), error.code());
+        throw Error(file.place() + ": " + error.what(), error.kind());
     }
 }
 

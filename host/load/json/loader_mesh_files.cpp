@@ -25,7 +25,7 @@ auto read_from(const Node& file, const Scene& scene, Read read) {
         return with_memory_for(
             "the mesh", [&] { return file.string(); }, read);
     } catch (const Error& error) {
-        throw Error(file.place() + ": " + error.what(), error.code());
+        throw Error(file.place() + ": " + error.what(), error.kind());
     }
 }
 

@@ -140,7 +140,7 @@ std::optional<TimedBvh> build_with_embree(std::span<const Box> boxes) {
     rtcReleaseDevice(device);
     if (!result) {
         throw Error("Embree has no memory for the mesh; use a smaller one (--triangles)",
-                    ExitCode::out_of_memory);
+                    ErrorKind::out_of_memory);
     }
     return result;
 }

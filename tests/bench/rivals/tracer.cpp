@@ -273,13 +273,14 @@ uint32_t number(const std::string& text, const char* what, uint32_t min) {
     if (error != std::errc() || end != text.data() + text.size() || value < min)
         throw Error(std::string(what) + ": cannot use \"" + text + "\"; expected a whole number from " +
                         std::to_string(min),
-                    ExitCode::usage);
+                    ErrorKind::request);
     return value;
 }
 
 int run(int argc, char** argv) {
     if (argc != 9) {
-        throw Error("usage: tracer SCENE OUT.exr WIDTH SPP MAX_DEPTH RR_DEPTH SEED THREADS", ExitCode::usage);
+        throw Error("usage: tracer SCENE OUT.exr WIDTH SPP MAX_DEPTH RR_DEPTH SEED THREADS",
+                    ErrorKind::request);
     }
     render({argv[1], argv[2], number(argv[3], "WIDTH", 1), number(argv[4], "SPP", 1),
             number(argv[5], "MAX_DEPTH", 0), number(argv[6], "RR_DEPTH", 0), number(argv[7], "SEED", 0),
@@ -295,6 +296,6 @@ int main(int argc, char** argv) {
         return candela::bench::run(argc, argv);
     } catch (const candela::Error& error) {
         std::fprintf(stderr, "tracer: error: %s\n", error.what());
-        return int(error.code());
+        return 1;
     }
 }

@@ -73,7 +73,7 @@ TEST_F(FileReachTest, GrowsByWhatIsAllowed) {
         FileReach(in_scene("scene.json"), {.folders = {folder_ / "e"}});
         ADD_FAILURE();
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::usage);
+        EXPECT_EQ(error.kind(), ErrorKind::request);
         EXPECT_EQ(error.what(), "--allow-folder: \"" + (folder_ / "e").string() +
                                     "\" is not a folder; name one that exists");
     }

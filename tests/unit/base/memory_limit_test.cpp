@@ -84,7 +84,7 @@ TEST(MemoryLimit, TheErrorSaysWhatTakesHowMuch) {
         });
         ADD_FAILURE();
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::out_of_memory);
+        EXPECT_EQ(error.kind(), ErrorKind::out_of_memory);
         const std::string message = error.what();
         EXPECT_TRUE(
             message.starts_with("a.glb#/nodes/3: there is not enough memory for what the node shows, which "

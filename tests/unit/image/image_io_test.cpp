@@ -97,7 +97,7 @@ TEST(ImageIo, KnowsFormatsByExtension) {
     try {
         image_format("box.jpg");
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::usage);
+        EXPECT_EQ(error.kind(), ErrorKind::request);
     }
 }
 

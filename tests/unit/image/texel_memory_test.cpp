@@ -60,7 +60,7 @@ std::string memory_error(const std::string& bytes) {
         const LittleMemory limit;
         decode_texels(bytes, "a", warnings);
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::out_of_memory);
+        EXPECT_EQ(error.kind(), ErrorKind::out_of_memory);
         return error.what();
     }
     return "";

@@ -140,7 +140,7 @@ std::string map_error_of(const vk::DeviceInfo& device, SceneAccess access) {
     try {
         map_arrays(device, scene_of_sizes(SIZES), access);
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::out_of_memory);
+        EXPECT_EQ(error.kind(), ErrorKind::out_of_memory);
         return error.what();
     }
     return "no error";

@@ -106,8 +106,8 @@ Check unlikely_check() {
                 return evidence;
             }};
 }
-Check throwing_check(ExitCode code) {
-    return {"broken off", "images", [code]() -> Evidence { throw Error("no room for it; buy more", code); }};
+Check throwing_check(ErrorKind kind) {
+    return {"broken off", "images", [kind]() -> Evidence { throw Error("no room for it; buy more", kind); }};
 }
 
 class Selftest : public testing::Test {
@@ -125,7 +125,7 @@ class Selftest : public testing::Test {
         try {
             code = run_selftest(checks, Effort::quick, device, json);
         } catch (const Error& error) {
-            code = error.code();
+            code = exit_code(error.kind());
         }
         out_ = testing::internal::GetCapturedStdout();
         err_ = testing::internal::GetCapturedStderr();
@@ -162,20 +162,20 @@ TEST_F(Selftest, ACheckThatFailsSaysWhy) {
 }
 
 TEST_F(Selftest, AnErrorFailsItsCheckAndNoOther) {
-    EXPECT_EQ(run({throwing_check(ExitCode::out_of_memory), passing_check()}), ExitCode::failed);
+    EXPECT_EQ(run({throwing_check(ErrorKind::out_of_memory), passing_check()}), ExitCode::failed);
     expect_out("error              FAIL  0.0\n    no room for it; buy more\n");
     expect_out("sound                 1 ray                         0 wrong            ok    0.0\n");
     expect_out("\n1 of 2 checks FAILED, in 0.0 s\n");
 }
 
 TEST_F(Selftest, ALostDeviceEndsItWithItsVerdict) {
-    EXPECT_EQ(run({passing_check(), throwing_check(ExitCode::device_lost), passing_check()}),
+    EXPECT_EQ(run({passing_check(), throwing_check(ErrorKind::device_lost), passing_check()}),
               ExitCode::device_lost);
     expect_out("    no room for it; buy more\n\n2 of 3 checks FAILED, in 0.0 s\n");
 }
 
 TEST_F(Selftest, PrintsTheSameAsJson) {
-    EXPECT_EQ(run({passing_check(), wrong_check(), throwing_check(ExitCode::failed)}, true),
+    EXPECT_EQ(run({passing_check(), wrong_check(), throwing_check(ErrorKind::other)}, true),
               ExitCode::failed);
     const auto report = nlohmann::json::parse(out_);
     EXPECT_EQ(report["device"], "Abacus 3");

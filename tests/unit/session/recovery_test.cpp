@@ -9,8 +9,8 @@
 namespace candela {
 namespace {
 
-const Error LOST("it is lost", ExitCode::device_lost);
-const Error FULL("it is full", ExitCode::out_of_memory);
+const Error LOST("it is lost", ErrorKind::device_lost);
+const Error FULL("it is full", ErrorKind::out_of_memory);
 const Error OTHER("it is something else");
 
 // How many failures with these samples are survived, up to 20.

@@ -1,6 +1,7 @@
 // The parts of host/vk that need no device: the choice among devices, failed calls as errors, owned handles.
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,14 +35,14 @@ uint32_t selected(const std::optional<std::string>& request) {
     return select_device(DEVICES, request).index;
 }
 
-// The message and the exit code of the error that `action` must throw.
-std::pair<std::string, ExitCode> error_and_code_of(const std::function<void()>& action) {
+// The message and the kind of the error that `action` must throw.
+std::pair<std::string, std::optional<ErrorKind>> error_and_kind_of(const std::function<void()>& action) {
     try {
         action();
     } catch (const Error& error) {
-        return {error.what(), error.code()};
+        return {error.what(), error.kind()};
     }
-    return {"no error", ExitCode::done};
+    return {"no error", std::nullopt};
 }
 
 TEST(SelectDevice, PrefersDiscreteThenIntegratedThenVirtualThenCpu) {
@@ -83,8 +84,8 @@ TEST(SelectDevice, TakesAnIndexOrAPartOfTheNameInAnyCase) {
 
 TEST(SelectDevice, NoMatchListsWhatThereIs) {
     for (const char* request : {"geforce", "4", "-1", "2x"}) {
-        const auto [message, code] = error_and_code_of([&] { selected(request); });
-        EXPECT_EQ(code, ExitCode::no_device);
+        const auto [message, kind] = error_and_kind_of([&] { selected(request); });
+        EXPECT_EQ(kind, ErrorKind::no_device);
         EXPECT_EQ(
             message,
             "no device matches \"" + std::string(request) +
@@ -96,8 +97,8 @@ TEST(SelectDevice, NoMatchListsWhatThereIs) {
 }
 
 TEST(SelectDevice, AnAmbiguousNameListsWhatThereIs) {
-    const auto [message, code] = error_and_code_of([] { selected("radeon"); });
-    EXPECT_EQ(code, ExitCode::no_device);
+    const auto [message, kind] = error_and_kind_of([] { selected("radeon"); });
+    EXPECT_EQ(kind, ErrorKind::no_device);
     EXPECT_NE(message.find("more than one device matches \"radeon\"; give the index"), std::string::npos)
         << message;
     EXPECT_NE(message.find("3: \"Radeon RX 6600\""), std::string::npos) << message;
@@ -105,8 +106,8 @@ TEST(SelectDevice, AnAmbiguousNameListsWhatThereIs) {
 
 TEST(SelectDevice, ADeviceThatWillNotDoIsRefusedWithItsReason) {
     for (const char* request : {"1", "old"}) {
-        const auto [message, code] = error_and_code_of([&] { selected(request); });
-        EXPECT_EQ(code, ExitCode::no_device);
+        const auto [message, kind] = error_and_kind_of([&] { selected(request); });
+        EXPECT_EQ(kind, ErrorKind::no_device);
         EXPECT_EQ(message,
                   "device 1 \"Old Radeon\" is unsuitable: it offers Vulkan 1.1.70, and 1.2 is needed; choose "
                   "another device or install a newer driver");
@@ -114,15 +115,15 @@ TEST(SelectDevice, ADeviceThatWillNotDoIsRefusedWithItsReason) {
 }
 
 TEST(SelectDevice, WithoutAUsableDeviceItNamesTheRemedy) {
-    const auto [none, none_code] = error_and_code_of([] { select_device({}, std::nullopt); });
-    EXPECT_EQ(none_code, ExitCode::no_device);
+    const auto [none, none_kind] = error_and_kind_of([] { select_device({}, std::nullopt); });
+    EXPECT_EQ(none_kind, ErrorKind::no_device);
     EXPECT_EQ(
         none,
         "Vulkan finds no device; install the driver of your GPU, or mesa-vulkan-drivers to render on the "
         "CPU");
-    const auto [unfit, unfit_code] =
-        error_and_code_of([] { select_device(std::span(DEVICES).subspan(1, 1), std::nullopt); });
-    EXPECT_EQ(unfit_code, ExitCode::no_device);
+    const auto [unfit, unfit_kind] =
+        error_and_kind_of([] { select_device(std::span(DEVICES).subspan(1, 1), std::nullopt); });
+    EXPECT_EQ(unfit_kind, ErrorKind::no_device);
     EXPECT_NE(unfit.find("no suitable Vulkan device:  1: \"Old Radeon\""), std::string::npos) << unfit;
     EXPECT_NE(unfit.find("install a newer driver, or mesa-vulkan-drivers"), std::string::npos) << unfit;
 }
@@ -133,20 +134,20 @@ TEST(VkCheck, PassesSuccessCodesOn) {
 }
 
 TEST(VkCheck, NamesTheCallThePlaceTheResultAndTheRemedy) {
-    const auto [message, code] = error_and_code_of(
+    const auto [message, kind] = error_and_kind_of(
         [] { check(VK_ERROR_DEVICE_LOST, "vkQueueSubmit(q)", "/home/me/host/vk/commands.cpp", 7); });
-    EXPECT_EQ(code, ExitCode::device_lost);
+    EXPECT_EQ(kind, ErrorKind::device_lost);
     EXPECT_EQ(message,
               "vkQueueSubmit(q) failed at commands.cpp:7: VK_ERROR_DEVICE_LOST (-4); the driver stopped the "
               "device, see the system's log; try another device or a newer driver");
 }
 
-TEST(VkCheck, GivesEachKindOfFailureItsExitCode) {
-    EXPECT_EQ(error_and_code_of([] { VK_CHECK(VK_ERROR_OUT_OF_DEVICE_MEMORY); }).second,
-              ExitCode::out_of_memory);
-    EXPECT_EQ(error_and_code_of([] { VK_CHECK(VK_ERROR_OUT_OF_HOST_MEMORY); }).second,
-              ExitCode::out_of_memory);
-    EXPECT_EQ(error_and_code_of([] { VK_CHECK(VK_ERROR_INITIALIZATION_FAILED); }).second, ExitCode::failed);
+TEST(VkCheck, TellsKindsOfFailuresApart) {
+    EXPECT_EQ(error_and_kind_of([] { VK_CHECK(VK_ERROR_OUT_OF_DEVICE_MEMORY); }).second,
+              ErrorKind::out_of_memory);
+    EXPECT_EQ(error_and_kind_of([] { VK_CHECK(VK_ERROR_OUT_OF_HOST_MEMORY); }).second,
+              ErrorKind::out_of_memory);
+    EXPECT_EQ(error_and_kind_of([] { VK_CHECK(VK_ERROR_INITIALIZATION_FAILED); }).second, ErrorKind::other);
 }
 
 // Stands for a Vulkan handle; `destroyed` holds what was destroyed, in order.

@@ -171,7 +171,7 @@ TEST_F(GltfScene, OtherFormatsRefuseItsOptions) {
                     name +
                         ": --scene, --animation, --time, --variant, --light-units and --studio are for glTF "
                         "files; leave them out");
-                EXPECT_EQ(error.code(), ExitCode::usage);
+                EXPECT_EQ(error.kind(), ErrorKind::request);
             }
         }
     }
