@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "probe/probes.h"
+#include "scene/principled.h"
 #include "selftest/charts.h"
 #include "selftest/evidence.h"
 #include "vk/device.h"
