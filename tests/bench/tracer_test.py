@@ -53,7 +53,7 @@ def trace(scene, output, seed):
 
 def render(scene, output, seed):
     command = [CANDELA, "render", scene, "-o", output, "--size", f"{SIZE}x{SIZE}", "--spp", SPP, "--seed", seed]
-    command += ["--max-depth", DEPTH, "--rr-depth", 1, "--aov", "none", "--quiet"]
+    command += ["--max-depth", DEPTH, "--rr-depth", 1, "--aov", "none", "--allow-any-folder", "--quiet"]
     subprocess.run([str(word) for word in command], check=True)
 
 
