@@ -2,6 +2,7 @@
 #include "gpu_scene/area_lights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +20,25 @@ namespace {
 // Of images that emit.
 using Pyramids = std::map<std::pair<uint32_t, TextureEncoding>, std::unique_ptr<ImagePyramid>>;
 
+// The corners of a piece in the surface coordinates of its light; of a disk, those of a polygon around it.
+std::vector<vec2> corners_of(uint kind) {
+    switch (kind) {
+        case LIGHT_TRIANGLE:
+            return {{0, 0}, {1, 0}, {0, 1}};
+        case LIGHT_DISK: {
+            constexpr int CORNERS = 16;
+            std::vector<vec2> corners;
+            for (int i = 0; i < CORNERS; ++i) {
+                const float angle = 2.0f * PI * float(i) / float(CORNERS);
+                corners.push_back(vec2(std::cos(angle), std::sin(angle)) / std::cos(PI / float(CORNERS)));
+            }
+            return corners;
+        }
+        default:
+            return {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    }
+}
+
 // The mean radiance of an emitter over a piece of it.
 vec3 mean_radiance(const Scene& scene, Pyramids& pyramids, const Emission& emission, uint kind,
                    const PieceUv& uv) {
@@ -27,19 +47,10 @@ vec3 mean_radiance(const Scene& scene, Pyramids& pyramids, const Emission& emiss
     std::unique_ptr<ImagePyramid>& pyramid = pyramids[{texture->image, texture->encoding}];
     if (!pyramid)
         pyramid = std::make_unique<ImagePyramid>(*scene.images[texture->image].image, texture->encoding);
-    constexpr int SIDE = 4;
-    std::vector<vec2> places;
-    for (int i = 0; i < SIDE * SIDE; ++i) {
-        vec2 b = (vec2(i % SIDE, i / SIDE) + 0.5f) / float(SIDE);
-        if (kind == LIGHT_TRIANGLE)
-            b = b.x < b.y ? vec2(0.5f * b.x, b.y - 0.5f * b.x) : vec2(b.x - 0.5f * b.y, 0.5f * b.y);
-        if (kind == LIGHT_DISK) b = 2.0f * b - 1.0f;
-        places.push_back(uv.origin + b.x * uv.along_b1 + b.y * uv.along_b2);
-    }
-    const float longest =
-        std::max({length(uv.along_b1), length(uv.along_b2), length(uv.along_b1 - uv.along_b2)});
-    const float spacing = (kind == LIGHT_DISK ? 2.0f : 1.0f) * longest / float(SIDE);
-    return emission.radiance.factor * pyramid->mean(*texture, places, spacing);
+    std::vector<vec2> corners;
+    for (const vec2 b : corners_of(kind))
+        corners.push_back(uv.origin + b.x * uv.along_b1 + b.y * uv.along_b2);
+    return emission.radiance.factor * pyramid->mean(*texture, corners);
 }
 
 // A piece as its light's record holds it, and its area.

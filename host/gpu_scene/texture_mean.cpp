@@ -4,18 +4,95 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/color.h"
 
 namespace candela {
 namespace {
 
-// Texel i along an axis of n, for any i.
+// Texel i along an axis of n, wherever that is.
 uint32_t wrapped(double i, uint32_t n, Wrap wrap) {
     if (wrap == Wrap::clamp) return uint32_t(std::clamp(i, 0.0, n - 1.0));
     const double period = wrap == Wrap::repeat ? n : 2.0 * n;
     const auto within = uint32_t(std::min(i - period * std::floor(i / period), period - 1.0));
     return within < n ? within : 2 * n - 1 - within;
+}
+
+using glm::dvec2;
+
+// Convex; in texels.
+using Polygon = std::vector<dvec2>;
+
+double extent(const Polygon& polygon, int axis) {
+    const auto [min, max] = std::ranges::minmax(polygon, {}, [axis](const dvec2& p) { return p[axis]; });
+    return max[axis] - min[axis];
+}
+
+double area_of(const Polygon& polygon) {
+    double twice = 0.0;
+    for (size_t i = 2; i < polygon.size(); ++i) {
+        const dvec2 a = polygon[i - 1] - polygon[0], b = polygon[i] - polygon[0];
+        twice += a.x * b.y - a.y * b.x;
+    }
+    return 0.5 * std::abs(twice);
+}
+
+// The part of a polygon between two places along an axis.
+// Ref: Sutherland and Hodgman 1974, Reentrant Polygon Clipping.
+Polygon between(const Polygon& polygon, int axis, double min, double max) {
+    Polygon result = polygon;
+    for (const double side : {1.0, -1.0}) {
+        const double bound = side > 0.0 ? min : -max;
+        const Polygon whole = std::exchange(result, {});
+        for (size_t i = 0; i < whole.size(); ++i) {
+            const dvec2 a = whole[i], b = whole[(i + 1) % whole.size()];
+            const double in_a = side * a[axis] - bound, in_b = side * b[axis] - bound;
+            if (in_a >= 0.0) result.push_back(a);
+            if ((in_a < 0.0) != (in_b < 0.0)) result.push_back(mix(a, b, in_a / (in_a - in_b)));
+        }
+    }
+    return result;
+}
+
+// Integrals over a polygon of 1, x, y and x y.
+struct Moments {
+    double area = 0.0, x = 0.0, y = 0.0, xy = 0.0;
+};
+
+// In coordinates of the cell. The mean of a quadratic polynomial over a triangle is the mean of its values
+// at the middles of the sides.
+Moments moments_of(const Polygon& polygon, const dvec2& cell) {
+    Moments m;
+    for (size_t i = 2; i < polygon.size(); ++i) {
+        const Polygon triangle{polygon[0], polygon[i - 1], polygon[i]};
+        const double area = area_of(triangle);
+        m.area += area;
+        for (size_t k = 0; k < 3; ++k) {
+            const dvec2 p = 0.5 * (triangle[k] + triangle[(k + 1) % 3]) - cell;
+            m.x += area / 3.0 * p.x;
+            m.y += area / 3.0 * p.y;
+            m.xy += area / 3.0 * p.x * p.y;
+        }
+    }
+    return m;
+}
+
+// Calls add(cell, moments) for each unit square between whole numbers that the polygon meets.
+template <class Add>
+void for_cells(const Polygon& polygon, const Add& add) {
+    const auto cells = [](const Polygon& part, int axis, const auto& visit) {
+        if (part.empty()) return;
+        const auto [min, max] = std::ranges::minmax(part, {}, [axis](const dvec2& p) { return p[axis]; });
+        const double first = std::floor(min[axis]), count = std::floor(max[axis]) - first + 1.0;
+        for (double i = 0.0; i < count; ++i)
+            visit(first + i);
+    };
+    cells(polygon, 1, [&](double y) {
+        const Polygon row = between(polygon, 1, y, y + 1.0);
+        cells(row, 0,
+              [&](double x) { add(dvec2(x, y), moments_of(between(row, 0, x, x + 1.0), dvec2(x, y))); });
+    });
 }
 
 }  // namespace
@@ -49,36 +126,53 @@ ImagePyramid::ImagePyramid(const TexelImage& image, TextureEncoding encoding) {
     }
 }
 
-// If the texture mixes a texel that is not black into some place of the piece, that texel is at most a texel
-// of the image and one gap away from one of `places`. On a level whose texels are at least four times as
-// large as both, it lies in one of the four texels that are mixed there.
-vec3 ImagePyramid::mean(const Texture& texture, std::span<const vec2> places, float spacing) const {
-    constexpr float SAFETY = 4.0f;
-    const float stretch = std::max(length(texture.rows[0]), length(texture.rows[1]));
-    const float gap =
-        SAFETY * std::max(1.0f, stretch * spacing * float(std::max(levels_[0].size.x, levels_[0].size.y)));
-    const auto level = std::min(size_t(std::ceil(std::log2(gap))), levels_.size() - 1);
-    vec3 sum(0.0f);
-    for (const vec2 place : places)
-        sum += look_up(level, texture, place);
-    return sum / float(places.size());
+vec3 ImagePyramid::texel(const Level& level, const Texture& texture, double x, double y) const {
+    return level.texels[size_t(wrapped(y, level.size.y, texture.wrap_v)) * level.size.x +
+                        wrapped(x, level.size.x, texture.wrap_u)];
 }
 
-vec3 ImagePyramid::look_up(size_t number, const Texture& texture, vec2 place) const {
-    const Level& level = levels_[number];
-    // The size of the image in texels of the level: the last ones may reach beyond the image, since sizes are
-    // rounded up.
-    const glm::dvec2 size = glm::dvec2(levels_[0].size) / std::exp2(double(number));
-    const dvec3 uv1(place.x, place.y, 1.0);
-    const double x = dot(dvec3(texture.rows[0]), uv1) * size.x - 0.5;
-    const double y = (1.0 - dot(dvec3(texture.rows[1]), uv1)) * size.y - 0.5;
-    const auto texel = [&](double column, double row) {
-        return level.texels[size_t(wrapped(row, level.size.y, texture.wrap_v)) * level.size.x +
-                            wrapped(column, level.size.x, texture.wrap_u)];
+vec3 ImagePyramid::mean(const Texture& texture, std::span<const vec2> corners) const {
+    constexpr double WIDEST = 16.0;  // In texels of the level that is read.
+    Polygon polygon;
+    for (const vec2 corner : corners) {
+        const dvec3 uv1(corner.x, corner.y, 1.0);
+        polygon.emplace_back(dot(dvec3(texture.rows[0]), uv1) * levels_[0].size.x,
+                             (1.0 - dot(dvec3(texture.rows[1]), uv1)) * levels_[0].size.y);
+    }
+    const double width = std::max(extent(polygon, 0), extent(polygon, 1));
+    const double number = std::ceil(std::log2(std::max(width / WIDEST, 1.0)));
+    if (!(number < double(levels_.size() - 1))) return levels_.back().texels[0];
+    const Level& level = levels_[size_t(number)];
+    // Between the centres of texels, which are whole numbers here, the texture mixes four. Smaller copies are
+    // always mixed, also where the texture takes the nearest texel.
+    const bool mixes = number > 0.0 || texture.filter == TextureFilter::bilinear;
+    for (dvec2& corner : polygon)
+        corner = corner / std::exp2(number) - (mixes ? 0.5 : 0.0);
+
+    dvec3 sum(0.0);
+    double area = 0.0;
+    const auto add = [&](const dvec2& cell, const Moments& m) {
+        const auto add_texel = [&](double x, double y, double weight) {
+            sum += std::max(weight, 0.0) * dvec3(texel(level, texture, cell.x + x, cell.y + y));
+        };
+        area += m.area;
+        if (!mixes) return add_texel(0, 0, m.area);
+        add_texel(0, 0, m.area - m.x - m.y + m.xy);
+        add_texel(1, 0, m.x - m.xy);
+        add_texel(0, 1, m.y - m.xy);
+        add_texel(1, 1, m.xy);
     };
-    const double i = std::floor(x), j = std::floor(y);
-    const vec3 upper = mix(texel(i, j), texel(i + 1, j), float(x - i));
-    return mix(upper, mix(texel(i, j + 1), texel(i + 1, j + 1), float(x - i)), float(y - j));
+    if (area_of(polygon) > 1e-6 * width * width) for_cells(polygon, add);
+    if (area > 0.0) return vec3(sum / area);
+    const double steps = 2.0 * WIDEST;
+    for (size_t i = 0; i < polygon.size(); ++i) {
+        for (double k = 0.0; k < steps; ++k) {
+            const dvec2 p = mix(polygon[i], polygon[(i + 1) % polygon.size()], k / steps), cell = floor(p);
+            const dvec2 within = p - cell;
+            add(cell, {1.0, within.x, within.y, within.x * within.y});
+        }
+    }
+    return vec3(sum / area);
 }
 
 }  // namespace candela

@@ -1,4 +1,4 @@
-// The mean of a texture over a piece of a surface: the light of a textured emitter.
+// The mean of a texture over a piece of a surface: how much light a textured emitter sends out.
 #pragma once
 
 #include <span>
@@ -13,10 +13,11 @@ class ImagePyramid {
   public:
     ImagePyramid(const TexelImage& image, TextureEncoding encoding);
 
-    // The approximate mean of `texture`, which looks up this image, over places (u, v) that are spread evenly
-    // over a piece of a surface, with gaps of at most `spacing`. It is positive in every channel in which the
-    // texture is not 0 all over the piece.
-    vec3 mean(const Texture& texture, std::span<const vec2> places, float spacing) const;
+    // The mean of `texture`, which looks up this image, over a convex polygon of places (u, v). A polygon up
+    // to some texels wide is integrated on the image, a wider one on a smaller copy of it. If the polygon is
+    // too narrow to have an area, the result is the mean along its edges. It is positive in every channel in
+    // which the texture is not 0 all over the polygon.
+    vec3 mean(const Texture& texture, std::span<const vec2> corners) const;
 
   private:
     struct Level {
@@ -24,8 +25,7 @@ class ImagePyramid {
         std::vector<vec3> texels;
     };
 
-    // Interpolated linearly between the centres of texels, on that level.
-    vec3 look_up(size_t number, const Texture& texture, vec2 place) const;
+    vec3 texel(const Level& level, const Texture& texture, double x, double y) const;
 
     std::vector<Level> levels_;  // The image, and halved repeatedly, down to one texel.
 };
