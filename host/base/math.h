@@ -10,6 +10,7 @@
 namespace candela {
 
 using glm::dvec3;
+using glm::dvec4;
 using glm::mat3;
 using glm::mat4;
 using glm::uvec2;

@@ -124,6 +124,7 @@ Json settings_json(const BenchArguments& arguments, const RenderTask& task) {
             {"rr_depth", settings.rr_depth},
             {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},
             {"sampler", name_of(settings.sampler, SAMPLER_NAMES)},
+            {"light_sampler", name_of(settings.light_sampler, LIGHT_SAMPLER_NAMES)},
             {"terminator", name_of(settings.terminator, TERMINATOR_NAMES)},
             {"seed", settings.seed}};
 }

@@ -93,6 +93,7 @@ Json make_report(const RenderRecord& record) {
                 {"seed", settings.seed},
                 {"estimator", name_of(settings.estimator, ESTIMATOR_NAMES)},
                 {"sampler", name_of(settings.sampler, SAMPLER_NAMES)},
+                {"light_sampler", name_of(settings.light_sampler, LIGHT_SAMPLER_NAMES)},
                 {"terminator", name_of(settings.terminator, TERMINATOR_NAMES)},
                 {"adaptive", record.adaptive},
                 {"max_depth", settings.max_depth},

@@ -52,6 +52,8 @@ void SamplingOptions::add_to(CLI::App& app) {
     add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
                "How direct light is sampled; mis has the least noise, bsdf misses lights without a surface");
     add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
+    add_choice(app, "--light-sampler", light_sampler, LIGHT_SAMPLER_NAMES,
+               "How a light is chosen: by power, or (tree) by what it may send to the lit point");
     add_choice(app, "--terminator", terminator, TERMINATOR_NAMES,
                "Where light ends on meshes with smooth normals: along the smooth surface, or along the flat "
                "triangles");
@@ -79,6 +81,7 @@ RenderSettings RenderingOptions::settings(const Scene& scene, const Camera& came
     result.crop = picture.crop_within(result.size);
     result.estimator = sampling.estimator.value_or(result.estimator);
     result.sampler = sampling.sampler.value_or(result.sampler);
+    result.light_sampler = sampling.light_sampler.value_or(result.light_sampler);
     result.terminator = sampling.terminator.value_or(result.terminator);
     result.seed = sampling.seed.value_or(result.seed);
     result.max_depth = sampling.max_depth.value_or(result.max_depth);

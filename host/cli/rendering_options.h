@@ -43,6 +43,7 @@ struct SamplingOptions {
     std::optional<uint32_t> rr_depth;
     std::optional<Estimator> estimator;
     std::optional<SamplerKind> sampler;
+    std::optional<LightSampler> light_sampler;
     std::optional<Terminator> terminator;
 
     void add_to(CLI::App& app);

@@ -25,6 +25,7 @@ constexpr std::array<SettingName, Identity::SETTING_COUNT> NAMES{{{"size", nullp
                                                                   {"seed", "candela.seed"},
                                                                   {"sampler", "candela.sampler"},
                                                                   {"estimator", "candela.estimator"},
+                                                                  {"light sampler", "candela.lightSampler"},
                                                                   {"terminator", "candela.terminator"},
                                                                   {"max depth", "candela.maxDepth"},
                                                                   {"rr depth", "candela.rrDepth"},

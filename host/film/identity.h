@@ -11,9 +11,9 @@
 namespace candela {
 
 struct Identity {
-    // The settings as text: size, crop, seed, sampler, estimator, terminator, max depth, rr depth, camera and
-    // frame.
-    static constexpr size_t SETTING_COUNT = 10;
+    // The settings as text: size, crop, seed, sampler, estimator, light sampler, terminator, max depth, rr
+    // depth, camera and frame.
+    static constexpr size_t SETTING_COUNT = 11;
     std::array<std::string, SETTING_COUNT> settings;
     // Hash of the scene's arrays, the record of camera and settings, and the specialization constants.
     uint64_t hash = 0;

@@ -20,6 +20,13 @@ double texel_solid_angle(uvec2 size, uint32_t row) {
     return 4.0 * std::numbers::pi / size.x * std::sin((row + 0.5) * step) * std::sin(0.5 * step);
 }
 
+// The unit direction through the middle of a texel, in the map's own axes.
+dvec3 texel_direction(uvec2 size, uint32_t x, uint32_t y) {
+    const double theta = std::numbers::pi * (y + 0.5) / size.y;
+    const double phi = 2.0 * std::numbers::pi * ((x + 0.5) / size.x + 0.5);
+    return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+}
+
 }  // namespace
 
 EnvironmentMap build_environment_map(const Environment& environment) {
@@ -38,6 +45,8 @@ EnvironmentMap build_environment_map(const Environment& environment) {
         for (uint32_t x = 0; x < size.x; ++x) {
             const double bright = luminance(environment.radiance[size_t(y) * size.x + x]);
             weights.push_back(bright * solid_angle);
+            // The first two bands of max(0, cos) in spherical harmonics.
+            map.flux += weights.back() * dvec4(0.5 * texel_direction(size, x, y), 0.25);
             rows.back() += weights.back();
             squares += bright * weights.back();
         }

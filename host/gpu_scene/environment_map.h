@@ -12,6 +12,7 @@ namespace candela {
 // The sky as a light.
 struct SkyLight {
     double irradiance = 0.0;  // Luminance, integrated over the whole sphere [W/m^2].
+    dvec4 flux{0.0};          // As in LightGroups::sky_flux, in the map's own axes [W/m^2].
     double contrast = 1.0;  // Mean of the squared luminance over the square of its mean, on the sphere; >= 1.
     bool even = false;      // The same radiance from everywhere.
 };

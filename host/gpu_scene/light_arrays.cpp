@@ -46,7 +46,7 @@ void append_lights(PoweredLights& all, const PoweredLights& lights) {
 
 }  // namespace
 
-LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punctual,
+LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punctual, const LightTree& tree,
                                const std::optional<SkyLight>& sky, const Box& box) {
     LightArrays result;
     PoweredLights all = area.lights;
@@ -60,6 +60,11 @@ LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punc
     result.facts.light_groups = group_lights(all);
     if (result.sky_is_light) result.facts.sky_rival = sky_rival(*sky, double(all.records.back().pmf));
     result.facts.light_count = uint32_t(all.records.size());
+    if (result.facts.light_count > 1) {
+        result.tree = pack_light_tree(tree);
+        set_fluxes(result.facts.light_groups, all.records, result.sky_is_light ? sky->flux : dvec4(0.0),
+                   tree);
+    }
     result.lights.reserve(all.records.size() * LIGHT_WORDS);
     for (const LightRecord& light : all.records) {
         append(result.lights, pack(light));

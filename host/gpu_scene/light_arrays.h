@@ -9,6 +9,7 @@
 #include "gpu_scene/area_lights.h"
 #include "gpu_scene/environment_map.h"
 #include "gpu_scene/flatten.h"
+#include "gpu_scene/light_tree_arrays.h"
 #include "gpu_scene/material_arrays.h"
 #include "gpu_scene/powered_lights.h"
 #include "scene/scene.h"
@@ -26,12 +27,14 @@ struct LightFacts {
 struct LightArrays {
     LightFacts facts;
     std::vector<uvec4> lights, alias;
+    LightTreeArrays tree;  // Empty if there is a single light.
     bool sky_is_light = false;
 };
 
 // Joins the lights of a scene, in the order of LightGroups: those of surfaces are in front. The sky is one of
-// them if there is one and it helps to sample it. `box` is the box around all primitives.
-LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punctual,
+// them if there is one and it helps to sample it. `tree` is that over area and punctual lights, `box` the box
+// around all primitives.
+LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punctual, const LightTree& tree,
                                const std::optional<SkyLight>& sky, const Box& box);
 
 // The textures of lights, by the places of their surfaces in leaf order; empty if no kernel reads them.

@@ -50,7 +50,9 @@ LightGroups group_lights(PoweredLights& lights) {
     const auto count = [&](int of_rank) {
         return uint32_t(std::ranges::count(lights.records, of_rank, rank));
     };
-    LightGroups groups{.placed = count(0), .suns = count(1), .sun_fraction = 0, .sky_fraction = 0};
+    LightGroups groups{};
+    groups.placed = count(0);
+    groups.suns = count(1);
     const std::span<const double> powers = lights.powers;
     const double placed = sum(powers.first(groups.placed));
     const double suns = sum(powers.subspan(groups.placed, groups.suns));

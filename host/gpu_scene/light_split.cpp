@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t MAX_BINS = 16;
 
-// The bins on an axis: that of a centroid, times 2.
+// The bins on an axis, of centroids times 2.
 struct Binning {
     float origin;
     float scale;  // 0: all centroids are equal, or too close for floats.
@@ -18,7 +18,7 @@ struct Binning {
 
     Binning(const LightRange& range, int axis)
         : origin(range.centroids2.lo[axis]), bins(std::min(range.count, MAX_BINS)) {
-        // A little less than would put the last centroid into a bin behind the last.
+        // A little less than the ratio, which would put the last centroid into a bin past the last one.
         const float extent = range.centroids2.extent()[axis];
         scale = float(bins) * 0.99999f / extent;
         if (!(extent > 0.0f) || scale > FLOAT_MAX) scale = 0.0f;
@@ -38,7 +38,7 @@ void join(LightRange& range, const LightRange& other) {
 struct Cut {
     float cost = INFINITE;
     uint32_t imbalance = UINT32_MAX;
-    int axis = -1;     // -1: none.
+    int axis = -1;     // -1 if there is none.
     uint32_t bin = 0;  // The first bin of the right part.
     std::array<LightRange, 2> sides{};
 };

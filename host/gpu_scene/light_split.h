@@ -1,4 +1,4 @@
-// Splits a range of lights in two, by what it costs a choice to tell the parts apart from afar only.
+// Splits a range of lights in two, so that the lights of each part look alike from afar.
 #pragma once
 
 #include <array>
@@ -9,15 +9,15 @@
 
 namespace candela {
 
-// What the builder of the tree keeps of a light, and moves until it is in the order of the tree.
+// A light as the builder of the tree sorts it.
 struct alignas(16) LightRef {
     vec3 lo;
     uint32_t index;  // In the caller's order.
     vec3 hi;
     uint32_t two_sided;
-    vec3 axis;       // 0 if its normals are all around.
-    float strength;  // Of all lights together, which is 1; > 0.
-    float normals;   // Angles of its cone [rad].
+    vec3 axis;       // 0 if it has normals in all directions.
+    float strength;  // Its fraction of the sum over all lights; > 0.
+    float normals;   // As in LightBounds [rad].
     float emission;
 
     float centroid2(int axis_number) const { return lo[axis_number] + hi[axis_number]; }
@@ -29,13 +29,13 @@ struct LightRange {
     uint32_t count = 0;
     Box4 bounds = Box4::empty();
     Box4 centroids2 = Box4::empty();  // Bounds of the centroids, times 2.
-    Float4 sums{};                    // Of axes; in the fourth lane, of strengths.
+    Float4 sums{};                    // Of the axes, and in the fourth lane, of the strengths.
 
     void add(const LightRef& light);
 };
 
-// How much the lights of a range differ as seen from a point: their strength, times the square of the
-// diameter of the box, times the directions into which they emit.
+// How much the lights of a range differ as seen from a point: their strength, times the squared diameter of
+// their box, times a measure of the directions into which they emit.
 float light_cost(const LightRange& range);
 
 // Reorders `range` (2 lights or more) of `lights` and returns its two parts, neither empty: the cut between

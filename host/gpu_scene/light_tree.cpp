@@ -1,5 +1,5 @@
 // The tree is built from the root down: the nodes above large ranges of lights first, then the trees of
-// smaller ranges, side by side. What is made of a range follows from it alone, so the number of threads never
+// smaller ranges in parallel. The tree of a range depends on the range alone, so the number of threads never
 // changes the result.
 #include "gpu_scene/light_tree.h"
 
@@ -19,10 +19,10 @@ namespace candela {
 namespace {
 
 constexpr uint32_t WIDTH = LIGHT_TREE_WIDTH;
-constexpr uint32_t LARGE = 4096;  // More lights than the tree of a smaller range has.
-// Less would, as a factor of others, leave the floats that are normal numbers.
-constexpr double LEAST_STRENGTH = 1e-30;
-// Of a cosine or a length of floats, relative to 1 or to itself.
+constexpr uint32_t LARGE = 4096;  // A smaller range has at most this many lights.
+// Multiplied by other factors, a lower one could give denormal floats.
+constexpr double MIN_STRENGTH = 1e-30;
+// Bounds the error of a cosine, and the relative error of a length, of floats.
 constexpr double ROUNDING = 4e-7;
 
 // A node to build, `depth` nodes below the root.
@@ -32,7 +32,7 @@ struct Job {
     uint32_t trail = 0;
 };
 
-// Nodes that refer to each other from the first of their own.
+// Nodes, whose indices of each other count from the first of them.
 struct Piece {
     struct Child {
         Job job;
@@ -40,7 +40,7 @@ struct Piece {
         uint32_t slot;  // and which of its children this is.
     };
     std::vector<LightTreeNode> nodes;
-    std::vector<Child> left;  // Children whose trees are pieces of their own.
+    std::vector<Child> left;  // Children whose trees are other pieces.
 };
 
 struct Parts {
@@ -53,8 +53,8 @@ uint32_t balanced_depth(uint32_t count) {
     return (uint32_t(std::bit_width(count - 1)) + 1) / 2;
 }
 
-// Splits the range of a node, then the part with the highest cost, until there are WIDTH parts or all are
-// lights. The parts are equal where a child with all lights but three might need more levels than are left.
+// Splits the range of a node, then the part with the highest cost, until there are WIDTH parts or each is one
+// light. The parts are equal where a child with all lights but three might need more levels than are left.
 Parts open(std::span<LightRef> lights, const Job& job) {
     const bool balanced = job.depth + 1 + balanced_depth(job.range.count) > LIGHT_TREE_MAX_DEPTH;
     const auto priority = [balanced](const LightRange& range) {
@@ -62,21 +62,21 @@ Parts open(std::span<LightRef> lights, const Job& job) {
     };
     Parts parts{{job.range}, 1};
     while (parts.count < WIDTH) {
-        const auto most = std::max_element(parts.ranges.begin(), parts.ranges.begin() + parts.count,
-                                           [&](const LightRange& a, const LightRange& b) {
-                                               return std::pair(a.count > 1, priority(a)) <
-                                                      std::pair(b.count > 1, priority(b));
-                                           });
-        if (most->count == 1) break;
+        const auto max = std::max_element(parts.ranges.begin(), parts.ranges.begin() + parts.count,
+                                          [&](const LightRange& a, const LightRange& b) {
+                                              return std::pair(a.count > 1, priority(a)) <
+                                                     std::pair(b.count > 1, priority(b));
+                                          });
+        if (max->count == 1) break;
         const auto [left, right] =
-            balanced ? split_lights_at_median(lights, *most) : split_lights(lights, *most);
-        *most = left;
+            balanced ? split_lights_at_median(lights, *max) : split_lights(lights, *max);
+        *max = left;
         parts.ranges[parts.count++] = right;
     }
     return parts;
 }
 
-// An axis as a node's word has it.
+// An axis as in a node's word.
 struct Axis {
     uint32_t word = 0;
     vec3 unit;  // Its direction.
@@ -95,12 +95,12 @@ uint32_t half_sine(double angle) {
     return std::min(uint32_t(std::ceil(sine * LIGHT_TREE_SINE)), LIGHT_TREE_SINE);
 }
 
-// A bound on the angle whose cosine that is, but for rounding.
-double widest(float cosine) {
+// An upper bound on the angle with that cosine, which is rounded.
+double max_angle(float cosine) {
     return std::acos(std::max(double(cosine) - ROUNDING, -1.0));
 }
 
-// Writes what is around these lights.
+// Writes the bounds of the lights of a range.
 void put_child(std::span<const LightRef> lights, const LightRange& range, LightTreeChild& child) {
     const Box box(range.bounds);
     const vec3 centre = box.centroid();
@@ -108,7 +108,7 @@ void put_child(std::span<const LightRef> lights, const LightRange& range, LightT
     const float sum_length = length(sum);
     const Axis axis(sum_length > 0.0f ? sum / sum_length : vec3(0, 0, 1));
     child.axis = axis.word;
-    float least_cosine = 1.0f, emission = 0.0f;
+    float min_cosine = 1.0f, emission = 0.0f;
     double radius2 = 0.0, normals = sum_length > 0.0f ? 0.0 : double(PI), strength = 0.0;
     uint32_t two_sided = 0;
     for (const LightRef& light : lights.subspan(range.first, range.count)) {
@@ -116,15 +116,15 @@ void put_child(std::span<const LightRef> lights, const LightRange& range, LightT
         radius2 = std::max(radius2, dot(reach, reach));
         const float cosine = dot(axis.unit, light.axis);
         if (light.normals == 0.0f) {
-            least_cosine = std::min(least_cosine, cosine);
+            min_cosine = std::min(min_cosine, cosine);
         } else {
-            normals = std::max(normals, widest(cosine) + double(light.normals));
+            normals = std::max(normals, max_angle(cosine) + double(light.normals));
         }
         emission = std::max(emission, light.emission);
         two_sided |= light.two_sided;
         strength += double(light.strength);
     }
-    normals = std::max(normals, widest(least_cosine));
+    normals = std::max(normals, max_angle(min_cosine));
     child.centre = centre;
     child.radius = float(std::sqrt(radius2) * (1.0 + ROUNDING));
     child.strength = float(strength);
@@ -132,7 +132,7 @@ void put_child(std::span<const LightRef> lights, const LightRange& range, LightT
                  two_sided * LIGHT_TREE_BOTH_SIDES;
 }
 
-// Builds the node of `root` and those below it, but none over at most `small` lights unless it is the root.
+// Builds the node of `root` and those below it, except nodes over at most `small` lights.
 Piece build_piece(std::span<LightRef> lights, const Job& root, uint32_t small, std::span<uint32_t> trails) {
     struct Pending {
         Job job;
@@ -169,7 +169,7 @@ Piece build_piece(std::span<LightRef> lights, const Job& root, uint32_t small, s
     return piece;
 }
 
-// Appends a piece's nodes, and makes their references count from there.
+// Appends a piece's nodes; their indices of each other count from the first of `nodes` then.
 void append_piece(std::vector<LightTreeNode>& nodes, const Piece& piece) {
     const auto first = uint32_t(nodes.size());
     for (LightTreeNode node : piece.nodes) {
@@ -191,7 +191,7 @@ std::vector<LightRef> make_refs(std::span<const LightBounds> lights, double stre
                         .hi = light.box.hi,
                         .two_sided = light.two_sided,
                         .axis = all_around ? vec3(0.0f) : light.axis,
-                        .strength = float(std::max(light.strength / strength, LEAST_STRENGTH)),
+                        .strength = float(std::max(light.strength / strength, MIN_STRENGTH)),
                         .normals = light.normals,
                         .emission = light.emission});
         all.add(refs.back());

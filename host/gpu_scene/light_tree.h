@@ -1,4 +1,4 @@
-// A tree over lights, from which a light is chosen for a point that is lit: shaders/light/tree.glsl.
+// A tree over lights, by which a light is chosen for a lit point: shaders/light/tree.glsl.
 #pragma once
 
 #include <array>
@@ -11,26 +11,26 @@
 
 namespace candela {
 
-// What the tree knows of a light.
+// Bounds of a light.
 struct LightBounds {
-    Box box;                 // Around it, in the frame of the scene.
-    vec3 axis{0, 0, 1};      // Unit length. All its normals are
-    float normals = 0.0f;    // within this angle around the axis [rad], at most pi,
-    float emission = 0.0f;   // and what it emits is within this angle around a normal [rad], at most pi / 2.
-    bool two_sided = false;  // The same on the other side.
-    double strength = 0.0;   // Its greatest intensity [W/sr], > 0.
+    Box box;                 // In the frame of the scene.
+    vec3 axis{0, 0, 1};      // Unit length.
+    float normals = 0.0f;    // Maximum angle between a normal of the light and the axis [rad], at most pi.
+    float emission = 0.0f;   // Maximum angle between emitted light and its normal [rad], at most pi / 2.
+    bool two_sided = false;  // It emits in the opposite directions, too.
+    double strength = 0.0;   // Maximum intensity [W/sr], > 0.
 };
 
 using LightTreeNode = std::array<LightTreeChild, LIGHT_TREE_WIDTH>;
 
 struct LightTree {
-    std::vector<LightTreeNode> nodes;  // The root first, each before its children; none without lights.
-    std::vector<uint32_t> trails;      // Of each light: the way down to it; see LIGHT_TREE_MAX_DEPTH.
-    double strength = 0.0;             // Of all lights together.
+    std::vector<LightTreeNode> nodes;  // The root first, parents before children; empty without lights.
+    std::vector<uint32_t> trails;      // The way down to each light; see LIGHT_TREE_MAX_DEPTH.
+    double strength = 0.0;             // Sum over all lights.
 };
 
-// Builds a tree over `lights`: whatever the number of threads, the same bits. 0 threads: as many as the
-// hardware has. Ref: Conty Estevez and Kulla 2018, Importance Sampling of Many Lights with Adaptive Tree
+// Builds a tree over `lights`, with the same bits for any number of threads; 0 uses all hardware threads.
+// Ref: Conty Estevez and Kulla 2018, Importance Sampling of Many Lights with Adaptive Tree
 // Splitting, section 4.
 LightTree build_light_tree(std::span<const LightBounds> lights, unsigned threads = 0);
 

@@ -189,11 +189,15 @@ void SceneStages::make_lights(const Work& work) {
     if (other_sky && scene.environment) map = build_environment_map(*scene.environment);
     if (other_sky) sky_ = map ? std::optional<SkyLight>(*map) : std::nullopt;
 
-    LightArrays made = build_light_arrays(
-        area_lights_, build_punctual_lights(scene, gpu_.frame, tree_.bounds), sky_, tree_.bounds);
+    const PoweredLights punctual = build_punctual_lights(scene, gpu_.frame, tree_.bounds);
+    if (work.all || work.tree || work.materials || work.change.radiance || work.change.lights)
+        light_tree_ = build_light_tree(area_lights_.lights, punctual);
+    LightArrays made = build_light_arrays(area_lights_, punctual, light_tree_, sky_, tree_.bounds);
     static_cast<LightFacts&>(gpu_) = made.facts;
     put(ARRAY_LIGHTS, std::move(made.lights));
     put(ARRAY_LIGHT_ALIAS, std::move(made.alias));
+    put(ARRAY_LIGHT_TREE, std::move(made.tree.nodes));
+    put(ARRAY_LIGHT_TRAILS, std::move(made.tree.trails));
     put(ARRAY_LIGHT_TEXTURES, light_textures(scene, materials_, surfaces_, area_lights_, tree_.order));
 
     if (other_sky || made.sky_is_light != sky_is_light_) {

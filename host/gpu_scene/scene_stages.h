@@ -10,6 +10,7 @@
 //   tree above            of the boxes around surfaces and instances, in the frame
 //   leaves                of surfaces, the lights on them and mesh trees, in the order of the tree above
 //   nodes                 of the tree above and mesh trees
+//   light tree            of area lights and punctual lights
 //   lights                of area lights, punctual lights, the power of the sky and the bounds of the tree
 //   sky                   of the environment, and of whether it is a light
 #pragma once
@@ -85,6 +86,7 @@ class SceneStages {
     AreaLights area_lights_;
     MeshTrees trees_;
     SceneTree tree_;
+    LightTree light_tree_;
     std::optional<SkyLight> sky_;
     bool sky_is_light_ = false;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gpu_scene/light_tree_arrays.h"
 #include "shared/constants.h"
 #include "vk/buffer.h"
 #include "vk/commands.h"
@@ -17,7 +18,7 @@ constexpr size_t GUARANTEED_TEXELS = 65536;
 
 Parameters parameters_of(const GpuScene& scene) {
     Parameters parameters{};
-    parameters.lights = scene.light_groups;
+    parameters.lights = turned(scene.light_groups, scene.environment_rotation);
     parameters.environment_size = scene.environment_size;
     parameters.environment_turn = {std::cos(scene.environment_rotation),
                                    std::sin(scene.environment_rotation)};

@@ -13,8 +13,8 @@
 namespace candela::kernels {
 
 extern const std::span<const uint32_t> any_hit, bsdf, closest_hit, environment, escape, exponential, frame,
-    hash, interaction, light_choice, light_sample, math, octahedral, records, sampler, spawn, texture,
-    traversal, warp;
+    hash, interaction, light_choice, light_sample, light_tree, math, octahedral, records, sampler, spawn,
+    texture, traversal, warp;
 
 }  // namespace candela::kernels
 
@@ -52,12 +52,29 @@ struct LightChoiceItem {
     uint32_t choice = 0;
     vec3 n{0};  // 0: none.
     uint32_t light = 0;
+    uint32_t more = 0;        // Further random bits.
+    uint32_t both_sides = 0;  // 1: light from either side of n is scattered.
+    uvec2 unused{0};
 };
 
 struct LightChoice {
     uint32_t chosen;
     float pmf;
     float pmf_of_light;  // Probability of LightChoiceItem::light.
+};
+
+// light_tree: a lit point, and a light of which the tree tells the way.
+struct LightTreeItem {
+    vec3 p{0};
+    uint32_t light = 0;
+    vec3 n{0};  // 0: none.
+    uint32_t both_sides = 0;
+};
+
+struct LightTreeWay {
+    float by_importance;  // Probability, if each child is chosen by its importance,
+    float by_strength;    // and if by its strength.
+    uint32_t arrives;     // 1: it ends at the light.
 };
 
 // light_sample: random bits for a light sample from a reference point.

@@ -12,7 +12,7 @@ namespace candela {
 namespace {
 
 // Increases with every change of the records' meaning, since equal numbers then give other pictures.
-constexpr uint32_t RECORDS_VERSION = 4;
+constexpr uint32_t RECORDS_VERSION = 5;
 
 // The shortest text that reads back as that number.
 template <class Number>
@@ -69,6 +69,7 @@ Identity make_identity(const GpuScene& scene, const Camera& camera, const Render
     return {
         .settings = {size_text(settings.size), crop_text(settings.crop), std::to_string(settings.seed),
                      name_of(settings.sampler, SAMPLER_NAMES), name_of(settings.estimator, ESTIMATOR_NAMES),
+                     name_of(settings.light_sampler, LIGHT_SAMPLER_NAMES),
                      name_of(settings.terminator, TERMINATOR_NAMES), std::to_string(settings.max_depth),
                      std::to_string(settings.rr_depth), camera_text(camera), frame_text(scene.frame)},
         .hash = hash};

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/memory_limit.h"
+#include "gpu_scene/light_tree_arrays.h"
 #include "render/kernels.h"
 #include "render/media_at.h"
 #include "vk/transfer.h"
@@ -142,7 +143,7 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .seed = settings.seed,
             .max_depth = std::min(settings.max_depth, DEPTH_SAFETY_LIMIT),
             .rr_depth = settings.rr_depth,
-            .lights = scene.light_groups,
+            .lights = turned(scene.light_groups, scene.environment_rotation),
             .environment_size = scene.environment_size,
             .environment_turn = {std::cos(scene.environment_rotation), std::sin(scene.environment_rotation)},
             .lens_x = lens_radius * (cos_lens * right + sin_lens * up),

@@ -54,6 +54,8 @@ enum class SamplerKind { independent, stratified, sobol };
 // Where the light on a mesh with smooth normals ends: where its normals turn away from the light, or where
 // its triangles do.
 enum class Terminator { smooth, flat };
+// By what a light is chosen for a point that is lit: all alike, by power, or by what it may send there.
+enum class LightSampler { uniform, power, tree };
 
 // The scene file's proposals; the command line overrides them.
 struct IntegratorSettings {
@@ -62,6 +64,7 @@ struct IntegratorSettings {
     uint32_t rr_depth = 3;              // The first rr_depth bounces always survive.
     Estimator estimator = Estimator::mis;
     SamplerKind sampler = SamplerKind::sobol;
+    LightSampler light_sampler = LightSampler::tree;
     Terminator terminator = Terminator::smooth;
     uint32_t seed = 0;
 };

@@ -13,6 +13,7 @@
 #include "probe/random.h"
 #include "shared/bvh_node.h"
 #include "shared/light.h"
+#include "shared/light_tree.h"
 #include "shared/material.h"
 #include "shared/primitive.h"
 #include "shared/principled.h"
@@ -55,6 +56,10 @@ class Fields {
         const float y = f();
         return {x, y, f()};
     }
+    vec4 f4() {
+        const vec3 xyz = f3();
+        return vec4(xyz.x, xyz.y, xyz.z, f());
+    }
     uint keep(uint word) {
         words.push_back(word);
         return word;
@@ -74,6 +79,8 @@ struct Records {
     MediumRecord medium;
     LightRecord light;
     AliasEntry light_even, light_odd;
+    LightTreeChild light_tree;
+    uvec4 light_trails;
     EnvironmentTexel texel;
     CdfEntry texel_even, texel_odd;
     MaterialTextures material_textures;
@@ -91,7 +98,7 @@ struct Item {
 
 // The kernel's result.
 struct Result {
-    std::array<uint, 232> words;
+    std::array<uint, 252> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -110,7 +117,9 @@ Records filled(Fields& fields) {
                     .lights = {.placed = fields.u(),
                                .suns = fields.u(),
                                .sun_fraction = fields.u(),
-                               .sky_fraction = fields.u()},
+                               .sky_fraction = fields.u(),
+                               .sun_flux = fields.f4(),
+                               .sky_flux = fields.f4()},
                     .environment_size = fields.u2(),
                     .environment_turn = fields.f2(),
                     .lens_x = fields.f3(),
@@ -167,6 +176,13 @@ Records filled(Fields& fields) {
     const auto entry = [&] { return AliasEntry{.threshold = fields.u(), .alias = fields.u()}; };
     r.light_even = entry();
     r.light_odd = entry();
+    r.light_tree = {.centre = fields.f3(),
+                    .radius = fields.f(),
+                    .strength = fields.f(),
+                    .axis = fields.u(),
+                    .cone = fields.u(),
+                    .at = fields.u()};
+    r.light_trails = fields.u4();
     r.texel = {.radiance = fields.f3(), .pdf = fields.f()};
     r.texel_even = {.last_word = fields.u(), .range = fields.u()};
     r.texel_odd = {.last_word = fields.u(), .range = fields.u()};
@@ -221,6 +237,8 @@ GpuScene packed(const Records& r) {
     append_second(array(ARRAY_MEDIA), pack(r.medium));
     append_second(array(ARRAY_LIGHTS), pack(r.light));
     append_second(array(ARRAY_LIGHT_ALIAS), pack(r.light_even, r.light_odd));
+    append_second(array(ARRAY_LIGHT_TREE), pack(r.light_tree));
+    append_second(array(ARRAY_LIGHT_TRAILS), std::array{r.light_trails});
     append_second(array(ARRAY_ENVIRONMENT), pack(r.texel));
     append_second(array(ARRAY_ENVIRONMENT_CDF), pack(r.texel_even, r.texel_odd));
     append_second(array(ARRAY_MATERIAL_TEXTURES), pack(r.material_textures));

@@ -28,6 +28,7 @@ RenderSettings proposed_settings(const Scene& scene, const Camera& camera) {
             .crop = {0, 0, size.x, size.y},
             .estimator = proposed.estimator,
             .sampler = proposed.sampler,
+            .light_sampler = proposed.light_sampler,
             .terminator = proposed.terminator,
             .seed = proposed.seed,
             .max_depth = std::min(proposed.max_depth.value_or(DEPTH_SAFETY_LIMIT), DEPTH_SAFETY_LIMIT),

@@ -217,6 +217,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     // Choose a point on a light, before the lobes of a principled material need registers.
     LitPoint lit = lit_point(x);
     LightSample light;
+    if (ESTIMATOR != ESTIMATOR_BSDF) light_set_groups(lit);
     if (ESTIMATOR != ESTIMATOR_BSDF) light = sample_light(lit, random, pair);
     surface_add_layers(x, path.ray, path.beta);
     if (path.depth == 0u && is_principled(x.material)) estimate.albedo = bsdf_albedo(x.bsdf);

@@ -1,32 +1,23 @@
-// The choice of a light for a point that is lit, and its probability: the whole sampler of lights. A path that hits a
-// light asks for the probability with which it would have been chosen for the previous point, so choice and probability
-// may depend on the point.
+// The choice of a light for a lit point, and its probability: the whole sampler of lights. A path that hits a light
+// needs the probability of its choice for the previous point, so choice and probability may depend on the point.
 #ifndef LIGHT_CHOICE_GLSL
 #define LIGHT_CHOICE_GLSL
 
+#include "base/random_range.glsl"
 #include "base/warp.glsl"
-#include "scene/scene_data.glsl"
+#include "light/lit_point.glsl"
+#include "light/tree.glsl"
 
 const bool HAS_SUNS = (LIGHTS & 1u << LIGHT_DIRECTIONAL) != 0u;
 const bool SKY_IS_LIGHT = (LIGHTS & 1u << LIGHT_ENVIRONMENT) != 0u;
+const bool LIGHTS_AFAR = HAS_SUNS || SKY_IS_LIGHT;
+const bool LIGHTS_PLACED = (LIGHTS & ~(1u << LIGHT_DIRECTIONAL | 1u << LIGHT_ENVIRONMENT)) != 0u;
 
-// A point that is lit: the inputs of the choice of a light. In the frame of the scene.
-struct LitPoint {
-    vec3 p;           // Where rays to the lights begin.
-    vec3 n;           // Unit normal on the viewer's side: lights below its horizon do not light that side.
-    bool both_sides;  // Light from either side of n is scattered.
-    bool any_normal;  // Light from all directions is scattered equally, and n is 0.
+// A chosen light and its probability.
+struct LightChoice {
+    uint i;  // Its place in the table of lights.
+    float pmf;
 };
-
-// A point on a surface with that horizon.
-LitPoint lit_on_surface(vec3 p, vec3 horizon, bool both_sides) {
-    return LitPoint(p, horizon, both_sides, false);
-}
-
-// A point without a normal, as within a medium.
-LitPoint lit_anywhere(vec3 p) {
-    return LitPoint(p, vec3(0.0), true, true);
-}
 
 // The light of a scene that has only one; an invocation reads it once.
 LightRecord only_light;
@@ -59,11 +50,9 @@ uint light_stretch(uint bits, uint half_width) {
     return bits + min(more, ~bits);
 }
 
-// The place of a light, chosen by 32 random bits: the sky, a sun, or a light with a place, each by its power. The scene
-// has at least one light.
+// A light chosen by 32 random bits: the sky, a sun, or a light with a place, each by its power.
 // Ref: Walker 1977, An Efficient Method for Generating Discrete Random Variables with General Distributions.
-uint light_choose(LitPoint lit, uint bits) {
-    if (ONE_LIGHT) return 0u;
+uint light_choose_by_power(uint bits) {
     LightGroups groups = scene_parameters().lights;
     uint sky = SKY_IS_LIGHT ? groups.sky_fraction : 0u;
     uint suns = HAS_SUNS ? groups.sun_fraction : 0u;
@@ -71,7 +60,7 @@ uint light_choose(LitPoint lit, uint bits) {
     bool is_sun = HAS_SUNS && !is_sky && (bits >> 1u) - sky < suns;
     uint first = is_sun ? groups.placed : 0u;
     uint count = is_sun ? groups.suns : groups.placed;
-    if (SKY_IS_LIGHT || HAS_SUNS) {
+    if (LIGHTS_AFAR) {
         // The unused randomness of the choice among groups is uniform.
         uint rest = bits - 2u * (is_sun ? sky : sky + suns);
         bits = light_stretch(rest, max(is_sun ? suns : 2147483648u - sky - suns, 1u));
@@ -81,9 +70,103 @@ uint light_choose(LitPoint lit, uint bits) {
     return is_sky ? groups.placed + groups.suns : i;
 }
 
-// Probability with which light_choose chooses light i for that point.
+uint light_count(LightGroups groups) {
+    return groups.placed + groups.suns + (SKY_IS_LIGHT ? 1u : 0u);
+}
+
+// Estimated irradiance of a lit point by a group of lights far away, without occlusion, in the unit of LightGroups.
+float afar_irradiance(vec4 group, LitPoint lit) {
+    float along = dot(group.xyz, lit.n);
+    if (lit.both_sides) along = abs(along);
+    if (lit.any_normal) along = length(group.xyz);
+    return max(along + group.w, 0.0);
+}
+
+// How the tree, the suns and the sky divide the choice for a lit point: where the parts of the tree and of the suns
+// end, in units of 1 / RANGE_PARTS; the sky has the rest. A part is two thirds what the group may send there, and one
+// third equal for all that are present, because walls may be in between.
+uvec2 light_tree_groups(LitPoint lit) {
+    LightGroups groups = scene_parameters().lights;
+    vec3 weight = vec3(0.0);
+    if (LIGHTS_PLACED) {
+        vec4 importance = light_tree_importances(0u, lit);
+        weight.x = importance.x + importance.y + importance.z + importance.w;
+    }
+    if (HAS_SUNS) weight.y = afar_irradiance(groups.sun_flux, lit);
+    if (SKY_IS_LIGHT) weight.z = afar_irradiance(groups.sky_flux, lit);
+    const vec3 PRESENT = vec3(LIGHTS_PLACED, HAS_SUNS, SKY_IS_LIGHT);
+    const float ALIKE = 1.0 / max(PRESENT.x + PRESENT.y + PRESENT.z, 1.0);
+    weight = min(weight, vec3(1e30));
+    precise vec3 part = weight / max(weight.x + weight.y + weight.z, 1e-30) + 0.5 * ALIKE * PRESENT;
+    precise vec3 ends = vec3(part.x, part.x + part.y, part.x + part.y + part.z);
+    precise vec2 parts = ends.xy * (float(RANGE_PARTS) / ends.z) + 0.5;
+    return uvec2(min(parts, vec2(float(RANGE_PARTS))));
+}
+
+// Must run for a lit point before a light is chosen for it.
+void light_set_groups(inout LitPoint lit) {
+    if (LIGHT_SAMPLER != LIGHT_SAMPLER_TREE || !LIGHTS_AFAR || ONE_LIGHT) return;
+    uvec2 ends = light_tree_groups(lit);
+    lit.groups = ends.x | ends.y << 16u;
+}
+
+// Where these parts end: the tree by strength, the tree by importance, the suns, the sky.
+uvec4 light_groups_at(LitPoint lit) {
+    uvec2 ends = LIGHTS_AFAR ? uvec2(lit.groups & 0xFFFFu, lit.groups >> 16u) : uvec2(RANGE_PARTS);
+    return uvec4(ends.x / LIGHT_TREE_WAYS, ends, RANGE_PARTS);
+}
+
+// The probability of a sun among the suns.
+float sun_pmf(uint i, LightGroups groups) {
+    return scene_light(i).pmf * 2147483648.0 / float(groups.sun_fraction);
+}
+
+// A light from the tree, a sun or the sky.
+LightChoice light_choose_by_tree(LitPoint lit, uvec2 bits) {
+    RandomRange random = range_begin(bits);
+    uvec4 groups = light_groups_at(lit);
+    uint group = range_choose(random, groups);
+    LightChoice choice = LightChoice(0u, 1.0);
+    if (LIGHTS_PLACED) {
+        LightTreeWay way = light_tree_choose(lit, random, group == 0u, group < 2u);
+        choice = LightChoice(way.at & ~LIGHT_TREE_LEAF_BIT, light_tree_pmf(way, groups));
+    }
+    if (HAS_SUNS && group == 2u) {
+        LightGroups table = scene_parameters().lights;
+        uvec2 column = warp_alias_column(light_stretch(2u * random.u, random.size), table.suns);
+        choice.i = table.placed + warp_alias_choice(column, scene_light_alias(table.placed + column.x)).i;
+        choice.pmf = range_part(groups, 2u) * sun_pmf(choice.i, table);
+    }
+    if (SKY_IS_LIGHT && group == 3u) choice = LightChoice(sky_light(), range_part(groups, 3u));
+    return choice;
+}
+
+// A light chosen by 2 x 32 random bits, those of x first. The scene has at least one light.
+LightChoice light_choose(LitPoint lit, uvec2 bits) {
+    if (ONE_LIGHT) return LightChoice(0u, 1.0);
+    if (LIGHT_SAMPLER == LIGHT_SAMPLER_TREE) return light_choose_by_tree(lit, bits);
+    if (LIGHT_SAMPLER == LIGHT_SAMPLER_UNIFORM) {
+        uint n = light_count(scene_parameters().lights);
+        return LightChoice(warp_alias_column(bits.x, n).x, 1.0 / float(n));
+    }
+    uint i = light_choose_by_power(bits.x);
+    return LightChoice(i, light_at(i).pmf);
+}
+
+// Probability with which light_choose chooses light i, which has a place in the scene, for that point.
 float light_pmf(uint i, LitPoint lit) {
-    return ONE_LIGHT ? 1.0 : light_at(i).pmf;
+    if (ONE_LIGHT) return 1.0;
+    if (LIGHT_SAMPLER == LIGHT_SAMPLER_TREE) {
+        return light_tree_pmf(light_tree_follow(lit, scene_light_trail(i)), light_groups_at(lit));
+    }
+    if (LIGHT_SAMPLER == LIGHT_SAMPLER_UNIFORM) return 1.0 / float(light_count(scene_parameters().lights));
+    return light_at(i).pmf;
+}
+
+// The same of the sky, which is one of the lights.
+float sky_pmf(LitPoint lit) {
+    if (LIGHT_SAMPLER == LIGHT_SAMPLER_TREE && !ONE_LIGHT) return range_part(light_groups_at(lit), 3u);
+    return light_pmf(sky_light(), lit);
 }
 
 #endif

@@ -48,7 +48,9 @@ void light_apply_textures(inout LightSample s, LitPoint lit) {
 // A sample of a point on one of the lights, from 3 x 32 random bits: u.xy chooses the point, u.z the light. The scene
 // has at least one light; light_prepare comes first.
 LightSample light_sample_li(LitPoint lit, uvec3 u) {
-    uint i = light_choose(lit, u.z);
+    uint more = LIGHT_SAMPLER == LIGHT_SAMPLER_TREE ? hash_pcg3d(u).x : 0u;
+    LightChoice choice = light_choose(lit, uvec2(u.z, more));
+    uint i = choice.i;
     LightRecord l = light_at(i);
     LightSample s;
     if (is_light(l, LIGHT_ENVIRONMENT)) {
@@ -64,7 +66,7 @@ LightSample light_sample_li(LitPoint lit, uvec3 u) {
     } else {
         s = area_light_sample_li(l, lit.p, unit_float(u.xy));
     }
-    s.pdf *= light_pmf(i, lit);
+    s.pdf *= choice.pmf;
     s.light = i;
     s.u = unit_float(u.xy);
     if ((TEXTURED & (TEXTURED_EMISSION | TEXTURED_OPACITY)) != 0u && light_has_surface(l)) {
@@ -86,7 +88,7 @@ float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light
 // not one of the lights.
 float environment_pdf_li(EnvironmentTexel texel, LitPoint lit) {
     if (!SKY_IS_LIGHT) return 0.0;
-    return light_pmf(sky_light(), lit) * texel.pdf;
+    return sky_pmf(lit) * texel.pdf;
 }
 
 #endif

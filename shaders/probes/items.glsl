@@ -63,4 +63,8 @@ void put(vec3 v) {
     put(floatBitsToUint(v));
 }
 
+void put(vec4 v) {
+    put(floatBitsToUint(v));
+}
+
 #endif

@@ -1,9 +1,10 @@
-// For light_choice_test.cpp: item (lit point, 32 random bits; normal or 0, light). The light that the bits choose, its
-// probability, and the probability of the item's light.
+// For light_choice_test.cpp: item (lit point, 32 random bits; normal or 0, light; 32 further bits, whether light from
+// both sides is scattered). The light that the bits choose, its probability, and the probability of the item's light,
+// or 0 if that light is a sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#define ITEM_WORDS 2u
+#define ITEM_WORDS 3u
 #define RESULT_WORDS 3u
 #include "light/choice.glsl"
 #include "probes/items.glsl"
@@ -13,9 +14,15 @@ void main() {
     light_prepare();
     vec3 p = item_floats(0u).xyz, n = item_floats(1u).xyz;
     LitPoint lit = lit_anywhere(p);
-    if (n != vec3(0.0)) lit = lit_on_surface(p, n, false);
-    uint chosen = light_choose(lit, item(0u).w);
-    put(chosen);
-    put(light_pmf(chosen, lit));
-    put(light_pmf(item(1u).w, lit));
+    if (n != vec3(0.0)) lit = lit_on_surface(p, n, item(2u).y != 0u);
+    light_set_groups(lit);
+    LightChoice choice = light_choose(lit, uvec2(item(0u).w, item(2u).x));
+    put(choice.i);
+    put(choice.pmf);
+    uint light = item(1u).w;
+    bool is_sky = SKY_IS_LIGHT && light == sky_light();
+    float pmf = 0.0;
+    if (is_sky) pmf = sky_pmf(lit);
+    if (light < scene_parameters().lights.placed) pmf = light_pmf(light, lit);
+    put(pmf);
 }

@@ -15,6 +15,7 @@ void main() {
     vec3 from = item_floats(0u).xyz;
     light_prepare();
     LitPoint lit = lit_anywhere(from);
+    light_set_groups(lit);
     LightSample s = light_sample_li(lit, uvec3(item(1u).xy, item(0u).w));
     put(s.wi);
     put(s.Li);

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 232u
+#define RESULT_WORDS 252u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -21,6 +21,8 @@ void put_parameters(Parameters p) {
     put(p.lights.suns);
     put(p.lights.sun_fraction);
     put(p.lights.sky_fraction);
+    put(p.lights.sun_flux);
+    put(p.lights.sky_flux);
     put(p.environment_size);
     put(p.environment_turn);
     put(p.lens_x);
@@ -96,6 +98,15 @@ void put_cdf_entry(CdfEntry e) {
     put(e.range);
 }
 
+void put_light_tree(LightTreeChild c) {
+    put(c.centre);
+    put(c.radius);
+    put(c.strength);
+    put(c.axis);
+    put(c.cone);
+    put(c.at);
+}
+
 void put_texel(EnvironmentTexel t) {
     put(t.radiance);
     put(t.pdf);
@@ -151,6 +162,9 @@ void main() {
     put_light(scene_light(1u));
     put_alias_entry(scene_light_alias(2u));
     put_alias_entry(scene_light_alias(3u));
+    put_light_tree(scene_light_tree(0u, 1u));
+    for (uint i = 4u; i < 8u; ++i)
+        put(scene_light_trail(i));
     put_texel(scene_environment_texel(1u));
     put_cdf_entry(scene_environment_cdf(2u));
     put_cdf_entry(scene_environment_cdf(3u));

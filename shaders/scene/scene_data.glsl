@@ -153,6 +153,32 @@ AliasEntry scene_light_alias(uint i) {
     return alias_unpack(a, i);
 }
 
+// Child c of a node of the tree over lights.
+LightTreeChild scene_light_tree(uint node, uint c) {
+    uvec4 a, b;
+    READ_2(LIGHTS, LIGHT_TREE, (node * LIGHT_TREE_WIDTH + c) * LIGHT_TREE_WORDS, a, b);
+    return light_tree_unpack(a, b);
+}
+
+// The strengths of its children.
+vec4 scene_light_tree_strengths(uint node) {
+    uvec4 a, b, c, d;
+    uint first = node * LIGHT_TREE_WIDTH * LIGHT_TREE_WORDS + 1u;
+    READ_1(LIGHTS, LIGHT_TREE, first, a);
+    READ_1(LIGHTS, LIGHT_TREE, first + LIGHT_TREE_WORDS, b);
+    READ_1(LIGHTS, LIGHT_TREE, first + 2u * LIGHT_TREE_WORDS, c);
+    READ_1(LIGHTS, LIGHT_TREE, first + 3u * LIGHT_TREE_WORDS, d);
+    return uintBitsToFloat(uvec4(a.x, b.x, c.x, d.x));
+}
+
+// The trail of the light at that place.
+uint scene_light_trail(uint i) {
+    uvec4 a;
+    READ_1(LIGHTS, LIGHT_TRAILS, i / 4u, a);
+    uvec2 pair = (i & 2u) == 0u ? a.xy : a.zw;
+    return (i & 1u) == 0u ? pair.x : pair.y;
+}
+
 // Texel of the environment, row-major from the top.
 EnvironmentTexel scene_environment_texel(uint i) {
     uvec4 a;

@@ -27,6 +27,11 @@ const uint SAMPLER_INDEPENDENT = 0u;
 const uint SAMPLER_STRATIFIED = 1u;
 const uint SAMPLER_SOBOL = 2u;
 
+// Samplers of lights.
+const uint LIGHT_SAMPLER_UNIFORM = 0u;  // All alike.
+const uint LIGHT_SAMPLER_POWER = 1u;    // By power, wherever the lit point is.
+const uint LIGHT_SAMPLER_TREE = 2u;     // By what they may send to the lit point.
+
 // Dimensions are handed out in pairs. A sample uses PAIR_PIXEL and PAIR_LENS once, then PAIRS_PER_BOUNCE
 // pairs at every scattering vertex, starting at PAIR_FIRST_BOUNCE.
 const uint PAIR_PIXEL = 0u;

@@ -1,4 +1,4 @@
-// Records of a light (4 words of uvec4), of the groups of lights (1 word), of a texel of the environment (1
+// Records of a light (4 words of uvec4), of the groups of lights (3 words), of a texel of the environment (1
 // word), and of the entries of tables that choose (two to a word).
 //
 //   LightRecord                   EnvironmentTexel                 AliasEntry
@@ -10,6 +10,8 @@
 //
 //   LightGroups
 //     0: placed, suns, sun_fraction, sky_fraction
+//     1: sun_flux
+//     2: sky_flux
 #ifndef SHARED_LIGHT_H
 #define SHARED_LIGHT_H
 
@@ -21,7 +23,7 @@ namespace candela {
 #endif
 
 const uint LIGHT_WORDS = 4u;
-const uint LIGHT_GROUPS_WORDS = 1u;
+const uint LIGHT_GROUPS_WORDS = 3u;
 const uint ENVIRONMENT_TEXEL_WORDS = 1u;
 const uint ALIAS_WORDS = 1u;  // Words of two entries.
 const uint CDF_WORDS = 1u;    // Words of two entries.
@@ -59,6 +61,10 @@ struct LightGroups {
     uint suns;
     uint sun_fraction;  // Probability of choosing some sun, in units of 2^-31.
     uint sky_fraction;  // Probability of choosing the sky. The others have the rest.
+    // The estimated irradiance of a surface with the normal n by all suns is max(0, dot(n, xyz) + w); divided by
+    // the strength of the tree over the others, if there are any.
+    vec4 sun_flux;
+    vec4 sky_flux;  // The same for the sky.
 };
 
 // A piece of the sky in latitude and longitude.
@@ -96,7 +102,8 @@ inline std::array<uvec4, LIGHT_WORDS> pack(const LightRecord& l) {
 }
 
 inline std::array<uvec4, LIGHT_GROUPS_WORDS> pack(const LightGroups& g) {
-    return {uvec4(g.placed, g.suns, g.sun_fraction, g.sky_fraction)};
+    return {uvec4(g.placed, g.suns, g.sun_fraction, g.sky_fraction), std::bit_cast<uvec4>(g.sun_flux),
+            std::bit_cast<uvec4>(g.sky_flux)};
 }
 
 inline std::array<uvec4, ENVIRONMENT_TEXEL_WORDS> pack(const EnvironmentTexel& t) {
@@ -128,8 +135,8 @@ LightRecord light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     return l;
 }
 
-LightGroups light_groups_unpack(uvec4 a) {
-    return LightGroups(a.x, a.y, a.z, a.w);
+LightGroups light_groups_unpack(uvec4 a, uvec4 b, uvec4 c) {
+    return LightGroups(a.x, a.y, a.z, a.w, uintBitsToFloat(b), uintBitsToFloat(c));
 }
 
 EnvironmentTexel environment_texel_unpack(uvec4 a) {

@@ -1,11 +1,11 @@
-// Record of the constants of an image, 10 words of uvec4 in a uniform buffer; and the push constants of one
+// Record of the constants of an image, 12 words of uvec4 in a uniform buffer; and the push constants of one
 // dispatch.
 //
 //   0: position.xyz, seed         5: lens_x.xyz, focal_distance
 //   1: right.xyz, max_depth       6: lens_y.xyz, blades
 //   2: up.xyz, rr_depth           7: environment_size.xy, environment_turn.xy
 //   3: forward.xyz, first_sample  8: camera_media.xy, sky_rival
-//   4: full_size.xy, crop.xy       9: lights
+//   4: full_size.xy, crop.xy       9 to 11: lights
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
 
@@ -17,7 +17,7 @@
 namespace candela {
 #endif
 
-const uint PARAMETERS_WORDS = 10u;
+const uint PARAMETERS_WORDS = 12u;
 
 struct Parameters {
     // The pinhole ray through film position s in [-1, 1]^2 (x to the right, y up) has the direction
@@ -57,6 +57,7 @@ struct Tile {
 #ifdef __cplusplus
 
 inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
+    const auto lights = pack(p.lights);
     return {
         word(p.position, p.seed),
         word(p.right, p.max_depth),
@@ -68,7 +69,9 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         uvec4(p.environment_size.x, p.environment_size.y, floatBitsToUint(p.environment_turn.x),
               floatBitsToUint(p.environment_turn.y)),
         uvec4(p.camera_media.x, p.camera_media.y, floatBitsToUint(p.sky_rival), 0),
-        pack(p.lights)[0],
+        lights[0],
+        lights[1],
+        lights[2],
     };
 }
 
@@ -95,7 +98,7 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     p.environment_turn = uintBitsToFloat(w[7].zw);
     p.camera_media = w[8].xy;
     p.sky_rival = uintBitsToFloat(w[8].z);
-    p.lights = light_groups_unpack(w[9]);
+    p.lights = light_groups_unpack(w[9], w[10], w[11]);
     return p;
 }
 

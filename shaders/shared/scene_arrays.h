@@ -10,6 +10,7 @@
 
 #include "shared/bvh_node.h"
 #include "shared/light.h"
+#include "shared/light_tree.h"
 #include "shared/material.h"
 #include "shared/primitive.h"
 #include "shared/principled.h"

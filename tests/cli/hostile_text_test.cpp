@@ -87,8 +87,8 @@ class HostileText : public CliTest {
         for (int i = 0; i < channels; ++i)
             image.add(HARM + std::to_string(i), 1.0f);
         image.attributes["candela.identity"] = "1";
-        for (const char* key : {"seed", "sampler", "estimator", "terminator", "maxDepth", "rrDepth", "camera",
-                                "frame", "device", "driver", "version"})
+        for (const char* key : {"seed", "sampler", "estimator", "lightSampler", "terminator", "maxDepth",
+                                "rrDepth", "camera", "frame", "device", "driver", "version"})
             image.attributes[std::string("candela.") + key] = "x";
         image.attributes["candela.samples"] = samples;
         image.attributes["samplesPerPixel"] = 1.0f;

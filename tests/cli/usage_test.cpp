@@ -27,34 +27,13 @@ TEST_F(Usage, VersionAndHelpGoToStdout) {
 TEST_F(Usage, HelpOfRenderListsEveryOption) {
     const ProcessResult help = candela({"render", "--help"});
     EXPECT_EQ(help.exit_code, 0);
-    for (const char* option : {"--output",
-                               "--aov",
-                               "--half",
-                               "--exposure",
-                               "--tonemap",
-                               "--report",
-                               "--size",
-                               "--crop",
-                               "--camera",
-                               "--spp",
-                               "--time-limit",
-                               "--seed",
-                               "--max-depth",
-                               "--rr-depth",
-                               "--estimator",
-                               "--sampler",
-                               "--device",
-                               "--scene-buffers",
-                               "--quiet",
-                               "--verbose",
-                               "--samples",
-                               "--checkpoint",
-                               "--checkpoint-every",
-                               "--resume",
-                               "--write-every",
-                               "--target-error",
-                               "--progress",
-                               "--reference"}) {
+    for (const char* option :
+         {"--output",      "--aov",           "--half",       "--exposure",         "--tonemap",
+          "--report",      "--size",          "--crop",       "--camera",           "--spp",
+          "--time-limit",  "--seed",          "--max-depth",  "--rr-depth",         "--estimator",
+          "--sampler",     "--light-sampler", "--device",     "--scene-buffers",    "--quiet",
+          "--verbose",     "--samples",       "--checkpoint", "--checkpoint-every", "--resume",
+          "--write-every", "--target-error",  "--progress",   "--reference"}) {
         EXPECT_CONTAINS(help.out, option);
     }
 }
@@ -117,6 +96,7 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
         {"--tonemap", "", tonemaps},
         {"--estimator", "nee", "bsdf|light|mis"},
         {"--sampler", "halton", "independent|stratified|sobol"},
+        {"--light-sampler", "bvh", "uniform|power|tree"},
         {"--scene-buffers", "image", "auto|texel|storage"},
         {"--aov", "albedo,depth", aovs},
         {"--aov", "", aovs},

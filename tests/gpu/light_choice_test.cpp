@@ -50,9 +50,14 @@ std::vector<double> probabilities(const Parts& parts) {
 
 class LightChoiceTest : public LightTest {
   protected:
-    std::vector<LightChoice> choose(const GpuScene& scene, const std::vector<LightChoiceItem>& items) const {
+    std::vector<LightChoice> choose(const GpuScene& scene, const std::vector<LightChoiceItem>& items,
+                                    uint32_t sampler = LIGHT_SAMPLER_POWER) const {
         const DeviceScene on_device(device(), scene, SceneAccess::texel_buffers);
-        return probe<LightChoice>(device(), kernels::light_choice, items, {}, &on_device);
+        KernelConstants constants;
+        constants[CONSTANT_LIGHT_SAMPLER] = sampler;
+        constants[CONSTANT_LIGHTS] = scene.lights_present;
+        constants[CONSTANT_ONE_LIGHT] = scene.light_count == 1;
+        return probe<LightChoice>(device(), kernels::light_choice, items, constants, &on_device);
     }
 };
 
@@ -69,30 +74,49 @@ TEST_F(LightChoiceTest, LightsAreChosenAsOftenAsTheirProbabilitySays) {
     const std::vector<std::pair<vec3, vec3>> points{{vec3(0.5f, 0.2f, 0.3f), vec3(0)},
                                                     {vec3(1, -2, 0.5f), vec3(0, 0, 1)},
                                                     {vec3(1e5f, 0, 0), vec3(-1, 0, 0)}};
-    const double level = sidak_level(CHI_SQUARED_ALPHA, scenes.size() * points.size());
+    constexpr std::array SAMPLERS{LIGHT_SAMPLER_UNIFORM, LIGHT_SAMPLER_POWER, LIGHT_SAMPLER_TREE};
+    const double level = sidak_level(CHI_SQUARED_ALPHA, SAMPLERS.size() * scenes.size() * points.size());
     Random random(310);
-    for (size_t k = 0; k < scenes.size(); ++k) {
-        const GpuScene gpu = build_gpu_scene(scene_of(scenes[k]), SceneFrame{});
-        const std::vector<double> expected = probabilities(scenes[k]);
+    for (size_t k = 0; k < SAMPLERS.size() * scenes.size(); ++k) {
+        const Parts& parts = scenes[k / SAMPLERS.size()];
+        const uint32_t sampler = SAMPLERS[k % SAMPLERS.size()];
+        const GpuScene gpu = build_gpu_scene(scene_of(parts), SceneFrame{});
+        const std::vector<double> expected = probabilities(parts);
         ASSERT_EQ(gpu.light_count, expected.size());
+        const auto is_sun = [&](size_t i) {
+            return gpu.light_groups.placed <= i && i < gpu.light_groups.placed + gpu.light_groups.suns;
+        };
         for (const auto& [p, n] : points) {
-            SCOPED_TRACE(testing::Message() << "scene " << k << ", x " << p.x);
+            SCOPED_TRACE(testing::Message()
+                         << "scene " << k / SAMPLERS.size() << ", sampler " << sampler << ", x " << p.x);
             std::vector<LightChoiceItem> items;
-            for (uint32_t i = 0; i < SAMPLES; ++i)
-                items.push_back({p, random.bits(), n, i % gpu.light_count});
-            const std::vector<LightChoice> choices = choose(gpu, items);
+            for (uint32_t i = 0; i < SAMPLES; ++i) {
+                items.push_back({.p = p,
+                                 .choice = random.bits(),
+                                 .n = n,
+                                 .light = i % gpu.light_count,
+                                 .more = random.bits()});
+            }
+            const std::vector<LightChoice> choices = choose(gpu, items, sampler);
             std::vector<double> pmf(gpu.light_count), counts(gpu.light_count);
-            for (size_t i = 0; i < items.size(); ++i)
-                pmf[items[i].light] = double(choices[i].pmf_of_light);
+            for (size_t i = 0; i < items.size(); ++i) {
+                // No ray hits a sun: only whoever chooses one asks for its probability.
+                if (!is_sun(items[i].light)) pmf[items[i].light] = double(choices[i].pmf_of_light);
+                if (is_sun(choices[i].chosen)) pmf[choices[i].chosen] = double(choices[i].pmf);
+            }
             for (const LightChoice& choice : choices) {
                 ASSERT_LT(choice.chosen, gpu.light_count);
                 ASSERT_EQ(double(choice.pmf), pmf[choice.chosen]);
                 ++counts[choice.chosen];
             }
             // Each is a float, off by half of 2^-24 of it at most, and shares are whole numbers of 2^-31.
-            EXPECT_NEAR(std::accumulate(pmf.begin(), pmf.end(), 0.0), 1.0, 0x1p-24);
-            for (size_t i = 0; i < pmf.size(); ++i)
-                EXPECT_NEAR(pmf[i], expected[i], 0x1p-22) << i;
+            EXPECT_NEAR(std::accumulate(pmf.begin(), pmf.end(), 0.0), 1.0,
+                        sampler == LIGHT_SAMPLER_TREE ? 0x1p-22 : 0x1p-24);
+            for (size_t i = 0; i < pmf.size() && sampler != LIGHT_SAMPLER_TREE; ++i) {
+                EXPECT_NEAR(pmf[i], sampler == LIGHT_SAMPLER_POWER ? expected[i] : 1.0 / double(pmf.size()),
+                            0x1p-22)
+                    << i;
+            }
             if (pmf.size() > 1) {
                 EXPECT_GT(pearson_p_value(counts, pmf), level);
             }

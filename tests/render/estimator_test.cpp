@@ -1,5 +1,6 @@
 // Estimators, samplers and roulette change the noise of an image, never its expectation.
 #include "estimator_fixture.h"
+#include "scene/names.h"
 
 namespace candela {
 namespace {
@@ -28,6 +29,31 @@ TEST_F(EstimatorTest, AgreeOnTheCornellBox) {
 
 TEST_F(EstimatorTest, AgreeOnManyKindsOfLights) {
     expect_estimators_agree(scene_with_lights(), 512, 256);
+}
+
+// Beside lights of surfaces, a point, a spot, two suns and an uneven sky.
+TEST_F(EstimatorTest, AgreeHoweverLightsAreChosen) {
+    Scene scene = scene_with_lights();
+    scene.lights.push_back({"", PointLight{.position = {0.5, 1.2, 0.8}, .intensity = vec3(0.5f)}});
+    scene.lights.push_back({"", SpotLight{.position = {-0.5, 1.5, 0.5},
+                                          .direction = {0, -1, 0},
+                                          .intensity = vec3(1, 2, 1),
+                                          .inner_angle = 0.2f,
+                                          .outer_angle = 0.6f}});
+    scene.lights.push_back({"", DirectionalLight{.direction = {0.2, -0.3, -1}, .irradiance = vec3(0.5f)}});
+    scene.lights.push_back({"", DirectionalLight{.direction = {1, -1, 0.1}, .irradiance = vec3(0, 0, 1)}});
+    scene.environment = Environment{.size = {2, 1}, .radiance = {vec3(0.2f), vec3(1, 0.5f, 0.1f)}};
+    const Image by_tree = image(scene, settings(Estimator::mis, 8), 256);
+    {
+        SCOPED_TRACE("light samples only");
+        expect_same_expectation(image(scene, settings(Estimator::light, 9), 256), by_tree);
+    }
+    for (const LightSampler sampler : {LightSampler::uniform, LightSampler::power}) {
+        SCOPED_TRACE(name_of(sampler, LIGHT_SAMPLER_NAMES));
+        RenderSettings other = settings(Estimator::mis, 10);
+        other.light_sampler = sampler;
+        expect_same_expectation(image(scene, other, 512), by_tree);
+    }
 }
 
 TEST_F(EstimatorTest, RouletteKeepsTheMean) {

@@ -109,18 +109,23 @@ TEST_F(PunctualLightTest, DimAndBrightLightsAddUp) {
         expect_irradiance(scene, irradiance, 4096, estimator);
 }
 
-// The choice by power: of a light and one of a thousandth of it in the same place, each sample is worth the
-// same, so that there is no noise.
+// Of a light and a dimmer one in the same place, each sample is worth the same, so that there is no noise.
+// The tree's parts of a node are whole numbers of 2^-15.
 TEST_F(PunctualLightTest, SamplesOfLightsInOnePlaceAreWorthTheSame) {
     const dvec3 position(1, 2, 0);
     Scene scene = floor_under(PointLight{position, INTENSITY});
     const Image alone = image_of(render(scene, settings(Estimator::mis), 16));
-    scene.lights = {{"", PointLight{position, INTENSITY * 0.999f}},
-                    {"", PointLight{position, INTENSITY * 0.001f}}};
-    const Image both = image_of(render(scene, settings(Estimator::mis), 16));
-    for (size_t c = 0; c < 3; ++c) {
-        for (size_t i = 0; i < both.pixel_count(); ++i)
-            ASSERT_NEAR(plane(both, "", c)[i], plane(alone, "", c)[i], 1e-5f * plane(alone, "", c)[i]);
+    for (const auto& [sampler, dimmer] :
+         {std::pair(LightSampler::power, 0.001f), {LightSampler::tree, 0.25f}}) {
+        scene.lights = {{"", PointLight{position, INTENSITY * (1.0f - dimmer)}},
+                        {"", PointLight{position, INTENSITY * dimmer}}};
+        RenderSettings chosen = settings(Estimator::mis);
+        chosen.light_sampler = sampler;
+        const Image both = image_of(render(scene, chosen, 16));
+        for (size_t c = 0; c < 3; ++c) {
+            for (size_t i = 0; i < both.pixel_count(); ++i)
+                ASSERT_NEAR(plane(both, "", c)[i], plane(alone, "", c)[i], 1e-5f * plane(alone, "", c)[i]);
+        }
     }
 }
 

@@ -37,6 +37,8 @@ IntegratorSettings read_integrator(const Node& node) {
     if (const auto estimator = node.find("estimator"))
         settings.estimator = estimator->choice(ESTIMATOR_NAMES);
     if (const auto sampler = node.find("sampler")) settings.sampler = sampler->choice(SAMPLER_NAMES);
+    if (const auto sampler = node.find("light_sampler"))
+        settings.light_sampler = sampler->choice(LIGHT_SAMPLER_NAMES);
     if (const auto terminator = node.find("terminator"))
         settings.terminator = terminator->choice(TERMINATOR_NAMES);
     if (const auto seed = node.find("seed"))

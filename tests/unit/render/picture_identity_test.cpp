@@ -49,6 +49,8 @@ TEST_F(PictureIdentity, EverySettingIsNamedWithBothValues) {
                  [](RenderSettings& s) { s.sampler = SamplerKind::stratified; });
     expect_named("its estimator is light, not mis",
                  [](RenderSettings& s) { s.estimator = Estimator::light; });
+    expect_named("its light sampler is power, not tree",
+                 [](RenderSettings& s) { s.light_sampler = LightSampler::power; });
     expect_named("its terminator is flat, not smooth",
                  [](RenderSettings& s) { s.terminator = Terminator::flat; });
     expect_named("its max depth is 5, not 4096", [](RenderSettings& s) { s.max_depth = 5; });
@@ -120,8 +122,9 @@ TEST_F(PictureIdentity, AnImageCarriesIt) {
               "its crop is 10,20,14,22, not 10,20,13,22");
 
     const std::string remedy = "; give a file that candela render wrote, unchanged";
-    for (const char* name : {"candela.identity", "candela.seed", "candela.sampler", "candela.estimator",
-                             "candela.terminator", "candela.maxDepth", "candela.rrDepth", "candela.camera"}) {
+    for (const char* name :
+         {"candela.identity", "candela.seed", "candela.sampler", "candela.estimator", "candela.lightSampler",
+          "candela.terminator", "candela.maxDepth", "candela.rrDepth", "candela.camera"}) {
         Image without = image;
         without.attributes.erase(name);
         EXPECT_EQ(error_of([&] { identity_of(without, "a.exr"); }),

@@ -91,10 +91,12 @@ TEST(Scene, MeshSceneHasFrontsAndNormalsOnTheSameSide) {
 TEST(Scene, ReadsTheIntegrator) {
     SceneFolder folder;
     const Scene scene = folder.load(settings(GOOD_CAMERA + R"(, "integrator": {"spp": 16777216,
-        "max_depth": 0, "rr_depth": 4096, "estimator": "light", "sampler": "stratified", "terminator": "flat", "seed": 4294967295})"));
+        "max_depth": 0, "rr_depth": 4096, "estimator": "light", "sampler": "stratified", "light_sampler": "power",
+        "terminator": "flat", "seed": 4294967295})"));
     EXPECT_EQ(scene.integrator.spp, 1u << 24);
     EXPECT_EQ(scene.integrator.max_depth, 0u);
     EXPECT_EQ(scene.integrator.rr_depth, 4096u);
+    EXPECT_EQ(scene.integrator.light_sampler, LightSampler::power);
     EXPECT_EQ(scene.integrator.terminator, Terminator::flat);
     EXPECT_EQ(scene.integrator.estimator, Estimator::light);
     EXPECT_EQ(scene.integrator.sampler, SamplerKind::stratified);
