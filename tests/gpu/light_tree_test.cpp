@@ -228,6 +228,9 @@ TEST_F(LightTreeTest, LightsAreChosenAsOftenAsTheirProbabilitySays) {
     for (size_t k = 0; k < sets.size(); ++k) {
         const GpuScene scene = scene_of(sets[k]);
         const DeviceScene on_device(device(), scene, SceneAccess::texel_buffers);
+        double strength = 0.0;
+        for (const LightBounds& light : sets[k])
+            strength += light.strength;
         for (const auto& [p, n] : places) {
             SCOPED_TRACE(testing::Message() << "lights " << k << ", x " << p.x);
             std::vector<LightChoiceItem> items;
@@ -242,6 +245,9 @@ TEST_F(LightTreeTest, LightsAreChosenAsOftenAsTheirProbabilitySays) {
             std::vector<double> pmf(scene.light_count), counts(scene.light_count);
             for (uint32_t i = 0; i < SAMPLES; ++i)
                 pmf[items[i].light] = double(choices[i].pmf_of_light);
+            // Wherever the point is, as shaders/light/tree.glsl promises.
+            for (size_t i = 0; i < pmf.size(); ++i)
+                EXPECT_GE(pmf[i], sets[k][i].strength / strength / 32.0) << i;
             for (const LightChoice& choice : choices) {
                 ASSERT_LT(choice.chosen, scene.light_count);
                 ASSERT_EQ(double(choice.pmf), pmf[choice.chosen]);

@@ -46,6 +46,7 @@ RENDER = "shaders/kernels/render.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
 RENDERER = "host/render/renderer.cpp"
 FLATTEN = "host/gpu_scene/flatten.cpp"
+LIGHT_TREE = "shaders/light/tree.glsl"
 LIGHT_GROUPS = "host/gpu_scene/light_groups.cpp"
 PUNCTUAL_LIGHTS = "host/gpu_scene/punctual_lights.cpp"
 MATERIAL_ARRAYS = "host/gpu_scene/material_arrays.cpp"
@@ -60,6 +61,7 @@ INTEGRATOR = ("Interaction*",
 BSDFS = ("BsdfTest*:Phong*:Dielectric*:Warp*", "Albedo*:SkyFurnace*:*Dielectric*Within*:*Reference*/glass")
 LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
+TREES = ("LightTree*:LightChoice*", "EstimatorTest*HoweverLights*", "LightTree*:TextureMean*")
 PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Orthographic*:ScaleTest*Mean*")
 TERMINATOR = ("Interaction*", "Terminator*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
@@ -123,7 +125,7 @@ GROUPS = [
         ("surfaces taken for the first of the lights", PATH, "light_at(s.light)", "light_at(0u)"),
         ("lights chosen with a wrong probability", WARP, "column.y < entry.threshold",
          "column.y < entry.threshold / 2u"),
-        ("one word chooses the light and the point on it", LIGHT_SAMPLER, "light_choose(lit, u.z)", "light_choose(lit, u.x)"),
+        ("one word chooses the light and the point on it", LIGHT_SAMPLER, "uvec2(u.z, more)", "uvec2(u.x, more)"),
         ("cosine missing from an area light's density", AREA, "distance_squared / abs(cos_light)", "distance_squared"),
         ("emission from the back", AREA, "front || l.two_sided != 0u", "true"),
         ("shadow rays end on the light", AREA,
@@ -299,6 +301,20 @@ GROUPS = [
         ("the front culled", OPACITY, "return dot(n, ray.d) > 0.0;", "return dot(n, ray.d) < 0.0;"),
         ("every number from an image's red", MATERIAL, "channel == 0u ? texel.r : texel.g", "texel.r"),
         ("the tangent turned the wrong way", LAYERS, "p.rotation.x * t + p.rotation.y * b", "p.rotation.x * t - p.rotation.y * b"),
+    ]),
+    (TREES, [
+        ("cones of normals dropped", LIGHT_TREE, "return cosine > unpack_half_sine(c.cone >> LIGHT_TREE_EMISSION_SHIFT).x",
+         "return cosine > -2.0"),
+        ("receiver's cosine inverted", LIGHT_TREE, "clamp(-dot(w, lit.n), -1.0, 1.0)", "clamp(dot(w, lit.n), -1.0, 1.0)"),
+        ("a choice leaves its own randomness to the next", "shaders/base/random_range.glsl", "r.u -= begin;", ""),
+        ("probability of another light's way", LIGHT_CHOICE, "scene_light_trail(i)", "scene_light_trail(i ^ 1u)"),
+        ("a sphere seen from inside taken for one afar", LIGHT_TREE, "if (d2 > r2) {", "if (d2 > 0.0) {"),
+        ("no way by strength alone", LIGHT_CHOICE, "uvec4(ends.x / LIGHT_TREE_WAYS, ends, RANGE_PARTS)",
+         "uvec4(0u, ends, RANGE_PARTS)"),
+        ("cones without those of the lights", "host/gpu_scene/light_tree.cpp", "max_angle(cosine) + double(light.normals)",
+         "max_angle(cosine)"),
+        ("mean of the triangle beside an emitter's", "host/gpu_scene/area_lights.cpp", "return {{0, 0}, {1, 0}, {0, 1}};",
+         "return {{1, 1}, {1, 0}, {0, 1}};"),
     ]),
     (PUNCTUAL, [
         ("a point's light falls off with its distance, not with the square", POINT,

@@ -142,6 +142,14 @@ TEST(TextureMean, TheWholeImageHasItsMean) {
     EXPECT_NEAR(power_of(quad, {5, 7}, {6, 8}), 6.0 / 4096, 1e-5);
 }
 
+// The bright block is in the corner at the triangle's right angle. Along two of its sides, the texture mixes
+// in the other edge of the image, up to half a texel of the copy, which is a quarter as large: at most 1/16
+// each.
+TEST(TextureMean, ATriangleHasThatOfItsOwnHalfOfTheImage) {
+    const std::vector<vec2> uvs{vec2(0, 0), vec2(1, 0), vec2(0, 1)};
+    EXPECT_NEAR(power_of({}, {0, 48}, {16, 64}, uvs), 0.5 / 8, 0.5 / 8 / 8);
+}
+
 // However small the piece that emits, and wherever it lies.
 TEST(TextureMean, NoLightWithABrightTexelHasNoPower) {
     for (uint32_t i = 0; i < 64; i += 3) {
