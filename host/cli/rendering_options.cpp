@@ -52,8 +52,10 @@ void SamplingOptions::add_to(CLI::App& app) {
     add_choice(app, "--estimator", estimator, ESTIMATOR_NAMES,
                "How direct light is sampled; mis has the least noise, bsdf misses lights without a surface");
     add_choice(app, "--sampler", sampler, SAMPLER_NAMES, "Random numbers; sobol has the least noise");
-    add_choice(app, "--light-sampler", light_sampler, LIGHT_SAMPLER_NAMES,
-               "How a light is chosen: by power, or (tree) by what it may send to the lit point");
+    add_choice(
+        app, "--light-sampler", light_sampler, LIGHT_SAMPLER_NAMES,
+        "How a light is chosen: by power, by what it may send to the lit point (tree), or by the better of "
+        "the two (auto)");
     add_choice(app, "--terminator", terminator, TERMINATOR_NAMES,
                "Where light ends on meshes with smooth normals: along the smooth surface, or along the flat "
                "triangles");

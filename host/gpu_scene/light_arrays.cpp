@@ -7,6 +7,7 @@
 #include "gpu_scene/alias_table.h"
 #include "gpu_scene/append.h"
 #include "gpu_scene/light_groups.h"
+#include "gpu_scene/light_sampler_rule.h"
 #include "shared/principled.h"
 #include "shared/texture.h"
 
@@ -47,7 +48,8 @@ void append_lights(PoweredLights& all, const PoweredLights& lights) {
 }  // namespace
 
 LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punctual, const LightTree& tree,
-                               const std::optional<SkyLight>& sky, const Box& box) {
+                               const std::optional<SkyLight>& sky, const Box& box,
+                               std::span<const vec3> places) {
     LightArrays result;
     PoweredLights all = area.lights;
     append_lights(all, punctual);
@@ -60,6 +62,7 @@ LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punc
     result.facts.light_groups = group_lights(all);
     if (result.sky_is_light) result.facts.sky_rival = sky_rival(*sky, double(all.records.back().pmf));
     result.facts.light_count = uint32_t(all.records.size());
+    result.facts.light_tree_pays = light_tree_pays(all, sky ? sky->irradiance : 0.0, places);
     if (result.facts.light_count > 1) {
         result.tree = pack_light_tree(tree);
         set_fluxes(result.facts.light_groups, all.records, result.sky_is_light ? sky->flux : dvec4(0.0),
@@ -72,6 +75,12 @@ LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punc
     }
     result.alias = pack_pairs<AliasEntry>(light_alias_tables(result.facts.light_groups, all.powers));
     return result;
+}
+
+LightSampler chosen_light_sampler(LightSampler requested, const LightFacts& lights) {
+    if (lights.light_count < 2) return LightSampler::power;
+    if (requested != LightSampler::automatic) return requested;
+    return lights.light_tree_pays ? LightSampler::tree : LightSampler::power;
 }
 
 std::vector<uvec4> light_textures(const Scene& scene, const MaterialArrays& materials, const FlatScene& flat,

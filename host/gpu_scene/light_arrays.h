@@ -21,7 +21,8 @@ struct LightFacts {
     uint32_t light_count = 0;
     uint32_t lights_present = 0;  // Bit i: a light of kind i.
     LightGroups light_groups{};
-    float sky_rival = 1.0f;  // See environment_rival_pdf in shaders/light/environment.glsl.
+    bool light_tree_pays = false;  // See light_sampler_rule.h.
+    float sky_rival = 1.0f;        // See environment_rival_pdf in shaders/light/environment.glsl.
 };
 
 struct LightArrays {
@@ -33,9 +34,13 @@ struct LightArrays {
 
 // Joins the lights of a scene, in the order of LightGroups: those of surfaces are in front. The sky is one of
 // them if there is one and it helps to sample it. `tree` is that over area and punctual lights, `box` the box
-// around all primitives.
+// around all primitives, and `places` are those of some_places().
 LightArrays build_light_arrays(const AreaLights& area, const PoweredLights& punctual, const LightTree& tree,
-                               const std::optional<SkyLight>& sky, const Box& box);
+                               const std::optional<SkyLight>& sky, const Box& box,
+                               std::span<const vec3> places);
+
+// The sampler that a request means for these lights. A single light is not chosen, which is `power`.
+LightSampler chosen_light_sampler(LightSampler requested, const LightFacts& lights);
 
 // The textures of lights, by the places of their surfaces in leaf order; empty if no kernel reads them.
 // `order` has the primitives of `flat` in leaf order.

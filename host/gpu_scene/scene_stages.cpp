@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "gpu_scene/coplanar_lights.h"
+#include "gpu_scene/light_sampler_rule.h"
 #include "gpu_scene/punctual_lights.h"
 
 namespace candela {
@@ -192,7 +193,8 @@ void SceneStages::make_lights(const Work& work) {
     const PoweredLights punctual = build_punctual_lights(scene, gpu_.frame, tree_.bounds);
     if (work.all || work.tree || work.materials || work.change.radiance || work.change.lights)
         light_tree_ = build_light_tree(area_lights_.lights, punctual);
-    LightArrays made = build_light_arrays(area_lights_, punctual, light_tree_, sky_, tree_.bounds);
+    LightArrays made = build_light_arrays(area_lights_, punctual, light_tree_, sky_, tree_.bounds,
+                                          some_places(surfaces_, tree_));
     static_cast<LightFacts&>(gpu_) = made.facts;
     put(ARRAY_LIGHTS, std::move(made.lights));
     put(ARRAY_LIGHT_ALIAS, std::move(made.alias));

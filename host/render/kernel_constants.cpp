@@ -22,18 +22,15 @@ uint32_t estimator_constant(Estimator estimator, uint32_t light_count) {
     return ESTIMATOR_MIS;
 }
 
-// A single light is not chosen.
-uint32_t light_sampler_constant(LightSampler sampler, uint32_t light_count) {
-    if (light_count < 2) return LIGHT_SAMPLER_POWER;
-    switch (sampler) {
+uint32_t light_sampler_constant(LightSampler chosen) {
+    switch (chosen) {
         case LightSampler::uniform:
             return LIGHT_SAMPLER_UNIFORM;
-        case LightSampler::power:
-            return LIGHT_SAMPLER_POWER;
         case LightSampler::tree:
-            break;
+            return LIGHT_SAMPLER_TREE;
+        default:
+            return LIGHT_SAMPLER_POWER;
     }
-    return LIGHT_SAMPLER_TREE;
 }
 
 uint32_t aperture_constant(const Camera& camera) {
@@ -94,7 +91,8 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_ATTRIBUTES] = scene.attributes;
     constants[CONSTANT_TEXTURED] = scene.textured;
     constants[CONSTANT_TEXTURE_TRAITS] = scene.texture_traits;
-    constants[CONSTANT_LIGHT_SAMPLER] = light_sampler_constant(settings.light_sampler, scene.light_count);
+    constants[CONSTANT_LIGHT_SAMPLER] =
+        light_sampler_constant(chosen_light_sampler(settings.light_sampler, scene));
     constants[CONSTANT_ONE_LIGHT] = scene.light_count == 1;
     return constants;
 }

@@ -69,7 +69,7 @@ Identity make_identity(const GpuScene& scene, const Camera& camera, const Render
     return {
         .settings = {size_text(settings.size), crop_text(settings.crop), std::to_string(settings.seed),
                      name_of(settings.sampler, SAMPLER_NAMES), name_of(settings.estimator, ESTIMATOR_NAMES),
-                     name_of(settings.light_sampler, LIGHT_SAMPLER_NAMES),
+                     name_of(chosen_light_sampler(settings.light_sampler, scene), LIGHT_SAMPLER_NAMES),
                      name_of(settings.terminator, TERMINATOR_NAMES), std::to_string(settings.max_depth),
                      std::to_string(settings.rr_depth), camera_text(camera), frame_text(scene.frame)},
         .hash = hash};

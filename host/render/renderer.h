@@ -26,7 +26,7 @@ struct RenderSettings {
     PixelRect crop;        // The part to render; not empty.
     Estimator estimator = Estimator::mis;
     SamplerKind sampler = SamplerKind::sobol;
-    LightSampler light_sampler = LightSampler::tree;
+    LightSampler light_sampler = LightSampler::automatic;
     Terminator terminator = Terminator::smooth;
     uint32_t seed = 0;
     uint32_t first_sample = 0;  // Index of each pixel's first sample.

@@ -28,8 +28,10 @@ inline constexpr Choices<SamplerKind, 3> SAMPLER_NAMES{{{"independent", SamplerK
                                                         {"stratified", SamplerKind::stratified},
                                                         {"sobol", SamplerKind::sobol}}};
 
-inline constexpr Choices<LightSampler, 3> LIGHT_SAMPLER_NAMES{
-    {{"uniform", LightSampler::uniform}, {"power", LightSampler::power}, {"tree", LightSampler::tree}}};
+inline constexpr Choices<LightSampler, 4> LIGHT_SAMPLER_NAMES{{{"auto", LightSampler::automatic},
+                                                               {"uniform", LightSampler::uniform},
+                                                               {"power", LightSampler::power},
+                                                               {"tree", LightSampler::tree}}};
 
 inline constexpr Choices<Terminator, 2> TERMINATOR_NAMES{
     {{"smooth", Terminator::smooth}, {"flat", Terminator::flat}}};

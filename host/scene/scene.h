@@ -54,8 +54,9 @@ enum class SamplerKind { independent, stratified, sobol };
 // Where the light on a mesh with smooth normals ends: where its normals turn away from the light, or where
 // its triangles do.
 enum class Terminator { smooth, flat };
-// By what a light is chosen for a point that is lit: all alike, by power, or by what it may send there.
-enum class LightSampler { uniform, power, tree };
+// How a light is chosen for a lit point: each as often as the others, by power, by what it may send there, or
+// by the one of the last two that has less noise in equal time.
+enum class LightSampler { automatic, uniform, power, tree };
 
 // The scene file's proposals; the command line overrides them.
 struct IntegratorSettings {
@@ -64,7 +65,7 @@ struct IntegratorSettings {
     uint32_t rr_depth = 3;              // The first rr_depth bounces always survive.
     Estimator estimator = Estimator::mis;
     SamplerKind sampler = SamplerKind::sobol;
-    LightSampler light_sampler = LightSampler::tree;
+    LightSampler light_sampler = LightSampler::automatic;
     Terminator terminator = Terminator::smooth;
     uint32_t seed = 0;
 };

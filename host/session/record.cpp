@@ -46,11 +46,13 @@ glm::dmat4 world_to_ndc(const Camera& camera, uvec2 size) {
 }  // namespace
 
 RenderRecord make_record(const Scene& scene, const GpuScene& gpu_scene, const RenderJob& job) {
+    RenderSettings settings = job.settings;
+    settings.light_sampler = chosen_light_sampler(settings.light_sampler, gpu_scene);
     return {.scene_attributes = scene.attributes,
             .identity = make_identity(gpu_scene, job.camera, job.settings),
             .adaptive = job.adaptive,
             .camera = job.camera,
-            .settings = job.settings,
+            .settings = settings,
             .primitives = gpu_scene.id_count,
             .lights = gpu_scene.light_count,
             .bvh_seconds = gpu_scene.bvh_seconds,

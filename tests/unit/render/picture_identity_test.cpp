@@ -19,6 +19,7 @@ class PictureIdentity : public testing::Test {
         RenderSettings settings;
         settings.size = uvec2(40, 30);
         settings.crop = {10, 20, 13, 22};
+        settings.light_sampler = LightSampler::tree;
         return settings;
     }
     Identity identity(const RenderSettings& settings = plain()) const {
