@@ -84,7 +84,7 @@ TEST_F(RenderFiles, ReportHasEveryField) {
     EXPECT_EQ(report["seed"], 3);
     EXPECT_EQ(report["estimator"], "mis");
     EXPECT_EQ(report["sampler"], "sobol");
-    EXPECT_EQ(report["light_sampler"], "tree");
+    EXPECT_EQ(report["light_sampler"], "power");  // A single light is not chosen.
     EXPECT_EQ(report["max_depth"], 4096);
     EXPECT_EQ(report["rr_depth"], 3);
     EXPECT_EQ(report["primitives"], 32);
