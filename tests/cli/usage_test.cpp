@@ -96,7 +96,7 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
         {"--tonemap", "", tonemaps},
         {"--estimator", "nee", "bsdf|light|mis"},
         {"--sampler", "halton", "independent|stratified|sobol"},
-        {"--light-sampler", "bvh", "uniform|power|tree"},
+        {"--light-sampler", "bvh", "auto|uniform|power|tree"},
         {"--scene-buffers", "image", "auto|texel|storage"},
         {"--aov", "albedo,depth", aovs},
         {"--aov", "", aovs},
