@@ -100,15 +100,25 @@ std::vector<half> to_half(const fs::path& path, const Image& image, const Channe
     return values;
 }
 
-// Lets the library compress on all cores, since compression is most of the time of writing; the file does not
-// depend on their number. Threads are started one by one: if the system allows fewer, the library uses those,
-// and without any, the caller's.
-void start_threads() {
+// Returns whether the library has that many threads now.
+bool set_thread_count(int count) {
     try {
-        for (int count = Imf::globalThreadCount() + 1; count <= int(std::thread::hardware_concurrency());
-             ++count)
-            Imf::setGlobalThreadCount(count);
+        Imf::setGlobalThreadCount(count);
+        return true;
     } catch (const std::system_error&) {
+        return false;
+    }
+}
+
+// Lets the library compress on all cores, since compression is most of the time of writing; the file does not
+// depend on their number. If the system allows fewer threads, the library gets none, and uses the caller's:
+// OpenEXR 3.1.13 would join, at the end of the program, a thread that was never started, and abort.
+void start_threads() {
+    const auto cores = int(std::thread::hardware_concurrency());
+    for (int count = Imf::globalThreadCount() + 1; count <= cores; ++count) {
+        if (set_thread_count(count)) continue;
+        set_thread_count(0);
+        return;
     }
 }
 
