@@ -61,6 +61,7 @@ SPP = {
     "thin-glass": 256,
     "coated-plastic": 256,
     "punctual-lights": 256,
+    "hundred-lights": 512,
     "orthographic": 256,
 }
 
@@ -261,8 +262,24 @@ def geometry(shape, folder, temporary):
     return {**result, "to_world": mi.ScalarTransform4f(to_world)}
 
 
+def sides(shape):
+    """The one-sided lights that Mitsuba has instead: a two-sided one, and close behind it another that looks back."""
+    one_sided = {key: value for key, value in shape.items() if key != "two_sided"}
+    if not shape.get("two_sided"):
+        return [one_sided]
+    if shape["type"] == "disk":
+        back = {"normal": [-x for x in shape["normal"]]}
+        normal = np.array(shape["normal"])
+    else:
+        assert shape["type"] == "quad" and not isinstance(shape["emission"], dict), "no back is known of it"
+        back = {"vertices": shape["vertices"][::-1]}
+        corner, following, _, last = np.array(shape["vertices"])
+        normal = np.cross(following - corner, last - corner)
+    apart = {"translate": (-1e-4 * normal / np.linalg.norm(normal)).tolist()}
+    return [one_sided, {**one_sided, **back, "transform": [apart, *shape.get("transform", [])]}]
+
+
 def shape_of(shape, scene, folder, temporary):
-    assert not shape.get("two_sided"), "Mitsuba's lights are one-sided"
     result = geometry(shape, folder, temporary)
     smooth = not result.get("face_normals", True)
     if "material" in shape:
@@ -369,7 +386,7 @@ def load(name, temporary):
     result = {"type": "scene", "integrator": integrator(scene), "sensor": sensor(camera)}
     if "environment" in scene:
         result["environment"] = environment_of(scene["environment"], folder)
-    for i, shape in enumerate(scene["shapes"]):
+    for i, shape in enumerate(side for shape in scene["shapes"] for side in sides(shape)):
         result[f"shape{i}"] = shape_of(shape, scene, folder, temporary)
     for i, light in enumerate(scene.get("lights", [])):
         result[f"light{i}"] = light_of(light)

@@ -4,10 +4,14 @@ texel shows where it is looked up."""
 
 import math
 import struct
+import sys
 import zlib
 from pathlib import Path
 
 HERE = Path(__file__).parent
+sys.path.append(str(HERE.parent.parent / "scenes"))
+
+import radiance_picture  # noqa: E402
 
 
 def chunk(name, data):
@@ -41,12 +45,25 @@ def leaf(x, y):
     return [20 * x, 120 + 15 * y, 40, round(255 * min(max(within, 0.0), 1.0))]
 
 
+def write_hdr(name, rows):
+    """Rows of (r, g, b) from the top, each of at least 8."""
+    data = radiance_picture.header("make_textures.py", len(rows[0]), len(rows))
+    (HERE / name).write_bytes(data + b"".join(radiance_picture.encoded_row(row) for row in rows))
+
+
+def mist(x, y):
+    """A sky of low contrast: brighter above, and red on one side."""
+    light, red = 1 - 0.05 * y, 0.2 * math.cos(math.pi * (x + 0.5) / 8)
+    return (light * (1 + red), light, light * (1.1 - red))
+
+
 def main():
     # Red grows to the right, green downwards; blue tells even texels from odd ones.
     write_png("patches.png", texels(8, 6, lambda x, y: [36 * x, 50 * y, 220 if (x + y) % 2 else 30]))
     write_png("hills.png", texels(16, 16, hills))
     write_png("grain.png", texels(8, 8, lambda x, y: [64 + 27 * ((3 * x + 5 * y) % 8)]))
     write_png("leaf.png", texels(8, 8, leaf))
+    write_hdr("mist.hdr", texels(16, 8, mist))
 
 
 if __name__ == "__main__":

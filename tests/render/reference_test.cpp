@@ -51,6 +51,7 @@ constexpr std::array REFERENCES{
     Reference{"thin-glass", 768},
     Reference{"coated-plastic", 256},
     Reference{"punctual-lights", 768},
+    Reference{"hundred-lights", 1280},
     Reference{"orthographic", 512},
     Reference{"principled-nested-glass", 512, "nested-glass"},
 };
