@@ -102,12 +102,16 @@ AreaLights build_area_lights(const Scene& scene, const FlatScene& flat) {
     return result;
 }
 
-void check_emitters(const Scene& scene) {
+void check_emitters(const Scene& scene, const Instancing& instancing) {
     constexpr uint64_t MAX_LIGHTS = 1u << 24u;  // A gigabyte of records.
     uint64_t triangles = 0;
-    for (const Shape& shape : scene.shapes) {
-        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
-        if (instance != nullptr && shape.emission) triangles += scene.meshes[instance->mesh].triangles.size();
+    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+        const auto* instance = std::get_if<MeshInstance>(&scene.shapes[i].geometry);
+        if (instance != nullptr && scene.shapes[i].emission && !instancing.is_instance[i])
+            triangles += scene.meshes[instance->mesh].triangles.size();
+    }
+    for (const ShownMesh& shown : instancing.meshes) {
+        if (shown.emitter != NO_EMITTER) triangles += scene.meshes[shown.mesh].triangles.size();
     }
     if (triangles > MAX_LIGHTS) {
         throw Error(concat("the scene has ", triangles,

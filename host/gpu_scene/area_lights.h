@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gpu_scene/flatten.h"
+#include "gpu_scene/instancing.h"
 #include "gpu_scene/powered_lights.h"
 #include "scene/scene.h"
 
@@ -19,7 +20,7 @@ struct AreaLights {
 // The lights of the pieces in `flat`, which is made of the scene, in its frame; so are areas and powers.
 AreaLights build_area_lights(const Scene& scene, const FlatScene& flat);
 
-// Throws Error if the triangles that emit are more than lights may be.
-void check_emitters(const Scene& scene);
+// Throws Error if the triangles that emit, those of instances once, are more than lights may be.
+void check_emitters(const Scene& scene, const Instancing& instancing);
 
 }  // namespace candela

@@ -239,11 +239,13 @@ FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes,
     return flattener.take();
 }
 
-FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool passable,
-                       const SceneFrame& frame, uint attributes, bool has_normals) {
+FlatScene flatten_mesh(const Scene& scene, const ShownMesh& shown, bool passable, const SceneFrame& frame,
+                       uint attributes, bool has_normals) {
     Flattener flattener(scene, frame, attributes, has_normals);
-    flattener.reserve(scene.meshes[instance.mesh].triangles.size());
-    flattener.add({.geometry = instance, .material = 0, .emission = {}}, 0, passable);
+    flattener.reserve(scene.meshes[shown.mesh].triangles.size());
+    Shape shape{.geometry = MeshInstance{.mesh = shown.mesh}, .material = 0, .emission = {}};
+    if (shown.emitter != NO_EMITTER) shape.emission = scene.shapes[shown.emitter].emission;
+    flattener.add(shape, shown.emitter, passable);
     return flattener.take();
 }
 

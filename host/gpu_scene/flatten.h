@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "gpu_scene/instancing.h"
 #include "scene/frame.h"
 #include "scene/scene.h"
 #include "shared/primitive.h"
@@ -48,9 +49,10 @@ struct FlatScene {
 FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes = 0,
                   const std::vector<bool>& left_out = {});
 
-// A mesh by itself, of material 0; with records of normals if has_normals, zeros where it has none.
-FlatScene flatten_mesh(const Scene& scene, const MeshInstance& instance, bool passable,
-                       const SceneFrame& frame, uint attributes, bool has_normals);
+// A mesh by itself, of material 0; with records of normals if has_normals, zeros where it has none. It emits
+// like the shape `emitter`, unless that is NO_EMITTER.
+FlatScene flatten_mesh(const Scene& scene, const ShownMesh& shown, bool passable, const SceneFrame& frame,
+                       uint attributes, bool has_normals);
 
 // Whether a mesh that is shown has shading normals.
 bool has_shading_normals(const Scene& scene);

@@ -51,7 +51,7 @@ void append_leaves(LeafArrays& leaves, const FlatScene& flat, std::span<const ui
 }  // namespace
 
 LeafArrays build_leaf_arrays(const FlatScene& flat, const AreaLights& area, const SceneTree& tree,
-                             const MeshTrees& trees, uint attributes) {
+                             const MeshTrees& trees, const Lamps& lamps, uint attributes) {
     const size_t words = attribute_words(attributes);
     const bool instanced = !tree.instances.empty();
     size_t count = tree.order.size();
@@ -71,7 +71,10 @@ LeafArrays build_leaf_arrays(const FlatScene& flat, const AreaLights& area, cons
         if (!instanced) break;
         leaves.facts.meshes.push_back(
             {leaves.facts.primitive_count, uint32_t(own.bvh.order.size()), own.flat.triangles});
-        append_leaves(leaves, own.flat, {}, own.bvh.order, words);
+        const auto lamp = lamps.find(mesh);
+        const auto light_of_pieces =
+            lamp == lamps.end() ? std::span<const uint32_t>() : lamp->second.area.of_pieces;
+        append_leaves(leaves, own.flat, light_of_pieces, own.bvh.order, words);
     }
     if (!instanced) leaves.facts.list_corners = list_corners(flat.primitives, tree.order);
     leaves.facts.has_normals = !leaves.normals.empty();
@@ -84,7 +87,7 @@ NodeArrays build_node_arrays(const FlatScene& flat, const SceneTree& tree, const
     NodeArrays result{
         .facts = {.id_count = flat.id_count, .bvh_depth = tree.depth, .bvh_sah_cost = tree.sah_cost}};
     std::vector<PackedBvhNode> nodes = tree.nodes;
-    std::map<uint32_t, uint32_t> roots;
+    std::map<ShownMesh, uint32_t> roots;
     uint64_t primitives = tree.order.size();
     for (const auto& [mesh, own] : trees) {
         if (tree.instances.empty()) break;

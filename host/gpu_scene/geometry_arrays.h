@@ -9,6 +9,7 @@
 
 #include "gpu_scene/area_lights.h"
 #include "gpu_scene/flatten.h"
+#include "gpu_scene/lamps.h"
 #include "gpu_scene/mesh_trees.h"
 #include "gpu_scene/scene_tree.h"
 #include "shared/kernel_constants.h"
@@ -43,9 +44,10 @@ struct LeafArrays {
 };
 
 // Everything that lies in leaf order: the primitives of `flat` in the order of the tree above, then those of
-// meshes, if the tree has instances. The lights of pieces are those of `area`.
+// meshes, if the tree has instances. The lights of pieces are those of `area`, and of `lamps`, for which they
+// begin at 0.
 LeafArrays build_leaf_arrays(const FlatScene& flat, const AreaLights& area, const SceneTree& tree,
-                             const MeshTrees& trees, uint attributes);
+                             const MeshTrees& trees, const Lamps& lamps, uint attributes);
 
 struct NodeFacts {
     std::vector<InstancePlace> instances{};

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
 
 #include "gpu_scene/ray_error.h"
 
@@ -27,6 +30,46 @@ bool is_even_enough(const Transform& transform) {
     return std::max({rows.x, rows.y, rows.z}) <= double{MAX_INSTANCE_CONDITION};  // False for NaN.
 }
 
+// Whether the transform turns, mirrors and scales, but within the rounding of files' floats does not shear.
+bool is_similarity(const Transform& transform) {
+    constexpr double TOLERANCE = 1e-5;
+    const dmat3 linear = transform.linear();
+    const dmat3 products = transpose(linear) * linear;
+    const double mean = (products[0][0] + products[1][1] + products[2][2]) / 3.0;
+    double off = 0.0;
+    for (const int i : {0, 1, 2}) {
+        for (const int k : {0, 1, 2})
+            off = std::max(off, std::abs(products[i][k] - (i == k ? mean : 0.0)));
+    }
+    return off <= TOLERANCE * mean;  // False for NaN.
+}
+
+// Tells which shapes emit alike.
+class Emitters {
+  public:
+    explicit Emitters(const Scene& scene) : scene_(scene) {}
+
+    ShownMesh shown_by(uint32_t index, uint32_t mesh) {
+        const Shape& shape = scene_.shapes[index];
+        if (!shape.emission) return {mesh};
+        const vec3 factor = shape.emission->radiance.factor;
+        // All but textures, of which there are few.
+        const Kind kind(mesh, shape.material, factor.x, factor.y, factor.z, shape.emission->two_sided);
+        std::vector<uint32_t>& known = first_[kind];
+        const auto same = std::ranges::find_if(
+            known, [&](uint32_t other) { return scene_.shapes[other].emission == shape.emission; });
+        if (same != known.end()) return {mesh, *same};
+        known.push_back(index);
+        return {mesh, index};
+    }
+
+  private:
+    using Kind = std::tuple<uint32_t, uint32_t, float, float, float, bool>;
+
+    const Scene& scene_;
+    std::map<Kind, std::vector<uint32_t>> first_;
+};
+
 // The elements of the matrix of cofactors with each difference replaced by a sum, which bound the rounding of
 // both.
 dmat3 absolute_cofactors(const dmat3& rows) {
@@ -40,26 +83,33 @@ dmat3 absolute_cofactors(const dmat3& rows) {
 }  // namespace
 
 Instancing choose_instances(const Scene& scene, const InstancingRule& rule) {
-    std::vector<uint64_t> uses(scene.meshes.size());
-    Instancing result;
-    result.is_instance.resize(scene.shapes.size());
-    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+    std::map<ShownMesh, uint64_t> uses;
+    std::vector<std::pair<uint32_t, ShownMesh>> possible;
+    Emitters emitters(scene);
+    for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
         const Shape& shape = scene.shapes[i];
         const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
-        result.is_instance[i] = instance != nullptr && !shape.emission && is_even_enough(instance->transform);
-        if (result.is_instance[i]) ++uses[instance->mesh];
+        if (instance == nullptr || !is_even_enough(instance->transform)) continue;
+        if (shape.emission && !is_similarity(instance->transform)) continue;
+        possible.emplace_back(i, emitters.shown_by(i, instance->mesh));
+        ++uses[possible.back().second];
     }
-    const auto has_tree = [&](uint32_t mesh) {
-        return uses[mesh] >= std::max(rule.min_uses, 1u) && !scene.meshes[mesh].triangles.empty() &&
-               uses[mesh] * scene.meshes[mesh].triangles.size() >= rule.min_triangles;
+    const auto has_tree = [&](const ShownMesh& shown) {
+        const std::vector<uvec3>& triangles = scene.meshes[shown.mesh].triangles;
+        const uint64_t count = uses.at(shown);
+        return count >= std::max(rule.min_uses, 1u) && !triangles.empty() &&
+               count * triangles.size() >= rule.min_triangles;
     };
-    for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
-        if (has_tree(mesh)) result.meshes.push_back(mesh);
+    Instancing result;
+    for (const auto& [shown, count] : uses) {
+        if (has_tree(shown)) result.meshes.push_back(shown);
     }
-    for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
-        if (!result.is_instance[i]) continue;
-        result.is_instance[i] = has_tree(std::get<MeshInstance>(scene.shapes[i].geometry).mesh);
-        if (result.is_instance[i]) result.shapes.push_back(i);
+    result.is_instance.resize(scene.shapes.size());
+    for (const auto& [shape, shown] : possible) {
+        if (!has_tree(shown)) continue;
+        result.is_instance[shape] = true;
+        result.shapes.push_back(shape);
+        result.shown.push_back(shown);
     }
     return result;
 }

@@ -1,6 +1,7 @@
 // Chooses the meshes that get their own trees, and places their instances.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,15 +21,28 @@ struct InstancingRule {
     uint64_t min_triangles = 65536;  // Triangles of all copies together.
 };
 
+inline constexpr uint32_t NO_EMITTER = ~0u;
+
+// What instances show: a mesh, and how it emits. Instances that emit in another way, or have another material
+// and emit, show another one, since lights depend on both; the two share nothing.
+struct ShownMesh {
+    uint32_t mesh = 0;              // Its index.
+    uint32_t emitter = NO_EMITTER;  // The first shape that emits like them, if they do.
+
+    auto operator<=>(const ShownMesh&) const = default;
+};
+
 // The shapes that are instances.
 struct Instancing {
-    std::vector<uint32_t> shapes;   // Indices, ascending.
-    std::vector<uint32_t> meshes;   // The meshes that they show: indices, ascending.
+    std::vector<uint32_t> shapes;   // Indices, ascending,
+    std::vector<ShownMesh> shown;   // and what each of them shows;
+    std::vector<ShownMesh> meshes;  // the same once, ascending.
     std::vector<bool> is_instance;  // For every shape.
 };
 
-// Follows the rule. But shapes that emit light are baked, since each of their triangles is a light of its own
-// anyway, and so are shapes that are sheared or scaled too unevenly (MAX_INSTANCE_CONDITION).
+// Follows the rule. But shapes that are sheared or scaled too unevenly (MAX_INSTANCE_CONDITION) are baked,
+// and so are shapes that emit and are sheared or scaled unevenly at all, so that areas and angles of their
+// lights are those of the mesh.
 Instancing choose_instances(const Scene& scene, const InstancingRule& rule);
 
 // The placement of an instance in the frame of a scene.

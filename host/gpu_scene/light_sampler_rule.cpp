@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "base/color.h"
-#include "gpu_scene/light_tree_arrays.h"
 
 namespace candela {
 namespace {
@@ -21,13 +20,10 @@ size_t stride(size_t count) {
     return std::max<size_t>((count + MAX_PLACES - 1) / MAX_PLACES, 1);
 }
 
-// What a light may send to a place, averaged over its normals [W/m^2], times 4.
-double irradiance(const LightRecord& light, double power, double sky_irradiance, const vec3& place) {
-    if (light.kind == LIGHT_ENVIRONMENT) return sky_irradiance;
-    if (light.kind == LIGHT_DIRECTIONAL) return double(luminance(light.radiance));
-    const LightBounds bounds = bounds_of(light, power);
-    const glm::dvec3 from_centre(place - bounds.box.centroid()), reach(0.5f * bounds.box.extent());
-    return bounds.strength / std::max({dot(from_centre, from_centre), dot(reach, reach), 1e-30});
+// What a light with a place may send to another place, averaged over its normals [W/m^2], times 4.
+double irradiance(const LightBounds& light, const vec3& place) {
+    const glm::dvec3 from_centre(place - light.box.centroid()), reach(0.5f * light.box.extent());
+    return light.strength / std::max({dot(from_centre, from_centre), dot(reach, reach), 1e-30});
 }
 
 }  // namespace
@@ -44,14 +40,20 @@ std::vector<vec3> some_places(const FlatScene& flat, const SceneTree& tree) {
 
 // If a light that sends E_i is chosen with the probability p_i, the second moment of a sample is the sum of
 // E_i^2 / p_i. Divided by the square of the sum of E_i, it is 1 for the best choice.
-bool light_tree_pays(const PoweredLights& lights, double sky_irradiance, std::span<const vec3> places) {
-    if (lights.records.size() < 2) return false;
-    if (lights.records.size() > MAX_FEW_LIGHTS) return true;
+bool light_tree_pays(uint32_t count, const PoweredLights& lights, std::span<const LightBounds> placed,
+                     double sky_irradiance, std::span<const vec3> places) {
+    if (count < 2) return false;
+    if (count > MAX_FEW_LIGHTS) return true;
     double moments = 0.0;
     for (const vec3& place : places) {
         double sum = 0.0, squares = 0.0;
         for (size_t i = 0; i < lights.records.size(); ++i) {
-            const double sent = irradiance(lights.records[i], lights.powers[i], sky_irradiance, place);
+            double sent = sky_irradiance;
+            if (i < placed.size()) {
+                sent = irradiance(placed[i], place);
+            } else if (lights.records[i].kind == LIGHT_DIRECTIONAL) {
+                sent = double(luminance(lights.records[i].radiance));
+            }
             sum += sent;
             squares += sent * sent / double(lights.records[i].pmf);
         }

@@ -75,28 +75,45 @@ LightBounds bounds_of(const LightRecord& light, double power) {
     }
 }
 
-LightTree build_light_tree(const PoweredLights& area, const PoweredLights& punctual) {
+std::vector<LightBounds> bounds_of_placed(const PoweredLights& area, std::span<const PlacedLamp> lamps,
+                                          const PoweredLights& punctual) {
     std::vector<LightBounds> placed;
-    placed.reserve(area.records.size() + punctual.records.size());
-    for (const PoweredLights* lights : {&area, &punctual}) {
-        for (size_t i = 0; i < lights->records.size(); ++i) {
-            if (lights->records[i].kind != LIGHT_DIRECTIONAL)
-                placed.push_back(bounds_of(lights->records[i], lights->powers[i]));
+    placed.reserve(area.records.size() + lamps.size() + punctual.records.size());
+    const auto add = [&](const PoweredLights& lights) {
+        for (size_t i = 0; i < lights.records.size(); ++i) {
+            if (lights.records[i].kind != LIGHT_DIRECTIONAL)
+                placed.push_back(bounds_of(lights.records[i], lights.powers[i]));
         }
-    }
-    return build_light_tree(placed);
+    };
+    add(area);
+    for (const PlacedLamp& lamp : lamps)
+        placed.push_back(lamp.bounds);
+    add(punctual);
+    return placed;
 }
 
-LightTreeArrays pack_light_tree(const LightTree& tree) {
+LightTreeArrays pack_light_trees(const LightTree& tree, const Lamps& lamps, uint32_t first) {
     LightTreeArrays arrays;
-    arrays.nodes.reserve(tree.nodes.size() * LIGHT_TREE_WIDTH * LIGHT_TREE_WORDS);
-    for (const LightTreeNode& node : tree.nodes) {
-        for (const LightTreeChild& child : node)
-            append(arrays.nodes, pack(child));
+    uint32_t root = 0;
+    const auto add_nodes = [&](const LightTree& one) {
+        for (const LightTreeNode& node : one.nodes) {
+            for (LightTreeChild child : node) {
+                if ((child.at & LIGHT_TREE_LEAF_BIT) == 0) child.at += root;
+                append(arrays.nodes, pack(child));
+            }
+        }
+        root += uint32_t(one.nodes.size());
+    };
+    add_nodes(tree);
+    std::vector<uint32_t> trails = tree.trails;
+    if (!lamps.empty()) trails.resize(first);
+    for (const auto& [shown, lamp] : lamps) {
+        add_nodes(lamp.tree);
+        trails.insert(trails.end(), lamp.tree.trails.begin(), lamp.tree.trails.end());
     }
-    arrays.trails.resize((tree.trails.size() + 3) / 4);
-    for (size_t i = 0; i < tree.trails.size(); ++i)
-        arrays.trails[i / 4][int(i % 4)] = tree.trails[i];
+    arrays.trails.resize((trails.size() + 3) / 4);
+    for (size_t i = 0; i < trails.size(); ++i)
+        arrays.trails[i / 4][int(i % 4)] = trails[i];
     return arrays;
 }
 

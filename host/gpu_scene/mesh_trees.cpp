@@ -2,7 +2,6 @@
 #include "gpu_scene/mesh_trees.h"
 
 #include <utility>
-#include <variant>
 
 #include "gpu_scene/choose_frame.h"
 #include "gpu_scene/material_arrays.h"
@@ -28,14 +27,15 @@ std::vector<Box> upper_boxes(const Bvh& bvh) {
     return boxes;
 }
 
-MeshTree build_mesh_tree(const Scene& scene, uint32_t mesh, uint attributes, bool passable, bool normals) {
+MeshTree build_mesh_tree(const Scene& scene, const ShownMesh& shown, uint attributes, bool passable,
+                         bool normals) {
     MeshTree tree{.passable = passable};
     DoubleBox box;
-    const TriangleMesh& m = scene.meshes[mesh];
+    const TriangleMesh& m = scene.meshes[shown.mesh];
     for (const vec3 p : m.positions)
         box.extend(m.origin + dvec3(p));
     tree.frame = frame_around(box);
-    tree.flat = flatten_mesh(scene, MeshInstance{.mesh = mesh}, passable, tree.frame, attributes, normals);
+    tree.flat = flatten_mesh(scene, shown, passable, tree.frame, attributes, normals);
     tree.bvh = build_bvh(boxes_of(tree.flat.primitives));
     if (!tree.flat.primitives.empty()) tree.boxes = upper_boxes(tree.bvh);
     return tree;
@@ -45,15 +45,14 @@ MeshTree build_mesh_tree(const Scene& scene, uint32_t mesh, uint attributes, boo
 
 MeshTrees build_mesh_trees(const Scene& scene, const Instancing& instancing, uint attributes,
                            MeshTrees&& known) {
-    std::map<uint32_t, bool> passable;
-    for (const uint32_t i : instancing.shapes) {
-        const Shape& shape = scene.shapes[i];
-        bool& passes = passable[std::get<MeshInstance>(shape.geometry).mesh];
-        passes = passes || lets_rays_pass(scene, shape);
+    std::map<ShownMesh, bool> passable;
+    for (size_t i = 0; i < instancing.shapes.size(); ++i) {
+        bool& passes = passable[instancing.shown[i]];
+        passes = passes || lets_rays_pass(scene, scene.shapes[instancing.shapes[i]]);
     }
     const bool normals = has_shading_normals(scene);
     MeshTrees trees;
-    for (const uint32_t mesh : instancing.meshes) {
+    for (const ShownMesh& mesh : instancing.meshes) {
         const auto before = known.find(mesh);
         const bool stays = before != known.end() && before->second.passable == passable[mesh];
         trees.emplace(mesh, stays ? std::move(before->second)

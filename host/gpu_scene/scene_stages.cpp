@@ -15,6 +15,13 @@
 namespace candela {
 namespace {
 
+// Whether the lights of two states have the same places among the pieces of meshes.
+bool same_places(const Lamps& a, const Lamps& b) {
+    return std::ranges::equal(a, b, [](const auto& one, const auto& other) {
+        return one.first == other.first && one.second.area.of_pieces == other.second.area.of_pieces;
+    });
+}
+
 // Whether the shape is a copy of one of these meshes.
 bool shows_one_of(const Shape& shape, const std::vector<uint32_t>& meshes) {
     const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
@@ -22,8 +29,8 @@ bool shows_one_of(const Shape& shape, const std::vector<uint32_t>& meshes) {
 }
 
 // What decides whether a mesh needs another tree, if the mesh itself is as it was.
-std::vector<std::pair<uint32_t, bool>> kinds_of(const MeshTrees& trees) {
-    std::vector<std::pair<uint32_t, bool>> kinds;
+std::vector<std::pair<ShownMesh, bool>> kinds_of(const MeshTrees& trees) {
+    std::vector<std::pair<ShownMesh, bool>> kinds;
     for (const auto& [mesh, tree] : trees)
         kinds.emplace_back(mesh, tree.passable);
     return kinds;
@@ -56,14 +63,20 @@ void SceneStages::make(Work& work, const std::function<void(size_t)>& packed) {
     make_materials(work);
     make_nesting(work);
     make_surfaces(work);
+    gpu_.bvh_seconds = 0.0;
+    const auto timed = [&](const auto& function) {
+        const auto start = std::chrono::steady_clock::now();
+        function();
+        gpu_.bvh_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    timed([&] { make_mesh_trees(work); });
     make_area_lights(work);
     if (work.texels)  // Lights have read the images.
         put(ARRAY_TEXELS, build_texels(work.scene.images, materials_.image_places, packed));
-    const auto start = std::chrono::steady_clock::now();
-    make_mesh_trees(work);
-    make_tree(work);
-    make_geometry(work);
-    gpu_.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    timed([&] {
+        make_tree(work);
+        make_geometry(work);
+    });
     make_lights(work);
     gpu_.warnings = nesting_.warnings;
     if (coplanar_lights_) gpu_.warnings.push_back(*coplanar_lights_);
@@ -119,10 +132,12 @@ bool SceneStages::has_other_surfaces(const Work& work, const Instancing& instanc
 }
 
 void SceneStages::make_surfaces(Work& work) {
-    if (!work.materials && !work.change.of_geometry()) return;
+    // Emissions decide which instances emit alike.
+    if (!work.materials && !work.change.of_geometry() && !work.change.radiance) return;
     const Scene& scene = work.scene;
-    check_emitters(scene);
     Instancing instancing = choose_instances(scene, rule_);
+    check_emitters(scene, instancing);
+    work.instances = instancing.shapes != instancing_.shapes || instancing.shown != instancing_.shown;
     const bool has_normals = has_shading_normals(scene);
     work.normals = has_normals != has_normals_;
     std::vector<bool> passable;
@@ -137,27 +152,37 @@ void SceneStages::make_surfaces(Work& work) {
 }
 
 void SceneStages::make_area_lights(Work& work) {
-    if (!work.surfaces && !work.change.radiance && !work.change.materials && !work.change.images) return;
-    AreaLights made = build_area_lights(work.scene, surfaces_);
-    work.leaves = made.of_pieces != area_lights_.of_pieces;
-    area_lights_ = std::move(made);
+    const bool emissions = work.change.radiance || work.change.materials || work.change.images;
+    if (work.surfaces || emissions) {
+        AreaLights made = build_area_lights(work.scene, surfaces_);
+        work.leaves = made.of_pieces != area_lights_.of_pieces;
+        area_lights_ = std::move(made);
+    }
+    if (work.trees || emissions) {
+        Lamps made = build_lamps(work.scene, trees_);
+        work.leaves |= !same_places(made, lamps_);
+        lamps_ = std::move(made);
+    }
 }
 
 void SceneStages::make_mesh_trees(Work& work) {
-    if (!work.materials && !work.change.of_geometry()) return;
+    if (!work.materials && !work.change.of_geometry() && !work.instances) return;
     MeshTrees known;
     const auto before = kinds_of(trees_);
     if (!work.attributes && !work.normals) known = std::move(trees_);
-    for (const uint32_t mesh : work.change.meshes)
-        known.erase(mesh);
+    const auto has_changed = [&](const ShownMesh& shown) {
+        return std::ranges::find(work.change.meshes, shown.mesh) != work.change.meshes.end() ||
+               std::ranges::find(work.change.shapes, shown.emitter) != work.change.shapes.end();
+    };
+    std::erase_if(known, [&](const auto& tree) { return has_changed(tree.first); });
     const size_t kept = known.size();
     trees_ = build_mesh_trees(work.scene, instancing_, materials_.facts.attributes, std::move(known));
     work.trees = kept != trees_.size() || kinds_of(trees_) != before;
 }
 
 void SceneStages::make_tree(Work& work) {
-    work.tree =
-        work.all || work.surfaces || work.trees || !work.change.moved.empty() || !work.change.shapes.empty();
+    work.tree = work.all || work.surfaces || work.instances || work.trees || !work.change.moved.empty() ||
+                !work.change.shapes.empty();
     if (!work.tree) return;
     SceneTree made = build_scene_tree(work.scene, gpu_.frame, surfaces_, instancing_, trees_);
     work.leaves |= made.order != tree_.order || made.instances.empty() != tree_.instances.empty();
@@ -167,14 +192,15 @@ void SceneStages::make_tree(Work& work) {
 void SceneStages::make_geometry(const Work& work) {
     if (work.all || work.surfaces || work.trees || work.leaves) {
         LeafArrays leaves =
-            build_leaf_arrays(surfaces_, area_lights_, tree_, trees_, materials_.facts.attributes);
+            build_leaf_arrays(surfaces_, area_lights_, tree_, trees_, lamps_, materials_.facts.attributes);
         static_cast<LeafFacts&>(gpu_) = std::move(leaves.facts);
         put(ARRAY_PRIMITIVES, std::move(leaves.primitives));
         put(ARRAY_SURFACES, std::move(leaves.surfaces));
         put(ARRAY_NORMALS, std::move(leaves.normals));
         put(ARRAY_ATTRIBUTES, std::move(leaves.attributes));
     }
-    if (work.tree) {
+    if (work.tree || work.leaves) {
+        number_lamps(tree_, lamps_, uint32_t(area_lights_.pieces.size()));
         NodeArrays nodes = build_node_arrays(surfaces_, tree_, trees_);
         static_cast<NodeFacts&>(gpu_) = std::move(nodes.facts);
         put(ARRAY_NODES, std::move(nodes.nodes));
@@ -191,16 +217,20 @@ void SceneStages::make_lights(const Work& work) {
     if (other_sky) sky_ = map ? std::optional<SkyLight>(*map) : std::nullopt;
 
     const PoweredLights punctual = build_punctual_lights(scene, gpu_.frame, tree_.bounds);
+    const std::vector<PlacedLamp> placed = place_lamps(lamps_, tree_);
+    const std::vector<LightBounds> bounds = bounds_of_placed(area_lights_.lights, placed, punctual);
+    const std::vector<vec3> places = some_places(surfaces_, tree_);
     if (work.all || work.tree || work.materials || work.change.radiance || work.change.lights)
-        light_tree_ = build_light_tree(area_lights_.lights, punctual);
-    LightArrays made = build_light_arrays(area_lights_, punctual, light_tree_, sky_, tree_.bounds,
-                                          some_places(surfaces_, tree_));
+        light_tree_ = build_light_tree(bounds);
+    LightArrays made = build_light_arrays(
+        {area_lights_, lamps_, placed, punctual, bounds, light_tree_, sky_, places}, tree_.bounds);
     static_cast<LightFacts&>(gpu_) = made.facts;
     put(ARRAY_LIGHTS, std::move(made.lights));
     put(ARRAY_LIGHT_ALIAS, std::move(made.alias));
     put(ARRAY_LIGHT_TREE, std::move(made.tree.nodes));
     put(ARRAY_LIGHT_TRAILS, std::move(made.tree.trails));
-    put(ARRAY_LIGHT_TEXTURES, light_textures(scene, materials_, surfaces_, area_lights_, tree_.order));
+    put(ARRAY_LIGHT_TEXTURES, light_textures(scene, materials_, surfaces_, area_lights_, tree_.order, trees_,
+                                             lamps_, made.first_of_lamps));
 
     if (other_sky || made.sky_is_light != sky_is_light_) {
         if (scene.environment && !map) map = build_environment_map(*scene.environment);

@@ -5,13 +5,13 @@
 //   textures, materials   of materials, emissions and images, and the unit of the frame
 //   texels                of images
 //   surfaces              of shapes that are not instances, in the frame: primitives, and pieces that emit
-//   area lights           of surfaces, emissions, materials and images
 //   mesh trees            of meshes that instances show, in frames of their own
+//   area lights, lamps    of surfaces and mesh trees, and their emissions, materials and images
 //   tree above            of the boxes around surfaces and instances, in the frame
-//   leaves                of surfaces, the lights on them and mesh trees, in the order of the tree above
-//   nodes                 of the tree above and mesh trees
-//   light tree            of area lights and punctual lights
-//   lights                of area lights, punctual lights, the power of the sky and the bounds of the tree
+//   leaves                of surfaces and mesh trees and the lights on them, in the order of the tree above
+//   nodes                 of the tree above, mesh trees and the number of area lights
+//   light tree            of area lights, the places of lamps and punctual lights
+//   lights                of these, the power of the sky and the bounds of the tree
 //   sky                   of the environment, and of whether it is a light
 #pragma once
 
@@ -55,7 +55,7 @@ class SceneStages {
         const SceneChange& change;
         bool all = false;  // Nothing has been made before.
         bool frame = false, materials = false, attributes = false, normals = false, texels = false,
-             surfaces = false, trees = false, tree = false, leaves = false;
+             surfaces = false, instances = false, trees = false, tree = false, leaves = false;
     };
 
     void make(Work& work, const std::function<void(size_t)>& packed);
@@ -63,8 +63,8 @@ class SceneStages {
     void make_materials(Work& work);
     void make_nesting(const Work& work);
     void make_surfaces(Work& work);
-    void make_area_lights(Work& work);
     void make_mesh_trees(Work& work);
+    void make_area_lights(Work& work);
     void make_tree(Work& work);
     void make_geometry(const Work& work);
     void make_lights(const Work& work);
@@ -83,8 +83,9 @@ class SceneStages {
     std::vector<bool> passable_;  // Of each shape.
     bool has_normals_ = false;    // Some mesh has shading normals.
     FlatScene surfaces_;
-    AreaLights area_lights_;
     MeshTrees trees_;
+    AreaLights area_lights_;
+    Lamps lamps_;
     SceneTree tree_;
     LightTree light_tree_;
     std::optional<SkyLight> sky_;

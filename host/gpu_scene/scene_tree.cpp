@@ -12,15 +12,16 @@ SceneTree build_scene_tree(const Scene& scene, const SceneFrame& frame, const Fl
                            const Instancing& instancing, const MeshTrees& trees) {
     SceneTree tree;
     std::vector<Box> boxes = boxes_of(flat.primitives);
-    for (const uint32_t i : instancing.shapes) {
-        const auto& instance = std::get<MeshInstance>(scene.shapes[i].geometry);
-        const MeshTree& mesh = trees.at(instance.mesh);
+    for (size_t i = 0; i < instancing.shapes.size(); ++i) {
+        const Shape& shape = scene.shapes[instancing.shapes[i]];
+        const auto& instance = std::get<MeshInstance>(shape.geometry);
+        const MeshTree& mesh = trees.at(instancing.shown[i]);
         if (mesh.boxes.empty()) continue;
         const PlacedInstance placed = place_instance(instance.transform, frame, mesh.frame, mesh.boxes);
         boxes.push_back(placed.box);
         Instance record = placed.record;
-        record.material = scene.shapes[i].material;
-        tree.instances.push_back({.mesh = instance.mesh, .record = record});
+        record.material = shape.material;
+        tree.instances.push_back({.mesh = instancing.shown[i], .box = placed.box, .record = record});
     }
     Bvh bvh = build_bvh(boxes);
     tree.bounds = bvh.bounds;

@@ -16,8 +16,9 @@ namespace candela {
 
 // A mesh in its place: the record of the instance, and where that goes.
 struct TreeInstance {
-    uint32_t mesh = 0;
-    Instance record;     // Neither `root` nor `first_id` is set.
+    ShownMesh mesh;
+    Box box;             // Around it, in the frame of the scene.
+    Instance record;     // `root`, `first_id` and `lamp` are not set.
     uint32_t node = 0;   // Its place among the nodes,
     uint32_t level = 0;  // and its level: the root has level 1.
 };

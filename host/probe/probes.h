@@ -52,13 +52,15 @@ struct LightChoiceItem {
     uint32_t choice = 0;
     vec3 n{0};  // 0: none.
     uint32_t light = 0;
-    uint32_t more = 0;        // Further random bits.
-    uint32_t both_sides = 0;  // 1: light from either side of n is scattered.
-    uvec2 unused{0};
+    uint32_t more = 0;         // Further random bits.
+    uint32_t both_sides = 0;   // 1: light from either side of n is scattered.
+    uint32_t lamp = NO_LIGHT;  // The lamp that has the light, if one does.
+    uint32_t unused = 0;
 };
 
 struct LightChoice {
     uint32_t chosen;
+    uint32_t lamp;  // The lamp that has it, or NO_LIGHT.
     float pmf;
     float pmf_of_light;  // Probability of LightChoiceItem::light.
 };

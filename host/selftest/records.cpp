@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/text.h"
+#include "gpu_scene/append.h"
 #include "probe/probe.h"
 #include "probe/probes.h"
 #include "probe/random.h"
@@ -78,6 +79,7 @@ struct Records {
     MaterialRecord material;
     MediumRecord medium;
     LightRecord light;
+    LampRecord lamp;
     AliasEntry light_even, light_odd;
     LightTreeChild light_tree;
     uvec4 light_trails;
@@ -98,7 +100,7 @@ struct Item {
 
 // The kernel's result.
 struct Result {
-    std::array<uint, 252> words;
+    std::array<uint, 260> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -173,6 +175,14 @@ Records filled(Fields& fields) {
                .pdf_area = fields.f(),
                .pmf = fields.f(),
                .error = fields.f()};
+    r.lamp = {.node = fields.u(),
+              .root = fields.u(),
+              .first = fields.u(),
+              .count = fields.u(),
+              .alias = fields.u(),
+              .mirrored = fields.u(),
+              .area = fields.f(),
+              .pmf = fields.f()};
     const auto entry = [&] { return AliasEntry{.threshold = fields.u(), .alias = fields.u()}; };
     r.light_even = entry();
     r.light_odd = entry();
@@ -236,6 +246,7 @@ GpuScene packed(const Records& r) {
     array(ARRAY_MATERIALS).push_back(pack(r.principled_image));
     append_second(array(ARRAY_MEDIA), pack(r.medium));
     append_second(array(ARRAY_LIGHTS), pack(r.light));
+    append(array(ARRAY_LIGHTS), pack(r.lamp));
     append_second(array(ARRAY_LIGHT_ALIAS), pack(r.light_even, r.light_odd));
     append_second(array(ARRAY_LIGHT_TREE), pack(r.light_tree));
     append_second(array(ARRAY_LIGHT_TRAILS), std::array{r.light_trails});

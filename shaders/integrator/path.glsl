@@ -106,7 +106,7 @@ void add_environment(Path path, inout Estimate estimate) {
 void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     LitPoint lit = path_lit_point(path);
     float distance_squared = LIT_FROM_BEHIND ? dot(s.p - lit.p, s.p - lit.p) : square(t);
-    float pdf_light = light_pdf_li(s.light, lit, distance_squared, dot(s.wo, s.n), s.front);
+    float pdf_light = light_pdf_li(s.light, s.lamp, lit, distance_squared, dot(s.wo, s.n), s.front);
     float fraction = 1.0;
     if (HAS_COATED_EMISSION) {
         fraction = emitted_fraction(s.material, s.attributes, dot(s.wo, s.n), unit_float(hit_random(path.ray).xy));

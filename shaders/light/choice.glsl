@@ -5,7 +5,7 @@
 
 #include "base/random_range.glsl"
 #include "base/warp.glsl"
-#include "light/lit_point.glsl"
+#include "light/lamp.glsl"
 #include "light/tree.glsl"
 
 const bool HAS_SUNS = (LIGHTS & 1u << LIGHT_DIRECTIONAL) != 0u;
@@ -15,7 +15,8 @@ const bool LIGHTS_PLACED = (LIGHTS & ~(1u << LIGHT_DIRECTIONAL | 1u << LIGHT_ENV
 
 // A chosen light and its probability.
 struct LightChoice {
-    uint i;  // Its place in the table of lights.
+    uint i;     // Its place in the table of lights,
+    uint lamp;  // and that of the lamp that has it, or NO_LIGHT.
     float pmf;
 };
 
@@ -121,15 +122,29 @@ float sun_pmf(uint i, LightGroups groups) {
     return scene_light(i).pmf * 2147483648.0 / float(groups.sun_fraction);
 }
 
+// Whether the table of lights has a lamp there.
+bool light_is_lamp(uint i) {
+    return HAS_LAMPS && light_at(i).kind == LIGHT_LAMP;
+}
+
 // A light from the tree, a sun or the sky.
 LightChoice light_choose_by_tree(LitPoint lit, uvec2 bits) {
     RandomRange random = range_begin(bits);
     uvec4 groups = light_groups_at(lit);
     uint group = range_choose(random, groups);
-    LightChoice choice = LightChoice(0u, 1.0);
+    LightChoice choice = LightChoice(0u, NO_LIGHT, 1.0);
     if (LIGHTS_PLACED) {
-        LightTreeWay way = light_tree_choose(lit, random, group == 0u, group < 2u);
-        choice = LightChoice(way.at & ~LIGHT_TREE_LEAF_BIT, light_tree_pmf(way, groups));
+        LightTreeWay way = light_tree_begin(group < 2u ? 0u : LIGHT_TREE_LEAF_BIT);
+        light_tree_choose(way, lit, random, group == 0u);
+        choice.i = way.at & ~LIGHT_TREE_LEAF_BIT;
+        if (light_is_lamp(choice.i) && group < 2u) {
+            choice.lamp = choice.i;
+            LampRecord lamp = scene_lamp(choice.lamp);
+            way.at = lamp.root;
+            light_tree_choose(way, lit_in_lamp(lit, lamp), random, group == 0u);
+            choice.i = lamp.first + (way.at & ~LIGHT_TREE_LEAF_BIT);
+        }
+        choice.pmf = light_tree_pmf(way, groups);
     }
     if (HAS_SUNS && group == 2u) {
         LightGroups table = scene_parameters().lights;
@@ -137,36 +152,71 @@ LightChoice light_choose_by_tree(LitPoint lit, uvec2 bits) {
         choice.i = table.placed + warp_alias_choice(column, scene_light_alias(table.placed + column.x)).i;
         choice.pmf = range_part(groups, 2u) * sun_pmf(choice.i, table);
     }
-    if (SKY_IS_LIGHT && group == 3u) choice = LightChoice(sky_light(), range_part(groups, 3u));
+    if (SKY_IS_LIGHT && group == 3u) choice = LightChoice(sky_light(), NO_LIGHT, range_part(groups, 3u));
     return choice;
+}
+
+// Goes on from a lamp to one of its lights, by their power or uniformly.
+void light_choose_of_lamp(inout LightChoice choice, uint bits) {
+    choice.lamp = choice.i;
+    LampRecord lamp = scene_lamp(choice.lamp);
+    uvec2 column = warp_alias_column(bits, lamp.count);
+    if (LIGHT_SAMPLER == LIGHT_SAMPLER_UNIFORM) {
+        choice.i = lamp.first + column.x;
+        choice.pmf /= float(lamp.count);
+    } else {
+        choice.i = lamp.first + warp_alias_choice(column, scene_light_alias(lamp.alias + column.x)).i;
+        choice.pmf *= light_at(choice.i).pmf;
+    }
 }
 
 // A light chosen by 2 x 32 random bits, those of x first. The scene has at least one light.
 LightChoice light_choose(LitPoint lit, uvec2 bits) {
-    if (ONE_LIGHT) return LightChoice(0u, 1.0);
+    if (ONE_LIGHT) return LightChoice(0u, NO_LIGHT, 1.0);
     if (LIGHT_SAMPLER == LIGHT_SAMPLER_TREE) return light_choose_by_tree(lit, bits);
+    LightChoice choice;
+    choice.lamp = NO_LIGHT;
     if (LIGHT_SAMPLER == LIGHT_SAMPLER_UNIFORM) {
         uint n = light_count(scene_parameters().lights);
-        return LightChoice(warp_alias_column(bits.x, n).x, 1.0 / float(n));
+        choice.i = warp_alias_column(bits.x, n).x;
+        choice.pmf = 1.0 / float(n);
+    } else {
+        choice.i = light_choose_by_power(bits.x);
+        choice.pmf = light_at(choice.i).pmf;
     }
-    uint i = light_choose_by_power(bits.x);
-    return LightChoice(i, light_at(i).pmf);
+    if (light_is_lamp(choice.i)) light_choose_of_lamp(choice, bits.y);
+    return choice;
 }
 
-// Probability with which light_choose chooses light i, which has a place in the scene, for that point.
-float light_pmf(uint i, LitPoint lit) {
-    if (ONE_LIGHT) return 1.0;
-    if (LIGHT_SAMPLER == LIGHT_SAMPLER_TREE) {
-        return light_tree_pmf(light_tree_follow(lit, scene_light_trail(i)), light_groups_at(lit));
+// Probability of the way to a light in the tree, or to that of a lamp.
+float light_tree_pmf(uint i, uint lamp, LitPoint lit) {
+    LightTreeWay way = light_tree_begin(0u);
+    light_tree_follow(way, lit, scene_light_trail(is_lamp(lamp) ? lamp : i));
+    if (is_lamp(lamp)) {
+        LampRecord record = scene_lamp(lamp);
+        way.at = record.root;
+        light_tree_follow(way, lit_in_lamp(lit, record), scene_light_trail(i));
     }
-    if (LIGHT_SAMPLER == LIGHT_SAMPLER_UNIFORM) return 1.0 / float(light_count(scene_parameters().lights));
-    return light_at(i).pmf;
+    return light_tree_pmf(way, light_groups_at(lit));
+}
+
+// Probability with which light_choose chooses light i of a lamp, or of none (NO_LIGHT), for that point; only of lights
+// with a place in the scene.
+float light_pmf(uint i, uint lamp, LitPoint lit) {
+    if (ONE_LIGHT) return 1.0;
+    if (LIGHT_SAMPLER == LIGHT_SAMPLER_TREE) return light_tree_pmf(i, lamp, lit);
+    if (LIGHT_SAMPLER == LIGHT_SAMPLER_UNIFORM) {
+        float pmf = 1.0 / float(light_count(scene_parameters().lights));
+        return is_lamp(lamp) ? pmf / float(scene_lamp(lamp).count) : pmf;
+    }
+    float pmf = light_at(i).pmf;
+    return is_lamp(lamp) ? light_at(lamp).pmf * pmf : pmf;
 }
 
 // The same of the sky, which is one of the lights.
 float sky_pmf(LitPoint lit) {
     if (LIGHT_SAMPLER == LIGHT_SAMPLER_TREE && !ONE_LIGHT) return range_part(light_groups_at(lit), 3u);
-    return light_pmf(sky_light(), lit);
+    return light_pmf(sky_light(), NO_LIGHT, lit);
 }
 
 #endif

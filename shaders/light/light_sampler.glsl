@@ -23,17 +23,25 @@ Attributes light_attributes(uint i, LightRecord l, vec2 b, vec3 n) {
     return attributes_at(place);
 }
 
+// Light i of a lamp, or of none (NO_LIGHT), as seen from that point in the frame of the scene.
+LightRecord light_seen(uint i, uint lamp, LitPoint lit) {
+    LightRecord l = light_at(i);
+    return is_lamp(lamp) ? lamp_light_in_scene(l, scene_lamp(lamp), lit.p) : l;
+}
+
 // The attributes of the light's surface at a sample for that point; only if it has one.
 Attributes light_sample_attributes(LightSample s, LitPoint lit) {
     LightRecord l = light_at(s.light);
     vec3 n = (lit.p + s.shadow - l.p) / l.e1.x;
-    return light_attributes(s.light, l, area_light_coordinates(l, s.u), n);
+    vec2 b = area_light_coordinates(l, s.u);
+    if (is_lamp(s.lamp) && scene_lamp(s.lamp).mirrored != 0u) b = b.yx;
+    return light_attributes(s.light, l, b, n);
 }
 
 // Cosine between the ray to the sample and the normal of the light's surface there, on the visible side; only if it has
 // one.
 float light_sample_cosine(LightSample s, LitPoint lit) {
-    LightRecord l = light_at(s.light);
+    LightRecord l = light_seen(s.light, s.lamp, lit);
     vec3 n = is_light(l, LIGHT_SPHERE) ? lit.p + s.shadow - l.p : cross(l.e1, l.e2);
     return abs(dot(s.wi, normalize(n)));
 }
@@ -48,10 +56,9 @@ void light_apply_textures(inout LightSample s, LitPoint lit) {
 // A sample of a point on one of the lights, from 3 x 32 random bits: u.xy chooses the point, u.z the light. The scene
 // has at least one light; light_prepare comes first.
 LightSample light_sample_li(LitPoint lit, uvec3 u) {
-    uint more = LIGHT_SAMPLER == LIGHT_SAMPLER_TREE ? hash_pcg3d(u).x : 0u;
+    uint more = LIGHT_SAMPLER == LIGHT_SAMPLER_TREE || HAS_LAMPS ? hash_pcg3d(u).x : 0u;
     LightChoice choice = light_choose(lit, uvec2(u.z, more));
-    uint i = choice.i;
-    LightRecord l = light_at(i);
+    LightRecord l = light_seen(choice.i, choice.lamp, lit);
     LightSample s;
     if (is_light(l, LIGHT_ENVIRONMENT)) {
         s = environment_light_sample_li(u.xy);
@@ -67,7 +74,8 @@ LightSample light_sample_li(LitPoint lit, uvec3 u) {
         s = area_light_sample_li(l, lit.p, unit_float(u.xy));
     }
     s.pdf *= choice.pmf;
-    s.light = i;
+    s.light = choice.i;
+    s.lamp = choice.lamp;
     s.u = unit_float(u.xy);
     if ((TEXTURED & (TEXTURED_EMISSION | TEXTURED_OPACITY)) != 0u && light_has_surface(l)) {
         light_apply_textures(s, lit);
@@ -75,13 +83,15 @@ LightSample light_sample_li(LitPoint lit, uvec3 u) {
     return s;
 }
 
-// Density [1/sr] with which light_sample_li finds, for a lit point, the point of light i at that squared distance [m^2]
-// whose normal has the cosine cos_light to the ray; only of lights with a surface.
-float light_pdf_li(uint i, LitPoint lit, float distance_squared, float cos_light, bool front) {
+// Density [1/sr] with which light_sample_li finds, for a lit point, the point of light i, of a lamp or of none
+// (NO_LIGHT), at that squared distance [m^2] whose normal has the cosine cos_light to the ray; only of lights with a
+// surface.
+float light_pdf_li(uint i, uint lamp, LitPoint lit, float distance_squared, float cos_light, bool front) {
     LightRecord l = light_at(i);
+    if (is_lamp(lamp)) l.pdf_area /= scene_lamp(lamp).area;
     float pdf = is_light(l, LIGHT_SPHERE) ? sphere_light_pdf_li(l, lit.p, distance_squared, cos_light, front)
                                           : area_light_pdf_li(l, distance_squared, cos_light);
-    return light_pmf(i, lit) * pdf;
+    return light_pmf(i, lamp, lit) * pdf;
 }
 
 // Density [1/sr] with which light_sample_li finds a direction to that texel of the environment; 0 if the environment is

@@ -36,7 +36,8 @@ struct LightSample {
     bool delta;  // Only light sampling can find it: pdf is the probability of choosing the light.
     vec3 shadow;  // Direction, of any length, of the shadow ray from the lit point.
     float t_max;  // The light is hidden if the shadow ray hits something with t in (0, t_max).
-    uint light;   // Its place in the table of lights.
+    uint light;   // Its place in the table of lights,
+    uint lamp;    // and that of the lamp that has it, or NO_LIGHT.
     vec2 u;       // The random numbers that chose the point on it.
 };
 

@@ -12,7 +12,8 @@
 #include "scene/scene_data.glsl"
 
 // One way in so many goes by strength. So a light's probability is at least its strength / (2 * LIGHT_TREE_WAYS), for
-// any importance: rounding takes at most 4 % of a small part at each of up to 16 nodes.
+// any importance: rounding takes at most 4 % of a small part at each of up to 16 nodes. (Of a lamp's lights, half as
+// much is certain, after twice as many nodes.)
 const uint LIGHT_TREE_WAYS = 16u;
 
 // Minimum probability of a child that may light the point.
@@ -136,24 +137,25 @@ float light_tree_pmf(LightTreeWay way, uvec4 groups) {
     return range_part(groups, 0u) * way.by_strength + range_part(groups, 1u) * way.by_importance;
 }
 
-// The way to a light that random bits choose, by strength or by importance; no way if `goes` is false.
-LightTreeWay light_tree_choose(LitPoint lit, inout RandomRange random, bool by_strength, bool goes) {
-    LightTreeWay way = LightTreeWay(goes ? 0u : LIGHT_TREE_LEAF_BIT, 1.0, 1.0);
+// A way that begins at the node, or goes nowhere.
+LightTreeWay light_tree_begin(uint at) {
+    return LightTreeWay(at, 1.0, 1.0);
+}
+
+// Goes on to a light that random bits choose, by strength or by importance.
+void light_tree_choose(inout LightTreeWay way, LitPoint lit, inout RandomRange random, bool by_strength) {
     while ((way.at & LIGHT_TREE_LEAF_BIT) == 0u) {
         LightTreeStep step = light_tree_step(way.at, lit);
         light_tree_go(way, step, range_choose(random, by_strength ? step.by_strength : step.by_importance));
     }
-    return way;
 }
 
-// The way of a light's trail.
-LightTreeWay light_tree_follow(LitPoint lit, uint trail) {
-    LightTreeWay way = LightTreeWay(0u, 1.0, 1.0);
+// Goes on along a light's trail.
+void light_tree_follow(inout LightTreeWay way, LitPoint lit, uint trail) {
     while ((way.at & LIGHT_TREE_LEAF_BIT) == 0u) {
         light_tree_go(way, light_tree_step(way.at, lit), trail & 3u);
         trail >>= 2u;
     }
-    return way;
 }
 
 #endif

@@ -38,7 +38,7 @@ void main() {
         Interaction met = interaction_at(ray, hit);
         light = met.light;
         if (light != NO_LIGHT) {
-            pdf = light_pdf_li(light, lit, square(hit.t), dot(met.wo, met.n), met.front);
+            pdf = light_pdf_li(light, met.lamp, lit, square(hit.t), dot(met.wo, met.n), met.front);
             L = area_light_le(scene_light(light), met.front);
         }
     }

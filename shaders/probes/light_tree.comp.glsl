@@ -14,7 +14,8 @@ void main() {
     LitPoint lit = lit_anywhere(p);
     if (n != vec3(0.0)) lit = lit_on_surface(p, n, item(1u).w != 0u);
     uint light = item(0u).w;
-    LightTreeWay way = light_tree_follow(lit, scene_light_trail(light));
+    LightTreeWay way = light_tree_begin(0u);
+    light_tree_follow(way, lit, scene_light_trail(light));
     put(way.by_importance);
     put(way.by_strength);
     put(uint(way.at == (light | LIGHT_TREE_LEAF_BIT)));

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 252u
+#define RESULT_WORDS 260u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -88,6 +88,17 @@ void put_light(LightRecord l) {
     put(l.error);
 }
 
+void put_lamp(LampRecord l) {
+    put(l.node);
+    put(l.root);
+    put(l.first);
+    put(l.count);
+    put(l.alias);
+    put(l.mirrored);
+    put(l.area);
+    put(l.pmf);
+}
+
 void put_alias_entry(AliasEntry e) {
     put(e.threshold);
     put(e.alias);
@@ -160,6 +171,7 @@ void main() {
     put_material(scene_material(1u));
     put_medium(scene_medium(1u));
     put_light(scene_light(1u));
+    put_lamp(scene_lamp(2u));
     put_alias_entry(scene_light_alias(2u));
     put_alias_entry(scene_light_alias(3u));
     put_light_tree(scene_light_tree(0u, 1u));

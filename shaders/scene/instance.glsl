@@ -4,6 +4,10 @@
 
 #include "base/ray.glsl"
 #include "scene/scene_data.glsl"
+#include "shared/light.h"
+
+// Some instances emit.
+const bool HAS_LAMPS = (LIGHTS & 1u << LIGHT_LAMP) != 0u;
 
 // Whether a hit in that instance, or in none, lies in the space of a mesh.
 bool is_instanced(uint instance) {

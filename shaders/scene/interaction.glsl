@@ -20,7 +20,8 @@ struct Interaction {
     float error;  // How far from the surface, along n, rays must begin.
     vec3 lift;    // From p to where light that stays on the viewer's side begins: see scene/smooth.glsl.
     uint material;
-    uint light;  // Light of the surface, or NO_LIGHT.
+    uint light;  // Light of the surface, or NO_LIGHT,
+    uint lamp;   // and the lamp that has it, or NO_LIGHT.
     Attributes attributes;
 };
 
@@ -98,6 +99,11 @@ Interaction interaction_at(Ray ray, Hit hit) {
     }
     s.material = surface.material;
     s.light = surface.light;
+    s.lamp = NO_LIGHT;
+    if (HAS_LAMPS && is_instanced(hit.instance) && s.light != NO_LIGHT) {
+        s.lamp = instance.lamp;
+        s.light += scene_lamp(s.lamp).first;
+    }
     return s;
 }
 

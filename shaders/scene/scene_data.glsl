@@ -146,14 +146,21 @@ LightRecord scene_light(uint i) {
     return light_unpack(a, b, c, d);
 }
 
-// Entry of the alias table that chooses lights.
+// The lamp at that place in the table of lights.
+LampRecord scene_lamp(uint i) {
+    uvec4 a, b, c;
+    READ_3(LIGHTS, LIGHTS, i * LIGHT_WORDS, a, b, c);
+    return lamp_unpack(a, b, c);
+}
+
+// Entry of the alias tables that choose lights.
 AliasEntry scene_light_alias(uint i) {
     uvec4 a;
     READ_1(LIGHTS, LIGHT_ALIAS, i / 2u, a);
     return alias_unpack(a, i);
 }
 
-// Child c of a node of the tree over lights.
+// Child c of a node of the trees over lights.
 LightTreeChild scene_light_tree(uint node, uint c) {
     uvec4 a, b;
     READ_2(LIGHTS, LIGHT_TREE, (node * LIGHT_TREE_WIDTH + c) * LIGHT_TREE_WORDS, a, b);

@@ -2,7 +2,7 @@
 // of nodes, 4 words of uvec4; the lowest byte of a node's first w is never zero.
 //
 //   0: to_mesh row 0, root << 8              2: to_mesh row 2, first_id
-//   1: to_mesh row 1, material | error       3: centre.xyz
+//   1: to_mesh row 1, material | error       3: centre.xyz, lamp
 //
 // An instance has one child, the root of its mesh's tree, whose nodes and primitives lie in the mesh's space.
 // A ray goes there with its parameter t unchanged: the point p of the scene's frame is the point to_mesh (p -
@@ -38,6 +38,7 @@ struct Instance {
     uint first_id;    // Added to the ids of the mesh's surfaces, modulo 2^32.
     uint material;    // Replaces the material of the mesh's surfaces.
     float error;      // Added to a surface's error for rays, in the frame of the scene: 0 or a power of two.
+    uint lamp;        // Its place in the table of lights, if some surface of the mesh has a light.
 };
 
 #ifdef __cplusplus
@@ -47,7 +48,7 @@ inline bool is_instance(BvhNode node);
 
 inline PackedBvhNode pack(const Instance& i) {
     return {word(i.to_mesh[0], i.root << 8u), word(i.to_mesh[1], i.material | floatBitsToUint(i.error)),
-            word(i.to_mesh[2], i.first_id), word(i.centre, 0)};
+            word(i.to_mesh[2], i.first_id), word(i.centre, i.lamp)};
 }
 
 #endif
@@ -63,6 +64,7 @@ Instance instance_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     i.material = b.w & (MAX_MATERIALS - 1u);
     i.error = uintBitsToFloat(b.w & SURFACE_ERROR_BITS);
     i.first_id = c.w;
+    i.lamp = d.w;
     return i;
 }
 

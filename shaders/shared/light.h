@@ -1,5 +1,5 @@
-// Records of a light (4 words of uvec4), of the groups of lights (3 words), of a texel of the environment (1
-// word), and of the entries of tables that choose (two to a word).
+// Records of a light or a lamp (4 words of uvec4), of the groups of lights (3 words), of a texel of the
+// environment (1 word), and of the entries of tables that choose (two to a word).
 //
 //   LightRecord                   EnvironmentTexel                 AliasEntry
 //     0: p.xyz, kind                0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
@@ -8,10 +8,11 @@
 //     3: radiance.rgb, pdf_area                                      0: entry 2i: last_word, range;
 //                                                                       entry 2i + 1: last_word, range
 //
-//   LightGroups
-//     0: placed, suns, sun_fraction, sky_fraction
-//     1: sun_flux
-//     2: sky_flux
+//   LightGroups                                          LampRecord
+//     0: placed, suns, sun_fraction, sky_fraction          0: node, root, first, kind
+//     1: sun_flux                                          1: count, alias, area, mirrored
+//     2: sky_flux                                          2: 0, 0, 0, pmf
+//                                                          3: 0, 0, 0, 0
 #ifndef SHARED_LIGHT_H
 #define SHARED_LIGHT_H
 
@@ -38,8 +39,10 @@ const uint LIGHT_SPOT = 6u;           // At p, around the unit axis e1. For a di
                                       // to the axis is h, its intensity has the factor saturate((e2.x - h) e2.y)^2.
 const uint LIGHT_DIRECTIONAL = 7u;    // Infinitely far away in the unit direction e1.
 
+const uint LIGHT_LAMP = 8u;  // An instance of a mesh that emits: a LampRecord.
+
 // An emitter. The front of a flat one is the side that cross(e1, e2) points to, that of a sphere is outside.
-// No ray hits the last three. In the frame of the scene.
+// No ray hits points, spots and directional lights. In the frame of the scene, or in the space of a lamp's mesh.
 struct LightRecord {
     uint kind;  // LIGHT_*
     vec3 p;
@@ -53,9 +56,23 @@ struct LightRecord {
     float error;     // Distance from its points, along the normal, at which rays towards it must end; >= 0.
 };
 
-// The division of the choice among lights. Their table has first the lights with a place in the scene, then
-// the suns, which are the directional lights, then the sky, if it is a light. Each of the first two groups
-// has its own alias table; the suns' table comes second.
+// A lamp, in the place of a light's record. Its lights are triangles of a mesh, in the mesh's space. All lamps that
+// show the mesh share them, the tree over them, and the table that chooses one by its power.
+struct LampRecord {
+    uint node;      // Of the record of its instance, which is a similarity.
+    uint root;      // Of the tree over its lights, among all nodes of light trees.
+    uint first;     // The first of its lights in the table of lights,
+    uint count;     // and their number.
+    uint alias;     // First entry of their alias table.
+    uint mirrored;  // 1: the instance is.
+    float area;     // An area in the frame of the scene, divided by the same in the mesh's space.
+    float pmf;      // Probability of choosing the lamp among all lights.
+};
+
+// The division of the choice among lights. Their table has first the lights with a place in the scene, lamps among
+// them, then the suns, which are the directional lights, then the sky, if it is a light; and then the lights of lamps,
+// whose pmf is that of the choice within a lamp. Each of the first two groups has its own alias table; the suns' table
+// comes second, and those of lamps follow.
 struct LightGroups {
     uint placed;
     uint suns;
@@ -101,6 +118,11 @@ inline std::array<uvec4, LIGHT_WORDS> pack(const LightRecord& l) {
             word(l.e2, floatBitsToUint(l.pmf)), word(l.radiance, floatBitsToUint(l.pdf_area))};
 }
 
+inline std::array<uvec4, LIGHT_WORDS> pack(const LampRecord& l) {
+    return {uvec4(l.node, l.root, l.first, LIGHT_LAMP), uvec4(l.count, l.alias, floatBitsToUint(l.area), l.mirrored),
+            uvec4(0, 0, 0, floatBitsToUint(l.pmf)), uvec4(0)};
+}
+
 inline std::array<uvec4, LIGHT_GROUPS_WORDS> pack(const LightGroups& g) {
     return {uvec4(g.placed, g.suns, g.sun_fraction, g.sky_fraction), std::bit_cast<uvec4>(g.sun_flux),
             std::bit_cast<uvec4>(g.sky_flux)};
@@ -132,6 +154,19 @@ LightRecord light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     l.pmf = uintBitsToFloat(c.w);
     l.radiance = uintBitsToFloat(d.xyz);
     l.pdf_area = uintBitsToFloat(d.w);
+    return l;
+}
+
+LampRecord lamp_unpack(uvec4 a, uvec4 b, uvec4 c) {
+    LampRecord l;
+    l.node = a.x;
+    l.root = a.y;
+    l.first = a.z;
+    l.count = b.x;
+    l.alias = b.y;
+    l.area = uintBitsToFloat(b.z);
+    l.mirrored = b.w;
+    l.pmf = uintBitsToFloat(c.w);
     return l;
 }
 

@@ -1,6 +1,6 @@
 // Record of a child of a node of the tree over lights, 2 words of uvec4: a sphere around all lights below it, their
 // strength, and a cone around their normals. A node has LIGHT_TREE_WIDTH children in a row. Trails are the ways down to
-// lights, four to a word.
+// lights, four to a word. Behind the tree over the scene's lights come those over the lights of lamps.
 //
 //   0: centre.xyz, radius   1: strength, axis, cone, at
 #ifndef SHARED_LIGHT_TREE_H
@@ -17,8 +17,8 @@ const uint LIGHT_TREE_WORDS = 2u;
 const uint LIGHT_TRAILS_WORDS = 1u;  // Words of four trails.
 const uint LIGHT_TREE_WIDTH = 4u;    // Children of a node.
 
-// Maximum number of nodes on a way down. The trail of a light is a word with two bits a node: the child to take, the
-// root's in the lowest bits.
+// Maximum number of nodes on a way down a tree, that over all lights or that of a lamp. The trail of a light is a word
+// with two bits a node: the child to take, the root's in the lowest bits.
 const uint LIGHT_TREE_MAX_DEPTH = 16u;
 
 // With this bit, `at` is the index of a light in the table of lights; without it, the index of a node.
@@ -34,7 +34,7 @@ const uint LIGHT_TREE_EMISSION_SHIFT = 15u;
 const uint LIGHT_TREE_BOTH_SIDES = 0x40000000u;
 
 struct LightTreeChild {
-    vec3 centre;  // Of the sphere, in the frame of the scene.
+    vec3 centre;  // Of the sphere, in the frame of the scene, or in the space of a lamp's mesh.
     float radius;
     float strength;  // Sum of the maximum intensities of its lights; 1 for the whole tree. 0 if there is no such child.
     uint axis;

@@ -51,7 +51,7 @@ struct Surface {
     uvec2 id;          // Position in the scene's own order, of each triangle.
     uint material;     // Index of a material record, below MAX_MATERIALS.
     uint has_normals;  // 1: has shading normals.
-    uint light;        // Index of a light record, or NO_LIGHT.
+    uint light;        // Index of a light record, of a mesh's surface among those of its lamps; or NO_LIGHT.
     float error;       // Distance at which rays must begin, along its normal: 0 or a power of two.
     uint passable;     // 1: some rays may pass it, by scene/opacity.glsl.
 };

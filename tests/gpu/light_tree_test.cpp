@@ -15,7 +15,7 @@ namespace {
 // A scene of nothing but a tree over these lights.
 GpuScene scene_of(const std::vector<LightBounds>& lights) {
     GpuScene scene;
-    LightTreeArrays arrays = pack_light_tree(build_light_tree(lights));
+    LightTreeArrays arrays = pack_light_trees(build_light_tree(lights));
     scene.arrays[ARRAY_LIGHT_TREE] = std::move(arrays.nodes);
     scene.arrays[ARRAY_LIGHT_TRAILS] = std::move(arrays.trails);
     scene.light_count = scene.light_groups.placed = uint32_t(lights.size());

@@ -67,6 +67,7 @@ TERMINATOR = ("Interaction*", "Terminator*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 INSTANCES = ("InstanceTest*", "InstancedNormals*:*InstanceTest*", "Instancing*:MediaAt*")
+LAMPS = ("LampTest*", "LampTest*", "Instancing*")
 FRAMES = ("Spawn*", "ScaleTest*:FloorTest*")
 TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*:*Reference*/textured*:*Reference*/mask")
 MEDIA = ("Records*", "NestedMedia*:*Reference*/nested_glass")
@@ -125,13 +126,14 @@ GROUPS = [
         ("surfaces taken for the first of the lights", PATH, "light_at(s.light)", "light_at(0u)"),
         ("lights chosen with a wrong probability", WARP, "column.y < entry.threshold",
          "column.y < entry.threshold / 2u"),
-        ("one word chooses the light and the point on it", LIGHT_SAMPLER, "uvec2(u.z, more)", "uvec2(u.x, more)"),
+        ("one word chooses the light and the point on it", LIGHT_SAMPLER, "uvec2(u.z, more)",
+         "uvec2(u.x, more)"),
         ("cosine missing from an area light's density", AREA, "distance_squared / abs(cos_light)", "distance_squared"),
         ("emission from the back", AREA, "front || l.two_sided != 0u", "true"),
         ("shadow rays end on the light", AREA,
          "to_light + light_end_error(l.error, distance_squared * inv_distance) * n", "to_light"),
         ("a sphere light's density 2 % low", SPHERE, "front ? warp_cone_pdf(", "front ? 0.98 * warp_cone_pdf("),
-        ("a light's density without the probability of its choice", LIGHT_SAMPLER, "return light_pmf(i, lit) * pdf;",
+        ("a light's density without the probability of its choice", LIGHT_SAMPLER, "return light_pmf(i, lamp, lit) * pdf;",
          "return pdf;"),
         ("solid angle missing from the choice of texels", "host/gpu_scene/environment_map.cpp",
          "bright * solid_angle", "bright * (solid_angle > 0.0 ? 1.0 : 0.0)"),
@@ -184,6 +186,15 @@ GROUPS = [
          "bool second = !meets0;"),
         ("the first triangle's normals on the second", SMOOTH, "normals.yz = normals.zw;",
          "normals.yz = normals.yz;"),
+    ]),
+    (LAMPS, [
+        ("a lamp's density as if it were as large as its mesh", LIGHT_SAMPLER,
+         "if (is_lamp(lamp)) l.pdf_area /= scene_lamp(lamp).area;", ""),
+        ("a lamp's light chosen for the point in the frame of the scene", LIGHT_CHOICE,
+         "light_tree_choose(way, lit_in_lamp(lit, lamp), random,", "light_tree_choose(way, lit, random,"),
+        ("mirrored lamps inside out", "host/gpu_scene/lamps.cpp", "placed.record.mirrored = determinant < 0.0;",
+         "placed.record.mirrored = 0;"),
+        ("the image on a mirrored lamp not mirrored", LIGHT_SAMPLER, "mirrored != 0u) b = b.yx;", "mirrored != 0u) b = b;"),
     ]),
     (FRAMES, [
         ("the frame's origin not subtracted from quads", FLATTEN, "c[i] = frame_.point(quad.corners[i])",
@@ -363,7 +374,7 @@ GROUPS = [
          "before = found.instance < hit.instance;", "before = true;"),
         ("all instances have the same ids", GEOMETRY_ARRAYS, "record.first_id = result.facts.id_count;", "record.first_id = 0;"),
         ("an instance has its mesh's material", "host/gpu_scene/scene_tree.cpp",
-         "record.material = scene.shapes[i].material;", "record.material = 0;"),
+         "record.material = shape.material;", "record.material = 0;"),
         ("the stack as deep as the deepest mesh alone", GEOMETRY_ARRAYS, "instance.level + own->second.bvh.depth",
          "own->second.bvh.depth"),
         ("instances in no medium", "host/render/media_at.cpp", "medium_of(instance.material)", "MEDIUM_SAME"),

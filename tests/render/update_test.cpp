@@ -72,6 +72,13 @@ TEST_F(UpdateTest, EachChangeGivesThePictureOfAFreshScene) {
     scene_.environment.reset();
     scene_.materials[0].model = ConductorMaterial{vec3(0.8f), 0.3f};
     expect_as_fresh(device(), renderer, settings, {.environment = true, .materials = true});
+    // The balls become lamps, and one of them moves.
+    for (const size_t i : {0, 1})
+        scene_.shapes[i].emission = Emission{vec3(1, 2, 3), false};
+    expect_as_fresh(device(), renderer, settings, {.shapes = {0, 1}});
+    EXPECT_NE(stages_.joined().lights_present & 1u << LIGHT_LAMP, 0u);
+    move_to(dvec3(-2, 3, 1));
+    expect_as_fresh(device(), renderer, settings, {.moved = {0}});
 }
 
 // Most arrays lie in one of them, each behind the others.

@@ -48,11 +48,12 @@ TEST(Instancing, MeshesThatAreUsedOnceOrAreTinyAreBaked) {
     add_copies(scene, triangle_soup(500, 0.1f, 1), 2);
     const Instancing chosen = choose_instances(scene, rule);
     EXPECT_EQ(chosen.shapes, (std::vector<uint32_t>{3, 4}));
-    EXPECT_EQ(chosen.meshes, std::vector<uint32_t>{2});
+    EXPECT_EQ(chosen.meshes, std::vector<ShownMesh>{{2}});
+    EXPECT_EQ(chosen.shown, (std::vector<ShownMesh>{{2}, {2}}));
     EXPECT_EQ(chosen.is_instance, (std::vector{false, false, false, true, true}));
 }
 
-TEST(Instancing, EmittersAndWhatIsShearedTooFarAreBaked) {
+TEST(Instancing, WhatEmitsAloneOrIsShearedTooFarIsBaked) {
     const InstancingRule rule{.min_uses = 2, .min_triangles = 1};
     Scene scene = empty_scene();
     add_copies(scene, triangle_soup(10, 0.1f, 1), 4);
@@ -63,6 +64,24 @@ TEST(Instancing, EmittersAndWhatIsShearedTooFarAreBaked) {
     std::get<MeshInstance>(scene.shapes[2].geometry).transform.append(shear);
     scene.shapes[3].geometry = MeshInstance{0, moved(dvec3(0), dvec3(1e-3, 1, 1e3))};
     EXPECT_EQ(choose_instances(scene, rule).shapes, (std::vector<uint32_t>{0, 3}));
+}
+
+// Shapes that emit alike, of one material, are instances of one mesh; but not one that is scaled unevenly.
+TEST(Instancing, ShapesThatEmitAlikeShareTheirLights) {
+    Scene scene = empty_scene();
+    const uint32_t other = add_diffuse(scene, vec3(0.25f));
+    add_copies(scene, triangle_soup(10, 0.1f, 1), 9);
+    for (const size_t i : {0, 1, 2, 3, 4, 5, 6})
+        scene.shapes[i].emission = Emission{vec3(1, 2, 3), false};
+    scene.shapes[1].geometry = MeshInstance{0, moved(dvec3(0), dvec3(-2, 2, 2))};
+    scene.shapes[2].geometry = MeshInstance{0, moved(dvec3(0), dvec3(1, 1, 1.0001))};
+    scene.shapes[3].material = scene.shapes[4].material = other;
+    scene.shapes[5].emission->two_sided = true;
+    scene.shapes[6].emission->radiance.factor.z = 4.0f;
+    const Instancing chosen = choose_instances(scene, {.min_uses = 2, .min_triangles = 1});
+    EXPECT_EQ(chosen.shapes, (std::vector<uint32_t>{0, 1, 3, 4, 7, 8}));
+    EXPECT_EQ(chosen.shown, (std::vector<ShownMesh>{{0, 0}, {0, 0}, {0, 3}, {0, 3}, {0}, {0}}));
+    EXPECT_EQ(chosen.meshes, (std::vector<ShownMesh>{{0, 0}, {0, 3}, {0}}));
 }
 
 // The kernel's arithmetic, in the order of shaders/scene/instance.glsl.
@@ -160,12 +179,43 @@ TEST(Instancing, AMeshIsStoredOnce) {
     EXPECT_EQ(baked.id_count, gpu.id_count);
 }
 
+TEST(Instancing, TheLightsOfLampsAreStoredOnce) {
+    constexpr uint32_t LAMPS = 1000;
+    Scene scene = empty_scene();
+    const TriangleMesh mesh = sphere_mesh(10, 11);
+    const auto lights = uint32_t(mesh.triangles.size());
+    add_copies(scene, mesh, LAMPS);
+    for (Shape& shape : scene.shapes)
+        shape.emission = Emission{vec3(1), false};
+    add_shape(scene, parallelogram(vec3(-9, -1, 9), vec3(400, 0, 0), vec3(0, 0, -18)), 0,
+              Emission{vec3(1), false});
+    const GpuScene gpu = build_gpu_scene(scene);
+    EXPECT_EQ(gpu.instances.size(), LAMPS);
+    EXPECT_EQ(gpu.primitive_count, lights + 1);
+    EXPECT_EQ(gpu.light_groups.placed, LAMPS + 1);
+    EXPECT_EQ(gpu.light_count, LAMPS + 1 + lights);
+    EXPECT_EQ(gpu.arrays[ARRAY_LIGHTS].size(), (LAMPS + 1 + lights) * LIGHT_WORDS);
+    EXPECT_EQ(gpu.arrays[ARRAY_LIGHT_ALIAS].size(), (LAMPS + 1 + lights + 1) / 2);
+    EXPECT_EQ(gpu.arrays[ARRAY_LIGHT_TRAILS].size(), (LAMPS + 1 + lights + 3) / 4);
+    // A node has at least two children.
+    EXPECT_LE(gpu.arrays[ARRAY_LIGHT_TREE].size(),
+              (LAMPS + 1 + lights) * LIGHT_TREE_WIDTH * LIGHT_TREE_WORDS);
+    for (const InstancePlace& place : gpu.instances) {
+        const uvec4* lamp = &gpu.arrays[ARRAY_LIGHTS][size_t{instance_at(gpu, place).lamp} * LIGHT_WORDS];
+        EXPECT_EQ(lamp[0], uvec4(place.node, lamp[0].y, LAMPS + 1, LIGHT_LAMP));
+        EXPECT_EQ(lamp[1].x, lights);
+    }
+}
+
 TEST(Instancing, TooManyTrianglesThatEmitAreAnErrorBeforeTheyAreMade) {
     Scene scene = empty_scene();
     add_copies(scene, triangle_soup(1000, 0.1f, 1), 16778);
     EXPECT_NO_THROW(build_gpu_scene(scene));
     for (Shape& shape : scene.shapes)
         shape.emission = Emission{vec3(1), false};
+    EXPECT_EQ(build_gpu_scene(scene).light_count, 16778u + 1000u);
+    for (Shape& shape : scene.shapes)
+        shape.geometry = MeshInstance{0, moved(dvec3(0), dvec3(1, 1, 2))};
     try {
         build_gpu_scene(scene);
         FAIL();

@@ -243,7 +243,61 @@ TEST(SceneStages, ImagesRebuildTexelsAndTheLightsThatLookThemUp) {
         [](Scene& scene) { spoil_meshes(scene), spoil_sky(scene); });
 }
 
-// A copy that is sheared too far has no tree of its own; one that emits neither.
+// Four copies of a mesh that emit alike.
+struct LampWorld : World {
+    enum : uint32_t { FIRST = 8, LAST = 11 };
+
+    LampWorld() {
+        for (uint32_t i = FIRST; i <= LAST; ++i)
+            scene.shapes.push_back({.geometry = MeshInstance{2, at(dvec3(i, 3, 1))},
+                                    .material = 0,
+                                    .emission = Emission{vec3(1), false}});
+    }
+};
+
+TEST(SceneStages, LampsAreThoseOfAFreshScene) {
+    const auto glow = [](uint32_t first, vec3 radiance) {
+        return [=](Scene& scene) {
+            for (uint32_t i = first; i <= LampWorld::LAST; ++i)
+                scene.shapes[i].emission->radiance.factor = radiance;
+        };
+    };
+    const std::vector<std::pair<std::function<void(Scene&)>, SceneChange>> changes{
+        {[](Scene& scene) {
+             std::get<MeshInstance>(scene.shapes[LampWorld::FIRST].geometry).transform = at(dvec3(8, 3, 2));
+         },
+         {.moved = {LampWorld::FIRST}}},
+        {glow(LampWorld::FIRST, vec3(2)), {.radiance = true}},
+        {glow(LampWorld::LAST, vec3(3)), {.radiance = true}},      // It is baked then.
+        {glow(LampWorld::LAST - 1, vec3(4)), {.radiance = true}},  // Two ways to glow.
+        {glow(LampWorld::FIRST, vec3(0)), {.radiance = true}},     // All are black.
+        {[](Scene& scene) { scene.shapes[World::LAMP].emission->radiance.factor = vec3(0); },
+         {.radiance = true}},  // The lamps have other places.
+        {[](Scene& scene) { scene.meshes[2] = sphere_mesh(3, 4); }, {.meshes = {2}}},
+        {[](Scene& scene) { scene.shapes[LampWorld::FIRST].emission.reset(); },
+         {.shapes = {LampWorld::FIRST}}},
+        {[](Scene& scene) {
+             for (uint32_t i = LampWorld::FIRST; i <= LampWorld::LAST; ++i)
+                 scene.shapes[i].emission = scene.shapes[World::LAMP + 1].emission;
+         },
+         {.shapes = {8, 9, 10, 11}}},  // They glow in the colours of the image.
+        {[](Scene& scene) {
+             std::get<MeshInstance>(scene.shapes[LampWorld::FIRST].geometry).transform = at(dvec3(80, 3, 2));
+         },
+         {.moved = {LampWorld::FIRST}}},  // In another frame.
+    };
+    for (size_t i = 0; i < changes.size(); ++i) {
+        SCOPED_TRACE(i);
+        LampWorld world;
+        SceneStages stages(world.scene, {.rule = RULE});
+        ASSERT_EQ(stages.joined().instances.size(), 8u);
+        changes[i].first(world.scene);
+        stages.update(world.scene, changes[i].second);
+        expect_equal(stages.joined(), build_gpu_scene(world.scene, choose_frame(world.scene), RULE));
+    }
+}
+
+// A copy that is sheared too far has no tree of its own; one that emits otherwise than the others neither.
 TEST(SceneStages, AnInstanceThatCannotBeOneIsBaked) {
     expect_update(
         [](Scene& scene) {
