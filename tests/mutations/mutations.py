@@ -61,7 +61,7 @@ INTEGRATOR = ("Interaction*",
 BSDFS = ("BsdfTest*:Phong*:Dielectric*:Warp*", "Albedo*:SkyFurnace*:*Dielectric*Within*:*Reference*/glass")
 LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
-TREES = ("LightTree*:LightChoice*", "EstimatorTest*HoweverLights*", "LightTree*:TextureMean*")
+TREES = ("LightTree*:LightChoice*", "EstimatorTest*HoweverLights*:ManyLight*", "LightTree*:TextureMean*")
 PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Orthographic*:ScaleTest*Mean*")
 TERMINATOR = ("Interaction*", "Terminator*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
@@ -126,15 +126,14 @@ GROUPS = [
         ("surfaces taken for the first of the lights", PATH, "light_at(s.light)", "light_at(0u)"),
         ("lights chosen with a wrong probability", WARP, "column.y < entry.threshold",
          "column.y < entry.threshold / 2u"),
-        ("one word chooses the light and the point on it", LIGHT_SAMPLER, "uvec2(u.z, more)",
-         "uvec2(u.x, more)"),
+        ("one word chooses the light and the point on it", LIGHT_SAMPLER, "uvec2(u.z, more)", "uvec2(u.x, more)"),
         ("cosine missing from an area light's density", AREA, "distance_squared / abs(cos_light)", "distance_squared"),
         ("emission from the back", AREA, "front || l.two_sided != 0u", "true"),
         ("shadow rays end on the light", AREA,
          "to_light + light_end_error(l.error, distance_squared * inv_distance) * n", "to_light"),
         ("a sphere light's density 2 % low", SPHERE, "front ? warp_cone_pdf(", "front ? 0.98 * warp_cone_pdf("),
-        ("a light's density without the probability of its choice", LIGHT_SAMPLER, "return light_pmf(i, lamp, lit) * pdf;",
-         "return pdf;"),
+        ("a light's density without the probability of its choice", LIGHT_SAMPLER,
+         "return light_pmf(i, lamp, lit) * pdf;", "return pdf;"),
         ("solid angle missing from the choice of texels", "host/gpu_scene/environment_map.cpp",
          "bright * solid_angle", "bright * (solid_angle > 0.0 ? 1.0 : 0.0)"),
         ("a BSDF's own density beside the sky, for one of the two strategies", PATH,
@@ -194,7 +193,8 @@ GROUPS = [
          "light_tree_choose(way, lit_in_lamp(lit, lamp), random,", "light_tree_choose(way, lit, random,"),
         ("mirrored lamps inside out", "host/gpu_scene/lamps.cpp", "placed.record.mirrored = determinant < 0.0;",
          "placed.record.mirrored = 0;"),
-        ("the image on a mirrored lamp not mirrored", LIGHT_SAMPLER, "mirrored != 0u) b = b.yx;", "mirrored != 0u) b = b;"),
+        ("the image on a mirrored lamp not mirrored", LIGHT_SAMPLER, "mirrored != 0u) b = b.yx;",
+         "mirrored != 0u) b = b;"),
     ]),
     (FRAMES, [
         ("the frame's origin not subtracted from quads", FLATTEN, "c[i] = frame_.point(quad.corners[i])",
@@ -319,6 +319,8 @@ GROUPS = [
         ("receiver's cosine inverted", LIGHT_TREE, "clamp(-dot(w, lit.n), -1.0, 1.0)", "clamp(dot(w, lit.n), -1.0, 1.0)"),
         ("a choice leaves its own randomness to the next", "shaders/base/random_range.glsl", "r.u -= begin;", ""),
         ("probability of another light's way", LIGHT_CHOICE, "scene_light_trail(i)", "scene_light_trail(i ^ 1u)"),
+        ("the sky weighted as if chosen more often", LIGHT_CHOICE, "NO_LIGHT, range_part(groups, 3u));",
+         "NO_LIGHT, 1.2 * range_part(groups, 3u));"),
         ("a sphere seen from inside taken for one afar", LIGHT_TREE, "if (d2 > r2) {", "if (d2 > 0.0) {"),
         ("no way by strength alone", LIGHT_CHOICE, "uvec4(ends.x / LIGHT_TREE_WAYS, ends, RANGE_PARTS)",
          "uvec4(0u, ends, RANGE_PARTS)"),
