@@ -3,6 +3,7 @@
 
 #include "vk/check.h"
 #include "vk/device.h"
+#include "vk/live_code.h"
 
 namespace candela::vk {
 namespace {
@@ -103,7 +104,7 @@ std::shared_ptr<const Program> Programs::find_or_compile(
     if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
     const auto program = std::make_shared<Program>();
     create_layouts(device, bindings, push_constant_size, *program);
-    create_pipeline(device, spirv, constants, *program);
+    create_pipeline(device, live_code(spirv, constants), constants, *program);
     device.set_name(VK_OBJECT_TYPE_PIPELINE, program->pipeline.get(), name);
     if (programs_.size() == MAX_PROGRAMS) forget();
     programs_.emplace(std::move(key), program);
