@@ -164,6 +164,17 @@ class Runs(unittest.TestCase):
             self.assertAlmostEqual(figures[what], 64 / 63 * (all_samples - first))
         self.assertTrue(1 < figures["rays"] < 3, figures)  # A camera ray; where there are walls, two more.
 
+    def test_another_light_sampler_is_another_renderer(self):
+        job = renderers.Job(ROOT / "scenes/cornell-box.json", depth=1, width=16, threads=1)
+        figures = {"version": 1, "device": 2, "driver": 3, "cpu_seconds": 4, "render_seconds": 5, "rays_per_sample": 6}
+        for sampler, name in ((None, "candela"), ("power", "candela-power")):
+            with mock.patch.object(renderers, "run", return_value=json.dumps(figures)) as run:
+                renderer = renderers.Candela(CANDELA, sampler)
+                renderer.render(job, 2, 0, "a.exr")
+            self.assertEqual(renderer.name, name)
+            for (command,), _ in run.call_args_list:
+                self.assertEqual(["--light-sampler", "power"] == command[-2:], sampler == "power")
+
     def test_what_is_unknown_or_missing_is_told_with_its_remedy(self):
         known = "cornell-box, suzannes, many-lights, sky, textured, principled"
         self.assertIn(f"unknown scene teapot (known: {known})", compare(CANDELA, "teapot"))

@@ -61,6 +61,8 @@ def arguments():
                         help="the program, or a Python that has the module bpy (default: this Python if it has, else "
                         "blender)")
     parser.add_argument("--without", action="append", choices=["Cycles", "tracer"], default=[], help="leave it out")
+    parser.add_argument("--light-sampler", action="append", choices=["uniform", "power"], default=[],
+                        help="also measure candela with this one instead of its tree")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "rivals",
                         help="folder for pictures; converged ones are kept there (default: build/rivals)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write every run as JSON")
@@ -84,7 +86,7 @@ def make_scenes(blender):
 
 
 def renderers(options):
-    chosen = [Candela(options.candela)]
+    chosen = [Candela(options.candela), *(Candela(options.candela, name) for name in options.light_sampler)]
     if "Cycles" not in options.without:
         chosen.append(Cycles(options.blender))
     if "tracer" not in options.without:

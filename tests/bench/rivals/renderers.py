@@ -45,15 +45,17 @@ def without_start(one, all_samples, spp):
 
 
 class Candela:
-    name = "candela"
-
-    def __init__(self, program):
+    def __init__(self, program, light_sampler=None):
+        """With a light sampler that is not the default, its name is in that of the renderer."""
         self.program = find(program, "build it, or give the path of the program")
+        self.name = f"candela-{light_sampler}" if light_sampler else "candela"
+        self.options = ["--light-sampler", light_sampler] if light_sampler else []
         self.version = None  # Known after the first run.
 
     def render(self, job, spp, seed, output):
         options = ["--size", f"{job.width}x{job.width}", "--max-depth", job.depth, "--rr-depth", RR_DEPTH]
         options += ["--seed", seed, "--aov", "none", "--quiet", "--report", "-", "--allow-any-folder"]
+        options += self.options
         one, all_samples = (
             json.loads(run([self.program, "render", job.scene, "-o", output, "--spp", n, *options])) for n in (1, spp)
         )
