@@ -4,6 +4,7 @@
 import array
 import itertools
 import json
+import math
 import re
 import struct
 import subprocess
@@ -41,6 +42,18 @@ def grey(width, height, value):
     """A picture of that value everywhere, or of value(x, y)."""
     values = [value(x, y) if callable(value) else value for y, x in itertools.product(range(height), range(width))]
     return width, height, [array.array("f", values) for _ in "RGB"]
+
+
+def area_and_volume(mesh):
+    """The area of a mesh [m^2], and the volume that it encloses [m^3], above 0 if its fronts are outside; Gauss's
+    theorem says which."""
+    area = volume = 0
+    for a, b, c in (map(mesh.positions.__getitem__, triangle) for triangle in mesh.triangles):
+        (x, y, z), (u, v, w) = ([q - p for p, q in zip(a, end)] for end in (b, c))
+        normal = (y * w - z * v, z * u - x * w, x * v - y * u)
+        area += sum(n * n for n in normal) ** 0.5 / 2
+        volume += sum(p * n for p, n in zip(a, normal)) / 6
+    return area, volume
 
 
 def ply(rows):
@@ -95,18 +108,30 @@ class Scenes(unittest.TestCase):
     def test_the_cornell_box_is_the_one_that_candela_reads(self):
         self.check(ROOT / "scenes/cornell-box.json")
 
+    def check_closed(self, mesh):
+        edges = [(t[i - 1], t[i]) for t in mesh.triangles for i in range(3)]
+        self.assertEqual(sorted(edges), sorted({(b, a) for a, b in edges}))  # Each once, and once in reverse.
+
     def test_a_box_is_closed_and_has_the_area_and_the_volume_of_a_box(self):
         box = scene_file.mesh({"type": "box", "min": [-1, 2, 5], "max": [1, 5, 9]}, None)
-        edges = [(t[i - 1], t[i]) for t in box.triangles for i in range(3)]
-        self.assertEqual(sorted(edges), sorted({(b, a) for a, b in edges}))  # Each once, and once in reverse.
-        area = volume = 0
-        for a, b, c in (map(box.positions.__getitem__, triangle) for triangle in box.triangles):
-            (x, y, z), (u, v, w) = ([q - p for p, q in zip(a, end)] for end in (b, c))
-            normal = (y * w - z * v, z * u - x * w, x * v - y * u)
-            area += sum(n * n for n in normal) ** 0.5 / 2
-            volume += sum(p * n for p, n in zip(a, normal)) / 6  # Ref: Gauss's theorem; above 0: fronts outside.
+        self.check_closed(box)
+        area, volume = area_and_volume(box)
         self.assertAlmostEqual(area, 2 * (2 * 3 + 3 * 4 + 4 * 2))
         self.assertAlmostEqual(volume, 2 * 3 * 4)
+
+    def test_a_sphere_is_closed_and_has_nearly_the_area_and_the_volume_of_a_sphere(self):
+        center, radius = (1, -2, 3), 2
+        sphere = scene_file.mesh({"type": "sphere", "center": center, "radius": radius}, None)
+        self.check_closed(sphere)
+        for position, normal in zip(sphere.positions, sphere.normals):
+            for p, c, n in zip(position, center, normal):
+                self.assertAlmostEqual(p, c + radius * n)
+            self.assertAlmostEqual(sum(n * n for n in normal), 1)
+        # No point of a facet is farther from a corner than half its diagonal, steps of pi / 64 both ways. So the mesh
+        # is between the sphere and one of cos(pi / 64 / sqrt 2) = 0.9994 of its radius.
+        area, volume = area_and_volume(sphere)
+        self.assertTrue(0.9994**2 < area / (4 * math.pi * radius**2) < 1, area)
+        self.assertTrue(0.9994**3 < volume / (4 / 3 * math.pi * radius**3) < 1, volume)
 
     def test_boxes_and_turned_meshes_are_those_that_candela_reads(self):
         turn = [{"rotate": 30, "axis": [0, 1, 0]}, {"translate": [5, 1, -2]}]
@@ -176,7 +201,8 @@ class Runs(unittest.TestCase):
                 self.assertEqual(["--light-sampler", "power"] == command[-2:], sampler == "power")
 
     def test_what_is_unknown_or_missing_is_told_with_its_remedy(self):
-        known = "cornell-box, suzannes, many-lights, sky, textured, principled"
+        known = "cornell-box, suzannes, many-lights, sky, textured, principled, street, room, "
+        known += "lit-primitives, lit-suzanne, lit-textures, lit-glass, lit-lights"
         self.assertIn(f"unknown scene teapot (known: {known})", compare(CANDELA, "teapot"))
         self.assertIn("cannot run /no/candela: build it, or give", compare("/no/candela"))
         remedy = "install Blender, or name it by --blender: its program, or a Python with the module bpy, or use --without"

@@ -25,6 +25,7 @@ from renderers import BLENDER_REMEDY, Candela, Cycles, Job, Tracer, find, run, r
 
 ROOT = Path(__file__).resolve().parents[3]
 SCENES_FOLDER = ROOT / "tests" / "bench" / "scenes"
+LIT_BY_IMAGE = [f"lit-{name}" for name in ("primitives", "suzanne", "textures", "glass", "lights")]
 # Scene file, and the most scattering vertices.
 SCENES = {
     "cornell-box": (ROOT / "scenes" / "cornell-box.json", 5),
@@ -33,13 +34,22 @@ SCENES = {
     "sky": (SCENES_FOLDER / "sky.json", 5),
     "textured": (SCENES_FOLDER / "made" / "textured.json", 5),
     "principled": (SCENES_FOLDER / "made" / "principled.json", 8),
-}
+    "street": (SCENES_FOLDER / "made" / "street" / "street.json", 6),
+    "room": (SCENES_FOLDER / "made" / "room.json", 6),
+} | {name: (SCENES_FOLDER / "made" / f"{name}.json", 8) for name in LIT_BY_IMAGE}
 # What the tracer does not know.
-BEYOND_THE_TRACER = {"textured": "textures", "principled": "principled materials"}
+BEYOND_THE_TRACER = {"textured": "textures", "principled": "principled materials", "street": "textures",
+                     "room": "spheres that emit"} | {name: "principled materials" for name in LIT_BY_IMAGE}
+MADE_BY_PYTHON = {
+    "many-lights.json": [SCENES_FOLDER / "make_many_lights.py"],
+    "room.json": [SCENES_FOLDER / "make_room.py"],
+    "street/street.json": [ROOT / "scenes" / "make_street.py", SCENES_FOLDER / "made" / "street"],
+}
 MADE_BY_BLENDER = {
     "suzanne.ply": "make_suzanne.py",
     "textured.json": "make_textured.py",
     "principled.json": "make_principled.py",
+    f"{LIT_BY_IMAGE[0]}.json": "make_lit_by_image.py",
 }
 CALIBRATION_SPP = 8
 REFERENCE_SEED = 1000  # The measured runs have the seeds 0, 1, ...
@@ -78,8 +88,9 @@ def arguments():
 
 def make_scenes(blender):
     """Makes what the scenes need and the repository does not have."""
-    if not (SCENES_FOLDER / "made" / "many-lights.json").exists():
-        run([sys.executable, SCENES_FOLDER / "make_many_lights.py"])
+    for made, command in MADE_BY_PYTHON.items():
+        if not (SCENES_FOLDER / "made" / made).exists():
+            run([sys.executable, *command])
     for made, script in MADE_BY_BLENDER.items():
         if not (SCENES_FOLDER / "made" / made).exists():
             run_in_blender(find(blender, f"{BLENDER_REMEDY}; it makes {made}"), SCENES_FOLDER / script)

@@ -198,11 +198,12 @@ def reflecting(name, material, folder):
     return graph.finish(graph.cut(material, MODELS[material["type"]](graph, material)))
 
 
-def emitting(name, radiance):
-    """Light from the front side alone."""
-    graph = Graph(name, None)
+def emitting(name, radiance, folder):
+    """Light from the front side alone, and light samples there alone."""
+    graph = Graph(name, folder)
     back = graph.node("NewGeometry").outputs["Backfacing"]
-    return graph.finish(graph.node("Emission", (*radiance, 1), graph.math("SUBTRACT", 1, back)).outputs[0])
+    graph.material.cycles.emission_sampling = "FRONT"
+    return graph.finish(graph.node("Emission", graph.color(radiance), graph.math("SUBTRACT", 1, back)).outputs[0])
 
 
 MODELS = {

@@ -23,6 +23,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import scene_file  # noqa: E402 (needs the path)
 from cycles_materials import emitting, reflecting  # noqa: E402
 
+DARK_CORE = 0.998  # Radius of what is inside a sphere of light, of its own.
+
 
 class ToBlender:
     """World space, from candela's axes to Blender's: +Z is up, and the middle of a sky's image lies towards +X. The
@@ -50,16 +52,63 @@ def blender_mesh(name, made, to_blender):
     return mesh
 
 
+def add_object(name, data):
+    made = bpy.data.objects.new(name, data)
+    bpy.context.scene.collection.objects.link(made)
+    return made
+
+
+def add_sphere_light(name, shape, to_blender):
+    """A point light with a radius, which is an exact sphere. Rays pass it, so a dark shape must be inside."""
+    assert "transform" not in shape, "spheres that emit are not moved"
+    light = bpy.data.lights.new(name, "POINT")
+    light.shadow_soft_size, light.use_soft_falloff = shape["radius"], False
+    light.color = shape["emission"]
+    light.energy = 4 * math.pi**2 * shape["radius"] ** 2  # [W] for a radiance of 1.
+    made = add_object(name, light)
+    made.location = to_blender(shape["center"])
+    made.visible_camera = True
+
+
 def add_shapes(scene, folder, to_blender):
-    materials = {name: reflecting(name, m, folder) for name, m in scene["materials"].items()}
-    for i, shape in enumerate(scene["shapes"]):
-        mesh = blender_mesh(f"shape {i}", scene_file.mesh(shape, folder), to_blender)
-        if "emission" in shape:
-            assert "material" not in shape, "Cycles' emission node does not reflect"
-            mesh.materials.append(emitting(f"emission {i}", shape["emission"]))
+    materials = {name: reflecting(name, m, folder) for name, m in scene.get("materials", {}).items()}
+    dark = emitting("dark", [0, 0, 0], folder)
+    emitters = {}
+    for i, shape in enumerate(scene.get("shapes", [])):
+        name = f"shape {i}"
+        if "emission" not in shape:
+            material = materials[shape["material"]]
         else:
-            mesh.materials.append(materials[shape["material"]])
-        bpy.context.scene.collection.objects.link(bpy.data.objects.new(f"shape {i}", mesh))
+            assert "material" not in shape, "Cycles' emission node does not reflect"
+            if shape["type"] == "sphere":
+                add_sphere_light(f"light {i}", shape, to_blender)
+                shape, material = shape | {"radius": DARK_CORE * shape["radius"]}, dark
+            else:
+                told = json.dumps(shape["emission"])
+                if told not in emitters:
+                    emitters[told] = emitting(f"emission {i}", shape["emission"], folder)
+                material = emitters[told]
+        mesh = blender_mesh(name, scene_file.mesh(shape, folder), to_blender)
+        mesh.materials.append(material)
+        add_object(name, mesh)
+
+
+def add_model(path, to_blender):
+    """A glTF file, by Blender's importer, which has its own axes: glTF's +Y is +Z, and +Z is -Y."""
+    bpy.ops.import_scene.gltf(filepath=str(path))
+    turn = to_blender.turn.to_4x4() @ Matrix.Rotation(math.radians(-90), 4, "X")
+    for made in bpy.context.scene.objects:
+        if not made.parent:
+            made.matrix_world = turn @ made.matrix_world
+
+
+def add_lights(lights, to_blender):
+    for i, light in enumerate(lights):
+        assert light["type"] == "directional", "lights without a surface must be directional"
+        sun = bpy.data.lights.new(f"sun {i}", "SUN")
+        sun.angle, sun.energy, sun.color = 0, 1, light["irradiance"]
+        direction = to_blender(light["direction"])
+        add_object(f"sun {i}", sun).rotation_euler = direction.to_track_quat("-Z", "Y").to_euler()
 
 
 def add_camera(camera, to_blender):
@@ -71,9 +120,8 @@ def add_camera(camera, to_blender):
     right = to_blender(camera.get("up", [0, 1, 0])).cross(backward).normalized()
     pose = Matrix((right, backward.cross(right), backward)).transposed().to_4x4()
     pose.translation = position
-    camera = bpy.data.objects.new("camera", data)
+    camera = add_object("camera", data)
     camera.matrix_world = pose
-    bpy.context.scene.collection.objects.link(camera)
     bpy.context.scene.camera = camera
 
 
@@ -133,7 +181,10 @@ def main(path, output, width, spp, depth, seed, threads):
     environment = scene.get("environment", {})
     to_blender = ToBlender(environment.get("rotation", 0))
     bpy.ops.wm.read_factory_settings(use_empty=True)
+    if "scene" in scene:
+        add_model(folder / scene["scene"], to_blender)
     add_shapes(scene, folder, to_blender)
+    add_lights(scene.get("lights", []), to_blender)
     add_camera(next(iter(scene["cameras"].values())), to_blender)
     add_environment(environment, folder)
     set_up(int(width), int(depth), int(seed), int(threads))

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 # A string, which stays, or a comment, which becomes a space.
 STRING_OR_COMMENT = re.compile(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
+SPHERE_ROWS = 64
 BOX_SIDES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
 
 
@@ -38,8 +39,8 @@ def two_triangles(a, b, c, d):
 
 
 def read_ply(path):
-    """A mesh as make_suzanne.py and make_textured.py write it: floats for positions and normals, and perhaps texture
-    coordinates."""
+    """A mesh as make_suzanne.py, make_textured.py and make_street.py write it: floats for positions and normals, and
+    perhaps texture coordinates."""
     header, _, data = path.read_bytes().partition(b"end_header\n")
     vertices, faces = (int(n) for n in re.findall(rb"element \w+ (\d+)", header))
     floats = len(re.findall(rb"property float", header))
@@ -48,6 +49,26 @@ def read_ply(path):
     triangles = [row[1:] for row in struct.iter_unpack("<B3i", data[end : end + 13 * faces])]
     uvs = [row[6:] for row in rows] if floats == 8 else None
     return Mesh([row[:3] for row in rows], [row[3:6] for row in rows], triangles, uvs)
+
+
+def sphere(center, radius):
+    """A sphere of triangles, whose corners lie on it."""
+    columns = 2 * SPHERE_ROWS
+    normals = [(0, -1, 0)]
+    for row in range(1, SPHERE_ROWS):
+        up = math.pi * (row / SPHERE_ROWS - 0.5)
+        around = [2 * math.pi * column / columns for column in range(columns)]
+        normals += [(math.cos(up) * math.cos(a), math.sin(up), -math.cos(up) * math.sin(a)) for a in around]
+    normals.append((0, 1, 0))
+    top = len(normals) - 1
+    triangles = []
+    for i in range(columns):
+        j = (i + 1) % columns
+        triangles += [(0, 1 + j, 1 + i), (top, top - columns + i, top - columns + j)]
+        for first in range(1, top - columns, columns):
+            triangles += two_triangles(first + i, first + j, first + columns + j, first + columns + i)
+    positions = [[c + radius * n for c, n in zip(center, normal)] for normal in normals]
+    return Mesh(positions, normals, triangles)
 
 
 def turned(point, degrees):
@@ -68,10 +89,12 @@ def mesh(shape, folder):
         made = Mesh(corners, None, [triangle for side in BOX_SIDES for triangle in two_triangles(*side)])
     elif kind == "mesh":
         made = Mesh(shape["positions"], shape.get("normals"), shape["triangles"])
+    elif kind == "sphere":
+        made = sphere(shape.get("center", (0, 0, 0)), shape.get("radius", 1))
     elif kind == "ply":
         made = read_ply(folder / shape["file"])
     else:
-        sys.exit(f'scene_file.py knows no shape "{kind}" (known: quad, box, mesh, ply)')
+        sys.exit(f'scene_file.py knows no shape "{kind}" (known: quad, box, mesh, sphere, ply)')
     for step in shape.get("transform", []):
         made = moved(made, step)
     return made
