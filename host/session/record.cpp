@@ -5,6 +5,7 @@
 
 #include "film/sample_range.h"
 #include "render/make_identity.h"
+#include "scene/camera_axes.h"
 #include "session/version.h"
 
 namespace candela {
@@ -14,9 +15,7 @@ namespace {
 // right, y up, and z forwards, so that what is in front of the camera has positive z.
 glm::dmat4 world_to_camera(const Camera& camera) {
     using glm::dvec4;
-    const dvec3 forward = normalize(camera.look_at - camera.position);
-    const dvec3 right = normalize(cross(forward, dvec3(camera.up)));
-    const dvec3 up = cross(right, forward);
+    const auto [right, up, forward] = axes_of(camera);
     const glm::dmat4 axes =
         transpose(glm::dmat4(dvec4(right, 0), dvec4(up, 0), dvec4(forward, 0), dvec4(0, 0, 0, 1)));
     return axes *

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "load/quote.h"
+#include "scene/camera_axes.h"
 
 namespace candela {
 namespace {
@@ -16,16 +17,6 @@ constexpr double POLE_DISTANCE = 0.02;
 // The point that a camera looks at stays at least this fraction of the coordinates away, so that the
 // direction remains defined.
 constexpr double MIN_DISTANCE = 1e-9;
-
-struct Frame {
-    dvec3 right, up, forward;
-};
-
-Frame frame_of(const Camera& camera) {
-    const dvec3 forward = normalize(camera.look_at - camera.position);
-    const dvec3 right = normalize(cross(forward, dvec3(camera.up)));
-    return {right, cross(right, forward), forward};
-}
 
 // `v` turned about the unit vector `axis` by `angle` [rad], counter-clockwise seen from its tip.
 // Ref: Rodrigues 1840.
@@ -79,13 +70,13 @@ void orbit(Camera& camera, float azimuth, float elevation) {
     const double lowest = std::min(now, -limit);
     const double highest = std::max(now, limit);
     const double rise = std::clamp(now + double(elevation), lowest, highest) - now;
-    const dvec3 raised = rotate(out, frame_of(camera).right, -rise);
+    const dvec3 raised = rotate(out, axes_of(camera).right, -rise);
     const dvec3 turned = rotate(raised, pole, -double(azimuth));
     camera.position = camera.look_at + turned * (distance / length(turned));
 }
 
 void pan(Camera& camera, vec2 shift) {
-    const Frame frame = frame_of(camera);
+    const CameraAxes frame = axes_of(camera);
     const double height = camera.ortho_height.value_or(2.0 * std::tan(0.5 * double(camera.vertical_fov)) *
                                                        length(camera.look_at - camera.position));
     move(camera, -height * (double(shift.x) * frame.right + double(shift.y) * frame.up));
@@ -105,7 +96,7 @@ void dolly(Camera& camera, float factor) {
 }
 
 void fly(Camera& camera, dvec3 shift) {
-    const Frame frame = frame_of(camera);
+    const CameraAxes frame = axes_of(camera);
     move(camera, shift.x * frame.right + shift.y * frame.up + shift.z * frame.forward);
 }
 
