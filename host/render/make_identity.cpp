@@ -12,7 +12,7 @@ namespace candela {
 namespace {
 
 // Increases with every change of the records' meaning, since equal numbers then give other pictures.
-constexpr uint32_t RECORDS_VERSION = 5;
+constexpr uint32_t RECORDS_VERSION = 6;
 
 // The shortest text that reads back as that number.
 template <class Number>
@@ -28,6 +28,9 @@ std::string exact(const glm::vec<3, Number>& v) {
 
 std::string perspective_text(const Camera& camera) {
     std::string text = ", field of view " + exact(camera.vertical_fov) + " rad";
+    if (const vec2 offset = camera.principal_offset; offset != vec2(0.0f))
+        text += ", principal point " + exact(offset.x) + ' ' + exact(offset.y) + " off the centre";
+    if (camera.focal_ratio != 1.0f) text += ", focal ratio " + exact(camera.focal_ratio);
     const Lens& lens = camera.lens;
     if (lens.radius > 0.0f) {
         text += ", lens of radius " + exact(lens.radius) + " focused at " + exact(lens.focal_distance);

@@ -128,7 +128,8 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
     // Half the view: at distance 1, or for parallel rays.
     const float half_y = camera.ortho_height ? 0.5f * frame.length(*camera.ortho_height)
                                              : std::tan(0.5f * camera.vertical_fov);
-    const float half_x = half_y * float(settings.size.x) / float(settings.size.y);
+    const vec2 size(settings.size);
+    const float half_x = half_y * size.x / size.y / camera.focal_ratio;
     const Lens& lens = camera.lens;
     static_assert(MAX_BOUNCES == DEPTH_SAFETY_LIMIT);
     const float lens_radius = frame.length(double(lens.radius));
@@ -139,6 +140,7 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .up = half_y * up,
             .forward = forward,
             .full_size = settings.size,
+            .principal_point = 1.0f + 2.0f * camera.principal_offset * vec2(size.y / size.x, 1.0f),
             .crop = {settings.crop.x0, settings.crop.y0},
             .seed = settings.seed,
             .max_depth = std::min(settings.max_depth, DEPTH_SAFETY_LIMIT),

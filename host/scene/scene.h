@@ -29,15 +29,25 @@ struct Lens {
 };
 inline constexpr uint32_t MAX_BLADES = 64;
 
-// A perspective or orthographic camera. Right is cross(forward, up); pixels are square.
+// The most by which a principal point may be off the picture's centre, and the ratio of focal lengths off 1.
+inline constexpr float MAX_PRINCIPAL_OFFSET = 1000.0f;
+inline constexpr float MAX_FOCAL_RATIO = 1000.0f;
+
+// A perspective or orthographic camera. Right is cross(forward, up).
 struct Camera {
     std::string name;
     dvec3 position{0};
     dvec3 look_at{0, 0, -1};
     vec3 up{0, 1, 0};
-    float vertical_fov = 0.0f;  // Full angle [rad], in (0, pi).
+    float vertical_fov = 0.0f;  // Full angle [rad], in (0, pi), that the picture has around its principal point.
+    // Where the axis meets the picture: from its centre to the right and downwards, in heights of the picture.
+    // Each component is at most MAX_PRINCIPAL_OFFSET in size.
+    vec2 principal_offset{0};
+    // The focal length in widths of a pixel over that in heights of a pixel, from 1 / MAX_FOCAL_RATIO to
+    // MAX_FOCAL_RATIO; 1: pixels are square.
+    float focal_ratio = 1.0f;
     // Full height of the view [m], above 0. If there is one, all rays are parallel and leave the plane
-    // through the position; the camera has no field of view and no lens.
+    // through the position; the camera has square pixels around its axis, no field of view and no lens.
     std::optional<double> ortho_height{};
     Lens lens;
     std::optional<uvec2> film_size{};  // Size of the picture [pixels], if the file states it for this camera.

@@ -100,7 +100,7 @@ struct Item {
 
 // The kernel's result.
 struct Result {
-    std::array<uint, 260> words;
+    std::array<uint, 262> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -112,6 +112,7 @@ Records filled(Fields& fields) {
                     .up = fields.f3(),
                     .forward = fields.f3(),
                     .full_size = fields.u2(),
+                    .principal_point = fields.f2(),
                     .crop = fields.u2(),
                     .seed = fields.u(),
                     .max_depth = fields.u(),

@@ -42,6 +42,10 @@ std::string vector(Vec v) {
     return "[" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]";
 }
 
+std::string pair(glm::dvec2 v) {
+    return "[" + number(v.x) + ", " + number(v.y) + "]";
+}
+
 std::string lens_json(const Lens& lens) {
     std::string text =
         R"({ "radius": )" + number(lens.radius) + R"(, "focal_distance": )" + number(lens.focal_distance);
@@ -52,10 +56,22 @@ std::string lens_json(const Lens& lens) {
     return text + " }";
 }
 
-std::string projection_json(const Camera& camera) {
+// The field of view by a film whose height is 1.
+std::string film_json(const Camera& camera, double aspect) {
+    const double focal_length = 0.5 / std::tan(0.5 * double(camera.vertical_fov));
+    const glm::dvec2 middle(0.5 * aspect, 0.5);
+    return ",\n      \"film_size\": " + pair(glm::dvec2(aspect, 1.0)) + ",\n      \"focal_length\": " +
+           pair(focal_length * glm::dvec2(camera.focal_ratio, 1.0)) + ",\n      \"principal_point\": " +
+           pair(middle + glm::dvec2(camera.principal_offset));
+}
+
+std::string projection_json(const Camera& camera, double aspect) {
     if (camera.ortho_height) return ",\n      \"orthographic_height\": " + number(*camera.ortho_height);
-    return ",\n      \"vertical_fov\": " + number(glm::degrees(double(camera.vertical_fov))) +
-           ",\n      \"lens\": " + lens_json(camera.lens);
+    const bool is_plain = camera.principal_offset == vec2(0.0f) && camera.focal_ratio == 1.0f;
+    const std::string view =
+        is_plain ? ",\n      \"vertical_fov\": " + number(glm::degrees(double(camera.vertical_fov)))
+                 : film_json(camera, aspect);
+    return view + ",\n      \"lens\": " + lens_json(camera.lens);
 }
 
 }  // namespace
@@ -79,7 +95,8 @@ void pan(Camera& camera, vec2 shift) {
     const CameraAxes frame = axes_of(camera);
     const double height = camera.ortho_height.value_or(2.0 * std::tan(0.5 * double(camera.vertical_fov)) *
                                                        length(camera.look_at - camera.position));
-    move(camera, -height * (double(shift.x) * frame.right + double(shift.y) * frame.up));
+    const double across = double(shift.x) / double(camera.focal_ratio);
+    move(camera, -height * (across * frame.right + double(shift.y) * frame.up));
 }
 
 void dolly(Camera& camera, float factor) {
@@ -100,11 +117,11 @@ void fly(Camera& camera, dvec3 shift) {
     move(camera, shift.x * frame.right + shift.y * frame.up + shift.z * frame.forward);
 }
 
-std::string camera_json(const Camera& camera, const std::string& name) {
+std::string camera_json(const Camera& camera, const std::string& name, uvec2 size) {
     return "{\n  \"cameras\": {\n    " + json_string(name) +
            ": {\n      \"position\": " + vector(camera.position) +
            ",\n      \"look_at\": " + vector(camera.look_at) + ",\n      \"up\": " + vector(camera.up) +
-           projection_json(camera) + "\n    }\n  }\n}\n";
+           projection_json(camera, double(size.x) / size.y) + "\n    }\n  }\n}\n";
 }
 
 }  // namespace candela

@@ -26,7 +26,8 @@ void dolly(Camera& camera, float factor);
 void fly(Camera& camera, dvec3 shift);
 
 // {"cameras": {NAME: {...}}}: the camera in the syntax of scene files, angles in degrees, to be pasted into a
-// scene. Reading it back gives the same bits.
-std::string camera_json(const Camera& camera, const std::string& name);
+// scene. Reading it back gives the same bits. `size` is that of its picture: the scene's must have the same
+// aspect ratio if the principal point is off the middle, or pixels are not square.
+std::string camera_json(const Camera& camera, const std::string& name, uvec2 size);
 
 }  // namespace candela

@@ -44,7 +44,7 @@ void Viewer::save_as_asked(const ViewRequests& requests) {
     if (requests.save_exr) save_as_next(".exr", [this](const std::string& path) { save(path); });
     if (requests.save_camera) {
         save_as_next("-camera.json", [this](const std::string& path) {
-            write_finished_work(path, camera_json(state_.camera, "view"));
+            write_finished_work(path, camera_json(state_.camera, "view", state_.settings.size));
         });
     }
 }

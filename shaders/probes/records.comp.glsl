@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 260u
+#define RESULT_WORDS 262u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -13,6 +13,7 @@ void put_parameters(Parameters p) {
     put(p.up);
     put(p.forward);
     put(p.full_size);
+    put(p.principal_point);
     put(p.crop);
     put(p.seed);
     put(p.max_depth);

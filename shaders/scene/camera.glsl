@@ -10,13 +10,13 @@
 // Direction of the pinhole ray through a film position in pixels of the whole picture: origin top left, y downwards.
 // Its length along the camera's axis is 1.
 vec3 camera_film_direction(Parameters camera, vec2 film) {
-    vec2 s = 2.0 * film / vec2(camera.full_size) - 1.0;
+    vec2 s = 2.0 * film / vec2(camera.full_size) - camera.principal_point;
     return camera.forward + s.x * camera.right - s.y * camera.up;
 }
 
 // The ray of an orthographic camera through a film position. Unit direction.
 Ray camera_ray_parallel(Parameters camera, vec2 film) {
-    vec2 s = 2.0 * film / vec2(camera.full_size) - 1.0;
+    vec2 s = 2.0 * film / vec2(camera.full_size) - camera.principal_point;
     return Ray(camera.position + s.x * camera.right - s.y * camera.up, camera.forward);
 }
 

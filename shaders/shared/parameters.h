@@ -1,11 +1,12 @@
-// Record of the constants of an image, 12 words of uvec4 in a uniform buffer; and the push constants of one
+// Record of the constants of an image, 13 words of uvec4 in a uniform buffer; and the push constants of one
 // dispatch.
 //
-//   0: position.xyz, seed         5: lens_x.xyz, focal_distance
-//   1: right.xyz, max_depth       6: lens_y.xyz, blades
-//   2: up.xyz, rr_depth           7: environment_size.xy, environment_turn.xy
-//   3: forward.xyz, first_sample  8: camera_media.xy, sky_rival
-//   4: full_size.xy, crop.xy       9 to 11: lights
+//   0: position.xyz, seed         6: lens_y.xyz, blades
+//   1: right.xyz, max_depth       7: environment_size.xy, environment_turn.xy
+//   2: up.xyz, rr_depth           8: camera_media.xy, sky_rival
+//   3: forward.xyz, first_sample  9: principal_point.xy
+//   4: full_size.xy, crop.xy      10 to 12: lights
+//   5: lens_x.xyz, focal_distance
 #ifndef SHARED_PARAMETERS_H
 #define SHARED_PARAMETERS_H
 
@@ -17,18 +18,19 @@
 namespace candela {
 #endif
 
-const uint PARAMETERS_WORDS = 12u;
+const uint PARAMETERS_WORDS = 13u;
 
 struct Parameters {
-    // The pinhole ray through film position s in [-1, 1]^2 (x to the right, y up) has the direction
-    // forward + s.x right + s.y up: `right` and `up` are scaled by the tangents of half the field of view. If
-    // the camera is orthographic, the ray has the direction forward and begins at position + s.x right + s.y
-    // up.
+    // The pinhole ray through film position s has the direction forward + s.x right + s.y up, where s is the
+    // distance from the principal point, x to the right and y up, in halves of the picture's width and height:
+    // `right` and `up` are scaled by the tangents of half the field of view. If the camera is orthographic, the
+    // ray has the direction forward and begins at position + s.x right + s.y up.
     vec3 position;
     vec3 right;
     vec3 up;
     vec3 forward;
-    uvec2 full_size;  // Pixels of the whole picture.
+    uvec2 full_size;       // Pixels of the whole picture.
+    vec2 principal_point;  // From its top left corner, in halves of its width and height; (1, 1): in the middle.
     uvec2 crop;       // Top left pixel of the accumulation image in the whole picture.
     uint seed;
     uint max_depth;  // The most scattering vertices, <= DEPTH_SAFETY_LIMIT.
@@ -69,6 +71,7 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         uvec4(p.environment_size.x, p.environment_size.y, floatBitsToUint(p.environment_turn.x),
               floatBitsToUint(p.environment_turn.y)),
         uvec4(p.camera_media.x, p.camera_media.y, floatBitsToUint(p.sky_rival), 0),
+        uvec4(floatBitsToUint(p.principal_point.x), floatBitsToUint(p.principal_point.y), 0, 0),
         lights[0],
         lights[1],
         lights[2],
@@ -98,7 +101,8 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     p.environment_turn = uintBitsToFloat(w[7].zw);
     p.camera_media = w[8].xy;
     p.sky_rival = uintBitsToFloat(w[8].z);
-    p.lights = light_groups_unpack(w[9], w[10], w[11]);
+    p.principal_point = uintBitsToFloat(w[9].xy);
+    p.lights = light_groups_unpack(w[10], w[11], w[12]);
     return p;
 }
 

@@ -34,8 +34,9 @@ TEST_F(RenderFiles, AttributesTellHowTheImageWasMade) {
                                                " --size 32x32 --spp 4 -o '" + output + "' --seed 7");
 }
 
-// The matrices in the image's attributes project its positions to their own pixels and depths.
-void expect_matrices_agree(const Image& image) {
+// The matrices in the image's attributes project its positions to their own pixels and depths. `point`: the
+// principal point [pixels].
+void expect_matrices_agree(const Image& image, vec2 point) {
     const mat4 camera = std::get<mat4>(image.attributes.at("worldToCamera"));
     const mat4 ndc = std::get<mat4>(image.attributes.at("worldToNDC"));
     size_t hits = 0;
@@ -49,20 +50,28 @@ void expect_matrices_agree(const Image& image) {
         EXPECT_NEAR(projected.x / projected.w, (float(i % 40) + 0.5f) / 40, 1e-4f);
         EXPECT_NEAR(projected.y / projected.w, (float(i / 40) + 0.5f) / 24, 1e-4f);
         EXPECT_NEAR((camera * p).z, depth, 1e-4f * depth);
-        // Left-handed: x is positive in the right half of the picture, y in the upper one.
-        EXPECT_EQ((camera * p).x > 0, i % 40 >= 20);
-        EXPECT_EQ((camera * p).y > 0, i / 40 < 12);
+        // Left-handed: x is positive to the right of the axis, y above it.
+        EXPECT_EQ((camera * p).x > 0, float(i % 40) >= point.x);
+        EXPECT_EQ((camera * p).y > 0, float(i / 40) < point.y);
     }
     EXPECT_GT(hits, 100u);
 }
 
 TEST_F(RenderFiles, CameraMatricesAgreeWithThePositions) {
-    for (const std::string& scene :
-         {MESH, std::string(CANDELA_SCENES "/../tests/references/orthographic.json")}) {
+    const std::string shifted = write("shifted.json", R"({
+        "cameras": {"main": {"position": [0, 0, 4], "look_at": [0.1, 0, 0], "film_size": [400, 240],
+                             "focal_length": [400, 300], "principal_point": [150, 130]}},
+        "film": {"size": [40, 24]}, "materials": {"white": {"type": "diffuse", "reflectance": 0.5}},
+        "shapes": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "white"}]})");
+    const vec2 middle(20, 12);
+    for (const auto& [scene, point] :
+         {std::pair(MESH, middle),
+          std::pair(std::string(CANDELA_SCENES "/../tests/references/orthographic.json"), middle),
+          std::pair(shifted, vec2(15, 13))}) {
         SCOPED_TRACE(scene);
         ASSERT_EQ(candela({"render", scene, "-o", file("a.exr"), "--size", "40x24", "--spp", "1"}).exit_code,
                   0);
-        expect_matrices_agree(read_exr(file("a.exr")));
+        expect_matrices_agree(read_exr(file("a.exr")), point);
     }
 }
 

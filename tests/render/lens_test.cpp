@@ -55,6 +55,24 @@ TEST_F(LensTest, ThePlaneOfFocusIsSharp) {
     }
 }
 
+// The same with a principal point off the middle and pixels that are not square: the plane of focus is the one
+// across the camera's axis.
+TEST_F(LensTest, ThePlaneOfFocusIsAcrossTheAxis) {
+    constexpr uint32_t SPP = 16;
+    Scene scene = black_scene({});
+    scene.cameras[0].principal_offset = vec2(0.6f, -0.4f);
+    scene.cameras[0].focal_ratio = 0.5f;
+    // Around the middle of the picture, where a metre ahead is 0.108 m to the left and 0.036 m down.
+    add_shape(scene, parallelogram(vec3(-0.5f, -0.21f, -3), vec3(0.3f, 0, 0), vec3(0, 0.12f, 0)), 0,
+              Emission{vec3(BRIGHT), false});
+    const Image pinhole = image_of(render(scene, settings(1), SPP));
+    scene.cameras[0].lens = {.radius = 0.3f, .focal_distance = 3, .blades = 0, .rotation = 0};
+    const Image lens = image_of(render(scene, settings(1), SPP));
+    for (size_t i = 0; i < lens.pixel_count(); ++i)
+        ASSERT_NEAR(plane(lens, "", 0)[i], plane(pinhole, "", 0)[i], 1.01 * double(BRIGHT) / SPP);
+    EXPECT_GT(image_mean(lens, 0).mean, 10.0);
+}
+
 // A picture of a small lamp out of focus, whose moments are estimates with a known variance.
 struct Blur {
     const Image& image;
@@ -83,6 +101,29 @@ struct Blur {
         return {value, std::sqrt(variance) / sum};
     }
 };
+
+// Every point of the aperture sees a lamp elsewhere, by as much to each side of where the pinhole sees it.
+TEST_F(LensTest, ABlurLiesAroundThePinholesImage) {
+    constexpr float DISTANCE = 6.0f, LAMP_RADIUS = 0.03f;
+    Scene scene = black_scene({.radius = 0.05f, .focal_distance = 2, .blades = 0, .rotation = 0});
+    scene.cameras[0].principal_offset = vec2(0.6f, -0.4f);
+    scene.cameras[0].focal_ratio = 0.5f;
+    const dvec3 lamp(-0.1 * DISTANCE, -0.03 * DISTANCE, -DISTANCE);
+    add_shape(scene, Disk{lamp, dvec3(LAMP_RADIUS, 0, 0), dvec3(0, LAMP_RADIUS, 0)}, 0,
+              Emission{vec3(BRIGHT), false});
+    const Image image = image_of(render(scene, settings(2), 512));
+    const Blur blur{image, 1.0};  // In pixels.
+    // One metre away, a pixel is as high as 2 HALF_WIDTH / SIZE, and twice as wide.
+    const double pixel = 2.0 * HALF_WIDTH / SIZE;
+    const double x = -0.1 / (2.0 * pixel) + 0.6 * SIZE, y = -0.03 / pixel + 0.4 * SIZE;
+    ASSERT_LT(std::abs(x), 0.1 * SIZE);  // All of the blur is in the picture.
+    ASSERT_LT(std::abs(y), 0.1 * SIZE);
+    const auto [mean_x, error_x] = blur.mean([](auto z) { return z.real(); });
+    const auto [mean_y, error_y] = blur.mean([](auto z) { return z.imag(); });
+    EXPECT_GT(normal_p_value((mean_x - x) / error_x), TEST_ALPHA) << mean_x << ", not " << x;
+    EXPECT_GT(normal_p_value((mean_y - y) / error_y), TEST_ALPHA) << mean_y << ", not " << y;
+    EXPECT_LT(std::max(error_x, error_y), 0.5);
+}
 
 struct Aperture {
     uint32_t blades;

@@ -1,5 +1,6 @@
 // Cameras: place and view, field of view (an angle, or film and focal length) and lens, or parallel
 // projection.
+#include <algorithm>
 #include <cmath>
 
 #include "load/json/loader_parts.h"
@@ -7,37 +8,73 @@
 namespace candela {
 namespace {
 
-// The full vertical field of view [rad] of a film behind a lens of this focal length.
-double angle_of_film(const Node& size_node, const Node& focal_length, const Film& film) {
+// Width and height of the film, whose aspect ratio must be the picture's.
+glm::dvec2 read_film_size(const Node& node, const Film& film) {
     constexpr double ASPECT_TOLERANCE = 1e-3;  // Film sizes are given to about three digits.
-    const std::vector<Node> sides = size_node.elements();
-    if (sides.size() != 2) size_node.fail_expected("two numbers [width, height]");
-    const double width = sides[0].positive();
-    const double height = sides[1].positive();
+    const std::vector<Node> sides = node.elements();
+    if (sides.size() != 2) node.fail_expected("two numbers [width, height]");
+    const glm::dvec2 size(sides[0].positive(), sides[1].positive());
     const double aspect = double(film.size.x) / film.size.y;
-    if (std::abs(width / height / aspect - 1.0) > ASPECT_TOLERANCE) {
-        size_node.fail("the aspect ratio of film_size must be that of the film's size, " +
-                       std::to_string(film.size.x) + " by " + std::to_string(film.size.y) +
-                       " pixels; pixels are square");
+    if (std::abs(size.x / size.y / aspect - 1.0) > ASPECT_TOLERANCE) {
+        node.fail("the aspect ratio of film_size must be that of the film's size, " +
+                  std::to_string(film.size.x) + " by " + std::to_string(film.size.y) +
+                  " pixels; pixels are square");
     }
-    return 2.0 * std::atan(height / (2.0 * focal_length.positive()));
+    return size;
 }
 
-float read_vertical_fov(const Node& node, const Film& film) {
+// One focal length, or two along x and y.
+glm::dvec2 read_focal_length(const Node& node) {
+    if (!node.is_number() && !node.is_array()) node.fail_expected("one number or two [x, y]");
+    if (node.is_number()) return glm::dvec2(node.positive());
+    const std::vector<Node> both = node.elements();
+    if (both.size() != 2) node.fail_expected("one number or two [x, y]");
+    const glm::dvec2 length(both[0].positive(), both[1].positive());
+    const double ratio = length.x / length.y;
+    if (!(ratio <= double(MAX_FOCAL_RATIO) && ratio >= 1.0 / double(MAX_FOCAL_RATIO)))
+        node.fail("one focal length is more than 1000 times the other; both are in the unit of film_size");
+    return length;
+}
+
+// The principal point off the middle of the film, in the film's heights.
+vec2 read_principal_offset(const Node& node, glm::dvec2 film_size) {
+    const std::vector<double> point = node.numbers(2);
+    const vec2 offset((glm::dvec2(point[0], point[1]) - 0.5 * film_size) / film_size.y);
+    if (!(std::max(std::abs(offset.x), std::abs(offset.y)) <= MAX_PRINCIPAL_OFFSET)) {
+        node.fail(
+            "the principal point is more than 1000 heights of the film off its middle; it is in the unit of "
+            "film_size, from the upper left corner");
+    }
+    return offset;
+}
+
+// Reads the field of view, by an angle or by film and focal length.
+void read_view(const Node& node, const Film& film, Camera& camera) {
     const auto degrees = node.find("vertical_fov");
     const auto size = node.find("film_size");
     const auto focal_length = node.find("focal_length");
+    const auto principal_point = node.find("principal_point");
     if (degrees ? (size || focal_length) : !(size && focal_length)) {
         node.fail(
             "a camera needs either vertical_fov, or film_size and focal_length, or orthographic_height");
     }
-    const float fov =
-        float(degrees ? glm::radians(degrees->number()) : angle_of_film(*size, *focal_length, film));
-    if (!(fov > 0.0f && fov < PI)) {
+    if (degrees) {
+        if (principal_point) {
+            principal_point->fail(
+                "a principal point is a place on the film; give film_size and focal_length instead of "
+                "vertical_fov");
+        }
+        camera.vertical_fov = float(glm::radians(degrees->number()));
+    } else {
+        const glm::dvec2 sides = read_film_size(*size, film), length = read_focal_length(*focal_length);
+        camera.vertical_fov = float(2.0 * std::atan(sides.y / (2.0 * length.y)));
+        camera.focal_ratio = float(length.x / length.y);
+        if (principal_point) camera.principal_offset = read_principal_offset(*principal_point, sides);
+    }
+    if (!(camera.vertical_fov > 0.0f && camera.vertical_fov < PI)) {
         (degrees ? *degrees : *focal_length)
             .fail("the vertical field of view must lie between 0 and 180 degrees");
     }
-    return fov;
 }
 
 Lens read_lens(const Node& node) {
@@ -60,7 +97,7 @@ Lens read_lens(const Node& node) {
 
 // The height of the view of a camera with parallel rays, which has none of the keys of a perspective one.
 double read_ortho_height(const Node& node, const Node& height) {
-    for (const char* key : {"vertical_fov", "film_size", "focal_length", "lens"}) {
+    for (const char* key : {"vertical_fov", "film_size", "focal_length", "principal_point", "lens"}) {
         if (const auto other = node.find(key)) {
             other->fail(
                 std::string("a camera with orthographic_height is sharp everywhere and has no field of "
@@ -95,7 +132,7 @@ Camera read_camera(const Node& node, const Film& film) {
         camera.ortho_height = read_ortho_height(node, *height);
         return camera;
     }
-    camera.vertical_fov = read_vertical_fov(node, film);
+    read_view(node, film, camera);
     if (const auto lens = node.find("lens")) camera.lens = read_lens(*lens);
     return camera;
 }

@@ -67,7 +67,8 @@ TEST_F(PictureIdentity, EveryPartOfTheCameraIsPartOfIt) {
         [](Camera& c) { c.up.x += 0x1p-10f; },       [](Camera& c) { c.vertical_fov *= 1.0f + 0x1p-20f; },
         [](Camera& c) { c.lens.radius *= 1.5f; },    [](Camera& c) { c.lens.focal_distance *= 1.5f; },
         [](Camera& c) { ++c.lens.blades; },          [](Camera& c) { c.lens.rotation += 0.1f; },
-        [](Camera& c) { c.ortho_height = 2.0; }};
+        [](Camera& c) { c.ortho_height = 2.0; },     [](Camera& c) { c.principal_offset.x = 0.1f; },
+        [](Camera& c) { c.focal_ratio = 1.1f; },     [](Camera& c) { c.principal_offset.y = 0.1f; }};
     for (const auto& change : changes) {
         const std::string message =
             after([&](RenderSettings&, Scene& scene) { change(scene.cameras.front()); });

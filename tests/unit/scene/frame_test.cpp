@@ -73,8 +73,8 @@ TEST(SceneFrame, BelongsToTheIdentity) {
     const std::string text = difference(theirs, ours);
     EXPECT_EQ(
         text,
-        "it shows another scene, or another version of it, its frame is origin 0 0 0, unit 2 m, records 5, "
-        "not origin 0 0 0, unit 1 m, records 5");
+        "it shows another scene, or another version of it, its frame is origin 0 0 0, unit 2 m, records 6, "
+        "not origin 0 0 0, unit 1 m, records 6");
     Image image;
     set_identity(image, ours);
     EXPECT_EQ(difference(identity_of(image, "a.exr"), ours), "its size is 0x0, not 512x512");

@@ -109,11 +109,33 @@ TEST(CameraControl, AnOrthographicCameraPansAndZooms) {
         for (int i = 0; i < 1000; ++i)
             dolly(moved, factor);
         EXPECT_TRUE(*moved.ortho_height > 0.0 && is_finite(vec3(float(*moved.ortho_height))));
-        std::string text = camera_json(moved, "far");
+        std::string text = camera_json(moved, "far", uvec2(640, 480));
         text.insert(text.rfind('}'), R"(, "shapes": [])");
         SceneFolder folder;
         EXPECT_EQ(folder.load(text).cameras[0].ortho_height, moved.ortho_height);
     }
+}
+
+// It is read back for a film of the same shape, and of another size.
+TEST(CameraControl, JsonHasThePrincipalPointAndBothFocalLengths) {
+    Camera saved = camera();
+    for (const float fov : {0.1f, 1.0f / 3, 2.9f}) {
+        saved.vertical_fov = fov;
+        saved.principal_offset = vec2(0.1f, -3.0f / 7);
+        saved.focal_ratio = 1.01f;
+        std::string text = camera_json(saved, "main", uvec2(1920, 1080));
+        text.insert(text.rfind('}'), R"(, "film": {"size": [640, 360]}, "shapes": [])");
+        SceneFolder folder;
+        EXPECT_EQ(folder.load(text).cameras.at(0), saved) << text;
+    }
+}
+
+TEST(CameraControl, APanMovesThePictureAsFarWithAnyPixels) {
+    Camera moved = camera();
+    moved.focal_ratio = 2.0f;
+    pan(moved, vec2(0.25f, 0.25f));
+    // The picture is 4 m high where the camera looks; along x, pixels show half as much.
+    expect_near(moved.look_at, dvec3(-0.5, -1, 0));
 }
 
 TEST(CameraControl, AFlightGoesAlongTheCamerasAxes) {
@@ -134,7 +156,7 @@ TEST(CameraControl, TheLoaderReadsItsJsonBackBitForBit) {
         saved.lens = lens;
         for (const float fov : {0.1f, 0.686f, 1.0f / 3, 3.1f}) {
             saved.vertical_fov = fov;
-            std::string text = camera_json(saved, "a \"view\"");
+            std::string text = camera_json(saved, "a \"view\"", uvec2(640, 480));
             text.insert(text.rfind('}'), R"(, "shapes": [])");
             SceneFolder folder;
             const Scene scene = folder.load(text);
@@ -148,7 +170,7 @@ TEST(CameraControl, TheLoaderReadsItsJsonBackBitForBit) {
     saved.lens = {};
     saved.vertical_fov = 0.0f;
     saved.ortho_height = 1.0 / 3;
-    std::string text = camera_json(saved, "main");
+    std::string text = camera_json(saved, "main", uvec2(640, 480));
     text.insert(text.rfind('}'), R"(, "shapes": [])");
     SceneFolder folder;
     EXPECT_EQ(folder.load(text).cameras.at(0), saved) << text;

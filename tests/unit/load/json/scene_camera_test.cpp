@@ -87,6 +87,44 @@ TEST(SceneCamera, ReadsFilmAndFocalLengthInAnyUnit) {
     EXPECT_FLOAT_EQ(scene.cameras[0].vertical_fov, PI / 2);
 }
 
+TEST(SceneCamera, ReadsThePrincipalPointAndTwoFocalLengths) {
+    SceneFolder folder;
+    const auto film = [](const std::string& members) {
+        return camera(R"({"position": [0, 0, 1], "look_at": [0, 0, 0], "film_size": [200, 100], )" + members +
+                      "}");
+    };
+    const Scene scene = folder.load(film(R"("focal_length": [75, 50], "principal_point": [90, 70])"));
+    EXPECT_FLOAT_EQ(scene.cameras[0].vertical_fov, PI / 2);
+    EXPECT_EQ(scene.cameras[0].focal_ratio, 1.5f);
+    EXPECT_EQ(scene.cameras[0].principal_offset, vec2(-0.1f, 0.2f));
+    const Scene plain = folder.load(film(R"("focal_length": 50, "principal_point": [100, 50])"));
+    EXPECT_EQ(plain.cameras[0].focal_ratio, 1.0f);
+    EXPECT_EQ(plain.cameras[0].principal_offset, vec2(0.0f));
+
+    const std::string lengths = "\"focal_length\": expected one number or two [x, y], found ";
+    folder.expect_error(film(R"("focal_length": @[50, 50, 1])"), lengths + "[50, 50, 1]");
+    folder.expect_error(film(R"("focal_length": @"50")"), lengths + "\"50\"");
+    folder.expect_error(film(R"("focal_length": [50, @0])"),
+                        "\"focal_length\": expected a number above 0, found 0");
+    for (const char* both : {"@[50, 0.049]", "@[0.049, 50]"}) {
+        folder.expect_error(
+            film(R"("focal_length": )" + std::string(both)),
+            "one focal length is more than 1000 times the other; both are in the unit of film_size");
+    }
+    folder.expect_error(film(R"("focal_length": 50, "principal_point": @[1])"),
+                        "\"principal_point\": expected two numbers, found [1]");
+    for (const char* point : {"@[0, 100051]", "@[-3e38, 0]"}) {
+        folder.expect_error(
+            film(R"("focal_length": 50, "principal_point": )" + std::string(point)),
+            "the principal point is more than 1000 heights of the film off its middle; it is in the unit of "
+            "film_size, from the upper left corner");
+    }
+    folder.expect_error(camera(R"({"position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40,
+                                   "principal_point": @[100, 50]})"),
+                        "a principal point is a place on the film; give film_size and focal_length instead "
+                        "of vertical_fov");
+}
+
 TEST(SceneCamera, ReadsAnOrthographicView) {
     SceneFolder folder;
     const auto view = [](const std::string& members) {
@@ -106,6 +144,7 @@ TEST(SceneCamera, ReadsAnOrthographicView) {
     folder.expect_error(view("1, \"vertical_fov\": @40"), remove("vertical_fov"));
     folder.expect_error(view("1, \"film_size\": @[2, 1]"), remove("film_size"));
     folder.expect_error(view("1, \"focal_length\": @1"), remove("focal_length"));
+    folder.expect_error(view("1, \"principal_point\": @[1, 1]"), remove("principal_point"));
     folder.expect_error(view("1, \"lens\": @{\"radius\": 0}"), remove("lens"));
 }
 
