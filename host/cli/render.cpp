@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/attempts.h"
 #include "cli/command.h"
@@ -165,19 +166,34 @@ CommandFiles files_of(const SceneOptions& scene, const OutputOptions& outputs,
     return files;
 }
 
+// Gives the scene the cameras that the options ask for, if there are any, instead of its own.
+void take_cameras(const RenderOptions& options, Scene& scene) {
+    std::vector<Camera> cameras = options.cameras.cameras(scene, options.rendering.picture.size);
+    if (cameras.empty()) return;
+    if (cameras.size() > 1 && !options.scene.camera && !options.cameras.file) {
+        throw Error("there are " + std::to_string(cameras.size()) + " views, \"" + cameras.front().name +
+                        "\" to \"" + cameras.back().name + "\"; choose one of them with --camera",
+                    ErrorKind::request);
+    }
+    scene.cameras = std::move(cameras);
+}
+
 ExitCode render(const RenderOptions& options, const std::string& command_line) {
     const OutputOptions& outputs = options.outputs;
     CommandFiles files = files_of(options.scene, outputs, options.checkpoint);
     check_outputs(outputs.images);
     check_report(outputs.report);
     check_checkpoint(options.checkpoint);
+    options.cameras.check(files);
 
     const auto start = std::chrono::steady_clock::now();
     const ProgressStyle style = options.messages.progress_style();
     Scene scene = load_with_progress(options.scene.file, options.rendering.loading, style);
     files.read_all("the scene's file", scene.files);
     const double load_seconds = seconds_since(start);
+    take_cameras(options, scene);
     const RenderJob job = options.job(scene);
+    options.cameras.write({{job.camera, job.settings.size, outputs.images.files.front()}});
     std::optional<Image> reference;
     if (outputs.reference) reference = load_reference(*outputs.reference, job.settings);
 

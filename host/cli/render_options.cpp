@@ -65,6 +65,7 @@ void RenderOptions::add_to(CLI::App& app) {
     outputs.add_to(app);
     rendering.add_to(app);
     scene.add_camera_to(app);
+    cameras.add_to(app);
     stopping.add_to(app);
     add_checkpoint_options(app, checkpoint);
     messages.add_to(app);

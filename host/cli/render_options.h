@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/camera_options.h"
 #include "cli/image_options.h"
 #include "cli/message_options.h"
 #include "cli/rendering_options.h"
@@ -39,6 +40,7 @@ struct OutputOptions {
 
 struct RenderOptions {
     SceneOptions scene;
+    CameraOptions cameras;
     RenderingOptions rendering;
     StoppingOptions stopping;
     OutputOptions outputs;

@@ -39,9 +39,9 @@ struct Camera {
     dvec3 position{0};
     dvec3 look_at{0, 0, -1};
     vec3 up{0, 1, 0};
-    float vertical_fov = 0.0f;  // Full angle [rad], in (0, pi), that the picture has around its principal point.
-    // Where the axis meets the picture: from its centre to the right and downwards, in heights of the picture.
-    // Each component is at most MAX_PRINCIPAL_OFFSET in size.
+    float vertical_fov = 0.0f;  // Full angle [rad], in (0, pi), if the principal point is in the middle.
+    // Where the axis meets the picture: from its centre to the right and downwards, in heights of the
+    // picture. Each component is at most MAX_PRINCIPAL_OFFSET in size.
     vec2 principal_offset{0};
     // The focal length in widths of a pixel over that in heights of a pixel, from 1 / MAX_FOCAL_RATIO to
     // MAX_FOCAL_RATIO; 1: pixels are square.

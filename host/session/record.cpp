@@ -37,9 +37,10 @@ glm::dmat4 world_to_ndc(const Camera& camera, uvec2 size) {
     }
     const double tan_y = std::tan(0.5 * double(camera.vertical_fov));
     const double tan_x = tan_y * size.x / size.y / double(camera.focal_ratio);
-    const glm::dvec2 center = 0.5 + glm::dvec2(camera.principal_offset) * glm::dvec2(double(size.y) / size.x, 1);
-    const glm::dmat4 projection(dvec4(0.5 / tan_x, 0, 0, 0), dvec4(0, -0.5 / tan_y, 0, 0), dvec4(center, 0, 1),
-                                dvec4(0, 0, 1, 0));
+    const glm::dvec2 center =
+        0.5 + glm::dvec2(camera.principal_offset) * glm::dvec2(double(size.y) / size.x, 1);
+    const glm::dmat4 projection(dvec4(0.5 / tan_x, 0, 0, 0), dvec4(0, -0.5 / tan_y, 0, 0),
+                                dvec4(center, 0, 1), dvec4(0, 0, 1, 0));
     return projection * world_to_camera(camera);
 }
 

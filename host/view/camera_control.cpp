@@ -60,9 +60,9 @@ std::string lens_json(const Lens& lens) {
 std::string film_json(const Camera& camera, double aspect) {
     const double focal_length = 0.5 / std::tan(0.5 * double(camera.vertical_fov));
     const glm::dvec2 middle(0.5 * aspect, 0.5);
-    return ",\n      \"film_size\": " + pair(glm::dvec2(aspect, 1.0)) + ",\n      \"focal_length\": " +
-           pair(focal_length * glm::dvec2(camera.focal_ratio, 1.0)) + ",\n      \"principal_point\": " +
-           pair(middle + glm::dvec2(camera.principal_offset));
+    return ",\n      \"film_size\": " + pair(glm::dvec2(aspect, 1.0)) +
+           ",\n      \"focal_length\": " + pair(focal_length * glm::dvec2(camera.focal_ratio, 1.0)) +
+           ",\n      \"principal_point\": " + pair(middle + glm::dvec2(camera.principal_offset));
 }
 
 std::string projection_json(const Camera& camera, double aspect) {

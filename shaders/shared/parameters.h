@@ -31,7 +31,7 @@ struct Parameters {
     vec3 forward;
     uvec2 full_size;       // Pixels of the whole picture.
     vec2 principal_point;  // From its top left corner, in halves of its width and height; (1, 1): in the middle.
-    uvec2 crop;       // Top left pixel of the accumulation image in the whole picture.
+    uvec2 crop;            // Top left pixel of the accumulation image in the whole picture.
     uint seed;
     uint max_depth;  // The most scattering vertices, <= DEPTH_SAFETY_LIMIT.
     uint rr_depth;   // Bounces without Russian roulette.

@@ -28,12 +28,14 @@ TEST_F(Usage, HelpOfRenderListsEveryOption) {
     const ProcessResult help = candela({"render", "--help"});
     EXPECT_EQ(help.exit_code, 0);
     for (const char* option :
-         {"--output",      "--aov",           "--half",       "--exposure",         "--tonemap",
-          "--report",      "--size",          "--crop",       "--camera",           "--spp",
-          "--time-limit",  "--seed",          "--max-depth",  "--rr-depth",         "--estimator",
-          "--sampler",     "--light-sampler", "--device",     "--scene-buffers",    "--quiet",
-          "--verbose",     "--samples",       "--checkpoint", "--checkpoint-every", "--resume",
-          "--write-every", "--target-error",  "--progress",   "--reference"}) {
+         {"--output",       "--aov",           "--half",       "--exposure",         "--tonemap",
+          "--report",       "--size",          "--crop",       "--camera",           "--spp",
+          "--time-limit",   "--seed",          "--max-depth",  "--rr-depth",         "--estimator",
+          "--sampler",      "--light-sampler", "--device",     "--scene-buffers",    "--quiet",
+          "--verbose",      "--samples",       "--checkpoint", "--checkpoint-every", "--resume",
+          "--write-every",  "--target-error",  "--progress",   "--reference",        "--view",
+          "--turntable",    "--dome",          "--lens",       "--margin",           "--camera-file",
+          "--write-cameras"}) {
         EXPECT_CONTAINS(help.out, option);
     }
 }
@@ -67,6 +69,13 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
     const std::string spp = "a whole number from 1 to 16777216";
     const std::string duration = "a duration such as 90, 90s, 1.5m or 2h";
     const std::string aovs = "all, none or a list of albedo,n,p,z,variance,samples";
+    const std::string view =
+        "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ROLL in degrees, such as 30,20, with an elevation from -90 "
+        "to 90";
+    const std::string turntable =
+        "N or N,ELEVATION: a whole number from 1 to 65536, and degrees from -90 to 90";
+    const std::string lens =
+        "a vertical field of view from 0.1deg to 179deg, or a focal length from 1mm to 10000mm";
     const std::string tonemaps = "linear|reinhard|aces|agx|neutral";
     const std::vector<std::array<std::string, 3>> cases = {
         {"--size", "64", size},
@@ -101,6 +110,18 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
         {"--aov", "albedo,depth", aovs},
         {"--aov", "", aovs},
         {"--aov", "all,n", aovs},
+        {"--view", "30", view},
+        {"--view", "30,91", view},
+        {"--view", "30,20,x", view},
+        {"--view", "1,2,3,4", view},
+        {"--turntable", "0", turntable},
+        {"--turntable", "8,-91", turntable},
+        {"--turntable", "8,1,1", turntable},
+        {"--dome", "65537", "a whole number from 1 to 65536"},
+        {"--lens", "0mm", lens},
+        {"--lens", "180", lens},
+        {"--lens", "35cm", lens},
+        {"--margin", "0.5", "a number from 0 to 0.45"},
     };
     for (const auto& [flag, value, expected] : cases) {
         const ProcessResult result = candela({"render", CORNELL_BOX, "-o", file("x.png"), flag, value});

@@ -24,6 +24,7 @@
 #include "scene/images.h"
 #include "session/adaptive.h"
 #include "support/png_writer.h"
+#include "views/camera_file.h"
 
 namespace candela::fuzz {
 namespace {
@@ -188,6 +189,15 @@ void compare(std::string_view bytes) {
 
 void plot(std::string_view bytes) {
     draw_curves({curve_of_report(bytes, "fuzz.json")});
+}
+
+void cameras(std::string_view bytes) {
+    const MemoryFile file(bytes);
+    std::vector<PictureCamera> pictures;
+    for (const Camera& camera : read_camera_file(file.path(), uvec2(64, 48)))
+        pictures.push_back({camera, camera.film_size.value(), camera.name});
+    camera_file_text("fuzz.json", pictures);
+    camera_file_text("opencv.json", pictures);
 }
 
 }  // namespace candela::fuzz

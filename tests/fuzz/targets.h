@@ -29,12 +29,13 @@ void checkpoint(std::string_view bytes);  // Whatever its checksum says, and wha
 void merge(std::string_view bytes);
 void compare(std::string_view bytes);  // The last image with each.
 void plot(std::string_view bytes);     // A report.
+void cameras(std::string_view bytes);  // A file of cameras, and as it is written in both conventions.
 
 struct Target {
     std::string_view name;  // Its inputs are in corpora/NAME.
     void (*run)(std::string_view bytes);
 };
-inline constexpr std::array<Target, 18> TARGETS{{{"scene", scene},
+inline constexpr std::array<Target, 19> TARGETS{{{"scene", scene},
                                                  {"gltf", gltf},
                                                  {"glb", glb},
                                                  {"cost", cost},
@@ -51,6 +52,7 @@ inline constexpr std::array<Target, 18> TARGETS{{{"scene", scene},
                                                  {"checkpoint", checkpoint},
                                                  {"merge", merge},
                                                  {"compare", compare},
-                                                 {"plot", plot}}};
+                                                 {"plot", plot},
+                                                 {"cameras", cameras}}};
 
 }  // namespace candela::fuzz

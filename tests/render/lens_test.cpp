@@ -55,8 +55,8 @@ TEST_F(LensTest, ThePlaneOfFocusIsSharp) {
     }
 }
 
-// The same with a principal point off the middle and pixels that are not square: the plane of focus is the one
-// across the camera's axis.
+// The same with a principal point off the middle and pixels that are not square: the plane of focus is the
+// one across the camera's axis.
 TEST_F(LensTest, ThePlaneOfFocusIsAcrossTheAxis) {
     constexpr uint32_t SPP = 16;
     Scene scene = black_scene({});

@@ -9,7 +9,8 @@ namespace {
 class PrincipalPointTest : public RenderTest {};
 
 // A wall across the view shows at each pixel what fx, fy, cx and cy say: its distance times ((x - cx) / fx,
-// (y - cy) / fy), at the same depth everywhere. Positions are rounded at 2^-24 of some units, a few times over.
+// (y - cy) / fy), at the same depth everywhere. Positions are rounded at 2^-24 of some units, a
+// few times over.
 TEST_F(PrincipalPointTest, EachPixelLooksWhereTheIntrinsicsSay) {
     constexpr uint32_t WIDTH = 40, HEIGHT = 24;
     constexpr double FX = 50, FY = 30, CX = 5.25, CY = 31.5, DEPTH = 7;

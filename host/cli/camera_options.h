@@ -1,0 +1,49 @@
+// Cameras that do not come from the scene: around what it shows, or from a file of cameras; and cameras to a
+// file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/command_files.h"
+#include "views/camera_file.h"
+#include "views/views.h"
+
+namespace candela {
+
+struct CameraOptions {
+    struct Turntable {
+        uint32_t count;
+        double elevation;  // [rad].
+    };
+
+    std::vector<std::pair<std::string, ViewDirection>> views;  // By name, which is the option's text.
+    std::optional<Turntable> turntable;
+    std::optional<uint32_t> dome;
+    std::optional<decltype(ViewStyle::lens)> lens;
+    std::optional<double> margin;
+    std::optional<std::string> file;
+    std::optional<std::string> written;
+
+    // Declares them on `app`; this object must not move.
+    void add_to(CLI::App& app);
+    // Adds the files that they name. Throws Error (usage) if one is another of the command's, or for --lens
+    // and
+    // --margin without views, and Error if one could not be written.
+    void check(CommandFiles& files) const;
+    // The cameras that they ask for, in their order: --view, --turntable, --dome; or those of --camera-file.
+    // None: the scene's own are to be used. They are for pictures of `size`, by default the scene's. The
+    // scene must still have its meshes. Throws Error as read_camera_file() does.
+    std::vector<Camera> cameras(const Scene& scene, std::optional<uvec2> size) const;
+    // Writes the file of cameras, if one was asked for. The pictures' files are relative to the working
+    // folder.
+    void write(std::vector<PictureCamera> pictures) const;
+};
+
+}  // namespace candela
