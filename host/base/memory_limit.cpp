@@ -25,10 +25,10 @@ constexpr size_t SMALL = 1024;
 
 std::atomic<uint64_t> in_use = 0;
 std::atomic<uint64_t> limit = NO_LIMIT;
-std::atomic<uint32_t> holders = 0;  // Live objects of LimitedMemory.
+thread_local uint32_t holders = 0;  // This thread's live objects of LimitedMemory.
 
 void check_limit(uint64_t bytes) {
-    if (holders.load(std::memory_order_relaxed) == 0) return;
+    if (holders == 0) return;
     const uint64_t used = in_use.load(std::memory_order_relaxed);
     const uint64_t max = limit.load(std::memory_order_relaxed);
     if (max == NO_LIMIT || used + bytes <= max) return;
@@ -108,6 +108,10 @@ LimitedMemory::LimitedMemory() {
 
 LimitedMemory::~LimitedMemory() {
     --holders;
+}
+
+bool LimitedMemory::applies() {
+    return holders > 0;
 }
 
 MemoryCharge::MemoryCharge(uint64_t bytes) : bytes_(bytes) {

@@ -37,14 +37,17 @@ class LimitReached : public std::bad_alloc {
     uint64_t needed_;
 };
 
-// While one lives, the limit applies. It does not apply otherwise, since drivers and libraries end the
-// program if `new` fails.
+// While one lives, the limit applies to its thread and to the helpers that this starts. It does not apply
+// otherwise, since drivers and libraries end the program if `new` fails.
 class LimitedMemory {
   public:
     LimitedMemory();
     LimitedMemory(const LimitedMemory&) = delete;
     LimitedMemory& operator=(const LimitedMemory&) = delete;
     ~LimitedMemory();
+
+    // Whether one lives in this thread.
+    static bool applies();
 };
 
 // Counts memory of a C library for as long as this lives. The constructor throws LimitReached.

@@ -1,6 +1,7 @@
 // The memory that `new` hands out: counted, and refused beyond a limit.
 #include "base/memory_limit.h"
 
+#include <atomic>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "base/threads.h"
 #include "unit/base/base_fixture.h"
 
 namespace candela {
@@ -72,6 +74,22 @@ TEST(MemoryLimit, HoldsOnlyWhereItIsAskedFor) {
     set_memory_limit(1);
     EXPECT_NO_THROW(std::make_unique<char[]>(MEBI));
     set_memory_limit(UINT64_MAX);
+}
+
+// A driver's threads beside one that reads a scene must not run out of memory; those that help it may.
+TEST(MemoryLimit, HoldsForAThreadAndItsHelpersAlone) {
+    const LimitFromHere limit(MEBI);
+    std::thread([] { EXPECT_NO_THROW(std::make_unique<char[]>(4 * MEBI)); }).join();
+    std::atomic<int> refused = 0;
+    const auto work = [&] {
+        try {
+            std::make_unique<char[]>(4 * MEBI);
+        } catch (const LimitReached&) {
+            ++refused;
+        }
+    };
+    EXPECT_EQ(start_helpers(2, work).size(), 2u);
+    EXPECT_EQ(refused, 2);
 }
 
 TEST(MemoryLimit, TheErrorSaysWhatTakesHowMuch) {
