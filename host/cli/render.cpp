@@ -124,9 +124,8 @@ ExitCode render_on(const vk::Instance& instance, const vk::DeviceInfo& device, c
                    const RenderJob& job, const OutputOptions& outputs, const MessageOptions& messages,
                    std::optional<Image> reference, RenderRecord record) {
     std::optional<Checkpoint> resumed = resume(job, record, device, messages);
-    Rendering rendering({.instance = &instance,
-                         .device = device,
-                         .pipeline_cache_folder = pipeline_cache_folder(),
+    DeviceSlot slot(instance, device, pipeline_cache_folder());
+    Rendering rendering({.device = &slot,
                          .scene = &scene,
                          .resumed = std::move(resumed),
                          .reference = std::move(reference)},

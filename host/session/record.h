@@ -34,6 +34,7 @@ struct RenderRecord {
     double load_seconds = 0.0;      // Wall time to read the scene file.
     double bvh_seconds = 0.0;       // Wall time to build the BVH.
     double pipeline_seconds = 0.0;  // Wall time to compile kernels, including a first, empty dispatch.
+    uint32_t kernels_compiled = 0;  // Those that no picture before had on this device.
     double render_seconds = 0.0;    // Wall time to render, including before it was resumed.
     double cpu_seconds = 0.0;       // CPU time of the process while rendering, since it was resumed.
     bool complete = false;          // All samples are there, or as many as the target error needs.

@@ -23,9 +23,7 @@ Rendering::Rendering(Source source, RenderJob job, RenderRecord record)
       device_(source.device),
       job_(std::move(job)),
       record_(std::move(record)),
-      renderer_({.instance = source.instance,
-                 .device = source.device,
-                 .pipeline_cache_folder = std::move(source.pipeline_cache_folder),
+      renderer_({.device = source.device,
                  .scene = source.scene,
                  .camera = &job_.camera,
                  .settings = job_.settings,
@@ -56,10 +54,11 @@ void Rendering::restart(RenderJob job, RenderRecord record, const BufferSet& cha
 
 // Notes what the device says.
 void Rendering::complete_record() {
-    record_.maker = make_maker(device_);
+    record_.maker = make_maker(device_->info());
     record_.device_bytes = device_bytes(*scene_, job_.settings);
     record_.array_map = renderer_.array_map();
     record_.pipeline_seconds = renderer_.pipeline_seconds();
+    record_.kernels_compiled = renderer_.kernels_compiled();
 }
 
 double Rendering::seconds_of_run() const {

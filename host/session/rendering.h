@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -36,16 +35,14 @@ struct RenderCallbacks {
 class Rendering {
   public:
     struct Source {
-        const vk::Instance* instance;
-        vk::DeviceInfo device;
-        std::optional<std::filesystem::path> pipeline_cache_folder;
+        DeviceSlot* device;
         const GpuScene* scene;
         std::optional<Checkpoint> resumed;  // To continue from.
         std::optional<Image> reference;     // To measure the error against.
     };
 
-    // Opens the device and prepares everything, as SteadyRenderer does; what `source` points to must outlive
-    // the rendering. `record` is from make_record(), with what the caller adds for its files.
+    // Prepares everything, as SteadyRenderer does; what `source` points to must outlive the rendering.
+    // `record` is from make_record(), with what the caller adds for its files.
     Rendering(Source source, RenderJob job, RenderRecord record);
     Rendering(const Rendering&) = delete;
     Rendering& operator=(const Rendering&) = delete;
@@ -84,7 +81,7 @@ class Rendering {
     double seconds() const { return seconds_before_ + seconds_of_run(); }
 
     const GpuScene* scene_;
-    vk::DeviceInfo device_;
+    const DeviceSlot* device_;
     RenderJob job_;
     RenderRecord record_;
     RenderCallbacks callbacks_;

@@ -18,9 +18,10 @@ class Session::Impl {
     explicit Impl(SessionOptions options)
         : options_(std::move(options)),
           instance_({.validation = options_.validation}),
-          device_(vk::select_device(
-              instance_.devices(), options_.device.empty() ? std::nullopt : std::optional(options_.device))) {
-    }
+          device_(instance_,
+                  vk::select_device(instance_.devices(),
+                                    options_.device.empty() ? std::nullopt : std::optional(options_.device)),
+                  options_.kernel_cache) {}
 
     void load(const SceneFile& file) {
         LoadOptions options;
@@ -123,14 +124,11 @@ class Session::Impl {
         if (rendering) {
             rendering->restart(std::move(job), std::move(record), changed_);
         } else {
-            rendering =
-                std::make_unique<Rendering>(Rendering::Source{.instance = &instance_,
-                                                              .device = device_,
-                                                              .pipeline_cache_folder = options_.kernel_cache,
-                                                              .scene = &scene_.records(),
-                                                              .resumed = {},
-                                                              .reference = {}},
-                                            std::move(job), std::move(record));
+            device_.close();  // The last rendering may have lost it.
+            rendering = std::make_unique<Rendering>(
+                Rendering::Source{
+                    .device = &device_, .scene = &scene_.records(), .resumed = {}, .reference = {}},
+                std::move(job), std::move(record));
         }
         rendering_ = std::move(rendering);
         changed_.reset();
@@ -139,7 +137,7 @@ class Session::Impl {
 
     SessionOptions options_;
     vk::Instance instance_;
-    vk::DeviceInfo device_;
+    DeviceSlot device_;
     LiveScene scene_;
     PictureRequest picture_;
     bool is_new_ = true;  // Scene or picture are others than at the last rendering,

@@ -14,18 +14,16 @@ static constexpr double LARGEST_FRACTION_OF_HOLDING = 0.05;
 
 SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
     : source_(std::move(source)), on_failure_(std::move(on_failure)) {
+    compiled_before_ = device().programs().compiled();
     open();
     look_up_positions();
     next_copy_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(source_.copy_seconds));
 }
 
 void SteadyRenderer::open() {
-    if (!device_) {
-        device_ =
-            std::make_unique<vk::Device>(*source_.instance, source_.device, source_.pipeline_cache_folder);
-    }
     source_.settings.seed = state().seed;
-    renderer_ = std::make_unique<Renderer>(*device_, *source_.scene, *source_.camera, source_.settings);
+    renderer_ =
+        std::make_unique<Renderer>(source_.device->open(), *source_.scene, *source_.camera, source_.settings);
     renderer_->upload(state());
     array_map_ = renderer_->array_map();
     pipeline_seconds_ = renderer_->pipeline_seconds();
@@ -51,7 +49,9 @@ void SteadyRenderer::restart(const BufferSet& changed, const RenderSettings& set
     source_.states = std::move(states);
     positions_.clear();
     selected_ = 0;
+    recovery_ = {};
     if (changed.all()) renderer_.reset();  // Before the next one takes memory.
+    compiled_before_ = device().programs().compiled();
     renderer_ ? load(changed) : open();
     look_up_positions();
 }
@@ -95,7 +95,8 @@ void SteadyRenderer::recover(const Error& error) {
     const bool again = recovery_.survives(error, renderer_ != nullptr, samples.total);
     if (renderer_) source_.settings.submission_seconds = renderer_->submission_seconds() / 2;
     renderer_.reset();
-    device_.reset();
+    source_.device->close();
+    compiled_before_ = 0;
     if (!again) throw Error(recovery_.cause());
     on_failure_(error, samples.min, source_.settings.submission_seconds);
     recovery_.pause();

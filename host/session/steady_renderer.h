@@ -3,26 +3,21 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "base/error.h"
 #include "render/renderer.h"
+#include "session/device_slot.h"
 #include "session/recovery.h"
-#include "vk/device.h"
-#include "vk/instance.h"
 
 namespace candela {
 
 class SteadyRenderer {
   public:
     struct Source {
-        const vk::Instance* instance;
-        vk::DeviceInfo device;
-        std::optional<std::filesystem::path> pipeline_cache_folder;
+        DeviceSlot* device;
         const GpuScene* scene;
         const Camera* camera;
         RenderSettings settings;
@@ -34,7 +29,8 @@ class SteadyRenderer {
     // at least, and how long submissions will take from now on [s].
     using OnFailure = std::function<void(const Error& error, uint32_t kept, double submission_seconds)>;
 
-    // Opens the device and prepares everything, as Renderer does; what `source` points to must outlive it.
+    // Opens the device, if it is closed, and prepares everything, as Renderer does; what `source` points to
+    // must outlive it.
     // Throws Error if that fails, or if a state does not fit.
     SteadyRenderer(Source source, OnFailure on_failure);
 
@@ -58,14 +54,16 @@ class SteadyRenderer {
     std::vector<Accumulation>& states() { return source_.states; }
     const std::vector<Accumulation>& states() const { return source_.states; }
 
-    // The device, until render() throws.
-    const vk::Device& device() const { return *device_; }
+    // The device, which is open until render() throws.
+    const vk::Device& device() const { return source_.device->open(); }
     // As Renderer::positions(), if the source asks for them.
     const std::vector<float>& positions() const { return positions_; }
     // How the arrays of the scene are read.
     const ArrayMap& array_map() const { return array_map_; }
     double pipeline_seconds() const { return pipeline_seconds_; }
-    // How often the device failed.
+    // Kernels that the device has compiled since the start, or since it was opened again.
+    uint32_t kernels_compiled() const { return device().programs().compiled() - compiled_before_; }
+    // How often the device failed since the start.
     uint32_t failures() const { return recovery_.failures(); }
 
   private:
@@ -79,11 +77,11 @@ class SteadyRenderer {
     OnFailure on_failure_;
     size_t selected_ = 0;
     bool loaded_ = false;  // Whether the renderer has the selected state.
-    std::unique_ptr<vk::Device> device_;
     std::unique_ptr<Renderer> renderer_;
     std::vector<float> positions_;
     ArrayMap array_map_;
     double pipeline_seconds_ = 0.0;
+    uint32_t compiled_before_ = 0;
     std::chrono::steady_clock::time_point next_copy_;
     Recovery recovery_;
 };

@@ -106,6 +106,7 @@ std::shared_ptr<const Program> Programs::find_or_compile(
     create_layouts(device, bindings, push_constant_size, *program);
     create_pipeline(device, live_code(spirv, constants), constants, *program);
     device.set_name(VK_OBJECT_TYPE_PIPELINE, program->pipeline.get(), name);
+    ++compiled_;
     if (programs_.size() == MAX_PROGRAMS) forget();
     programs_.emplace(std::move(key), program);
     return program;

@@ -50,10 +50,13 @@ class Programs {
     // Makes the next request compile again, so that compile time can be measured.
     void forget() { programs_.clear(); }
     size_t count() const { return programs_.size(); }
+    // How many have been compiled so far.
+    uint32_t compiled() const { return compiled_; }
 
   private:
     // The key is all words that the program was made of.
     std::map<std::vector<uint32_t>, std::shared_ptr<const Program>> programs_;
+    uint32_t compiled_ = 0;
 };
 
 }  // namespace candela::vk

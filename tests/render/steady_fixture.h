@@ -15,9 +15,7 @@ class SteadyTest : public RenderTest {
     SteadyRenderer steady_renderer(const Scene& scene, const GpuScene& gpu_scene,
                                    const RenderSettings& settings, std::vector<Accumulation> states,
                                    double copy_seconds = 10.0) const {
-        return SteadyRenderer({.instance = &instance_,
-                               .device = info_,
-                               .pipeline_cache_folder = std::nullopt,
+        return SteadyRenderer({.device = &slot_,
                                .scene = &gpu_scene,
                                .camera = &scene.cameras[0],
                                .settings = settings,
@@ -25,6 +23,9 @@ class SteadyTest : public RenderTest {
                                .copy_seconds = copy_seconds},
                               [](const Error&, uint32_t, double) { FAIL() << "the device failed"; });
     }
+
+  private:
+    mutable DeviceSlot slot_{instance_, info_, std::nullopt};
 };
 
 }  // namespace candela
