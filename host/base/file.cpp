@@ -328,14 +328,14 @@ void write_finished_work(const fs::path& path, std::string_view bytes) {
     }
 }
 
-bool is_same_file(const fs::path& a, const fs::path& b) {
+std::vector<std::string> file_keys(const fs::path& path) {
     std::error_code ignored;
-    if (fs::exists(a, ignored) && fs::exists(b, ignored)) return fs::equivalent(a, b, ignored);
-    const auto place = [&](const fs::path& path) {
-        const fs::path target = follow_links(path);
-        return fs::weakly_canonical(folder_of(target), ignored) / target.filename();
-    };
-    return place(a) == place(b);
+    const fs::path target = follow_links(path);
+    std::vector<std::string> keys{
+        (fs::weakly_canonical(folder_of(target), ignored) / target.filename()).string()};
+    struct stat status {};
+    if (::stat(path.c_str(), &status) == 0) keys.push_back(concat(status.st_dev, ':', status.st_ino));
+    return keys;
 }
 
 }  // namespace candela

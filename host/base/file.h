@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace candela {
 
@@ -60,8 +61,8 @@ void write_finished_work(const std::filesystem::path& path, std::string_view byt
 // One of these two.
 using FileWriter = void (*)(const std::filesystem::path& path, std::string_view bytes);
 
-// Whether two paths name the same file: by device and inode if both exist, otherwise by the paths after
-// following links.
-bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+// What tells the file of a path from all others: its place, after following links, and, if it exists, its
+// device and inode. Two paths name the same file if they share one of these keys.
+std::vector<std::string> file_keys(const std::filesystem::path& path);
 
 }  // namespace candela

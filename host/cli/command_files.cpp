@@ -19,14 +19,16 @@ void CommandFiles::read_all(const std::string& role, const std::vector<std::file
 }
 
 void CommandFiles::add(const File& file) {
-    for (const File& other : files_) {
-        if ((file.written || other.written) && is_same_file(file.path, other.path)) {
+    for (const std::string& key : file_keys(file.path)) {
+        const auto [known, is_new] = files_.emplace(key, file);
+        if (is_new) continue;
+        const File& other = known->second;
+        if (file.written || other.written) {
             throw Error(file.role + ": " + quoted(file.path) + " is the same file as " + other.role + ' ' +
                             quoted(other.path) + "; give it a name of its own",
                         ErrorKind::request);
         }
     }
-    files_.push_back(file);
 }
 
 }  // namespace candela

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ class CommandFiles {
     };
     void add(const File& file);
 
-    std::vector<File> files_;
+    std::map<std::string, File> files_;  // By each of file_keys().
 };
 
 }  // namespace candela
