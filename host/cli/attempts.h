@@ -20,6 +20,8 @@ class Attempts {
             failure_ = error;
         }
     }
+    // The last Error so far.
+    const std::optional<Error>& failure() const { return failure_; }
     void finish() const {
         if (failure_) throw Error(*failure_);
     }

@@ -131,9 +131,6 @@ void CameraOptions::check(CommandFiles& files) const {
                     ErrorKind::request);
     }
     if (file) files.read("--camera-file", *file);
-    if (!written) return;
-    files.write("--write-cameras", *written);
-    check_writable(*written);
 }
 
 std::vector<Camera> CameraOptions::cameras(const Scene& scene, std::optional<uvec2> size) const {
@@ -159,11 +156,10 @@ std::vector<Camera> CameraOptions::cameras(const Scene& scene, std::optional<uve
         });
 }
 
-void CameraOptions::write(std::vector<PictureCamera> pictures) const {
-    if (!written) return;
+void write_cameras(const std::string& file, std::vector<PictureCamera> pictures) {
     for (PictureCamera& picture : pictures)
-        picture.file = relative_to(std::filesystem::path(*written).parent_path(), picture.file);
-    write_file_atomically(*written, camera_file_text(*written, pictures));
+        picture.file = relative_to(std::filesystem::path(file).parent_path(), picture.file);
+    write_file_atomically(file, camera_file_text(file, pictures));
 }
 
 }  // namespace candela

@@ -29,21 +29,22 @@ struct CameraOptions {
     std::optional<decltype(ViewStyle::lens)> lens;
     std::optional<double> margin;
     std::optional<std::string> file;
-    std::optional<std::string> written;
+    std::optional<std::string> written;  // A name with fields: a file for each scene.
 
     // Declares them on `app`; this object must not move.
     void add_to(CLI::App& app);
-    // Adds the files that they name. Throws Error (usage) if one is another of the command's, or for --lens
-    // and
-    // --margin without views, and Error if one could not be written.
+    // How many cameras around the scene they ask for.
+    size_t view_count() const { return views.size() + (turntable ? turntable->count : 0) + dome.value_or(0); }
+    // Adds the file that they read. Throws Error (usage) if it is another of the command's, or for --lens and
+    // --margin without views.
     void check(CommandFiles& files) const;
     // The cameras that they ask for, in their order: --view, --turntable, --dome; or those of --camera-file.
     // None: the scene's own are to be used. They are for pictures of `size`, by default the scene's. The
     // scene must still have its meshes. Throws Error as read_camera_file() does.
     std::vector<Camera> cameras(const Scene& scene, std::optional<uvec2> size) const;
-    // Writes the file of cameras, if one was asked for. The pictures' files are relative to the working
-    // folder.
-    void write(std::vector<PictureCamera> pictures) const;
 };
+
+// Writes a file of cameras. The pictures' files are relative to the working folder.
+void write_cameras(const std::string& file, std::vector<PictureCamera> pictures);
 
 }  // namespace candela

@@ -51,47 +51,56 @@ class LoadingLine {
 
 }  // namespace
 
-Scene load_with_progress(const std::string& file, const LoadingOptions& given, ProgressStyle style) {
-    Scene scene;
+Scene load_quietly(const std::string& file, const LoadingOptions& given, const LoadProgress& progress) {
     set_memory_limit(given.memory_limit.value_or(default_memory_limit()));
-    {
-        const InterruptGuard guard(OnSignal::quit);
-        const LimitedMemory limited;
-        LoadingLine line(style);
-        LoadOptions options{.gltf = given.gltf};
-        options.progress = [&line](const char* what, size_t done, size_t of) { line.update(what, done, of); };
-        options.images.if_missing = given.missing_images;
-        options.reach = {.folders = {given.folders.begin(), given.folders.end()},
-                         .anywhere = given.any_folder};
-        if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
-        scene = with_memory_for(
-            "the scene", [&] { return file; }, [&] { return load_scene(file, options); });
-    }
+    const LimitedMemory limited;
+    LoadOptions options{.gltf = given.gltf, .progress = progress};
+    options.images.if_missing = given.missing_images;
+    options.reach = {.folders = {given.folders.begin(), given.folders.end()}, .anywhere = given.any_folder};
+    if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
+    return with_memory_for(
+        "the scene", [&] { return file; }, [&] { return load_scene(file, options); });
+}
+
+Scene load_showing_progress(const std::string& file, const LoadingOptions& options, ProgressStyle style) {
+    const InterruptGuard guard(OnSignal::quit);
+    LoadingLine line(style);
+    return load_quietly(file, options,
+                        [&line](const char* what, size_t done, size_t of) { line.update(what, done, of); });
+}
+
+Scene load_with_progress(const std::string& file, const LoadingOptions& options, ProgressStyle style) {
+    Scene scene = load_showing_progress(file, options, style);
     print_warnings(scene.warnings);
     return scene;
 }
 
+GpuScene build_quietly(Scene& scene) {
+    const LimitedMemory limited;
+    return with_memory_for(
+        "the tree and the records of what it shows", [] { return std::string("the scene"); },
+        [&] { return build_gpu_scene_freeing_images(scene); });
+}
+
+GpuScene build_showing_progress(Scene& scene, ProgressStyle style) {
+    const InterruptGuard guard(OnSignal::quit);
+    ProgressLine line(style, 0.0);
+    if (line.is_live()) line.print("building the tree", 0.0);
+    return build_quietly(scene);
+}
+
 GpuScene build_with_progress(Scene& scene, ProgressStyle style) {
-    GpuScene gpu_scene;
-    {
-        const InterruptGuard guard(OnSignal::quit);
-        const LimitedMemory limited;
-        ProgressLine line(style, 0.0);
-        if (line.is_live()) line.print("building the tree", 0.0);
-        gpu_scene = with_memory_for(
-            "the tree and the records of what it shows", [] { return std::string("the scene"); },
-            [&] { return build_gpu_scene_freeing_images(scene); });
-    }
+    GpuScene gpu_scene = build_showing_progress(scene, style);
     print_warnings(gpu_scene.warnings);
     return gpu_scene;
 }
 
-void warn_of_unseen_lights(const Scene& scene, Estimator estimator) {
+std::vector<std::string> warnings_of_unseen_lights(const Scene& scene, Estimator estimator) {
     const auto lit = [](const Light& light) { return gives_light(light); };
-    if (estimator != Estimator::bsdf || !std::ranges::any_of(scene.lights, lit)) return;
-    print_warning(
-        "the estimator bsdf cannot find the point, spot and directional lights of this scene, which have no "
-        "surface; use mis or light");
+    if (estimator != Estimator::bsdf || !std::ranges::any_of(scene.lights, lit)) return {};
+    return {
+        "the estimator bsdf cannot find the point, spot and directional lights of this scene, which have "
+        "no surface; use mis or light"};
 }
 
 }  // namespace candela

@@ -2,22 +2,33 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cli/loading_options.h"
 #include "cli/message_options.h"
 #include "gpu_scene/gpu_scene.h"
+#include "scene/load_progress.h"
 #include "scene/scene.h"
 
 namespace candela {
 
-// load_scene(). Prints how far it has got, and the scene's warnings. A signal ends the program.
+// load_scene() and build_gpu_scene_freeing_images() within the limit on memory. They print nothing, so that
+// another thread may call them.
+Scene load_quietly(const std::string& file, const LoadingOptions& options,
+                   const LoadProgress& progress = no_progress);
+GpuScene build_quietly(Scene& scene);
+
+// load_quietly(). Prints how far it has got. A signal ends the program.
+Scene load_showing_progress(const std::string& file, const LoadingOptions& options, ProgressStyle style);
+// The same; also prints the scene's warnings.
 Scene load_with_progress(const std::string& file, const LoadingOptions& options,
                          ProgressStyle style = ProgressStyle::automatic);
 
-// build_gpu_scene_freeing_images(), in the same way.
+// build_quietly(), in the same two ways.
+GpuScene build_showing_progress(Scene& scene, ProgressStyle style);
 GpuScene build_with_progress(Scene& scene, ProgressStyle style = ProgressStyle::automatic);
 
-// Prints a warning if the scene has lights that the estimator cannot find.
-void warn_of_unseen_lights(const Scene& scene, Estimator estimator);
+// A warning, or none, if the scene has lights that the estimator cannot find.
+std::vector<std::string> warnings_of_unseen_lights(const Scene& scene, Estimator estimator);
 
 }  // namespace candela

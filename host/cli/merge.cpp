@@ -43,7 +43,7 @@ ExitCode run(const MergeArguments& arguments, const std::string& command_line) {
     CommandFiles files;  // The parts are all read before anything is written: one of them may be the output.
     for (const std::string& path : arguments.images.files)
         files.write("-o", path);
-    check_outputs(arguments.images);
+    check_outputs(arguments.images.files);
     Merged merged = merge_files({arguments.parts.begin(), arguments.parts.end()});
     print_warnings(merged.warnings);
     merged.image.attributes["candela.commandLine"] = command_line;

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/console.h"
+#include "cli/json_text.h"
 
 namespace candela {
 namespace {
@@ -17,11 +19,12 @@ using Json = nlohmann::ordered_json;
 }  // namespace
 
 Progress::Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit,
-                   ProgressStyle style)
+                   ProgressStyle style, std::string picture)
     : pixels_(pixels),
       spp_(spp),
       done_before_(done),
       time_limit_(time_limit),
+      picture_(std::move(picture)),
       line_(style, done),
       now_{.done = done} {}
 
@@ -51,14 +54,15 @@ std::string Progress::text() const {
 }
 
 std::string Progress::json_text(const std::string& state) const {
-    return Json{{"state", state},
-                {"spp", spp_done()},
-                {"target_spp", spp_},
-                {"seconds", now_.seconds},
-                {"samples_per_second", rate()},
-                {"seconds_left", seconds_left()},
-                {"estimated_error", now_.error ? Json(*now_.error) : Json()}}
-        .dump();
+    Json json{{"state", state},
+              {"spp", spp_done()},
+              {"target_spp", spp_},
+              {"seconds", now_.seconds},
+              {"samples_per_second", rate()},
+              {"seconds_left", seconds_left()},
+              {"estimated_error", now_.error ? Json(*now_.error) : Json()}};
+    if (!picture_.empty()) json["picture"] = picture_;
+    return json_line(json);
 }
 
 void Progress::update(double done, std::optional<double> error) {

@@ -12,9 +12,9 @@ namespace candela {
 class Progress {
   public:
     // Each of `pixels` gets `spp` samples, a fraction `done` of which already exists. A `time_limit` [s] may
-    // end rendering earlier. The clock starts here.
+    // end rendering earlier. JSON names the `picture`, if that is one among several. The clock starts here.
     Progress(uint64_t pixels, uint32_t spp, double done, std::optional<double> time_limit,
-             ProgressStyle style);
+             ProgressStyle style, std::string picture = "");
     // Reports the fraction `done`, in [0, 1], of all samples and the estimated error of the image; prints
     // only as often as suits the output.
     void update(double done, std::optional<double> error);
@@ -43,6 +43,7 @@ class Progress {
     uint32_t spp_;
     double done_before_;
     std::optional<double> time_limit_;
+    std::string picture_;
     ProgressLine line_;
     Status now_;  // At the last update.
 };

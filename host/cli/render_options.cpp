@@ -38,7 +38,10 @@ void OutputOptions::add_to(CLI::App& app) {
               "Also write the images while rendering (default: only at the end)")
         ->type_name("TIME");
     CLI::Option* const report_file =
-        app.add_option("--report", report, "Write statistics of the run as JSON; - is standard output")
+        app.add_option(
+               "--report", report,
+               "Write statistics of the run as JSON; - is standard output, and FILE.jsonl gets a line "
+               "for each picture")
             ->type_name("FILE|-");
     app.add_option("--reference", reference, "Report the error relative to this image (.exr) over time")
         ->type_name("FILE")
@@ -59,21 +62,50 @@ static void add_checkpoint_options(CLI::App& app, CheckpointOptions& checkpoint)
         ->needs(file);
 }
 
+void ListOptions::add_scenes_to(CLI::App& app) {
+    app.add_option("SCENE", scenes,
+                   std::string(SCENE_FILES) +
+                       "; repeat it for several, or give a list of them: @FILE, or - for standard input")
+        ->required()
+        ->type_name("")
+        ->take_all();
+}
+
+void ListOptions::add_cameras_to(CLI::App& app) {
+    app.option_defaults()->group("Picture");
+    CLI::Option* const named =
+        app.add_option("--camera", cameras,
+                       "Camera by name (default: the scene's first); repeat it for a picture by each")
+            ->type_name("NAME")
+            ->take_all()
+            ->allow_extra_args(false);
+    const auto parse = [](const std::string& text) {
+        return text == "all" ? std::optional(true) : std::nullopt;
+    };
+    add_value(app, "--cameras", all_cameras, parse, "all", "A picture by each camera of the scene")
+        ->type_name("all")
+        ->excludes(named);
+    app.option_defaults()->group("Several pictures");
+    app.add_flag("--skip-existing", skip_existing, "Leave out pictures whose files are all there");
+    app.add_flag("--stop-on-error", stop_on_error,
+                 "End at the first picture that fails (default: go on with the others)");
+}
+
 void RenderOptions::add_to(CLI::App& app) {
     app.option_defaults()->take_last();  // Later options override a script's.
-    scene.add_file_to(app);
+    list.add_scenes_to(app);
     outputs.add_to(app);
     rendering.add_to(app);
-    scene.add_camera_to(app);
+    list.add_cameras_to(app);
     cameras.add_to(app);
     stopping.add_to(app);
     add_checkpoint_options(app, checkpoint);
     messages.add_to(app);
 }
 
-RenderJob RenderOptions::job(const Scene& loaded) const {
+RenderJob RenderOptions::job(const Scene& loaded, const std::optional<std::string>& camera_name) const {
     const std::optional<SampleRange>& samples = stopping.samples;
-    const Camera& camera = scene.choose_camera(loaded);
+    const Camera& camera = choose_camera(loaded, camera_name, "--camera: ");
     RenderJob job{
         .camera = camera,
         .settings = rendering.settings(loaded, camera),

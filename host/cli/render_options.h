@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -38,8 +39,21 @@ struct OutputOptions {
     void add_to(CLI::App& app);
 };
 
+// Which pictures are rendered.
+struct ListOptions {
+    std::vector<std::string> scenes;   // As list_scenes() reads them.
+    std::vector<std::string> cameras;  // By name; none: each scene's first,
+    bool all_cameras = false;          // unless this asks for all.
+    bool skip_existing = false;        // Not those whose files are there.
+    bool stop_on_error = false;        // None after the first that fails.
+
+    // Each declares a part of them on `app`; this object must not move.
+    void add_scenes_to(CLI::App& app);
+    void add_cameras_to(CLI::App& app);
+};
+
 struct RenderOptions {
-    SceneOptions scene;
+    ListOptions list;
     CameraOptions cameras;
     RenderingOptions rendering;
     StoppingOptions stopping;
@@ -50,9 +64,14 @@ struct RenderOptions {
     // Declares all options on `app`, which fills them in when it parses; this object must not move.
     void add_to(CLI::App& app);
 
-    // Combines them with what the scene proposes. Throws Error (usage) for a camera that the scene lacks, a
-    // crop that reaches beyond the picture, or --adaptive with an odd number of samples.
-    RenderJob job(const Scene& loaded) const;
+    // Whether each camera of a scene, or each view around it, has a picture.
+    bool wants_all_cameras() const {
+        return list.all_cameras || (list.cameras.empty() && cameras.view_count() > 1);
+    }
+    // Combines them with what the scene proposes, for its camera of that name, or its first. Throws Error
+    // (usage) for a camera that the scene lacks, a crop that reaches beyond the picture, or --adaptive with
+    // an odd number of samples.
+    RenderJob job(const Scene& loaded, const std::optional<std::string>& camera = {}) const;
 };
 
 }  // namespace candela

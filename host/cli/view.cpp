@@ -105,7 +105,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
                           .exposure_ev = float(arguments.development.exposure),
                           .tonemap = arguments.development.tonemap};
 
-    warn_of_unseen_lights(scene, state.settings.estimator);
+    print_warnings(warnings_of_unseen_lights(scene, state.settings.estimator));
     const std::string name = std::filesystem::path(arguments.scene.file).stem().string();
     Window window(state.settings.size, !arguments.frames, printable(name, MAX_NAME_BYTES));
     vk::Instance::Options instance_wishes = instance_options();

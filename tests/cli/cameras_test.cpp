@@ -92,9 +92,23 @@ TEST_F(Cameras, AWrittenFileGivesTheSamePicture) {
     // Bits may differ, since the field of view is rounded once more.
     for (size_t i = 0; i < first.pixel_count(); ++i) {
         const float was = first.find("Z")->values[i], is = again.find("Z")->values[i];
-        if (!std::isinf(was) && !std::isinf(is)) EXPECT_NEAR(was, is, 1e-3);
+        if (!std::isinf(was) && !std::isinf(is)) {
+            EXPECT_NEAR(was, is, 1e-3);
+        }
     }
     EXPECT_EQ(seen(first), seen(again));
+}
+
+TEST_F(Cameras, EveryViewHasAPicture) {
+    const Image alone = image_of({"--turntable", "3", "--camera", "turntable_002"});
+    const ProcessResult result =
+        candela({"render", sphere(), "--spp", "1", "--turntable", "3", "-o", file("{camera}.exr"), "--quiet",
+                 "--write-cameras", file("transforms.json")});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(read_exr(file("turntable_002.exr")).find("Z")->values, alone.find("Z")->values);
+    const auto written = nlohmann::json::parse(read_file(file("transforms.json")));
+    ASSERT_EQ(written.at("frames").size(), 3u);
+    EXPECT_EQ(written.at("frames").at(1).at("file_path"), "turntable_001.exr");
 }
 
 TEST_F(Cameras, WhatCannotBeIsRefused) {
@@ -106,8 +120,9 @@ TEST_F(Cameras, WhatCannotBeIsRefused) {
     error({"--lens", "40"},
           "--lens: only cameras around the scene have it; also give --view, --turntable or --dome");
     error({"--margin", "0"}, "--margin: only cameras around the scene have it");
-    error({"--turntable", "3"},
-          "there are 3 views, \"turntable_000\" to \"turntable_002\"; choose one of them with --camera");
+    error({"--turntable", "3"}, "would be the picture of each camera; add the field {camera} or {view}");
+    error({"--write-cameras", file("{camera}.json")},
+          "is one file for all pictures of a scene; leave {camera} and {view} out");
     error({"--view", "1,2", "--view", "3,4", "--camera", "main"},
           "--camera: unknown camera \"main\" (defined: 1,2, 3,4)");
     error({"--view", "1,2", "--camera-file", "f.json"}, "--camera-file");

@@ -29,10 +29,9 @@ TEST(RenderOptions, APictureHasTheSizeOfItsCameraUnlessTheCommandLineSaysOtherwi
                      Camera{.name = "second", .lens = {}, .film_size = uvec2(8, 6)}};
     RenderOptions options;
     EXPECT_EQ(options.job(scene).settings.size, uvec2(40, 30));
-    options.scene.camera = "second";
-    EXPECT_EQ(options.job(scene).settings.size, uvec2(8, 6));
+    EXPECT_EQ(options.job(scene, "second").settings.size, uvec2(8, 6));
     options.rendering.picture.size = uvec2(5, 5);
-    EXPECT_EQ(options.job(scene).settings.size, uvec2(5, 5));
+    EXPECT_EQ(options.job(scene, "second").settings.size, uvec2(5, 5));
 }
 
 TEST(RenderOptions, AJobIsTheSceneUnlessTheCommandLineSaysOtherwise) {
@@ -48,12 +47,11 @@ TEST(RenderOptions, AJobIsTheSceneUnlessTheCommandLineSaysOtherwise) {
     EXPECT_EQ(job.settings.seed, 3u);
 
     RenderOptions options;
-    options.scene.camera = "second";
     options.rendering.sampling.spp = 12;
     options.rendering.sampling.seed = 4;
     options.rendering.sampling.max_depth = 6;
     options.rendering.picture.size = uvec2(8, 8);
-    job = options.job(scene);
+    job = options.job(scene, "second");
     EXPECT_EQ(job.camera.name, "second");
     EXPECT_EQ(job.target, 12u);
     EXPECT_EQ(job.settings.size, uvec2(8, 8));

@@ -1,0 +1,204 @@
+// See batch.h.
+#include "cli/batch.h"
+
+#include <utility>
+
+#include "base/file.h"
+#include "cli/caught_error.h"
+#include "cli/console.h"
+#include "cli/outputs.h"
+
+namespace candela {
+namespace {
+
+// What is said of a scene among several: most messages name it already.
+std::string about(const std::string& scene, const std::string& message) {
+    return message.find(scene) == std::string::npos ? candela::quoted(scene) + ": " + message : message;
+}
+
+// Writes the images, and notes if that fails.
+RenderedPicture written(RenderedPicture rendered, const ImageOutputs& outputs) {
+    rendered.attempts.attempt([&] {
+        try {
+            write_images(outputs, rendered.record, std::move(rendered.image));
+        } catch (...) {
+            throw Error(caught_error());
+        }
+    });
+    return rendered;
+}
+
+}  // namespace
+
+Batch::Batch(PicturePlan& plan, const RenderOptions& options, const std::string& command_line)
+    : plan_(plan),
+      options_(options),
+      renderer_(options, plan.is_batch(), command_line),
+      report_(options.outputs.report, plan.is_batch()) {}
+
+ExitCode Batch::run() {
+    const size_t count = plan_.scenes().size();
+    for (size_t i = 0; i < count; ++i) {
+        if (ends_early()) {
+            was_interrupted_ |= renderer_.interrupted();
+            break;
+        }
+        PreparedScene scene = prepare(i);
+        begin_next(i + 1);
+        render_scene(scene, i + 1 == count);
+        renderer_.leave_scene();
+    }
+    settle();
+    renderer_.check_validation();
+    if (plan_.is_batch() || skipped_ > 0) print_summary();
+    if (was_interrupted_) return ExitCode::interrupted;
+    return code_.value_or(ExitCode::done);
+}
+
+// Whether no further picture shall be rendered.
+bool Batch::ends_early() const {
+    return renderer_.interrupted() || (options_.list.stop_on_error && failed_ > 0);
+}
+
+// Scene i, which another thread may have prepared already.
+PreparedScene Batch::prepare(size_t i) {
+    if (next_.valid()) {
+        PreparedScene scene = next_.get();
+        const bool fits = !scene.failure || scene.failure->kind() != ErrorKind::out_of_memory;
+        if (fits) return scene;
+        settle();
+    }
+    const bool shows_progress = renderer_.can_be_quit() && i == 0;
+    return prepare_scene(plan_, i, options_,
+                         shows_progress ? std::optional(options_.messages.progress_style()) : std::nullopt);
+}
+
+// Has another thread prepare scene i, if there is one; this thread does if no other can be started.
+void Batch::begin_next(size_t i) {
+    if (i == plan_.scenes().size()) return;
+    next_ = std::async([this, i] { return prepare_scene(plan_, i, options_, std::nullopt); });
+}
+
+// Ends what takes memory beside the current picture.
+void Batch::be_alone() {
+    settle();
+    next_ = {};
+}
+
+void Batch::render_scene(PreparedScene& scene, bool is_last) {
+    for (std::string& warning : scene.warnings)
+        warning = about(scene.file, warning);
+    print_warnings(scene.warnings);
+    if (scene.failure) print_failure(scene.file, *scene.failure);
+    if (scene.pictures.empty()) scene.pictures.push_back({.picture = {.scene = scene.file}});
+    for (const PreparedPicture& picture : scene.pictures) {
+        if (ends_early()) {
+            was_interrupted_ |= renderer_.interrupted();
+            return;
+        }
+        if (picture.is_skipped) {
+            skip(picture.picture);
+        } else if (picture.failure) {
+            print_failure(scene.file, *picture.failure);
+            fail(picture.picture, *picture.failure);
+        } else if (scene.failure) {
+            fail(picture.picture, *scene.failure);
+        } else {
+            render(scene, picture, is_last && &picture == &scene.pictures.back());
+        }
+    }
+}
+
+// Renders the picture, and has its files written. `is_last`: there is nothing to render meanwhile.
+void Batch::render(const PreparedScene& scene, const PreparedPicture& picture, bool is_last) {
+    renderer_.choose_device();
+    try {
+        std::optional<RenderedPicture> rendered;
+        try {
+            rendered = renderer_.render(scene, picture);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::out_of_memory || is_alone()) throw;
+            be_alone();
+            rendered = renderer_.render(scene, picture);
+        }
+        settle();
+        write(std::move(*rendered), is_last);
+    } catch (const Error& error) {
+        print_failure(scene.file, error);
+        fail(picture.picture, error);
+    }
+}
+
+// Begins to write the files, of a whole picture, or of what there is of a single one.
+void Batch::write(RenderedPicture&& rendered, bool is_last) {
+    if (rendered.state == "interrupted") {
+        was_interrupted_ = true;
+        const bool is_kept = !plan_.is_batch() && !options_.list.skip_existing;
+        if (!is_kept) {
+            report_.add(rendered.picture, rendered.state);
+            return;
+        }
+    }
+    ImageOutputs outputs = options_.outputs.images;
+    outputs.files = rendered.picture.files;
+    writing_ = std::async(is_last ? std::launch::deferred : std::launch::async | std::launch::deferred,
+                          [rendered = std::move(rendered), outputs]() mutable {
+                              return written(std::move(rendered), outputs);
+                          });
+}
+
+// Waits until the last picture is written, and counts it.
+void Batch::settle() {
+    if (!writing_.valid()) return;
+    RenderedPicture rendered = writing_.get();
+    Attempts& attempts = rendered.attempts;
+    attempts.attempt([&] {
+        const std::optional<Error> failure = rendered.failure ? rendered.failure : attempts.failure();
+        report_.add(rendered.picture, failure ? "failed" : rendered.state, rendered.record, failure);
+    });
+    attempts.attempt([&] {
+        if (rendered.failure) throw Error(*rendered.failure);
+    });
+    if (!plan_.is_batch()) attempts.finish();
+    if (attempts.failure()) {
+        print_failure(rendered.picture.scene, *attempts.failure());
+        count_failure(*attempts.failure());
+        return;
+    }
+    ++done_;
+    rendered.progress->end(rendered.state);
+}
+
+void Batch::skip(const Picture& picture) {
+    settle();
+    ++skipped_;
+    report_.add(picture, "skipped");
+}
+
+// Prints the Error of a scene or a picture among several; that of a single one is thrown.
+void Batch::print_failure(const std::string& scene, const Error& error) const {
+    if (plan_.is_batch()) print_error(about(scene, error.what()));
+}
+
+// Reports and counts a picture that has not been rendered; throws its Error if it is the only one.
+void Batch::fail(const Picture& picture, const Error& error) {
+    settle();
+    report_.add(picture, "failed", error);
+    if (!plan_.is_batch()) throw Error(error);
+    count_failure(error);
+}
+
+void Batch::count_failure(const Error& error) {
+    ++failed_;
+    const ExitCode code = exit_code(error.kind());
+    code_ = code_.value_or(code) == code ? code : ExitCode::failed;
+}
+
+void Batch::print_summary() const {
+    if (options_.messages.quiet || options_.messages.progress == ProgressStyle::json) return;
+    print_note(std::to_string(done_) + " done, " + std::to_string(skipped_) + " skipped, " +
+               std::to_string(failed_) + " failed" +
+               (was_interrupted_ ? "; interrupted before the others" : ""));
+}
+
+}  // namespace candela

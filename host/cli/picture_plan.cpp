@@ -1,0 +1,212 @@
+// See picture_plan.h.
+#include "cli/picture_plan.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/printable.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/scene_list.h"
+
+namespace candela {
+namespace {
+
+[[noreturn]] void refuse_pictures(const std::string& message) {
+    throw Error(message, ErrorKind::request);
+}
+
+// A picture, for messages.
+std::string text_of(const Picture& picture) {
+    return candela::quoted(picture.scene) +
+           (picture.camera ? " by the camera \"" + printable(*picture.camera, MAX_NAME_BYTES) + '"' : "");
+}
+
+void make_folder_of(const std::string& file) {
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    std::error_code error;
+    if (!folder.empty()) std::filesystem::create_directories(folder, error);
+    if (error) {
+        throw Error("cannot make the folder " + quoted(folder) + ": " + error.message() +
+                    "; choose another place");
+    }
+}
+
+}  // namespace
+
+PicturePlan::PicturePlan(const RenderOptions& options, std::istream& standard_input) : options_(options) {
+    const OutputOptions& outputs = options.outputs;
+    const SceneList list = list_scenes(options.list.scenes, standard_input);
+    is_batch_ = list.is_list || list.scenes.size() > 1 || options.list.cameras.size() > 1 ||
+                options.wants_all_cameras();
+    if (is_batch_) refuse_options_of_one();
+    check_formats(outputs.images.files);
+    for (const std::string& name : outputs.images.files)
+        names_.emplace_back(name);
+
+    for (const std::string& path : list.lists)
+        files_.read("the list", path);
+    for (const std::string& path : list.scenes)
+        files_.read("SCENE", path);
+    if (outputs.reference) files_.read("--reference", *outputs.reference);
+    for (const std::string& path : list.scenes)
+        scenes_.push_back({.file = path});
+    for (size_t i = 0; i < scenes_.size(); ++i)
+        plan(i);
+    if (outputs.report) files_.write("--report", *outputs.report);
+    if (options.checkpoint.file) files_.write("--checkpoint", *options.checkpoint.file);
+    options.cameras.check(files_);
+    if (options.cameras.written) plan_camera_files();
+    check_folders();
+}
+
+void PicturePlan::refuse_options_of_one() const {
+    constexpr const char* ONE = ": cannot be used for several pictures; ";
+    const std::optional<std::string>& report = options_.outputs.report;
+    if (options_.checkpoint.file)
+        refuse_pictures(std::string("--checkpoint") + ONE +
+                        "--skip-existing goes on with an interrupted batch");
+    if (options_.outputs.write_every)
+        refuse_pictures(std::string("--write-every") + ONE +
+                        "leave it out: each picture is written when it is done");
+    if (options_.outputs.reference)
+        refuse_pictures(std::string("--reference") + ONE + "render the picture that it belongs to alone");
+    if (report && *report != "-" && !Report::is_lines(*report)) {
+        refuse_pictures(
+            "--report: several pictures need a line each; give a name that ends in .jsonl instead of " +
+            candela::quoted(*report));
+    }
+}
+
+// Throws Error (usage) if two scenes would have the same file of cameras.
+void PicturePlan::plan_camera_files() {
+    const std::string& text = *options_.cameras.written;
+    cameras_name_.emplace(text);
+    std::map<std::string, std::string> scenes;  // By file.
+    for (const PlannedScene& scene : scenes_) {
+        const std::optional<std::string> file =
+            cameras_name_->uses("view") ? std::nullopt : cameras_name_->name(fields({.scene = scene.file}));
+        if (!file) {
+            refuse_pictures("--write-cameras: " + candela::quoted(text) +
+                            " is one file for all pictures of a scene; leave {camera} and {view} out");
+        }
+        const auto [other, is_new] = scenes.emplace(*file, scene.file);
+        if (!is_new) {
+            refuse_pictures("--write-cameras: " + candela::quoted(*file) +
+                            " would hold the cameras of two scenes, of " + candela::quoted(other->second) +
+                            " and of " + candela::quoted(scene.file) +
+                            "; tell them apart by fields in the name, such as {stem} or {folder}");
+        }
+        files_.write("--write-cameras", *file);
+        if (!cameras_name_->names_folders()) check_writable(*file);
+    }
+}
+
+// Lists the pictures of a scene, and names them as far as they are known before it is read.
+void PicturePlan::plan(size_t i) {
+    PlannedScene& scene = scenes_[i];
+    const ListOptions& list = options_.list;
+    if (options_.wants_all_cameras()) {
+        const auto tells_cameras = [](const NameTemplate& name) {
+            return name.uses("camera") || name.uses("view");
+        };
+        for (const NameTemplate& name : names_) {
+            if (!tells_cameras(name)) {
+                refuse_pictures("-o: \"" + name.text() +
+                                "\" would be the picture of each camera; add the field {camera} or {view}");
+            }
+        }
+    }
+    for (const std::string& camera : list.cameras)
+        scene.pictures.push_back({scene.file, camera, uint32_t(scene.pictures.size())});
+    if (list.cameras.empty()) scene.pictures.push_back({scene.file});
+    for (Picture& picture : scene.pictures)
+        name(i, picture);
+    if (options_.wants_all_cameras()) scene.pictures.clear();
+}
+
+NameFields PicturePlan::fields(const Picture& picture) const {
+    NameFields fields = fields_of(picture.scene);
+    fields.camera = picture.camera;
+    fields.scene = options_.rendering.loading.gltf.scene;
+    fields.variant = options_.rendering.loading.gltf.variant;
+    fields.view = picture.view;
+    return fields;
+}
+
+// Gives the picture its files, if all their names are known. Those of an unknown camera are claimed for its
+// field, so that two scenes do not rely on different names of their cameras.
+void PicturePlan::name(size_t scene, Picture& picture) {
+    NameFields known = fields(picture);
+    NameFields open = known;
+    if (!known.camera) open.camera = "{camera}";
+    std::vector<std::string> files;
+    for (size_t i = 0; i < names_.size(); ++i) {
+        const std::optional<std::string> file = names_[i].name(known);
+        if (file) files.push_back(*file);
+        claim({scene, picture.view, i}, picture, file ? *file : *names_[i].name(open));
+    }
+    if (files.size() == names_.size()) picture.files = std::move(files);
+}
+
+// Throws Error (usage) if the file is not that output of this picture alone.
+void PicturePlan::claim(const Owner& owner, const Picture& picture, const std::string& file) {
+    check_formats({file});
+    const auto [known, is_new] = owners_.emplace(file, owner);
+    const Owner& other = known->second;
+    if (!is_new && other == owner) return;
+    if (!is_new && (other.scene != owner.scene || other.view != owner.view)) {
+        refuse_pictures(
+            "-o: " + candela::quoted(file) + " would be two pictures, of " +
+            candela::quoted(scenes_[other.scene].file) + " and of " + text_of(picture) +
+            "; tell them apart by fields in the name, such as {stem}, {folder}, {camera} or {view}");
+    }
+    files_.write("-o", file);
+}
+
+// Throws Error if a folder is missing, or may not be written to, before any scene is read.
+void PicturePlan::check_folders() const {
+    std::set<std::filesystem::path> folders;
+    for (const PlannedScene& scene : scenes_) {
+        for (const Picture& picture : scene.pictures) {
+            for (size_t i = 0; i < picture.files.size(); ++i) {
+                const std::filesystem::path file(picture.files[i]);
+                if (!names_[i].names_folders() && folders.insert(file.parent_path()).second)
+                    check_writable(file);
+            }
+        }
+    }
+}
+
+std::vector<Picture> PicturePlan::pictures_of(size_t i, const Scene& scene) {
+    files_.read_all("the scene's file", scene.files);
+    std::vector<Picture> pictures = scenes_[i].pictures;
+    if (options_.wants_all_cameras()) {
+        for (const Camera& camera : scene.cameras)
+            pictures.push_back({scenes_[i].file, camera.name, uint32_t(pictures.size())});
+    }
+    for (Picture& picture : pictures) {
+        if (!picture.camera) picture.camera = scene.cameras.front().name;
+        if (picture.files.empty()) name(i, picture);
+    }
+    return pictures;
+}
+
+std::optional<std::string> PicturePlan::make_cameras_file(size_t i) const {
+    if (!cameras_name_) return std::nullopt;
+    const std::optional<std::string> file = cameras_name_->name(fields({.scene = scenes_[i].file}));
+    make_folder_of(*file);
+    return file;
+}
+
+void PicturePlan::make_folders(const Picture& picture) const {
+    for (size_t i = 0; i < picture.files.size(); ++i) {
+        if (names_[i].names_folders()) make_folder_of(picture.files[i]);
+    }
+}
+
+}  // namespace candela

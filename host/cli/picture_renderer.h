@@ -1,0 +1,68 @@
+// The device's part of `candela render`: one picture after the other, on one device.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/attempts.h"
+#include "cli/interrupt.h"
+#include "cli/prepared_scene.h"
+#include "cli/progress.h"
+#include "cli/render_options.h"
+#include "image/image.h"
+#include "session/device_slot.h"
+#include "session/record.h"
+#include "session/rendering.h"
+#include "vk/instance.h"
+
+namespace candela {
+
+// A picture whose files are not yet written.
+struct RenderedPicture {
+    Picture picture;
+    RenderRecord record;
+    Image image;
+    std::string state;  // How it ended, as --progress json says: "done", "interrupted" or "time limit".
+    std::unique_ptr<Progress> progress;
+    Attempts attempts{};             // To write its files.
+    std::optional<Error> failure{};  // Of the device, if there are samples nevertheless.
+};
+
+class PictureRenderer {
+  public:
+    // In a batch, messages name the scene or the picture.
+    PictureRenderer(const RenderOptions& options, bool is_batch, std::string command_line);
+
+    // Chooses the device. Throws Error if there is none. Does nothing the second time.
+    void choose_device();
+    // Renders a picture that has a job. The pictures of a scene are rendered one after the other, since what
+    // the device holds of the scene stays until leave_scene(); `scene` must live until then. Throws Error if
+    // there are no samples, or the device fails for good; the next call opens it again.
+    RenderedPicture render(const PreparedScene& scene, const PreparedPicture& picture);
+    void leave_scene() { rendering_.reset(); }
+
+    // Whether a signal has come since the first picture began.
+    bool interrupted() const { return guard_ && guard_->interrupted(); }
+    // Whether signals end the program at once.
+    bool can_be_quit() const { return !guard_; }
+    // Throws Error if the validation layer has reported anything.
+    void check_validation() const;
+
+  private:
+    RenderRecord record_of(const PreparedScene& scene, const RenderJob& job) const;
+    void start(const PreparedScene& scene, const PreparedPicture& picture);
+    RenderedPicture run(const PreparedScene& scene, const PreparedPicture& picture);
+    void print_details(const GpuScene& scene) const;
+    void print_outcome(const RenderRecord& record, uint32_t target, const std::string& name) const;
+
+    const RenderOptions& options_;
+    bool is_batch_;
+    std::string command_line_;
+    std::optional<vk::Instance> instance_;
+    std::optional<DeviceSlot> device_;
+    std::unique_ptr<Rendering> rendering_;  // Of the current scene.
+    std::optional<InterruptGuard> guard_;
+};
+
+}  // namespace candela

@@ -1,0 +1,157 @@
+// See prepared_scene.h.
+#include "cli/prepared_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iterator>
+#include <system_error>
+
+#include "cli/caught_error.h"
+#include "cli/console.h"
+#include "cli/loading.h"
+#include "cli/outputs.h"
+#include "session/convergence.h"
+
+namespace candela {
+namespace {
+
+class Preparation {
+  public:
+    Preparation(PicturePlan& plan, size_t i, const RenderOptions& options, std::optional<ProgressStyle> style)
+        : plan_(plan), number_(i), options_(options), style_(style) {
+        prepared_.file = plan.scenes()[i].file;
+        for (const Picture& picture : plan.scenes()[i].pictures)
+            prepared_.pictures.push_back({.picture = picture});
+    }
+
+    PreparedScene run() {
+        try {
+            for_each([this](PreparedPicture& picture) { check_files(picture); });
+            const bool may_have_more = prepared_.pictures.empty();
+            if (may_have_more || has_work()) prepare();
+        } catch (...) {
+            prepared_.failure = caught_error();
+        }
+        return std::move(prepared_);
+    }
+
+  private:
+    bool has_work() const {
+        return std::ranges::any_of(prepared_.pictures, [](const PreparedPicture& picture) {
+            return !picture.is_skipped && !picture.failure;
+        });
+    }
+
+    // Calls action(picture) for all that can still be rendered; an Error is the failure of that picture
+    // alone.
+    template <class Action>
+    void for_each(const Action& action) {
+        for (PreparedPicture& picture : prepared_.pictures) {
+            if (picture.is_skipped || picture.failure) continue;
+            try {
+                action(picture);
+            } catch (...) {
+                picture.failure = caught_error();
+            }
+        }
+    }
+
+    // Finds out whether the picture is there, and otherwise whether it can be written, if it has names.
+    void check_files(PreparedPicture& prepared) const {
+        const std::vector<std::string>& files = prepared.picture.files;
+        if (files.empty()) return;
+        const auto exists = [](const std::string& file) {
+            std::error_code ignored;
+            return std::filesystem::is_regular_file(file, ignored);
+        };
+        prepared.is_skipped = options_.list.skip_existing && std::ranges::all_of(files, exists);
+        if (prepared.is_skipped) return;
+        plan_.make_folders(prepared.picture);
+        check_outputs(files);
+    }
+
+    // Prints the warnings of the only picture; keeps those of one among several, to be printed in its turn.
+    void warn(const std::vector<std::string>& warnings) {
+        if (plan_.is_batch()) {
+            std::ranges::copy(warnings, std::back_inserter(prepared_.warnings));
+        } else {
+            print_warnings(warnings);
+        }
+    }
+
+    void prepare() {
+        load();
+        for_each([this](PreparedPicture& picture) {
+            picture.job = options_.job(prepared_.scene, picture.picture.camera);
+            if (const auto& reference = options_.outputs.reference)
+                picture.reference = load_reference(*reference, picture.job->settings);
+        });
+        write_cameras();
+        if (!has_work()) return;
+        Scene& scene = prepared_.scene;
+        const Estimator estimator =
+            options_.rendering.sampling.estimator.value_or(scene.integrator.estimator);
+        warn(warnings_of_unseen_lights(scene, estimator));
+        prepared_.records = style_ ? build_showing_progress(scene, *style_) : build_quietly(scene);
+        warn(prepared_.records.warnings);
+    }
+
+    void load() {
+        using Clock = std::chrono::steady_clock;
+        const Clock::time_point start = Clock::now();
+        const LoadingOptions& loading = options_.rendering.loading;
+        const std::string& file = prepared_.file;
+        prepared_.scene =
+            style_ ? load_showing_progress(file, loading, *style_) : load_quietly(file, loading);
+        warn(prepared_.scene.warnings);
+        take_cameras();
+        const std::vector<Picture> pictures = plan_.pictures_of(number_, prepared_.scene);
+        prepared_.load_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        name_pictures(pictures);
+    }
+
+    // Gives the scene the cameras that the options ask for, if there are any, instead of its own.
+    void take_cameras() {
+        Scene& scene = prepared_.scene;
+        std::vector<Camera> cameras = options_.cameras.cameras(scene, options_.rendering.picture.size);
+        if (!cameras.empty()) scene.cameras = std::move(cameras);
+    }
+
+    // Writes the cameras of all pictures of the scene, if the options ask for it.
+    void write_cameras() const {
+        const std::optional<std::string> file = plan_.make_cameras_file(number_);
+        if (!file) return;
+        std::vector<PictureCamera> cameras;
+        for (const PreparedPicture& prepared : prepared_.pictures) {
+            const RenderJob job = options_.job(prepared_.scene, prepared.picture.camera);
+            cameras.push_back({job.camera, job.settings.size, prepared.picture.files.front()});
+        }
+        candela::write_cameras(*file, std::move(cameras));
+    }
+
+    // Takes over what the plan says of the pictures now that the scene is known.
+    void name_pictures(const std::vector<Picture>& pictures) {
+        prepared_.pictures.resize(pictures.size());
+        for_each([&](PreparedPicture& prepared) {
+            const bool was_named = !prepared.picture.files.empty();
+            prepared.picture = pictures[size_t(&prepared - prepared_.pictures.data())];
+            if (!was_named) check_files(prepared);
+        });
+    }
+
+    PicturePlan& plan_;
+    size_t number_;
+    const RenderOptions& options_;
+    std::optional<ProgressStyle> style_;
+    PreparedScene prepared_;
+};
+
+}  // namespace
+
+PreparedScene prepare_scene(PicturePlan& plan, size_t i, const RenderOptions& options,
+                            std::optional<ProgressStyle> style) {
+    return Preparation(plan, i, options, style).run();
+}
+
+}  // namespace candela
