@@ -40,7 +40,7 @@ endif()
 find_program(GLSLANG_VALIDATOR NAMES glslangValidator glslang REQUIRED)
 find_program(SPIRV_OPT NAMES spirv-opt REQUIRED)
 find_path(VOLK_INCLUDE_DIR NAMES volk.c REQUIRED)
-find_path(STB_INCLUDE_DIR NAMES stb_image_write.h PATH_SUFFIXES stb REQUIRED)
+find_path(STB_INCLUDE_DIR NAMES stb_image.h PATH_SUFFIXES stb REQUIRED)
 
 # Flags of all our targets. NaN and infinity are data here: no fast-math anywhere; and the compiler must not fuse
 # multiply and add where the shaders do not, so that CPU references agree with the device bit for bit.

@@ -141,6 +141,13 @@ void Batch::write(RenderedPicture&& rendered, bool is_last) {
     }
     ImageOutputs outputs = options_.outputs.images;
     outputs.files = rendered.picture.files;
+    const bool is_automatic = outputs.development.exposure.automatic;
+    outputs = outputs.exposed_for(rendered.image);
+    rendered.exposure = outputs.development.exposure.ev;
+    if (is_automatic && !options_.messages.quiet && options_.messages.progress != ProgressStyle::json) {
+        print_note((plan_.is_batch() ? outputs.files.front() + ": " : "") +
+                   "exposure: " + fixed(rendered.exposure, 2) + " EV");
+    }
     writing_ = std::async(is_last ? std::launch::deferred : std::launch::async | std::launch::deferred,
                           [rendered = std::move(rendered), outputs]() mutable {
                               return written(std::move(rendered), outputs);
@@ -154,7 +161,7 @@ void Batch::settle() {
     Attempts& attempts = rendered.attempts;
     attempts.attempt([&] {
         const std::optional<Error> failure = rendered.failure ? rendered.failure : attempts.failure();
-        report_.add(rendered.picture, failure ? "failed" : rendered.state, rendered.record, failure);
+        report_.add(rendered.picture, rendered, failure);
     });
     attempts.attempt([&] {
         if (rendered.failure) throw Error(*rendered.failure);

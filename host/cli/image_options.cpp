@@ -12,25 +12,50 @@ namespace candela {
 
 static_assert(MAX_EXPOSURE_EV == 100.0f, "the message on --exposure says so");
 
-static std::optional<double> parse_exposure(const std::string& text) {
+static std::optional<Exposure> parse_exposure(const std::string& text) {
     const auto value = parse_number(text);
-    return value && std::abs(*value) <= double(MAX_EXPOSURE_EV) ? value : std::nullopt;
+    if (!value || std::abs(*value) > double(MAX_EXPOSURE_EV)) return std::nullopt;
+    return Exposure{.ev = *value, .automatic = false};
 }
 
-void DevelopmentOptions::add_to(CLI::App& app) {
-    add_value(app, "--exposure", exposure, parse_exposure, "a number from -100 to 100",
-              "PNG: multiply by 2^EV before the tone map (default: 0)")
-        ->type_name("EV");
-    add_choice(app, "--tonemap", tonemap, TONEMAP_NAMES, "PNG: tone map (default: linear, which clamps)");
+static std::optional<Exposure> parse_exposure_or_auto(const std::string& text) {
+    return text == "auto" ? Exposure{.ev = 0.0, .automatic = true} : parse_exposure(text);
+}
+
+static_assert(AUTO_PERCENTILE == 95.0 && AUTO_LUMINANCE == 0.8, "the description of --exposure says so");
+
+void DevelopmentOptions::add_to(CLI::App& app, bool with_automatic) {
+    constexpr const char* NUMBER = "a number from -100 to 100";
+    if (with_automatic) {
+        add_value(app, "--exposure", exposure, parse_exposure_or_auto, std::string("auto, or ") + NUMBER,
+                  "PNG, JPEG, WebP: multiply by 2^EV before the tone map (default: 0); auto brings the 95th "
+                  "percentile of luminance to 0.8")
+            ->type_name("EV|auto");
+    } else {
+        add_value(app, "--exposure", exposure, parse_exposure, NUMBER,
+                  "PNG: multiply by 2^EV before the tone map (default: 0)")
+            ->type_name("EV");
+    }
+    add_choice(app, "--tonemap", tonemap, TONEMAP_NAMES,
+               with_automatic ? "PNG, JPEG, WebP: tone map (default: linear, which clamps)"
+                              : "PNG: tone map (default: linear, which clamps)");
+}
+
+ImageFormat output_format(const std::string& path) {
+    return path == STDOUT ? ImageFormat::exr : image_format(path);
 }
 
 void ImageOutputs::add_to(CLI::App& app) {
-    app.add_option("-o,--output", files, "Image to write, .exr or .png; repeat it for several")
-        ->type_name("FILE")
+    app.add_option(
+           "-o,--output", files,
+           "Image to write, .exr, .png, .jpg or .webp, or - for EXR on standard output; repeat it for "
+           "several")
+        ->type_name("FILE|-")
         ->take_all()
         ->allow_extra_args(false);
     app.add_flag("--half", half, "EXR: R G B A and Albedo as 16-bit floats (default: 32-bit)");
-    development.add_to(app);
+    development.add_to(app, true);
+    screen.add_to(app);
 }
 
 void ImageOutputs::add_aovs_to(CLI::App& app) {
@@ -41,8 +66,21 @@ void ImageOutputs::add_aovs_to(CLI::App& app) {
 
 AovSelection ImageOutputs::written_aovs() const {
     const bool exr = std::ranges::any_of(
-        files, [](const std::string& path) { return image_format(path) == ImageFormat::exr; });
-    return exr ? aovs : AovSelection{};
+        files, [](const std::string& path) { return output_format(path) == ImageFormat::exr; });
+    AovSelection written = exr ? aovs : AovSelection{};
+    written.transmission = screen.backdrop() == Backdrop::transmitted;
+    return written;
+}
+
+bool ImageOutputs::uses_stdout() const {
+    return std::ranges::find(files, STDOUT) != files.end();
+}
+
+ImageOutputs ImageOutputs::exposed_for(const Image& image) const {
+    ImageOutputs result = *this;
+    if (development.exposure.automatic)
+        result.development.exposure = {.ev = double(auto_exposure(image)), .automatic = false};
+    return result;
 }
 
 }  // namespace candela

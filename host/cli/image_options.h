@@ -6,7 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/screen_options.h"
 #include "film/accumulation.h"
+#include "image/image_io.h"
 #include "image/tonemap.h"
 #include "scene/names.h"
 
@@ -18,28 +20,44 @@ inline constexpr Choices<Tonemap, 5> TONEMAP_NAMES{{{"linear", Tonemap::linear},
                                                     {"agx", Tonemap::agx},
                                                     {"neutral", Tonemap::neutral}}};
 
-// How radiance becomes a PNG.
+struct Exposure {
+    double ev = 0.0;
+    bool automatic = false;  // `ev` is still to be found, by auto_exposure().
+};
+
+// How radiance becomes a picture for the screen.
 struct DevelopmentOptions {
-    double exposure = 0.0;  // [EV].
+    Exposure exposure;
     Tonemap tonemap = Tonemap::linear;
 
-    // Declares them on `app`; this object must not move.
-    void add_to(CLI::App& app);
+    // Declares them on `app`, with an automatic exposure or without; this object must not move.
+    void add_to(CLI::App& app, bool with_automatic);
 };
+
+// Standard output, among the names of outputs; it gets an EXR file.
+inline constexpr const char* STDOUT = "-";
+
+// image_format() of an output.
+ImageFormat output_format(const std::string& path);
 
 struct ImageOutputs {
     std::vector<std::string> files;
     AovSelection aovs{true, true, true, true, true, true};  // In an EXR.
     bool half = false;                                      // EXR: R G B A and Albedo with 16 bits.
     DevelopmentOptions development;
+    ScreenOptions screen;
 
-    // Declares all but --aov on `app`; this object must not move.
+    // Declares all but --aov and --alpha on `app`; this object must not move.
     void add_to(CLI::App& app);
     void add_aovs_to(CLI::App& app);
 
     // The images besides R G B A that will be written: those selected, if one of the files is an EXR;
     // otherwise none.
     AovSelection written_aovs() const;
+    // Whether an EXR file goes to standard output.
+    bool uses_stdout() const;
+    // The same with the exposure for this image, if it is automatic.
+    ImageOutputs exposed_for(const Image& image) const;
 };
 
 }  // namespace candela

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/printable.h"
+#include "base/text.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
@@ -38,21 +39,29 @@ ExitCode print_missing(const MergeArguments& arguments) {
     return ExitCode::done;
 }
 
-ExitCode run(const MergeArguments& arguments, const std::string& command_line) {
+ExitCode run(MergeArguments& arguments, const std::string& command_line) {
     if (arguments.missing) return print_missing(arguments);
+    ScreenOptions& screen = arguments.images.screen;
     CommandFiles files;  // The parts are all read before anything is written: one of them may be the output.
     for (const std::string& path : arguments.images.files)
         files.write("-o", path);
-    check_outputs(arguments.images.files);
+    if (const auto background = screen.background_file()) files.read("--background", *background);
+    check_outputs(arguments.images);
+    screen.load();
     Merged merged = merge_files({arguments.parts.begin(), arguments.parts.end()});
     print_warnings(merged.warnings);
     merged.image.attributes["candela.commandLine"] = command_line;
     const std::string samples = std::get<std::string>(merged.image.attributes.at("candela.samples"));
     const size_t count = arguments.parts.size();
     write_images(arguments.images, std::move(merged.image));
-    std::printf("merged %zu part%s: samples %s\n", count, count == 1 ? "" : "s",
-                printable(samples, MAX_MESSAGE_BYTES).c_str());
-    flush_results();
+    const std::string note = concat("merged ", count, count == 1 ? " part" : " parts", ": samples ",
+                                    printable(samples, MAX_MESSAGE_BYTES));
+    if (arguments.images.uses_stdout()) {
+        print_note(note);
+    } else {
+        std::printf("%s\n", note.c_str());
+        flush_results();
+    }
     return ExitCode::done;
 }
 

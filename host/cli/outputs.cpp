@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <iterator>
 #include <string>
 #include <string_view>
@@ -12,7 +14,6 @@
 #include "cli/attempts.h"
 #include "cli/console.h"
 #include "image/image_io.h"
-#include "image/tonemap.h"
 
 namespace candela {
 namespace {
@@ -33,32 +34,49 @@ void use_half(Image& image) {
     }
 }
 
+void print_bytes(const std::filesystem::path& /*path*/, std::string_view bytes) {
+    std::fwrite(bytes.data(), 1, bytes.size(), stdout);
+    flush_results();
+}
+
 void write_image(const ImageOutputs& outputs, const std::string& path, const Image& image, FileWriter write) {
-    if (image_format(path) == ImageFormat::exr) {
-        write_exr(path, image, write);
-    } else {
-        write_png(path, image.data.width(), image.data.height(),
-                  develop(image, outputs.development.tonemap, float(outputs.development.exposure)), write);
+    const ImageFormat format = output_format(path);
+    if (format == ImageFormat::exr) {
+        write_exr(path, image, path == STDOUT ? print_bytes : write);
+        return;
     }
+    const DevelopmentOptions& development = outputs.development;
+    const TexelImage picture =
+        outputs.screen.develop(image, format, development.tonemap, float(development.exposure.ev));
+    write_picture(path, picture, outputs.screen.notes(image), write);
 }
 
 }  // namespace
 
-void check_formats(const std::vector<std::string>& files) {
-    if (files.empty()) {
+void check_formats(const ImageOutputs& outputs) {
+    if (outputs.files.empty()) {
         throw Error("no output given; use -o FILE.exr, -o FILE.png, or both", ErrorKind::request);
     }
-    for (const std::string& path : files)
-        image_format(path);
+    for (const std::string& path : outputs.files) {
+        if (output_format(path) == ImageFormat::jpeg && outputs.screen.background == "transparent") {
+            throw Error("--background: JPEG has no alpha for " + quoted(std::filesystem::path(path)) +
+                            "; write .png or .webp, or give a colour such as '#ffffff'",
+                        ErrorKind::request);
+        }
+    }
+    if (std::ranges::count(outputs.files, STDOUT) > 1)
+        throw Error("-o: standard output gets one image; give - once", ErrorKind::request);
 }
 
-void check_outputs(const std::vector<std::string>& files) {
-    check_formats(files);
-    for (const std::string& path : files)
-        check_writable(path);
+void check_outputs(const ImageOutputs& outputs) {
+    check_formats(outputs);
+    for (const std::string& path : outputs.files) {
+        if (path != STDOUT) check_writable(path);
+    }
 }
 
-void write_images(const ImageOutputs& outputs, Image image) {
+void write_images(const ImageOutputs& given, Image image) {
+    const ImageOutputs outputs = given.exposed_for(image);
     if (outputs.half) use_half(image);
     Attempts attempts;
     for (const std::string& path : outputs.files)
@@ -66,10 +84,12 @@ void write_images(const ImageOutputs& outputs, Image image) {
     attempts.finish();
 }
 
-void write_current_images(const ImageOutputs& outputs, const RenderRecord& record, Image image) {
+void write_current_images(const ImageOutputs& given, const RenderRecord& record, Image image) {
+    const ImageOutputs outputs = given.exposed_for(image);
     add_attributes(image, record);
     if (outputs.half) use_half(image);
     for (const std::string& path : outputs.files) {
+        if (path == STDOUT) continue;  // Gets the finished image alone.
         try {
             write_image(outputs, path, image, write_file_atomically);
         } catch (const Error& error) {

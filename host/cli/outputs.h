@@ -10,10 +10,11 @@
 
 namespace candela {
 
-// Throws Error (usage) if there is no output or one has an unknown extension.
-void check_formats(const std::vector<std::string>& files);
+// Throws Error (usage) if there is no output, or one has an unknown extension or cannot hold what is asked
+// for.
+void check_formats(const ImageOutputs& outputs);
 // The same; also throws Error if one could not be written. Call it before any long work.
-void check_outputs(const std::vector<std::string>& files);
+void check_outputs(const ImageOutputs& outputs);
 
 // Writes all images, in the second case with attributes, as finished work. If one fails, still writes the
 // others, and then throws the Error.

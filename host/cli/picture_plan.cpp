@@ -44,7 +44,7 @@ PicturePlan::PicturePlan(const RenderOptions& options, std::istream& standard_in
     is_batch_ = list.is_list || list.scenes.size() > 1 || options.list.cameras.size() > 1 ||
                 options.wants_all_cameras();
     if (is_batch_) refuse_options_of_one();
-    check_formats(outputs.images.files);
+    check_formats(outputs.images);
     for (const std::string& name : outputs.images.files)
         names_.emplace_back(name);
 
@@ -57,6 +57,10 @@ PicturePlan::PicturePlan(const RenderOptions& options, std::istream& standard_in
         scenes_.push_back({.file = path});
     for (size_t i = 0; i < scenes_.size(); ++i)
         plan(i);
+    if (const auto background = outputs.images.screen.background_file())
+        files_.read("--background", *background);
+    if (outputs.report == STDOUT && outputs.images.uses_stdout())
+        refuse_pictures("--report and -o both go to standard output; give one of them a file");
     if (outputs.report) files_.write("--report", *outputs.report);
     if (options.checkpoint.file) files_.write("--checkpoint", *options.checkpoint.file);
     options.cameras.check(files_);
@@ -155,7 +159,7 @@ void PicturePlan::name(size_t scene, Picture& picture) {
 
 // Throws Error (usage) if the file is not that output of this picture alone.
 void PicturePlan::claim(const Owner& owner, const Picture& picture, const std::string& file) {
-    check_formats({file});
+    output_format(file);  // Throws if there is none.
     const auto [known, is_new] = owners_.emplace(file, owner);
     const Owner& other = known->second;
     if (!is_new && other == owner) return;
@@ -175,6 +179,7 @@ void PicturePlan::check_folders() const {
         for (const Picture& picture : scene.pictures) {
             for (size_t i = 0; i < picture.files.size(); ++i) {
                 const std::filesystem::path file(picture.files[i]);
+                if (file == STDOUT) continue;
                 if (!names_[i].names_folders() && folders.insert(file.parent_path()).second)
                     check_writable(file);
             }

@@ -25,6 +25,7 @@ struct RenderedPicture {
     Image image;
     std::string state;  // How it ended, as --progress json says: "done", "interrupted" or "time limit".
     std::unique_ptr<Progress> progress;
+    double exposure = 0.0;           // Of its pictures for the screen [EV].
     Attempts attempts{};             // To write its files.
     std::optional<Error> failure{};  // Of the device, if there are samples nevertheless.
 };

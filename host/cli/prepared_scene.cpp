@@ -68,7 +68,9 @@ class Preparation {
         prepared.is_skipped = options_.list.skip_existing && std::ranges::all_of(files, exists);
         if (prepared.is_skipped) return;
         plan_.make_folders(prepared.picture);
-        check_outputs(files);
+        ImageOutputs outputs = options_.outputs.images;
+        outputs.files = files;
+        check_outputs(outputs);
     }
 
     // Prints the warnings of the only picture; keeps those of one among several, to be printed in its turn.

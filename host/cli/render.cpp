@@ -12,10 +12,11 @@
 namespace candela {
 namespace {
 
-ExitCode render(const RenderOptions& options, const std::string& command_line) {
+ExitCode render(RenderOptions& options, const std::string& command_line) {
     PicturePlan plan(options, std::cin);
     Batch batch(plan, options, command_line);
     check_checkpoint(options.checkpoint);
+    options.outputs.images.screen.load();
     return batch.run();
 }
 

@@ -34,6 +34,7 @@ void OutputOptions::add_to(CLI::App& app) {
     app.option_defaults()->group("Output");
     images.add_to(app);
     images.add_aovs_to(app);
+    images.screen.add_alpha_to(app);
     add_value(app, "--write-every", write_every, parse_duration, DURATIONS,
               "Also write the images while rendering (default: only at the end)")
         ->type_name("TIME");
@@ -118,6 +119,7 @@ RenderJob RenderOptions::job(const Scene& loaded, const std::optional<std::strin
         .checkpoint = checkpoint};
     job.settings.first_sample = samples ? samples->first : 0;
     job.settings.aovs = job.aovs.needs_layers();
+    job.settings.backdrop = outputs.images.screen.backdrop();
     job.settings.pass_growth = job.time_limit || job.write_every ? EVEN_PASS_GROWTH : PASS_GROWTH;
     if (job.adaptive && job.target % 2 != 0) {
         throw Error("--adaptive renders two halves: give an even number of samples per pixel (--spp), not " +

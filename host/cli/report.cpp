@@ -16,8 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* STDOUT = "-";
-
 Json or_null(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
 }
@@ -39,7 +37,7 @@ void add_convergence(Json& report, const RenderRecord& record) {
     }
 }
 
-Json rendered(const RenderRecord& record) {
+Json facts_of(const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     const auto ratio = [](double a, double b) { return b > 0.0 ? a / b : 0.0; };
     const double samples = double(record.samples);
@@ -110,12 +108,12 @@ bool Report::is_lines(const std::string& target) {
     return extension_of(target) == ".jsonl";
 }
 
-void Report::add(const Picture& picture, const std::string& state, const RenderRecord& record,
-                 const std::optional<Error>& failure) {
+void Report::add(const RenderedPicture& rendered, const std::optional<Error>& failure) {
     if (!target_) return;
-    Json entry = entry_of(picture, state);
+    Json entry = entry_of(rendered.picture, failure ? "failed" : rendered.state);
     if (failure) entry["error"] = failure->what();
-    entry.update(rendered(record));
+    entry.update(facts_of(rendered.record));
+    entry["exposure"] = rendered.exposure;
     write(entry);
 }
 

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "cli/picture_plan.h"
-#include "session/record.h"
+#include "cli/picture_renderer.h"
 
 namespace candela {
 
@@ -22,11 +22,10 @@ class Report {
     // Whether the name of a file asks for lines.
     static bool is_lines(const std::string& target);
 
-    // Adds a picture that was rendered, with the words of --progress json for how it ended; or one that was
-    // not. The latter makes a line, but no report of one picture. Throws Error if that fails; of lines, only
-    // once.
-    void add(const Picture& picture, const std::string& state, const RenderRecord& record,
-             const std::optional<Error>& failure);
+    // Adds a picture that was rendered, or one that was not, with the words of --progress json for how it
+    // ended. The latter makes a line, but no report of one picture. Throws Error if that fails; of lines,
+    // only once.
+    void add(const RenderedPicture& rendered, const std::optional<Error>& failure);
     void add(const Picture& picture, const std::string& state, const std::optional<Error>& failure = {});
 
   private:

@@ -52,7 +52,7 @@ void ViewArguments::add_to(CLI::App& app) {
         ->type_name("FILE")
         ->take_all()
         ->allow_extra_args(false);
-    development.add_to(app);
+    development.add_to(app, false);
     rendering.add_to(app);
     scene.add_camera_to(app);
     app.get_option("--crop")->group("");  // Hidden; check() refuses it with the reason.
@@ -102,7 +102,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     const Camera& camera = arguments.scene.choose_camera(scene);
     const ViewState state{.camera = camera,
                           .settings = rendering.settings(scene, camera),
-                          .exposure_ev = float(arguments.development.exposure),
+                          .exposure_ev = float(arguments.development.exposure.ev),
                           .tonemap = arguments.development.tonemap};
 
     print_warnings(warnings_of_unseen_lights(scene, state.settings.estimator));

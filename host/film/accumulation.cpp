@@ -37,6 +37,7 @@ class Half {
     double mean(uint32_t layer, size_t i, int component) const {
         return total(layer, i, component) / count(i);
     }
+    double transmission(size_t i) const { return mean(LAYER_ALBEDO, i, 3); }
     // Variance of the mean, from the sum of the samples and the sum of their squares.
     double variance(size_t i, int component) const {
         const double n = count(i);
@@ -151,9 +152,14 @@ Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
         }
     };
     add_means({"R", "G", "B"}, LAYER_L);
-    add_channel(image, "A", [&](size_t i) {
+    add_channel(image, aovs.transmission ? FIRST_HIT_ALPHA : "A", [&](size_t i) {
         return mean_of(halves, i, [&](const Half& half) { return half.alpha(i); });
     });
+    if (aovs.transmission) {
+        add_channel(image, "A", [&](size_t i) {
+            return mean_of(halves, i, [&](const Half& half) { return 1.0 - half.transmission(i); });
+        });
+    }
     if (aovs.albedo) add_means({"Albedo.R", "Albedo.G", "Albedo.B"}, LAYER_ALBEDO);
     if (aovs.normal) add_means({"N.X", "N.Y", "N.Z"}, LAYER_NORMAL);
     if (aovs.position) {

@@ -73,17 +73,19 @@ struct AovSelection {
     bool depth = false;         // Z: depth of that hit along the view axis [m]; infinity at a miss.
     bool variance = false;      // Variance.R/G/B of the pixel mean; infinity below two samples.
     bool sample_count = false;  // SampleCount.V.
+    // A is 1 - the mean transmission, and FirstHit.A what A is otherwise. The samples were rendered so.
+    bool transmission = false;
 
     bool operator==(const AovSelection&) const = default;
     // Whether the accumulation needs LAYER_COUNT_AOVS.
-    bool needs_layers() const { return albedo || normal; }
+    bool needs_layers() const { return albedo || normal || transmission; }
     bool needs_positions() const { return position || depth; }
 };
 
 // The image of the states: means over each pixel's own samples, in double precision; over one half alone if
 // the other has no samples, and 0 if neither has. A is the fraction of camera rays that hit something
-// visible. `positions` holds x, y, z, depth per pixel, row-major; it may be empty if the selection does not
-// need it.
+// visible, unless the selection says otherwise. `positions` holds x, y, z, depth per pixel, row-major; it may
+// be empty if the selection does not need it.
 Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
                  const std::vector<float>& positions);
 

@@ -30,6 +30,9 @@ struct Channel {
     bool half = false;  // Stored as 16-bit float in a file (65 504 at most).
 };
 
+// The fraction of camera rays that hit something, beside another A.
+inline constexpr const char* FIRST_HIT_ALPHA = "FirstHit.A";
+
 // The values of three channels, in the order red, green, blue; valid as long as the channels are.
 using RgbPlanes = std::array<std::span<const float>, 3>;
 

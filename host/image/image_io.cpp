@@ -1,12 +1,8 @@
-// Formats, PNG files, and what the readers share. No other file includes stb_image_write.
+// Formats of image files, and what readers and writers share.
 #include "image/image_io.h"
 
 #include <cassert>
 #include <string>
-
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#include <stb_image_write.h>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -26,9 +22,11 @@ ImageFormat image_format(const fs::path& path) {
     const std::string extension = extension_of(path);
     if (extension == ".exr") return ImageFormat::exr;
     if (extension == ".png") return ImageFormat::png;
+    if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::jpeg;
+    if (extension == ".webp") return ImageFormat::webp;
     throw Error("image file " + quoted(path) + " has " +
                     (extension.empty() ? "no extension" : "the unknown extension \"" + extension + '"') +
-                    " (supported: .exr, .png)",
+                    " (supported: .exr, .png, .jpg, .webp)",
                 ErrorKind::request);
 }
 
@@ -39,22 +37,37 @@ Image decode_image(std::string_view bytes, const fs::path& name, const ImageLimi
                 ": it is neither an OpenEXR image nor a Radiance picture; give an .exr or .hdr image");
 }
 
+void check_sides(const fs::path& path, const TexelImage& picture, uint32_t max, const char* format) {
+    const uvec2 size = picture.size;
+    if (size.x <= max && size.y <= max) return;
+    throw Error("cannot write " + quoted(path) + ": a side of its " + std::to_string(size.x) + 'x' +
+                std::to_string(size.y) + " pixels is longer than the " + std::to_string(max) + " of a " +
+                format + " file; write a PNG or EXR file");
+}
+
+void write_picture(const fs::path& path, const TexelImage& picture, const PictureNotes& notes,
+                   FileWriter write) {
+    assert(picture.texels.size() ==
+           size_t{picture.size.x} * picture.size.y * picture.channels * byte_size(picture.type));
+    switch (image_format(path)) {
+        case ImageFormat::jpeg:
+            return write(path, encode_jpeg(path, picture, notes.quality));
+        case ImageFormat::webp:
+            return write(path, encode_webp(path, picture, notes.quality));
+        default:
+            return write(path, encode_png(path, picture, notes));
+    }
+}
+
 void write_png(const fs::path& path, uint32_t width, uint32_t height, std::span<const uint8_t> rgb8,
                FileWriter write) {
-    assert(rgb8.size() == size_t(3) * width * height);
-    constexpr uint64_t MAX_BYTES = uint64_t(1) << 30;  // stb_image_write counts bytes in an int, twice over.
-    if ((uint64_t(3) * width + 1) * height > MAX_BYTES) {
-        throw Error("cannot write " + quoted(path) + ": " + std::to_string(width) + 'x' +
-                    std::to_string(height) + " pixels are too many for the PNG encoder; write an EXR file");
-    }
-    std::string bytes;
-    const auto append = [](void* context, void* data, int size) {
-        static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));
-    };
-    if (stbi_write_png_to_func(append, &bytes, int(width), int(height), 3, rgb8.data(), 0) == 0) {
-        throw Error("cannot write " + quoted(path) + ": there is not enough memory to encode the PNG file");
-    }
-    write(path, bytes);
+    const auto bytes = std::as_bytes(rgb8);
+    const TexelImage picture{.size = {width, height},
+                             .channels = 3,
+                             .type = TexelType::unorm8,
+                             .texels = {bytes.begin(), bytes.end()},
+                             .gamma = {}};
+    write(path, encode_png(path, picture, {}));
 }
 
 }  // namespace candela

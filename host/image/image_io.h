@@ -1,4 +1,5 @@
-// Image files: OpenEXR in and out, Radiance HDR in, PNG out. The only interface to the libraries for them.
+// Image files: OpenEXR in and out, Radiance HDR in; PNG, JPEG and WebP out. The only interface to the
+// libraries for them.
 #pragma once
 
 #include <algorithm>
@@ -7,15 +8,17 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/file.h"
 #include "image/image.h"
+#include "image/texel_image.h"
 
 namespace candela {
 
 // Formats of images that are written.
-enum class ImageFormat { exr, png };
+enum class ImageFormat { exr, png, jpeg, webp };
 
 // The format that the extension of `path` names, in upper or lower case. Throws Error (request) for
 // any other.
@@ -68,9 +71,21 @@ Image decode_hdr(std::string_view bytes, const std::filesystem::path& name, cons
 // decode_exr() or decode_hdr(), by the first bytes. Throws Error as these do, and for any other file.
 Image decode_image(std::string_view bytes, const std::filesystem::path& name, const ImageLimits& limits = {});
 
-// Writes 8-bit RGB, row-major from the top, 3 * width * height bytes, without loss. Throws Error if the file
-// cannot be written or the picture is larger than the encoder's limit of 2^30 bytes. The file appears whole
-// or not at all.
+// What a file of a picture for the screen states besides its pixels.
+struct PictureNotes {
+    // PNG: names, of 1 to 79 characters, and texts, in UTF-8.
+    std::vector<std::pair<std::string, std::string>> texts{};
+    int quality = 90;  // JPEG, WebP: 1 to 100.
+};
+
+// Writes a picture in sRGB with 3 channels, or 4 with straight alpha, in the format that the extension names:
+// PNG of 8 or 16 bits, without loss; JPEG of 8 bits, without alpha, at full resolution of colours; WebP of 8
+// bits, with loss, but not of alpha. Throws Error if the file cannot be written, or the format cannot hold
+// the picture. The file appears whole or not at all.
+void write_picture(const std::filesystem::path& path, const TexelImage& picture,
+                   const PictureNotes& notes = {}, FileWriter write = write_file_atomically);
+
+// write_picture() of 8-bit RGB, row-major from the top, 3 * width * height bytes.
 void write_png(const std::filesystem::path& path, uint32_t width, uint32_t height,
                std::span<const uint8_t> rgb8, FileWriter write = write_file_atomically);
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "image/image.h"
@@ -19,6 +20,16 @@ inline constexpr uint32_t MAX_IMAGE_SIDE = 1 << 20;
 // Throws Error if width * height exceeds `max_pixels`; both sides are at most MAX_IMAGE_SIDE.
 void check_pixel_count(const std::filesystem::path& path, uint64_t width, uint64_t height,
                        uint64_t max_pixels);
+
+// The bytes of write_picture()'s files; messages call them `path`.
+std::string encode_png(const std::filesystem::path& path, const TexelImage& picture,
+                       const PictureNotes& notes);
+std::string encode_jpeg(const std::filesystem::path& path, const TexelImage& picture, int quality);
+std::string encode_webp(const std::filesystem::path& path, const TexelImage& picture, int quality);
+
+// Throws Error if a side of the picture exceeds `max` pixels.
+void check_sides(const std::filesystem::path& path, const TexelImage& picture, uint32_t max,
+                 const char* format);
 
 // Grows the wanted channels to that many rows, so that a short file with a header for a huge picture ends
 // before memory runs out.

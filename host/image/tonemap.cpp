@@ -108,19 +108,4 @@ std::array<uint8_t, 3> encode_srgb8(vec3 light) {
     return codes;
 }
 
-std::vector<uint8_t> develop(const Image& image, Tonemap curve, float exposure_ev) {
-    assert(std::abs(exposure_ev) <= MAX_EXPOSURE_EV);
-    const std::optional<RgbPlanes> rgb = image.find_rgb();
-    if (!rgb) throw Error("cannot develop the image: it lacks a channel R, G or B; render them");
-    const float scale = std::exp2(exposure_ev);
-    std::vector<uint8_t> bytes;
-    bytes.reserve(3 * image.pixel_count());
-    for (size_t i = 0; i < image.pixel_count(); ++i) {
-        const vec3 radiance((*rgb)[0][i], (*rgb)[1][i], (*rgb)[2][i]);
-        const std::array<uint8_t, 3> codes = encode_srgb8(tonemap(curve, scale * radiance));
-        bytes.insert(bytes.end(), codes.begin(), codes.end());
-    }
-    return bytes;
-}
-
 }  // namespace candela

@@ -30,9 +30,4 @@ vec3 tonemap(Tonemap curve, vec3 colour);
 // dithering. Ref: IEC 61966-2-1:1999, section 5.2 (piecewise transfer function).
 std::array<uint8_t, 3> encode_srgb8(vec3 light);
 
-// Develops the channels R, G and B: multiplies by 2^exposure_ev, applies the curve, encodes. Returns red,
-// green and blue bytes pixel by pixel, row-major, 3 * pixel_count(). Throws Error if the image lacks one of
-// the channels.
-std::vector<uint8_t> develop(const Image& image, Tonemap curve, float exposure_ev);
-
 }  // namespace candela

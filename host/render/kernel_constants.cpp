@@ -33,6 +33,12 @@ uint32_t light_sampler_constant(LightSampler chosen) {
     }
 }
 
+uint32_t environment_constant(uint32_t environment, Backdrop backdrop) {
+    if (backdrop == Backdrop::environment) return environment;
+    const uint32_t hidden = std::min(environment, ENVIRONMENT_HIDDEN);
+    return backdrop == Backdrop::transmitted ? hidden | ENVIRONMENT_BEHIND_GLASS : hidden;
+}
+
 uint32_t aperture_constant(const Camera& camera) {
     if (camera.ortho_height) return APERTURE_NONE;
     const Lens& lens = camera.lens;
@@ -75,7 +81,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_SMOOTH_TERMINATOR] = settings.terminator == Terminator::smooth;
     constants[CONSTANT_HAS_AOVS] = settings.aovs;
     constants[CONSTANT_APERTURE] = aperture_constant(camera);
-    constants[CONSTANT_ENVIRONMENT] = scene.environment;
+    constants[CONSTANT_ENVIRONMENT] = environment_constant(scene.environment, settings.backdrop);
     constants[CONSTANT_EVEN_SKY] = scene.even_sky;
     constants[CONSTANT_MATERIALS] = scene.materials_present;
     constants[CONSTANT_PRINCIPLED] = scene.principled;

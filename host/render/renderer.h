@@ -21,6 +21,14 @@
 
 namespace candela {
 
+// What camera rays see where they leave the scene.
+enum class Backdrop {
+    environment,  // As the scene says.
+    background,   // Nothing: the picture is put before something else.
+    transmitted,  // The same through ideal transmission; how much of it is seen is accumulated (needs
+                  // `aovs`).
+};
+
 struct RenderSettings {
     uvec2 size{512, 512};  // Pixels of the whole picture.
     PixelRect crop;        // The part to render; not empty.
@@ -32,6 +40,7 @@ struct RenderSettings {
     uint32_t first_sample = 0;  // Index of each pixel's first sample.
     uint32_t max_depth = DEPTH_SAFETY_LIMIT;
     uint32_t rr_depth = 3;
+    Backdrop backdrop = Backdrop::environment;
     bool aovs = false;  // Accumulate albedo and normal as well.
     SceneAccess scene_access = SceneAccess::automatic;
     double submission_seconds = 0.0;     // Duration of a submission; 0: suitable for the device.

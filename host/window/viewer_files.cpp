@@ -1,6 +1,7 @@
 // See viewer.h. The files that the viewer writes.
 #include "base/error.h"
 #include "base/file.h"
+#include "image/develop.h"
 #include "image/image_io.h"
 #include "session/record.h"
 #include "view/camera_control.h"
@@ -25,12 +26,11 @@ void Viewer::write_radiance(const std::filesystem::path& path, const Accumulatio
 
 void Viewer::save(const std::filesystem::path& path) {
     const Accumulation state = renderer_->download();
-    if (image_format(path) == ImageFormat::png) {
-        const Image image = make_image(state, {}, {});
-        write_png(path, state.rect.width(), state.rect.height(),
-                  develop(image, state_.tonemap, state_.exposure_ev), write_finished_work);
-    } else {
+    if (image_format(path) == ImageFormat::exr) {
         write_radiance(path, state, renderer_->positions());
+    } else {
+        const Development development{.curve = state_.tonemap, .exposure_ev = state_.exposure_ev};
+        write_picture(path, develop(make_image(state, {}, {}), development), {}, write_finished_work);
     }
 }
 

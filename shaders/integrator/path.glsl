@@ -28,6 +28,10 @@
 // Survival is never more likely than this, so that every path ends.
 const float RR_MAX_SURVIVAL = 0.99;
 
+// Whether the picture stands before a background, which is seen through ideal transmission.
+const bool BEFORE_BACKGROUND = (ENVIRONMENT & ENVIRONMENT_BEHIND_GLASS) != 0u;
+const bool HAS_SKY = (ENVIRONMENT & ~ENVIRONMENT_BEHIND_GLASS) != ENVIRONMENT_NONE;
+
 // The state of a path.
 struct Path {
     Ray ray;          // The next segment.
@@ -38,6 +42,7 @@ struct Path {
     LitPoint lit;     // The last vertex: see path_lit_point.
     uvec2 media;      // Around `ray`: see medium/medium.glsl.
     uint depth;       // Scattering vertices so far.
+    bool clear;       // Nothing but ideal transmission so far; only if BEFORE_BACKGROUND.
 };
 
 // The estimate of a path so far.
@@ -47,6 +52,9 @@ struct Estimate {
     vec3 albedo;   // Albedo of the surface that the camera ray hit; 0 if none.
     vec3 normal;   // Its shading normal, world space; 0 if none.
     bool cut;      // The path was cut at DEPTH_SAFETY_LIMIT.
+    // Luminance of the throughput with which the path reached the sky by ideal transmission alone, without the factors
+    // by which refraction scales radiance; 0 for all other paths. Only if BEFORE_BACKGROUND.
+    float transmission;
 };
 
 // A ray towards a light sample, which may be blocked.
@@ -58,11 +66,11 @@ struct ShadowRay {
 
 // A path that begins with a camera ray within these media, and an empty estimate.
 Path path_begin(Ray ray, uvec2 media) {
-    return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u);
+    return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u, true);
 }
 
 Estimate estimate_begin() {
-    return Estimate(vec3(0.0), false, vec3(0.0), vec3(0.0), false);
+    return Estimate(vec3(0.0), false, vec3(0.0), vec3(0.0), false, 0.0);
 }
 
 ShadowRay shadow_none() {
@@ -161,6 +169,7 @@ bool path_scatter(inout Path path, ShadedSurface x, LitPoint lit, BsdfSample sca
     path.eta_scale *= square(scattered.eta);
     path.pdf_bsdf = scattered.pdf;
     path.delta = scattered.delta;
+    if (BEFORE_BACKGROUND) path.clear = path.clear && scattered.delta && !viewers_side;
     path.lit = lit;
     if (!viewers_side) path.media = media_beyond(path.media, x.material.medium, x.s.front);
     path.ray = Ray(vertex_spawn_origin(interaction_vertex(x.s), viewers_side), wi);
@@ -186,7 +195,11 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     shadow = shadow_none();
     if (!is_hit(hit)) {
         path.beta *= media_transmittance(path.media, FLOAT_MAX);  // Through a medium without an end.
-        if (ENVIRONMENT != ENVIRONMENT_NONE) add_environment(path, estimate);
+        if (BEFORE_BACKGROUND && path.clear) {
+            estimate.transmission = path.eta_scale * dot(path.beta, LUMINANCE);
+        } else if (HAS_SKY) {
+            add_environment(path, estimate);
+        }
         return false;
     }
     ShadedSurface x = surface_at(path.ray, hit, path.media);

@@ -63,15 +63,22 @@ struct Sum {
     vec3 compensation;
 };
 
+// The same of single numbers.
+struct ScalarSum {
+    float sum;
+    float compensation;
+};
+
 // The state of a pixel.
 struct Pixel {
     Sum L;
-    Sum square;     // Sum of L^2.
-    Sum albedo;     // Sum over the first hits; only if HAS_AOVS.
-    Sum normal;     // Sum over the first hits; only if HAS_AOVS.
-    float visible;  // Samples whose camera ray hit something visible.
-    float rays;     // At most MAX_RAYS.
-    float limit;    // 0: none; otherwise the most samples that it gets, plus one.
+    Sum square;              // Sum of L^2.
+    Sum albedo;              // Sum over the first hits; only if HAS_AOVS.
+    Sum normal;              // Sum over the first hits; only if HAS_AOVS.
+    ScalarSum transmission;  // Only if BEFORE_BACKGROUND.
+    float visible;           // Samples whose camera ray hit something visible.
+    float rays;              // At most MAX_RAYS.
+    float limit;             // 0: none; otherwise the most samples that it gets, plus one.
     uint samples;
 };
 
@@ -94,8 +101,12 @@ Pixel pixel_load(uvec2 at) {
     p.square = Sum(square.rgb, square_compensation.rgb);
     p.albedo = Sum(vec3(0.0), vec3(0.0));
     p.normal = Sum(vec3(0.0), vec3(0.0));
+    p.transmission = ScalarSum(0.0, 0.0);
     if (HAS_AOVS) {
-        p.albedo = Sum(layer_load(at, LAYER_ALBEDO).rgb, layer_load(at, LAYER_ALBEDO_COMPENSATION).rgb);
+        vec4 albedo = layer_load(at, LAYER_ALBEDO);
+        vec4 albedo_compensation = layer_load(at, LAYER_ALBEDO_COMPENSATION);
+        p.albedo = Sum(albedo.rgb, albedo_compensation.rgb);
+        if (BEFORE_BACKGROUND) p.transmission = ScalarSum(albedo.a, albedo_compensation.a);
         p.normal = Sum(layer_load(at, LAYER_NORMAL).rgb, layer_load(at, LAYER_NORMAL_COMPENSATION).rgb);
     }
     p.visible = L.a;
@@ -111,8 +122,8 @@ void pixel_store(uvec2 at, Pixel p) {
     layer_store(at, LAYER_SQUARE, vec4(p.square.sum, p.limit));
     layer_store(at, LAYER_SQUARE_COMPENSATION, vec4(p.square.compensation, p.rays));
     if (HAS_AOVS) {
-        layer_store(at, LAYER_ALBEDO, vec4(p.albedo.sum, 0.0));
-        layer_store(at, LAYER_ALBEDO_COMPENSATION, vec4(p.albedo.compensation, 0.0));
+        layer_store(at, LAYER_ALBEDO, vec4(p.albedo.sum, p.transmission.sum));
+        layer_store(at, LAYER_ALBEDO_COMPENSATION, vec4(p.albedo.compensation, p.transmission.compensation));
         layer_store(at, LAYER_NORMAL, vec4(p.normal.sum, 0.0));
         layer_store(at, LAYER_NORMAL_COMPENSATION, vec4(p.normal.compensation, 0.0));
     }
@@ -127,11 +138,18 @@ void add(inout Sum sum, vec3 x) {
     compensated_add(sum.sum, sum.compensation, x);
 }
 
+void add(inout ScalarSum sum, float x) {
+    vec3 total = vec3(sum.sum), compensation = vec3(sum.compensation);
+    compensated_add(total, compensation, vec3(x));
+    sum = ScalarSum(total.x, compensation.x);
+}
+
 // Folds a sample into the pixel. One whose value or square is not finite adds zero and is counted.
 void pixel_fold(inout Pixel p, Estimate estimate) {
-    if (!is_finite(estimate.L * estimate.L)) {
+    if (!is_finite(estimate.L * estimate.L) || (BEFORE_BACKGROUND && !is_finite(vec3(estimate.transmission)))) {
         count(COUNTER_NONFINITE, 1u);
         estimate.L = vec3(0.0);
+        estimate.transmission = 0.0;
     }
     if (estimate.cut) count(COUNTER_DEPTH_LIMIT, 1u);
     add(p.L, estimate.L);
@@ -140,6 +158,7 @@ void pixel_fold(inout Pixel p, Estimate estimate) {
     if (HAS_AOVS) {
         add(p.albedo, estimate.albedo);
         add(p.normal, estimate.normal);
+        if (BEFORE_BACKGROUND) add(p.transmission, estimate.transmission);
     }
     ++p.samples;
 }

@@ -47,8 +47,8 @@ const uint LAYER_L = 0u;                    // rgb: sum of L; a: camera rays tha
 const uint LAYER_L_COMPENSATION = 1u;       // rgb; a: the pixel's number of samples.
 const uint LAYER_SQUARE = 2u;               // rgb: sum of L^2; a: the pixel's limit, see below.
 const uint LAYER_SQUARE_COMPENSATION = 3u;  // rgb; a: rays of the pixel's samples, MAX_RAYS at most.
-const uint LAYER_ALBEDO = 4u;               // rgb: sum of the first hit's albedo.
-const uint LAYER_ALBEDO_COMPENSATION = 5u;  // rgb.
+const uint LAYER_ALBEDO = 4u;               // rgb: sum of the first hit's albedo; a: of the transmission.
+const uint LAYER_ALBEDO_COMPENSATION = 5u;  // rgb; a.
 const uint LAYER_NORMAL = 6u;               // rgb: sum of the first hit's shading normal, world space.
 const uint LAYER_NORMAL_COMPENSATION = 7u;  // rgb.
 const uint LAYER_COUNT_COLOUR = 4u;         // Layers of an image without AOVs.
@@ -87,6 +87,9 @@ const uint APERTURE_NONE = 3u;  // Orthographic: parallel rays.
 const uint ENVIRONMENT_NONE = 0u;
 const uint ENVIRONMENT_HIDDEN = 1u;  // Camera rays do not see it.
 const uint ENVIRONMENT_VISIBLE = 2u;
+// Added to one of the first two: camera rays do not see it through ideal transmission either, and the
+// throughput with which they reach it is accumulated. Only with LAYER_COUNT_AOVS.
+const uint ENVIRONMENT_BEHIND_GLASS = 4u;
 
 #ifdef __cplusplus
 }  // namespace candela

@@ -11,7 +11,7 @@
 
 #include "cli/cli_fixture.h"
 #include "film/accumulation.h"
-#include "image/tonemap.h"
+#include "image/develop.h"
 #include "support/wait.h"
 
 namespace candela {
@@ -143,7 +143,7 @@ class ViewTest : public CliTest {
     }
     // How many of the window's codes differ by more than one step from what the image looks like.
     static size_t wrong_codes(const std::vector<uint32_t>& screen, const Image& image) {
-        const std::vector<uint8_t> codes = develop(image, Tonemap::linear, 0.0f);
+        const std::vector<std::byte> codes = develop(image, {}).texels;
         const uint32_t width = image.data.width();
         size_t wrong = 0;
         for (size_t i = 0; i < image.pixel_count(); ++i) {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <ostream>
 
+#include "image/develop.h"
 #include "image/image_io.h"
-#include "image/tonemap.h"
 #include "load/load.h"
 #include "render_fixture.h"
 #include "unit/base/base_fixture.h"
@@ -117,8 +117,10 @@ void leave_pictures(const fs::path& folder, const Image& image, const Image& ref
         write_exr(folder / (name + ".exr"), numbers);
         write_png(folder / (name + ".png"), image.data.width(), image.data.height(), picture);
     };
-    write("image", image, develop(image, Tonemap::linear, 0.0f));
-    write("reference", reference, develop(reference, Tonemap::linear, 0.0f));
+    for (const auto& [name, numbers] : {std::pair("image", &image), std::pair("reference", &reference)}) {
+        write_exr(folder / (std::string(name) + ".exr"), *numbers);
+        write_picture(folder / (std::string(name) + ".png"), develop(*numbers, {}));
+    }
     CompareOptions by_error = OPTIONS;
     by_error.relmse = DEFAULT_RELMSE;
     write("error", differences(image, reference, false), heatmap(image, reference, by_error));

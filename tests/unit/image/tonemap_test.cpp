@@ -103,37 +103,5 @@ TEST(Tonemap, NamesWhatBecomesOfInputsThatAreNoColours) {
     }
 }
 
-Image two_pixels(vec3 first, vec3 second) {
-    Image image;
-    image.full = {2, 1};
-    image.data = {0, 0, 2, 1};
-    for (int i = 0; i < 3; ++i)
-        image.add(std::string(1, "RGB"[i])).values = {first[i], second[i]};
-    return image;
-}
-
-TEST(Tonemap, DevelopsPixelByPixelWithTheExposureFirst) {
-    const Image image = two_pixels({0.09f, 0.25f, 0.5f}, {0.0f, NOT_A_NUMBER, 3.0f});
-    EXPECT_EQ(develop(image, Tonemap::linear, 1.0f), (std::vector<uint8_t>{118, 188, 255, 0, 0, 0}));
-    const Image brighter = two_pixels({0.36f, 1.0f, 2.0f}, vec3(0.0f));
-    for (const Tonemap curve : CURVES) {
-        EXPECT_EQ(develop(image, curve, 2.0f), develop(brighter, curve, 0.0f)) << int(curve);
-    }
-}
-
-TEST(Tonemap, ExtremeExposuresGiveBlackAndWhite) {
-    const Image image = two_pixels(vec3(0.0f), vec3(1.0f));
-    EXPECT_EQ(develop(image, Tonemap::linear, MAX_EXPOSURE_EV),
-              (std::vector<uint8_t>{0, 0, 0, 255, 255, 255}));
-    EXPECT_EQ(develop(image, Tonemap::linear, -MAX_EXPOSURE_EV), std::vector<uint8_t>(6, 0));
-}
-
-TEST(Tonemap, RefusesAnImageWithoutColours) {
-    Image image = two_pixels(vec3(0.0f), vec3(0.0f));
-    image.channels.pop_back();
-    EXPECT_EQ(error_of([&] { develop(image, Tonemap::linear, 0.0f); }),
-              "cannot develop the image: it lacks a channel R, G or B; render them");
-}
-
 }  // namespace
 }  // namespace candela

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/text.h"
 #include "scene/geometry.h"
 #include "scene/polygon.h"
 #include "unit/base/damage.h"
@@ -219,7 +220,7 @@ TEST_F(Obj, LeavesOutFacesThatAreNotFinite) {
 
 TEST_F(Obj, TakesTheNormalsOfTrianglesWhereTheirsAreNotFinite) {
     for (const std::string word : NOT_FINITE) {
-        const std::string text = std::string(TRIANGLE) + "vn 0 " + word + " 1\nvn 1 0 1\nf 1//1 2//1 3//2";
+        const std::string text = concat(TRIANGLE, "vn 0 ", word, " 1\nvn 1 0 1\nf 1//1 2//1 3//2");
         expect_warnings(text, {"m.obj:4: a normal is not finite; the triangle's is used"});
         const TriangleMesh mesh = load(text);
         EXPECT_EQ(mesh.normals[mesh.triangles[0].x], vec3(0, 0, 1));
