@@ -54,7 +54,7 @@ class LoadingLine {
 Scene load_quietly(const std::string& file, const LoadingOptions& given, const LoadProgress& progress) {
     set_memory_limit(given.memory_limit.value_or(default_memory_limit()));
     const LimitedMemory limited;
-    LoadOptions options{.gltf = given.gltf, .progress = progress};
+    LoadOptions options{.gltf = given.gltf, .lighting = given.lighting, .progress = progress};
     options.images.if_missing = given.missing_images;
     options.reach = {.folders = {given.folders.begin(), given.folders.end()}, .anywhere = given.any_folder};
     if (given.texture_limit) options.images.texture_limit = *given.texture_limit;

@@ -40,9 +40,7 @@ void LoadingOptions::add_to(CLI::App& app) {
     app.add_option("--variant", gltf.variant, "Variant of the materials by name or index")->type_name("NAME");
     add_choice(app, "--light-units", gltf.light_units, LIGHT_UNITS_NAMES,
                "Units of the lights' intensities (default: blender for files by Blender, otherwise spec)");
-    add_choice(
-        app, "--studio", gltf.studio, STUDIO_NAMES,
-        "Studio lighting: auto (default; only if nothing else lights the scene), off, or a studio's name");
+    lighting.add_to(app);
 }
 
 }  // namespace candela

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/lighting_options.h"
 #include "load/gltf/gltf.h"
 #include "scene/scene.h"
 
@@ -23,6 +24,7 @@ struct LoadingOptions {
     bool any_folder = false;               // Whether they may be read from anywhere.
     std::optional<uint64_t> memory_limit;  // Bytes; none: default_memory_limit().
     GltfOptions gltf;
+    LightingArguments lighting;
 
     // Declares them on `app`; this object must not move.
     void add_to(CLI::App& app);

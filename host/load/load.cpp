@@ -11,7 +11,6 @@
 #include "load/json/loader.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
-#include "scene/geometry.h"
 
 namespace candela {
 namespace {
@@ -50,31 +49,20 @@ Format format_of(const std::filesystem::path& path) {
     return Format::json;
 }
 
-// Adds a warning if a native scene, whose images have been read, has no light.
-void check_light(Scene& scene, const std::string& place) {
-    const bool is_empty = scene.shapes.empty() && !scene.environment;
-    if (!is_empty && !has_light(scene))
-        scene.warnings.push_back(place + ": the scene has no light: the image will be black");
-}
-
 // `is_last`: no other scene shows the glTF files.
 Scene load(const std::filesystem::path& path, const LoadOptions& options, LoadedFiles& files, bool is_last) {
     const GltfOptions& gltf = options.gltf;
-    const auto read_images = [&](Scene& scene) {
-        if (is_last) files.gltf.clear();
-        load_images(scene, options.images, options.progress, files.images);
-    };
     Scene scene;
+    std::string place = path.string();
+    SceneSource source = SceneSource::mesh;
     switch (format_of(path)) {
         case Format::gltf:
             scene = load_gltf_scene(path, gltf, options.progress, options.reach, files.gltf);
-            read_images(scene);
-            add_studio(scene, path.string(), gltf.studio);
+            source = SceneSource::gltf;
             break;
         case Format::obj:
             refuse(path, gltf);
             scene = load_obj_scene(path, options.reach);
-            read_images(scene);
             break;
         case Format::ply:
             refuse(path, gltf);
@@ -83,14 +71,13 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, Loaded
         case Format::json: {
             JsonScene json = load_json_scene(path, gltf, options.progress, options.reach, files.gltf);
             scene = std::move(json.scene);
-            read_images(scene);
-            if (json.is_gltf) {
-                add_studio(scene, json.place, gltf.studio);
-            } else {
-                check_light(scene, json.place);
-            }
+            place = json.place;
+            source = json.is_gltf ? SceneSource::gltf : SceneSource::native;
         }
     }
+    if (is_last) files.gltf.clear();
+    load_images(scene, options.images, options.progress, files.images);
+    light_scene(scene, place, source, options.lighting);
     return scene;
 }
 

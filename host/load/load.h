@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "load/gltf/gltf.h"
+#include "load/lighting.h"
 #include "scene/images.h"
 #include "scene/load_progress.h"
 #include "scene/scene.h"
@@ -13,6 +14,7 @@ namespace candela {
 struct LoadOptions {
     ImageOptions images{};
     GltfOptions gltf{};  // Also for a glTF file that a JSON scene names.
+    LightingOptions lighting{};
     LoadProgress progress = no_progress;
     ReachOptions reach{};  // The files that may be named outside the folder of `path`.
 };

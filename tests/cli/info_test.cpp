@@ -112,7 +112,8 @@ TEST_F(Info, AStudioLightsAFileAsIsAskedFor) {
     EXPECT_EQ(environment({"--studio", "off"}), nullptr);
     const ProcessResult wrong = candela({"info", scene, "--studio", "night"});
     EXPECT_EQ(wrong.exit_code, 2);
-    EXPECT_CONTAINS(wrong.err, "--studio: cannot use \"night\"; expected auto|off|default");
+    EXPECT_CONTAINS(
+        wrong.err, "--studio: cannot use \"night\"; expected auto|off|default|softbox|white|overcast|sunset");
 }
 
 TEST_F(Info, MissingImagesAreAnErrorOnRequest) {

@@ -30,15 +30,6 @@ enum class LightUnits {
 inline constexpr Choices<LightUnits, 3> LIGHT_UNITS_NAMES{
     {{"spec", LightUnits::spec}, {"blender", LightUnits::blender}, {"raw", LightUnits::raw}}};
 
-// Whether a studio lights the scene of a file.
-enum class StudioChoice {
-    automatic,  // If nothing else does.
-    off,
-    standard,  // In any case, and in place of an environment.
-};
-inline constexpr Choices<StudioChoice, 3> STUDIO_NAMES{
-    {{"auto", StudioChoice::automatic}, {"off", StudioChoice::off}, {"default", StudioChoice::standard}}};
-
 // The parts of a file to read. An index may be given in place of a name.
 struct GltfOptions {
     std::optional<std::string> scene{};       // None: the file's default.
@@ -46,20 +37,19 @@ struct GltfOptions {
     std::optional<double> time{};             // Time of the animation [s]; none: not animated.
     std::optional<std::string> variant{};     // Variant of the materials; none: the file's own.
     std::optional<LightUnits> light_units{};  // None: the units of the program that wrote the file.
-    std::optional<StudioChoice> studio{};     // None: automatic.
 
     bool operator==(const GltfOptions&) const = default;
 };
 
 // The message about these options for other files.
 inline constexpr const char* GLTF_OPTIONS_ALONE =
-    "--scene, --animation, --time, --variant, --light-units and --studio are for glTF files; leave them out";
+    "--scene, --animation, --time, --variant and --light-units are for glTF files; leave them out";
 
 // The size of the picture if the file's camera does not state one.
 inline constexpr uvec2 GLTF_FILM_SIZE{1280, 720};
 
 // Reads a scene and the buffers that it names, with progress in bytes and then in meshes; load_images() reads
-// its images. A file without cameras gets one; add_studio() lights one without light. Throws Error with the
+// its images. A file without cameras gets one; light_scene() lights one without light. Throws Error with the
 // JSON pointer of what is wrong. Scene::warnings gets what is odd but usable. `reach` allows files outside
 // the file's folder.
 Scene load_gltf_scene(const std::filesystem::path& path, const GltfOptions& options = {},
@@ -77,11 +67,5 @@ void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& option
 
 // Adds a camera if there is none; the warning about it begins with `name`.
 void complete_gltf_scene(const std::string& name, Scene& scene);
-
-// Adds studio lighting if nothing else lights the scene of a glTF file. Call it after the images are loaded.
-// Surfaces that emit replace the studio if they send at least a tenth of the studio's light to the sphere
-// around the scene (Glow::radiance), if half of the scene's area is as bright, or if they are brighter than
-// white; docs/gltf.md tells users so. Warnings begin with `name`; without a choice, it is automatic.
-void add_studio(Scene& scene, const std::string& name, std::optional<StudioChoice> choice);
 
 }  // namespace candela

@@ -334,7 +334,7 @@ class GltfStudio : public Gltf {
     }
     Scene complete(std::optional<StudioChoice> studio = {}) {
         folder_.write("m.gltf", file_.gltf());
-        Scene scene = load_scene(folder_.path() / "m.gltf", {.images = {}, .gltf = {.studio = studio}});
+        Scene scene = load_scene(folder_.path() / "m.gltf", {.lighting = {.studio = studio}});
         EXPECT_FALSE(scene.warnings.empty());
         scene.warnings.erase(scene.warnings.begin());  // There is no camera.
         for (std::string& warning : scene.warnings)
@@ -420,7 +420,7 @@ TEST_F(GltfStudio, CanBeChosen) {
     folder_.write("m.gltf", file_.gltf());
     folder_.write("s.json", R"({"scene": "m.gltf", "environment": {"radiance": 1}})");
     const auto environment = [&](StudioChoice studio) {
-        return load_scene(folder_.path() / "s.json", {.images = {}, .gltf = {.studio = studio}}).environment;
+        return load_scene(folder_.path() / "s.json", {.lighting = {.studio = studio}}).environment;
     };
     EXPECT_EQ(environment(StudioChoice::standard).value().radiance, always.environment->radiance);
     EXPECT_EQ(environment(StudioChoice::off).value().radiance, std::vector<vec3>{vec3(1)});

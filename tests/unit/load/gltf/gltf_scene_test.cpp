@@ -159,18 +159,17 @@ TEST_F(GltfScene, OtherFormatsRefuseItsOptions) {
     folder_.write("m.ply", "ply\n");
     folder_.write("m.json", "{" + GOOD_CAMERA + ", \"shapes\": []}");
     for (const std::string name : {"m.obj", "m.ply", "m.json"}) {
-        for (const GltfOptions& options :
-             {GltfOptions{.time = 1.0}, GltfOptions{.scene = "a"},
-              GltfOptions{.light_units = LightUnits::raw}, GltfOptions{.studio = StudioChoice::off}}) {
+        for (const GltfOptions& options : {GltfOptions{.time = 1.0}, GltfOptions{.scene = "a"},
+                                           GltfOptions{.light_units = LightUnits::raw}}) {
             try {
                 load_scene(folder_.path() / name, {.images = {}, .gltf = options});
                 ADD_FAILURE() << name;
             } catch (const Error& error) {
-                EXPECT_EQ(
-                    folder_.without_folder(error.what()),
-                    name +
-                        ": --scene, --animation, --time, --variant, --light-units and --studio are for glTF "
-                        "files; leave them out");
+                EXPECT_EQ(folder_.without_folder(error.what()),
+                          name +
+                              ": --scene, --animation, --time, --variant and --light-units are for glTF "
+                              "files; leave "
+                              "them out");
                 EXPECT_EQ(error.kind(), ErrorKind::request);
             }
         }
