@@ -12,6 +12,7 @@
 #include "cli/progress_line.h"
 #include "load/load.h"
 #include "scene/geometry.h"
+#include "scene/seen_from_behind.h"
 
 namespace candela {
 
@@ -54,7 +55,10 @@ class LoadingLine {
 Scene load_quietly(const std::string& file, const LoadingOptions& given, const LoadProgress& progress) {
     set_memory_limit(given.memory_limit.value_or(default_memory_limit()));
     const LimitedMemory limited;
-    LoadOptions options{.gltf = given.gltf, .lighting = given.lighting, .progress = progress};
+    LoadOptions options{.gltf = given.gltf,
+                        .lighting = given.lighting,
+                        .double_sided = given.double_sided,
+                        .progress = progress};
     options.images.if_missing = given.missing_images;
     options.reach = {.folders = {given.folders.begin(), given.folders.end()}, .anywhere = given.any_folder};
     if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
@@ -93,6 +97,14 @@ GpuScene build_with_progress(Scene& scene, ProgressStyle style) {
     GpuScene gpu_scene = build_showing_progress(scene, style);
     print_warnings(gpu_scene.warnings);
     return gpu_scene;
+}
+
+std::vector<std::string> warnings_of_unseen_backs(const Scene& scene, const Camera& camera, uvec2 size) {
+    constexpr double LEAST = 0.005;
+    const std::optional<double> share = share_seen_from_behind(scene, camera, size);
+    if (!share || *share < LEAST) return {};
+    return {"single-sided surfaces are seen from behind, and are invisible, in about " +
+            fixed(100.0 * *share, 1) + " % of the picture; if something looks hollow, use --double-sided"};
 }
 
 std::vector<std::string> warnings_of_unseen_lights(const Scene& scene, Estimator estimator) {

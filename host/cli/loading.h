@@ -28,6 +28,9 @@ Scene load_with_progress(const std::string& file, const LoadingOptions& options,
 GpuScene build_showing_progress(Scene& scene, ProgressStyle style);
 GpuScene build_with_progress(Scene& scene, ProgressStyle style = ProgressStyle::automatic);
 
+// A warning, or none, if much of the picture sees single-sided surfaces from behind.
+std::vector<std::string> warnings_of_unseen_backs(const Scene& scene, const Camera& camera, uvec2 size);
+
 // A warning, or none, if the scene has lights that the estimator cannot find.
 std::vector<std::string> warnings_of_unseen_lights(const Scene& scene, Estimator estimator);
 

@@ -40,6 +40,8 @@ void LoadingOptions::add_to(CLI::App& app) {
     app.add_option("--variant", gltf.variant, "Variant of the materials by name or index")->type_name("NAME");
     add_choice(app, "--light-units", gltf.light_units, LIGHT_UNITS_NAMES,
                "Units of the lights' intensities (default: blender for files by Blender, otherwise spec)");
+    app.add_flag("--double-sided", double_sided,
+                 "Show all surfaces from both sides, also those that the file says are single-sided");
     lighting.add_to(app);
 }
 

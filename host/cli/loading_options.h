@@ -25,6 +25,7 @@ struct LoadingOptions {
     std::optional<uint64_t> memory_limit;  // Bytes; none: default_memory_limit().
     GltfOptions gltf;
     LightingArguments lighting;
+    bool double_sided = false;
 
     // Declares them on `app`; this object must not move.
     void add_to(CLI::App& app);

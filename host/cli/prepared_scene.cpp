@@ -95,6 +95,9 @@ class Preparation {
         const Estimator estimator =
             options_.rendering.sampling.estimator.value_or(scene.integrator.estimator);
         warn(warnings_of_unseen_lights(scene, estimator));
+        const auto first = std::ranges::find_if(
+            prepared_.pictures, [](const PreparedPicture& picture) { return picture.job.has_value(); });
+        warn(warnings_of_unseen_backs(scene, first->job->camera, first->job->settings.size));
         prepared_.records = style_ ? build_showing_progress(scene, *style_) : build_quietly(scene);
         warn(prepared_.records.warnings);
     }

@@ -11,6 +11,7 @@
 #include "load/json/loader.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
+#include "scene/seen_from_behind.h"
 
 namespace candela {
 namespace {
@@ -77,6 +78,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, Loaded
     }
     if (is_last) files.gltf.clear();
     load_images(scene, options.images, options.progress, files.images);
+    if (options.double_sided) make_double_sided(scene);
     light_scene(scene, place, source, options.lighting);
     return scene;
 }

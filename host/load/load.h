@@ -15,6 +15,7 @@ struct LoadOptions {
     ImageOptions images{};
     GltfOptions gltf{};  // Also for a glTF file that a JSON scene names.
     LightingOptions lighting{};
+    bool double_sided = false;  // make_double_sided().
     LoadProgress progress = no_progress;
     ReachOptions reach{};  // The files that may be named outside the folder of `path`.
 };
