@@ -161,7 +161,7 @@ void Batch::settle() {
     Attempts& attempts = rendered.attempts;
     attempts.attempt([&] {
         const std::optional<Error> failure = rendered.failure ? rendered.failure : attempts.failure();
-        report_.add(rendered.picture, rendered, failure);
+        report_.add(rendered, failure);
     });
     attempts.attempt([&] {
         if (rendered.failure) throw Error(*rendered.failure);
