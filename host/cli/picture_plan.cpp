@@ -65,7 +65,7 @@ PicturePlan::PicturePlan(const RenderOptions& options, std::istream& standard_in
     if (options.checkpoint.file) files_.write("--checkpoint", *options.checkpoint.file);
     options.cameras.check(files_);
     if (options.cameras.written) plan_camera_files();
-    check_folders();
+    if (is_batch_) check_folders();
 }
 
 void PicturePlan::refuse_options_of_one() const {
@@ -172,7 +172,7 @@ void PicturePlan::claim(const Owner& owner, const Picture& picture, const std::s
     files_.write("-o", file);
 }
 
-// Throws Error if a folder is missing, or may not be written to, before any scene is read.
+// Throws Error if a folder is missing, or may not be written to, before the first of many scenes is read.
 void PicturePlan::check_folders() const {
     std::set<std::filesystem::path> folders;
     for (const PlannedScene& scene : scenes_) {

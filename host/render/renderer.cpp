@@ -201,12 +201,16 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
 
 void Renderer::compile() {
     const auto start = std::chrono::steady_clock::now();
+    const uint32_t compiled_before = device_->programs().compiled();
     render_kernel_ = std::make_unique<vk::Kernel>(scene_kernel(RenderKernel::render));
     render_kernel_->bind(BINDING_IMAGE, image_);
     render_kernel_->bind(BINDING_COUNTERS, counter_buffer_);
     // Some drivers compile at the first dispatch.
-    record(*render_kernel_, Tile{.origin = {0, 0}, .size = {0, 0}, .stride = {1, 1}, .target_samples = 0});
-    commands_.submit_and_wait();
+    if (device_->programs().compiled() != compiled_before) {
+        record(*render_kernel_,
+               Tile{.origin = {0, 0}, .size = {0, 0}, .stride = {1, 1}, .target_samples = 0});
+        commands_.submit_and_wait();
+    }
     pipeline_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

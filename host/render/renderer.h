@@ -112,7 +112,7 @@ class Renderer {
         uint64_t samples = 0;
     };
 
-    // Makes the render kernel for constants_ and image_, including an empty first dispatch.
+    // Makes the render kernel for constants_ and image_, including an empty first dispatch if it is new.
     void compile();
     // A kernel for constants_, bound to the scene.
     vk::Kernel scene_kernel(RenderKernel which) const;
