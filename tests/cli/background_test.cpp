@@ -102,7 +102,8 @@ TEST_F(BackgroundOptions, GlassIsSeenThroughUnlessFirstHitsDecide) {
                       .exit_code,
                   0);
         double sum = 0.0;
-        for (const float value : read_exr(file("a.exr")).find("A")->values)
+        const Image image = read_exr(file("a.exr"));
+        for (const float value : image.find("A")->values)
             sum += double(value) / 64;
         return sum;
     };
