@@ -12,6 +12,7 @@
 #include "cli/arguments.h"
 #include "cli/console.h"
 #include "image/texel_io.h"
+#include "scene/studio.h"
 
 namespace candela {
 namespace {
@@ -37,6 +38,15 @@ std::optional<vec3> parse_colour(const std::string& text) {
 std::optional<std::string> parse_background(const std::string& text) {
     if (text.empty() || (text[0] == '#' && !parse_colour(text))) return std::nullopt;
     return text;
+}
+
+// What a picture stands before if the user does not say: #bcbcbc, or what its scene shows.
+const Background* default_background(const Image& image) {
+    static const Background GREY = vec3(0.5f);
+    const auto studio = image.attributes.find(STUDIO_ATTRIBUTE);
+    if (studio == image.attributes.end()) return nullptr;
+    const auto* const name = std::get_if<std::string>(&studio->second);
+    return name != nullptr && is_unseen_studio(*name) ? &GREY : nullptr;
 }
 
 TexelImage load_image(const std::string& file) {
@@ -96,7 +106,7 @@ TexelImage ScreenOptions::develop(const Image& image, ImageFormat format, Tonema
     return candela::develop(image, {.curve = curve,
                                     .exposure_ev = exposure_ev,
                                     .type = format == ImageFormat::png ? type : TexelType::unorm8,
-                                    .background = loaded.get()});
+                                    .background = loaded ? loaded.get() : default_background(image)});
 }
 
 PictureNotes ScreenOptions::notes(const Image& image) const {

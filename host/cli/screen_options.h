@@ -39,7 +39,8 @@ struct ScreenOptions {
 
     // How the device must render for that, and what the image then holds.
     Backdrop backdrop() const;
-    // The picture in a file of that format, with that exposure and curve.
+    // The picture in a file of that format, with that exposure and curve. Without a background, one of a
+    // scene in a studio that the camera does not see stands before a soft grey.
     TexelImage develop(const Image& image, ImageFormat format, Tonemap curve, float exposure_ev) const;
     // What the file states besides: the image's texts, without the command line and the time, so that files
     // of equal pictures are equal, and name nothing of the computer's folders.

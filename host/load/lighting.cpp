@@ -50,8 +50,7 @@ bool is_named(StudioChoice studio) {
 // Adds the studio if nothing else lights the scene of a glTF file, or a warning.
 void add_studio(Scene& scene, const std::string& name, StudioChoice choice) {
     const auto warn = [&](const char* text) { scene.warnings.push_back(name + ": " + text); };
-    Environment studio = studio_environment(StudioChoice::standard);
-    const Lit lit = light_of(scene, studio);
+    const Lit lit = light_of(scene, studio_environment(StudioChoice::standard));
     if (lit == Lit::fully) return;
     if (choice == StudioChoice::off) {
         if (lit == Lit::dark) warn("there is no light, and the studio is off: the picture will be black");
@@ -64,7 +63,7 @@ void add_studio(Scene& scene, const std::string& name, StudioChoice choice) {
     warn(lit == Lit::dark ? "there is no light; a studio, which the camera does not see, lights the scene"
                           : "only small or dim surfaces emit light; a studio, which the camera does not see, "
                             "lights the scene (--studio off leaves it out)");
-    scene.environment = std::move(studio);
+    put_into_studio(scene, StudioChoice::standard);
 }
 
 // Adds a warning if a scene has no light.

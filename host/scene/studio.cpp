@@ -148,8 +148,14 @@ Environment studio_environment(StudioChoice studio) {
     return environment;
 }
 
+bool is_unseen_studio(std::string_view name) {
+    return name == name_of(StudioChoice::standard, STUDIO_NAMES) ||
+           name == name_of(StudioChoice::softbox, STUDIO_NAMES);
+}
+
 void put_into_studio(Scene& scene, StudioChoice studio) {
     scene.environment = studio_environment(studio);
+    scene.attributes.emplace_back(STUDIO_ATTRIBUTE, name_of(studio, STUDIO_NAMES));
     const Design design = design_of(studio);
     const DoubleBox box = bounds(scene);
     if (design.ground == 0.0 || box.is_empty()) return;

@@ -1,6 +1,8 @@
 // Light, and perhaps a ground, for models that have none.
 #pragma once
 
+#include <string_view>
+
 #include "scene/names.h"
 #include "scene/scene.h"
 
@@ -38,9 +40,16 @@ inline constexpr Choices<StudioChoice, 7> STUDIO_NAMES{{{"auto", StudioChoice::a
 // 0.5.
 Environment studio_environment(StudioChoice studio);
 
-// Gives the scene the studio's light. The last three also get a ground, just below the scene's lowest point:
-// a disk thirty times as large as the scene, as bright as the studio is below its horizon. `white` has one
-// that looks like its sky, except in shadows.
+// The attribute of a scene that has the name of its studio.
+inline constexpr const char* STUDIO_ATTRIBUTE = "candela.studio";
+
+// Whether the camera sees nothing of the studio of that name, so that pictures for the screen stand before a
+// grey.
+bool is_unseen_studio(std::string_view name);
+
+// Gives the scene the studio's light and its name. The last three also get a ground, just below the scene's
+// lowest point: a disk thirty times as large as the scene, as bright as the studio is below its horizon.
+// `white` has one that looks like its sky, except in shadows.
 void put_into_studio(Scene& scene, StudioChoice studio);
 
 }  // namespace candela

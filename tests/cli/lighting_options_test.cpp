@@ -1,5 +1,6 @@
 // Light from the command line, and surfaces that are seen from behind: what is said and written.
 #include "cli/cli_fixture.h"
+#include "image/texel_io.h"
 
 namespace candela {
 namespace {
@@ -61,6 +62,28 @@ TEST_F(LightingOptionsTest, TheSkyIsReplacedScaledTurnedAndHidden) {
     EXPECT_EQ(red(0, 0), 0.0f);
     ASSERT_EQ(picture(scene, {"--studio", "white"}).exit_code, 0);
     EXPECT_NEAR(red(0, 0), 1.0f, 1e-5f);
+}
+
+// Not black: a dark model would vanish. The EXR stays as it is, and its parts are developed in the same way.
+TEST_F(LightingOptionsTest, AModelInTheStudioStandsBeforeASoftGrey) {
+    const std::string scene = write("front.json", square(true));
+    const auto corner = [this](const char* name) {
+        std::vector<std::string> warnings;
+        return 255.0f * texel_codes(decode_texels(read_file(file(name)), name, warnings), 0).y;
+    };
+    const Words png = {"-o", file("a.png"), "--tonemap", "agx"};
+    for (const char* studio : {"default", "softbox"}) {
+        ASSERT_EQ(picture(scene, png + Words{"--studio", studio}).exit_code, 0);
+        EXPECT_EQ(corner("a.png"), 188.0f);
+        EXPECT_EQ(red(0, 0), 0.0f);
+        EXPECT_EQ(read_exr(file("a.exr")).find("FirstHit.A"), nullptr);
+    }
+    ASSERT_EQ(candela({"merge", file("a.exr"), "-o", file("b.png")}).exit_code, 0);
+    EXPECT_EQ(corner("b.png"), 188.0f);
+    ASSERT_EQ(picture(scene, png + Words{"--studio", "default", "--background", "#000000"}).exit_code, 0);
+    EXPECT_EQ(corner("a.png"), 0.0f);
+    ASSERT_EQ(picture(scene, png + Words{"--environment-hidden"}).exit_code, 0);
+    EXPECT_EQ(corner("a.png"), 0.0f);
 }
 
 TEST_F(LightingOptionsTest, WhatCannotBeDoneIsRefused) {
