@@ -1,6 +1,7 @@
 // See batch.h.
 #include "cli/batch.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/file.h"
@@ -44,6 +45,9 @@ ExitCode Batch::run() {
             break;
         }
         PreparedScene scene = prepare(i);
+        const auto has_job = [](const PreparedPicture& picture) { return picture.job.has_value(); };
+        // Before another thread starts, since this may set variables of the environment.
+        if (!scene.failure && std::ranges::any_of(scene.pictures, has_job)) renderer_.choose_device();
         begin_next(i + 1);
         render_scene(scene, i + 1 == count);
         renderer_.leave_scene();
@@ -111,7 +115,6 @@ void Batch::render_scene(PreparedScene& scene, bool is_last) {
 
 // Renders the picture, and has its files written. `is_last`: there is nothing to render meanwhile.
 void Batch::render(const PreparedScene& scene, const PreparedPicture& picture, bool is_last) {
-    renderer_.choose_device();
     try {
         std::optional<RenderedPicture> rendered;
         try {
@@ -135,7 +138,7 @@ void Batch::write(RenderedPicture&& rendered, bool is_last) {
         was_interrupted_ = true;
         const bool is_kept = !plan_.is_batch() && !options_.list.skip_existing;
         if (!is_kept) {
-            report_.add(rendered.picture, rendered.state);
+            report(rendered.picture, rendered.state);
             return;
         }
     }
@@ -179,7 +182,18 @@ void Batch::settle() {
 void Batch::skip(const Picture& picture) {
     settle();
     ++skipped_;
-    report_.add(picture, "skipped");
+    report(picture, "skipped");
+}
+
+// Reports a picture that has no files now. A batch goes on if that fails.
+void Batch::report(const Picture& picture, const std::string& state, const std::optional<Error>& failure) {
+    try {
+        report_.add(picture, state, failure);
+    } catch (const Error& error) {
+        if (!plan_.is_batch()) throw;
+        print_error(error.what());
+        code_ = ExitCode::failed;
+    }
 }
 
 // Prints the Error of a scene or a picture among several; that of a single one is thrown.
@@ -190,7 +204,7 @@ void Batch::print_failure(const std::string& scene, const Error& error) const {
 // Reports and counts a picture that has not been rendered; throws its Error if it is the only one.
 void Batch::fail(const Picture& picture, const Error& error) {
     settle();
-    report_.add(picture, "failed", error);
+    report(picture, "failed", error);
     if (!plan_.is_batch()) throw Error(error);
     count_failure(error);
 }

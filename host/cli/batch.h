@@ -43,6 +43,7 @@ class Batch {
     void write(RenderedPicture&& rendered, bool is_last);
     void settle();
     void skip(const Picture& picture);
+    void report(const Picture& picture, const std::string& state, const std::optional<Error>& failure = {});
     void fail(const Picture& picture, const Error& error);
     void print_failure(const std::string& scene, const Error& error) const;
     void count_failure(const Error& error);

@@ -179,9 +179,8 @@ TEST_F(Batch, GoesOnAfterALostDevice) {
 TEST_F(Batch, CountsTheFailuresOfEachPicture) {
     const Words both = render_all({square_}, "out/{view}.png") +
                        Words{"--size", "16x16", "--cameras", "all", "--report", report_};
-    const ProcessResult result =
-        candela(both, failing_device(1, 0, DEVICE_LOST) +
-                          std::map<std::string, std::string>{{"FAULT_WORK", "1"}});
+    const ProcessResult result = candela(
+        both, failing_device(1, 0, DEVICE_LOST) + std::map<std::string, std::string>{{"FAULT_WORK", "1"}});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_CONTAINS(result.err, "candela: warning: " + file("out/0.png") + ": vkQueueSubmit(");
     ASSERT_EQ(lines().size(), 2u);
@@ -299,6 +298,16 @@ TEST_F(Batch, SaysOnceThatItsReportIsIncomplete) {
     EXPECT_CONTAINS(result.err, "1 done, 0 skipped, 1 failed\n");
     EXPECT_TRUE(exists("out/a.png"));
     EXPECT_TRUE(exists("out/b.png"));
+}
+
+// Also of pictures that are not rendered: standard output is full.
+TEST_F(Batch, GoesOnWithoutItsReport) {
+    const ProcessResult result = run_process(Words{"/bin/sh", "-c", "exec \"$0\" \"$@\" > /dev/full"} +
+                                                 call(render_all({bad_, a_}) + Words{"--report", "-"}),
+                                             options({{"CANDELA_VALIDATION", "0"}}));
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_CONTAINS(result.err, "candela: error: cannot write to standard output; check where it goes\n");
+    EXPECT_TRUE(exists("out/a.png"));
 }
 
 }  // namespace
