@@ -99,8 +99,8 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
         {"--time-limit", "1d", duration},
         {"--time-limit", "nan", duration},
         {"--time-limit", "s", duration},
-        {"--exposure", "1e3", "a number from -100 to 100"},
-        {"--exposure", "inf", "a number from -100 to 100"},
+        {"--exposure", "1e3", "auto, or a number from -100 to 100"},
+        {"--exposure", "inf", "auto, or a number from -100 to 100"},
         {"--tonemap", "filmic", tonemaps},
         {"--tonemap", "", tonemaps},
         {"--estimator", "nee", "bsdf|light|mis"},
@@ -139,7 +139,7 @@ TEST_F(Usage, OutputsAreCheckedBeforeTheSceneIsRead) {
         return result.err;
     };
     EXPECT_CONTAINS(error({}, 2), "no output given; use -o FILE.exr, -o FILE.png, or both");
-    EXPECT_CONTAINS(error({"-o", "a.jpg"}, 2), "image file \"a.jpg\" has the unknown extension \".jpg\"");
+    EXPECT_CONTAINS(error({"-o", "a.gif"}, 2), "image file \"a.gif\" has the unknown extension \".gif\"");
     EXPECT_CONTAINS(error({"-o", file("a.png"), "-o", "b"}, 2), "image file \"b\" has no extension");
     EXPECT_CONTAINS(error({"-o", file("none/a.png")}, 1), "none\" does not exist; create it first");
     std::filesystem::create_directory(file("folder.exr"));
