@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "scene/camera_axes.h"
 #include "scene/geometry.h"
 #include "scene/materials.h"
 
@@ -23,17 +24,17 @@ struct Corner {
 
 class Grid {
   public:
-    Grid(const Camera& camera, uvec2 size)
-        : camera_(camera), forward_(normalize(camera.look_at - camera.position)) {
-        right_ = normalize(cross(forward_, dvec3(camera.up)));
-        up_ = cross(right_, forward_);
+    Grid(const Camera& camera, uvec2 size) : camera_(camera), axes_(axes_of(camera)) {
         const uint32_t side = std::max(size.x, size.y);
         const auto cells = [&](uint32_t n) { return std::max(1u, n * std::min(side, LONGEST_SIDE) / side); };
         width_ = cells(size.x);
         height_ = cells(size.y);
         const double half_y =
             camera.ortho_height ? 0.5 * *camera.ortho_height : std::tan(0.5 * double(camera.vertical_fov));
-        scale_ = dvec3(0.5 * width_ * size.y / (half_y * size.x), -0.5 * height_ / half_y, 0.0);
+        const glm::dvec2 per_height(width_ * double(size.y) / size.x,
+                                    height_);  // Cells in a picture's height.
+        scale_ = 0.5 / half_y * per_height * glm::dvec2(camera.focal_ratio, -1.0);
+        middle_ = glm::dvec2(0.5 * width_, 0.5 * height_) + per_height * glm::dvec2(camera.principal_offset);
         nearest_.resize(size_t{width_} * height_, -double(INFINITE));
         behind_.resize(nearest_.size());
     }
@@ -43,7 +44,7 @@ class Grid {
         std::array<dvec3, 3> local;
         for (size_t i = 0; i < 3; ++i) {
             const dvec3 p = corners[i] - camera_.position;
-            local[i] = {dot(p, right_), dot(p, up_), dot(p, forward_)};
+            local[i] = {dot(p, axes_.right), dot(p, axes_.up), dot(p, axes_.forward)};
         }
         const std::vector<Corner> polygon = cut(local);
         for (size_t i = 2; i < polygon.size(); ++i)
@@ -69,7 +70,7 @@ class Grid {
     }
     Corner corner(dvec3 p) const {
         const double divisor = camera_.ortho_height ? 1.0 : p.z;
-        return {0.5 * width_ + scale_.x * p.x / divisor, 0.5 * height_ + scale_.y * p.y / divisor,
+        return {middle_.x + scale_.x * p.x / divisor, middle_.y + scale_.y * p.y / divisor,
                 camera_.ortho_height ? -p.z : 1.0 / p.z};
     }
     void fill(const Corner& a, const Corner& b, const Corner& c, bool culled, bool mirrored) {
@@ -100,7 +101,8 @@ class Grid {
     }
 
     const Camera& camera_;
-    dvec3 forward_, right_, up_, scale_;
+    CameraAxes axes_;
+    glm::dvec2 scale_{}, middle_{};
     uint32_t width_ = 0, height_ = 0;
     std::vector<double> nearest_;
     std::vector<bool> behind_;  // Whether what is nearest is seen from behind, and single-sided.

@@ -68,6 +68,15 @@ TEST(SeenFromBehind, AFloorUnderTheCameraHidesWhatIsBelow) {
     EXPECT_DOUBLE_EQ(share(scene), 1.0 / 32.0);
 }
 
+TEST(SeenFromBehind, FollowsThePrincipalPointAndBothFocalLengths) {
+    Scene scene = scene_seen(false);
+    add_square(scene, vec3(0, -1, 0), false, 0);
+    Camera& camera = scene.cameras[0];
+    camera.principal_offset = vec2(0, -0.25f);  // Upwards, so that all of it is seen,
+    camera.focal_ratio = 2.0f;                  // twice as wide.
+    EXPECT_DOUBLE_EQ(share(scene), 1.0 / 4.0);
+}
+
 TEST(SeenFromBehind, ClosedAndTransparentSolidsAreNotHollow) {
     Scene scene = scene_seen(false);
     add_shape(scene, sphere_mesh(8, 16), 0);
