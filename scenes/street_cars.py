@@ -5,7 +5,7 @@ Needs NumPy (Debian: python3-numpy).
 
 import numpy as np
 
-from street_meshes import box, moved, pillow, sheet, turned
+from street_meshes import box, joined, moved, pillow, sheet, turned
 from street_parts import BACK, WORLD
 
 # Of a car, tail at +z: z, height of the top, half widths at the belt and at the top [m].
@@ -27,6 +27,11 @@ CAR = np.array(
         (2.17, 0.78, 0.70, 0.56),
     ]
 )
+# Around the bulbs: kind, radiance, half of the size, and place of the right one.
+LENSES = [
+    ("headlens", [4, 3.6, 3], (0.13, 0.085, 0.05), (0.47, 0.6, -2.17)),
+    ("taillens", [1.5, 0.05, 0.03], (0.16, 0.07, 0.04), (0.53, 0.74, 2.19)),
+]
 
 
 def bodywork():
@@ -71,8 +76,11 @@ def car(street, x, z, away, paint):
             at = np.array([side * 0.78, 0.32, wheel]) @ axes + origin
             street.add("tyres", tyre, arch, axes=turn @ axes, origin=at)
             street.add("enamel", hub, axes=turn @ axes, origin=at)
-        front = moved(pillow((0.13, 0.085, 0.05), 0.7, 8, 16), (side * 0.47, 0.6, -2.17))
-        tail = moved(pillow((0.16, 0.07, 0.04), 0.6, 8, 16), (side * 0.53, 0.74, 2.19))
-        street.shine("headlight", [30, 27, 22], front, axes, origin)
-        street.shine("taillight", [9, 0.3, 0.15], tail, axes, origin)
+        bulb = moved(pillow((0.06, 0.05, 0.02), 0.8, 6, 12), (side * 0.47, 0.6, -2.21))
+        street.shine("headlight", [240, 220, 180], bulb, axes, origin)
+        bars = [moved(pillow((0.1, 0.01, 0.01), 0.8, 6, 12), (side * 0.53, y, 2.235)) for y in (0.71, 0.77)]
+        street.shine("taillight", [110, 3.5, 2], joined(bars), axes, origin)
+    for kind, emission, size, at in LENSES:
+        lenses = joined([moved(pillow(size, 0.65, 8, 16), at * np.array([side, 1, 1])) for side in (-1, 1)])
+        street.shine(kind, emission, lenses, axes, origin)
     street.add("enamel", box((-0.26, 0.5, 2.15), (0.26, 0.62, 2.215)), axes=axes, origin=origin)

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 import street_pictures as pictures
-from street_meshes import box, front, joined, moved, quad, sheet, tube, turned, wall
+from street_meshes import ball, box, front, joined, moved, quad, sheet, tube, turned, wall
 from street_parts import FACADE, KERB, SIDES
 
 STOREY, GROUND = 3.1, 3.7  # Heights [m].
@@ -76,7 +76,7 @@ def lit_window(street, hole, random, axes, origin):
     uvs = np.stack([(cell % 4 + 0.02 + 0.96 * s) / 4, (cell // 4 + 0.02 + 0.96 * t) / 4], axis=-1)
     if random.uniform() < 0.5:
         uvs[..., 0] = (cell % 4 + 0.02 + 0.96 * (1 - s)) / 4
-    strength = round(float(random.choice([0.4, 0.8, 1.3])), 2)
+    strength = round(float(random.choice([0.2, 0.4, 0.65])), 2)
     emission = street.image("rooms.png", lambda: pictures.atlas([pictures.room(i) for i in range(16)], 4), strength)
     street.shine("window", emission, sheet(points, uvs), axes, origin)
 
@@ -127,7 +127,7 @@ def shop(street, width, index, random, axes, origin):
     door = (0.5, 1.5) if door_left else (width - 1.5, width - 0.5)
     left, right = (2.0, width - 0.5) if door_left else (0.5, width - 2.0)
     hole, entry = (left, right, 0.55, 2.75), (*door, 0.0, 2.75)
-    bright = round(float(random.uniform(0.35, 0.6)), 2)
+    bright = round(float(random.uniform(0.2, 0.32)), 2)
     picture = index % 8
     emission = street.image(f"shop_{picture}.png", lambda: pictures.shop(picture), bright)
     street.shine("shop", emission, front(*hole, -REVEAL + 0.01), axes, origin)
@@ -145,13 +145,18 @@ def shop(street, width, index, random, axes, origin):
     )
     text, paper, ink = SIGNS[index % len(SIGNS)]
     sign = street.image(
-        f"sign_{index % len(SIGNS)}.png", lambda: pictures.panel(text, paper, ink, 64 * len(text), 64, False), 1.7
+        f"sign_{index % len(SIGNS)}.png", lambda: pictures.panel(text, paper, ink, 64 * len(text), 64, False), 0.5
     )
     middle, half = (left + right) / 2, min(0.27 * len(text), (right - left) / 2)
     street.add(
         "metal", box((middle - half - 0.05, 2.97, 0), (middle + half + 0.05, 3.55, 0.16)), axes=axes, origin=origin
     )
     street.shine("sign", sign, front(middle - half, middle + half, 3.02, 3.5, 0.165), axes, origin)
+    for x in (middle, sum(door) / 2):
+        spot(street, np.array([x, 3.85, 0.5]), axes, origin)
+    lamp = np.array([left - 0.25 if door_left else right + 0.25, 2.2, 0.16])
+    street.add("metal", box(lamp + [-0.04, 0.1, -0.16], lamp + [0.04, 0.13, 0.04]), axes=axes, origin=origin)
+    street.shine("walllamp", [110, 72, 34], moved(ball(0.045, 8, 6, 1.4), lamp), axes, origin)
     if index % 3 != 1:
         awning(street, left - 0.2, right + 0.2, 2.95, index % 4, axes, origin)
     elif random.uniform() < 0.8:
@@ -161,11 +166,19 @@ def shop(street, width, index, random, axes, origin):
     return [hole, entry]
 
 
+def spot(street, at, axes, origin):
+    """A small spotlight on an arm, which shines downwards."""
+    street.add("metal", tube([at * [1, 1, 0], at + [0, 0.03, 0]], 0.012, 6, (1, 0, 0)), axes=axes, origin=origin)
+    street.add("metal", moved(turned([(0.05, -0.016), (0.05, 0.1), (0.001, 0.12)], 12), at), axes=axes, origin=origin)
+    bulb = turned([(0.001, -0.002), (0.04, 0.0)], 12)
+    street.shine("spot", [240, 190, 135], moved(bulb, at), axes, origin)
+
+
 def hang(street, at, radius, kind, axes, origin):
     """A paper lantern on a string."""
     colors = [(1.0, 0.13, 0.04), (1.0, 0.34, 0.07), (1.0, 0.6, 0.26)]
     name = f"lantern_{kind % 3}.png"
-    emission = street.image(name, lambda: pictures.lantern(kind % 3, colors[kind % 3]), 2.6)
+    emission = street.image(name, lambda: pictures.lantern(kind % 3, colors[kind % 3]), 1.5)
     angle = np.linspace(-1.25, 1.25, 15)
     ribbed = radius * np.cos(angle) ** 0.8 * (1 + 0.02 * (np.arange(15) % 2))
     profile = np.stack([ribbed, 1.15 * radius * np.sin(angle) / math.sin(1.25)], axis=1)

@@ -64,16 +64,16 @@ def blades(street):
         ]
         edge = [(*a, z + 0.045) for a in edge + edge[:1]]
         path = np.concatenate([np.linspace(a, b, 5, endpoint=False) for a, b in zip(edge, edge[1:])] + [[edge[0]]])
-        street.shine("neon", NEON[colors[-1]], tube(path, 0.011, 6))
+        street.shine("neon", NEON[colors[-1]], tube(path, 0.008, 6))
         for i, (letter, color) in enumerate(zip(letters, colors)):
             y = low + 0.17 + cell * (len(letters) - 1 - i)
-            mesh = letter_tubes(letter, width, 0.46, 0.019, 7)
+            mesh = letter_tubes(letter, width, 0.46, 0.013, 7)
             street.shine("neon", NEON[color], mesh, origin=(x0 + 0.17, y, z + 0.05))
     for i, (side, z, low, text, paper, ink) in enumerate(PANELS):
         height, width = 0.62 * len(text), 0.66
         x0 = -FACADE + 0.2 if side < 0 else FACADE - 0.2 - width
         street.add("metal", box((x0 - 0.03, low - 0.03, z - 0.2), (x0 + width + 0.03, low + height + 0.03, z)))
         emission = street.image(
-            f"panel_{i}.png", lambda t=text, p=paper, k=ink: pictures.panel(t, p, k, 80, 75 * len(t), True), 1.9
+            f"panel_{i}.png", lambda t=text, p=paper, k=ink: pictures.panel(t, p, k, 80, 75 * len(t), True), 0.6
         )
         street.shine("panel", emission, front(x0, x0 + width, low, low + height, z + 0.005))
