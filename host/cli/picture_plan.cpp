@@ -53,12 +53,12 @@ PicturePlan::PicturePlan(const RenderOptions& options, std::istream& standard_in
     for (const std::string& path : list.scenes)
         files_.read("SCENE", path);
     if (outputs.reference) files_.read("--reference", *outputs.reference);
+    if (const auto background = outputs.images.screen.background_file())
+        files_.read("--background", *background);
     for (const std::string& path : list.scenes)
         scenes_.push_back({.file = path});
     for (size_t i = 0; i < scenes_.size(); ++i)
         plan(i);
-    if (const auto background = outputs.images.screen.background_file())
-        files_.read("--background", *background);
     if (outputs.report == STDOUT && outputs.images.uses_stdout())
         refuse_pictures("--report and -o both go to standard output; give one of them a file");
     if (outputs.report) files_.write("--report", *outputs.report);

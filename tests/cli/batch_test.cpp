@@ -289,15 +289,16 @@ TEST_F(Batch, NoCameraHasTheFileOfAnother) {
 
 // Files of at most 512 bytes have room for a tiny picture, but not for what is said of it.
 TEST_F(Batch, SaysOnceThatItsReportIsIncomplete) {
-    const ProcessResult result = run_process(Words{"/bin/sh", "-c", "ulimit -f 1; exec \"$0\" \"$@\""} +
-                                                 call(render_all({a_, b_}) + Words{"--report", report_}),
-                                             options({{"CANDELA_VALIDATION", "0"}}));
+    const ProcessResult result =
+        run_process(Words{"/bin/sh", "-c", "ulimit -f 1; exec \"$0\" \"$@\""} +
+                        call(render_all({a_, b_}, "out/{stem}.webp") + Words{"--report", report_}),
+                    options({{"CANDELA_VALIDATION", "0"}}));
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_CONTAINS(result.err, "candela: error: \"" + a_ + "\": cannot write \"" + report_ +
                                     "\": a line of the report is lost; check the disk\n");
     EXPECT_CONTAINS(result.err, "1 done, 0 skipped, 1 failed\n");
-    EXPECT_TRUE(exists("out/a.png"));
-    EXPECT_TRUE(exists("out/b.png"));
+    EXPECT_TRUE(exists("out/a.webp"));
+    EXPECT_TRUE(exists("out/b.webp"));
 }
 
 // Also of pictures that are not rendered: standard output is full.

@@ -12,6 +12,7 @@
 #include "cli/cli_fixture.h"
 #include "film/accumulation.h"
 #include "image/develop.h"
+#include "image/texel_io.h"
 #include "support/wait.h"
 
 namespace candela {
@@ -184,6 +185,11 @@ class View : public ViewTest {
             Words{"render", scene, "-q", "-o", file("rendered.exr"), "-o", file("rendered.png")} + arguments);
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return read_exr(file("rendered.exr"));
+    }
+    // The codes of a PNG file, without what it says of itself.
+    static std::vector<std::byte> codes_of(const std::string& png) {
+        std::vector<std::string> warnings;
+        return decode_texels(read_file(png), png, warnings).texels;
     }
     // The same pictures, bit for bit.
     static void expect_same_rgb(const Image& a, const Image& b) {

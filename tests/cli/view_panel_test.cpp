@@ -123,9 +123,9 @@ TEST_F(ViewControls, WhatIsSetInThePanelIsRendered) {
     view(settings);
     wait_for_title("cornell-box: 1 samples per pixel");
     type("157", "1000");
-    const std::string brightest = read_file(saved_by("p", "cornell-box-1.png"));
+    const std::vector<std::byte> brightest = codes_of(saved_by("p", "cornell-box-1.png"));
     rendered(settings + Words{"--exposure", "10"});
-    EXPECT_TRUE(brightest == read_file(file("rendered.png")));
+    EXPECT_TRUE(brightest == codes_of(file("rendered.png")));
 
     type("157", "1.5");
     choose(180, 3);
@@ -133,12 +133,12 @@ TEST_F(ViewControls, WhatIsSetInThePanelIsRendered) {
     type("276", "0.7");
     choose(299, 1);
     const Image image = picture_at_rest("cornell-box", {310, 380}, 1);
-    const std::string shown = read_file(saved_by("p", "cornell-box-2.png"));
+    const std::vector<std::byte> shown = codes_of(saved_by("p", "cornell-box-2.png"));
     auto scene = nlohmann::json::parse(read_file(CORNELL_BOX), nullptr, true, true);
     scene["cameras"]["main"]["lens"] = {{"radius", 0.02}, {"focal_distance", 0.7}};
     const Words development{"--exposure", "1.5", "--tonemap", "agx", "--estimator", "light"};
     expect_same_rgb(image, rendered(settings + development, write("scene.json", scene.dump())));
-    EXPECT_TRUE(shown == read_file(file("rendered.png")));
+    EXPECT_TRUE(shown == codes_of(file("rendered.png")));
     expect_clean_end();
 }
 

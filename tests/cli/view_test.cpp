@@ -21,7 +21,7 @@ TEST_F(View, FramesThenScreenshotsAreWhatRenderMakes) {
     expect_same_rgb(image, rendered(settings + Words{"--spp", "20"}));
     for (const float count : image.find("SampleCount.V")->values)
         ASSERT_EQ(count, 20.0f);
-    EXPECT_EQ(read_file(file("a.png")), read_file(file("rendered.png")));
+    EXPECT_EQ(codes_of(file("a.png")), codes_of(file("rendered.png")));
 }
 
 // A .glb file of one triangle.
@@ -121,7 +121,7 @@ TEST_F(View, TheScreenShowsWhatTheFileHolds) {
     wait_until("the panel is on the screen", [&] { return wrong_codes(screen(), image) > 1000; });
     press("Tab");
     wait_until("the screen shows the picture alone", [&] { return wrong_codes(screen(), image) == 0; });
-    EXPECT_EQ(read_file(saved_by("p", "cornell-box-1.png")), read_file(file("rendered.png")));
+    EXPECT_EQ(codes_of(saved_by("p", "cornell-box-1.png")), codes_of(file("rendered.png")));
     expect_clean_end();
 }
 
@@ -274,7 +274,7 @@ TEST_F(ViewUsage, OptionsThatDoNotGoTogetherAreNamed) {
     expect_error(
         {CORNELL_BOX, "--screenshot", "a.png"}, 2,
         "--screenshot: also give --frames N, after which it is taken; P and X save a picture at any time");
-    expect_error({CORNELL_BOX, "--frames", "2", "--screenshot", "a.jpg"}, 2, "a.jpg");
+    expect_error({CORNELL_BOX, "--frames", "2", "--screenshot", "a.gif"}, 2, "a.gif");
     expect_error({CORNELL_BOX, "--frames", "2", "--screenshot", "/nonexistent/a.png"}, 1,
                  "/nonexistent/a.png");
 }
