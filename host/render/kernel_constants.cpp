@@ -4,6 +4,7 @@
 #include "render/media_at.h"
 #include "render/renderer.h"
 #include "shared/primitive.h"
+#include "shared/texture.h"
 
 namespace candela {
 namespace {
@@ -71,6 +72,23 @@ uint32_t sampler_constant(SamplerKind sampler) {
     return SAMPLER_SOBOL;
 }
 
+// Allows for more than the scene has where that costs no time, so that scenes share kernels: lavapipe takes
+// half a second and more to compile one. On a GPU each level of the tree takes a register.
+// (tests/bench/NOTEBOOK.md, "Kernel".)
+void widen(KernelConstants& constants) {
+    constexpr uint32_t LEVELS = 8;
+    uint32_t& depth = constants[CONSTANT_BVH_DEPTH];
+    depth = (depth + LEVELS - 1) / LEVELS * LEVELS;
+    static_assert(BVH_MAX_DEPTH % LEVELS == 0);
+    uint32_t& principled = constants[CONSTANT_PRINCIPLED];
+    if (principled == 0) return;
+    principled |= PRINCIPLED_HAS_METAL | PRINCIPLED_HAS_ROUGH | PRINCIPLED_HAS_DIFFUSE;
+    if ((principled & PRINCIPLED_HAS_IMAGES) != 0) {
+        constants[CONSTANT_TEXTURE_TRAITS] |= TEXEL_FORMATS | TEXTURE_ENCODINGS | TEXTURE_FILTERS |
+                                              TEXTURE_WRAPS | TEXTURE_WRAPS << TEXTURE_WRAP_V;
+    }
+}
+
 }  // namespace
 
 KernelConstants make_constants(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
@@ -108,8 +126,11 @@ KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene
     auto constants = make_constants(scene, camera, settings);
     set_arrays(constants, map);
     constants[CONSTANT_LIST] = list_constant(device, scene);
-    if (constants[CONSTANT_LIST] > 0)
+    if (constants[CONSTANT_LIST] > 0) {
         std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS_0]);
+    } else if (device.info().is_lavapipe()) {
+        widen(constants);
+    }
     constants[CONSTANT_GROUP_COUNTERS] = !device.info().is_lavapipe();
     return constants;
 }
