@@ -203,7 +203,7 @@ std::vector<Picture> PicturePlan::pictures_of(size_t i, const Scene& scene) {
 
 std::optional<std::string> PicturePlan::make_cameras_file(size_t i) const {
     if (!cameras_name_) return std::nullopt;
-    const std::optional<std::string> file = cameras_name_->name(fields({.scene = scenes_[i].file}));
+    std::optional<std::string> file = cameras_name_->name(fields({.scene = scenes_[i].file}));
     make_folder_of(*file);
     return file;
 }

@@ -42,11 +42,11 @@ std::optional<std::string> parse_background(const std::string& text) {
 
 // What a picture stands before if the user does not say: #bcbcbc, or what its scene shows.
 const Background* default_background(const Image& image) {
-    static const Background GREY = vec3(0.5f);
+    static const Background grey = vec3(0.5f);
     const auto studio = image.attributes.find(STUDIO_ATTRIBUTE);
     if (studio == image.attributes.end()) return nullptr;
     const auto* const name = std::get_if<std::string>(&studio->second);
-    return name != nullptr && is_unseen_studio(*name) ? &GREY : nullptr;
+    return name != nullptr && is_unseen_studio(*name) ? &grey : nullptr;
 }
 
 TexelImage load_image(const std::string& file) {

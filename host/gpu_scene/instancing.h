@@ -1,7 +1,6 @@
 // Chooses the meshes that get their own trees, and places their instances.
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,7 +28,10 @@ struct ShownMesh {
     uint32_t mesh = 0;              // Its index.
     uint32_t emitter = NO_EMITTER;  // The first shape that emits like them, if they do.
 
-    auto operator<=>(const ShownMesh&) const = default;
+    bool operator==(const ShownMesh&) const = default;
+    bool operator<(const ShownMesh& other) const {
+        return mesh != other.mesh ? mesh < other.mesh : emitter < other.emitter;
+    }
 };
 
 // The shapes that are instances.

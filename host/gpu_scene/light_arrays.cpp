@@ -167,7 +167,7 @@ std::vector<uvec4> light_textures(const Scene& scene, const MaterialArrays& mate
         (materials.facts.principled & PRINCIPLED_HAS_COATED_EMISSION) == 0)
         return words;
     append_textures(words, scene, materials, flat, area, order, 0);
-    if (!lamps.empty()) words.resize(first_of_lamps * LIGHT_TEXTURES_WORDS);
+    if (!lamps.empty()) words.resize(size_t{first_of_lamps} * LIGHT_TEXTURES_WORDS);
     auto first = uint32_t(order.size());
     for (const auto& [shown, tree] : trees) {
         if (const auto lamp = lamps.find(shown); lamp != lamps.end())

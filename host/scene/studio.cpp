@@ -51,24 +51,24 @@ double sum_of(const Box (&boxes)[N], dvec3 w) {
 }
 
 dvec3 standard_light(dvec3 w) {
-    static const RoundBox BOXES[] = {{normalize(dvec3(-0.6, 0.9, 0.6)), 0.85, 0.03, 2.5},
+    static const RoundBox boxes[] = {{normalize(dvec3(-0.6, 0.9, 0.6)), 0.85, 0.03, 2.5},
                                      {normalize(dvec3(1.0, 0.35, 0.5)), 0.9, 0.03, 0.85},
                                      {normalize(dvec3(0.2, 0.6, -1.0)), 0.93, 0.03, 1.25}};
     const double room = w.y < 0.0 ? 0.15 + 0.06 * -w.y : 0.15 + 0.15 * w.y;  // Floor; walls and ceiling.
-    return dvec3(room + sum_of(BOXES, w));
+    return dvec3(room + sum_of(boxes, w));
 }
 
 dvec3 softbox_light(dvec3 w) {
-    static const SquareBox BOXES[] = {{normalize(dvec3(-1.0, 0.55, 0.8)), 0.55, 0.55, 4.0},
+    static const SquareBox boxes[] = {{normalize(dvec3(-1.0, 0.55, 0.8)), 0.55, 0.55, 4.0},
                                       {normalize(dvec3(1.0, 0.2, 0.25)), 0.16, 0.9, 3.0},
                                       {normalize(dvec3(0.1, 1.0, -0.7)), 0.9, 0.25, 3.0}};
-    return dvec3(0.05 + sum_of(BOXES, w));
+    return dvec3(0.05 + sum_of(boxes, w));
 }
 
 dvec3 white_light(dvec3 w) {
-    static const RoundBox BOX[] = {
+    static const RoundBox box[] = {
         {normalize(dvec3(-0.3, 1.0, 0.3)), 0.88, 0.06, 1.207}};  // White paper: 1.25.
-    return dvec3(1.0 + sum_of(BOX, w));
+    return dvec3(1.0 + sum_of(box, w));
 }
 
 // Ref: CIE S 011/E:2003, "Spatial Distribution of Daylight", the traditional overcast sky.
@@ -78,12 +78,12 @@ dvec3 overcast_light(dvec3 w) {
 }
 
 dvec3 sunset_light(dvec3 w) {
-    static const dvec3 SUN = normalize(dvec3(-1.0, 0.17, 0.55));
-    static const dvec3 ACROSS = normalize(dvec3(SUN.x, 0.0, SUN.z));
+    static const dvec3 sun = normalize(dvec3(-1.0, 0.17, 0.55));
+    static const dvec3 across = normalize(dvec3(sun.x, 0.0, sun.z));
     const dvec3 zenith(0.13, 0.21, 0.42), away(0.36, 0.33, 0.42), towards(1.1, 0.62, 0.32);
-    const double near = 0.5 + 0.5 * dot(w, ACROSS), height = std::max(w.y, 0.0);
+    const double near = 0.5 + 0.5 * dot(w, across), height = std::max(w.y, 0.0);
     const dvec3 horizon = mix(away, towards, near * near * near);
-    const double angle = std::acos(std::clamp(dot(w, SUN), -1.0, 1.0));
+    const double angle = std::acos(std::clamp(dot(w, sun), -1.0, 1.0));
     constexpr double SUN_RADIUS = 0.03, EDGE = 0.01;  // [rad]
     const double disk = 1.0 - glm::smoothstep(SUN_RADIUS - EDGE, SUN_RADIUS + EDGE, angle);
     return 1.5 * (mix(zenith, horizon, std::exp(-4.0 * height)) +

@@ -11,59 +11,58 @@
 namespace candela::vk {
 namespace {
 
-enum Op : uint32_t {
-    OpUndef = 1,
-    OpName = 5,
-    OpMemberName = 6,
-    OpString = 7,
-    OpExtInstImport = 11,
-    OpEntryPoint = 15,
-    OpTypeVoid = 19,
-    OpTypeBool = 20,
-    OpTypeInt = 21,
-    OpTypeForwardPointer = 39,
-    OpConstantTrue = 41,
-    OpConstantFalse = 42,
-    OpConstant = 43,
-    OpSpecConstantTrue = 48,
-    OpSpecConstantFalse = 49,
-    OpSpecConstant = 50,
-    OpSpecConstantOp = 52,
-    OpFunction = 54,
-    OpFunctionEnd = 56,
-    OpFunctionCall = 57,
-    OpVariable = 59,
-    OpDecorate = 71,
-    OpIAdd = 128,
-    OpISub = 130,
-    OpIMul = 132,
-    OpLogicalEqual = 164,
-    OpLogicalNotEqual = 165,
-    OpLogicalOr = 166,
-    OpLogicalAnd = 167,
-    OpLogicalNot = 168,
-    OpSelect = 169,
-    OpIEqual = 170,
-    OpINotEqual = 171,
-    OpUGreaterThan = 172,
-    OpUGreaterThanEqual = 174,
-    OpULessThan = 176,
-    OpULessThanEqual = 178,
-    OpShiftRightLogical = 194,
-    OpShiftLeftLogical = 196,
-    OpBitwiseOr = 197,
-    OpBitwiseXor = 198,
-    OpBitwiseAnd = 199,
-    OpNot = 200,
-    OpPhi = 245,
-    OpLoopMerge = 246,
-    OpSelectionMerge = 247,
-    OpLabel = 248,
-    OpBranch = 249,
-    OpBranchConditional = 250,
-    OpSwitch = 251,
-    OpUnreachable = 255,
-};
+// Opcodes.
+constexpr uint32_t OP_UNDEF = 1;
+constexpr uint32_t OP_NAME = 5;
+constexpr uint32_t OP_MEMBER_NAME = 6;
+constexpr uint32_t OP_STRING = 7;
+constexpr uint32_t OP_EXT_INST_IMPORT = 11;
+constexpr uint32_t OP_ENTRY_POINT = 15;
+constexpr uint32_t OP_TYPE_VOID = 19;
+constexpr uint32_t OP_TYPE_BOOL = 20;
+constexpr uint32_t OP_TYPE_INT = 21;
+constexpr uint32_t OP_TYPE_FORWARD_POINTER = 39;
+constexpr uint32_t OP_CONSTANT_TRUE = 41;
+constexpr uint32_t OP_CONSTANT_FALSE = 42;
+constexpr uint32_t OP_CONSTANT = 43;
+constexpr uint32_t OP_SPEC_CONSTANT_TRUE = 48;
+constexpr uint32_t OP_SPEC_CONSTANT_FALSE = 49;
+constexpr uint32_t OP_SPEC_CONSTANT = 50;
+constexpr uint32_t OP_SPEC_CONSTANT_OP = 52;
+constexpr uint32_t OP_FUNCTION = 54;
+constexpr uint32_t OP_FUNCTION_END = 56;
+constexpr uint32_t OP_FUNCTION_CALL = 57;
+constexpr uint32_t OP_VARIABLE = 59;
+constexpr uint32_t OP_DECORATE = 71;
+constexpr uint32_t OP_I_ADD = 128;
+constexpr uint32_t OP_I_SUB = 130;
+constexpr uint32_t OP_I_MUL = 132;
+constexpr uint32_t OP_LOGICAL_EQUAL = 164;
+constexpr uint32_t OP_LOGICAL_NOT_EQUAL = 165;
+constexpr uint32_t OP_LOGICAL_OR = 166;
+constexpr uint32_t OP_LOGICAL_AND = 167;
+constexpr uint32_t OP_LOGICAL_NOT = 168;
+constexpr uint32_t OP_SELECT = 169;
+constexpr uint32_t OP_I_EQUAL = 170;
+constexpr uint32_t OP_I_NOT_EQUAL = 171;
+constexpr uint32_t OP_U_GREATER_THAN = 172;
+constexpr uint32_t OP_U_GREATER_THAN_EQUAL = 174;
+constexpr uint32_t OP_U_LESS_THAN = 176;
+constexpr uint32_t OP_U_LESS_THAN_EQUAL = 178;
+constexpr uint32_t OP_SHIFT_RIGHT_LOGICAL = 194;
+constexpr uint32_t OP_SHIFT_LEFT_LOGICAL = 196;
+constexpr uint32_t OP_BITWISE_OR = 197;
+constexpr uint32_t OP_BITWISE_XOR = 198;
+constexpr uint32_t OP_BITWISE_AND = 199;
+constexpr uint32_t OP_NOT = 200;
+constexpr uint32_t OP_PHI = 245;
+constexpr uint32_t OP_LOOP_MERGE = 246;
+constexpr uint32_t OP_SELECTION_MERGE = 247;
+constexpr uint32_t OP_LABEL = 248;
+constexpr uint32_t OP_BRANCH = 249;
+constexpr uint32_t OP_BRANCH_CONDITIONAL = 250;
+constexpr uint32_t OP_SWITCH = 251;
+constexpr uint32_t OP_UNREACHABLE = 255;
 
 constexpr uint32_t DECORATION_SPEC_ID = 1;
 constexpr uint32_t HEADER_WORDS = 5;
@@ -79,8 +78,8 @@ uint32_t op_of(Instruction i) {
 // id that they use.
 uint32_t result_of(Instruction i) {
     const uint32_t op = op_of(i);
-    const bool is_type = op >= OpTypeVoid && op < OpTypeForwardPointer;
-    if (is_type || op == OpLabel || op == OpString || op == OpExtInstImport) return i[1];
+    const bool is_type = op >= OP_TYPE_VOID && op < OP_TYPE_FORWARD_POINTER;
+    if (is_type || op == OP_LABEL || op == OP_STRING || op == OP_EXT_INST_IMPORT) return i[1];
     return i.size() > 2 ? i[2] : 0;
 }
 
@@ -88,45 +87,45 @@ using Value = std::optional<uint32_t>;
 
 // The result, bool (0 or 1) or 32 bits, of an operation on such operands, if it is known.
 Value evaluate(uint32_t op, Value a, Value b, Value c) {
-    if (op == OpSelect) return a ? (*a != 0 ? b : c) : std::nullopt;
-    if ((op == OpLogicalAnd || op == OpBitwiseAnd) && (a == 0u || b == 0u)) return 0u;
-    if (op == OpLogicalOr && (a == 1u || b == 1u)) return 1u;
+    if (op == OP_SELECT) return a ? (*a != 0 ? b : c) : std::nullopt;
+    if ((op == OP_LOGICAL_AND || op == OP_BITWISE_AND) && (a == 0u || b == 0u)) return 0u;
+    if (op == OP_LOGICAL_OR && (a == 1u || b == 1u)) return 1u;
     if (!a) return {};
-    if (op == OpLogicalNot) return 1u - *a;
-    if (op == OpNot) return ~*a;
+    if (op == OP_LOGICAL_NOT) return 1u - *a;
+    if (op == OP_NOT) return ~*a;
     if (!b) return {};
     switch (op) {
-        case OpIAdd:
+        case OP_I_ADD:
             return *a + *b;
-        case OpISub:
+        case OP_I_SUB:
             return *a - *b;
-        case OpIMul:
+        case OP_I_MUL:
             return *a * *b;
-        case OpLogicalEqual:
-        case OpIEqual:
+        case OP_LOGICAL_EQUAL:
+        case OP_I_EQUAL:
             return *a == *b;
-        case OpLogicalNotEqual:
-        case OpINotEqual:
+        case OP_LOGICAL_NOT_EQUAL:
+        case OP_I_NOT_EQUAL:
             return *a != *b;
-        case OpLogicalOr:
-        case OpBitwiseOr:
+        case OP_LOGICAL_OR:
+        case OP_BITWISE_OR:
             return *a | *b;
-        case OpLogicalAnd:
-        case OpBitwiseAnd:
+        case OP_LOGICAL_AND:
+        case OP_BITWISE_AND:
             return *a & *b;
-        case OpBitwiseXor:
+        case OP_BITWISE_XOR:
             return *a ^ *b;
-        case OpUGreaterThan:
+        case OP_U_GREATER_THAN:
             return *a > *b;
-        case OpUGreaterThanEqual:
+        case OP_U_GREATER_THAN_EQUAL:
             return *a >= *b;
-        case OpULessThan:
+        case OP_U_LESS_THAN:
             return *a < *b;
-        case OpULessThanEqual:
+        case OP_U_LESS_THAN_EQUAL:
             return *a <= *b;
-        case OpShiftRightLogical:
+        case OP_SHIFT_RIGHT_LOGICAL:
             return *b < 32 ? Value(*a >> *b) : std::nullopt;
-        case OpShiftLeftLogical:
+        case OP_SHIFT_LEFT_LOGICAL:
             return *b < 32 ? Value(*a << *b) : std::nullopt;
         default:
             return {};
@@ -157,9 +156,9 @@ struct CodeBlock {
         if (code.size() < 3) return {};
         const Instruction before = code[code.size() - 2];
         const uint32_t op = op_of(before);
-        return op == OpSelectionMerge || op == OpLoopMerge ? before : Instruction();
+        return op == OP_SELECTION_MERGE || op == OP_LOOP_MERGE ? before : Instruction();
     }
-    bool begins_loop() const { return !merge().empty() && op_of(merge()) == OpLoopMerge; }
+    bool begins_loop() const { return !merge().empty() && op_of(merge()) == OP_LOOP_MERGE; }
 };
 
 struct Function {
@@ -197,7 +196,7 @@ class Pruner {
   private:
     void read(Instruction i) {
         const uint32_t op = op_of(i);
-        if (op == OpFunction) {
+        if (op == OP_FUNCTION) {
             order_.push_back(i[2]);
             functions_[i[2]].head.push_back(i);
         } else if (order_.empty()) {
@@ -205,8 +204,8 @@ class Pruner {
             read_global(i);
         } else {
             Function& function = functions_[order_.back()];
-            if (op == OpLabel) function.blocks.emplace_back();
-            if (op == OpFunctionEnd) {
+            if (op == OP_LABEL) function.blocks.emplace_back();
+            if (op == OP_FUNCTION_END) {
                 function.end = i;
             } else {
                 (function.blocks.empty() ? function.head : function.blocks.back().code).push_back(i);
@@ -216,15 +215,15 @@ class Pruner {
 
     void read_global(Instruction i) {
         const uint32_t op = op_of(i);
-        if (op == OpEntryPoint) entry_ = i[2];
-        if (op == OpDecorate && i[2] == DECORATION_SPEC_ID) numbers_[i[1]] = i[3];
-        if (op == OpTypeBool || (op == OpTypeInt && i[2] == 32)) words_.insert(i[1]);
-        if (op < OpConstantTrue || op > OpSpecConstantOp || !words_.contains(i[1])) return;
+        if (op == OP_ENTRY_POINT) entry_ = i[2];
+        if (op == OP_DECORATE && i[2] == DECORATION_SPEC_ID) numbers_[i[1]] = i[3];
+        if (op == OP_TYPE_BOOL || (op == OP_TYPE_INT && i[2] == 32)) words_.insert(i[1]);
+        if (op < OP_CONSTANT_TRUE || op > OP_SPEC_CONSTANT_OP || !words_.contains(i[1])) return;
         Value& value = values_[i[2]];
-        if (op == OpConstantTrue || op == OpSpecConstantTrue) value = 1u;
-        if (op == OpConstantFalse || op == OpSpecConstantFalse) value = 0u;
-        if (op == OpConstant || op == OpSpecConstant) value = i[3];
-        if (op == OpSpecConstantOp) value = evaluate(i[3], i.subspan(4));
+        if (op == OP_CONSTANT_TRUE || op == OP_SPEC_CONSTANT_TRUE) value = 1u;
+        if (op == OP_CONSTANT_FALSE || op == OP_SPEC_CONSTANT_FALSE) value = 0u;
+        if (op == OP_CONSTANT || op == OP_SPEC_CONSTANT) value = i[3];
+        if (op == OP_SPEC_CONSTANT_OP) value = evaluate(i[3], i.subspan(4));
         if (const auto number = numbers_.find(i[2]);
             number != numbers_.end() && number->second < constants_.size())
             value = constants_[number->second];
@@ -251,7 +250,7 @@ class Pruner {
             live_.insert(block.label());
             done = k + 1;
             for (const Instruction& i : block.code) {
-                if (op_of(i) == OpFunctionCall) called.push_back(i[3]);
+                if (op_of(i) == OP_FUNCTION_CALL) called.push_back(i[3]);
                 learn(block, i);
             }
             for (const uint32_t target : targets(block, places, k)) {
@@ -271,7 +270,7 @@ class Pruner {
     void learn(const CodeBlock& block, Instruction i) {
         const uint32_t op = op_of(i);
         if (i.size() < 4 || i[1] >= values_.size() || !words_.contains(i[1])) return;
-        if (op != OpPhi) {
+        if (op != OP_PHI) {
             values_[i[2]] = evaluate(op, i.subspan(3));
             return;
         }
@@ -296,7 +295,7 @@ class Pruner {
         const Instruction branch = block.branch();
         const Value selector = values_[branch[1]];
         if (!selector) return {};
-        if (op_of(branch) == OpBranchConditional) {
+        if (op_of(branch) == OP_BRANCH_CONDITIONAL) {
             if (places.at(branch[2]) <= place || places.at(branch[3]) <= place) return {};
             return branch[*selector != 0 ? 2 : 3];
         }
@@ -310,22 +309,22 @@ class Pruner {
                                   const std::unordered_map<uint32_t, uint32_t>& places, uint32_t place) {
         const Instruction branch = block.branch();
         const uint32_t op = op_of(branch);
-        if (op == OpBranch) return {branch[1]};
-        if (op != OpBranchConditional && op != OpSwitch) return {};
+        if (op == OP_BRANCH) return {branch[1]};
+        if (op != OP_BRANCH_CONDITIONAL && op != OP_SWITCH) return {};
         if (const Value only = only_target(block, places, place)) {
             only_targets_[block.label()] = *only;
             return {*only};
         }
         std::vector<uint32_t> all{branch[2]};
-        for (size_t k = 3; k < branch.size(); k += op == OpSwitch ? 2 : 1)
-            all.push_back(branch[op == OpSwitch ? k + 1 : k]);
+        for (size_t k = 3; k < branch.size(); k += op == OP_SWITCH ? 2 : 1)
+            all.push_back(branch[op == OP_SWITCH ? k + 1 : k]);
         return all;
     }
 
     // Whether control never comes back to this loop, whose phi would need a value from there.
     bool needs_phi_of_stub(const CodeBlock& block) const {
         return live_.contains(block.label()) && block.begins_loop() && !live_.contains(block.merge()[2]) &&
-               op_of(block.code[1]) == OpPhi;
+               op_of(block.code[1]) == OP_PHI;
     }
 
     std::vector<uint32_t> write() {
@@ -336,13 +335,13 @@ class Pruner {
         std::vector<uint32_t> module(header_.begin(), header_.end());
         for (const Instruction& i : globals_) {
             const uint32_t op = op_of(i);
-            if (op == OpUndef || op >= OpTypeVoid || op == OpString || op == OpExtInstImport) {
-                if (op != OpDecorate) defined_.insert(result_of(i));
+            if (op == OP_UNDEF || op >= OP_TYPE_VOID || op == OP_STRING || op == OP_EXT_INST_IMPORT) {
+                if (op != OP_DECORATE) defined_.insert(result_of(i));
             }
         }
         for (const Instruction& i : globals_) {
             const uint32_t op = op_of(i);
-            if (op == OpName || op == OpMemberName || (op == OpDecorate && !defined_.contains(i[1])))
+            if (op == OP_NAME || op == OP_MEMBER_NAME || (op == OP_DECORATE && !defined_.contains(i[1])))
                 continue;
             module.insert(module.end(), i.begin(), i.end());
         }
@@ -362,7 +361,7 @@ class Pruner {
                 if (block.begins_loop()) ends.emplace(block.merge()[2], block.label());
             }
             for (const Instruction& i : block.code) {
-                if (op_of(i) == OpVariable) continue;
+                if (op_of(i) == OP_VARIABLE) continue;
                 for (const uint32_t word : i.subspan(1))
                     used.insert(word);
             }
@@ -379,9 +378,9 @@ class Pruner {
                 add(block.code.front());
                 defined_.insert(block.label());
                 if (end->second != 0) {
-                    add(std::vector<uint32_t>{2u << 16 | OpBranch, end->second});
+                    add(std::vector<uint32_t>{2u << 16 | OP_BRANCH, end->second});
                 } else {
-                    add(std::vector<uint32_t>{1u << 16 | OpUnreachable});
+                    add(std::vector<uint32_t>{1u << 16 | OP_UNREACHABLE});
                 }
             }
         }
@@ -391,7 +390,7 @@ class Pruner {
     // A branch with one target is no selection.
     bool keeps_merge(const CodeBlock& block) const {
         if (block.merge().empty()) return false;
-        return op_of(block.branch()) != OpBranchConditional || block.begins_loop() ||
+        return op_of(block.branch()) != OP_BRANCH_CONDITIONAL || block.begins_loop() ||
                only_targets_[block.label()] == 0;
     }
 
@@ -399,17 +398,17 @@ class Pruner {
         const uint32_t only = only_targets_[block.label()];
         for (const Instruction& i : block.code) {
             const uint32_t op = op_of(i);
-            if (op == OpVariable && !used.contains(i[2])) continue;
-            if (op == OpSelectionMerge && !keeps_merge(block)) continue;
+            if (op == OP_VARIABLE && !used.contains(i[2])) continue;
+            if (op == OP_SELECTION_MERGE && !keeps_merge(block)) continue;
             defined_.insert(result_of(i));
             std::vector<uint32_t> changed;
-            if (op == OpPhi) {
+            if (op == OP_PHI) {
                 changed = live_entries(block, i);
-                changed.insert(changed.begin(), {uint32_t(changed.size() + 3) << 16 | OpPhi, i[1], i[2]});
-            } else if (op == OpBranchConditional && only != 0) {
-                changed = {2u << 16 | OpBranch, only};
-            } else if (op == OpSwitch && only != 0) {
-                changed = {3u << 16 | OpSwitch, i[1], only};
+                changed.insert(changed.begin(), {uint32_t(changed.size() + 3) << 16 | OP_PHI, i[1], i[2]});
+            } else if (op == OP_BRANCH_CONDITIONAL && only != 0) {
+                changed = {2u << 16 | OP_BRANCH, only};
+            } else if (op == OP_SWITCH && only != 0) {
+                changed = {3u << 16 | OP_SWITCH, i[1], only};
             } else {
                 changed.assign(i.begin(), i.end());
             }

@@ -1,4 +1,5 @@
-// Control flow that depends on three constants, for vk/live_code_test.cpp: GLSL that is C++ too, without `precise`.
+// Control flow that depends on three constants, for vk/live_code_test.cpp: GLSL that is C++ too, without
+// `precise`.
 
 // Both ways return.
 uint both_return(uint x) {
