@@ -68,7 +68,13 @@ class EstimatorTest : public RenderTest {
         return result;
     }
     // Samples per pixel: what each estimator needs for largest_error().
-    void expect_estimators_agree(const Scene& scene, uint32_t bsdf_spp, uint32_t spp) const {
+    void expect_estimators_agree(const Scene& scene, uint32_t bsdf_spp, uint32_t spp,
+                                 LightSampler sampler = LightSampler::tree) const {
+        const auto settings = [&](Estimator estimator, uint32_t seed) {
+            RenderSettings s = EstimatorTest::settings(estimator, seed);
+            s.light_sampler = sampler;
+            return s;
+        };
         const Image mis = image(scene, settings(Estimator::mis, 1), spp);
         {
             SCOPED_TRACE("light samples only");
