@@ -153,22 +153,26 @@ TEST_F(LightTreeTest, ImportanceIsThatOfLampsAsSmallAsPoints) {
 }
 
 TEST_F(LightTreeTest, LampsThatCannotLightAPointHaveNoImportance) {
-    const std::vector<LightBounds> lamps{lamp(vec3(0, 1, 0), vec3(0, -1, 0)),  // Above, turned to the point;
-                                         lamp(vec3(0.2f, 1, 0), vec3(0, 1, 0)),    // turned away;
-                                         lamp(vec3(0, -1, 0.1f), vec3(0, 1, 0))};  // below the horizon.
+    std::vector<LightBounds> lamps{lamp(vec3(0, 1, 0), vec3(0, -1, 0)),     // Above, turned to the point;
+                                   lamp(vec3(0.2f, 1, 0), vec3(0, 1, 0)),   // turned away;
+                                   lamp(vec3(0, -1, 0.1f), vec3(0, 1, 0)),  // below the horizon;
+                                   lamp(vec3(0.1f, 1, 0), vec3(0.9f, -0.4f, 0))};  // a spot,
+    lamps[3].axis = normalize(lamps[3].axis);
+    lamps[3].emission = 0.5f;  // outside whose cone the point lies.
     std::vector<LightTreeItem> items;
     for (const uint32_t both_sides : {0u, 1u}) {
-        for (uint32_t i = 0; i < 3; ++i)
+        for (uint32_t i = 0; i < 4; ++i)
             items.push_back({vec3(0), i, vec3(0, 1, 0), both_sides});
     }
     const std::vector<LightTreeWay> found = ways(scene_of(lamps), items);
     EXPECT_EQ(found[0].by_importance, 1.0f);
     EXPECT_EQ(found[1].by_importance, 0.0f);
     EXPECT_EQ(found[2].by_importance, 0.0f);
-    EXPECT_EQ(found[4].by_importance, 0.0f);
-    EXPECT_GT(found[5].by_importance, 0.4f);
+    EXPECT_EQ(found[3].by_importance, 0.0f);
+    EXPECT_EQ(found[5].by_importance, 0.0f);
+    EXPECT_GT(found[6].by_importance, 0.4f);
     for (const LightTreeWay& way : found)
-        EXPECT_NEAR(way.by_strength, 1.0 / 3.0, 0x1p-15);
+        EXPECT_NEAR(way.by_strength, 1.0 / 4.0, 0x1p-15);
 }
 
 // A million random points, normals and points on lights: near and far, on a light and in its plane.

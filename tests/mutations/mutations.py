@@ -314,8 +314,10 @@ GROUPS = [
         ("the tangent turned the wrong way", LAYERS, "p.rotation.x * t + p.rotation.y * b", "p.rotation.x * t - p.rotation.y * b"),
     ]),
     (TREES, [
-        ("cones of normals dropped", LIGHT_TREE, "return cosine > unpack_half_sine(c.cone >> LIGHT_TREE_EMISSION_SHIFT).x",
-         "return cosine > -2.0"),
+        ("cones of normals dropped", LIGHT_TREE, "float cosine = cosine_of_rest(rest, b) + LIGHT_TREE_SLACK;",
+         "float cosine = 1.0;"),
+        ("importance outside a spot's cone", LIGHT_TREE,
+         "return cosine > unpack_half_sine(c.cone >> LIGHT_TREE_EMISSION_SHIFT).x", "return cosine > -2.0"),
         ("receiver's cosine inverted", LIGHT_TREE, "clamp(-dot(w, lit.n), -1.0, 1.0)", "clamp(dot(w, lit.n), -1.0, 1.0)"),
         ("a choice leaves its own randomness to the next", "shaders/base/random_range.glsl", "r.u -= begin;", ""),
         ("probability of another light's way", LIGHT_CHOICE, "scene_light_trail(i)", "scene_light_trail(i ^ 1u)"),
