@@ -175,6 +175,20 @@ TEST_F(LightTreeTest, LampsThatCannotLightAPointHaveNoImportance) {
         EXPECT_NEAR(way.by_strength, 1.0 / 4.0, 0x1p-15);
 }
 
+// One around the point, whose centre is below the horizon, beside a small one above: their parts are those of
+// strength / radius^2, in any direction, and of strength / distance^2, with 0.3 % more for each of two
+// cosines.
+TEST_F(LightTreeTest, ALightAroundAPointIsInAllDirections) {
+    const vec3 centre(0, -1, 0), half(2.0f / std::sqrt(3.0f));
+    std::vector<LightBounds> lights{lamp(vec3(0, 1, 0), vec3(0, -1, 0)), lamp(centre, vec3(0, 1, 0), 8.0)};
+    lights[1].box = {centre - half, centre + half};
+    lights[1].normals = PI;
+    const std::vector<LightTreeWay> found =
+        ways(scene_of(lights), {{vec3(0), 0, vec3(0, 1, 0), 0}, {vec3(0), 1, vec3(0, 1, 0), 0}});
+    EXPECT_NEAR(found[0].by_importance, 1.0 / 3.0, 0.01);
+    EXPECT_NEAR(found[1].by_importance, 2.0 / 3.0, 0.01);
+}
+
 // A million random points, normals and points on lights: near and far, on a light and in its plane.
 TEST_F(LightTreeTest, EveryLightThatLightsAPointHasAWay) {
     constexpr size_t COUNT = 1'000'000;
