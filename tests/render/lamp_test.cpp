@@ -89,5 +89,33 @@ TEST_F(LampTest, HaveThePictureOfBakedLights) {
     }
 }
 
+// Close over a floor, which shows where a lamp is bright: along one of its two edges.
+TEST_F(LampTest, LightSamplesFindTheImageOnAMirroredLamp) {
+    Scene scene = scene_with_camera(dvec3(0, 3, 4), dvec3(0), 0.9f);
+    add_shape(scene, parallelogram(vec3(-5, 0, 5), vec3(10, 0, 0), vec3(0, 0, -10)),
+              add_diffuse(scene, vec3(0.6f)));
+    const Texture image_on_it =
+        add_texture(scene, {8, 1}, [](uint32_t x, uint32_t) { return vec4(vec3(x < 3 ? 4.0f : 0.1f), 1); });
+    TriangleMesh sheet;  // Its front is below.
+    sheet.positions = {{-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}};
+    sheet.uv0 = {{0, 0}, {1, 0}, {0, 1}};
+    sheet.triangles = {{0, 1, 2}};
+    scene.meshes.push_back(sheet);
+    for (const double x : {-1.3, 1.3}) {
+        Transform transform;
+        transform.append(glm::scale(glm::dmat4(1.0), dvec3(-1.0, 1.0, 1.0)));
+        transform.append(glm::translate(glm::dmat4(1.0), dvec3(x, 0.4, 0)));
+        scene.shapes.push_back({.geometry = MeshInstance{0, transform},
+                                .material = 0,
+                                .emission = Emission{{vec3(1), image_on_it}, false}});
+    }
+    const GpuScene with = build_gpu_scene(scene, choose_frame(scene), {.min_uses = 2, .min_triangles = 1});
+    const GpuScene baked =
+        build_gpu_scene(scene, choose_frame(scene), {.min_uses = ~0u, .min_triangles = ~0u});
+    ASSERT_EQ(with.instances.size(), 2u);
+    expect_same_picture(image(with, scene, Estimator::light, LightSampler::tree, 1, 256),
+                        image(baked, scene, Estimator::light, LightSampler::tree, 2, 256));
+}
+
 }  // namespace
 }  // namespace candela
