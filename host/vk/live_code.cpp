@@ -1,137 +1,20 @@
-// See live_code.h. Ref: Khronos 2023, SPIR-V Specification, version 1.5, sections 2.11 and 3.
+// See live_code.h.
 #include "vk/live_code.h"
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 #include <unordered_map>
 #include <utility>
 
+#include "vk/spirv.h"
+
 namespace candela::vk {
 namespace {
 
-// Opcodes.
-constexpr uint32_t OP_UNDEF = 1;
-constexpr uint32_t OP_NAME = 5;
-constexpr uint32_t OP_MEMBER_NAME = 6;
-constexpr uint32_t OP_STRING = 7;
-constexpr uint32_t OP_EXT_INST_IMPORT = 11;
-constexpr uint32_t OP_ENTRY_POINT = 15;
-constexpr uint32_t OP_TYPE_VOID = 19;
-constexpr uint32_t OP_TYPE_BOOL = 20;
-constexpr uint32_t OP_TYPE_INT = 21;
-constexpr uint32_t OP_TYPE_FORWARD_POINTER = 39;
-constexpr uint32_t OP_CONSTANT_TRUE = 41;
-constexpr uint32_t OP_CONSTANT_FALSE = 42;
-constexpr uint32_t OP_CONSTANT = 43;
-constexpr uint32_t OP_SPEC_CONSTANT_TRUE = 48;
-constexpr uint32_t OP_SPEC_CONSTANT_FALSE = 49;
-constexpr uint32_t OP_SPEC_CONSTANT = 50;
-constexpr uint32_t OP_SPEC_CONSTANT_OP = 52;
-constexpr uint32_t OP_FUNCTION = 54;
-constexpr uint32_t OP_FUNCTION_END = 56;
-constexpr uint32_t OP_FUNCTION_CALL = 57;
-constexpr uint32_t OP_VARIABLE = 59;
-constexpr uint32_t OP_DECORATE = 71;
-constexpr uint32_t OP_I_ADD = 128;
-constexpr uint32_t OP_I_SUB = 130;
-constexpr uint32_t OP_I_MUL = 132;
-constexpr uint32_t OP_LOGICAL_EQUAL = 164;
-constexpr uint32_t OP_LOGICAL_NOT_EQUAL = 165;
-constexpr uint32_t OP_LOGICAL_OR = 166;
-constexpr uint32_t OP_LOGICAL_AND = 167;
-constexpr uint32_t OP_LOGICAL_NOT = 168;
-constexpr uint32_t OP_SELECT = 169;
-constexpr uint32_t OP_I_EQUAL = 170;
-constexpr uint32_t OP_I_NOT_EQUAL = 171;
-constexpr uint32_t OP_U_GREATER_THAN = 172;
-constexpr uint32_t OP_U_GREATER_THAN_EQUAL = 174;
-constexpr uint32_t OP_U_LESS_THAN = 176;
-constexpr uint32_t OP_U_LESS_THAN_EQUAL = 178;
-constexpr uint32_t OP_SHIFT_RIGHT_LOGICAL = 194;
-constexpr uint32_t OP_SHIFT_LEFT_LOGICAL = 196;
-constexpr uint32_t OP_BITWISE_OR = 197;
-constexpr uint32_t OP_BITWISE_XOR = 198;
-constexpr uint32_t OP_BITWISE_AND = 199;
-constexpr uint32_t OP_NOT = 200;
-constexpr uint32_t OP_PHI = 245;
-constexpr uint32_t OP_LOOP_MERGE = 246;
-constexpr uint32_t OP_SELECTION_MERGE = 247;
-constexpr uint32_t OP_LABEL = 248;
-constexpr uint32_t OP_BRANCH = 249;
-constexpr uint32_t OP_BRANCH_CONDITIONAL = 250;
-constexpr uint32_t OP_SWITCH = 251;
-constexpr uint32_t OP_UNREACHABLE = 255;
+using namespace spirv;
 
-constexpr uint32_t DECORATION_SPEC_ID = 1;
-constexpr uint32_t HEADER_WORDS = 5;
-
-// Its words; the first holds their number and the opcode.
-using Instruction = std::span<const uint32_t>;
-
-uint32_t op_of(Instruction i) {
-    return i[0] & 0xFFFFu;
-}
-
-// The id that an instruction defines, or 0. Of instructions in blocks that define none, this may be another
-// id that they use.
-uint32_t result_of(Instruction i) {
-    const uint32_t op = op_of(i);
-    const bool is_type = op >= OP_TYPE_VOID && op < OP_TYPE_FORWARD_POINTER;
-    if (is_type || op == OP_LABEL || op == OP_STRING || op == OP_EXT_INST_IMPORT) return i[1];
-    return i.size() > 2 ? i[2] : 0;
-}
-
-using Value = std::optional<uint32_t>;
-
-// The result, bool (0 or 1) or 32 bits, of an operation on such operands, if it is known.
-Value evaluate(uint32_t op, Value a, Value b, Value c) {
-    if (op == OP_SELECT) return a ? (*a != 0 ? b : c) : std::nullopt;
-    if ((op == OP_LOGICAL_AND || op == OP_BITWISE_AND) && (a == 0u || b == 0u)) return 0u;
-    if (op == OP_LOGICAL_OR && (a == 1u || b == 1u)) return 1u;
-    if (!a) return {};
-    if (op == OP_LOGICAL_NOT) return 1u - *a;
-    if (op == OP_NOT) return ~*a;
-    if (!b) return {};
-    switch (op) {
-        case OP_I_ADD:
-            return *a + *b;
-        case OP_I_SUB:
-            return *a - *b;
-        case OP_I_MUL:
-            return *a * *b;
-        case OP_LOGICAL_EQUAL:
-        case OP_I_EQUAL:
-            return *a == *b;
-        case OP_LOGICAL_NOT_EQUAL:
-        case OP_I_NOT_EQUAL:
-            return *a != *b;
-        case OP_LOGICAL_OR:
-        case OP_BITWISE_OR:
-            return *a | *b;
-        case OP_LOGICAL_AND:
-        case OP_BITWISE_AND:
-            return *a & *b;
-        case OP_BITWISE_XOR:
-            return *a ^ *b;
-        case OP_U_GREATER_THAN:
-            return *a > *b;
-        case OP_U_GREATER_THAN_EQUAL:
-            return *a >= *b;
-        case OP_U_LESS_THAN:
-            return *a < *b;
-        case OP_U_LESS_THAN_EQUAL:
-            return *a <= *b;
-        case OP_SHIFT_RIGHT_LOGICAL:
-            return *b < 32 ? Value(*a >> *b) : std::nullopt;
-        case OP_SHIFT_LEFT_LOGICAL:
-            return *b < 32 ? Value(*a << *b) : std::nullopt;
-        default:
-            return {};
-    }
-}
-
+// Ids, below the bound of the module.
 class IdSet {
   public:
     explicit IdSet(uint32_t bound) : has_(bound) {}
@@ -144,27 +27,6 @@ class IdSet {
 
   private:
     std::vector<bool> has_;
-};
-
-struct CodeBlock {
-    std::vector<Instruction> code;  // From its label to its branch.
-
-    uint32_t label() const { return code.front()[1]; }
-    Instruction branch() const { return code.back(); }
-    // What declares the blocks where its construct ends; empty if there is none.
-    Instruction merge() const {
-        if (code.size() < 3) return {};
-        const Instruction before = code[code.size() - 2];
-        const uint32_t op = op_of(before);
-        return op == OP_SELECTION_MERGE || op == OP_LOOP_MERGE ? before : Instruction();
-    }
-    bool begins_loop() const { return !merge().empty() && op_of(merge()) == OP_LOOP_MERGE; }
-};
-
-struct Function {
-    std::vector<Instruction> head;  // Before its blocks.
-    std::vector<CodeBlock> blocks;
-    Instruction end;
 };
 
 class Pruner {
@@ -233,7 +95,7 @@ class Pruner {
         const auto value = [&](size_t k) {
             return k < operands.size() && operands[k] < values_.size() ? values_[operands[k]] : std::nullopt;
         };
-        return vk::evaluate(op, value(0), value(1), value(2));
+        return spirv::evaluate(op, value(0), value(1), value(2));
     }
 
     // Finds the blocks that can run, and the functions that they call.
