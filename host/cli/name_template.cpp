@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "cli/arguments.h"
 
 namespace candela {
@@ -18,10 +19,6 @@ constexpr const char* FIELDS = "{stem}, {name}, {folder}, {camera}, {view}, {fra
 // The largest width of a number.
 constexpr uint32_t MAX_WIDTH = 9;
 
-[[noreturn]] void refuse_name(const std::string& message) {
-    throw Error("-o: " + message, ErrorKind::request);
-}
-
 // The text as a part of the name of a file.
 std::string harmless(std::string text) {
     std::ranges::replace_if(
@@ -29,20 +26,6 @@ std::string harmless(std::string text) {
     if (text.empty()) return "_";
     if (text.front() == '.') text.front() = '_';
     return text;
-}
-
-std::string given(const std::optional<std::string>& value, const std::string& field) {
-    if (!value)
-        refuse_name('{' + field + "} is what --" + field + " names; give --" + field + ", or leave it out");
-    return *value;
-}
-
-std::string text_of(const NameFields& fields, const std::string& field) {
-    if (field == "stem") return fields.stem;
-    if (field == "name") return fields.name;
-    if (field == "folder") return fields.folder;
-    if (field == "camera") return *fields.camera;
-    return given(field == "scene" ? fields.scene : fields.variant, field);
 }
 
 std::string padded(uint32_t number, int width) {
@@ -62,7 +45,11 @@ NameFields fields_of(const std::string& scene_file) {
             std::filesystem::absolute(path, ignored).lexically_normal().parent_path().filename().string()};
 }
 
-NameTemplate::NameTemplate(const std::string& text) : text_(text) {
+void NameTemplate::refuse(const std::string& message) const {
+    throw Error(concat(option_, ": ", message), ErrorKind::request);
+}
+
+NameTemplate::NameTemplate(const std::string& text, const char* option) : text_(text), option_(option) {
     std::string literal;
     for (size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
@@ -74,9 +61,8 @@ NameTemplate::NameTemplate(const std::string& text) : text_(text) {
         } else {
             const size_t end = c == '{' ? text.find('}', i) : std::string::npos;
             if (end == std::string::npos) {
-                refuse_name("\"" + text +
-                            "\" has a single brace; write {{ or }} for a brace of the name, or one of " +
-                            FIELDS);
+                refuse("\"" + text +
+                       "\" has a single brace; write {{ or }} for a brace of the name, or one of " + FIELDS);
             }
             parts_.emplace_back(std::move(literal));
             parts_.emplace_back(parse_field(std::string_view(text).substr(i + 1, end - i - 1)));
@@ -92,16 +78,27 @@ NameTemplate::Field NameTemplate::parse_field(std::string_view field) const {
     const std::string name(field.substr(0, colon));
     const bool is_number = std::ranges::find(NUMBERS, name) != NUMBERS.end();
     if (!is_number && std::ranges::find(TEXTS, name) == TEXTS.end())
-        refuse_name("\"" + text_ + "\" has the unknown field {" + std::string(field) + "}; the fields are " +
-                    FIELDS);
+        refuse("\"" + text_ + "\" has the unknown field {" + std::string(field) + "}; the fields are " +
+               FIELDS);
     if (colon == std::string_view::npos) return {name};
     const std::string format(field.substr(colon + 1));
     const auto width = format.starts_with('0') ? parse_uint(format.substr(1), 1, MAX_WIDTH) : std::nullopt;
     if (!is_number || !width) {
-        refuse_name("cannot use {" + std::string(field) +
-                    "}; only {view} and {frame} can have a number of digits, from {view:01} to {view:09}");
+        refuse("cannot use {" + std::string(field) +
+               "}; only {view} and {frame} can have a number of digits, from {view:01} to {view:09}");
     }
     return {name, int(*width)};
+}
+
+std::string NameTemplate::text_of(const NameFields& fields, const std::string& field) const {
+    if (field == "stem") return fields.stem;
+    if (field == "name") return fields.name;
+    if (field == "folder") return fields.folder;
+    if (field == "camera") return *fields.camera;
+    const std::optional<std::string>& value = field == "scene" ? fields.scene : fields.variant;
+    if (!value)
+        refuse('{' + field + "} is what --" + field + " names; give --" + field + ", or leave it out");
+    return *value;
 }
 
 bool NameTemplate::uses(std::string_view field) const {

@@ -25,9 +25,9 @@ NameFields fields_of(const std::string& scene_file);
 
 class NameTemplate {
   public:
-    // Reads `{FIELD}` and, for numbers, `{FIELD:0WIDTH}`; `{{` and `}}` are braces. Throws Error (usage) for
-    // anything else between braces.
-    explicit NameTemplate(const std::string& text);
+    // Reads `{FIELD}` and, for numbers, `{FIELD:0WIDTH}`; `{{` and `}}` are braces. Throws Error (usage),
+    // which names the option, for anything else between braces.
+    explicit NameTemplate(const std::string& text, const char* option = "-o");
 
     const std::string& text() const { return text_; }
     bool uses(std::string_view field) const;
@@ -46,9 +46,12 @@ class NameTemplate {
         int width = 0;
     };
 
+    [[noreturn]] void refuse(const std::string& message) const;
     Field parse_field(std::string_view field) const;
+    std::string text_of(const NameFields& fields, const std::string& field) const;
 
     std::string text_;
+    const char* option_;
     std::vector<std::variant<std::string, Field>> parts_;
 };
 

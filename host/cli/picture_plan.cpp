@@ -89,7 +89,7 @@ void PicturePlan::refuse_options_of_one() const {
 // Throws Error (usage) if two scenes would have the same file of cameras.
 void PicturePlan::plan_camera_files() {
     const std::string& text = *options_.cameras.written;
-    cameras_name_.emplace(text);
+    cameras_name_.emplace(text, "--write-cameras");
     std::map<std::string, std::string> scenes;  // By file.
     for (const PlannedScene& scene : scenes_) {
         const std::optional<std::string> file =

@@ -104,8 +104,7 @@ void scale(Environment& environment, double intensity) {
         if (glm::any(glm::greaterThan(scaled, dvec3(FLOAT_MAX)))) {
             throw Error(
                 "--environment-intensity: radiance times intensity exceeds the range of 32-bit floats; lower "
-                "the "
-                "intensity",
+                "the intensity",
                 ErrorKind::request);
         }
         radiance = vec3(scaled);

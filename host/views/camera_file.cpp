@@ -93,8 +93,7 @@ std::vector<Camera> read_camera_file(const std::filesystem::path& path, uvec2 si
     if (root.find("cameras")) return read_opencv(root);
     root.fail(
         "a file of cameras has the key \"frames\" (NeRF's transforms.json), or \"cameras\" (K, R and t of "
-        "OpenCV); "
-        "add one of them");
+        "OpenCV); add one of them");
 }
 
 std::string camera_file_text(const std::filesystem::path& path, std::span<const PictureCamera> pictures) {

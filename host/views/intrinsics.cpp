@@ -26,8 +26,8 @@ void set_intrinsics(const Node& node, const Intrinsics& intrinsics, Camera& came
     if (!(std::max(off.x, off.y) <= MAX_PRINCIPAL_OFFSET)) {
         node.fail(
             "the principal point is more than 1000 heights of the picture off its middle; it is in pixels, "
-            "from "
-            "the upper left corner");
+            "from the "
+            "upper left corner");
     }
 }
 

@@ -121,6 +121,8 @@ TEST_F(Cameras, WhatCannotBeIsRefused) {
           "--lens: only cameras around the scene have it; also give --view, --turntable or --dome");
     error({"--margin", "0"}, "--margin: only cameras around the scene have it");
     error({"--turntable", "3"}, "would be the picture of each camera; add the field {camera} or {view}");
+    error({"--write-cameras", file("{cam}.json")},
+          "--write-cameras: \"" + file("{cam}.json") + "\" has the unknown field {cam}; the fields are ");
     error({"--write-cameras", file("{camera}.json")},
           "is one file for all pictures of a scene; leave {camera} and {view} out");
     error({"--view", "1,2", "--view", "3,4", "--camera", "main"},
