@@ -33,19 +33,6 @@ Scene scene_from_above() {
     return scene;
 }
 
-// A closed box of glass around the view, SLAB thick.
-void add_glass(Scene& scene, const DielectricMaterial& glass) {
-    const uint32_t material = add_material(scene, glass);
-    const vec3 lo(-50, -SLAB, -50), hi(50, 0, 50), e = hi - lo;
-    const vec3 x(e.x, 0, 0), y(0, e.y, 0), z(0, 0, e.z);
-    add_shape(scene, parallelogram(lo, x, z), material);
-    add_shape(scene, parallelogram(lo, y, x), material);
-    add_shape(scene, parallelogram(lo, z, y), material);
-    add_shape(scene, parallelogram(hi, -z, -x), material);
-    add_shape(scene, parallelogram(hi, -x, -y), material);
-    add_shape(scene, parallelogram(hi, -y, -z), material);
-}
-
 class BackgroundTest : public RenderTest {
   protected:
     Image image(const Scene& scene, Backdrop backdrop, uint32_t spp) const {
@@ -71,14 +58,14 @@ class BackgroundTest : public RenderTest {
 TEST_F(BackgroundTest, IsSeenThroughASlabOfGlass) {
     const double passes = std::pow(1.0 - fresnel_normal(1.5), 2.0);
     Scene clear = scene_from_above();
-    add_glass(clear, {.ior = 1.5f});
+    add_slab(clear, {.ior = 1.5f}, SLAB);
     expect_alpha(clear, passes, 1.0, samples(256));
     const Image seen = image(clear, Backdrop::transmitted, samples(256));
     for (size_t i = 0; i < seen.pixel_count(); ++i)  // The samples' sums differ by rounding.
         ASSERT_NEAR(seen.find("A")->values[i], plane(seen, "", 0)[i], 1e-5);
 
     Scene tinted = scene_from_above();
-    add_glass(tinted, {.ior = 1.5f, .inside = {.absorption = ABSORPTION}});
+    add_slab(tinted, {.ior = 1.5f, .inside = {.absorption = ABSORPTION}}, SLAB);
     double left = 0.0;
     const double weights[] = {0.2126, 0.7152, 0.0722};
     for (int c = 0; c < 3; ++c)
@@ -89,7 +76,7 @@ TEST_F(BackgroundTest, IsSeenThroughASlabOfGlass) {
 // Under water, radiance is n^2 times that of the sky; a background is seen as it is.
 TEST_F(BackgroundTest, IsNotScaledByRefraction) {
     Scene scene = scene_from_above();
-    add_glass(scene, {.ior = 1.5f});
+    add_slab(scene, {.ior = 1.5f}, SLAB);
     scene.cameras[0].position = dvec3(0, -0.25, 0);
     scene.cameras[0].look_at = dvec3(0, -1, 0);
     expect_alpha(scene, 1.0 - fresnel_normal(1.5), 1.0, samples(256));
@@ -129,7 +116,7 @@ TEST_F(BackgroundTest, IsHiddenByMirrorsAndVeiledByOpacity) {
 // By the other convention, the sky is seen through glass, and the background is not.
 TEST_F(BackgroundTest, IsHiddenByGlassIfFirstHitsDecide) {
     Scene scene = scene_from_above();
-    add_glass(scene, {.ior = 1.5f});
+    add_slab(scene, {.ior = 1.5f}, SLAB);
     const Image seen = image(scene, Backdrop::background, 4);
     EXPECT_EQ(coverage(seen), 1.0);
     for (size_t i = 0; i < seen.pixel_count(); ++i)

@@ -20,22 +20,6 @@ double schlick(double ior, double theta) {
     return normal + (1.0 - normal) * std::pow(1.0 - std::cos(theta), 5.0);
 }
 
-// A box whose sides are so far away that no ray of a test hits them, with the front at y = 0 and the back at
-// y = -thickness: its front sides are outside.
-void add_slab(Scene& scene, const DielectricMaterial& glass, float thickness) {
-    constexpr float REACH = 100.0f;
-    const uint32_t material = add_material(scene, glass);
-    const vec3 lo(-REACH, -thickness, -REACH), hi(REACH, 0, REACH);
-    const vec3 e = hi - lo;
-    const vec3 x(e.x, 0, 0), y(0, e.y, 0), z(0, 0, e.z);
-    add_shape(scene, parallelogram(lo, x, z), material);
-    add_shape(scene, parallelogram(lo, y, x), material);
-    add_shape(scene, parallelogram(lo, z, y), material);
-    add_shape(scene, parallelogram(hi, -z, -x), material);
-    add_shape(scene, parallelogram(hi, -x, -y), material);
-    add_shape(scene, parallelogram(hi, -y, -z), material);
-}
-
 // A large black panel at that height, that shines downwards or upwards if it has a radiance.
 void add_panel(Scene& scene, float height, bool down, std::optional<vec3> radiance) {
     constexpr float REACH = 60.0f;

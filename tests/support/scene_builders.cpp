@@ -22,6 +22,20 @@ Scene floor_seen_closely(vec3 reflectance) {
     return scene;
 }
 
+void add_slab(Scene& scene, const DielectricMaterial& glass, float thickness) {
+    constexpr float REACH = 100.0f;
+    const uint32_t material = add_material(scene, glass);
+    const vec3 lo(-REACH, -thickness, -REACH), hi(REACH, 0, REACH);
+    const vec3 e = hi - lo;
+    const vec3 x(e.x, 0, 0), y(0, e.y, 0), z(0, 0, e.z);
+    add_shape(scene, parallelogram(lo, x, z), material);
+    add_shape(scene, parallelogram(lo, y, x), material);
+    add_shape(scene, parallelogram(lo, z, y), material);
+    add_shape(scene, parallelogram(hi, -z, -x), material);
+    add_shape(scene, parallelogram(hi, -x, -y), material);
+    add_shape(scene, parallelogram(hi, -y, -z), material);
+}
+
 TriangleMesh in_its_frame(const TriangleMesh& mesh, double scale, dvec3 shift) {
     std::vector<dvec3> positions;
     for (const vec3 p : mesh.positions)

@@ -16,6 +16,10 @@ inline uint32_t vertex_of(const TriangleMesh& mesh, size_t corner) {
 // Material 0 is that of the floor, material 1 is black.
 Scene floor_seen_closely(vec3 reflectance);
 
+// A box whose sides are so far away that no ray of a test hits them, with the front at y = 0 and the back at
+// y = -thickness: its front sides are outside.
+void add_slab(Scene& scene, const DielectricMaterial& glass, float thickness);
+
 // The mesh as the records hold it, in the frame of its scene, if it is first moved by `shift` and then
 // scaled.
 TriangleMesh in_its_frame(const TriangleMesh& mesh, double scale, dvec3 shift);
