@@ -18,6 +18,15 @@
 namespace candela {
 namespace {
 
+// Whether the shape's material, or the colours of its vertices, may be less than opaque.
+bool has_opacity(const Scene& scene, const Shape& shape) {
+    const Material& material = scene.materials[shape.material];
+    if (material.opacity.value.texture || material.opacity.value.factor < 1.0f) return true;
+    const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+    return instance != nullptr && material.vertex_colors &&
+           std::ranges::any_of(scene.meshes[instance->mesh].colors, [](vec4 c) { return c.w < 1.0f; });
+}
+
 uint32_t textured_bits(const MaterialTextures& t) {
     const auto bit = [](bool used, uint32_t of) { return used ? of : 0; };
     return bit(t.base != TEXTURE_NONE, TEXTURED_BASE) | bit(t.specular != TEXTURE_NONE, TEXTURED_SPECULAR) |
@@ -153,6 +162,8 @@ MaterialArrays build_material_arrays(const Scene& scene, const SceneFrame& frame
     MaterialArrays out;
     out.facts.material_count = uint32_t(scene.materials.size());
     if (std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return lets_rays_pass(scene, shape); }))
+        out.facts.textured |= TEXTURED_PASSABLE;
+    if (std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return has_opacity(scene, shape); }))
         out.facts.textured |= TEXTURED_OPACITY;
     TextureTable textures(scene.images);
     append_materials(out, scene, frame, textures);
@@ -165,12 +176,7 @@ MaterialArrays build_material_arrays(const Scene& scene, const SceneFrame& frame
 }
 
 bool lets_rays_pass(const Scene& scene, const Shape& shape) {
-    const Material& material = scene.materials[shape.material];
-    if (is_culled(material)) return true;
-    if (material.opacity.value.texture || material.opacity.value.factor < 1.0f) return true;
-    const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
-    return instance != nullptr && material.vertex_colors &&
-           std::ranges::any_of(scene.meshes[instance->mesh].colors, [](vec4 c) { return c.w < 1.0f; });
+    return is_culled(scene.materials[shape.material]) || has_opacity(scene, shape);
 }
 
 }  // namespace candela

@@ -32,7 +32,8 @@ struct MaterialArrays {
 // and the shapes' emissions look up. Throws Error if there are more than the records can number.
 MaterialArrays build_material_arrays(const Scene& scene, const SceneFrame& frame);
 
-// Whether some rays may pass the shape: its material, or the colours of its vertices, are not opaque.
+// Whether some rays may pass the shape: its material is culled, or that or the colours of its vertices are
+// not opaque.
 bool lets_rays_pass(const Scene& scene, const Shape& shape);
 
 }  // namespace candela

@@ -54,7 +54,7 @@ uint32_t aperture_constant(const Camera& camera) {
 uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
     const bool triangles = scene.primitives_present == 1u << PRIMITIVE_TRIANGLES;
     if (!scene.instances.empty()) return 0;
-    const bool opaque = (scene.textured & TEXTURED_OPACITY) == 0;
+    const bool opaque = (scene.textured & TEXTURED_PASSABLE) == 0;
     return device.info().is_lavapipe() && triangles && opaque && scene.primitive_count <= LIST_MAX
                ? scene.primitive_count
                : 0;

@@ -205,7 +205,7 @@ void sample_advance(Sample s, inout Traversal traversal, inout bool lit) {
     bvh_advance(traversal);
     if (traversal.any_hit && bvh_ended(traversal)) {
         lit = !is_hit(traversal.hit);
-        if (HAS_OPACITY) traversal.any_hit = false;
+        if (HAS_PASSABLE) traversal.any_hit = false;
         if (s.alive) traversal = bvh_begin(s.path.ray, FLOAT_MAX, false);
     }
 }
@@ -219,7 +219,7 @@ TraceResult sample_trace(Sample s) {
     Traversal traversal = bvh_begin(first, shadowed ? s.shadow.t_max : FLOAT_MAX, shadowed);
     if (!shadowed && !s.alive) bvh_end(traversal);
     bool lit = false;
-    if (HAS_OPACITY) {
+    if (HAS_PASSABLE) {
         // On software Vulkan, code in a branch takes its time even if no lane takes the branch. So the decision about
         // opacity is in an outer loop, at whose end lanes wait for each other once more.
         bool more;
@@ -234,7 +234,7 @@ TraceResult sample_trace(Sample s) {
         while (!bvh_ended(traversal))
             sample_advance(s, traversal, lit);
     }
-    bool turned = !(HAS_OPACITY && traversal.any_hit);  // To the path's ray, if there is one.
+    bool turned = !(HAS_PASSABLE && traversal.any_hit);  // To the path's ray, if there is one.
     return TraceResult(turned && bvh_ended(traversal), lit, traversal.hit);
 }
 

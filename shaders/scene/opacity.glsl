@@ -7,7 +7,7 @@
 #include "scene/material.glsl"
 #include "scene/primitive.glsl"
 
-const bool HAS_OPACITY = (TEXTURED & TEXTURED_OPACITY) != 0u;
+const bool HAS_PASSABLE = (TEXTURED & TEXTURED_PASSABLE) != 0u;
 
 // A number in [0, 1) that is random for each ray and hit, independent of the order in which they are found: a hash of
 // the bits of the ray in the primitive's space, of the surface's id in the scene, and of whether the hit is the first
@@ -33,6 +33,7 @@ bool is_stopped(Ray ray, Primitive p, Hit hit, bool first) {
         is_hit_from_behind(ray, p, hit, n)) {
         return false;
     }
+    if ((TEXTURED & TEXTURED_OPACITY) == 0u) return true;
     AttributePlace place = AttributePlace(hit_primitive(hit), hit_second(hit), hit_coordinates(ray, p, hit),
                                           is_kind(p.kind, PRIMITIVE_SPHERE), n);
     float opacity = material_opacity(surface.material, attributes_at(place));
@@ -54,7 +55,7 @@ Candidate candidate_none() {
 // rays pass the primitive, the candidate, if it is nearer than the nearest hit.
 void meet(uint position, Hit found, inout Hit hit, inout Candidate candidate) {
     if (!is_nearer(found, hit)) return;
-    if (HAS_OPACITY && scene_surface(position).passable != 0u) {
+    if (HAS_PASSABLE && scene_surface(position).passable != 0u) {
         candidate = Candidate(found, true);
     } else {
         hit = found;
@@ -64,7 +65,7 @@ void meet(uint position, Hit found, inout Hit hit, inout Candidate candidate) {
 // Makes the candidate the nearest hit if it stops the ray; otherwise the second hit of its primitive is the next
 // candidate, if it may stop the ray.
 void decide(Ray ray, RayShear shear, inout Hit hit, inout Candidate candidate) {
-    if (!HAS_OPACITY || !is_hit(candidate.hit)) return;
+    if (!HAS_PASSABLE || !is_hit(candidate.hit)) return;
     Hit found = candidate.hit;
     Primitive p = scene_primitive(hit_primitive(found));
     if (is_stopped(ray, p, found, candidate.first)) {

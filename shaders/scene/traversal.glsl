@@ -80,7 +80,7 @@ void enter_instance(inout Traversal t, BvhNode node, NodeWords words, inout bool
 
 // The traversal waits for bvh_decide.
 bool bvh_waits(Traversal t) {
-    return HAS_OPACITY && is_hit(t.candidate.hit);
+    return HAS_PASSABLE && is_hit(t.candidate.hit);
 }
 
 bool bvh_ended(Traversal t) {

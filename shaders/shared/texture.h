@@ -100,6 +100,7 @@ const uint TEXTURED_NORMAL = 1u << 4u;
 const uint TEXTURED_OPACITY = 1u << 5u;  // Also if opacity is less than 1 everywhere.
 const uint TEXTURED_EMISSION = 1u << 6u;
 const uint TEXTURED_BUMP = 1u << 7u;
+const uint TEXTURED_PASSABLE = 1u << 8u;  // Rays pass some surface: it has an opacity, or is culled.
 const uint TEXTURED_MATERIALS = TEXTURED_BASE | TEXTURED_SPECULAR | TEXTURED_PARAMETER | TEXTURED_VERTEX_COLORS;
 
 // Attributes of the corners a, b, c, d of primitives, a bit each: the specialization constant ATTRIBUTES. A
