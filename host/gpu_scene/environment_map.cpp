@@ -85,4 +85,10 @@ SkyArrays build_sky_arrays(const Environment& environment, EnvironmentMap map, b
     return arrays;
 }
 
+void add_dark_sky(SkyArrays& arrays) {
+    arrays.facts.environment_size = uvec2(1);
+    append(arrays.texels, pack(EnvironmentTexel{}));
+    arrays.cdf = pack_pairs<CdfEntry>(std::vector<CdfEntry>(2));
+}
+
 }  // namespace candela

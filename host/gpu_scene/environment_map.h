@@ -43,4 +43,7 @@ struct SkyArrays {
 // The arrays of an environment with that map; densities are 0 unless it is a light.
 SkyArrays build_sky_arrays(const Environment& environment, EnvironmentMap map, bool is_light);
 
+// A texel for kernels that may look up a sky, though the scene has none.
+void add_dark_sky(SkyArrays& arrays);
+
 }  // namespace candela

@@ -90,6 +90,16 @@ void append_lamp_lights(LightArrays& arrays, std::vector<AliasEntry>& alias, con
     }
 }
 
+// A light and a node of the tree where there are none, for kernels that may read, though never use them.
+void add_dark_records(LightArrays& arrays) {
+    if (arrays.lights.empty()) append(arrays.lights, pack(LightRecord{}));
+    LightTreeChild none{};
+    none.at = LIGHT_TREE_LEAF_BIT;
+    while (arrays.tree.nodes.size() < LIGHT_TREE_WIDTH * LIGHT_TREE_WORDS)
+        append(arrays.tree.nodes, pack(none));
+    if (arrays.tree.trails.empty()) arrays.tree.trails.resize(1);
+}
+
 // Appends the textures of lights whose primitives begin at `first` in leaf order.
 void append_textures(std::vector<uvec4>& words, const Scene& scene, const MaterialArrays& materials,
                      const FlatScene& flat, const AreaLights& area, std::span<const uint32_t> order,
@@ -107,7 +117,7 @@ void append_textures(std::vector<uvec4>& words, const Scene& scene, const Materi
 
 }  // namespace
 
-LightArrays build_light_arrays(const SceneLights& lights, const Box& box) {
+LightArrays build_light_arrays(const SceneLights& lights, const Box& box, bool of_small_model) {
     LightArrays result;
     PoweredLights all = lights.area.lights;
     const size_t first_lamp = all.records.size();
@@ -146,10 +156,13 @@ LightArrays build_light_arrays(const SceneLights& lights, const Box& box) {
     result.alias = pack_pairs<AliasEntry>(alias);
     result.facts.light_tree_pays = light_tree_pays(result.facts.light_count, all, lights.bounds,
                                                    lights.sky ? lights.sky->irradiance : 0.0, lights.places);
-    if (result.facts.light_count > 1) {
+    constexpr uint32_t SKY = 1u << LIGHT_ENVIRONMENT;
+    if (of_small_model && (result.facts.lights_present & ~SKY) != 0) result.facts.light_tree_pays = true;
+    if (result.facts.light_count > 1 || of_small_model) {
         result.tree = pack_light_trees(lights.tree, lights.lamps, result.first_of_lamps);
         set_fluxes(groups, all.records, result.sky_is_light ? lights.sky->flux : dvec4(0.0), lights.tree);
     }
+    if (of_small_model) add_dark_records(result);
     return result;
 }
 
@@ -163,7 +176,8 @@ std::vector<uvec4> light_textures(const Scene& scene, const MaterialArrays& mate
                                   const AreaLights& area, std::span<const uint32_t> order,
                                   const MeshTrees& trees, const Lamps& lamps, uint32_t first_of_lamps) {
     std::vector<uvec4> words;
-    if ((materials.facts.textured & (TEXTURED_EMISSION | TEXTURED_OPACITY)) == 0 &&
+    if (!materials.facts.small_model &&
+        (materials.facts.textured & (TEXTURED_EMISSION | TEXTURED_OPACITY)) == 0 &&
         (materials.facts.principled & PRINCIPLED_HAS_COATED_EMISSION) == 0)
         return words;
     append_textures(words, scene, materials, flat, area, order, 0);

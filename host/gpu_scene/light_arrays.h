@@ -29,7 +29,7 @@ struct LightFacts {
 struct LightArrays {
     LightFacts facts;
     std::vector<uvec4> lights, alias;
-    LightTreeArrays tree;         // Empty if there is a single light.
+    LightTreeArrays tree;         // Empty if there is a single light, and the model is not small.
     uint32_t first_of_lamps = 0;  // The place of the lamps' lights in the table.
     bool sky_is_light = false;
 };
@@ -51,7 +51,8 @@ LightSampler chosen_light_sampler(LightSampler requested, const LightFacts& ligh
 
 // Joins the lights of a scene, in the order of LightGroups: those of surfaces are in front, then lamps. The
 // sky is one of them if there is one and it helps to sample it. `box` is the box around all primitives.
-LightArrays build_light_arrays(const SceneLights& lights, const Box& box);
+// `of_small_model`: see MaterialFacts.
+LightArrays build_light_arrays(const SceneLights& lights, const Box& box, bool of_small_model);
 
 // The textures of lights, by their places in the table, with the places of their surfaces in leaf order;
 // empty if no kernel reads them. `order` has the primitives of `flat` in leaf order; those of `trees` follow.

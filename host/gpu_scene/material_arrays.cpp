@@ -95,7 +95,19 @@ bool has_layers(const Material& material) {
            (m->fuzz.factor > 0.0f || m->coat.factor > 0.0f || m->sheen_color.factor != vec3(0.0f));
 }
 
+bool is_small_model(const Scene& scene) {
+    uint64_t triangles = 0;
+    for (const Shape& shape : scene.shapes) {
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        if (instance == nullptr) return false;
+        if (!std::holds_alternative<PrincipledMaterial>(scene.materials[shape.material].model)) return false;
+        triangles += scene.meshes[instance->mesh].triangles.size();
+    }
+    return triangles <= SMALL_MODEL_TRIANGLES;
+}
+
 uint32_t needed_attributes(const MaterialFacts& facts) {
+    if (facts.small_model) return ATTRIBUTES_ALL;
     const auto bit = [](bool used, uint32_t of) { return used ? of : 0; };
     return bit((facts.texture_traits & TEXTURE_UV0) != 0, ATTRIBUTE_UV0) |
            bit((facts.texture_traits & TEXTURE_UV1) != 0, ATTRIBUTE_UV1) |
@@ -138,7 +150,7 @@ void append_materials(MaterialArrays& out, const Scene& scene, const SceneFrame&
         append(out.media, pack(MediumRecord{vec3(frame.unit * dvec3(m.medium.absorption)), m.ior}));
         out.facts.has_media |= m.medium != Medium{};
     }
-    if (out.facts.textured == 0) out.material_textures.clear();
+    if (out.facts.textured == 0 && !out.facts.small_model) out.material_textures.clear();
 }
 
 // What the emissions of shapes look up, and what else of a material depends on the shapes that have it.
@@ -161,6 +173,7 @@ MaterialArrays build_material_arrays(const Scene& scene, const SceneFrame& frame
     }
     MaterialArrays out;
     out.facts.material_count = uint32_t(scene.materials.size());
+    out.facts.small_model = is_small_model(scene);
     if (std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return lets_rays_pass(scene, shape); }))
         out.facts.textured |= TEXTURED_PASSABLE;
     if (std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return has_opacity(scene, shape); }))

@@ -19,7 +19,13 @@ struct MaterialFacts {
     uint32_t textured = 0;           // Bits TEXTURED_*.
     uint32_t texture_traits = 0;     // Of all textures.
     uint32_t attributes = 0;         // Bits ATTRIBUTE_*: those of vertices that textures and materials read.
+    // At most SMALL_MODEL_TRIANGLES, of principled and unlit materials. Its arrays have what kernels read
+    // that it shares with other small models: each attribute if it has a texture, and a light, a sky and
+    // nodes of the tree over lights, if only dark ones.
+    bool small_model = false;
 };
+
+inline constexpr uint64_t SMALL_MODEL_TRIANGLES = 65536;
 
 struct MaterialArrays {
     MaterialFacts facts;

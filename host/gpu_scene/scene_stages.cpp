@@ -222,8 +222,9 @@ void SceneStages::make_lights(const Work& work) {
     const std::vector<vec3> places = some_places(surfaces_, tree_);
     if (work.all || work.tree || work.materials || work.change.radiance || work.change.lights)
         light_tree_ = build_light_tree(bounds);
-    LightArrays made = build_light_arrays(
-        {area_lights_, lamps_, placed, punctual, bounds, light_tree_, sky_, places}, tree_.bounds);
+    LightArrays made =
+        build_light_arrays({area_lights_, lamps_, placed, punctual, bounds, light_tree_, sky_, places},
+                           tree_.bounds, materials_.facts.small_model);
     static_cast<LightFacts&>(gpu_) = made.facts;
     put(ARRAY_LIGHTS, std::move(made.lights));
     put(ARRAY_LIGHT_ALIAS, std::move(made.alias));
@@ -232,15 +233,18 @@ void SceneStages::make_lights(const Work& work) {
     put(ARRAY_LIGHT_TEXTURES, light_textures(scene, materials_, surfaces_, area_lights_, tree_.order, trees_,
                                              lamps_, made.first_of_lamps));
 
-    if (other_sky || made.sky_is_light != sky_is_light_) {
+    const bool small_model = materials_.facts.small_model;
+    if (other_sky || made.sky_is_light != sky_is_light_ || small_model != small_model_) {
         if (scene.environment && !map) map = build_environment_map(*scene.environment);
         SkyArrays sky =
             map ? build_sky_arrays(*scene.environment, std::move(*map), made.sky_is_light) : SkyArrays{};
+        if (!map && small_model) add_dark_sky(sky);
         static_cast<SkyFacts&>(gpu_) = sky.facts;
         put(ARRAY_ENVIRONMENT, std::move(sky.texels));
         put(ARRAY_ENVIRONMENT_CDF, std::move(sky.cdf));
     }
     sky_is_light_ = made.sky_is_light;
+    small_model_ = small_model;
 }
 
 }  // namespace candela

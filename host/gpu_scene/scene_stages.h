@@ -90,6 +90,7 @@ class SceneStages {
     LightTree light_tree_;
     std::optional<SkyLight> sky_;
     bool sky_is_light_ = false;
+    bool small_model_ = false;  // Whether the sky was made for one.
 
     GpuScene gpu_;
     BufferSet changed_;

@@ -1,6 +1,7 @@
 // The specialization constants of the renderer's kernels, for a scene on a device.
 #include <algorithm>
 
+#include "render/kernel_classes.h"
 #include "render/media_at.h"
 #include "render/renderer.h"
 #include "shared/primitive.h"
@@ -53,7 +54,7 @@ uint32_t aperture_constant(const Camera& camera) {
 // and only if rays pass none of them.
 uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
     const bool triangles = scene.primitives_present == 1u << PRIMITIVE_TRIANGLES;
-    if (!scene.instances.empty()) return 0;
+    if (!scene.instances.empty() || scene.small_model) return 0;
     const bool opaque = (scene.textured & TEXTURED_PASSABLE) == 0;
     return device.info().is_lavapipe() && triangles && opaque && scene.primitive_count <= LIST_MAX
                ? scene.primitive_count
@@ -70,23 +71,6 @@ uint32_t sampler_constant(SamplerKind sampler) {
             break;
     }
     return SAMPLER_SOBOL;
-}
-
-// Allows for more than the scene has where that costs no time, so that scenes share kernels: lavapipe takes
-// half a second and more to compile one. On a GPU each level of the tree takes a register.
-// (tests/bench/NOTEBOOK.md, "Kernel".)
-void widen(KernelConstants& constants) {
-    constexpr uint32_t LEVELS = 8;
-    uint32_t& depth = constants[CONSTANT_BVH_DEPTH];
-    depth = (depth + LEVELS - 1) / LEVELS * LEVELS;
-    static_assert(BVH_MAX_DEPTH % LEVELS == 0);
-    uint32_t& principled = constants[CONSTANT_PRINCIPLED];
-    if (principled == 0) return;
-    principled |= PRINCIPLED_HAS_METAL | PRINCIPLED_HAS_ROUGH | PRINCIPLED_HAS_DIFFUSE;
-    if ((principled & PRINCIPLED_HAS_IMAGES) != 0) {
-        constants[CONSTANT_TEXTURE_TRAITS] |= TEXEL_FORMATS | TEXTURE_ENCODINGS | TEXTURE_FILTERS |
-                                              TEXTURE_WRAPS | TEXTURE_WRAPS << TEXTURE_WRAP_V;
-    }
 }
 
 }  // namespace
@@ -129,7 +113,7 @@ KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene
     if (constants[CONSTANT_LIST] > 0) {
         std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS_0]);
     } else if (device.info().is_lavapipe()) {
-        widen(constants);
+        widen(constants, scene, settings);
     }
     constants[CONSTANT_GROUP_COUNTERS] = !device.info().is_lavapipe();
     return constants;

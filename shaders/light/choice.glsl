@@ -95,10 +95,11 @@ uvec2 light_tree_groups(LitPoint lit) {
     }
     if (HAS_SUNS) weight.y = afar_irradiance(groups.sun_flux, lit);
     if (SKY_IS_LIGHT) weight.z = afar_irradiance(groups.sky_flux, lit);
-    const vec3 PRESENT = vec3(LIGHTS_PLACED, HAS_SUNS, SKY_IS_LIGHT);
-    const float ALIKE = 1.0 / max(PRESENT.x + PRESENT.y + PRESENT.z, 1.0);
+    vec3 present = vec3(LIGHTS_PLACED && groups.placed > 0u, HAS_SUNS && groups.suns > 0u,
+                        SKY_IS_LIGHT && groups.sky_fraction > 0u);
+    float alike = 1.0 / max(present.x + present.y + present.z, 1.0);
     weight = min(weight, vec3(1e30));
-    precise vec3 part = weight / max(weight.x + weight.y + weight.z, 1e-30) + 0.5 * ALIKE * PRESENT;
+    precise vec3 part = weight / max(weight.x + weight.y + weight.z, 1e-30) + 0.5 * alike * present;
     precise vec3 ends = vec3(part.x, part.x + part.y, part.x + part.y + part.z);
     precise vec2 parts = ends.xy * (float(RANGE_PARTS) / ends.z) + 0.5;
     return uvec2(min(parts, vec2(float(RANGE_PARTS))));
@@ -133,11 +134,11 @@ LightChoice light_choose_by_tree(LitPoint lit, uvec2 bits) {
     uvec4 groups = light_groups_at(lit);
     uint group = range_choose(random, groups);
     LightChoice choice = LightChoice(0u, NO_LIGHT, 1.0);
-    if (LIGHTS_PLACED) {
+    if (LIGHTS_PLACED && group < 2u) {
         LightTreeWay way = light_tree_begin(group < 2u ? 0u : LIGHT_TREE_LEAF_BIT);
         light_tree_choose(way, lit, random, group == 0u);
         choice.i = way.at & ~LIGHT_TREE_LEAF_BIT;
-        if (light_is_lamp(choice.i) && group < 2u) {
+        if (light_is_lamp(choice.i)) {
             choice.lamp = choice.i;
             LampRecord lamp = scene_lamp(choice.lamp);
             way.at = lamp.root;

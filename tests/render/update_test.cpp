@@ -81,6 +81,20 @@ TEST_F(UpdateTest, EachChangeGivesThePictureOfAFreshScene) {
     expect_as_fresh(device(), renderer, settings, {.moved = {0}});
 }
 
+// Its arrays then have what kernels read that it shares with others.
+TEST_F(UpdateTest, SoItDoesWhereASceneBecomesASmallModel) {
+    scene_.shapes.resize(2);
+    scene_.environment.reset();
+    scene_.lights.push_back({"", PointLight{{0, 5, 5}, vec3(30)}});
+    stages_ = SceneStages(scene_, {.rule = RULE});
+    const RenderSettings settings = settings_for(24, 16);
+    Renderer renderer(device(), stages_.joined(), scene_.cameras[0], settings);
+    scene_.materials[0].model = PrincipledMaterial{};
+    expect_as_fresh(device(), renderer, settings, {.materials = true});
+    scene_.materials[0].model = DiffuseMaterial{vec3(0.5f)};
+    expect_as_fresh(device(), renderer, settings, {.materials = true});
+}
+
 // Most arrays lie in one of them, each behind the others.
 TEST_F(UpdateTest, SoItDoesInStorageBuffersWhereArraysGrow) {
     RenderSettings settings = settings_for(24, 16);
