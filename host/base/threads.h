@@ -7,20 +7,23 @@
 #include <thread>
 #include <vector>
 
+#include "base/cpu_time.h"
 #include "base/memory_limit.h"
 
 namespace candela {
 
 // Starts `count` threads that call work(); fewer, or none, if the system does not allow more. A limit on this
-// thread's memory applies to them, too.
+// thread's memory applies to them, too. When they end, their CPU time is added to this thread's
+// (cpu_time.h), which must not end before.
 template <class Work>
 std::vector<std::jthread> start_helpers(size_t count, const Work& work) {
     std::vector<std::jthread> helpers;
     helpers.reserve(count);
-    const auto limited_work = [work, is_limited = LimitedMemory::applies()] {
+    const auto limited_work = [work, is_limited = LimitedMemory::applies(), cpu_time = &helpers_cpu_time] {
         std::optional<LimitedMemory> limited;
         if (is_limited) limited.emplace();
         work();
+        *cpu_time += work_cpu_time();
     };
     try {
         while (helpers.size() < count)

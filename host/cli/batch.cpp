@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/cpu_time.h"
 #include "base/file.h"
 #include "cli/caught_error.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
+#include "film/accumulation.h"
 
 namespace candela {
 namespace {
@@ -18,13 +20,16 @@ std::string about(const std::string& scene, const std::string& message) {
 }
 
 // Writes the images, and notes if that fails.
-RenderedPicture written(RenderedPicture rendered, const ImageOutputs& outputs) {
+RenderedPicture written(RenderedPicture rendered, const ImageOutputs& outputs, bool is_reported) {
+    if (is_reported) rendered.image_hash = image_hash(rendered.image);
     rendered.attempts.attempt([&] {
+        const CpuWatch watch;
         try {
-            write_images(outputs, rendered.record, std::move(rendered.image));
+            rendered.overhead.encode = write_images(outputs, rendered.record, std::move(rendered.image));
         } catch (...) {
             throw Error(caught_error());
         }
+        rendered.overhead.develop += watch.seconds() - rendered.overhead.encode;
     });
     return rendered;
 }
@@ -145,16 +150,19 @@ void Batch::write(RenderedPicture&& rendered, bool is_last) {
     ImageOutputs outputs = options_.outputs.images;
     outputs.files = rendered.picture.files;
     const bool is_automatic = outputs.development.exposure.automatic;
+    const CpuWatch watch;
     outputs = outputs.exposed_for(rendered.image);
+    rendered.overhead.develop = watch.seconds();
     rendered.exposure = outputs.development.exposure.ev;
     if (is_automatic && !options_.messages.quiet && options_.messages.progress != ProgressStyle::json) {
         print_note((plan_.is_batch() ? outputs.files.front() + ": " : "") +
                    "exposure: " + fixed(rendered.exposure, 2) + " EV");
     }
-    writing_ = std::async(is_last ? std::launch::deferred : std::launch::async | std::launch::deferred,
-                          [rendered = std::move(rendered), outputs]() mutable {
-                              return written(std::move(rendered), outputs);
-                          });
+    writing_ =
+        std::async(is_last ? std::launch::deferred : std::launch::async | std::launch::deferred,
+                   [this, rendered = std::move(rendered), outputs]() mutable {
+                       return written(std::move(rendered), outputs, options_.outputs.report.has_value());
+                   });
 }
 
 // Waits until the last picture is written, and counts it.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/cpu_time.h"
 #include "base/file.h"
 #include "cli/attempts.h"
 #include "cli/console.h"
@@ -39,16 +40,21 @@ void print_bytes(const std::filesystem::path& /*path*/, std::string_view bytes) 
     flush_results();
 }
 
-void write_image(const ImageOutputs& outputs, const std::string& path, const Image& image, FileWriter write) {
+// Returns the CPU time of all but developing [s].
+double write_image(const ImageOutputs& outputs, const std::string& path, const Image& image,
+                   FileWriter write) {
     const ImageFormat format = output_format(path);
+    const CpuWatch all;
     if (format == ImageFormat::exr) {
         write_exr(path, image, path == STDOUT ? print_bytes : write);
-        return;
+        return all.seconds();
     }
     const DevelopmentOptions& development = outputs.development;
     const TexelImage picture =
         outputs.screen.develop(image, format, development.tonemap, float(development.exposure.ev));
+    const CpuWatch encoding;
     write_picture(path, picture, outputs.screen.notes(image), write);
+    return encoding.seconds();
 }
 
 }  // namespace
@@ -75,13 +81,15 @@ void check_outputs(const ImageOutputs& outputs) {
     }
 }
 
-void write_images(const ImageOutputs& given, Image image) {
+double write_images(const ImageOutputs& given, Image image) {
     const ImageOutputs outputs = given.exposed_for(image);
     if (outputs.half) use_half(image);
     Attempts attempts;
+    double encoding = 0.0;
     for (const std::string& path : outputs.files)
-        attempts.attempt([&] { write_image(outputs, path, image, write_finished_work); });
+        attempts.attempt([&] { encoding += write_image(outputs, path, image, write_finished_work); });
     attempts.finish();
+    return encoding;
 }
 
 void write_current_images(const ImageOutputs& given, const RenderRecord& record, Image image) {
@@ -98,9 +106,9 @@ void write_current_images(const ImageOutputs& given, const RenderRecord& record,
     }
 }
 
-void write_images(const ImageOutputs& outputs, const RenderRecord& record, Image image) {
+double write_images(const ImageOutputs& outputs, const RenderRecord& record, Image image) {
     add_attributes(image, record);
-    write_images(outputs, std::move(image));
+    return write_images(outputs, std::move(image));
 }
 
 }  // namespace candela

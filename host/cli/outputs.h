@@ -17,9 +17,9 @@ void check_formats(const ImageOutputs& outputs);
 void check_outputs(const ImageOutputs& outputs);
 
 // Writes all images, in the second case with attributes, as finished work. If one fails, still writes the
-// others, and then throws the Error.
-void write_images(const ImageOutputs& outputs, Image image);
-void write_images(const ImageOutputs& outputs, const RenderRecord& record, Image image);
+// others, and then throws the Error. Returns the part of the CPU time that compressing and writing took [s].
+double write_images(const ImageOutputs& outputs, Image image);
+double write_images(const ImageOutputs& outputs, const RenderRecord& record, Image image);
 
 // Writes all images, with attributes, during a rendering. A failure is a warning: the file keeps its old
 // contents.

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/cpu_time.h"
 #include "cli/caught_error.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
@@ -164,8 +165,13 @@ RenderedPicture PictureRenderer::run(const PreparedScene& scene, const PreparedP
 }
 
 RenderedPicture PictureRenderer::render(const PreparedScene& scene, const PreparedPicture& picture) {
+    const CpuWatch watch;
     try {
-        return run(scene, picture);
+        RenderedPicture rendered = run(scene, picture);
+        const double kernels = rendered.record.pipeline_cpu_seconds;
+        rendered.overhead = {
+            .scene = scene.cpu_seconds, .kernels = kernels, .host = watch.seconds() - kernels};
+        return rendered;
     } catch (...) {
         const Error error = caught_error();
         rendering_.reset();

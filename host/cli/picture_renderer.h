@@ -1,6 +1,7 @@
 // The device's part of `candela render`: one picture after the other, on one device.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,15 @@
 
 namespace candela {
 
+// CPU time beside a picture's samples [s].
+struct OverheadTimes {
+    double scene = 0.0;    // To read and build its scene, for all the pictures of the scene.
+    double kernels = 0.0;  // To compile kernels, in the thread that asks the driver for them.
+    double host = 0.0;     // Of the thread that drives the device, beside that.
+    double develop = 0.0;  // From the image to the contents of its files;
+    double encode = 0.0;   // to compress and write them.
+};
+
 // A picture whose files are not yet written.
 struct RenderedPicture {
     Picture picture;
@@ -25,7 +35,9 @@ struct RenderedPicture {
     Image image;
     std::string state;  // How it ended, as --progress json says: "done", "interrupted" or "time limit".
     std::unique_ptr<Progress> progress;
-    double exposure = 0.0;           // Of its pictures for the screen [EV].
+    double exposure = 0.0;  // Of its pictures for the screen [EV].
+    OverheadTimes overhead{};
+    uint64_t image_hash = 0;         // If there is a report.
     Attempts attempts{};             // To write its files.
     std::optional<Error> failure{};  // Of the device, if there are samples nevertheless.
 };

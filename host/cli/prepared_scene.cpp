@@ -7,6 +7,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "base/cpu_time.h"
 #include "cli/caught_error.h"
 #include "cli/console.h"
 #include "cli/loading.h"
@@ -26,6 +27,7 @@ class Preparation {
     }
 
     PreparedScene run() {
+        const CpuWatch watch;
         try {
             for_each([this](PreparedPicture& picture) { check_files(picture); });
             const bool may_have_more = prepared_.pictures.empty();
@@ -33,6 +35,7 @@ class Preparation {
         } catch (...) {
             prepared_.failure = caught_error();
         }
+        prepared_.cpu_seconds = watch.seconds();
         return std::move(prepared_);
     }
 

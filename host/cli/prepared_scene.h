@@ -33,6 +33,7 @@ struct PreparedScene {
     Scene scene{};
     GpuScene records{};  // Of no use if there is no job.
     double load_seconds = 0.0;
+    double cpu_seconds = 0.0;             // Of all of this.
     std::vector<std::string> warnings{};  // Not yet printed.
 };
 

@@ -76,7 +76,6 @@ Json facts_of(const RenderRecord& record) {
                 {"nonfinite_samples", record.counters.nonfinite_samples},
                 {"depth_limit_hits", record.counters.depth_limit_hits},
                 {"device_failures", record.device_failures},
-                {"image_hash", hexadecimal(record.image_hash)},
                 {"validation_messages", record.validation_messages}};
     add_convergence(report, record);
     return report;
@@ -113,7 +112,14 @@ void Report::add(const RenderedPicture& rendered, const std::optional<Error>& fa
     Json entry = entry_of(rendered.picture, failure ? "failed" : rendered.state);
     if (failure) entry["error"] = failure->what();
     entry.update(facts_of(rendered.record));
+    entry["image_hash"] = hexadecimal(rendered.image_hash);
     entry["exposure"] = rendered.exposure;
+    const OverheadTimes& overhead = rendered.overhead;
+    entry["overhead_cpu_seconds"] = {{"scene", overhead.scene},
+                                     {"kernels", overhead.kernels},
+                                     {"host", overhead.host},
+                                     {"develop", overhead.develop},
+                                     {"encode", overhead.encode}};
     write(entry);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/cpu_time.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/memory_limit.h"
@@ -200,6 +201,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
 }
 
 void Renderer::compile() {
+    const CpuWatch watch;
     const auto start = std::chrono::steady_clock::now();
     const uint32_t compiled_before = device_->programs().compiled();
     render_kernel_ = std::make_unique<vk::Kernel>(scene_kernel(RenderKernel::render));
@@ -212,6 +214,7 @@ void Renderer::compile() {
         commands_.submit_and_wait();
     }
     pipeline_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    pipeline_cpu_seconds_ = watch.seconds();
 }
 
 void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSettings& settings,

@@ -102,9 +102,9 @@ class Renderer {
     const ArrayMap& array_map() const { return scene_.map(); }
     // How long a submission should take [s].
     double submission_seconds() const { return settings_.submission_seconds; }
-    double pipeline_seconds() const {
-        return pipeline_seconds_;
-    }  // Wall time of compiling, first dispatch included.
+    // Wall time of compiling, first dispatch included; and the CPU time of it in this thread.
+    double pipeline_seconds() const { return pipeline_seconds_; }
+    double pipeline_cpu_seconds() const { return pipeline_cpu_seconds_; }
 
   private:
     struct Work {
@@ -125,6 +125,7 @@ class Renderer {
     SceneFrame frame_;
     RenderCounters counters_;
     double pipeline_seconds_ = 0.0;
+    double pipeline_cpu_seconds_ = 0.0;
     uint32_t samples_ = 0;  // Samples that every pixel has.
 
     SceneBuffers scene_;

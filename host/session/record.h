@@ -31,17 +31,18 @@ struct RenderRecord {
     ArrayMap array_map{};  // How the scene was read.
     uint32_t primitives = 0;
     uint32_t lights = 0;
-    double load_seconds = 0.0;      // Wall time to read the scene file.
-    double bvh_seconds = 0.0;       // Wall time to build the BVH.
-    double pipeline_seconds = 0.0;  // Wall time to compile kernels, including a first, empty dispatch.
-    uint32_t kernels_compiled = 0;  // Those that no picture before had on this device.
-    double render_seconds = 0.0;    // Wall time to render, including before it was resumed.
-    double cpu_seconds = 0.0;       // CPU time of the process while rendering, since it was resumed.
-    bool complete = false;          // All samples are there, or as many as the target error needs.
-    uint32_t spp = 0;               // Samples that every pixel has; on average if adaptive.
-    uint32_t max_spp = 0;           // The largest number that a pixel has.
-    uint64_t samples = 0;           // Samples of all pixels together.
-    uint64_t resumed_samples = 0;   // The part of `samples` that came from a checkpoint.
+    double load_seconds = 0.0;          // Wall time to read the scene file.
+    double bvh_seconds = 0.0;           // Wall time to build the BVH.
+    double pipeline_seconds = 0.0;      // Wall time to compile kernels, including a first, empty dispatch.
+    double pipeline_cpu_seconds = 0.0;  // CPU time of the same in the thread that asks for it.
+    uint32_t kernels_compiled = 0;      // Those that no picture before had on this device.
+    double render_seconds = 0.0;        // Wall time to render, including before it was resumed.
+    double cpu_seconds = 0.0;           // CPU time of the process while rendering, since it was resumed.
+    bool complete = false;              // All samples are there, or as many as the target error needs.
+    uint32_t spp = 0;                   // Samples that every pixel has; on average if adaptive.
+    uint32_t max_spp = 0;               // The largest number that a pixel has.
+    uint64_t samples = 0;               // Samples of all pixels together.
+    uint64_t resumed_samples = 0;       // The part of `samples` that came from a checkpoint.
     std::optional<double> target_error{};
     std::optional<std::string> reference{};       // The name of its file.
     std::vector<ConvergencePoint> convergence{};  // If a target error or a reference asks for it.
@@ -49,7 +50,6 @@ struct RenderRecord {
     RenderCounters counters{};
     uint32_t device_failures = 0;  // Failures of the device that rendering survived.
     uint64_t device_bytes = 0;
-    uint64_t image_hash = 0;
     size_t validation_messages = 0;
 };
 

@@ -57,8 +57,10 @@ void Rendering::complete_record() {
     record_.maker = make_maker(device_->info());
     record_.device_bytes = device_bytes(*scene_, job_.settings);
     record_.array_map = renderer_.array_map();
-    record_.pipeline_seconds = renderer_.pipeline_seconds();
     record_.kernels_compiled = renderer_.kernels_compiled();
+    const bool has_compiled = record_.kernels_compiled > 0;
+    record_.pipeline_seconds = has_compiled ? renderer_.pipeline_seconds() : 0.0;
+    record_.pipeline_cpu_seconds = has_compiled ? renderer_.pipeline_cpu_seconds() : 0.0;
 }
 
 double Rendering::seconds_of_run() const {
@@ -78,9 +80,7 @@ Image Rendering::collect_image(RenderRecord& record) const {
     record.samples = counts.total;
     record.spp = samples_per_pixel(states);
     record.max_spp = counts.max;
-    Image image = make_image(states, job_.aovs, renderer_.positions());
-    record.image_hash = image_hash(image);
-    return image;
+    return make_image(states, job_.aovs, renderer_.positions());
 }
 
 Image Rendering::image() {

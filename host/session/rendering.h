@@ -59,7 +59,7 @@ class Rendering {
     // unusable.
     void restart(RenderJob job, RenderRecord record, const BufferSet& changed);
 
-    // The image of the samples so far, from which record() takes its hash.
+    // The image of the samples so far, whose numbers record() takes.
     Image image();
     // Writes the last checkpoint, as finished work, if the job asks for one. Throws Error if that fails.
     void finish_checkpoint() const;

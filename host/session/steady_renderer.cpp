@@ -27,6 +27,7 @@ void SteadyRenderer::open() {
     renderer_->upload(state());
     array_map_ = renderer_->array_map();
     pipeline_seconds_ = renderer_->pipeline_seconds();
+    pipeline_cpu_seconds_ = renderer_->pipeline_cpu_seconds();
     loaded_ = true;
 }
 
@@ -36,6 +37,7 @@ void SteadyRenderer::load(const BufferSet& changed) {
     renderer_->upload(state());
     array_map_ = renderer_->array_map();
     pipeline_seconds_ = renderer_->pipeline_seconds();
+    pipeline_cpu_seconds_ = renderer_->pipeline_cpu_seconds();
     loaded_ = true;
 }
 

@@ -61,6 +61,7 @@ class SteadyRenderer {
     // How the arrays of the scene are read.
     const ArrayMap& array_map() const { return array_map_; }
     double pipeline_seconds() const { return pipeline_seconds_; }
+    double pipeline_cpu_seconds() const { return pipeline_cpu_seconds_; }
     // Kernels that the device has compiled since the start, or since it was opened again.
     uint32_t kernels_compiled() const { return device().programs().compiled() - compiled_before_; }
     // How often the device failed since the start.
@@ -81,6 +82,7 @@ class SteadyRenderer {
     std::vector<float> positions_;
     ArrayMap array_map_;
     double pipeline_seconds_ = 0.0;
+    double pipeline_cpu_seconds_ = 0.0;
     uint32_t compiled_before_ = 0;
     std::chrono::steady_clock::time_point next_copy_;
     Recovery recovery_;

@@ -79,6 +79,7 @@ TEST_F(Batch, HasTheBitsOfSinglePictures) {
         EXPECT_EQ(lines[i]["outputs"], Words{file(output)});
         // The second camera, and the scene that is like another, have kernels already.
         EXPECT_EQ(lines[i]["kernels_compiled"], i % 2 == 0 ? 2 : 0);
+        EXPECT_EQ(lines[i]["pipeline_seconds"] > 0.0, i % 2 == 0);
         if (scene == b_) {
             EXPECT_EQ(lines[i]["image_hash"], lines[i - 1]["image_hash"]);
             continue;

@@ -102,6 +102,8 @@ TEST_F(RenderFiles, ReportHasEveryField) {
          {"load_seconds", "bvh_seconds", "pipeline_seconds", "render_seconds", "cpu_seconds"}) {
         EXPECT_GT(report[time], 0.0) << time;
     }
+    for (const char* part : {"scene", "kernels", "host", "develop", "encode"})
+        EXPECT_GT(report["overhead_cpu_seconds"][part], 0.0) << part;
     const double rate = report["samples_per_second"];
     EXPECT_NEAR(rate * double(report["render_seconds"]), 32 * 32 * 4, 1e-6);
     EXPECT_GT(report["rays_per_sample"], 1.0);
