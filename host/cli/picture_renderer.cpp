@@ -96,7 +96,7 @@ void PictureRenderer::print_outcome(const RenderRecord& record, uint32_t target,
 }
 
 RenderRecord PictureRenderer::record_of(const PreparedScene& scene, const RenderJob& job) const {
-    RenderRecord record = make_record(scene.scene, scene.records, job);
+    RenderRecord record = make_record(scene.scene, scene.records, scene.arrays_hash, job);
     record.command_line = command_line_;
     record.scene_file = scene.file;
     record.load_seconds = scene.load_seconds;

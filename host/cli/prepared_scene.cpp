@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/loading.h"
 #include "cli/outputs.h"
+#include "render/make_identity.h"
 #include "session/convergence.h"
 
 namespace candela {
@@ -103,6 +104,7 @@ class Preparation {
         warn(warnings_of_unseen_backs(scene, first->job->camera, first->job->settings.size));
         prepared_.records = style_ ? build_showing_progress(scene, *style_) : build_quietly(scene);
         warn(prepared_.records.warnings);
+        prepared_.arrays_hash = hash_arrays(prepared_.records);
     }
 
     void load() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ struct PreparedScene {
     std::vector<PreparedPicture> pictures{};
     std::optional<Error> failure{};  // Why none of them can be rendered, unless it is skipped.
     Scene scene{};
-    GpuScene records{};  // Of no use if there is no job.
+    GpuScene records{};        // Of no use if there is no job.
+    uint64_t arrays_hash = 0;  // Of the records.
     double load_seconds = 0.0;
     double cpu_seconds = 0.0;             // Of all of this.
     std::vector<std::string> warnings{};  // Not yet printed.

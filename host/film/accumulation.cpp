@@ -17,6 +17,23 @@ void add_channel(Image& image, const char* name, const Value& value) {
         channel.values[i] = float(value(i));
 }
 
+// Appends channels whose values at pixel i are the components of value(i).
+template <int N, class Value>
+void add_channels(Image& image, const std::array<const char*, size_t(N)>& names, const Value& value) {
+    const size_t first = image.channels.size();
+    for (const char* name : names)
+        image.add(name);
+    std::array<float*, size_t(N)> planes;
+    for (size_t c = 0; c < planes.size(); ++c)
+        planes[c] = image.channels[first + c].values.data();
+    const size_t count = image.pixel_count();
+    for (size_t i = 0; i < count; ++i) {
+        const glm::vec<N, double> values = value(i);
+        for (int c = 0; c < N; ++c)
+            planes[size_t(c)][i] = float(values[c]);
+    }
+}
+
 uint32_t count_of(std::span<const Accumulation> states, size_t i) {
     uint32_t n = 0;
     for (const Accumulation& state : states)
@@ -30,14 +47,23 @@ class Half {
     explicit Half(std::span<const Accumulation> states) : states_(states) {}
 
     uint32_t count(size_t i) const { return count_of(states_, i); }
-    // The fraction of camera rays that hit something visible.
-    double alpha(size_t i) const {
-        return sum(i, [&](const Accumulation& state) { return double(state.at(LAYER_L, i)[3]); }) / count(i);
+    // The mean R, G and B, and the fraction of camera rays that hit something visible.
+    dvec4 colour(size_t i) const {
+        dvec4 sum(0.0);
+        for (const Accumulation& state : states_) {
+            if (state.sample_count(i) > 0)
+                sum += dvec4(dvec3(total(state, LAYER_L, i)), double(state.at(LAYER_L, i)[3]));
+        }
+        return sum / double(count(i));
     }
-    double mean(uint32_t layer, size_t i, int component) const {
-        return total(layer, i, component) / count(i);
+    dvec3 mean(uint32_t layer, size_t i) const {
+        dvec3 sum(0.0);
+        for (const Accumulation& state : states_) {
+            if (state.sample_count(i) > 0) sum += dvec3(total(state, layer, i));
+        }
+        return sum / double(count(i));
     }
-    double transmission(size_t i) const { return mean(LAYER_ALBEDO, i, 3); }
+    double transmission(size_t i) const { return total(LAYER_ALBEDO, i, 3) / count(i); }
     // Variance of the mean, from the sum of the samples and the sum of their squares.
     double variance(size_t i, int component) const {
         const double n = count(i);
@@ -56,10 +82,14 @@ class Half {
         return sum;
     }
     // The compensated sums, with their compensation applied.
+    static dvec4 total(const Accumulation& state, uint32_t layer, size_t i) {
+        const float* const values = state.at(layer, i);
+        const float* const errors = state.at(layer + 1, i);
+        return dvec4(values[0], values[1], values[2], values[3]) -
+               dvec4(errors[0], errors[1], errors[2], errors[3]);
+    }
     double total(uint32_t layer, size_t i, int component) const {
-        return sum(i, [&](const Accumulation& state) {
-            return double(state.at(layer, i)[component]) - double(state.at(layer + 1, i)[component]);
-        });
+        return sum(i, [&](const Accumulation& state) { return total(state, layer, i)[component]; });
     }
 
     std::span<const Accumulation> states_;
@@ -72,15 +102,15 @@ std::vector<Half> halves_of(std::span<const Accumulation> states) {
 
 // The mean of value(half) over the halves with samples of pixel i; 0 if there are none.
 template <class Value>
-double mean_of(const std::vector<Half>& halves, size_t i, const Value& value) {
-    double sum = 0.0;
+auto mean_of(const std::vector<Half>& halves, size_t i, const Value& value) {
+    decltype(value(halves.front())) sum(0.0);
     int count = 0;
     for (const Half& half : halves) {
         if (half.count(i) == 0) continue;
         sum += value(half);
         ++count;
     }
-    return count == 0 ? 0.0 : sum / count;
+    return count == 0 ? sum : sum / double(count);
 }
 
 // Variance of the image, which is the mean of independent halves.
@@ -114,6 +144,8 @@ uint32_t Accumulation::max_samples() const {
 }
 
 SampleCounts count_samples(std::span<const Accumulation> states) {
+    if (std::ranges::all_of(states, [](const Accumulation& state) { return state.values.empty(); }))
+        return {};
     SampleCounts counts{.total = 0, .min = UINT32_MAX, .max = 0};
     for (size_t i = 0; i < states.front().pixel_count(); ++i) {
         const uint32_t n = count_of(states, i);
@@ -125,7 +157,10 @@ SampleCounts count_samples(std::span<const Accumulation> states) {
 }
 
 uint32_t samples_per_pixel(std::span<const Accumulation> states) {
-    const SampleCounts counts = count_samples(states);
+    return samples_per_pixel(states, count_samples(states));
+}
+
+uint32_t samples_per_pixel(std::span<const Accumulation> states, const SampleCounts& counts) {
     return states.size() < 4 ? counts.min : uint32_t(counts.total / states.front().pixel_count());
 }
 
@@ -145,15 +180,12 @@ Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
     const std::vector<Half> halves = halves_of(states);
     Image image{.full = first.full, .data = first.rect, .channels = {}, .attributes = {}};
     const auto add_means = [&](std::array<const char*, 3> names, uint32_t layer) {
-        for (int c = 0; c < 3; ++c) {
-            add_channel(image, names[c], [&](size_t i) {
-                return mean_of(halves, i, [&](const Half& half) { return half.mean(layer, i, c); });
-            });
-        }
+        add_channels<3>(image, names, [&](size_t i) {
+            return mean_of(halves, i, [&](const Half& half) { return half.mean(layer, i); });
+        });
     };
-    add_means({"R", "G", "B"}, LAYER_L);
-    add_channel(image, aovs.transmission ? FIRST_HIT_ALPHA : "A", [&](size_t i) {
-        return mean_of(halves, i, [&](const Half& half) { return half.alpha(i); });
+    add_channels<4>(image, {"R", "G", "B", aovs.transmission ? FIRST_HIT_ALPHA : "A"}, [&](size_t i) {
+        return mean_of(halves, i, [&](const Half& half) { return half.colour(i); });
     });
     if (aovs.transmission) {
         add_channel(image, "A", [&](size_t i) {
@@ -178,14 +210,13 @@ Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
 }
 
 uint64_t image_hash(const Image& image) {
-    std::vector<float> rgb;
-    rgb.reserve(image.pixel_count() * 3);
-    const Channel* channels[] = {image.find("R"), image.find("G"), image.find("B")};
+    uint64_t hash = FNV1A64_BASIS;
+    const RgbPlanes rgb = *image.find_rgb();
     for (size_t i = 0; i < image.pixel_count(); ++i) {
-        for (const Channel* channel : channels)
-            rgb.push_back(channel->values[i]);
+        const std::array<float, 3> colour{rgb[0][i], rgb[1][i], rgb[2][i]};
+        hash = fnv1a64(std::as_bytes(std::span(colour)), hash);
     }
-    return fnv1a64(std::as_bytes(std::span(rgb)));
+    return hash;
 }
 
 }  // namespace candela

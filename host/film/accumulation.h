@@ -63,6 +63,8 @@ struct SampleCounts {
 SampleCounts count_samples(std::span<const Accumulation> states);
 // The number of samples that every pixel has; for two halves, the mean over the pixels, rounded down.
 uint32_t samples_per_pixel(std::span<const Accumulation> states);
+// The same from their counts.
+uint32_t samples_per_pixel(std::span<const Accumulation> states, const SampleCounts& counts);
 RenderCounters total_counters(std::span<const Accumulation> states);
 
 // The images to make besides R G B A.

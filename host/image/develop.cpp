@@ -9,6 +9,7 @@
 
 #include "base/color.h"
 #include "base/error.h"
+#include "image/srgb_codes.h"
 
 namespace candela {
 namespace {
@@ -53,13 +54,19 @@ class Writer {
     }
     // Appends the light of the display, each from 0 to 1, as sRGB.
     void light(vec3 light) {
-        for (int c = 0; c < 3; ++c)
-            number(std::min(srgb_encode(light[c]), 1.0f));
+        for (int c = 0; c < 3; ++c) {
+            if (image_.type == TexelType::unorm8) {
+                *at_++ = std::byte(codes_(light[c]));
+            } else {
+                number(std::min(srgb_encode(light[c]), 1.0f));
+            }
+        }
     }
 
   private:
     TexelImage& image_;
     std::byte* at_;
+    const SrgbCodes& codes_ = SrgbCodes::table();
 };
 
 // What a pixel shows of its scene.
@@ -68,11 +75,11 @@ struct Layer {
     float alpha;  // A, in [0, 1].
 };
 
-Layer layer_at(vec3 colour, float alpha, float coverage, const Development& development) {
+// `exposure`: the factor of light.
+Layer layer_at(vec3 colour, float alpha, float coverage, Tonemap curve, float exposure) {
     const float share = std::clamp(coverage, 0.0f, 1.0f);
     if (!(share > 0.0f)) return {vec3(0.0f), std::clamp(alpha, 0.0f, 1.0f)};
-    const float scale = std::exp2(development.exposure_ev) / share;
-    return {share * tonemap(development.curve, scale * colour), std::clamp(alpha, 0.0f, 1.0f)};
+    return {share * tonemap(curve, exposure / share * colour), std::clamp(alpha, 0.0f, 1.0f)};
 }
 
 void write_transparent(Writer& writer, const Layer& layer) {
@@ -87,14 +94,13 @@ void develop_before(const Image& image, const Development& development, Writer& 
     const RgbPlanes rgb = colours_of(image);
     const std::vector<float>& alphas = alpha_of(image).values;
     const std::vector<float>& coverages = coverage_of(image)->values;
+    const float exposure = std::exp2(development.exposure_ev);
     std::vector<vec3> behind;
-    if (const auto* picture = std::get_if<TexelImage>(&background)) {
-        behind = background_light(*picture, image.full, image.data, development.curve,
-                                  std::exp2(development.exposure_ev));
-    }
+    if (const auto* picture = std::get_if<TexelImage>(&background))
+        behind = background_light(*picture, image.full, image.data, development.curve, exposure);
     const auto* const colour = std::get_if<vec3>(&background);
     for (size_t i = 0; i < image.pixel_count(); ++i) {
-        const Layer layer = layer_at(colour_at(rgb, i), alphas[i], coverages[i], development);
+        const Layer layer = layer_at(colour_at(rgb, i), alphas[i], coverages[i], development.curve, exposure);
         if (std::holds_alternative<Transparent>(background)) {
             write_transparent(writer, layer);
         } else {

@@ -59,14 +59,23 @@ uint64_t add_to_hash(uint64_t hash, const T& array) {
 
 }  // namespace
 
-Identity make_identity(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
-    RenderSettings fixed = settings;
-    fixed.first_sample = 0;
-    fixed.aovs = false;
+uint64_t hash_arrays(const GpuScene& scene) {
     uint64_t hash = FNV1A64_BASIS;
     for (const std::vector<uvec4>& array : scene.arrays)
         hash = add_to_hash(hash, array);
-    hash = add_to_hash(hash, pack(make_parameters(scene, camera, fixed)));
+    return hash;
+}
+
+Identity make_identity(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
+    return make_identity(scene, hash_arrays(scene), camera, settings);
+}
+
+Identity make_identity(const GpuScene& scene, uint64_t arrays_hash, const Camera& camera,
+                       const RenderSettings& settings) {
+    RenderSettings fixed = settings;
+    fixed.first_sample = 0;
+    fixed.aovs = false;
+    uint64_t hash = add_to_hash(arrays_hash, pack(make_parameters(scene, camera, fixed)));
     hash = add_to_hash(hash, make_constants(scene, camera, fixed).values);
     hash = add_to_hash(hash, std::array<uint32_t, 2>{settings.crop.x1, settings.crop.y1});
     return {

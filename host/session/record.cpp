@@ -47,10 +47,15 @@ glm::dmat4 world_to_ndc(const Camera& camera, uvec2 size) {
 }  // namespace
 
 RenderRecord make_record(const Scene& scene, const GpuScene& gpu_scene, const RenderJob& job) {
+    return make_record(scene, gpu_scene, hash_arrays(gpu_scene), job);
+}
+
+RenderRecord make_record(const Scene& scene, const GpuScene& gpu_scene, uint64_t arrays_hash,
+                         const RenderJob& job) {
     RenderSettings settings = job.settings;
     settings.light_sampler = chosen_light_sampler(settings.light_sampler, gpu_scene);
     return {.scene_attributes = scene.attributes,
-            .identity = make_identity(gpu_scene, job.camera, job.settings),
+            .identity = make_identity(gpu_scene, arrays_hash, job.camera, job.settings),
             .adaptive = job.adaptive,
             .camera = job.camera,
             .settings = settings,

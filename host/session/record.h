@@ -55,6 +55,9 @@ struct RenderRecord {
 
 // The record before rendering begins, from scene and job.
 RenderRecord make_record(const Scene& scene, const GpuScene& gpu_scene, const RenderJob& job);
+// The same for one of the pictures that share the scene, with hash_arrays() of it.
+RenderRecord make_record(const Scene& scene, const GpuScene& gpu_scene, uint64_t arrays_hash,
+                         const RenderJob& job);
 
 // This version of candela on a device.
 Maker make_maker(const vk::DeviceInfo& device);

@@ -78,7 +78,7 @@ Image Rendering::collect_image(RenderRecord& record) const {
     const std::span<const Accumulation> states = renderer_.states();
     const SampleCounts counts = count_samples(states);
     record.samples = counts.total;
-    record.spp = samples_per_pixel(states);
+    record.spp = samples_per_pixel(states, counts);
     record.max_spp = counts.max;
     return make_image(states, job_.aovs, renderer_.positions());
 }

@@ -134,7 +134,8 @@ void upload(const StorageImage& image, uint32_t first_layer, std::span<const flo
 std::vector<float> download(const StorageImage& image, uint32_t first_layer, uint32_t layer_count) {
     assert(first_layer <= image.layers() && layer_count <= image.layers() - first_layer);
     if (layer_count == 0) return {};
-    std::vector<float> values(image.layer_floats() * layer_count);
+    std::vector<float> values;
+    values.reserve(image.layer_floats() * layer_count);
     const std::vector<Block> parts = blocks(image, first_layer, layer_count);
     const Buffer staging(image.device(), parts.front().count * sizeof(float), BufferUsage::readback,
                          "download staging");
@@ -143,7 +144,8 @@ std::vector<float> download(const StorageImage& image, uint32_t first_layer, uin
         vkCmdCopyImageToBuffer(commands.handle(), image.handle(), VK_IMAGE_LAYOUT_GENERAL, staging.handle(),
                                1, &part.region);
         commands.submit_and_wait();
-        std::memcpy(values.data() + part.offset, staging.mapped(), part.count * sizeof(float));
+        const auto* const floats = reinterpret_cast<const float*>(staging.mapped());
+        values.insert(values.end(), floats, floats + part.count);
     }
     return values;
 }

@@ -92,6 +92,7 @@ TEST_F(Batch, HasTheBitsOfSinglePictures) {
         EXPECT_EQ(lines[i]["image_hash"], report["image_hash"]);
         EXPECT_EQ(lines[i]["primitives"], report["primitives"]);
         const Image image = read_exr(file(output)), single = read_exr(file("alone.exr"));
+        EXPECT_EQ(image.attributes.at("candela.identity"), single.attributes.at("candela.identity"));
         for (const Channel& channel : image.channels)
             EXPECT_EQ(channel.values, single.find(channel.name)->values) << channel.name;
     }
