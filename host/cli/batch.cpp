@@ -66,7 +66,8 @@ ExitCode Batch::run() {
 
 // Whether no further picture shall be rendered.
 bool Batch::ends_early() const {
-    return renderer_.interrupted() || (options_.list.stop_on_error && failed_ > 0);
+    const bool lacks_exposure = options_.outputs.images.development.exposure.of_first && !first_exposure_;
+    return renderer_.interrupted() || (failed_ > 0 && (options_.list.stop_on_error || lacks_exposure));
 }
 
 // Scene i, which another thread may have prepared already.
@@ -105,7 +106,7 @@ void Batch::render_scene(PreparedScene& scene, bool is_last) {
             was_interrupted_ |= renderer_.interrupted();
             return;
         }
-        if (picture.is_skipped) {
+        if (picture.is_skipped && !picture.is_metered) {
             skip(picture.picture);
         } else if (picture.failure) {
             print_failure(scene.file, *picture.failure);
@@ -130,7 +131,12 @@ void Batch::render(const PreparedScene& scene, const PreparedPicture& picture, b
             rendered = renderer_.render(scene, picture);
         }
         settle();
-        write(std::move(*rendered), is_last);
+        if (picture.is_metered) {
+            if (rendered->state == "done" || rendered->state == "time limit") outputs_for(*rendered);
+            skip(picture.picture);
+        } else {
+            write(std::move(*rendered), is_last);
+        }
     } catch (const Error& error) {
         print_failure(scene.file, error);
         fail(picture.picture, error);
@@ -147,22 +153,32 @@ void Batch::write(RenderedPicture&& rendered, bool is_last) {
             return;
         }
     }
-    ImageOutputs outputs = options_.outputs.images;
-    outputs.files = rendered.picture.files;
-    const bool is_automatic = outputs.development.exposure.automatic;
     const CpuWatch watch;
-    outputs = outputs.exposed_for(rendered.image);
+    const ImageOutputs outputs = outputs_for(rendered);
     rendered.overhead.develop = watch.seconds();
     rendered.exposure = outputs.development.exposure.ev;
-    if (is_automatic && !options_.messages.quiet && options_.messages.progress != ProgressStyle::json) {
-        print_note((plan_.is_batch() ? outputs.files.front() + ": " : "") +
-                   "exposure: " + fixed(rendered.exposure, 2) + " EV");
-    }
     writing_ =
         std::async(is_last ? std::launch::deferred : std::launch::async | std::launch::deferred,
                    [this, rendered = std::move(rendered), outputs]() mutable {
                        return written(std::move(rendered), outputs, options_.outputs.report.has_value());
                    });
+}
+
+// How and where the picture is written. Finds its exposure if that is automatic, and says it.
+ImageOutputs Batch::outputs_for(const RenderedPicture& rendered) {
+    ImageOutputs outputs = options_.outputs.images;
+    outputs.files = rendered.picture.files;
+    Exposure& exposure = outputs.development.exposure;
+    if (first_exposure_) exposure = {.ev = *first_exposure_};
+    if (!exposure.automatic) return outputs;
+    const bool is_for_all = exposure.of_first;
+    outputs = outputs.exposed_for(rendered.image);
+    if (is_for_all) first_exposure_ = exposure.ev;
+    if (!options_.messages.quiet && options_.messages.progress != ProgressStyle::json) {
+        print_note((plan_.is_batch() ? outputs.files.front() + ": " : "") +
+                   "exposure: " + fixed(exposure.ev, 2) + " EV");
+    }
+    return outputs;
 }
 
 // Waits until the last picture is written, and counts it.
@@ -215,6 +231,11 @@ void Batch::fail(const Picture& picture, const Error& error) {
     report(picture, "failed", error);
     if (!plan_.is_batch()) throw Error(error);
     count_failure(error);
+    if (options_.outputs.images.development.exposure.of_first && !first_exposure_) {
+        print_error(
+            "--exposure first: the first picture failed, and no other is developed without its exposure; "
+            "mend it, or give auto or a number");
+    }
 }
 
 void Batch::count_failure(const Error& error) {

@@ -41,6 +41,7 @@ class Batch {
     void render_scene(PreparedScene& scene, bool is_last);
     void render(const PreparedScene& scene, const PreparedPicture& picture, bool is_last);
     void write(RenderedPicture&& rendered, bool is_last);
+    ImageOutputs outputs_for(const RenderedPicture& rendered);
     void settle();
     void skip(const Picture& picture);
     void report(const Picture& picture, const std::string& state, const std::optional<Error>& failure = {});
@@ -57,8 +58,9 @@ class Batch {
     std::future<PreparedScene> next_;
     std::future<RenderedPicture> writing_;
     size_t done_ = 0, skipped_ = 0, failed_ = 0;
-    std::optional<ExitCode> code_;  // Of the pictures that failed.
-    bool was_interrupted_ = false;  // Before all pictures were done.
+    std::optional<double> first_exposure_;  // Of the first picture [EV].
+    std::optional<ExitCode> code_;          // Of the pictures that failed.
+    bool was_interrupted_ = false;          // Before all pictures were done.
 };
 
 }  // namespace candela

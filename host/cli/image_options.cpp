@@ -15,11 +15,12 @@ static_assert(MAX_EXPOSURE_EV == 100.0f, "the message on --exposure says so");
 static std::optional<Exposure> parse_exposure(const std::string& text) {
     const auto value = parse_number(text);
     if (!value || std::abs(*value) > double(MAX_EXPOSURE_EV)) return std::nullopt;
-    return Exposure{.ev = *value, .automatic = false};
+    return Exposure{.ev = *value};
 }
 
 static std::optional<Exposure> parse_exposure_or_auto(const std::string& text) {
-    return text == "auto" ? Exposure{.ev = 0.0, .automatic = true} : parse_exposure(text);
+    if (text == "auto") return Exposure{.automatic = true};
+    return text == "first" ? Exposure{.automatic = true, .of_first = true} : parse_exposure(text);
 }
 
 static_assert(AUTO_PERCENTILE == 95.0 && AUTO_LUMINANCE == 0.8, "the description of --exposure says so");
@@ -27,10 +28,12 @@ static_assert(AUTO_PERCENTILE == 95.0 && AUTO_LUMINANCE == 0.8, "the description
 void DevelopmentOptions::add_to(CLI::App& app, bool with_automatic) {
     constexpr const char* NUMBER = "a number from -100 to 100";
     if (with_automatic) {
-        add_value(app, "--exposure", exposure, parse_exposure_or_auto, std::string("auto, or ") + NUMBER,
+        add_value(app, "--exposure", exposure, parse_exposure_or_auto,
+                  std::string("auto, first or ") + NUMBER,
                   "PNG, JPEG, WebP: multiply by 2^EV before the tone map (default: 0); auto brings the 95th "
-                  "percentile of luminance to 0.8")
-            ->type_name("EV|auto");
+                  "percentile of luminance to 0.8; first does so for the first of several pictures, and "
+                  "develops all others alike")
+            ->type_name("EV|auto|first");
     } else {
         add_value(app, "--exposure", exposure, parse_exposure, NUMBER,
                   "PNG: multiply by 2^EV before the tone map (default: 0)")
@@ -78,8 +81,7 @@ bool ImageOutputs::uses_stdout() const {
 
 ImageOutputs ImageOutputs::exposed_for(const Image& image) const {
     ImageOutputs result = *this;
-    if (development.exposure.automatic)
-        result.development.exposure = {.ev = double(auto_exposure(image)), .automatic = false};
+    if (development.exposure.automatic) result.development.exposure = {.ev = double(auto_exposure(image))};
     return result;
 }
 

@@ -22,7 +22,8 @@ inline constexpr Choices<Tonemap, 5> TONEMAP_NAMES{{{"linear", Tonemap::linear},
 
 struct Exposure {
     double ev = 0.0;
-    bool automatic = false;  // `ev` is still to be found, by auto_exposure().
+    bool automatic = false;  // `ev` is still to be found, by auto_exposure():
+    bool of_first = false;   // of the first of several pictures, for all of them.
 };
 
 // How radiance becomes a picture for the screen.

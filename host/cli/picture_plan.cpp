@@ -2,6 +2,7 @@
 #include "cli/picture_plan.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -37,6 +38,13 @@ void make_folder_of(const std::string& file) {
 }
 
 }  // namespace
+
+bool is_there(const Picture& picture) {
+    return !picture.files.empty() && std::ranges::all_of(picture.files, [](const std::string& file) {
+        std::error_code ignored;
+        return std::filesystem::is_regular_file(file, ignored);
+    });
+}
 
 PicturePlan::PicturePlan(const RenderOptions& options, std::istream& standard_input) : options_(options) {
     const OutputOptions& outputs = options.outputs;
@@ -185,6 +193,12 @@ void PicturePlan::check_folders() const {
             }
         }
     }
+}
+
+bool PicturePlan::is_complete_from(size_t i) const {
+    return std::all_of(scenes_.begin() + std::ptrdiff_t(i), scenes_.end(), [](const PlannedScene& scene) {
+        return !scene.pictures.empty() && std::ranges::all_of(scene.pictures, is_there);
+    });
 }
 
 std::vector<Picture> PicturePlan::pictures_of(size_t i, const Scene& scene) {

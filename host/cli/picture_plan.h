@@ -23,6 +23,9 @@ struct Picture {
     std::vector<std::string> files{};     // Its images; empty as long as their names are not known.
 };
 
+// Whether all files of the picture are known, and there.
+bool is_there(const Picture& picture);
+
 struct PlannedScene {
     std::string file{};
     std::vector<Picture> pictures{};  // Empty as long as it is not known how many there are.
@@ -39,6 +42,8 @@ class PicturePlan {
     // Whether there may be several pictures. A list makes a batch, however long it is.
     bool is_batch() const { return is_batch_; }
 
+    // Whether all pictures of the scenes from i on are known and there.
+    bool is_complete_from(size_t i) const;
     // Names all pictures of scene i, which has been read. Throws Error (usage) as the constructor does.
     // Another thread may call this while there is no other call.
     std::vector<Picture> pictures_of(size_t i, const Scene& scene);

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <iterator>
-#include <system_error>
 
 #include "base/cpu_time.h"
 #include "cli/caught_error.h"
@@ -32,6 +30,7 @@ class Preparation {
         try {
             for_each([this](PreparedPicture& picture) { check_files(picture); });
             const bool may_have_more = prepared_.pictures.empty();
+            if (!may_have_more) choose_metered();
             if (may_have_more || has_work()) prepare();
         } catch (...) {
             prepared_.failure = caught_error();
@@ -43,7 +42,7 @@ class Preparation {
   private:
     bool has_work() const {
         return std::ranges::any_of(prepared_.pictures, [](const PreparedPicture& picture) {
-            return !picture.is_skipped && !picture.failure;
+            return (!picture.is_skipped || picture.is_metered) && !picture.failure;
         });
     }
 
@@ -52,7 +51,7 @@ class Preparation {
     template <class Action>
     void for_each(const Action& action) {
         for (PreparedPicture& picture : prepared_.pictures) {
-            if (picture.is_skipped || picture.failure) continue;
+            if ((picture.is_skipped && !picture.is_metered) || picture.failure) continue;
             try {
                 action(picture);
             } catch (...) {
@@ -61,15 +60,18 @@ class Preparation {
         }
     }
 
+    // Has the first picture of all rendered, though it is there, if there are others to develop alike.
+    void choose_metered() {
+        if (!options_.outputs.images.development.exposure.of_first || number_ > 0) return;
+        PreparedPicture& first = prepared_.pictures.front();
+        first.is_metered = first.is_skipped && (has_work() || !plan_.is_complete_from(1));
+    }
+
     // Finds out whether the picture is there, and otherwise whether it can be written, if it has names.
     void check_files(PreparedPicture& prepared) const {
         const std::vector<std::string>& files = prepared.picture.files;
         if (files.empty()) return;
-        const auto exists = [](const std::string& file) {
-            std::error_code ignored;
-            return std::filesystem::is_regular_file(file, ignored);
-        };
-        prepared.is_skipped = options_.list.skip_existing && std::ranges::all_of(files, exists);
+        prepared.is_skipped = options_.list.skip_existing && is_there(prepared.picture);
         if (prepared.is_skipped) return;
         plan_.make_folders(prepared.picture);
         ImageOutputs outputs = options_.outputs.images;
@@ -119,6 +121,7 @@ class Preparation {
         const std::vector<Picture> pictures = plan_.pictures_of(number_, prepared_.scene);
         prepared_.load_seconds = std::chrono::duration<double>(Clock::now() - start).count();
         name_pictures(pictures);
+        choose_metered();
     }
 
     // Gives the scene the cameras that the options ask for, if there are any, instead of its own.

@@ -22,6 +22,7 @@ namespace candela {
 struct PreparedPicture {
     Picture picture;
     bool is_skipped = false;           // Its files are there.
+    bool is_metered = false;           // It is rendered nevertheless, for the exposure of the others.
     std::optional<Error> failure{};    // Why it cannot be rendered;
     std::optional<RenderJob> job{};    // otherwise how.
     std::optional<Image> reference{};  // To measure the error against.

@@ -203,7 +203,7 @@ TEST_F(BackgroundOptions, WhatCannotBeDoneIsRefused) {
     expect_refused({"-o", png, "--alpha", "none", "--background", "#000000"},
                    "--alpha: cannot use \"none\"; expected transmission|first-hit");
     expect_refused({"-o", png, "--exposure", "automatic"},
-                   "--exposure: cannot use \"automatic\"; expected auto, or a number from -100 to 100");
+                   "--exposure: cannot use \"automatic\"; expected auto, first or a number from -100 to 100");
     expect_refused({"-o", "-", "-o", "-"}, "-o: standard output gets one image; give - once");
     expect_refused({"-o", "-", "--report", "-"},
                    "--report and -o both go to standard output; give one of them a file");
