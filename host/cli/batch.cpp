@@ -49,6 +49,10 @@ ExitCode Batch::run() {
             was_interrupted_ |= renderer_.interrupted();
             break;
         }
+        if (renderer_.time_is_over()) {
+            leave_out(plan_.scenes()[i]);
+            continue;
+        }
         PreparedScene scene = prepare(i);
         const auto has_job = [](const PreparedPicture& picture) { return picture.job.has_value(); };
         // Before another thread starts, since this may set variables of the environment.
@@ -59,8 +63,9 @@ ExitCode Batch::run() {
     }
     settle();
     renderer_.check_validation();
-    if (plan_.is_batch() || skipped_ > 0) print_summary();
+    if (plan_.is_batch() || skipped_ > 0 || left_out_ > 0) print_summary();
     if (was_interrupted_) return ExitCode::interrupted;
+    if (left_out_ > 0) return ExitCode::time_over;
     return code_.value_or(ExitCode::done);
 }
 
@@ -108,6 +113,8 @@ void Batch::render_scene(PreparedScene& scene, bool is_last) {
         }
         if (picture.is_skipped && !picture.is_metered) {
             skip(picture.picture);
+        } else if (renderer_.time_is_over()) {
+            leave_out(picture.picture);
         } else if (picture.failure) {
             print_failure(scene.file, *picture.failure);
             fail(picture.picture, *picture.failure);
@@ -152,6 +159,11 @@ void Batch::write(RenderedPicture&& rendered, bool is_last) {
             report(rendered.picture, rendered.state);
             return;
         }
+    }
+    if (rendered.state == "left out") {
+        ++left_out_;
+        report(rendered.picture, rendered.state);
+        return;
     }
     const CpuWatch watch;
     const ImageOutputs outputs = outputs_for(rendered);
@@ -209,6 +221,23 @@ void Batch::skip(const Picture& picture) {
     report(picture, "skipped");
 }
 
+// Leaves out all pictures of a scene, for which there is no time, except those that are there.
+void Batch::leave_out(const PlannedScene& scene) {
+    for (const Picture& picture : scene.pictures)
+        leave_out(picture);
+    if (scene.pictures.empty()) leave_out(Picture{.scene = scene.file});  // Their number is unknown.
+}
+
+void Batch::leave_out(const Picture& picture) {
+    if (options_.list.skip_existing && is_there(picture)) {
+        skip(picture);
+        return;
+    }
+    settle();
+    ++left_out_;
+    report(picture, "left out");
+}
+
 // Reports a picture that has no files now. A batch goes on if that fails.
 void Batch::report(const Picture& picture, const std::string& state, const std::optional<Error>& failure) {
     try {
@@ -248,6 +277,9 @@ void Batch::print_summary() const {
     if (options_.messages.quiet || options_.messages.progress == ProgressStyle::json) return;
     print_note(std::to_string(done_) + " done, " + std::to_string(skipped_) + " skipped, " +
                std::to_string(failed_) + " failed" +
+               (left_out_ > 0
+                    ? ", " + std::to_string(left_out_) + " left out: the time (--batch-time) is over"
+                    : "") +
                (was_interrupted_ ? "; interrupted before the others" : ""));
 }
 

@@ -44,6 +44,8 @@ class Batch {
     ImageOutputs outputs_for(const RenderedPicture& rendered);
     void settle();
     void skip(const Picture& picture);
+    void leave_out(const PlannedScene& scene);
+    void leave_out(const Picture& picture);
     void report(const Picture& picture, const std::string& state, const std::optional<Error>& failure = {});
     void fail(const Picture& picture, const Error& error);
     void print_failure(const std::string& scene, const Error& error) const;
@@ -57,7 +59,7 @@ class Batch {
     Report report_;
     std::future<PreparedScene> next_;
     std::future<RenderedPicture> writing_;
-    size_t done_ = 0, skipped_ = 0, failed_ = 0;
+    size_t done_ = 0, skipped_ = 0, failed_ = 0, left_out_ = 0;
     std::optional<double> first_exposure_;  // Of the first picture [EV].
     std::optional<ExitCode> code_;          // Of the pictures that failed.
     bool was_interrupted_ = false;          // Before all pictures were done.

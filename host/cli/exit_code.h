@@ -13,6 +13,7 @@ enum class ExitCode : int {
     device_lost = 4,
     out_of_memory = 5,
     comparison_failed = 6,
+    time_over = 7,
     interrupted = 130,
 };
 

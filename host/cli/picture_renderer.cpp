@@ -136,7 +136,7 @@ RenderedPicture PictureRenderer::run(const PreparedScene& scene, const PreparedP
     outputs.files = picture.picture.files;
     std::optional<Error> failure = rendering_->run(
         {.progress = [&](double done, std::optional<double> error) { progress->update(done, error); },
-         .keep_going = [&] { return !guard_->interrupted(); },
+         .keep_going = [&] { return !guard_->interrupted() && !time_is_over(); },
          .warn = [&](const std::string& warning) { print_warning(name + warning); },
          .device_failed =
              [&](const Error& error, uint32_t kept, double submission_seconds) {
@@ -148,7 +148,10 @@ RenderedPicture PictureRenderer::run(const PreparedScene& scene, const PreparedP
                       Image image) { write_current_images(outputs, current, std::move(image)); }});
     progress->clear();
     const bool complete = rendering_->record().complete;
-    const char* const state = complete ? "done" : guard_->interrupted() ? "interrupted" : "time limit";
+    const char* const state = complete                ? "done"
+                              : guard_->interrupted() ? "interrupted"
+                              : time_is_over()        ? "left out"
+                                                      : "time limit";
     if (is_batch_ && failure) throw Error(*failure);
 
     Image image = rendering_->image();
@@ -179,6 +182,12 @@ RenderedPicture PictureRenderer::render(const PreparedScene& scene, const Prepar
         if (error.kind() != ErrorKind::out_of_memory) device_->close();
         throw Error(error);
     }
+}
+
+bool PictureRenderer::time_is_over() const {
+    const std::optional<double>& limit = options_.list.batch_time;
+    return limit &&
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() >= *limit;
 }
 
 void PictureRenderer::check_validation() const {

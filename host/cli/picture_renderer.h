@@ -1,6 +1,7 @@
 // The device's part of `candela render`: one picture after the other, on one device.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -33,7 +34,7 @@ struct RenderedPicture {
     Picture picture;
     RenderRecord record;
     Image image;
-    std::string state;  // How it ended, as --progress json says: "done", "interrupted" or "time limit".
+    std::string state;  // How it ended: "done", "interrupted", "left out" or "time limit".
     std::unique_ptr<Progress> progress;
     double exposure = 0.0;  // Of its pictures for the screen [EV].
     OverheadTimes overhead{};
@@ -57,6 +58,8 @@ class PictureRenderer {
 
     // Whether a signal has come since the first picture began.
     bool interrupted() const { return guard_ && guard_->interrupted(); }
+    // Whether the time for all pictures is over.
+    bool time_is_over() const;
     // Whether signals end the program at once.
     bool can_be_quit() const { return !guard_; }
     // Throws Error if the validation layer has reported anything.
@@ -72,6 +75,7 @@ class PictureRenderer {
     const RenderOptions& options_;
     bool is_batch_;
     std::string command_line_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     std::optional<vk::Instance> instance_;
     std::optional<DeviceSlot> device_;
     std::unique_ptr<Rendering> rendering_;  // Of the current scene.

@@ -31,7 +31,8 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
     app.footer(
         "`candela COMMAND --help` lists the options of a command.\n\n"
         "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no suitable device, 4 device lost,\n"
-        "            5 out of memory, 6 images differ, 130 interrupted (with a valid partial image)\n"
+        "            5 out of memory, 6 images differ, 7 time over (--batch-time),\n"
+        "            130 interrupted (with a valid partial image)\n"
         "Environment: CANDELA_NO_CACHE=1 disables the cache of compiled kernels ($XDG_CACHE_HOME/candela);\n"
         "             CANDELA_VALIDATION=1 turns on the Vulkan validation layer; its messages are errors");
     return commands;

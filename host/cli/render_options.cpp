@@ -90,6 +90,10 @@ void ListOptions::add_cameras_to(CLI::App& app) {
     app.add_flag("--skip-existing", skip_existing, "Leave out pictures whose files are all there");
     app.add_flag("--stop-on-error", stop_on_error,
                  "End at the first picture that fails (default: go on with the others)");
+    add_value(app, "--batch-time", batch_time, parse_duration, DURATIONS,
+              "End after this time for all pictures, such as 90, 90s, 1.5m or 2h, without those that are not "
+              "whole (default: never); --skip-existing goes on")
+        ->type_name("TIME");
 }
 
 void RenderOptions::add_to(CLI::App& app) {

@@ -46,6 +46,7 @@ struct ListOptions {
     bool all_cameras = false;          // unless this asks for all.
     bool skip_existing = false;        // Not those whose files are there.
     bool stop_on_error = false;        // None after the first that fails.
+    std::optional<double> batch_time;  // None that is not whole after so many seconds.
 
     // Each declares a part of them on `app`; this object must not move.
     void add_scenes_to(CLI::App& app);

@@ -1,4 +1,4 @@
-// Options for a batch as a whole: one exposure for all its pictures.
+// Options for a batch as a whole: one exposure for all its pictures, and a time for all of them.
 #include <cmath>
 #include <sstream>
 
@@ -102,6 +102,32 @@ TEST_F(BatchOptions, NoPictureIsDevelopedByTheExposureOfAnotherThanTheFirst) {
                     "without its exposure; mend it, or give auto or a number\n");
     EXPECT_CONTAINS(result.err, "0 done, 0 skipped, 1 failed\n");
     EXPECT_FALSE(exists("out/dim.png"));
+}
+
+// There is no time for any picture, and no device is needed; what is there is skipped nevertheless.
+TEST_F(BatchOptions, WhatIsNotBegunInTimeIsLeftOut) {
+    fs::create_directory(file("out"));
+    write("out/bright.png", "old");
+    const ProcessResult result =
+        render_walls({dim_, bright_, dark_}, {"--batch-time", "1e-9", "--skip-existing"}, NO_DRIVER);
+    EXPECT_EQ(result.exit_code, 7);
+    EXPECT_EQ(result.err, "0 done, 1 skipped, 0 failed, 2 left out: the time (--batch-time) is over\n");
+    EXPECT_EQ(reported("state"), (std::vector<Json>{"left out", "skipped", "left out"}));
+    EXPECT_FALSE(exists("out/dim.png"));
+    const ProcessResult rest =
+        render_walls({dim_, bright_, dark_}, {"--batch-time", "1000h", "--skip-existing"});
+    EXPECT_EQ(rest.exit_code, 0) << rest.err;
+    EXPECT_CONTAINS(rest.err, "2 done, 1 skipped, 0 failed\n");
+    EXPECT_EQ(read_file(file("out/bright.png")), "old");
+}
+
+// Rendering all samples would take hours.
+TEST_F(BatchOptions, ThePictureThatIsNotWholeInTimeIsLeftOut) {
+    const ProcessResult result = render_walls({dim_, bright_}, {"--batch-time", "1s", "--spp", "16777216"});
+    EXPECT_EQ(result.exit_code, 7);
+    EXPECT_CONTAINS(result.err, "0 done, 0 skipped, 0 failed, 2 left out: the time (--batch-time) is over\n");
+    EXPECT_EQ(reported("state"), (std::vector<Json>{"left out", "left out"}));
+    EXPECT_TRUE(fs::is_empty(file("out")));
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST_F(Usage, HelpOfRenderListsEveryOption) {
           "--verbose",       "--samples",       "--checkpoint",  "--checkpoint-every", "--resume",
           "--write-every",   "--target-error",  "--progress",    "--reference",        "--cameras",
           "--skip-existing", "--stop-on-error", "--view",        "--turntable",        "--dome",
-          "--lens",          "--margin",        "--camera-file", "--write-cameras"}) {
+          "--lens",          "--margin",        "--camera-file", "--write-cameras",    "--batch-time"}) {
         EXPECT_CONTAINS(help.out, option);
     }
 }
@@ -99,6 +99,7 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
         {"--time-limit", "1d", duration},
         {"--time-limit", "nan", duration},
         {"--time-limit", "s", duration},
+        {"--batch-time", "0", duration},
         {"--exposure", "1e3", "auto, first or a number from -100 to 100"},
         {"--exposure", "inf", "auto, first or a number from -100 to 100"},
         {"--tonemap", "filmic", tonemaps},
