@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Tests what rivals/compare.py computes itself: pictures, scenes, times, messages. usage: rivals_test.py CANDELA"""
+"""Tests what rivals/compare.py and batches.py compute themselves: pictures, scenes, times, messages.
+usage: rivals_test.py CANDELA"""
 
 import array
 import itertools
@@ -15,9 +16,10 @@ from pathlib import Path
 from unittest import mock
 
 RIVALS = Path(__file__).resolve().parent / "rivals"
-sys.path.insert(0, str(RIVALS))
+sys.path[:0] = [str(RIVALS), str(RIVALS.parent)]
 
-import compare as comparison  # noqa: E402 (needs the path)
+import batches  # noqa: E402 (needs the path)
+import compare as comparison  # noqa: E402
 import exr  # noqa: E402
 import pictures  # noqa: E402
 import renderers  # noqa: E402
@@ -239,6 +241,36 @@ class Runs(unittest.TestCase):
     def test_a_program_that_fails_is_quoted(self):
         with self.assertRaisesRegex(SystemExit, "(?s)candela nonsense\nended with 2:.*nonsense"):
             renderers.run([CANDELA, "nonsense"])
+
+
+class Batches(unittest.TestCase):
+    def test_the_overhead_of_a_scene_is_that_of_all_its_pictures(self):
+        lines = [{"scene": scene, "overhead_cpu_seconds": {"scene": 2, "host": host}}
+                 for scene, host in (("a", 1), ("a", 3), ("b", 5))]
+        self.assertEqual(batches.overhead(lines), {"scene": 4, "host": 9})
+
+    def test_noise_is_the_variance_of_one_picture(self):
+        # Values 1 and 3 have the mean 2 and, as their unbiased variance, 2.
+        with mock.patch.object(exr, "read", side_effect=[grey(2, 2, 1), grey(2, 2, 3)]):
+            noise, means = batches.noise_between("a", "b")
+        self.assertAlmostEqual(noise, 2 / (4 + 0.01 * 4))
+        self.assertEqual(means, [2, 2, 2])
+
+    def test_cycles_has_the_cameras_that_candela_has(self):
+        with tempfile.TemporaryDirectory() as folder:
+            options = mock.Mock(work=ROOT / "scenes", spp=1)
+            told = {"files": ["trefoil.obj"], "count": 2, "size": 8, "spp": 1}
+            with mock.patch.dict(batches.BATCHES, {"views": told}):
+                batch = batches.Batch("views", options, None)
+            batches.render_by_candela(CANDELA, batch, Path(folder))
+            found = list(batches.cameras(batch, Path(folder)))
+        self.assertEqual([camera["model"] for camera in found], 2 * [str(ROOT / "scenes/trefoil.obj")])
+        for camera in found:
+            self.assertAlmostEqual(camera["angle"], 2 * math.atan(18 / 50))  # A lens of 50 mm.
+        # The second camera is opposite to the first, with the same elevation.
+        (a, b) = ([row[2] for row in camera["camera"][:3]] for camera in found)
+        for x, y in zip(a, (-b[0], b[1], -b[2])):
+            self.assertAlmostEqual(x, y, 5)
 
 
 if __name__ == "__main__":

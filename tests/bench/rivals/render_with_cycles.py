@@ -166,14 +166,19 @@ def set_up(width, depth, seed, threads):
     settings.file_format, settings.color_depth, settings.color_mode, settings.exr_codec = "OPEN_EXR", "32", "RGB", "ZIP"
 
 
-def render(spp):
-    """CPU time and wall time [s], preparing the scene included."""
-    bpy.context.scene.cycles.samples = spp
+def timed(action):
+    """CPU time of the process and wall time [s] of action()."""
     usage = resource.getrusage(resource.RUSAGE_SELF)
     wall, cpu = time.perf_counter(), usage.ru_utime + usage.ru_stime
-    bpy.ops.render.render()
+    action()
     usage = resource.getrusage(resource.RUSAGE_SELF)
     return {"cpu": usage.ru_utime + usage.ru_stime - cpu, "wall": time.perf_counter() - wall}
+
+
+def render(spp):
+    """The times of rendering, preparing the scene included."""
+    bpy.context.scene.cycles.samples = spp
+    return timed(bpy.ops.render.render)
 
 
 def main(path, output, width, spp, depth, seed, threads):
@@ -194,4 +199,5 @@ def main(path, output, width, spp, depth, seed, threads):
     print(json.dumps({"version": bpy.app.version_string, "one": one, "all": all_samples}))
 
 
-main(*sys.argv[sys.argv.index("--") + 1 :])
+if __name__ == "__main__":
+    main(*sys.argv[sys.argv.index("--") + 1 :])

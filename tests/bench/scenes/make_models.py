@@ -83,11 +83,10 @@ class Material:
 
     def base_picture(self):
         pixels = images.colors(self.tint, palette(self.chance))
-        if self.has("grey image"):
-            return images.codes(self.tint)[..., None]
         if not (self.has("mask") or self.has("blend")):
-            return pixels
-        opacity = images.smooth(0.4, 0.6, self.height - self.height.min()) if self.has("mask") else 0.3 + 0.7 * self.tint
+            return images.codes(self.tint)[..., None] if self.has("grey image") else pixels
+        holes = images.smooth(0.4, 0.6, self.height - self.height.min())
+        opacity = holes if self.has("mask") else 0.3 + 0.7 * self.tint
         return np.concatenate([pixels, images.codes(np.broadcast_to(opacity, self.tint.shape))[..., None]], -1)
 
     def metal_rough(self):
@@ -318,7 +317,7 @@ def skinned():
     nodes = []
     for joint in range(joints):
         nodes.append(file.node(nodes[-1] if nodes else None, name=f"Joint {joint}",
-                               translation=[0, step if joint else 0, 0]))
+                               translation=[0, step if joint else -length / 2, 0]))
     inverse = np.tile(np.eye(4, dtype=np.float32), (joints, 1, 1))
     inverse[:, 3, 1] = -step * np.arange(joints)  # Columns of the matrix are rows of the array.
     skin = file.add("skins", {"joints": nodes, "inverseBindMatrices": file.array(inverse)})
