@@ -152,6 +152,16 @@ std::string printable_json(std::string_view json) {
     return shown;
 }
 
+std::string utf8(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        const Character character = first_character(text);
+        result += character.code ? text.substr(0, character.size) : "\xEF\xBF\xBD";
+        text.remove_prefix(character.size);
+    }
+    return result;
+}
+
 std::string joined(std::span<const std::string> names) {
     constexpr size_t MAX_LISTED = 20;
     std::string text;

@@ -25,6 +25,9 @@ std::string printable(std::string_view text, size_t max = SIZE_MAX);
 // The same JSON, in UTF-8, with the characters that printable() escapes escaped in its strings.
 std::string printable_json(std::string_view json);
 
+// The text with U+FFFD for each byte that is not UTF-8.
+std::string utf8(std::string_view text);
+
 // "a, b, c": printable names; after 20, how many more there are.
 std::string joined(std::span<const std::string> names);
 

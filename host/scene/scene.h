@@ -233,11 +233,16 @@ struct Disk {
     bool operator==(const Disk&) const = default;
 };
 
+// No object: see Shape::object.
+inline constexpr uint32_t NO_OBJECT = UINT32_MAX;
+
 struct Shape {
     std::variant<MeshInstance, Quad, Sphere, Disk> geometry;
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
     bool states_emission = false;      // If false, the emission is its material's, and changes with it.
+    uint32_t object = NO_OBJECT;       // Index into Scene::objects; NO_OBJECT: it is one by itself.
+    uint32_t copy = 0;                 // The number of this instance among those of the object, from 0.
 };
 
 // Radiance from infinitely far away, as a latitude-longitude map [W/(m^2 sr)], row-major from the top. Its
@@ -287,6 +292,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<TriangleMesh> meshes;
     std::vector<Shape> shapes;
+    std::vector<std::string> objects;          // Names, all different, of what shapes are parts of.
     std::vector<Light> lights;                 // Besides shapes that emit and the environment.
     std::optional<Environment> environment;    // None: black.
     FileReach reach;                           // The files that may be read for it.

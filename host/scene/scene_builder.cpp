@@ -84,6 +84,21 @@ Material default_material(bool has_colors) {
     return {.name = {}, .model = DiffuseMaterial{vec3(1.0f)}, .vertex_colors = true};
 }
 
+void SceneBuilder::begin_object(const std::string& name) {
+    std::vector<std::string>& objects = scene_.objects;
+    for (; named_objects_ < objects.size(); ++named_objects_)
+        object_names_.note(objects[named_objects_]);
+    object_ = uint32_t(objects.size());
+    copy_ = 0;
+    objects.push_back(object_names_.choose(name));
+}
+
+void SceneBuilder::push(Shape shape) {
+    shape.object = object_;
+    shape.copy = copy_;
+    scene_.shapes.push_back(std::move(shape));
+}
+
 void SceneBuilder::add_mesh(const std::string& place, const Transform& transform,
                             std::vector<MeshPart> parts) {
     size_t dropped = 0;
@@ -118,7 +133,7 @@ void SceneBuilder::add_instance(const std::string& place, size_t shape, const Tr
     auto& instance = std::get<MeshInstance>(copy.geometry);
     instance.transform = transform;
     if (!instance_fits(instance)) throw Error(place + ": " + TOO_FAR);
-    scene_.shapes.push_back(copy);
+    push(std::move(copy));
 }
 
 void SceneBuilder::complete_mesh(const std::string& place, const Appearance& appearance, uint32_t mesh) {
@@ -138,7 +153,7 @@ bool SceneBuilder::add_placed(Shape shape) {
     if (!std::visit(geometry_fits, shape.geometry)) return false;
     if (instance != nullptr)
         shape.material = material_at_scale(shape.material, instance->transform.mean_scale());
-    scene_.shapes.push_back(shape);
+    push(std::move(shape));
     return true;
 }
 

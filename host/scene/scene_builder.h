@@ -47,11 +47,17 @@ class SceneBuilder {
         scene_.warnings.push_back(place + ": " + warning);
     }
 
+    // The shapes that are added from now on are parts of a new object of that name, or of a similar one if
+    // that is taken; of its first instance, or of the next one. Before the first call, shapes are no
+    // object's.
+    void begin_object(const std::string& name);
+    void begin_copy() { ++copy_; }
+
     // Adds a finished geometry in world space.
     template <class Geometry>
     void add(const Appearance& appearance, Geometry&& geometry) {
-        scene_.shapes.push_back({std::forward<Geometry>(geometry), appearance.material, appearance.emission,
-                                 appearance.states_emission});
+        push({std::forward<Geometry>(geometry), appearance.material, appearance.emission,
+              appearance.states_emission});
     }
     // Adds the parts of a mesh, each as a mesh with one instance. Completes their normals, and leaves out
     // flat triangles with a warning; adds tangents where the material needs them. Throws Error if no
@@ -86,6 +92,8 @@ class SceneBuilder {
     // The material whose heights are right for a mesh that is placed at that scale. (The first is
     // `material`.)
     uint32_t material_at_scale(uint32_t material, double scale);
+    // Adds the shape to the current object.
+    void push(Shape shape);
     // Whether an instance lies within reach.
     bool instance_fits(const MeshInstance& instance);
 
@@ -95,6 +103,10 @@ class SceneBuilder {
     std::optional<uint32_t> black_;
     UniqueNames material_names_;  // Names of the first `named_` of scene_.materials.
     size_t named_ = 0;
+    UniqueNames object_names_;  // Names of the first `named_objects_` of scene_.objects.
+    size_t named_objects_ = 0;
+    uint32_t object_ = NO_OBJECT;                 // As Shape::object
+    uint32_t copy_ = 0;                           // and Shape::copy.
     std::vector<std::optional<Box>> mesh_boxes_;  // Boxes of meshes that have several instances.
 };
 

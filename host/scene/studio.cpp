@@ -8,6 +8,7 @@
 
 #include "scene/environment.h"
 #include "scene/geometry.h"
+#include "scene/scene_builder.h"
 
 namespace candela {
 namespace {
@@ -168,7 +169,9 @@ void put_into_studio(Scene& scene, StudioChoice studio) {
     const auto material = uint32_t(scene.materials.size());
     scene.materials.push_back(
         {.name = "studio ground", .model = DiffuseMaterial{.reflectance = vec3(float(design.ground))}});
-    scene.shapes.push_back({.geometry = disk, .material = material, .emission = {}});
+    SceneBuilder builder(scene);
+    builder.begin_object(scene.materials.back().name);
+    builder.add({.material = material, .emission = {}}, disk);
 }
 
 }  // namespace candela

@@ -162,7 +162,10 @@ void SceneReader::read_node(uint32_t index) {
     const PosedNode& posed = nodes_[index];
     if (const auto camera = node.find("camera")) read_camera(node, file_.resolve("cameras", *camera), posed);
     if (!posed.is_visible) return;  // Its camera is used even so.
-    if (const auto mesh = node.find("mesh")) read_mesh(node, posed);
+    if (const auto mesh = node.find("mesh")) {
+        builder_.begin_object(name_of(node, name_of(file_.resolve("meshes", *mesh), concat("node ", index))));
+        read_mesh(node, posed);
+    }
     if (const auto light = extension_of(node, "KHR_lights_punctual")) {
         if (const auto reference = light->find("light"))
             scene_.lights.push_back(read_light(file_, *reference, posed.world, units_));
@@ -203,6 +206,7 @@ void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
         } else {
             file_.warn(node, "left out a mesh that its transform shrinks to a line or a point");
         }
+        builder_.begin_copy();
     }
     progress_("meshes", done_ += primitives.size(), primitives_);
 }

@@ -145,6 +145,18 @@ void read_mesh(const Node& node, ShapeList& shapes) {
     shapes.add_mesh(node.place(), appearance, transform, std::move(mesh));
 }
 
+// The name of a shape: its own, that of the object or file that it shows, or its type and its place in the
+// list.
+std::string name_of(const Node& shape, size_t i) {
+    if (const auto name = shape.find("name")) {
+        if (name->string().empty()) name->fail_expected("a name that is not empty");
+        return name->string();
+    }
+    if (const auto object = shape.find("object")) return object->string();
+    if (const auto file = shape.find("file")) return std::filesystem::path(file->string()).stem().string();
+    return shape.require("type").string() + ' ' + std::to_string(i);
+}
+
 // A reader of a shape that places no object.
 template <void (*READ)(const Node&, ShapeList&)>
 void alone(const Node& node, const ObjectMap&, ShapeList& shapes) {
@@ -170,20 +182,27 @@ void read_shapes(const Node& node, const std::optional<Node>& objects, const std
     size_t done = 0, of = node.size();
     for (const Node& object : members)
         of += object.size();
-    const auto read = [&](const Node& list) {
-        for (const Node& shape : list.elements()) {
-            shape.require("type").choice(READERS)(shape, known, shapes);
-            progress("shapes", ++done, of);
-        }
+    const auto read = [&](const Node& shape) {
+        shape.require("type").choice(READERS)(shape, known, shapes);
+        progress("shapes", ++done, of);
     };
     for (const Node& object : members) {
         const auto before = std::ptrdiff_t(scene.shapes.size());
-        read(object);
+        for (const Node& shape : object.elements()) {
+            if (const auto name = shape.find("name"))
+                name->fail(
+                    "a shape of an object has no name; name the object, or the instances that place it");
+            read(shape);
+        }
         const auto first = scene.shapes.begin() + before;
         known.emplace(object.key(), std::vector<Shape>(first, scene.shapes.end()));
         scene.shapes.erase(first, scene.shapes.end());
     }
-    read(node);
+    const std::vector<Node> shown = node.elements();
+    for (size_t i = 0; i < shown.size(); ++i) {
+        shapes.begin_object(name_of(shown[i], i));
+        read(shown[i]);
+    }
 }
 
 }  // namespace candela

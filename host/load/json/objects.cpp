@@ -91,6 +91,7 @@ void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes
             }
             if (!shapes.add_placed(shape)) place_of.fail(TOO_FAR);
         }
+        shapes.begin_copy();
     }
 }
 

@@ -124,6 +124,7 @@ Scene load_obj_scene(const std::filesystem::path& file, const ReachOptions& reac
     SceneBuilder builder(scene);
     ObjShape shape = load_obj_shape(file, MeshNormals::file, file.filename().string(), builder);
     scene.warnings = std::move(shape.warnings);
+    builder.begin_object(file.stem().string());
     builder.add_mesh(file.string(), Transform(), std::move(shape.parts));
     add_default_view(scene);
     return scene;

@@ -280,6 +280,7 @@ Scene load_ply_scene(const std::filesystem::path& file) {
     TriangleMesh mesh = load_ply(file, MeshNormals::file, FileReach(file), scene.warnings);
     const std::string name = file.filename().string();
     builder.add_file_appearance(name, default_material(!mesh.colors.empty()), std::nullopt);
+    builder.begin_object(file.stem().string());
     builder.add_mesh(file.string(), *builder.find_file_appearance(name), Transform(), std::move(mesh));
     scene.files.push_back(file);
     add_default_view(scene);

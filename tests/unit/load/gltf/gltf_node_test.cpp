@@ -369,5 +369,25 @@ TEST_F(GltfNode, ChainsMayBeDeepAndInstancesMany) {
     EXPECT_EQ(wide.shapes.size(), size_t(COUNT / 4));
 }
 
+// The objects of pictures of ids.
+TEST_F(GltfNode, IsAnObjectWithItsNameOrThatOfItsMesh) {
+    GltfFile file;
+    file.show_corner({{"name", "leaf"}});
+    file.show_corner({{"name", "leaf"}});
+    file.show_corner();
+    file.show_corner();
+    file.root["meshes"][2]["name"] = "twig";
+    Json copies = instanced({{"TRANSLATION", file.add<float>("VEC3", {1, 0, 0, 0, 2, 0})}});
+    copies["name"] = "grass";
+    file.show_corner(copies);
+    const Scene scene = load(file);
+    EXPECT_EQ(scene.objects, (std::vector<std::string>{"leaf", "leaf (2)", "twig", "node 3", "grass"}));
+    ASSERT_EQ(scene.shapes.size(), 6u);
+    for (uint32_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(scene.shapes[i].object, std::min(i, 4u));
+        EXPECT_EQ(scene.shapes[i].copy, i == 5 ? 1u : 0u);
+    }
+}
+
 }  // namespace
 }  // namespace candela

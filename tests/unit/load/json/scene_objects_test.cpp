@@ -148,5 +148,34 @@ TEST(SceneObjects, SayWhatIsWrongWithAnInstance) {
                         "\"emission\": expected numbers of at least 0, found -1");
 }
 
+// The objects of pictures of ids: each shape of the scene is one, with a copy for each transform.
+TEST(SceneObjects, ShapesHaveNames) {
+    SceneFolder folder;
+    folder.write("pot.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                 "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                 "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    const Scene scene = folder.load(scene_of_objects(THINGS, R"({"type": "sphere", "material": "red"},
+                   {"type": "instance", "object": "things", "transforms": [[], [{"scale": 2}]]},
+                   {"type": "ply", "file": "pot.ply", "material": "red"},
+                   {"type": "ply", "file": "pot.ply", "material": "red"},
+                   {"type": "box", "name": "crate", "min": [0, 0, 0], "max": [1, 1, 1], "material": "red"})"));
+    EXPECT_EQ(scene.objects, (std::vector<std::string>{"sphere 0", "things", "pot", "pot (2)", "crate"}));
+    ASSERT_EQ(scene.shapes.size(), 1u + 8u + 2u + 6u);
+    EXPECT_EQ(scene.shapes[0].object, 0u);
+    for (size_t i = 1; i < 9; ++i) {
+        EXPECT_EQ(scene.shapes[i].object, 1u);
+        EXPECT_EQ(scene.shapes[i].copy, i < 5 ? 0u : 1u);
+    }
+    EXPECT_EQ(scene.shapes[10].object, 3u);
+    for (size_t i = 11; i < 17; ++i)
+        EXPECT_EQ(scene.shapes[i].object, 4u);
+
+    folder.expect_error(scene_of_objects(R"("o": [{"type": "sphere", "material": "red", "name": @"a"}])", ""),
+                        "a shape of an object has no name; name the object, or the instances that place it");
+    folder.expect_error(scene_of_objects("", R"({"type": "sphere", "material": "red", "name": @""})"),
+                        "\"name\": expected a name that is not empty, found \"\"");
+}
+
 }  // namespace
 }  // namespace candela
