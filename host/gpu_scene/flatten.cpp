@@ -53,6 +53,7 @@ class Flattener {
     void add(const Shape& shape, uint index, bool passable) {
         index_ = index;
         passable_ = passable ? 1 : 0;
+        flat_.shape_ids.push_back({flat_.id_count, index});
         std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
     }
 

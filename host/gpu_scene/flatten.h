@@ -29,6 +29,12 @@ struct EmittingPiece {
     PieceUv uv;
 };
 
+// Where the ids of a shape's surfaces begin, which end where the next shape's begin.
+struct ShapeIds {
+    uint32_t first = 0;
+    uint32_t shape = 0;
+};
+
 struct FlatScene {
     std::vector<Primitive> primitives;
     // One per primitive; `light` is the index of a piece, or NO_LIGHT.
@@ -37,10 +43,11 @@ struct FlatScene {
     std::vector<uvec4> attributes;                          // attribute_words() per primitive.
     uint64_t triangles = 0;                                 // Of meshes; and of these,
     uint64_t coarse = 0;                                    // as count_coarse_triangles() says.
-    uint64_t flattened = 0;       // Triangles that are left out: rounded to floats, they have no area.
-    uint64_t spheres = 0;         // And of these,
-    uint64_t coarse_spheres = 0;  // those that rounding moves by more than 3 % of their radius.
-    uint32_t id_count = 0;        // Ids that the surfaces have: one for each triangle, sphere and disk.
+    uint64_t flattened = 0;           // Triangles that are left out: rounded to floats, they have no area.
+    uint64_t spheres = 0;             // And of these,
+    uint64_t coarse_spheres = 0;      // those that rounding moves by more than 3 % of their radius.
+    uint32_t id_count = 0;            // Ids that the surfaces have: one for each triangle, sphere and disk.
+    std::vector<ShapeIds> shape_ids;  // Of each shape, ascending.
     std::vector<EmittingPiece> pieces;
 };
 

@@ -84,8 +84,10 @@ LeafArrays build_leaf_arrays(const FlatScene& flat, const AreaLights& area, cons
 }
 
 NodeArrays build_node_arrays(const FlatScene& flat, const SceneTree& tree, const MeshTrees& trees) {
-    NodeArrays result{
-        .facts = {.id_count = flat.id_count, .bvh_depth = tree.depth, .bvh_sah_cost = tree.sah_cost}};
+    NodeArrays result{.facts = {.shape_ids = flat.shape_ids,
+                                .id_count = flat.id_count,
+                                .bvh_depth = tree.depth,
+                                .bvh_sah_cost = tree.sah_cost}};
     std::vector<PackedBvhNode> nodes = tree.nodes;
     std::map<ShownMesh, uint32_t> roots;
     uint64_t primitives = tree.order.size();
@@ -102,7 +104,8 @@ NodeArrays build_node_arrays(const FlatScene& flat, const SceneTree& tree, const
         nodes[instance.node] = pack(record);
         result.facts.id_count += own->second.flat.id_count;
         result.facts.bvh_depth = std::max(result.facts.bvh_depth, instance.level + own->second.bvh.depth);
-        result.facts.instances.push_back({instance.node, uint32_t(std::distance(trees.begin(), own))});
+        result.facts.instances.push_back(
+            {instance.node, uint32_t(std::distance(trees.begin(), own)), instance.shape});
     }
     result.nodes.reserve(nodes.size() * BVH_NODE_WORDS);
     for (const PackedBvhNode& node : nodes)

@@ -23,10 +23,12 @@ struct InstancedMesh {
     uint64_t triangles = 0;
 };
 
-// An instance: the place of its record among the nodes, and its mesh in LeafFacts::meshes.
+// An instance: the place of its record among the nodes, its mesh in LeafFacts::meshes, and its shape in the
+// scene.
 struct InstancePlace {
     uint32_t node = 0;
     uint32_t mesh = 0;
+    uint32_t shape = 0;
 };
 
 struct LeafFacts {
@@ -51,8 +53,9 @@ LeafArrays build_leaf_arrays(const FlatScene& flat, const AreaLights& area, cons
 
 struct NodeFacts {
     std::vector<InstancePlace> instances{};
-    uint32_t id_count = 0;   // Triangles, spheres and disks; modulo 2^32.
-    uint32_t bvh_depth = 1;  // Levels of nodes; an instance is one, and those of its mesh follow.
+    std::vector<ShapeIds> shape_ids{};  // Of the shapes that are no instances.
+    uint32_t id_count = 0;              // Triangles, spheres and disks; modulo 2^32.
+    uint32_t bvh_depth = 1;             // Levels of nodes; an instance is one, and those of its mesh follow.
     float bvh_sah_cost = 0.0f;
 };
 

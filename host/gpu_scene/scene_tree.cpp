@@ -21,7 +21,10 @@ SceneTree build_scene_tree(const Scene& scene, const SceneFrame& frame, const Fl
         boxes.push_back(placed.box);
         Instance record = placed.record;
         record.material = shape.material;
-        tree.instances.push_back({.mesh = instancing.shown[i], .box = placed.box, .record = record});
+        tree.instances.push_back({.mesh = instancing.shown[i],
+                                  .box = placed.box,
+                                  .record = record,
+                                  .shape = instancing.shapes[i]});
     }
     Bvh bvh = build_bvh(boxes);
     tree.bounds = bvh.bounds;

@@ -19,6 +19,7 @@ struct TreeInstance {
     ShownMesh mesh;
     Box box;             // Around it, in the frame of the scene.
     Instance record;     // `root`, `first_id` and `lamp` are not set.
+    uint32_t shape = 0;  // Its index in the scene.
     uint32_t node = 0;   // Its place among the nodes,
     uint32_t level = 0;  // and its level: the root has level 1.
 };

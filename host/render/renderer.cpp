@@ -113,6 +113,7 @@ vk::StorageImage make_accumulation(const vk::Device& device, const RenderSetting
 std::span<const uint32_t> spirv_of(RenderKernel which, const vk::Device& device,
                                    const KernelConstants& constants) {
     if (which == RenderKernel::position) return kernels::position;
+    if (which == RenderKernel::first_hits) return kernels::first_hits;
     const bool inlined = device.info().is_lavapipe();
     if ((constants[CONSTANT_MATERIALS] & 1u << MATERIAL_PRINCIPLED) != 0)
         return inlined ? kernels::render_layered_inlined : kernels::render_layered;
@@ -161,6 +162,11 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants) {
     const bool render = which == RenderKernel::render;
     std::vector<vk::Binding> bindings = SceneBuffers::bindings(constants);
+    if (which == RenderKernel::first_hits) {
+        bindings.push_back({BINDING_FIRST_HITS, vk::BindingType::storage_buffer});
+        return {device,      spirv_of(which, device, constants), bindings, sizeof(PixelRun), constants.values,
+                "first hits"};
+    }
     bindings.push_back({BINDING_IMAGE, vk::BindingType::storage_image});
     if (render) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});
     return {device,           spirv_of(which, device, constants), bindings, sizeof(Tile),
@@ -186,6 +192,7 @@ Renderer::Renderer(const vk::Device& device, const GpuScene& scene, const Camera
     : device_(&check_memory(device, scene, settings)),
       settings_(settings),
       frame_(scene.frame),
+      eye_(scene.frame.point(camera.position)),
       scene_(device, scene, make_parameters(scene, camera, settings),
              map_arrays(device.info(), scene, settings.scene_access)),
       constants_(kernel_constants(device, scene, scene_.map(), camera, settings)),
@@ -227,6 +234,7 @@ void Renderer::reset(const GpuScene& scene, const Camera& camera, const RenderSe
         scene_.bind_to(*render_kernel_);
     }
     frame_ = scene.frame;
+    eye_ = frame_.point(camera.position);
     scene_.set(make_parameters(scene, camera, settings));
     const uvec2 size = image_size();
     if (size == uvec2(image_.width(), image_.height()) && layer_count(settings) == image_.layers()) {
@@ -316,7 +324,7 @@ void Renderer::upload(const Accumulation& state) {
     counters_ = state.counters;
 }
 
-std::vector<float> Renderer::positions() {
+std::vector<float> Renderer::positions_in_frame() {
     const uvec2 size = image_size();
     const vk::StorageImage image = vk::make_storage_image(*device_, size.x, size.y, 1, "position");
     vk::Kernel kernel = scene_kernel(RenderKernel::position);
@@ -327,7 +335,11 @@ std::vector<float> Renderer::positions() {
         record(kernel, {.origin = {0, y}, .size = tile, .stride = {1, 1}, .target_samples = 0});
         commands_.submit_and_wait();
     }
-    std::vector<float> values = vk::download(image, 0, 1);
+    return vk::download(image, 0, 1);
+}
+
+std::vector<float> Renderer::positions() {
+    std::vector<float> values = positions_in_frame();
     for (size_t i = 0; i < values.size(); i += 4) {
         if (values[i + 3] == INFINITE) continue;  // No hit.
         const dvec3 p = frame_.world(vec3(values[i], values[i + 1], values[i + 2]));
@@ -336,6 +348,19 @@ std::vector<float> Renderer::positions() {
         values[i + 3] *= float(frame_.unit);
     }
     return values;
+}
+
+std::vector<float> Renderer::distances() {
+    const std::vector<float> values = positions_in_frame();
+    const bool parallel = constants_[CONSTANT_APERTURE] == APERTURE_NONE;
+    std::vector<float> distances(values.size() / 4, INFINITE);
+    for (size_t i = 0; i < distances.size(); ++i) {
+        const float* const at = &values[4 * i];
+        if (at[3] == INFINITE) continue;  // No hit.
+        const double distance = parallel ? double(at[3]) : length(dvec3(at[0], at[1], at[2]) - dvec3(eye_));
+        distances[i] = float(distance * frame_.unit);
+    }
+    return distances;
 }
 
 }  // namespace candela

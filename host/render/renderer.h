@@ -7,6 +7,7 @@
 #include <span>
 
 #include "film/accumulation.h"
+#include "film/coverage.h"
 #include "gpu_scene/gpu_scene.h"
 #include "render/array_map.h"
 #include "render/scene_buffers.h"
@@ -58,7 +59,7 @@ KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene
                                  const Camera& camera, const RenderSettings& settings);
 
 // The renderer's kernels, compiled for kernel_constants(), with nothing bound.
-enum class RenderKernel { render, position };
+enum class RenderKernel { render, position, first_hits };
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants);
 
 // The state before the first sample: it holds no values yet.
@@ -94,6 +95,13 @@ class Renderer {
     // [m]; row-major. 0 0 0 infinity at a miss.
     std::vector<float> positions();
 
+    // The distances of these positions along their rays [m], infinite at a miss.
+    std::vector<float> distances();
+
+    // What the pixels show first, by FIRST_HITS camera rays each: a function of pixel, seed and filter alone,
+    // whichever samples and sampler were asked for. `scene` is the one that was rendered.
+    Coverage coverage(const GpuScene& scene);
+
     const RenderCounters& counters() const { return counters_; }
     // The sums of samples, layers LAYER_*, for kernels that display them. A reset() to another size replaces
     // the image.
@@ -117,12 +125,15 @@ class Renderer {
     // A kernel for constants_, bound to the scene.
     vk::Kernel scene_kernel(RenderKernel which) const;
     void record(const vk::Kernel& kernel, Tile tile);
+    // As positions(), but in the frame of the scene.
+    std::vector<float> positions_in_frame();
     Work complete(const Tile& tile);
     uvec2 image_size() const { return {settings_.crop.width(), settings_.crop.height()}; }
 
     const vk::Device* device_;
     RenderSettings settings_;
     SceneFrame frame_;
+    vec3 eye_;  // The camera's position, in the frame.
     RenderCounters counters_;
     double pipeline_seconds_ = 0.0;
     double pipeline_cpu_seconds_ = 0.0;

@@ -43,6 +43,7 @@ BUMP = "shaders/scene/bump.glsl"
 BENT_NORMAL = "shaders/integrator/bent_normal.glsl"
 CAMERA = "shaders/scene/camera.glsl"
 RENDER = "shaders/kernels/render.glsl"
+FIRST_HITS = "shaders/kernels/first_hits.comp.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
 RENDERER = "host/render/renderer.cpp"
 FLATTEN = "host/gpu_scene/flatten.cpp"
@@ -73,9 +74,19 @@ TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*:*Reference*
 MEDIA = ("Records*", "NestedMedia*:*Reference*/nested_glass")
 LAYERED = ("PrincipledTest*:Records*", "PrincipledPicture*")
 CHANGES = ("Records*", "SessionTest*:UpdateTest*", "LiveScene*:SceneStages*")
+COVERAGE = ("InstanceTest*", "CoverageTest*:AovTest*", "IdLayers*")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
+    (COVERAGE, [
+        ("first hits through the middle of the lens", FIRST_HITS, "unit_float(sampler_pair(random, PAIR_LENS))",
+         "vec2(0.5)"),
+        ("first hits of another crop", FIRST_HITS, "parameters.crop + uvec2", "uvec2"),
+        ("first hits by any sampler", "host/render/first_hits.cpp", "constants[CONSTANT_SAMPLER] = SAMPLER_SOBOL;", ""),
+        ("first hits of the shape before", FIRST_HITS, "hit_id(hit) + 1u", "max(hit_id(hit), 1u)"),
+        ("distances along the axis", RENDERER, "parallel ? double(at[3])", "true ? double(at[3])"),
+        ("the least covering first", "host/film/id_layers.cpp", "a.hits > b.hits", "a.hits < b.hits"),
+    ]),
     (INTEGRATOR, [
         ("cosine dropped from direct light", PATH, "value.f * cosine * light.Li", "value.f * light.Li"),
         ("emission counted in full beside light samples", PATH, "return power_heuristic(pdf_bsdf, pdf_light);",
@@ -206,8 +217,8 @@ GROUPS = [
         ("the frame's unit forgotten for radii", FLATTEN, "frame_.length(sphere.radius)", "float(sphere.radius)"),
         ("the frame's unit forgotten for media", MATERIAL_ARRAYS,
          "vec3(frame.unit * dvec3(m.medium.absorption))", "vec3(0.0 * frame.unit + dvec3(m.medium.absorption))"),
-        ("the camera rounded before it is in the frame", RENDERER, "frame.point(camera.position)",
-         "frame.point(dvec3(vec3(camera.position)))"),
+        ("the camera rounded before it is in the frame", RENDERER, ".position = frame.point(camera.position)",
+         ".position = frame.point(dvec3(vec3(camera.position)))"),
         ("depths left in the frame", RENDERER, "values[i + 3] *= float(frame_.unit);", ""),
         ("the bound on a triangle's points halved", "host/gpu_scene/ray_error.cpp", "3.0 * max(abs(lo)",
          "1.5 * max(abs(lo)"),

@@ -1,5 +1,5 @@
-// The images besides the colours: albedo and normal of the first hit, position and depth of the pixel's
-// centre.
+// The images besides the colours: albedo and normal of the first hit; position, depth and distance of the
+// pixel's centre.
 #include <cmath>
 
 #include "render_fixture.h"
@@ -97,6 +97,26 @@ TEST_F(AovTest, PositionAndDepthAreThoseOfThePixelsCentre) {
             ASSERT_NEAR(at[3], 3.0, 2e-6);  // Along the axis, not along the ray.
         }
     }
+}
+
+// The length of the ray to that position; for parallel rays, the depth.
+TEST_F(AovTest, DistancesAreAlongTheRays) {
+    Scene scene = half_covered();
+    const std::vector<float> distances =
+        Renderer(device(), build_gpu_scene(scene), scene.cameras[0], settings()).distances();
+    ASSERT_EQ(distances.size(), size_t{SIZE} * SIZE);
+    for (uint32_t i = 0; i < SIZE * SIZE; ++i) {
+        const double x = (i % SIZE + 0.5) / 10.0 - 1.0, y = 1.0 - (i / SIZE + 0.5) / 10.0;
+        if (x > 0.0) {
+            ASSERT_EQ(distances[i], INFINITE);
+        } else {
+            ASSERT_NEAR(distances[i], std::sqrt(9.0 + x * x + y * y), 2e-6);
+        }
+    }
+    scene.cameras[0].ortho_height = 2.0;
+    const std::vector<float> parallel =
+        Renderer(device(), build_gpu_scene(scene), scene.cameras[0], settings()).distances();
+    EXPECT_NEAR(parallel[0], 3.0, 2e-6);
 }
 
 TEST_F(AovTest, PositionsOfACropAreThoseOfTheWhole) {
