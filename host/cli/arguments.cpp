@@ -92,6 +92,12 @@ std::optional<AovSelection> parse_aovs(const std::string& text) {
             aovs.variance = true;
         } else if (name == "samples") {
             aovs.sample_count = true;
+        } else if (name == "depth") {
+            aovs.distance = true;
+        } else if (name == "ids") {
+            aovs.ids = true;
+        } else if (name == "cryptomatte") {
+            aovs.cryptomatte = true;
         } else {
             return std::nullopt;
         }

@@ -19,7 +19,7 @@
 namespace candela {
 
 // The images that --aov can name.
-inline constexpr const char* AOV_NAMES = "albedo,n,p,z,variance,samples";
+inline constexpr const char* AOV_NAMES = "albedo,n,p,z,variance,samples,depth,ids,cryptomatte";
 
 // The parts of `text` between separators, including empty ones.
 std::vector<std::string> split(const std::string& text, char separator);

@@ -178,8 +178,7 @@ void Batch::write(RenderedPicture&& rendered, bool is_last) {
 
 // How and where the picture is written. Finds its exposure if that is automatic, and says it.
 ImageOutputs Batch::outputs_for(const RenderedPicture& rendered) {
-    ImageOutputs outputs = options_.outputs.images;
-    outputs.files = rendered.picture.files;
+    ImageOutputs outputs = options_.outputs.images.renamed(rendered.picture.files);
     Exposure& exposure = outputs.development.exposure;
     if (first_exposure_) exposure = {.ev = *first_exposure_};
     if (!exposure.automatic) return outputs;

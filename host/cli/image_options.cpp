@@ -59,11 +59,12 @@ void ImageOutputs::add_to(CLI::App& app) {
     app.add_flag("--half", half, "EXR: R G B A and Albedo as 16-bit floats (default: 32-bit)");
     development.add_to(app, true);
     screen.add_to(app);
+    data.add_to(app);
 }
 
 void ImageOutputs::add_aovs_to(CLI::App& app) {
     add_value(app, "--aov", aovs, parse_aovs, std::string("all, none or a list of ") + AOV_NAMES,
-              "EXR: none, all (default) or a list of " + std::string(AOV_NAMES))
+              "EXR: none, all or a list of " + std::string(AOV_NAMES) + " (default: the first six)")
         ->type_name("LIST");
 }
 
@@ -71,8 +72,35 @@ AovSelection ImageOutputs::written_aovs() const {
     const bool exr = std::ranges::any_of(
         files, [](const std::string& path) { return output_format(path) == ImageFormat::exr; });
     AovSelection written = exr ? aovs : AovSelection{};
+    data.add_layers_to(written);
     written.transmission = screen.backdrop() == Backdrop::transmitted;
     return written;
+}
+
+std::vector<ImageOutputs::Output> ImageOutputs::outputs() const {
+    std::vector<Output> all;
+    for (const std::string& file : files)
+        all.push_back({"-o", file});
+    for (const DataFile& file : data.files())
+        all.push_back({file.option, file.name});
+    return all;
+}
+
+ImageOutputs ImageOutputs::renamed(const std::vector<std::string>& names) const {
+    ImageOutputs result = *this;
+    std::copy_n(names.begin(), files.size(), result.files.begin());
+    result.data.rename(names.data() + files.size());
+    return result;
+}
+
+void ImageOutputs::check_name(size_t i, const std::string& name) const {
+    if (i < files.size()) {
+        output_format(name);
+        return;
+    }
+    DataFile file = data.files()[i - files.size()];
+    file.name = name;
+    check_data_name(file);
 }
 
 bool ImageOutputs::uses_stdout() const {

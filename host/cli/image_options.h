@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/data_outputs.h"
 #include "cli/screen_options.h"
 #include "film/accumulation.h"
 #include "image/image_io.h"
@@ -43,6 +44,7 @@ ImageFormat output_format(const std::string& path);
 
 struct ImageOutputs {
     std::vector<std::string> files;
+    DataOutputs data;
     AovSelection aovs{true, true, true, true, true, true};  // In an EXR.
     bool half = false;                                      // EXR: R G B A and Albedo with 16 bits.
     DevelopmentOptions development;
@@ -52,8 +54,19 @@ struct ImageOutputs {
     void add_to(CLI::App& app);
     void add_aovs_to(CLI::App& app);
 
-    // The images besides R G B A that will be written: those selected, if one of the files is an EXR;
-    // otherwise none.
+    // All files: those of images, and then those of data; and what option names each.
+    struct Output {
+        const char* option;
+        std::string name;
+    };
+    std::vector<Output> outputs() const;
+    // The same outputs with other names, in that order.
+    ImageOutputs renamed(const std::vector<std::string>& names) const;
+    // Throws Error (usage) if outputs()[i] may not have that name.
+    void check_name(size_t i, const std::string& name) const;
+
+    // The images besides R G B A that will be made: those selected, if one of the files is an EXR, and what
+    // files of data need.
     AovSelection written_aovs() const;
     // Whether an EXR file goes to standard output.
     bool uses_stdout() const;

@@ -43,8 +43,8 @@ ExitCode run(MergeArguments& arguments, const std::string& command_line) {
     if (arguments.missing) return print_missing(arguments);
     ScreenOptions& screen = arguments.images.screen;
     CommandFiles files;  // The parts are all read before anything is written: one of them may be the output.
-    for (const std::string& path : arguments.images.files)
-        files.write("-o", path);
+    for (const auto& [option, path] : arguments.images.outputs())
+        files.write(option, path);
     if (const auto background = screen.background_file()) files.read("--background", *background);
     check_outputs(arguments.images);
     screen.load();

@@ -30,6 +30,7 @@ class NameTemplate {
     explicit NameTemplate(const std::string& text, const char* option = "-o");
 
     const std::string& text() const { return text_; }
+    const char* option() const { return option_; }
     bool uses(std::string_view field) const;
     // Whether a field is part of the name of a folder.
     bool names_folders() const;

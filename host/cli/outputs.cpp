@@ -60,7 +60,7 @@ double write_image(const ImageOutputs& outputs, const std::string& path, const I
 }  // namespace
 
 void check_formats(const ImageOutputs& outputs) {
-    if (outputs.files.empty()) {
+    if (outputs.outputs().empty()) {
         throw Error("no output given; use -o FILE.exr, -o FILE.png, or both", ErrorKind::request);
     }
     for (const std::string& path : outputs.files) {
@@ -70,13 +70,15 @@ void check_formats(const ImageOutputs& outputs) {
                         ErrorKind::request);
         }
     }
+    for (const DataFile& file : outputs.data.files())
+        check_data_name(file);
     if (std::ranges::count(outputs.files, STDOUT) > 1)
         throw Error("-o: standard output gets one image; give - once", ErrorKind::request);
 }
 
 void check_outputs(const ImageOutputs& outputs) {
     check_formats(outputs);
-    for (const std::string& path : outputs.files) {
+    for (const auto& [option, path] : outputs.outputs()) {
         if (path != STDOUT) check_writable(path);
     }
 }
@@ -88,6 +90,8 @@ double write_images(const ImageOutputs& given, Image image) {
     double encoding = 0.0;
     for (const std::string& path : outputs.files)
         attempts.attempt([&] { encoding += write_image(outputs, path, image, write_finished_work); });
+    for (const DataFile& file : outputs.data.files())
+        attempts.attempt([&] { outputs.data.write(file, image, outputs.screen.notes(image)); });
     attempts.finish();
     return encoding;
 }

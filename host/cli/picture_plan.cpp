@@ -53,8 +53,8 @@ PicturePlan::PicturePlan(const RenderOptions& options, std::istream& standard_in
                 options.wants_all_cameras();
     if (is_batch_) refuse_options_of_one();
     check_formats(outputs.images);
-    for (const std::string& name : outputs.images.files)
-        names_.emplace_back(name);
+    for (const auto& [option, name] : outputs.images.outputs())
+        names_.emplace_back(name, option);
 
     for (const std::string& path : list.lists)
         files_.read("the list", path);
@@ -128,7 +128,7 @@ void PicturePlan::plan(size_t i) {
         };
         for (const NameTemplate& name : names_) {
             if (!tells_cameras(name)) {
-                refuse_pictures("-o: \"" + name.text() +
+                refuse_pictures(std::string(name.option()) + ": \"" + name.text() +
                                 "\" would be the picture of each camera; add the field {camera} or {view}");
             }
         }
@@ -167,17 +167,18 @@ void PicturePlan::name(size_t scene, Picture& picture) {
 
 // Throws Error (usage) if the file is not that output of this picture alone.
 void PicturePlan::claim(const Owner& owner, const Picture& picture, const std::string& file) {
-    output_format(file);  // Throws if there is none.
+    options_.outputs.images.check_name(owner.output, file);
     const auto [known, is_new] = owners_.emplace(file, owner);
     const Owner& other = known->second;
     if (!is_new && other == owner) return;
     if (!is_new && (other.scene != owner.scene || other.view != owner.view)) {
         refuse_pictures(
-            "-o: " + candela::quoted(file) + " would be two pictures, of " +
-            candela::quoted(scenes_[other.scene].file) + " and of " + text_of(picture) +
+            std::string(names_[owner.output].option()) + ": " + candela::quoted(file) +
+            " would be two pictures, of " + candela::quoted(scenes_[other.scene].file) + " and of " +
+            text_of(picture) +
             "; tell them apart by fields in the name, such as {stem}, {folder}, {camera} or {view}");
     }
-    files_.write("-o", file);
+    files_.write(names_[owner.output].option(), file);
 }
 
 // Throws Error if a folder is missing, or may not be written to, before the first of many scenes is read.

@@ -8,6 +8,7 @@
 #include "base/cpu_time.h"
 #include "cli/caught_error.h"
 #include "cli/console.h"
+#include "cli/label_attributes.h"
 #include "cli/outputs.h"
 #include "cli/vulkan.h"
 #include "film/identity.h"
@@ -132,8 +133,7 @@ RenderedPicture PictureRenderer::run(const PreparedScene& scene, const PreparedP
         job.time_limit, options_.messages.progress_style(), is_batch_ ? picture.picture.files.front() : "");
     // Before this line there is nothing to keep, and a signal ends the program at once.
     if (!guard_) guard_.emplace();
-    ImageOutputs outputs = options_.outputs.images;
-    outputs.files = picture.picture.files;
+    const ImageOutputs outputs = options_.outputs.images.renamed(picture.picture.files);
     std::optional<Error> failure = rendering_->run(
         {.progress = [&](double done, std::optional<double> error) { progress->update(done, error); },
          .keep_going = [&] { return !guard_->interrupted() && !time_is_over(); },
@@ -144,8 +144,11 @@ RenderedPicture PictureRenderer::run(const PreparedScene& scene, const PreparedP
                                std::to_string(kept) + " samples per pixel in submissions of " +
                                fixed(1e3 * submission_seconds, 3) + " ms");
              },
-         .write = [&](const RenderRecord& current,
-                      Image image) { write_current_images(outputs, current, std::move(image)); }});
+         .write =
+             [&](const RenderRecord& current, Image image) {
+                 if (job.labels) add_label_attributes(image, *job.labels);
+                 write_current_images(outputs, current, std::move(image));
+             }});
     progress->clear();
     const bool complete = rendering_->record().complete;
     const char* const state = complete                ? "done"
@@ -155,6 +158,7 @@ RenderedPicture PictureRenderer::run(const PreparedScene& scene, const PreparedP
     if (is_batch_ && failure) throw Error(*failure);
 
     Image image = rendering_->image();
+    if (job.labels) add_label_attributes(image, *job.labels);
     RenderedPicture rendered{.picture = picture.picture,
                              .record = rendering_->record(),
                              .image = std::move(image),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <memory>
 
 #include "base/cpu_time.h"
 #include "cli/caught_error.h"
@@ -11,6 +12,7 @@
 #include "cli/loading.h"
 #include "cli/outputs.h"
 #include "render/make_identity.h"
+#include "scene/label_scene.h"
 #include "session/convergence.h"
 
 namespace candela {
@@ -74,9 +76,7 @@ class Preparation {
         prepared.is_skipped = options_.list.skip_existing && is_there(prepared.picture);
         if (prepared.is_skipped) return;
         plan_.make_folders(prepared.picture);
-        ImageOutputs outputs = options_.outputs.images;
-        outputs.files = files;
-        check_outputs(outputs);
+        check_outputs(options_.outputs.images.renamed(files));
     }
 
     // Prints the warnings of the only picture; keeps those of one among several, to be printed in its turn.
@@ -92,6 +92,7 @@ class Preparation {
         load();
         for_each([this](PreparedPicture& picture) {
             picture.job = options_.job(prepared_.scene, picture.picture.camera);
+            if (picture.job->aovs.needs_coverage()) picture.job->labels = labels();
             if (const auto& reference = options_.outputs.reference)
                 picture.reference = load_reference(*reference, picture.job->settings);
         });
@@ -131,6 +132,16 @@ class Preparation {
         if (!cameras.empty()) scene.cameras = std::move(cameras);
     }
 
+    // The labels of the scene, which its pictures share.
+    std::shared_ptr<const Labels> labels() {
+        if (labels_) return labels_;
+        labels_ = std::make_shared<const Labels>(label_scene(prepared_.scene));
+        if (!options_.outputs.images.written_aovs().cryptomatte) return labels_;
+        warn(warnings_of_collisions(labels_->objects, "objects"));
+        warn(warnings_of_collisions(labels_->materials, "materials"));
+        return labels_;
+    }
+
     // Writes the cameras of all pictures of the scene, if the options ask for it.
     void write_cameras() const {
         const std::optional<std::string> file = plan_.make_cameras_file(number_);
@@ -157,6 +168,7 @@ class Preparation {
     size_t number_;
     const RenderOptions& options_;
     std::optional<ProgressStyle> style_;
+    std::shared_ptr<const Labels> labels_;
     PreparedScene prepared_;
 };
 

@@ -11,6 +11,7 @@
 #include "base/memory_limit.h"
 #include "cli/arguments.h"
 #include "cli/console.h"
+#include "film/id_layers.h"
 #include "image/texel_io.h"
 #include "scene/studio.h"
 
@@ -113,7 +114,8 @@ PictureNotes ScreenOptions::notes(const Image& image) const {
     PictureNotes notes{.texts = {}, .quality = quality};
     for (const auto& [name, attribute] : image.attributes) {
         const auto* const text = std::get_if<std::string>(&attribute);
-        if (text != nullptr && name != "candela.commandLine") notes.texts.emplace_back(name, *text);
+        const bool is_for_exr = name == "candela.commandLine" || is_label_attribute(name);
+        if (text != nullptr && !is_for_exr) notes.texts.emplace_back(name, *text);
     }
     return notes;
 }

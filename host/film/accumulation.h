@@ -77,11 +77,15 @@ struct AovSelection {
     bool sample_count = false;  // SampleCount.V.
     // A is 1 - the mean transmission, and FirstHit.A what A is otherwise. The samples were rendered so.
     bool transmission = false;
+    bool distance = false;     // Depth.V: distance of that hit along its ray [m]; infinity at a miss.
+    bool ids = false;          // ObjectId.V, InstanceId.V, MaterialId.V: see id_layers.h.
+    bool cryptomatte = false;  // CryptoObject, CryptoMaterial: see id_layers.h.
 
     bool operator==(const AovSelection&) const = default;
     // Whether the accumulation needs LAYER_COUNT_AOVS.
     bool needs_layers() const { return albedo || normal || transmission; }
     bool needs_positions() const { return position || depth; }
+    bool needs_coverage() const { return ids || cryptomatte; }
 };
 
 // The image of the states: means over each pixel's own samples, in double precision; over one half alone if

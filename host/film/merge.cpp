@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "film/id_layers.h"
 #include "film/identity.h"
 #include "film/part_sum.h"
 #include "film/sample_range.h"
@@ -179,18 +180,27 @@ void warn_of_halves(const Part& part, std::vector<std::string>& warnings) {
     }
 }
 
-// Positions depend only on the scene; between devices they differ by rounding.
-constexpr const char* POSITIONS[] = {"P.X", "P.Y", "P.Z", "Z"};
-
-void check_positions(const Part& first, const Image& first_image, const Part& part, const Image& image) {
+// What depends on no sample depends on the scene and the seed alone; between devices it differs by rounding.
+void check_constants(const Part& first, const Image& first_image, const Part& part, const Image& image) {
     if (part.maker != first.maker) return;
-    for (const char* name : POSITIONS) {
-        const Channel *const a = first_image.find(name), *const b = image.find(name);
-        if (a == nullptr || b == nullptr || a->values.empty() || b->values.empty()) continue;
-        if (std::memcmp(a->values.data(), b->values.data(), a->values.size() * sizeof(float)) != 0) {
-            refuse(part.name, std::string("its channel ") + name + " differs from that of " + first.name +
+    for (const Channel& a : first_image.channels) {
+        const Channel* const b = image.find(a.name);
+        if (b == nullptr || a.values.empty() || b->values.empty()) continue;
+        if (std::memcmp(a.values.data(), b->values.data(), a.values.size() * sizeof(float)) != 0) {
+            refuse(part.name, "its channel " + a.name + " differs from that of " + first.name +
                                   "; give files as candela wrote them");
         }
+    }
+}
+
+// Throws Error if the parts call things by other names or numbers.
+void check_labels(const Part& first, const Part& part) {
+    for (const auto& [name, labels] : first.header.attributes) {
+        if (!is_label_attribute(name)) continue;
+        const auto found = part.header.attributes.find(name);
+        if (found == part.header.attributes.end() || found->second == labels) continue;
+        refuse(part.name, "it calls objects or materials by other names or numbers than " + first.name +
+                              " (the attribute " + name + "); merge parts of one rendering");
     }
 }
 
@@ -242,6 +252,8 @@ std::vector<Part> describe_all(const std::vector<std::filesystem::path>& files, 
                                   "; merge parts of one rendering");
     }
     refuse_overlaps(parts);
+    for (const Part& part : parts)
+        check_labels(parts.front(), part);
     return parts;
 }
 
@@ -258,23 +270,23 @@ Merged merge_files(const std::vector<std::filesystem::path>& files, const PartRe
     warn_of_makers(parts, merged.warnings);
     const std::vector<std::string> channels = common_channels(parts, merged.warnings);
     PartSum sum(first.header, channels);
-    Image first_image;  // Only the positions are kept.
+    Image first_image;  // Only what is the same in all parts.
     for (const Part& part : parts) {
         Image image = read_values(part, channels, read);
         const std::vector<uint32_t> counts = sample_counts(image, part.name, part.samples);
         warn_of_interruption(part, std::ranges::min(counts), merged.warnings);
         warn_of_halves(part, merged.warnings);
         sum.add(image, counts);
-        check_positions(first, first_image, part, image);
+        check_constants(first, first_image, part, image);
         if (&part == &first) {
-            std::erase_if(image.channels, [](const Channel& channel) {
-                return std::ranges::find(POSITIONS, channel.name) == std::end(POSITIONS);
-            });
+            std::erase_if(image.channels,
+                          [](const Channel& channel) { return !PartSum::is_constant(channel.name); });
             first_image = std::move(image);
         }
     }
     merged.image = sum.image();
     set_attributes(merged.image, parts, std::ranges::min(sum.counts()));
+    drop_stray_label_attributes(merged.image);
     return merged;
 }
 

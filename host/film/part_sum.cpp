@@ -6,13 +6,15 @@
 #include <string_view>
 #include <utility>
 
+#include "film/id_layers.h"
+
 namespace candela {
 
 static constexpr std::string_view VARIANCE = "Variance.";
 static constexpr std::string_view MEANS[] = {"R",        "G",   "B",   "A",   "Albedo.R",     "Albedo.G",
                                              "Albedo.B", "N.X", "N.Y", "N.Z", FIRST_HIT_ALPHA};
 static constexpr std::string_view VARIANCES[] = {"Variance.R", "Variance.G", "Variance.B"};
-static constexpr std::string_view CONSTANTS[] = {"P.X", "P.Y", "P.Z", "Z"};
+static constexpr std::string_view CONSTANTS[] = {"P.X", "P.Y", "P.Z", "Z", "Depth.V"};
 static constexpr std::string_view COUNT = "SampleCount.V";
 
 template <size_t N>
@@ -21,8 +23,12 @@ static bool contains(const std::string_view (&names)[N], const std::string& name
 }
 
 bool PartSum::knows(const std::string& channel) {
-    return contains(MEANS, channel) || contains(VARIANCES, channel) || contains(CONSTANTS, channel) ||
+    return contains(MEANS, channel) || contains(VARIANCES, channel) || is_constant(channel) ||
            channel == COUNT;
+}
+
+bool PartSum::is_constant(const std::string& channel) {
+    return contains(CONSTANTS, channel) || is_id_channel(channel);
 }
 
 PartSum::Kind PartSum::kind_of(const std::string& channel) {

@@ -27,9 +27,11 @@ namespace candela {
 class PartSum {
   public:
     // For images of the size of `like`; sums their channels of these names, in this order. It knows R, G, B,
-    // A, Albedo and N (means), Variance of R, G and B, SampleCount.V, and P and Z (the same in all images).
+    // A, Albedo and N (means), Variance of R, G and B, SampleCount.V, and what is_constant().
     PartSum(const Image& like, std::vector<std::string> channels);
     static bool knows(const std::string& channel);
+    // Whether the channel depends on no sample, and is the same in all images.
+    static bool is_constant(const std::string& channel);
 
     // Adds an image with counts[i] samples of pixel i. It must have all the channels and, if Variance is
     // among them, R, G and B.

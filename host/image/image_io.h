@@ -78,7 +78,8 @@ struct PictureNotes {
     int quality = 90;  // JPEG, WebP: 1 to 100.
 };
 
-// Writes a picture in sRGB with 3 channels, or 4 with straight alpha, in the format that the extension names:
+// Writes a picture in sRGB with 3 channels, or 4 with straight alpha, or a PNG of one
+// channel of numbers that are not light, in the format that the extension names:
 // PNG of 8 or 16 bits, without loss; JPEG of 8 bits, without alpha, at full resolution of colours; WebP of 8
 // bits, with loss, but not of alpha. Throws Error if the file cannot be written, or the format cannot hold
 // the picture. The file appears whole or not at all.

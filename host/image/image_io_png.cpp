@@ -94,10 +94,13 @@ class PngEncoder {
         const bool wide = picture_.type == TexelType::unorm16;
         png_set_write_fn(png_, this, on_write, nullptr);
         png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-        png_set_IHDR(png_, info_, size.x, size.y, wide ? 16 : 8,
-                     picture_.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
-                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-        png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+        const bool grey = picture_.channels == 1;
+        const int type = grey                     ? PNG_COLOR_TYPE_GRAY
+                         : picture_.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA
+                                                  : PNG_COLOR_TYPE_RGB;
+        png_set_IHDR(png_, info_, size.x, size.y, wide ? 16 : 8, type, PNG_INTERLACE_NONE,
+                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        if (!grey) png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
         if (text_count > 0) png_set_text(png_, info_, texts, text_count);
         png_write_info(png_, info_);
         if (wide && std::endian::native == std::endian::little) png_set_swap(png_);

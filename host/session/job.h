@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "film/accumulation.h"
+#include "image/labels.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
 
@@ -29,12 +31,13 @@ RenderSettings proposed_settings(const Scene& scene, const Camera& camera);
 struct RenderJob {
     Camera camera;
     RenderSettings settings;
-    uint32_t target = 0;                   // Samples per pixel, unless an error or a time ends it earlier.
-    bool adaptive = false;                 // Samples go where the error is.
-    std::optional<double> target_error{};  // Relative error of the image.
-    std::optional<double> time_limit{};    // Seconds.
-    std::optional<double> write_every{};   // Seconds from one image on the way to the next.
-    AovSelection aovs{};                   // The images besides R G B A.
+    uint32_t target = 0;                     // Samples per pixel, unless an error or a time ends it earlier.
+    bool adaptive = false;                   // Samples go where the error is.
+    std::optional<double> target_error{};    // Relative error of the image.
+    std::optional<double> time_limit{};      // Seconds.
+    std::optional<double> write_every{};     // Seconds from one image on the way to the next.
+    AovSelection aovs{};                     // The images besides R G B A.
+    std::shared_ptr<const Labels> labels{};  // Of the scene, for images of ids.
     CheckpointOptions checkpoint{};
 };
 

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <utility>
 
+#include "film/id_layers.h"
 #include "session/adaptive.h"
 
 namespace candela {
@@ -28,7 +29,9 @@ Rendering::Rendering(Source source, RenderJob job, RenderRecord record)
                  .camera = &job_.camera,
                  .settings = job_.settings,
                  .states = first_states(job_, source.resumed),
-                 .positions = job_.aovs.needs_positions()},
+                 .positions = job_.aovs.needs_positions(),
+                 .distances = job_.aovs.distance,
+                 .coverage = job_.aovs.needs_coverage()},
                 [this](const Error& error, uint32_t kept, double submission_seconds) {
                     callbacks_.device_failed(error, kept, submission_seconds);
                 }),
@@ -80,7 +83,10 @@ Image Rendering::collect_image(RenderRecord& record) const {
     record.samples = counts.total;
     record.spp = samples_per_pixel(states, counts);
     record.max_spp = counts.max;
-    return make_image(states, job_.aovs, renderer_.positions());
+    Image image = make_image(states, job_.aovs, renderer_.positions());
+    if (job_.aovs.distance) image.add("Depth.V").values = renderer_.distances();
+    if (job_.aovs.needs_coverage()) add_id_layers(image, job_.aovs, renderer_.coverage(), *job_.labels);
+    return image;
 }
 
 Image Rendering::image() {

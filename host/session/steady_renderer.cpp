@@ -16,7 +16,7 @@ SteadyRenderer::SteadyRenderer(Source source, OnFailure on_failure)
     : source_(std::move(source)), on_failure_(std::move(on_failure)) {
     compiled_before_ = device().programs().compiled();
     open();
-    look_up_positions();
+    look_up_first_hits();
     next_copy_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(source_.copy_seconds));
 }
 
@@ -41,8 +41,10 @@ void SteadyRenderer::load(const BufferSet& changed) {
     loaded_ = true;
 }
 
-void SteadyRenderer::look_up_positions() {
+void SteadyRenderer::look_up_first_hits() {
     if (source_.positions && positions_.empty()) positions_ = renderer_->positions();
+    if (source_.distances && distances_.empty()) distances_ = renderer_->distances();
+    if (source_.coverage && coverage_.pixel_count() == 0) coverage_ = renderer_->coverage(*source_.scene);
 }
 
 void SteadyRenderer::restart(const BufferSet& changed, const RenderSettings& settings,
@@ -50,12 +52,14 @@ void SteadyRenderer::restart(const BufferSet& changed, const RenderSettings& set
     source_.settings = settings;
     source_.states = std::move(states);
     positions_.clear();
+    distances_.clear();
+    coverage_ = {};
     selected_ = 0;
     recovery_ = {};
     if (changed.all()) renderer_.reset();  // Before the next one takes memory.
     compiled_before_ = device().programs().compiled();
     renderer_ ? load(changed) : open();
-    look_up_positions();
+    look_up_first_hits();
 }
 
 void SteadyRenderer::select(size_t state) {
@@ -77,7 +81,7 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
         try {
             if (!renderer_) open();
             if (!loaded_) load();
-            look_up_positions();
+            look_up_first_hits();
             const double before = double(std::min(state().min_samples(), target)) / target;
             const bool complete = renderer_->render(target, [&](double done) {
                 if (Clock::now() >= next_copy_) copy_state();

@@ -22,7 +22,9 @@ class SteadyRenderer {
         const Camera* camera;
         RenderSettings settings;
         std::vector<Accumulation> states;  // To continue from; at least one, with different seeds.
-        bool positions = false;            // Whether positions() will be called.
+        bool positions = false;            // Whether positions() will be called,
+        bool distances = false;            // distances(),
+        bool coverage = false;             // and coverage().
         double copy_seconds = 10.0;        // Between two copies of the state.
     };
     // Called after every failure that is survived, with its cause, the samples that every pixel still holds
@@ -58,6 +60,10 @@ class SteadyRenderer {
     const vk::Device& device() const { return source_.device->open(); }
     // As Renderer::positions(), if the source asks for them.
     const std::vector<float>& positions() const { return positions_; }
+    // As Renderer::distances(), if the source asks for them.
+    const std::vector<float>& distances() const { return distances_; }
+    // As Renderer::coverage(), by the seed of the first state, if the source asks for it.
+    const Coverage& coverage() const { return coverage_; }
     // How the arrays of the scene are read.
     const ArrayMap& array_map() const { return array_map_; }
     double pipeline_seconds() const { return pipeline_seconds_; }
@@ -70,7 +76,7 @@ class SteadyRenderer {
   private:
     void open();
     void load(const BufferSet& changed = {});
-    void look_up_positions();
+    void look_up_first_hits();
     Accumulation& state() { return source_.states[selected_]; }
     void recover(const Error& error);
 
@@ -80,6 +86,8 @@ class SteadyRenderer {
     bool loaded_ = false;  // Whether the renderer has the selected state.
     std::unique_ptr<Renderer> renderer_;
     std::vector<float> positions_;
+    std::vector<float> distances_;
+    Coverage coverage_;
     ArrayMap array_map_;
     double pipeline_seconds_ = 0.0;
     double pipeline_cpu_seconds_ = 0.0;

@@ -35,7 +35,8 @@ TEST_F(Usage, HelpOfRenderListsEveryOption) {
           "--verbose",       "--samples",       "--checkpoint",  "--checkpoint-every", "--resume",
           "--write-every",   "--target-error",  "--progress",    "--reference",        "--cameras",
           "--skip-existing", "--stop-on-error", "--view",        "--turntable",        "--dome",
-          "--lens",          "--margin",        "--camera-file", "--write-cameras",    "--batch-time"}) {
+          "--lens",          "--margin",        "--camera-file", "--write-cameras",    "--batch-time",
+          "--labels",        "--labels-of",     "--depth-png",   "--depth-unit",       "--manifest"}) {
         EXPECT_CONTAINS(help.out, option);
     }
 }
@@ -68,7 +69,7 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
     const std::string crop = "x0,y0,x1,y1 in pixels from the top left, with x0 < x1 and y0 < y1";
     const std::string spp = "a whole number from 1 to 16777216";
     const std::string duration = "a duration such as 90, 90s, 1.5m or 2h";
-    const std::string aovs = "all, none or a list of albedo,n,p,z,variance,samples";
+    const std::string aovs = "all, none or a list of albedo,n,p,z,variance,samples,depth,ids,cryptomatte";
     const std::string view =
         "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ROLL in degrees, such as 30,20, with an elevation from -90 "
         "to 90";
@@ -108,7 +109,7 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
         {"--sampler", "halton", "independent|stratified|sobol"},
         {"--light-sampler", "bvh", "auto|uniform|power|tree"},
         {"--scene-buffers", "image", "auto|texel|storage"},
-        {"--aov", "albedo,depth", aovs},
+        {"--aov", "albedo,colour", aovs},
         {"--aov", "", aovs},
         {"--aov", "all,n", aovs},
         {"--view", "30", view},

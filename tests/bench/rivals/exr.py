@@ -54,8 +54,8 @@ def unpacked(block, size):
     return result
 
 
-def read(path):
-    """Width, height, and the channels R, G and B, each an array of floats, row-major from the top."""
+def read_all(path):
+    """Width, height, the attributes as bytes, and all channels by name: arrays of floats, row-major from the top."""
     data = Path(path).read_bytes()
     if struct.unpack_from("<i", data)[0] != MAGIC:
         sys.exit(f"{path} is not an OpenEXR file")
@@ -74,4 +74,10 @@ def read(path):
         block = unpacked(data[offset + 8 : offset + 8 + size], row * rows)
         for start in range(0, rows * row, 4 * width):
             planes[names[start // (4 * width) % len(names)]].frombytes(block[start : start + 4 * width])
+    return width, height, attributes, planes
+
+
+def read(path):
+    """Width, height, and the channels R, G and B, as read_all() does."""
+    width, height, _, planes = read_all(path)
     return width, height, [planes[name] for name in "RGB"]

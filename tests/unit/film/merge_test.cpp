@@ -184,5 +184,37 @@ TEST_F(Merge, ReadsTheValuesOfEachPartOnce) {
     EXPECT_TRUE(same_bits(merged.image, merge_files({a, b}).image));
 }
 
+// What depends on no sample is the first part's; another must have the same bits and the same names.
+TEST_F(Merge, LayersOfIdsAreThoseOfTheParts) {
+    const auto with_ids = [](float id, const char* names) {
+        return [=](Image& image) {
+            for (const char* name : {"ObjectId.V", "CryptoObject00.R", "Depth.V"})
+                image.add(name, id);
+            image.attributes["candela.ids"] = names;
+            image.attributes["cryptomatte/3ae39a5/manifest"] = names;
+        };
+    };
+    const auto a = write_changed("a.exr", {0, 4}, with_ids(2.5e-20f, "ball"));
+    const auto b = write_changed("b.exr", {4, 9}, with_ids(2.5e-20f, "ball"));
+    const Image image = merge_files({a, b}).image;
+    for (const char* name : {"ObjectId.V", "CryptoObject00.R", "Depth.V"})
+        EXPECT_EQ(image.find(name)->values, std::vector<float>(PIXELS, 2.5e-20f)) << name;
+    EXPECT_EQ(std::get<std::string>(image.attributes.at("candela.ids")), "ball");
+
+    const auto other = write_changed("c.exr", {4, 9}, with_ids(1.0f, "ball"));
+    EXPECT_EQ(
+        refusal({a, other}),
+        "c.exr: its channel CryptoObject00.R differs from that of a.exr; give files as candela wrote them");
+    const auto renamed = write_changed("d.exr", {4, 9}, with_ids(2.5e-20f, "egg"));
+    EXPECT_EQ(refusal({a, renamed}),
+              "d.exr: it calls objects or materials by other names or numbers than a.exr (the attribute "
+              "candela.ids); merge parts of one rendering");
+
+    const Image without = merge_files({a, write("e.exr", {4, 9})}).image;
+    EXPECT_EQ(without.find("ObjectId.V"), nullptr);
+    EXPECT_FALSE(without.attributes.contains("candela.ids"));
+    EXPECT_FALSE(without.attributes.contains("cryptomatte/3ae39a5/manifest"));
+}
+
 }  // namespace
 }  // namespace candela
