@@ -6,17 +6,17 @@
 
 namespace candela {
 
-void Coverage::add(std::span<const uint32_t, FIRST_HITS> shapes) {
-    std::array<uint32_t, FIRST_HITS> sorted;
-    std::ranges::copy(shapes, sorted.begin());
+void Coverage::add(std::span<const ShapePart, FIRST_HITS> parts) {
+    std::array<ShapePart, FIRST_HITS> sorted;
+    std::ranges::copy(parts, sorted.begin());
     std::ranges::sort(sorted);
-    const size_t begin = shapes_.size();
-    for (const uint32_t shape : sorted) {
-        if (shape == NO_SHAPE) break;
-        if (shapes_.size() == begin || shapes_.back().shape != shape) shapes_.push_back({shape, 0});
-        ++shapes_.back().hits;
+    const size_t begin = parts_.size();
+    for (const ShapePart& part : sorted) {
+        if (part == NO_PART) break;
+        if (parts_.size() == begin || parts_.back().part != part) parts_.push_back({part, 0});
+        ++parts_.back().hits;
     }
-    ends_.push_back(shapes_.size());
+    ends_.push_back(parts_.size());
 }
 
 }  // namespace candela

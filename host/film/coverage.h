@@ -1,6 +1,7 @@
 // What the pixels of a picture show first, and how much of each.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,30 +10,40 @@
 
 namespace candela {
 
-// A shape that a pixel shows, and how many of the pixel's FIRST_HITS camera rays hit it first.
-struct CoveredShape {
+// A shape, or a group of its mesh.
+struct ShapePart {
     uint32_t shape = 0;
+    uint32_t group = 0;
+
+    auto operator<=>(const ShapePart&) const = default;
+};
+
+// Nothing, behind all parts in their order.
+inline constexpr ShapePart NO_PART{UINT32_MAX, 0};
+
+// What a pixel shows, and how many of the pixel's FIRST_HITS camera rays hit it first.
+struct CoveredPart {
+    ShapePart part{};
     uint32_t hits = 0;
 
-    bool operator==(const CoveredShape&) const = default;
+    bool operator==(const CoveredPart&) const = default;
 };
 
 class Coverage {
   public:
-    // Adds the next pixel, row-major: the shape that each ray hits, or nothing (NO_SHAPE).
-    static constexpr uint32_t NO_SHAPE = UINT32_MAX;
-    void add(std::span<const uint32_t, FIRST_HITS> shapes);
+    // Adds the next pixel, row-major: what each ray hits, or NO_PART.
+    void add(std::span<const ShapePart, FIRST_HITS> parts);
 
     size_t pixel_count() const { return ends_.size(); }
-    // What pixel i shows, in the order of the shapes.
-    std::span<const CoveredShape> at(size_t i) const {
+    // What pixel i shows, in the order of the parts.
+    std::span<const CoveredPart> at(size_t i) const {
         const size_t begin = i == 0 ? 0 : ends_[i - 1];
-        return std::span(shapes_).subspan(begin, ends_[i] - begin);
+        return std::span(parts_).subspan(begin, ends_[i] - begin);
     }
 
   private:
-    std::vector<CoveredShape> shapes_;
-    std::vector<size_t> ends_;  // Of each pixel's shapes.
+    std::vector<CoveredPart> parts_;
+    std::vector<size_t> ends_;  // Of each pixel's parts.
 };
 
 }  // namespace candela

@@ -20,12 +20,12 @@ struct Rank {
     uint32_t hits;
 };
 
-// What a pixel shows by ids, id_of(shape), the most covering first.
+// What a pixel shows by ids, id_of(part), the most covering first.
 template <class IdOf>
-void rank(std::span<const CoveredShape> shapes, const IdOf& id_of, std::vector<Rank>& ranks) {
+void rank(std::span<const CoveredPart> parts, const IdOf& id_of, std::vector<Rank>& ranks) {
     ranks.clear();
-    for (const auto& [shape, hits] : shapes) {
-        const uint32_t id = id_of(shape);
+    for (const auto& [part, hits] : parts) {
+        const uint32_t id = id_of(part);
         const auto known = std::ranges::find(ranks, id, &Rank::id);
         if (known == ranks.end()) {
             ranks.push_back({id, hits});
@@ -79,19 +79,20 @@ std::vector<uint32_t> crypto_ids(const std::vector<std::string>& names) {
 
 void add_id_layers(Image& image, const AovSelection& aovs, const Coverage& coverage, const Labels& labels) {
     assert(coverage.pixel_count() == image.pixel_count());
-    const std::vector<ShapeLabels>& shapes = labels.shapes;
+    const auto object = [&](ShapePart part) { return labels.shapes[part.shape].object + part.group; };
+    const auto instance = [&](ShapePart part) { return labels.shapes[part.shape].instance + part.group; };
+    const auto material = [&](ShapePart part) { return labels.shapes[part.shape].material; };
     if (aovs.ids) {
-        add_numbers(image, OBJECT_ID, coverage, [&](uint32_t shape) { return shapes[shape].object; });
-        add_numbers(image, INSTANCE_ID, coverage, [&](uint32_t shape) { return shapes[shape].instance; });
-        add_numbers(image, MATERIAL_ID, coverage, [&](uint32_t shape) { return shapes[shape].material; });
+        add_numbers(image, OBJECT_ID, coverage, object);
+        add_numbers(image, INSTANCE_ID, coverage, instance);
+        add_numbers(image, MATERIAL_ID, coverage, material);
     }
     if (aovs.cryptomatte) {
         const std::vector<uint32_t> objects = crypto_ids(labels.objects);
         const std::vector<uint32_t> materials = crypto_ids(labels.materials);
-        add_ranks(image, CRYPTO_OBJECT, coverage,
-                  [&](uint32_t shape) { return objects[shapes[shape].object - 1]; });
+        add_ranks(image, CRYPTO_OBJECT, coverage, [&](ShapePart part) { return objects[object(part) - 1]; });
         add_ranks(image, CRYPTO_MATERIAL, coverage,
-                  [&](uint32_t shape) { return materials[shapes[shape].material - 1]; });
+                  [&](ShapePart part) { return materials[material(part) - 1]; });
     }
 }
 

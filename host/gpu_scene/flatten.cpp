@@ -53,7 +53,7 @@ class Flattener {
     void add(const Shape& shape, uint index, bool passable) {
         index_ = index;
         passable_ = passable ? 1 : 0;
-        flat_.shape_ids.push_back({flat_.id_count, index});
+        flat_.shape_ids.push_back({flat_.id_count, index, 0});
         std::visit([&](const auto& geometry) { add(shape, geometry); }, shape.geometry);
     }
 
@@ -68,6 +68,7 @@ class Flattener {
         flat_.flattened += drop_flat_triangles(mesh);
         const uint first_id = flat_.id_count;
         flat_.id_count += uint(mesh.triangles.size());
+        add_groups(mesh.groups, first_id);
         const bool smooth = !mesh.normals.empty();
         const std::vector<vec3>& p = mesh.positions;
         const std::vector<vec3>& n = mesh.normals;
@@ -83,6 +84,19 @@ class Flattener {
             add_attributes(corner_values(mesh.uv0, v, vec2(0.0f)), corner_values(mesh.uv1, v, vec2(0.0f)),
                            corner_values(mesh.colors, v, vec4(1.0f)),
                            corner_values(mesh.tangents, v, vec4(1.0f, 0.0f, 0.0f, 1.0f)));
+        }
+    }
+
+    // Notes which ids belong to which groups of a mesh; the first of them is noted as that of group 0.
+    void add_groups(const std::vector<uint32_t>& groups, uint first_id) {
+        for (uint i = 0; i < groups.size(); ++i) {
+            ShapeIds& last = flat_.shape_ids.back();
+            if (groups[i] == last.group) continue;
+            if (i == 0) {
+                last.group = groups[i];
+            } else {
+                flat_.shape_ids.push_back({first_id + i, index_, groups[i]});
+            }
         }
     }
 

@@ -29,10 +29,11 @@ struct EmittingPiece {
     PieceUv uv;
 };
 
-// Where the ids of a shape's surfaces begin, which end where the next shape's begin.
+// Where the ids of surfaces of a shape, and of one group of its mesh, begin, which end where the next begin.
 struct ShapeIds {
     uint32_t first = 0;
     uint32_t shape = 0;
+    uint32_t group = 0;  // As TriangleMesh::groups.
 };
 
 struct FlatScene {
@@ -47,7 +48,7 @@ struct FlatScene {
     uint64_t spheres = 0;             // And of these,
     uint64_t coarse_spheres = 0;      // those that rounding moves by more than 3 % of their radius.
     uint32_t id_count = 0;            // Ids that the surfaces have: one for each triangle, sphere and disk.
-    std::vector<ShapeIds> shape_ids;  // Of each shape, ascending.
+    std::vector<ShapeIds> shape_ids;  // Of all shapes, ascending.
     std::vector<EmittingPiece> pieces;
 };
 

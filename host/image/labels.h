@@ -17,8 +17,9 @@ struct LabelledInstance {
     uint32_t copy = 0;    // The number of the instance among those of the object, from 0.
 };
 
+// The numbers of a shape; of group g of its mesh, those of object and instance are greater by g.
 struct ShapeLabels {
-    uint32_t object = 0, instance = 0, material = 0;  // Their numbers.
+    uint32_t object = 0, instance = 0, material = 0;
 };
 
 // Number n is element n - 1.

@@ -1,4 +1,4 @@
-// Renderer::coverage(): from the words of the kernel of first hits to the shapes that pixels show.
+// Renderer::coverage(): from the words of the kernel of first hits to what pixels show.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -16,39 +16,44 @@ namespace {
 // Pixels of a submission: at 64 rays each, far below a watchdog's limit.
 constexpr uint32_t RUN_PIXELS = 1u << 15;
 
-// Finds the shape of a word. Rays side by side mostly hit the same one, so the last answer is kept.
-class ShapeOfWord {
+// Finds what a word says. Rays side by side mostly hit the same, so the last answer is kept.
+class PartOfWord {
   public:
-    explicit ShapeOfWord(const GpuScene& scene) : shapes_(scene.shape_ids) {
+    explicit PartOfWord(const GpuScene& scene) : parts_(scene.shape_ids) {
         for (const InstancePlace& place : scene.instances)
             instances_.emplace(place.node, place.shape);
     }
 
-    uint32_t operator()(uint32_t word) {
-        if (word == 0) return Coverage::NO_SHAPE;
-        if (word != last_word_) {
-            last_word_ = word;
-            last_ = (word & FIRST_HIT_INSTANCE) != 0 ? instances_.at(word & ~FIRST_HIT_INSTANCE)
-                                                     : shape_of_id(word - 1);
-        }
-        return last_;
+    ShapePart operator()(uint32_t word) {
+        if (word == 0) return NO_PART;
+        if ((word & FIRST_HIT_INSTANCE) != 0) return of_node(word & ~FIRST_HIT_INSTANCE);
+        return of_id(word - 1);
     }
 
   private:
-    uint32_t shape_of_id(uint32_t id) {
-        if (id >= begin_ && id < end_) return found_;
-        const auto after = std::ranges::upper_bound(shapes_, id, {}, &ShapeIds::first);
-        assert(after != shapes_.begin());
-        const ShapeIds& shape = *(after - 1);
-        begin_ = shape.first;
-        end_ = after == shapes_.end() ? UINT32_MAX : after->first;
-        return found_ = shape.shape;
+    ShapePart of_node(uint32_t node) {
+        if (node != node_) {
+            node_ = node;
+            of_node_ = {instances_.at(node), 0};
+        }
+        return of_node_;
     }
 
-    std::span<const ShapeIds> shapes_;
+    ShapePart of_id(uint32_t id) {
+        if (id >= begin_ && id < end_) return of_ids_;
+        const auto after = std::ranges::upper_bound(parts_, id, {}, &ShapeIds::first);
+        assert(after != parts_.begin());
+        const ShapeIds& part = *(after - 1);
+        begin_ = part.first;
+        end_ = after == parts_.end() ? UINT32_MAX : after->first;
+        return of_ids_ = {part.shape, part.group};
+    }
+
+    std::span<const ShapeIds> parts_;
     std::unordered_map<uint32_t, uint32_t> instances_;  // Shapes, by node.
-    uint32_t last_word_ = 0, last_ = Coverage::NO_SHAPE;
-    uint32_t begin_ = 0, end_ = 0, found_ = 0;  // The ids of the shape that was found last.
+    // The last answers: of a node, and of the ids from begin_ to before end_.
+    uint32_t node_ = NO_INSTANCE, begin_ = 0, end_ = 0;
+    ShapePart of_node_{}, of_ids_{};
 };
 
 }  // namespace
@@ -67,8 +72,9 @@ Coverage Renderer::coverage(const GpuScene& scene) {
     kernel.bind(BINDING_FIRST_HITS, words);
 
     Coverage coverage;
-    ShapeOfWord shape_of(scene);
+    PartOfWord part_of(scene);
     std::array<uint32_t, FIRST_HITS> of_pixel;
+    std::array<ShapePart, FIRST_HITS> shown;
     for (uint32_t first = 0; first < pixels; first += at_once) {
         const PixelRun run{first, settings_.crop.width()};
         const uint32_t count = std::min(at_once, pixels - first);
@@ -76,8 +82,8 @@ Coverage Renderer::coverage(const GpuScene& scene) {
         commands_.submit_and_wait();
         for (uint32_t i = 0; i < count; ++i) {
             std::memcpy(of_pixel.data(), words.mapped() + i * sizeof of_pixel, sizeof of_pixel);
-            std::ranges::transform(of_pixel, of_pixel.begin(), std::ref(shape_of));
-            coverage.add(of_pixel);
+            std::ranges::transform(of_pixel, shown.begin(), std::ref(part_of));
+            coverage.add(shown);
         }
     }
     return coverage;

@@ -5,6 +5,7 @@
 #include <map>
 #include <unordered_map>
 #include <utility>
+#include <variant>
 
 #include "base/error.h"
 #include "base/printable.h"
@@ -24,8 +25,11 @@ class Labeller {
         for (const std::string& name : scene_.objects)
             names_.note(utf8(name));
         labels_.shapes.reserve(scene_.shapes.size());
-        for (const Shape& shape : scene_.shapes)
-            labels_.shapes.push_back({object_of(shape), instance_of(shape), shape.material + 1});
+        count_groups();
+        for (const Shape& shape : scene_.shapes) {
+            const uint32_t object = object_of(shape);
+            labels_.shapes.push_back({object, instance_of(shape, object), shape.material + 1});
+        }
         check_label_count(labels_.objects.size(), "objects");
         check_label_count(labels_.instances.size(), "instances");
         check_label_count(labels_.materials.size(), "materials");
@@ -42,28 +46,43 @@ class Labeller {
         }
     }
 
-    uint32_t object_of(const Shape& shape) {
-        if (shape.object == NO_OBJECT) {
-            labels_.objects.push_back(names_.choose(concat("shape ", labels_.shapes.size())));
-            return uint32_t(labels_.objects.size());
+    // How many objects have the mesh of that shape in common, for those of which it is the first.
+    void count_groups() {
+        for (const Shape& shape : scene_.shapes) {
+            uint32_t& count = groups_.try_emplace(shape.object, 1).first->second;
+            const auto* const instance = std::get_if<MeshInstance>(&shape.geometry);
+            if (instance == nullptr || shape.object == NO_OBJECT) continue;
+            for (const uint32_t group : scene_.meshes[instance->mesh].groups)
+                count = std::max(count, group + 1);
         }
-        const auto [known, is_new] = objects_.try_emplace(shape.object, labels_.objects.size() + 1);
-        if (is_new) labels_.objects.push_back(utf8(scene_.objects[shape.object]));
-        return uint32_t(known->second);
     }
 
-    uint32_t instance_of(const Shape& shape) {
-        const auto object =
-            uint32_t(shape.object == NO_OBJECT ? labels_.objects.size() : objects_.at(shape.object));
+    uint32_t object_of(const Shape& shape) {
+        std::vector<std::string>& objects = labels_.objects;
+        const auto number = uint32_t(objects.size() + 1);
+        if (shape.object == NO_OBJECT) {
+            objects.push_back(names_.choose(concat("shape ", labels_.shapes.size())));
+            return number;
+        }
+        const auto [known, is_new] = objects_.try_emplace(shape.object, number);
+        for (uint32_t i = 0; is_new && i < groups_.at(shape.object); ++i)
+            objects.push_back(utf8(scene_.objects[shape.object + i]));
+        return known->second;
+    }
+
+    uint32_t instance_of(const Shape& shape, uint32_t object) {
+        std::vector<LabelledInstance>& instances = labels_.instances;
         const auto [known, is_new] =
-            instances_.try_emplace({object, shape.copy}, uint32_t(labels_.instances.size() + 1));
-        if (is_new) labels_.instances.push_back({object, shape.copy});
+            instances_.try_emplace({object, shape.copy}, uint32_t(instances.size() + 1));
+        for (uint32_t i = 0; is_new && i < groups_.at(shape.object); ++i)
+            instances.push_back({object + i, shape.copy});
         return known->second;
     }
 
     const Scene& scene_;
     UniqueNames names_;
-    std::unordered_map<uint32_t, size_t> objects_;                 // Numbers, by index into Scene::objects.
+    std::unordered_map<uint32_t, uint32_t> groups_;                // Objects in a row, by index of the first.
+    std::unordered_map<uint32_t, uint32_t> objects_;               // Numbers, by index into Scene::objects.
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> instances_;  // Numbers, by object and copy.
     Labels labels_;
 };

@@ -112,7 +112,18 @@ bool is_too_coarse(uint64_t coarse, uint64_t triangles) {
 }
 
 size_t drop_flat_triangles(TriangleMesh& mesh) {
-    return std::erase_if(mesh.triangles, [&](uvec3 t) { return scaled_normal(mesh, t) == glm::dvec3(0.0); });
+    const auto is_flat = [&](uvec3 t) { return scaled_normal(mesh, t) == glm::dvec3(0.0); };
+    if (mesh.groups.empty()) return std::erase_if(mesh.triangles, is_flat);
+    size_t kept = 0;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (is_flat(mesh.triangles[i])) continue;
+        mesh.triangles[kept] = mesh.triangles[i];
+        mesh.groups[kept++] = mesh.groups[i];
+    }
+    const size_t dropped = mesh.triangles.size() - kept;
+    mesh.triangles.resize(kept);
+    mesh.groups.resize(kept);
+    return dropped;
 }
 
 void smooth_normals(TriangleMesh& mesh) {
@@ -158,6 +169,8 @@ std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh, std::span<const u
     std::vector<TriangleMesh> parts(count, TriangleMesh{.origin = mesh.origin});
     for (size_t i = 0; i < mesh.triangles.size(); ++i)
         parts[part_of[i]].triangles.push_back(mesh.triangles[i]);
+    for (size_t i = 0; i < mesh.groups.size(); ++i)
+        parts[part_of[i]].groups.push_back(mesh.groups[i]);
     struct Copy {
         size_t part;     // The part to which the vertex was copied last.
         uint32_t index;  // Its index in that part.

@@ -194,6 +194,9 @@ struct TriangleMesh {
     std::vector<vec2> uv1{};         // Second set.
     std::vector<vec4> colors{};      // Linear RGB, and opacity.
     std::vector<uvec3> triangles{};  // Indices of vertices.
+    // For each triangle, which of several objects it belongs to, counted from that of the shape. Empty: 0.
+    // Only of meshes that are shown once.
+    std::vector<uint32_t> groups{};
 };
 
 // A mesh of the scene, placed in the world.

@@ -85,12 +85,18 @@ Material default_material(bool has_colors) {
 }
 
 void SceneBuilder::begin_object(const std::string& name) {
+    begin_objects({name});
+}
+
+void SceneBuilder::begin_objects(const std::vector<std::string>& names) {
     std::vector<std::string>& objects = scene_.objects;
     for (; named_objects_ < objects.size(); ++named_objects_)
         object_names_.note(objects[named_objects_]);
     object_ = uint32_t(objects.size());
     copy_ = 0;
-    objects.push_back(object_names_.choose(name));
+    for (const std::string& name : names)
+        objects.push_back(object_names_.choose(name));
+    named_objects_ = objects.size();
 }
 
 void SceneBuilder::push(Shape shape) {

@@ -51,6 +51,8 @@ class SceneBuilder {
     // that is taken; of its first instance, or of the next one. Before the first call, shapes are no
     // object's.
     void begin_object(const std::string& name);
+    // The same for objects that have one mesh in common (TriangleMesh::groups); at least one.
+    void begin_objects(const std::vector<std::string>& names);
     void begin_copy() { ++copy_; }
 
     // Adds a finished geometry in world space.

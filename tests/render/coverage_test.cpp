@@ -43,7 +43,7 @@ std::optional<double> hit(const MeshInstance& /*instance*/, dvec3 /*o*/, dvec3 /
 }
 
 uint32_t first_shape(const Scene& scene, dvec3 o, dvec3 d) {
-    uint32_t nearest = Coverage::NO_SHAPE;
+    uint32_t nearest = NO_PART.shape;
     double least = double(INFINITE);
     for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
         const auto t = std::visit([&](const auto& g) { return hit(g, o, d); }, scene.shapes[i].geometry);
@@ -95,8 +95,8 @@ class CoverageTest : public RenderTest {
 };
 
 uint32_t hits_of(const Coverage& coverage, size_t pixel, uint32_t shape) {
-    for (const CoveredShape& covered : coverage.at(pixel)) {
-        if (covered.shape == shape) return covered.hits;
+    for (const CoveredPart& covered : coverage.at(pixel)) {
+        if (covered.part.shape == shape) return covered.hits;
     }
     return 0;
 }
@@ -239,8 +239,8 @@ TEST_F(CoverageTest, IsThatOfTheFirstSamples) {
     uint32_t different = 0, total = 0, of_veil = 0;
     for (size_t i = 0; i < covered.pixel_count(); ++i) {
         uint32_t hits = 0;
-        for (const CoveredShape& shape : covered.at(i))
-            hits += shape.hits;
+        for (const CoveredPart& part : covered.at(i))
+            hits += part.hits;
         different += uint32_t(std::abs(double(hits) - double(image.find("A")->values[i]) * FIRST_HITS) + 0.5);
         total += hits;
         of_veil += hits_of(covered, i, 1);
@@ -248,6 +248,27 @@ TEST_F(CoverageTest, IsThatOfTheFirstSamples) {
     EXPECT_GT(of_veil, 500u);
     EXPECT_GT(total, 5000u);
     EXPECT_LT(different, total / 1000);
+}
+
+// Squares from left to right, of groups 2, 0 and 1, in a mesh that has a flat triangle, too.
+TEST_F(CoverageTest, TellsGroupsOfAMeshApart) {
+    Scene scene = scene_with_camera(dvec3(0, 0, 4), dvec3(0), 0.6f);
+    add_diffuse(scene, vec3(0.5f));
+    TriangleMesh mesh;
+    for (const float x : {-1.2f, -0.4f, 0.4f}) {
+        add_triangle(mesh, vec3(x, -1, 0), vec3(x + 0.8f, -1, 0), vec3(x + 0.8f, 1, 0));
+        add_triangle(mesh, vec3(x, -1, 0), vec3(x + 0.8f, 1, 0), vec3(x, 1, 0));
+    }
+    add_triangle(mesh, vec3(0), vec3(1, 0, 0), vec3(2, 0, 0));
+    std::swap(mesh.triangles[1], mesh.triangles[6]);
+    mesh.groups = {2, 9, 0, 0, 1, 1, 2};
+    add_shape(scene, Sphere{dvec3(0, 0, -9), 0.1}, 0);
+    add_shape(scene, mesh, 0);
+    const Coverage covered = coverage(scene);
+    const auto at = [&](uint32_t x) { return covered.at(8 * WIDTH + x).front(); };
+    EXPECT_EQ(at(5), (CoveredPart{{1, 2}, FIRST_HITS}));
+    EXPECT_EQ(at(12), (CoveredPart{{1, 0}, FIRST_HITS}));
+    EXPECT_EQ(at(18), (CoveredPart{{1, 1}, FIRST_HITS}));
 }
 
 }  // namespace

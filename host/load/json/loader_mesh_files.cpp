@@ -53,6 +53,7 @@ void read_obj_with_materials(const Node& node, ShapeList& shapes) {
     const bool both_sides = two_sided && two_sided->boolean();
     bool emits = false;
     for (MeshPart& part : obj.parts) {
+        part.mesh.groups = {};  // All of it is one object.
         std::optional<Emission>& emission = part.appearance.emission;
         if (emission) emission->two_sided = both_sides;
         emits = emits || emission;

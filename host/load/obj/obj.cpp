@@ -93,9 +93,11 @@ TriangleMesh build_mesh(ObjFile& obj, MeshNormals normals) {
     obj.normals = {};
     mesh.triangles.reserve(corners.size() - 2 * obj.sizes.size());
     std::span<const uint32_t> rest = corners;
-    for (const uint32_t size : obj.sizes) {
+    for (size_t face = 0; face < obj.sizes.size(); ++face) {
+        const uint32_t size = obj.sizes[face];
         add_polygon(mesh, rest.first(size));
         rest = rest.subspan(size);
+        if (!obj.group_of.empty()) mesh.groups.insert(mesh.groups.end(), size - 2, obj.group_of[face]);
     }
     if (normals == MeshNormals::smooth) smooth_normals(mesh);
     return mesh;
@@ -107,12 +109,13 @@ TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals, co
                       std::vector<std::string>& warnings) {
     ObjFile obj = parse_obj(reach.read(file), file.string());
     std::ranges::move(obj.warnings, std::back_inserter(warnings));
+    obj.group_of = {};
     return build_mesh(obj, normals);
 }
 
 ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach) {
     ObjFile obj = parse_obj(reach.read(file), file.string());
-    ObjParts result{std::move(obj.libraries), {}, std::move(obj.warnings)};
+    ObjParts result{std::move(obj.libraries), {}, std::move(obj.groups), std::move(obj.warnings)};
     std::map<std::string_view, uint32_t> indices;  // Indices of the parts, by name; empty for no material.
     std::vector<uint32_t> part_of;                 // For each triangle.
     std::vector<bool> has_uvs;                     // For each part: whether a corner has some.

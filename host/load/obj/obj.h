@@ -13,12 +13,12 @@
 
 namespace candela {
 
-// Reads all faces of a file as one mesh, in the units of the file; groups and materials are ignored. Polygons
-// are cut into triangles; corners with the same indices share a vertex, unless many others lie there; unused
-// vertices are dropped. A corner without texture coordinates gets (0, 0), but a mesh has none if all of its
-// corners lack them. With MeshNormals::file, a corner without a normal gets one of length zero, and a file
-// without normals gives a mesh without normals. `warnings` gets what is odd but usable. Throws Error as
-// FileReach::read() and parse_obj() do.
+// Reads all faces of a file as one mesh, in the units of the file; objects, groups and materials are ignored.
+// Polygons are cut into triangles; corners with the same indices share a vertex, unless many others lie
+// there; unused vertices are dropped. A corner without texture coordinates gets (0, 0), but a mesh has none
+// if all of its corners lack them. With MeshNormals::file, a corner without a normal gets one of length zero,
+// and a file without normals gives a mesh without normals. `warnings` gets what is odd but usable. Throws
+// Error as FileReach::read() and parse_obj() do.
 TriangleMesh load_obj(const std::filesystem::path& file, MeshNormals normals, const FileReach& reach,
                       std::vector<std::string>& warnings);
 
@@ -31,8 +31,9 @@ struct ObjPart {
 };
 
 struct ObjParts {
-    std::vector<ObjName> libraries;  // The names after each `mtllib`, in the order of the file.
-    std::vector<ObjPart> parts;      // One for each material in use, in the order of first use.
+    std::vector<ObjName> libraries;   // The names after each `mtllib`, in the order of the file.
+    std::vector<ObjPart> parts;       // One for each material in use, in the order of first use.
+    std::vector<std::string> groups;  // As in ObjFile; the meshes say which triangles belong to which.
     std::vector<std::string> warnings;
 };
 
@@ -43,6 +44,7 @@ ObjParts load_obj_parts(const std::filesystem::path& file, MeshNormals normals, 
 // A file with the materials that it names.
 struct ObjShape {
     std::vector<MeshPart> parts{};
+    std::vector<std::string> groups{};    // As in ObjParts.
     bool has_materials = false;           // Whether any face has one; if not, all are grey.
     std::vector<std::string> warnings{};  // `file:line: ...` or `file: ...`.
 };

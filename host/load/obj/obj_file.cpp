@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "base/error.h"
@@ -32,6 +33,8 @@ class ObjReader {
         for_each_obj_statement(text_, [&](uint64_t, std::string_view command, std::string_view) {
             if (const auto kind = obj_kind_of(command)) ++totals_[*kind];
             if (is_obj_face(command)) ++faces;
+            has_objects_ = has_objects_ || command == "o";
+            has_groups_ = has_groups_ || command == "o" || command == "g";
         });
         obj_.positions.reserve(size_t(totals_[OBJ_POSITION]));
         obj_.uvs.reserve(size_t(totals_[OBJ_UV]));
@@ -40,6 +43,7 @@ class ObjReader {
         if (totals_[OBJ_UV] > 0) obj_.corner_uvs.reserve(3 * faces);
         obj_.sizes.reserve(faces);
         obj_.use_of.reserve(faces);
+        if (has_groups_) obj_.group_of.reserve(faces);
         for_each_obj_statement(text_, [this](uint64_t line, std::string_view command, std::string_view rest) {
             line_ = line;
             read_line(command, rest);
@@ -78,6 +82,9 @@ class ObjReader {
             obj_.libraries.push_back({std::string(trimmed(rest)), line_});
         } else if (command == "usemtl") {
             obj_.uses.push_back({std::string(trimmed(rest)), line_});
+        } else if (command == (has_objects_ ? "o" : "g")) {
+            group_name_ = trimmed(rest);
+            group_ = NO_GROUP;
         } else if (command == "#MRGB") {
             colors_.add_mrgb(trimmed(rest));
         } else if (command == "l" || command == "p") {
@@ -90,6 +97,14 @@ class ObjReader {
             if (*kind == OBJ_UV) read_uv(rest);
             if (*kind == OBJ_NORMAL) read_normal(rest);
         }
+    }
+
+    // The index of the group of the faces that follow.
+    uint32_t group() {
+        if (group_ != NO_GROUP) return group_;
+        const auto [known, is_new] = group_indices_.try_emplace(group_name_, uint32_t(obj_.groups.size()));
+        if (is_new) obj_.groups.push_back(group_name_);
+        return group_ = known->second;
     }
 
     void read_vertex(std::string_view rest) {
@@ -185,6 +200,7 @@ class ObjReader {
         }
         obj_.sizes.push_back(corners);
         obj_.use_of.push_back(uint32_t(obj_.uses.size() - 1));
+        if (has_groups_) obj_.group_of.push_back(group());
     }
 
     // `corner` is v, v/vt, v//vn or v/vt/vn; slashes at its end are ignored.
@@ -245,6 +261,7 @@ class ObjReader {
                     if (totals_[OBJ_UV] > 0) obj_.corner_uvs[kept_corners] = obj_.corner_uvs[i];
                 }
                 obj_.sizes[kept] = obj_.sizes[face];
+                if (has_groups_) obj_.group_of[kept] = obj_.group_of[face];
                 obj_.use_of[kept++] = obj_.use_of[face];
             }
             begin = end;
@@ -253,6 +270,7 @@ class ObjReader {
         if (totals_[OBJ_UV] > 0) obj_.corner_uvs.resize(kept_corners);
         obj_.sizes.resize(kept);
         obj_.use_of.resize(kept);
+        if (has_groups_) obj_.group_of.resize(kept);
         for (size_t i = kept; i < faces; ++i) {
             const std::string what = "a face with a vertex that is not finite is left out";
             warnings_.add(what, file_ + ": " + what);
@@ -264,7 +282,13 @@ class ObjReader {
     std::array<int64_t, 3> totals_{};  // Numbers of each kind, in the whole file.
     std::array<int64_t, 3> counts_{};  // Numbers of each kind, so far.
     uint64_t line_ = 0;
-    uint64_t faces_ = 0;      // So far.
+    uint64_t faces_ = 0;        // So far.
+    bool has_objects_ = false;  // Whether there is an `o`,
+    bool has_groups_ = false;   // and whether there is an `o` or a `g`.
+    std::string group_name_;    // Of the faces that follow,
+    static constexpr uint32_t NO_GROUP = ~0u;
+    uint32_t group_ = NO_GROUP;  // and its index, if it is known.
+    std::unordered_map<std::string, uint32_t> group_indices_;
     bool has_uvs_ = false;    // Whether a corner has texture coordinates.
     bool all_finite_ = true;  // All positions so far.
     CountedWarnings warnings_;

@@ -39,11 +39,17 @@ struct ObjFile {
     std::vector<ObjName> uses{{}};
     std::vector<uint32_t> use_of;  // For each face, an index into `uses`.
 
+    // The names after `o`, or after `g` if there is no `o`, of which there are faces, each once; faces before
+    // any have one without letters. For each face an index into them. Both are empty if there is no such
+    // statement.
+    std::vector<std::string> groups;
+    std::vector<uint32_t> group_of;
+
     std::vector<std::string> warnings;  // `file:line: ...` of the first of each kind, or `file: ...`.
 };
 
-// Reads the text of a file; `file` is its name in messages. Groups and the w of texture coordinates are
-// ignored. With a warning,
+// Reads the text of a file; `file` is its name in messages. The w of texture coordinates is ignored. With a
+// warning,
 //   left out are faces with fewer than 3 corners or with vertices that are not finite, lines, points, curves
 //   and surfaces;
 //   corners have no normal, and texture coordinates (0, 0), where theirs are not in the file or not finite;

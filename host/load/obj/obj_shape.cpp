@@ -98,7 +98,8 @@ ObjShape load_obj_shape(const std::filesystem::path& file, MeshNormals normals, 
                         SceneBuilder& builder) {
     ObjParts obj = load_obj_parts(file, normals, builder.scene().reach);
     builder.scene().files.push_back(file);
-    ObjShape shape{.has_materials = std::ranges::any_of(
+    ObjShape shape{.groups = std::move(obj.groups),
+                   .has_materials = std::ranges::any_of(
                        obj.parts, [](const ObjPart& part) { return part.material.has_value(); })};
     const auto is_there = [&](const ObjPart& part) {
         return builder.find_file_appearance(name_of(name, part)) != nullptr;
@@ -124,7 +125,9 @@ Scene load_obj_scene(const std::filesystem::path& file, const ReachOptions& reac
     SceneBuilder builder(scene);
     ObjShape shape = load_obj_shape(file, MeshNormals::file, file.filename().string(), builder);
     scene.warnings = std::move(shape.warnings);
-    builder.begin_object(file.stem().string());
+    if (shape.groups.empty()) shape.groups.emplace_back();
+    std::ranges::replace(shape.groups, "", file.stem().string());
+    builder.begin_objects(shape.groups);
     builder.add_mesh(file.string(), Transform(), std::move(shape.parts));
     add_default_view(scene);
     return scene;

@@ -15,14 +15,14 @@ namespace {
 
 // A pixel whose rays hit these shapes that often, and otherwise nothing.
 void add_pixel(Coverage& coverage, const std::vector<std::pair<uint32_t, uint32_t>>& shown) {
-    std::vector<uint32_t> shapes(FIRST_HITS, Coverage::NO_SHAPE);
+    std::vector<ShapePart> parts(FIRST_HITS, NO_PART);
     size_t next = 0;
     for (const auto& [shape, hits] : shown) {
         for (uint32_t i = 0; i < hits; ++i)
-            shapes[next++] = shape;
+            parts[next++] = {shape, 0};
     }
-    std::ranges::reverse(shapes);
-    coverage.add(std::span<const uint32_t, FIRST_HITS>(shapes.data(), FIRST_HITS));
+    std::ranges::reverse(parts);
+    coverage.add(std::span<const ShapePart, FIRST_HITS>(parts.data(), FIRST_HITS));
 }
 
 // An image of one row with the layers of these pixels.
@@ -98,6 +98,19 @@ TEST(IdLayers, NamesOfOneIdAreOneMatte) {
     const Image image = layers_of(coverage, labels);
     EXPECT_EQ(values(image, "CryptoObject00.G")[0], 50.0f / 64.0f);
     EXPECT_EQ(values(image, OBJECT_ID)[0], 3.0f);  // Their numbers differ.
+}
+
+TEST(IdLayers, GroupsOfAMeshAreObjectsInARow) {
+    Coverage coverage;
+    std::vector<ShapePart> parts(FIRST_HITS, {3, 0});
+    std::fill_n(parts.begin(), 40, ShapePart{3, 2});
+    coverage.add(std::span<const ShapePart, FIRST_HITS>(parts.data(), FIRST_HITS));
+    const Image image = layers_of(coverage, some_labels());
+    EXPECT_EQ(values(image, OBJECT_ID)[0], 4.0f);
+    EXPECT_EQ(values(image, INSTANCE_ID)[0], 5.0f);
+    EXPECT_EQ(values(image, MATERIAL_ID)[0], 2.0f);
+    EXPECT_EQ(std::bit_cast<uint32_t>(values(image, "CryptoObject00.R")[0]), crypto_id("d"));
+    EXPECT_EQ(values(image, "CryptoMaterial00.G")[0], 1.0f);
 }
 
 }  // namespace

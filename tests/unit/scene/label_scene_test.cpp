@@ -69,5 +69,29 @@ TEST(LabelScene, WarnsOfNamesThatCryptomatteCannotTellApart) {
                                         "are one matte; rename all but one"}));
 }
 
+// Shapes whose meshes belong to the same three objects.
+TEST(LabelScene, ObjectsOfOneMeshHaveNumbersInARow) {
+    Scene scene;
+    scene.materials.resize(1);
+    SceneBuilder builder(scene);
+    builder.begin_object("floor");
+    builder.add({}, Sphere{});
+    builder.begin_objects({"pot", "lid", "floor"});
+    for (const std::vector<uint32_t>& groups : {std::vector<uint32_t>{0, 0}, {2, 1}}) {
+        scene.meshes.push_back({.triangles = {uvec3(0), uvec3(0)}, .groups = groups});
+        builder.add({}, MeshInstance{uint32_t(scene.meshes.size() - 1)});
+    }
+    builder.begin_object("cup");
+    builder.add({}, Sphere{});
+    const Labels labels = label_scene(scene);
+    EXPECT_EQ(labels.objects, (std::vector<std::string>{"floor", "pot", "lid", "floor (2)", "cup"}));
+    EXPECT_EQ(labels.instances.size(), 5u);
+    EXPECT_EQ(labels.shapes[1].object, 2u);
+    EXPECT_EQ(labels.shapes[2].object, 2u);
+    EXPECT_EQ(labels.shapes[2].instance, 2u);
+    EXPECT_EQ(labels.shapes[3].object, 5u);
+    EXPECT_EQ(labels.shapes[3].instance, 5u);
+}
+
 }  // namespace
 }  // namespace candela

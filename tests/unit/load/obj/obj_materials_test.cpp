@@ -300,5 +300,31 @@ TEST_F(ObjMaterials, LeaveOutPartsWithoutArea) {
                          "the mesh has no triangle with an area; check its positions");
 }
 
+// The objects of pictures of ids. Of flat triangles nothing is left.
+TEST_F(ObjMaterials, GroupsAreObjectsOfASceneByItself) {
+    const auto scene_of_file = [this](const std::string& text) {
+        write(text);
+        return load_scene(folder_.path() / "m.obj");
+    };
+    const Scene scene = scene_of_file(
+        "mtllib m.mtl\nf 1 2 2\nf 1 2 3\no none\no lid\nusemtl red\nf 1 3 4\ng handle\no pot\nf 1 2 2\nf 1 2 "
+        "3\n"
+        "o lid\nf 1 2 3 4\n");
+    EXPECT_EQ(scene.objects, (std::vector<std::string>{"m", "lid", "pot"}));
+    ASSERT_EQ(scene.shapes.size(), 2u);
+    for (const Shape& shape : scene.shapes)
+        EXPECT_EQ(shape.object, 0u);
+    EXPECT_EQ(scene.meshes[0].groups, (std::vector<uint32_t>{0}));
+    EXPECT_EQ(scene.meshes[1].groups, (std::vector<uint32_t>{1, 2, 1, 1}));
+
+    EXPECT_EQ(scene_of_file("g side left\nf 1 2 3\ng back\nf 1 3 4\n").objects,
+              (std::vector<std::string>{"side left", "back"}));
+    EXPECT_EQ(scene_of_file("f 1 2 3\n").objects, (std::vector<std::string>{"m"}));
+
+    const Scene native = load("mtllib m.mtl\nusemtl red\no lid\nf 1 2 3\no pot\nf 1 3 4\n");
+    EXPECT_EQ(native.objects, (std::vector<std::string>{"m"}));
+    EXPECT_TRUE(native.meshes[0].groups.empty());
+}
+
 }  // namespace
 }  // namespace candela
