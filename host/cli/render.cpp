@@ -31,7 +31,8 @@ of the picture among those of its scene, from 0, and {frame} that of the frame; 
 {{ and }} are braces. Folders whose names have fields are made. A list has the path of a scene on each line,
 relative to the current folder; empty lines and those that begin with # are left out.
 Of several pictures, each that fails is an error, and the others go on. The exit code is 0 if none failed, that
-of the errors if they have the same, and otherwise 1. Ctrl-C ends a batch with whole pictures only.
+of the errors if they have the same, and otherwise 1. Ctrl-C ends a batch with whole pictures only, and so does
+--batch-time, with the exit code 7.
 
 Ctrl-C stops early and writes the image so far (exit code 130); so does closing the terminal, except under
 nohup. A second Ctrl-C ends the program at once.

@@ -98,6 +98,15 @@ TEST_F(Batch, HasTheBitsOfSinglePictures) {
     }
 }
 
+TEST_F(Batch, ScenesThatDifferInOneNumberHaveDifferentIdentities) {
+    std::string other = read_file(square_);
+    other.replace(other.find("[1, 2, 3]"), 9, "[1, 2, 4]");
+    write("a.json", other);
+    ASSERT_EQ(quickly(render_all({square_, a_}, "out/{stem}.exr")).exit_code, 0);
+    EXPECT_NE(read_exr(file("out/square.exr")).attributes.at("candela.identity"),
+              read_exr(file("out/a.exr")).attributes.at("candela.identity"));
+}
+
 TEST_F(Batch, GoesOnAfterAnError) {
     const Words scenes{a_, bad_, file("none.json"), square_};
     const ProcessResult result =
