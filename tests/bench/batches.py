@@ -208,10 +208,10 @@ def row(name, batch, result, ours):
     cells += [of("overhead cpu"), f"{result['kernels']}, {result['kernels wall']:.2f} s" if "kernels" in result else ""]
     cells += [f"{result['noise']:.5f}" if "noise" in result else ""]
     if "noise" in result and "noise" in ours:
-        cells += [f"{ours['wall'] * ours['noise'] / (result['wall'] * result['noise']):.2f}",
-                  f"{result['mean'] / ours['mean'] - 1:+.1%}"]
+        cells += [f"{ours[what] * ours['noise'] / (result[what] * result['noise']):.2f}" for what in ("wall", "cpu")]
+        cells += [f"{result['mean'] / ours['mean'] - 1:+.1%}"]
     else:
-        cells += ["", ""]
+        cells += ["", "", ""]
     return "| " + " | ".join(cells) + " |"
 
 
@@ -219,7 +219,7 @@ def print_table(batch, results):
     print(f"\n**{batch.name}**: {batch.count} of {batch.total} pictures, {batch.size}x{batch.size}, {batch.spp} samples; "
           "times in milliseconds for each picture\n")
     columns = ["", "wall", "CPU", "of it: scene", "host", "develop", "encode", "overhead", "kernels", "relMSE",
-               "candela / it, wall at equal noise", "mean"]
+               "candela / it, wall at equal noise", "CPU", "mean"]
     print("| " + " | ".join(columns) + " |\n" + "|---" * len(columns) + "|")
     for name, result in results.items():
         print(row(name, batch, result, results.get("candela", {})), flush=True)
