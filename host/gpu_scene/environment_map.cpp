@@ -20,18 +20,35 @@ double texel_solid_angle(uvec2 size, uint32_t row) {
     return 4.0 * std::numbers::pi / size.x * std::sin((row + 0.5) * step) * std::sin(0.5 * step);
 }
 
-// The unit direction through the middle of a texel, in the map's own axes.
-dvec3 texel_direction(uvec2 size, uint32_t x, uint32_t y) {
-    const double theta = std::numbers::pi * (y + 0.5) / size.y;
-    const double phi = 2.0 * std::numbers::pi * ((x + 0.5) / size.x + 0.5);
-    return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
-}
+// The unit directions through the middles of texels, in the map's own axes.
+class Directions {
+  public:
+    explicit Directions(uvec2 size) : height_(size.y) {
+        for (uint32_t x = 0; x < size.x; ++x) {
+            const double phi = 2.0 * std::numbers::pi * ((x + 0.5) / size.x + 0.5);
+            columns_.emplace_back(std::sin(phi), -std::cos(phi));
+        }
+    }
+    void begin_row(uint32_t y) {
+        const double theta = std::numbers::pi * (y + 0.5) / height_;
+        sine_ = std::sin(theta);
+        cosine_ = std::cos(theta);
+    }
+    // Of a texel in that row.
+    dvec3 operator()(uint32_t x) const { return {sine_ * columns_[x].x, cosine_, sine_ * columns_[x].y}; }
+
+  private:
+    uint32_t height_;
+    std::vector<glm::dvec2> columns_;
+    double sine_ = 0.0, cosine_ = 0.0;
+};
 
 }  // namespace
 
 EnvironmentMap build_environment_map(const Environment& environment) {
     const uvec2 size = environment.size;
     EnvironmentMap map;
+    map.texels.reserve(environment.radiance.size());
     for (const vec3 radiance : environment.radiance)
         map.texels.push_back({radiance, 0.0f});
     map.even = std::ranges::all_of(environment.radiance,
@@ -39,14 +56,16 @@ EnvironmentMap build_environment_map(const Environment& environment) {
     std::vector<double> weights, rows;  // Of texels and of rows: luminance times solid angle.
     weights.reserve(environment.radiance.size());
     double squares = 0.0;
+    Directions directions(size);
     for (uint32_t y = 0; y < size.y; ++y) {
+        directions.begin_row(y);
         const double solid_angle = texel_solid_angle(size, y);
         rows.push_back(0.0);
         for (uint32_t x = 0; x < size.x; ++x) {
             const double bright = luminance(environment.radiance[size_t(y) * size.x + x]);
             weights.push_back(bright * solid_angle);
             // The first two bands of max(0, cos) in spherical harmonics.
-            map.flux += weights.back() * dvec4(0.5 * texel_direction(size, x, y), 0.25);
+            map.flux += weights.back() * dvec4(0.5 * directions(x), 0.25);
             rows.back() += weights.back();
             squares += bright * weights.back();
         }
