@@ -14,9 +14,17 @@ Instance instance_at(const GpuScene& scene, const InstancePlace& place) {
 
 uint64_t GpuScene::bytes() const {
     uint64_t words = 0;
-    for (const std::vector<uvec4>& array : arrays)
+    for (const Words& array : arrays)
         words += array.size();
     return words * sizeof(uvec4);
+}
+
+BufferSet changed_buffers(const GpuScene& before, const GpuScene& now) {
+    BufferSet changed;
+    for (const SceneArray& array : SCENE_ARRAYS) {
+        if (!before.arrays[array.number].is(now.arrays[array.number])) changed.set(array.buffer);
+    }
+    return changed;
 }
 
 GpuScene build_gpu_scene(const Scene& scene) {

@@ -12,6 +12,7 @@
 #include "gpu_scene/instancing.h"
 #include "gpu_scene/light_arrays.h"
 #include "gpu_scene/material_arrays.h"
+#include "gpu_scene/words.h"
 #include "scene/frame.h"
 #include "scene/scene.h"
 #include "shared/scene_arrays.h"
@@ -24,7 +25,7 @@ struct GpuScene : MaterialFacts, LeafFacts, NodeFacts, LightFacts, SkyFacts {
     bool nested_media = false;  // Media may lie within each other.
 
     // Records as shared/*.h describe them, in words of uvec4, by ARRAY_*.
-    std::array<std::vector<uvec4>, ARRAY_COUNT> arrays;
+    std::array<Words, ARRAY_COUNT> arrays;
 
     std::vector<std::string> warnings;  // What is lost on the way from the scene.
     double bvh_seconds = 0.0;           // Wall time of building trees, and of placing instances.
@@ -35,6 +36,9 @@ struct GpuScene : MaterialFacts, LeafFacts, NodeFacts, LightFacts, SkyFacts {
 
 // Some of the buffers that hold a scene's arrays, by BUFFER_*.
 using BufferSet = std::bitset<BUFFER_COUNT>;
+
+// Those in which `now` may have other words than `before`: those whose arrays are not shared.
+BufferSet changed_buffers(const GpuScene& before, const GpuScene& now);
 
 // The record of an instance of the scene.
 Instance instance_at(const GpuScene& scene, const InstancePlace& place);

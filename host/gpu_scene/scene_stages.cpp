@@ -53,8 +53,9 @@ BufferSet SceneStages::update(const Scene& scene, const SceneChange& change) {
 }
 
 void SceneStages::put(uint32_t array, std::vector<uvec4>&& words) {
-    if (gpu_.arrays[array] == words) return;
-    gpu_.arrays[array] = std::move(words);
+    Words made(std::move(words));
+    if (gpu_.arrays[array] == made) return;
+    gpu_.arrays[array] = std::move(made);
     changed_.set(SCENE_ARRAYS[array].buffer);
 }
 

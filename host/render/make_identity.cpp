@@ -61,7 +61,7 @@ uint64_t add_to_hash(uint64_t hash, const T& array) {
 
 uint64_t hash_arrays(const GpuScene& scene) {
     uint64_t hash = FNV1A64_BASIS;
-    for (const std::vector<uvec4>& array : scene.arrays)
+    for (const Words& array : scene.arrays)
         hash = add_to_hash(hash, array);
     return hash;
 }

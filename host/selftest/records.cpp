@@ -234,8 +234,8 @@ void append_second(std::vector<uvec4>& out, const std::array<uvec4, N>& record) 
 }
 
 GpuScene packed(const Records& r) {
-    GpuScene scene;
-    const auto array = [&](uint number) -> std::vector<uvec4>& { return scene.arrays[number]; };
+    std::array<std::vector<uvec4>, ARRAY_COUNT> arrays;
+    const auto array = [&](uint number) -> std::vector<uvec4>& { return arrays[number]; };
     append_second(array(ARRAY_NODES), pack(r.node));
     append_second(array(ARRAY_PRIMITIVES), pack(r.triangles));
     const auto disk = pack(r.disk);
@@ -258,6 +258,8 @@ GpuScene packed(const Records& r) {
     append_second(array(ARRAY_TEXTURES), pack(r.texture));
     append_second(array(ARRAY_TEXELS), std::array{r.texels});
     append_second(array(ARRAY_ATTRIBUTES), r.attributes);
+    GpuScene scene;
+    std::ranges::move(arrays, scene.arrays.begin());
     return scene;
 }
 

@@ -18,7 +18,7 @@ using Sizes = std::array<size_t, ARRAY_COUNT>;  // In words.
 GpuScene scene_of_sizes(const Sizes& sizes) {
     GpuScene scene;
     for (uint32_t i = 0; i < ARRAY_COUNT; ++i)
-        scene.arrays[i].resize(sizes[i]);
+        scene.arrays[i] = std::vector<uvec4>(sizes[i]);
     return scene;
 }
 
