@@ -106,6 +106,21 @@ TwoLevelTree separate_instances(const Bvh& tree, uint32_t primitive_count) {
     return result;
 }
 
+void sort_children(Bvh& tree) {
+    // Children follow their parents.
+    for (PackedBvhNode& packed : tree.nodes) {
+        const BvhNode node = unpack(packed);
+        Regrouped children = children_of(bvh_node_count(node.children), bvh_child_count(node));
+        sort_nodes(node, children);
+        const std::span group = std::span(tree.nodes).subspan(node.children.x, children.nodes);
+        std::array<PackedBvhNode, BVH_WIDTH> before;
+        std::ranges::copy(group, before.begin());
+        for (uint32_t c = 0; c < children.nodes; ++c)
+            group[c] = before[children.before[c]];
+        packed = pack(reordered(node, children));
+    }
+}
+
 uint32_t append_tree(std::vector<PackedBvhNode>& nodes, uint64_t primitives, const Bvh& tree) {
     const uint64_t sum = nodes.size() + tree.nodes.size();
     const auto too_many = [](const char* what, uint64_t count, uint64_t limit) {
@@ -116,20 +131,10 @@ uint32_t append_tree(std::vector<PackedBvhNode>& nodes, uint64_t primitives, con
     if (primitives + tree.order.size() > BVH_MAX_PRIMITIVES)
         too_many("primitives", primitives + tree.order.size(), BVH_MAX_PRIMITIVES);
     const auto root = uint32_t(nodes.size());
-    nodes.insert(nodes.end(), tree.nodes.begin(), tree.nodes.end());
-    // Children follow their parents.
-    for (size_t i = root; i < nodes.size(); ++i) {
-        BvhNode node = unpack(nodes[i]);
-        Regrouped children = children_of(bvh_node_count(node.children), bvh_child_count(node));
-        sort_nodes(node, children);
-        const std::span group = std::span(nodes).subspan(root + node.children.x, children.nodes);
-        std::array<PackedBvhNode, BVH_WIDTH> before;
-        std::ranges::copy(group, before.begin());
-        for (uint32_t c = 0; c < children.nodes; ++c)
-            group[c] = before[children.before[c]];
-        node = reordered(node, children);
+    for (const PackedBvhNode& packed : tree.nodes) {
+        BvhNode node = unpack(packed);
         node.children += uvec2(root, uint32_t(primitives));
-        nodes[i] = pack(node);
+        nodes.push_back(pack(node));
     }
     return root;
 }

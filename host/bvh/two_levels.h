@@ -23,9 +23,11 @@ struct TwoLevelTree {
 // primitives, followed by those of instances, of which there is at least one.
 TwoLevelTree separate_instances(const Bvh& tree, uint32_t primitive_count);
 
-// Appends the tree of a mesh, with its nodes' children in that order; its primitives follow the existing
-// `primitives`. Returns the place of its root. Throws Error if a tree cannot have so many nodes or
-// primitives.
+// Sorts the children of a tree's nodes that are nodes in the same way.
+void sort_children(Bvh& tree);
+
+// Appends the tree of a mesh, whose children are sorted; its primitives follow the existing `primitives`.
+// Returns the place of its root. Throws Error if a tree cannot have so many nodes or primitives.
 uint32_t append_tree(std::vector<PackedBvhNode>& nodes, uint64_t primitives, const Bvh& tree);
 
 }  // namespace candela

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "bvh/two_levels.h"
 #include "gpu_scene/choose_frame.h"
 #include "gpu_scene/material_arrays.h"
 #include "shared/bvh_node.h"
@@ -38,6 +39,7 @@ MeshTree build_mesh_tree(const Scene& scene, const ShownMesh& shown, uint attrib
     tree.flat = flatten_mesh(scene, shown, passable, tree.frame, attributes, normals);
     tree.bvh = build_bvh(boxes_of(tree.flat.primitives));
     if (!tree.flat.primitives.empty()) tree.boxes = upper_boxes(tree.bvh);
+    sort_children(tree.bvh);
     return tree;
 }
 

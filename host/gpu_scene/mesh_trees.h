@@ -17,7 +17,7 @@ struct MeshTree {
     bool passable = false;  // Rays may pass it in some instance.
     SceneFrame frame{};     // Of its own space, in which all that follows is.
     FlatScene flat{};       // Its pieces are those of the shape ShownMesh::emitter.
-    Bvh bvh{};
+    Bvh bvh{};             // Its children are sorted; see two_levels.h.
     std::vector<Box> boxes{};  // Which together contain the mesh; none if no ray can meet it.
 };
 

@@ -102,7 +102,9 @@ TEST(TwoLevels, InstancesBecomeNodesAndAllBoxesStay) {
 TEST(TwoLevels, TheTreeOfAMeshFollows) {
     const std::vector<Box> top = random_boxes(40, 0.1f), below = random_boxes(300, 0.1f, 2);
     TwoLevelTree tree = separate_instances(build_bvh(top), 30);
-    const Bvh mesh = build_bvh(below);
+    Bvh mesh = build_bvh(below);
+    const Found alone = walk(mesh.nodes, 0, {}, false);
+    sort_children(mesh);
     const std::vector<PackedBvhNode> before = tree.nodes;
     const uint32_t root = append_tree(tree.nodes, 30, mesh);
     EXPECT_EQ(root, before.size());
@@ -110,7 +112,6 @@ TEST(TwoLevels, TheTreeOfAMeshFollows) {
     const Found found = walk(tree.nodes, root, {});
     EXPECT_EQ(found.levels.size(), mesh.nodes.size());
     ASSERT_EQ(found.primitives.size(), below.size());
-    const Found alone = walk(mesh.nodes, 0, {}, false);
     for (const auto& [position, box] : alone.primitives)
         expect_equal(found.primitives.at(position + 30), box);
 }
