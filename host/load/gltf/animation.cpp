@@ -2,12 +2,12 @@
 #include "load/gltf/animation.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
-#include <span>
-#include <string>
+#include <string_view>
 #include <utility>
-#include <vector>
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -20,23 +20,6 @@
 
 namespace candela::gltf {
 namespace {
-
-enum class Interpolation { step, linear, cubic };
-
-// The values of a channel at its keys.
-struct Sampler {
-    std::span<const float> times;  // [s], ascending.
-    std::span<const float>
-        values;  // `width` numbers per key; of a cubic spline, in-tangent, value, out-tangent.
-    size_t width = 0;
-    Interpolation interpolation = Interpolation::linear;
-
-    const float* value(size_t key) const {
-        return &values[interpolation == Interpolation::cubic ? (3 * key + 1) * width : key * width];
-    }
-    const float* in_tangent(size_t key) const { return &values[3 * key * width]; }
-    const float* out_tangent(size_t key) const { return &values[(3 * key + 2) * width]; }
-};
 
 Interpolation read_interpolation(const Node& sampler) {
     constexpr std::array<std::pair<std::string_view, Interpolation>, 3> NAMES{
@@ -60,7 +43,7 @@ void check_rotations(File& file, const Node& output, const Sampler& sampler) {
     }
 }
 
-// `width`: numbers per key, of a VEC3 or VEC4; 0: as many scalars per key as there are.
+// `width`: numbers per key, of a SCALAR, VEC3 or VEC4; 0: as many scalars per key as there are.
 Sampler read_sampler(File& file, const Node& node, size_t width) {
     Sampler sampler;
     sampler.interpolation = read_interpolation(node);
@@ -71,7 +54,7 @@ Sampler read_sampler(File& file, const Node& node, size_t width) {
             input.fail(concat("the times of an animation must grow, but that of key ", i, " does not"));
     }
     const Node output = node.require("output");
-    const char* const type = width == 0 ? "SCALAR" : width == 3 ? "VEC3" : "VEC4";
+    const char* const type = width < 3 ? "SCALAR" : width == 3 ? "VEC3" : "VEC4";
     sampler.values = Accessor(file, output, {type}).kept_floats(file);
     const size_t keys = sampler.times.size() * (sampler.interpolation == Interpolation::cubic ? 3 : 1);
     sampler.width = width == 0 ? sampler.values.size() / keys : width;
@@ -117,39 +100,39 @@ std::vector<double> sample(const Sampler& s, float time, bool is_rotation) {
     return result;
 }
 
-void apply_channel(File& file, const Node& animation, const Node& channel, float time,
-                   std::vector<PosedNode>& nodes) {
-    const Node target = channel.require("target");
-    const auto reference = target.find("node");
-    if (!reference) {
-        if (extension_of(target, "KHR_animation_pointer"))
-            file.warn(target,
-                      "ignored the targets of KHR_animation_pointer: only nodes and weights are animated");
-        return;
-    }
-    PosedNode& node = nodes[file.index("nodes", *reference)];
-    const Node path = target.require("path");
-    const std::string& kind = path.string();
-    const size_t width = kind == "rotation" ? 4 : kind == "weights" ? 0 : 3;
-    if (width == 3 && kind != "translation" && kind != "scale") {
-        file.warn(path, "ignored the unknown path " + quote(kind));
-        return;
-    }
-    const Node samplers = animation.require("samplers");
-    const Node number = channel.require("sampler");
-    const uint32_t i = number.integer(0, UINT32_MAX);
-    if (i >= samplers.size()) number.fail(concat("the animation has only ", samplers.size(), " samplers"));
-    const std::vector<double> v = sample(read_sampler(file, samplers[i], width), time, width == 4);
-    if (node.matrix && kind != "weights") {
-        file.warn(channel, "the node has a matrix, which cannot be animated; the animation replaces it");
-        node.matrix.reset();
-    }
-    if (kind == "translation") node.trs.translation = {v[0], v[1], v[2]};
-    if (kind == "scale") node.trs.scale = {v[0], v[1], v[2]};
-    if (kind == "weights") node.weights = v;
-    if (kind == "rotation") {
-        const glm::dquat q(v[3], v[0], v[1], v[2]);
-        if (length(q) > 0.0) node.trs.rotation = normalize(q);
+// The node whose visibility a pointer names, as the specification writes it; nothing for another pointer.
+std::optional<uint32_t> node_of_pointer(const File& file, const Node& target) {
+    constexpr std::string_view BEFORE = "/nodes/", AFTER = "/extensions/KHR_node_visibility/visible";
+    const auto extension = extension_of(target, "KHR_animation_pointer");
+    const auto pointer = extension ? extension->find("pointer") : std::nullopt;
+    if (!pointer) return std::nullopt;
+    const std::string_view text = pointer->string();
+    if (!text.starts_with(BEFORE) || !text.ends_with(AFTER) || text.size() < BEFORE.size() + AFTER.size())
+        return std::nullopt;
+    const std::string_view digits = text.substr(BEFORE.size(), text.size() - BEFORE.size() - AFTER.size());
+    uint32_t node = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), node);
+    if (error != std::errc{} || end != digits.data() + digits.size()) return std::nullopt;
+    if (node >= file.count("nodes"))
+        pointer->fail(concat("there are only ", file.count("nodes"), " nodes; export the file again"));
+    return node;
+}
+
+constexpr std::array<std::pair<std::string_view, Path>, 4> PATHS{{{"translation", Path::translation},
+                                                                  {"rotation", Path::rotation},
+                                                                  {"scale", Path::scale},
+                                                                  {"weights", Path::weights}}};
+
+size_t width_of(Path path) {
+    switch (path) {
+        case Path::rotation:
+            return 4;
+        case Path::weights:
+            return 0;
+        case Path::visible:
+            return 1;
+        default:
+            return 3;
     }
 }
 
@@ -171,7 +154,8 @@ void check_targets(File& file, const std::vector<Node>& channels) {
 
 }  // namespace
 
-void animate(File& file, const std::optional<std::string>& name, double time, std::vector<PosedNode>& nodes) {
+Animation::Animation(File& file, const std::optional<std::string>& name,
+                     const std::vector<PosedNode>& nodes) {
     const size_t count = file.count("animations");
     std::vector<size_t> chosen;
     if (name && *name == "all") {
@@ -183,20 +167,77 @@ void animate(File& file, const std::optional<std::string>& name, double time, st
     } else if (count > 0) {
         chosen.push_back(0);
     }
-    if (count == 0) file.warn(file.path().string() + ": the file has no animations: --time has no effect");
     if (count > 1 && !name) {
         file.warn(file.path().string() + ": posed by the first animation, " +
                   quote(name_of(file.element("animations", 0), "0")) + ", of " + std::to_string(count) +
                   "; choose by --animation NAME, or all");
     }
-    // Rounded as the times of keys are, so that the time of a key selects exactly that key.
-    const auto moment = float(std::clamp(time, -double(FLOAT_MAX), double(FLOAT_MAX)));
     for (const size_t i : chosen) {
         const Node animation = file.element("animations", i);
         const std::vector<Node> channels = animation.require("channels").elements();
         check_targets(file, channels);
         for (const Node& channel : channels)
-            apply_channel(file, animation, channel, moment, nodes);
+            read_channel(file, animation, channel, nodes);
+    }
+}
+
+void Animation::read_channel(File& file, const Node& animation, const Node& channel,
+                             const std::vector<PosedNode>& nodes) {
+    const Node target = channel.require("target");
+    Channel read;
+    if (const auto reference = target.find("node")) {
+        read.node = file.index("nodes", *reference);
+        const Node path = target.require("path");
+        const auto known =
+            std::ranges::find(PATHS, std::string_view(path.string()), &decltype(PATHS)::value_type::first);
+        if (known == PATHS.end()) {
+            file.warn(path, "ignored the unknown path " + quote(path.string()));
+            return;
+        }
+        read.path = known->second;
+    } else if (const auto pointed = node_of_pointer(file, target)) {
+        read.node = *pointed;
+        read.path = Path::visible;
+    } else {
+        if (extension_of(target, "KHR_animation_pointer")) {
+            file.warn(target,
+                      "ignored the targets of KHR_animation_pointer: only nodes and weights are animated");
+        }
+        return;
+    }
+    const Node samplers = animation.require("samplers");
+    const Node number = channel.require("sampler");
+    const uint32_t i = number.integer(0, UINT32_MAX);
+    if (i >= samplers.size()) number.fail(concat("the animation has only ", samplers.size(), " samplers"));
+    read.sampler = read_sampler(file, samplers[i], width_of(read.path));
+    Interpolation& interpolation = read.sampler.interpolation;
+    if (read.path == Path::visible && interpolation != Interpolation::step) {
+        constexpr const char* ONLY_STEP = "a node is either visible or not, so the interpolation must be STEP";
+        if (interpolation == Interpolation::cubic)
+            samplers[i].fail(concat(ONLY_STEP, "; export the file again"));
+        file.warn(samplers[i], concat(ONLY_STEP, ", and is read as if it were"));
+        interpolation = Interpolation::step;
+    }
+    if (nodes[read.node].matrix && read.path != Path::weights && read.path != Path::visible)
+        file.warn(channel, "the node has a matrix, which cannot be animated; the animation replaces it");
+    channels_.push_back(read);
+}
+
+void Animation::pose(double time, std::vector<PosedNode>& nodes) const {
+    // Rounded as the times of keys are, so that the time of a key selects exactly that key.
+    const auto moment = float(std::clamp(time, -double(FLOAT_MAX), double(FLOAT_MAX)));
+    for (const Channel& channel : channels_) {
+        PosedNode& node = nodes[channel.node];
+        const std::vector<double> v = sample(channel.sampler, moment, channel.path == Path::rotation);
+        if (channel.path != Path::weights && channel.path != Path::visible) node.matrix.reset();
+        if (channel.path == Path::translation) node.trs.translation = {v[0], v[1], v[2]};
+        if (channel.path == Path::scale) node.trs.scale = {v[0], v[1], v[2]};
+        if (channel.path == Path::weights) node.weights = v;
+        if (channel.path == Path::visible) node.is_visible = v[0] != 0.0;
+        if (channel.path == Path::rotation) {
+            const glm::dquat q(v[3], v[0], v[1], v[2]);
+            if (length(q) > 0.0) node.trs.rotation = normalize(q);
+        }
     }
 }
 

@@ -1,85 +1,28 @@
 // Ref: Khronos, "glTF 2.0 Specification", sections 3.5, 3.7 and 3.10.
 #include "load/gltf/scene_reader.h"
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
-#include "base/limits.h"
 #include "base/memory_limit.h"
 #include "base/text.h"
 #include "load/gltf/animation.h"
+#include "load/gltf/camera.h"
+#include "load/gltf/fit_attributes.h"
 #include "load/gltf/image_light.h"
 #include "load/gltf/instances.h"
 #include "load/gltf/light.h"
 #include "load/gltf/material.h"
 #include "load/gltf/names.h"
 #include "load/gltf/node_trees.h"
+#include "load/gltf/placement.h"
 #include "load/gltf/primitive.h"
 #include "load/gltf/skin.h"
 #include "load/gltf/values.h"
 #include "load/gltf/variants.h"
-#include "scene/material_textures.h"
 #include "scene/materials.h"
 
 namespace candela::gltf {
-namespace {
-
-// Keeps only the attributes that a material looks up, and adds missing ones. `has_alpha`: whether the file's
-// material uses alpha.
-void fit_attributes(File& file, const Node& primitive, const Material& material, bool has_alpha,
-                    TriangleMesh& mesh) {
-    uint32_t sets = 0;
-    for_each_texture(material, [&](const Texture& texture) { sets |= 1u << texture.uv_set; });
-    if (needs_tangents(material)) {
-        sets |= 1u << tangent_uv_set(material);
-    } else {
-        mesh.tangents.clear();
-    }
-    for (const auto& [set, uvs] : {std::pair(0u, &mesh.uv0), std::pair(1u, &mesh.uv1)}) {
-        if ((sets >> set & 1u) == 0) {
-            uvs->clear();
-        } else if (uvs->empty()) {
-            file.warn(primitive, concat("the material has textures, but the primitive has no TEXCOORD_", set,
-                                        ": they show their upper left corner everywhere"));
-            uvs->assign(mesh.positions.size(), vec2(0.0f, 1.0f));
-        }
-    }
-    const Opacity& opacity = material.opacity;
-    if (has_alpha || opacity.value != Textured<float>(1.0f) || opacity.cutoff) return;
-    for (vec4& color : mesh.colors)
-        color.w = 1.0f;
-}
-
-// The transform, with a little thickness added if it flattens bodies into plane figures, so that their front
-// and back do not share a plane. Nothing if it leaves no area.
-std::optional<glm::dmat4> thickened(const glm::dmat4& world) {
-    constexpr double THIN = 1e-12;      // As in Transform.
-    constexpr double THICKNESS = 1e-5;  // Relative to the longest edge of a cube's image.
-    const glm::dmat3 m(world);
-    const double longest = std::max({length(m[0]), length(m[1]), length(m[2])});
-    // The cofactors of a matrix of rank 2 are the product of the figures' normal and the axis that vanishes.
-    const glm::dmat3 cofactor(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
-    const double size = length(dvec3(length(cofactor[0]), length(cofactor[1]), length(cofactor[2])));
-    if (!(size > THIN * longest * longest) || !std::isfinite(size)) return std::nullopt;
-    glm::dmat4 result = world;
-    for (glm::length_t i = 0; i < 3; ++i)
-        result[i] += glm::dvec4(THICKNESS * longest / size * cofactor[i], 0.0);
-    return result;
-}
-
-// Nothing for a transform under which a mesh shows no surface.
-std::optional<Transform> transform_of(const glm::dmat4& world) {
-    Transform transform;
-    if (transform.append(world)) return transform;
-    const std::optional<glm::dmat4> thick = thickened(world);
-    transform = Transform();
-    if (thick && transform.append(*thick)) return transform;
-    return std::nullopt;
-}
-
-}  // namespace
 
 SceneReader::SceneReader(File& file, Scene& scene, const GltfOptions& options, const LoadProgress& progress)
     : file_(file),
@@ -97,7 +40,11 @@ SceneReader::SceneReader(File& file, Scene& scene, const GltfOptions& options, c
 
 void SceneReader::read() {
     nodes_ = read_nodes(file_);
-    if (options_.time) animate(file_, options_.animation, *options_.time, nodes_);
+    if (options_.time) {
+        if (file_.count("animations") == 0)
+            file_.warn(file_.path().string() + ": the file has no animations: --time has no effect");
+        Animation(file_, options_.animation, nodes_).pose(*options_.time, nodes_);
+    }
 
     const std::optional<Node> scene = chosen_scene();
     if (scene) {
@@ -270,51 +217,13 @@ uint32_t SceneReader::read_file_material(uint32_t index) {
 }
 
 void SceneReader::read_camera(const Node& node, const Node& camera, const PosedNode& posed) {
-    constexpr uint32_t LINES = 720;
-    const Node type = camera.require("type");
-    Camera result;
-    double aspect = 0.0;  // 0: the file states none.
-    if (type.string() == "orthographic") {
-        const Node sizes = camera.require("orthographic");
-        const auto half = [&](const char* key) {
-            const Node value = sizes.require(key);
-            if (value.number() < 0.0) file_.warn(value, "the sign of the view's size is ignored");
-            const double size = std::abs(value.number());
-            if (size < double(FLOAT_MIN) || size > double(MAX_COORDINATE))
-                value.fail_expected("a number from 1.2e-38 to 1e37, half the size of the view");
-            return size;
-        };
-        const double half_width = half("xmag"), half_height = half("ymag");
-        result.ortho_height = 2.0 * half_height;
-        aspect = half_width / half_height;
-    } else if (type.string() == "perspective") {
-        const Node view = camera.require("perspective");
-        const Node angle = view.require("yfov");
-        result.vertical_fov = float(angle.number());
-        if (!(result.vertical_fov > 0.0f && result.vertical_fov < PI))
-            angle.fail_expected("an angle between 0 and pi");
-        if (const auto ratio = view.find("aspectRatio")) {
-            aspect = std::max(ratio->number(), 0.0);
-            if (aspect == 0.0) file_.warn(*ratio, "an aspect ratio that is not above 0 is ignored");
-        }
-    } else {
-        type.fail_expected(R"("perspective" or "orthographic")");
-    }
-    if (aspect > 0.0) {
-        result.film_size =
-            uvec2(uint32_t(std::clamp(std::round(aspect * LINES), 1.0, double(MAX_PICTURE_SIZE))), LINES);
-    }
-    const dvec3 backwards(posed.world[2]);
-    const dvec3 up(posed.world[1]);
-    if (!has_direction(cross(backwards, up)) || !has_direction(backwards) || !has_direction(up)) {
+    Camera result = gltf::read_camera(file_, camera);
+    if (!place_camera(node, posed.world, result)) {
         file_.warn(node, "left out a camera that its transform flattens");
         return;
     }
     result.name =
         camera_names_.choose(name_of(node, name_of(camera, concat("camera ", scene_.cameras.size()))));
-    result.position = position_of(node, posed.world);
-    result.look_at = result.position - normalize(backwards);
-    result.up = vec3(normalize(up));
     scene_.cameras.push_back(result);
 }
 
