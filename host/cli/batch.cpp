@@ -43,8 +43,8 @@ Batch::Batch(PicturePlan& plan, const RenderOptions& options, const std::string&
       report_(options.outputs.report, plan.is_batch()) {}
 
 ExitCode Batch::run() {
-    const size_t count = plan_.scenes().size();
-    for (size_t i = 0; i < count; ++i) {
+    bool more = true;
+    for (size_t i = 0; more; ++i) {
         if (ends_early()) {
             was_interrupted_ |= renderer_.interrupted();
             break;
@@ -57,9 +57,11 @@ ExitCode Batch::run() {
         const auto has_job = [](const PreparedPicture& picture) { return picture.job.has_value(); };
         // Before another thread starts, since this may set variables of the environment.
         if (!scene.failure && std::ranges::any_of(scene.pictures, has_job)) renderer_.choose_device();
-        begin_next(i + 1);
-        render_scene(scene, i + 1 == count);
-        renderer_.leave_scene();
+        const Next next = next_of(i);  // Before another thread changes the plan.
+        if (next.exists) begin_next(i + 1);
+        render_scene(scene, !next.exists);
+        if (!next.is_frame) renderer_.leave_scene();
+        more = next.exists;
     }
     settle();
     renderer_.check_validation();
@@ -85,19 +87,26 @@ PreparedScene Batch::prepare(size_t i) {
     }
     const bool shows_progress = renderer_.can_be_quit() && i == 0;
     return prepare_scene(plan_, i, options_,
-                         shows_progress ? std::optional(options_.messages.progress_style()) : std::nullopt);
+                         shows_progress ? std::optional(options_.messages.progress_style()) : std::nullopt,
+                         kept_);
 }
 
-// Has another thread prepare scene i, if there is one; this thread does if no other can be started.
+Batch::Next Batch::next_of(size_t i) const {
+    const std::vector<PlannedScene>& scenes = plan_.scenes();
+    const bool exists = i + 1 < scenes.size();
+    return {exists, exists && scenes[i + 1].number == scenes[i].number};
+}
+
+// Has another thread prepare scene i; this thread does if no other can be started.
 void Batch::begin_next(size_t i) {
-    if (i == plan_.scenes().size()) return;
-    next_ = std::async([this, i] { return prepare_scene(plan_, i, options_, std::nullopt); });
+    next_ = std::async([this, i] { return prepare_scene(plan_, i, options_, std::nullopt, kept_); });
 }
 
 // Ends what takes memory beside the current picture.
 void Batch::be_alone() {
     settle();
     next_ = {};
+    kept_.reset();
 }
 
 void Batch::render_scene(PreparedScene& scene, bool is_last) {

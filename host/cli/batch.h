@@ -1,5 +1,5 @@
 // The pictures of a plan, one after the other: while one is rendered, other threads read and build the next
-// scene, and write the picture before.
+// scene or pose the next frame of an animation, and write the picture before.
 //
 //   scene i:   prepare (another thread, beside the rendering of scene i - 1; the first one, this thread)
 //              for each picture: render (this thread) -> write (another thread; the last one, this thread)
@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -35,6 +36,11 @@ class Batch {
 
   private:
     PreparedScene prepare(size_t i);
+    // Whether there is a scene after i, and whether it is a frame of the same one.
+    struct Next {
+        bool exists, is_frame;
+    };
+    Next next_of(size_t i) const;
     void begin_next(size_t i);
     bool is_alone() const { return !next_.valid() && !writing_.valid(); }
     void be_alone();
@@ -57,6 +63,7 @@ class Batch {
     const RenderOptions& options_;
     PictureRenderer renderer_;
     Report report_;
+    std::unique_ptr<KeptScene> kept_;  // Of the thread that prepares.
     std::future<PreparedScene> next_;
     std::future<RenderedPicture> writing_;
     size_t done_ = 0, skipped_ = 0, failed_ = 0, left_out_ = 0;

@@ -10,7 +10,6 @@
 #include "cli/console.h"
 #include "cli/interrupt.h"
 #include "cli/progress_line.h"
-#include "load/load.h"
 #include "scene/geometry.h"
 #include "scene/seen_from_behind.h"
 
@@ -52,9 +51,8 @@ class LoadingLine {
 
 }  // namespace
 
-Scene load_quietly(const std::string& file, const LoadingOptions& given, const LoadProgress& progress) {
+LoadOptions load_options(const LoadingOptions& given, const LoadProgress& progress) {
     set_memory_limit(given.memory_limit.value_or(default_memory_limit()));
-    const LimitedMemory limited;
     LoadOptions options{.gltf = given.gltf,
                         .lighting = given.lighting,
                         .double_sided = given.double_sided,
@@ -62,15 +60,27 @@ Scene load_quietly(const std::string& file, const LoadingOptions& given, const L
     options.images.if_missing = given.missing_images;
     options.reach = {.folders = {given.folders.begin(), given.folders.end()}, .anywhere = given.any_folder};
     if (given.texture_limit) options.images.texture_limit = *given.texture_limit;
+    return options;
+}
+
+Scene load_quietly(const std::string& file, const LoadingOptions& given, const LoadProgress& progress) {
+    const LoadOptions options = load_options(given, progress);
+    const LimitedMemory limited;
     return with_memory_for(
         "the scene", [&] { return file; }, [&] { return load_scene(file, options); });
 }
 
-Scene load_showing_progress(const std::string& file, const LoadingOptions& options, ProgressStyle style) {
+void show_progress(ProgressStyle style, const std::function<void(const LoadProgress&)>& load) {
     const InterruptGuard guard(OnSignal::quit);
     LoadingLine line(style);
-    return load_quietly(file, options,
-                        [&line](const char* what, size_t done, size_t of) { line.update(what, done, of); });
+    load([&line](const char* what, size_t done, size_t of) { line.update(what, done, of); });
+}
+
+Scene load_showing_progress(const std::string& file, const LoadingOptions& options, ProgressStyle style) {
+    Scene scene;
+    show_progress(style,
+                  [&](const LoadProgress& progress) { scene = load_quietly(file, options, progress); });
+    return scene;
 }
 
 Scene load_with_progress(const std::string& file, const LoadingOptions& options, ProgressStyle style) {

@@ -119,7 +119,11 @@ bool NameTemplate::names_folders() const {
 }
 
 std::optional<std::string> NameTemplate::name(const NameFields& fields) const {
-    if (!fields.camera && uses("camera")) return std::nullopt;
+    if ((!fields.camera && uses("camera")) || (!fields.frame && uses("frame"))) return std::nullopt;
+    return open_name(fields);
+}
+
+std::string NameTemplate::open_name(const NameFields& fields) const {
     std::string name;
     for (const auto& part : parts_) {
         if (const auto* const literal = std::get_if<std::string>(&part)) {
@@ -127,9 +131,12 @@ std::optional<std::string> NameTemplate::name(const NameFields& fields) const {
             continue;
         }
         const Field& field = std::get<Field>(part);
+        const bool is_open =
+            (field.name == "camera" && !fields.camera) || (field.name == "frame" && !fields.frame);
         const bool is_number = std::ranges::find(NUMBERS, field.name) != NUMBERS.end();
-        name += is_number ? padded(field.name == "view" ? fields.view : fields.frame, field.width)
-                          : harmless(text_of(fields, field.name));
+        name += is_open     ? '{' + field.name + '}'
+                : is_number ? padded(field.name == "view" ? fields.view : *fields.frame, field.width)
+                            : harmless(text_of(fields, field.name));
     }
     return name;
 }

@@ -17,7 +17,7 @@ struct NameFields {
     std::optional<std::string> scene{};    // As --scene
     std::optional<std::string> variant{};  // and --variant name them.
     uint32_t view = 0;                     // Number of the picture among those of its scene.
-    uint32_t frame = 0;                    // Number of the frame.
+    std::optional<uint32_t> frame = 0;     // Number of the frame; none as long as it is not known.
 };
 
 // The fields of the pictures of a scene, from the name of its file.
@@ -35,11 +35,13 @@ class NameTemplate {
     // Whether a field is part of the name of a folder.
     bool names_folders() const;
 
-    // The name for these fields; none if it needs a camera that is not known yet. In the text of a field,
-    // slashes, backslashes and control characters become `_`, and so does a dot at its beginning: no scene
-    // can give its pictures a name in another folder. An empty text becomes `_`. Throws Error (usage) for
-    // {scene} and {variant} without their options.
+    // The name for these fields; none if it needs a camera or a frame that is not known yet. In the text of a
+    // field, slashes, backslashes and control characters become `_`, and so does a dot at its beginning: no
+    // scene can give its pictures a name in another folder. An empty text becomes `_`. Throws Error (usage)
+    // for {scene} and {variant} without their options.
     std::optional<std::string> name(const NameFields& fields) const;
+    // The same, with the field itself in the place of what is not known yet.
+    std::string open_name(const NameFields& fields) const;
 
   private:
     struct Field {

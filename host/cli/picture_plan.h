@@ -1,5 +1,5 @@
-// The pictures that `candela render` is asked for: scenes, by cameras, to files. One picture is a plan of
-// one.
+// The pictures that `candela render` is asked for: scenes, in frames, by cameras, to files. One picture is a
+// plan of one.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,19 @@ namespace candela {
 struct Picture {
     std::string scene{};                  // Its file.
     std::optional<std::string> camera{};  // By name; none: the scene's first.
-    uint32_t view = 0;                    // Its number among those of its scene.
+    uint32_t view = 0;                    // Its number among those of its scene, or of its frame.
+    std::optional<uint32_t> frame{};      // Of an animation.
     std::vector<std::string> files{};     // Its images; empty as long as their names are not known.
 };
 
 // Whether all files of the picture are known, and there.
 bool is_there(const Picture& picture);
 
+// A scene, or a frame of one.
 struct PlannedScene {
     std::string file{};
+    size_t number = 0;                // Of the scene; its frames follow each other, with the same number.
+    std::optional<uint32_t> frame{};  // None: no frame, or all, as long as it is not known which these are.
     std::vector<Picture> pictures{};  // Empty as long as it is not known how many there are.
 };
 
@@ -44,6 +48,10 @@ class PicturePlan {
 
     // Whether all pictures of the scenes from i on are known and there.
     bool is_complete_from(size_t i) const;
+
+    // Makes scene i, which stands for all of its frames, the first of these; the others follow it.
+    void set_frames(size_t i, const std::vector<uint32_t>& frames);
+
     // Names all pictures of scene i, which has been read. Throws Error (usage) as the constructor does.
     // Another thread may call this while there is no other call.
     std::vector<Picture> pictures_of(size_t i, const Scene& scene);
@@ -57,16 +65,18 @@ class PicturePlan {
   private:
     // An output of a picture.
     struct Owner {
-        size_t scene;
+        size_t scene;  // PlannedScene::number.
+        std::optional<uint32_t> frame;
         uint32_t view;
         size_t output;
         bool operator==(const Owner&) const = default;
     };
     void refuse_options_of_one() const;
     void plan_camera_files();
-    void plan(size_t i);
+    void plan(PlannedScene& scene);
+    void refuse_one_name_for(const char* thing, const char* field) const;
     NameFields fields(const Picture& picture) const;
-    void name(size_t scene, Picture& picture);
+    void name(const PlannedScene& scene, Picture& picture);
     void claim(const Owner& owner, const Picture& picture, const std::string& file);
     void check_folders() const;
 
@@ -74,6 +84,7 @@ class PicturePlan {
     bool is_batch_ = false;
     std::vector<NameTemplate> names_;
     std::vector<PlannedScene> scenes_;
+    std::vector<std::string> scene_files_;  // By their numbers.
     CommandFiles files_;
     std::map<std::string, Owner> owners_;  // By file.
     std::optional<NameTemplate> cameras_name_;

@@ -109,13 +109,15 @@ RenderRecord PictureRenderer::record_of(const PreparedScene& scene, const Render
 void PictureRenderer::start(const PreparedScene& scene, const PreparedPicture& picture) {
     const RenderJob& job = *picture.job;
     RenderRecord record = record_of(scene, job);
+    const BufferSet changed = changed_buffers(records_, scene.records);
+    records_ = scene.records;
     if (rendering_) {
-        rendering_->restart(job, std::move(record), {});
+        rendering_->restart(job, std::move(record), changed);
         return;
     }
     std::optional<Checkpoint> resumed = resume(job, record, device_->info(), options_.messages);
     rendering_ = std::make_unique<Rendering>(Rendering::Source{.device = &*device_,
-                                                               .scene = &scene.records,
+                                                               .scene = &records_,
                                                                .resumed = std::move(resumed),
                                                                .reference = picture.reference},
                                              job, std::move(record));

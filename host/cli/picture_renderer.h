@@ -50,11 +50,14 @@ class PictureRenderer {
 
     // Chooses the device. Throws Error if there is none. Does nothing the second time.
     void choose_device();
-    // Renders a picture that has a job. The pictures of a scene are rendered one after the other, since what
-    // the device holds of the scene stays until leave_scene(); `scene` must live until then. Throws Error if
-    // there are no samples, or the device fails for good; the next call opens it again.
+    // Renders a picture that has a job. The pictures of a scene and its frames are rendered one after the
+    // other, since what the device holds of the scene, as far as they share it, stays until leave_scene().
+    // Throws Error if there are no samples, or the device fails for good; the next call opens it again.
     RenderedPicture render(const PreparedScene& scene, const PreparedPicture& picture);
-    void leave_scene() { rendering_.reset(); }
+    void leave_scene() {
+        rendering_.reset();
+        records_ = {};
+    }
 
     // Whether a signal has come since the first picture began.
     bool interrupted() const { return guard_ && guard_->interrupted(); }
@@ -78,7 +81,8 @@ class PictureRenderer {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     std::optional<vk::Instance> instance_;
     std::optional<DeviceSlot> device_;
-    std::unique_ptr<Rendering> rendering_;  // Of the current scene.
+    GpuScene records_;                      // Of the current scene.
+    std::unique_ptr<Rendering> rendering_;  // Of them.
     std::optional<InterruptGuard> guard_;
 };
 

@@ -5,8 +5,10 @@
 #include <chrono>
 #include <iterator>
 #include <memory>
+#include <utility>
 
 #include "base/cpu_time.h"
+#include "base/memory_limit.h"
 #include "cli/caught_error.h"
 #include "cli/console.h"
 #include "cli/loading.h"
@@ -20,8 +22,9 @@ namespace {
 
 class Preparation {
   public:
-    Preparation(PicturePlan& plan, size_t i, const RenderOptions& options, std::optional<ProgressStyle> style)
-        : plan_(plan), number_(i), options_(options), style_(style) {
+    Preparation(PicturePlan& plan, size_t i, const RenderOptions& options, std::optional<ProgressStyle> style,
+                std::unique_ptr<KeptScene>& kept)
+        : plan_(plan), number_(i), options_(options), style_(style), kept_(kept) {
         prepared_.file = plan.scenes()[i].file;
         for (const Picture& picture : plan.scenes()[i].pictures)
             prepared_.pictures.push_back({.picture = picture});
@@ -36,6 +39,7 @@ class Preparation {
             if (may_have_more || has_work()) prepare();
         } catch (...) {
             prepared_.failure = caught_error();
+            kept_.reset();
         }
         prepared_.cpu_seconds = watch.seconds();
         return std::move(prepared_);
@@ -93,53 +97,122 @@ class Preparation {
         for_each([this](PreparedPicture& picture) {
             picture.job = options_.job(prepared_.scene, picture.picture.camera);
             if (picture.job->aovs.needs_coverage()) picture.job->labels = labels();
+            if (options_.frames.seed_per_frame) picture.job->settings.seed += *picture.picture.frame;
             if (const auto& reference = options_.outputs.reference)
                 picture.reference = load_reference(*reference, picture.job->settings);
         });
         write_cameras();
         if (!has_work()) return;
+        if (options_.frames.frames) {
+            if (!std::exchange(kept_->was_checked, true)) check_pictures(kept_->scene.scene());
+            build_frame();
+        } else {
+            check_pictures(prepared_.scene);
+            build_scene();
+        }
+        prepared_.arrays_hash = hash_arrays(prepared_.records);
+    }
+
+    // The scene that the pictures show.
+    const Scene& shown() const { return options_.frames.frames ? kept_->scene.scene() : prepared_.scene; }
+
+    void build_scene() {
         Scene& scene = prepared_.scene;
+        prepared_.records = style_ ? build_showing_progress(scene, *style_) : build_quietly(scene);
+        warn(prepared_.records.warnings);
+    }
+
+    // Warns of what the pictures of the scene will miss.
+    void check_pictures(const Scene& scene) {
         const Estimator estimator =
             options_.rendering.sampling.estimator.value_or(scene.integrator.estimator);
         warn(warnings_of_unseen_lights(scene, estimator));
         const auto first = std::ranges::find_if(
             prepared_.pictures, [](const PreparedPicture& picture) { return picture.job.has_value(); });
         warn(warnings_of_unseen_backs(scene, first->job->camera, first->job->settings.size));
-        prepared_.records = style_ ? build_showing_progress(scene, *style_) : build_quietly(scene);
-        warn(prepared_.records.warnings);
-        prepared_.arrays_hash = hash_arrays(prepared_.records);
+    }
+
+    void build_frame() {
+        const LimitedMemory limited;
+        prepared_.records = with_memory_for(
+            "the tree and the records of what it shows", [this] { return prepared_.file; },
+            [this] { return kept_->scene.build(); });
+        warn(kept_->scene.take_warnings());
     }
 
     void load() {
         using Clock = std::chrono::steady_clock;
         const Clock::time_point start = Clock::now();
-        const LoadingOptions& loading = options_.rendering.loading;
-        const std::string& file = prepared_.file;
-        prepared_.scene =
-            style_ ? load_showing_progress(file, loading, *style_) : load_quietly(file, loading);
-        warn(prepared_.scene.warnings);
-        take_cameras();
+        if (options_.frames.frames) {
+            load_frame();
+        } else {
+            load_scene();
+        }
         const std::vector<Picture> pictures = plan_.pictures_of(number_, prepared_.scene);
         prepared_.load_seconds = std::chrono::duration<double>(Clock::now() - start).count();
         name_pictures(pictures);
         choose_metered();
     }
 
-    // Gives the scene the cameras that the options ask for, if there are any, instead of its own.
-    void take_cameras() {
+    // Its cameras are those that the options ask for, if there are any, instead of its own.
+    void load_scene() {
+        const LoadingOptions& loading = options_.rendering.loading;
+        const std::string& file = prepared_.file;
         Scene& scene = prepared_.scene;
+        scene = style_ ? load_showing_progress(file, loading, *style_) : load_quietly(file, loading);
+        warn(scene.warnings);
         std::vector<Camera> cameras = options_.cameras.cameras(scene, options_.rendering.picture.size);
         if (!cameras.empty()) scene.cameras = std::move(cameras);
     }
 
-    // The labels of the scene, which its pictures share.
+    // The labels of the scene, which its pictures and frames share.
     std::shared_ptr<const Labels> labels() {
-        if (labels_) return labels_;
-        labels_ = std::make_shared<const Labels>(label_scene(prepared_.scene));
-        if (!options_.outputs.images.written_aovs().cryptomatte) return labels_;
-        warn(warnings_of_collisions(labels_->objects, "objects"));
-        warn(warnings_of_collisions(labels_->materials, "materials"));
-        return labels_;
+        std::shared_ptr<const Labels>& labels = options_.frames.frames ? kept_->labels : labels_;
+        if (labels) return labels;
+        labels = std::make_shared<const Labels>(label_scene(shown()));
+        if (!options_.outputs.images.written_aovs().cryptomatte) return labels;
+        warn(warnings_of_collisions(labels->objects, "objects"));
+        warn(warnings_of_collisions(labels->materials, "materials"));
+        return labels;
+    }
+
+    // The same for a frame, of which there may be more.
+    void load_frame() {
+        const std::string& file = prepared_.file;
+        const size_t number = plan_.scenes()[number_].number;
+        if (!kept_ || kept_->number != number) {
+            kept_.reset();
+            if (style_) {
+                show_progress(*style_, [&](const LoadProgress& progress) { keep_scene(number, progress); });
+            } else {
+                keep_scene(number, no_progress);
+            }
+        }
+        if (!plan_.scenes()[number_].frame)
+            plan_.set_frames(number_, options_.frames.between(file, kept_->scene.times()));
+        const LimitedMemory limited;
+        with_memory_for(
+            "the frame", [&] { return file; },
+            [&] { kept_->scene.pose(*plan_.scenes()[number_].frame / options_.frames.fps); });
+        warn(kept_->scene.take_warnings());
+        const Scene& scene = kept_->scene.scene();
+        if (!kept_->cameras)
+            kept_->cameras = options_.cameras.cameras(scene, options_.rendering.picture.size);
+        prepared_.scene.cameras = kept_->cameras->empty() ? scene.cameras : *kept_->cameras;
+        prepared_.scene.film = scene.film;
+        prepared_.scene.integrator = scene.integrator;
+        prepared_.scene.files = scene.files;
+        prepared_.scene.attributes = scene.attributes;
+    }
+
+    void keep_scene(size_t number, const LoadProgress& progress) {
+        const LoadOptions options = load_options(options_.rendering.loading, progress);
+        const LimitedMemory limited;
+        kept_ = with_memory_for(
+            "the scene", [this] { return prepared_.file; },
+            [&] {
+                return std::make_unique<KeptScene>(KeptScene{number, AnimatedScene(prepared_.file, options)});
+            });
     }
 
     // Writes the cameras of all pictures of the scene, if the options ask for it.
@@ -169,14 +242,15 @@ class Preparation {
     const RenderOptions& options_;
     std::optional<ProgressStyle> style_;
     std::shared_ptr<const Labels> labels_;
+    std::unique_ptr<KeptScene>& kept_;
     PreparedScene prepared_;
 };
 
 }  // namespace
 
 PreparedScene prepare_scene(PicturePlan& plan, size_t i, const RenderOptions& options,
-                            std::optional<ProgressStyle> style) {
-    return Preparation(plan, i, options, style).run();
+                            std::optional<ProgressStyle> style, std::unique_ptr<KeptScene>& kept) {
+    return Preparation(plan, i, options, style, kept).run();
 }
 
 }  // namespace candela

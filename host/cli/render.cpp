@@ -24,10 +24,11 @@ constexpr const char* FOOTER = R"(Examples:
   candela render scenes/cornell-box.json -o box.exr -o box.png --spp 256 --size 512x512
   candela render models/*.glb -o 'out/{stem}.png' --skip-existing --report out/report.jsonl
   candela render @models.txt --cameras all -o 'out/{stem}/{camera}.exr'
+  candela render robot.glb --frames 1..120 --fps 24 -o 'out/{frame:04}.png'
 
 In names of images, {stem} and {name} are the name of the scene's file without and with its extension, {folder}
 that of its folder, {camera} that of the camera, {scene} and {variant} what these options say, {view} the number
-of the picture among those of its scene, from 0, and {frame} that of the frame; {view:03} has three digits.
+of the picture among those of its scene, from 0, and {frame} that of the frame; {frame:04} has four digits.
 {{ and }} are braces. Folders whose names have fields are made. A list has the path of a scene on each line,
 relative to the current folder; empty lines and those that begin with # are left out.
 Of several pictures, each that fails is an error, and the others go on. The exit code is 0 if none failed, that

@@ -101,6 +101,8 @@ void RenderOptions::add_to(CLI::App& app) {
     list.add_scenes_to(app);
     outputs.add_to(app);
     rendering.add_to(app);
+    app.get_option("--animation")->remove_needs(app.get_option("--time"));
+    frames.add_to(app);
     list.add_cameras_to(app);
     cameras.add_to(app);
     stopping.add_to(app);

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/camera_options.h"
+#include "cli/frame_options.h"
 #include "cli/image_options.h"
 #include "cli/message_options.h"
 #include "cli/rendering_options.h"
@@ -57,6 +58,7 @@ struct RenderOptions {
     ListOptions list;
     CameraOptions cameras;
     RenderingOptions rendering;
+    FrameOptions frames;
     StoppingOptions stopping;
     OutputOptions outputs;
     CheckpointOptions checkpoint;

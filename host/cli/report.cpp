@@ -83,11 +83,13 @@ Json facts_of(const RenderRecord& record) {
 
 // What every entry says of its picture.
 Json entry_of(const Picture& picture, const std::string& state) {
-    return {{"scene", picture.scene},
-            {"camera", picture.camera ? Json(*picture.camera) : Json()},
-            {"view", picture.view},
-            {"outputs", picture.files},
-            {"state", state}};
+    Json entry{{"scene", picture.scene},
+               {"camera", picture.camera ? Json(*picture.camera) : Json()},
+               {"view", picture.view}};
+    if (picture.frame) entry["frame"] = *picture.frame;
+    entry["outputs"] = picture.files;
+    entry["state"] = state;
+    return entry;
 }
 
 void print_result(const std::string& text) {

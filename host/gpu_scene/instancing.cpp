@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -84,6 +85,7 @@ dmat3 absolute_cofactors(const dmat3& rows) {
 
 Instancing choose_instances(const Scene& scene, const InstancingRule& rule) {
     std::map<ShownMesh, uint64_t> uses;
+    std::set<ShownMesh> moving;
     std::vector<std::pair<uint32_t, ShownMesh>> possible;
     Emitters emitters(scene);
     for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
@@ -93,10 +95,12 @@ Instancing choose_instances(const Scene& scene, const InstancingRule& rule) {
         if (shape.emission && !is_similarity(instance->transform)) continue;
         possible.emplace_back(i, emitters.shown_by(i, instance->mesh));
         ++uses[possible.back().second];
+        if (scene.motion && scene.motion->moves_shape(i)) moving.insert(possible.back().second);
     }
     const auto has_tree = [&](const ShownMesh& shown) {
         const std::vector<uvec3>& triangles = scene.meshes[shown.mesh].triangles;
         const uint64_t count = uses.at(shown);
+        if (moving.contains(shown)) return true;
         return count >= std::max(rule.min_uses, 1u) && !triangles.empty() &&
                count * triangles.size() >= rule.min_triangles;
     };

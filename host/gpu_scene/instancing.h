@@ -42,9 +42,10 @@ struct Instancing {
     std::vector<bool> is_instance;  // For every shape.
 };
 
-// Follows the rule. But shapes that are sheared or scaled too unevenly (MAX_INSTANCE_CONDITION) are baked,
-// and so are shapes that emit and are sheared or scaled unevenly at all, so that areas and angles of their
-// lights are those of the mesh.
+// Follows the rule; of a frame of an animation, meshes that move are instances in any case, so that only what
+// they lie in is built for each frame. But shapes that are sheared or scaled too unevenly
+// (MAX_INSTANCE_CONDITION) are baked, and so are shapes that emit and are sheared or scaled unevenly at all,
+// so that areas and angles of their lights are those of the mesh.
 Instancing choose_instances(const Scene& scene, const InstancingRule& rule);
 
 // The placement of an instance in the frame of a scene.

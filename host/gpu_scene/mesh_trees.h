@@ -14,10 +14,10 @@
 namespace candela {
 
 struct MeshTree {
-    bool passable = false;  // Rays may pass it in some instance.
-    SceneFrame frame{};     // Of its own space, in which all that follows is.
-    FlatScene flat{};       // Its pieces are those of the shape ShownMesh::emitter.
-    Bvh bvh{};             // Its children are sorted; see two_levels.h.
+    bool passable = false;     // Rays may pass it in some instance.
+    SceneFrame frame{};        // Of its own space, in which all that follows is.
+    FlatScene flat{};          // Its pieces are those of the shape ShownMesh::emitter.
+    Bvh bvh{};                 // Its children are sorted; see two_levels.h.
     std::vector<Box> boxes{};  // Which together contain the mesh; none if no ray can meet it.
 };
 

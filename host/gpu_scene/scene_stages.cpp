@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "bvh/two_levels.h"
 #include "gpu_scene/coplanar_lights.h"
 #include "gpu_scene/light_sampler_rule.h"
 #include "gpu_scene/punctual_lights.h"
@@ -85,7 +86,7 @@ void SceneStages::make(Work& work, const std::function<void(size_t)>& packed) {
 }
 
 void SceneStages::make_frame(Work& work) {
-    if (!work.all && !work.change.of_geometry()) return;
+    if (!work.all && (work.scene.motion || !work.change.of_geometry())) return;
     const SceneFrame frame = given_frame_ ? *given_frame_ : choose_frame(work.scene);
     work.frame = work.all || frame != gpu_.frame;
     gpu_.frame = frame;
@@ -108,7 +109,8 @@ void SceneStages::make_materials(Work& work) {
 }
 
 void SceneStages::make_nesting(const Work& work) {
-    if (work.all || work.materials || work.change.of_geometry()) {
+    // Cameras, which may move with a motion, also decide.
+    if (work.all || work.materials || work.change.of_geometry() || work.scene.motion) {
         nesting_ = find_nesting(work.scene);
         gpu_.nested_media = nesting_.nested;
     }
@@ -181,11 +183,22 @@ void SceneStages::make_mesh_trees(Work& work) {
     work.trees = kept != trees_.size() || kinds_of(trees_) != before;
 }
 
+// The tree over the surfaces, if something moves among them: they are not looked at again in the next frame.
+const Bvh* SceneStages::kept_tree(const Work& work) {
+    if (!work.scene.motion || surfaces_.primitives.empty()) return nullptr;
+    if (work.surfaces || !surface_tree_) {
+        surface_tree_ = build_bvh(boxes_of(surfaces_.primitives));
+        sort_children(*surface_tree_);
+    }
+    return &*surface_tree_;
+}
+
 void SceneStages::make_tree(Work& work) {
     work.tree = work.all || work.surfaces || work.instances || work.trees || !work.change.moved.empty() ||
                 !work.change.shapes.empty();
     if (!work.tree) return;
-    SceneTree made = build_scene_tree(work.scene, gpu_.frame, surfaces_, instancing_, trees_);
+    SceneTree made =
+        build_scene_tree(work.scene, gpu_.frame, surfaces_, instancing_, trees_, kept_tree(work));
     work.leaves |= made.order != tree_.order || made.instances.empty() != tree_.instances.empty();
     tree_ = std::move(made);
 }

@@ -5,9 +5,12 @@
 //   textures, materials   of materials, emissions and images, and the unit of the frame
 //   texels                of images
 //   surfaces              of shapes that are not instances, in the frame: primitives, and pieces that emit
+//   tree of surfaces      of these, only of a frame of an animation
 //   mesh trees            of meshes that instances show, in frames of their own
 //   area lights, lamps    of surfaces and mesh trees, and their emissions, materials and images
-//   tree above            of the boxes around surfaces and instances, in the frame
+//   tree above            of the boxes around surfaces and instances, in the frame, or of the tree of
+//   surfaces
+//                         and the boxes around instances
 //   leaves                of surfaces and mesh trees and the lights on them, in the order of the tree above
 //   nodes                 of the tree above, mesh trees and the number of area lights
 //   light tree            of area lights, the places of lamps and punctual lights
@@ -65,6 +68,7 @@ class SceneStages {
     void make_surfaces(Work& work);
     void make_mesh_trees(Work& work);
     void make_area_lights(Work& work);
+    const Bvh* kept_tree(const Work& work);
     void make_tree(Work& work);
     void make_geometry(const Work& work);
     void make_lights(const Work& work);
@@ -83,6 +87,7 @@ class SceneStages {
     std::vector<bool> passable_;  // Of each shape.
     bool has_normals_ = false;    // Some mesh has shading normals.
     FlatScene surfaces_;
+    std::optional<Bvh> surface_tree_;
     MeshTrees trees_;
     AreaLights area_lights_;
     Lamps lamps_;

@@ -25,15 +25,17 @@ struct TreeInstance {
 };
 
 struct SceneTree {
-    std::vector<PackedBvhNode> nodes;
-    std::vector<uint32_t> order;          // The flat scene's primitives in leaf order.
-    std::vector<TreeInstance> instances;  // Those that rays can meet, in the order of the scene.
-    Box bounds;
+    std::vector<PackedBvhNode> nodes{};
+    std::vector<uint32_t> order{};          // The flat scene's primitives in leaf order.
+    std::vector<TreeInstance> instances{};  // Those that rays can meet, in the order of the scene.
+    Box bounds{};
     uint32_t depth = 0;     // Nodes on the longest way down to a primitive, or to an instance and its record.
     float sah_cost = 0.0f;  // As of a Bvh.
 };
 
+// `kept`: the tree over the surfaces, whose children are sorted. It then becomes a part of the tree above,
+// which costs little to build; if there are no instances, it is not used. Null: all of the tree is built.
 SceneTree build_scene_tree(const Scene& scene, const SceneFrame& frame, const FlatScene& flat,
-                           const Instancing& instancing, const MeshTrees& trees);
+                           const Instancing& instancing, const MeshTrees& trees, const Bvh* kept = nullptr);
 
 }  // namespace candela

@@ -76,7 +76,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, Loaded
             source = json.is_gltf ? SceneSource::gltf : SceneSource::native;
         }
     }
-    if (is_last) files.gltf.clear();
+    if (is_last) files.gltf.contents.clear();
     load_images(scene, options.images, options.progress, files.images);
     if (options.double_sided) make_double_sided(scene);
     light_scene(scene, place, source, options.lighting);

@@ -104,8 +104,14 @@ DoubleBox ShapeBounds::operator()(const Shape& shape) const {
 DoubleBox bounds(const Scene& scene) {
     const ShapeBounds bounds_of(scene);
     DoubleBox box;
-    for (const Shape& shape : scene.shapes)
-        box.extend(bounds_of(shape));
+    if (scene.motion) {
+        box = scene.motion->still;
+        for (const dvec3 p : scene.motion->ways)
+            box.extend(p);
+    }
+    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+        if (!scene.motion || !scene.motion->covers(i)) box.extend(bounds_of(scene.shapes[i]));
+    }
     return box;
 }
 

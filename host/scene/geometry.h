@@ -10,7 +10,8 @@
 namespace candela {
 
 // The box around all shapes; empty for a scene without shapes. It is the smallest one, except if copied
-// meshes have many triangles in all: it then contains the boxes around their placed boxes.
+// meshes have many triangles in all: it then contains the boxes around their placed boxes. Of a frame of an
+// animation, it is the box around all frames.
 DoubleBox bounds(const Scene& scene);
 
 // The same for some of the shapes of a scene, one by one.

@@ -286,6 +286,20 @@ struct Light {
     std::variant<PointLight, SpotLight, DirectionalLight> model;
 };
 
+// What of a scene changes with time, if it shows a frame of an animation: of its shapes, those from
+// first_shape on, as many as `moves` has. Everything fitted to what the scene shows (the frame, a studio,
+// views) is fitted to all times.
+struct Motion {
+    uint32_t first_shape = 0;
+    std::vector<bool> moves{};  // Whether the shape moves, deforms, or is hidden at some time.
+    DoubleBox still{};          // Around those that do not.
+    // Around the others at all times: the corners of a body, of which they may exceed 2 %.
+    std::vector<dvec3> ways{};
+
+    bool covers(size_t shape) const { return shape - first_shape < moves.size(); }
+    bool moves_shape(size_t shape) const { return covers(shape) && moves[shape - first_shape]; }
+};
+
 struct Scene {
     std::vector<Camera> cameras;  // At least one; the first is the default.
     Film film;
@@ -298,6 +312,7 @@ struct Scene {
     std::vector<std::string> objects;          // Names, all different, of what shapes are parts of.
     std::vector<Light> lights;                 // Besides shapes that emit and the environment.
     std::optional<Environment> environment;    // None: black.
+    std::optional<Motion> motion;              // Only of a scene that shows a frame of an animation.
     FileReach reach;                           // The files that may be read for it.
     std::vector<std::filesystem::path> files;  // Files read in addition to a JSON scene file: meshes,
                                                // materials, images.

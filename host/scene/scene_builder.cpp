@@ -79,6 +79,16 @@ void complete_attributes(const Scene& scene, const std::string& place, const App
 
 }  // namespace
 
+bool reaches_no_farther(const TriangleMesh& mesh, const Transform& transform) {
+    return fits(mesh.origin, local_bounds(mesh), transform);
+}
+
+void finish_mesh(const Scene& scene, const std::string& place, const Appearance& appearance,
+                 TriangleMesh& mesh) {
+    complete_normals(mesh);
+    complete_attributes(scene, place, appearance, mesh);
+}
+
 Material default_material(bool has_colors) {
     if (!has_colors) return {.name = {}, .model = DiffuseMaterial{}};
     return {.name = {}, .model = DiffuseMaterial{vec3(1.0f)}, .vertex_colors = true};
@@ -118,9 +128,8 @@ void SceneBuilder::add_mesh(const std::string& place, const Transform& transform
                         " without area");
     }
     for (MeshPart& part : parts) {
-        if (!fits(part.mesh.origin, local_bounds(part.mesh), transform)) throw Error(place + ": " + TOO_FAR);
-        complete_normals(part.mesh);
-        complete_attributes(scene_, place, part.appearance, part.mesh);
+        if (!reaches_no_farther(part.mesh, transform)) throw Error(place + ": " + TOO_FAR);
+        finish_mesh(scene_, place, part.appearance, part.mesh);
         part.appearance.material = material_at_scale(part.appearance.material, transform.mean_scale());
         add(part.appearance, MeshInstance{uint32_t(scene_.meshes.size()), transform});
         scene_.meshes.push_back(std::move(part.mesh));

@@ -35,6 +35,14 @@ inline constexpr const char* TOO_FAR =
 // The material of a file's faces without one: grey, or the colours of their vertices.
 Material default_material(bool has_colors);
 
+// Whether no coordinate of a mesh that is placed so lies beyond it.
+bool reaches_no_farther(const TriangleMesh& mesh, const Transform& transform);
+
+// Gives a mesh, none of whose triangles is flat, the normals and tangents that a loader leaves out. Throws
+// Error if it lacks texture coordinates that its appearance needs.
+void finish_mesh(const Scene& scene, const std::string& place, const Appearance& appearance,
+                 TriangleMesh& mesh);
+
 // Appends to a scene's shapes, materials and warnings. Messages begin with a place, such as
 // `file:line:column`.
 class SceneBuilder {

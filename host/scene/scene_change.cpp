@@ -23,6 +23,8 @@ bool same_bits(const T& a, const T& b) {
     return std::ranges::equal(std::as_bytes(std::span(&a, 1)), std::as_bytes(std::span(&b, 1)));
 }
 
+}  // namespace
+
 bool is_same(const TriangleMesh& a, const TriangleMesh& b) {
     return same_bits(a.origin, b.origin) && same_bits(a.positions, b.positions) &&
            same_bits(a.normals, b.normals) && same_bits(a.tangents, b.tangents) && same_bits(a.uv0, b.uv0) &&
@@ -39,8 +41,6 @@ void note_shape(SceneChange& change, uint32_t i, const Shape& before, const Shap
         change.shapes.push_back(i);
     }
 }
-
-}  // namespace
 
 void SceneChange::add(const SceneChange& later) {
     environment |= later.environment;

@@ -28,6 +28,12 @@ struct SceneChange {
     void add(const SceneChange& later);
 };
 
+// Whether two meshes have the same bits.
+bool is_same(const TriangleMesh& a, const TriangleMesh& b);
+
+// Notes the differences of a shape, if there are any.
+void note_shape(SceneChange& change, uint32_t shape, const Shape& before, const Shape& now);
+
 // Notes a difference of a shape's emission, or of the environment, if there is one.
 void note_emission(SceneChange& change, uint32_t shape, const std::optional<Emission>& before,
                    const std::optional<Emission>& now);

@@ -99,8 +99,14 @@ Reach reach(std::span<const Body> bodies, dvec3 n, dvec3 dn) {
 
 ShownBodies shown_bodies(const Scene& scene) {
     Collector collector(scene);
-    for (const Shape& shape : scene.shapes) {
+    if (scene.motion) {
+        for (const dvec3 p : scene.motion->ways)
+            collector.bodies.push_back({.center = p});
+    }
+    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+        const Shape& shape = scene.shapes[i];
         if (is_invisible(scene.materials[shape.material])) continue;
+        if (scene.motion && scene.motion->moves_shape(i)) continue;
         std::visit([&](const auto& geometry) { collector.add(geometry); }, shape.geometry);
     }
     ShownBodies shown{.bodies = std::move(collector.bodies)};

@@ -25,7 +25,8 @@ Reach reach(std::span<const Body> bodies, dvec3 n, dvec3 dn = dvec3(0));
 
 // What the shapes of a scene cover: vertices of triangles, corners of quads, spheres, and polygons around
 // disks, which exceed these by at most 0.01 % of their radius. Shapes that all rays pass are left out. Copied
-// meshes that have very many vertices in all are replaced by the corners of their boxes. Coordinates are
+// meshes that have very many vertices in all are replaced by the corners of their boxes. Of a frame of an
+// animation, the shapes that move cover their ways in all frames. Coordinates are
 // relative to `origin`, which is the centre of the box around all. If the scene shows nothing, or a single
 // point, there is a sphere of radius 1.
 struct ShownBodies {

@@ -212,7 +212,8 @@ void Animation::read_channel(File& file, const Node& animation, const Node& chan
     read.sampler = read_sampler(file, samplers[i], width_of(read.path));
     Interpolation& interpolation = read.sampler.interpolation;
     if (read.path == Path::visible && interpolation != Interpolation::step) {
-        constexpr const char* ONLY_STEP = "a node is either visible or not, so the interpolation must be STEP";
+        constexpr const char* ONLY_STEP =
+            "a node is either visible or not, so the interpolation must be STEP";
         if (interpolation == Interpolation::cubic)
             samplers[i].fail(concat(ONLY_STEP, "; export the file again"));
         file.warn(samplers[i], concat(ONLY_STEP, ", and is read as if it were"));

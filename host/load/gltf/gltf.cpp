@@ -53,12 +53,12 @@ void warn_of_units(File& file, const GltfOptions& options, const Scene& scene) {
 
 void add_gltf_scene(const std::filesystem::path& path, const GltfOptions& options, Scene& scene,
                     const LoadProgress& progress, GltfFiles& files) {
-    std::shared_ptr<gltf::Contents>& contents = files[path];
+    std::shared_ptr<gltf::Contents>& contents = files.contents[path];
     if (!contents) contents = std::make_shared<gltf::Contents>(path, scene.reach, progress);
     File file(*contents, progress);
     check_extensions(file);
     scene.files.push_back(path);
-    gltf::SceneReader(file, scene, options, progress).read();
+    files.poser = gltf::SceneReader(file, scene, options, progress).read();
     std::ranges::copy(file.files(), std::back_inserter(scene.files));
     read_attributes(file, scene);
     if (!scene.lights.empty())

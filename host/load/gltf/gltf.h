@@ -15,11 +15,15 @@ namespace candela {
 
 namespace gltf {
 class Contents;
-}
+class Poser;
+}  // namespace gltf
 
-// Parsed glTF files and their buffers, by path: for further scenes of the same files, such as at another
-// time. The files must not change.
-using GltfFiles = std::map<std::filesystem::path, std::shared_ptr<gltf::Contents>>;
+// Parsed glTF files and their buffers, for further scenes of the same files, such as at another time. The
+// files must not change.
+struct GltfFiles {
+    std::map<std::filesystem::path, std::shared_ptr<gltf::Contents>> contents{};  // By path.
+    std::shared_ptr<gltf::Poser> poser{};  // Of the last scene read for its frames.
+};
 
 // The units of a file's lights.
 enum class LightUnits {
@@ -35,6 +39,7 @@ struct GltfOptions {
     std::optional<std::string> scene{};       // None: the file's default.
     std::optional<std::string> animation{};   // Or "all"; none: the first, if there is a time.
     std::optional<double> time{};             // Time of the animation [s]; none: not animated.
+    bool frames = false;                      // Read it to be posed, by GltfFiles::poser, instead.
     std::optional<std::string> variant{};     // Variant of the materials; none: the file's own.
     std::optional<LightUnits> light_units{};  // None: the units of the program that wrote the file.
 
@@ -43,7 +48,7 @@ struct GltfOptions {
 
 // The message about these options for other files.
 inline constexpr const char* GLTF_OPTIONS_ALONE =
-    "--scene, --animation, --time, --variant and --light-units are for glTF files; leave them out";
+    "--scene, --animation, --time, --frames, --variant and --light-units are for glTF files; leave them out";
 
 // The size of the picture if the file's camera does not state one.
 inline constexpr uvec2 GLTF_FILM_SIZE{1280, 720};

@@ -4,6 +4,7 @@
 #include <any>
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,7 +22,7 @@ namespace candela::gltf {
 // The part of a file that every scene of it shares: its document, its buffers, and values made from them.
 // Reads .gltf (JSON) and .glb (JSON and a buffer in one file), which differ in their first bytes. A buffer is
 // read when it is first needed. Places in messages are JSON pointers: `room.glb#/accessors/3/count`.
-class Contents {
+class Contents : public std::enable_shared_from_this<Contents> {
   public:
     // Throws Error if the file cannot be read, is cut off, or is not of version 2. This file and all files
     // that it names must be within `reach`.

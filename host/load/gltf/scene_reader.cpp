@@ -38,7 +38,7 @@ SceneReader::SceneReader(File& file, Scene& scene, const GltfOptions& options, c
     if (options.variant) variant_ = find_variant(file, *options.variant);
 }
 
-void SceneReader::read() {
+std::shared_ptr<Poser> SceneReader::read() {
     nodes_ = read_nodes(file_);
     if (options_.time) {
         if (file_.count("animations") == 0)
@@ -53,13 +53,26 @@ void SceneReader::read() {
             [&] { return read_image_light(file_, *scene); });
         if (light) scene_.environment = std::move(light);
     }
-    NodeTrees trees(file_, root_nodes(scene), scene.has_value(), nodes_);
+    const std::vector<uint32_t> roots = root_nodes(scene);
+    if (options_.frames) {
+        poser_ =
+            std::make_shared<Poser>(file_.contents().shared_from_this(), options_, roots, scene.has_value());
+        show_what_blinks();
+    }
+    NodeTrees trees(file_, roots, scene.has_value(), nodes_);
     trees.place();
     primitives_ = count_primitives(trees.shown());
     for (const uint32_t i : trees.shown()) {
         with_memory_for(
             "what the node shows", [&] { return file_.element("nodes", i).place(); }, [&] { read_node(i); });
     }
+    if (poser_) poser_->complete(scene_);
+    return poser_;
+}
+
+void SceneReader::show_what_blinks() {
+    for (uint32_t i = 0; i < nodes_.size(); ++i)
+        nodes_[i].is_visible |= poser_->blinks(i);
 }
 
 std::optional<Node> SceneReader::chosen_scene() const {
@@ -106,23 +119,28 @@ size_t SceneReader::count_primitives(const std::vector<uint32_t>& nodes) const {
 
 void SceneReader::read_node(uint32_t index) {
     const Node node = file_.element("nodes", index);
-    const PosedNode& posed = nodes_[index];
-    if (const auto camera = node.find("camera")) read_camera(node, file_.resolve("cameras", *camera), posed);
-    if (!posed.is_visible) return;  // Its camera is used even so.
+    if (const auto camera = node.find("camera")) read_camera(node, file_.resolve("cameras", *camera), index);
+    if (!nodes_[index].is_visible) return;  // Its camera is used even so.
     if (const auto mesh = node.find("mesh")) {
         builder_.begin_object(name_of(node, name_of(file_.resolve("meshes", *mesh), concat("node ", index))));
-        read_mesh(node, posed);
+        read_mesh(node, index);
     }
-    if (const auto light = extension_of(node, "KHR_lights_punctual")) {
-        if (const auto reference = light->find("light"))
-            scene_.lights.push_back(read_light(file_, *reference, posed.world, units_));
-    }
+    read_light_of(node, index);
 }
 
-void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
-    const Node reference = node.require("mesh");
-    const uint32_t index = file_.index("meshes", reference);
-    const Node mesh = file_.element("meshes", index);
+void SceneReader::read_light_of(const Node& node, uint32_t index) {
+    const auto light = extension_of(node, "KHR_lights_punctual");
+    const auto reference = light ? light->find("light") : std::nullopt;
+    if (!reference) return;
+    scene_.lights.push_back(read_light(file_, *reference, nodes_[index].world, units_));
+    if (poser_ && poser_->changes(index))
+        poser_->add(Poser::PosedLight{uint32_t(scene_.lights.size() - 1), index, *reference});
+}
+
+void SceneReader::read_mesh(const Node& node, uint32_t index) {
+    const PosedNode& posed = nodes_[index];
+    const uint32_t mesh_index = file_.index("meshes", node.require("mesh"));
+    const Node mesh = file_.element("meshes", mesh_index);
     const auto found = mesh.find("primitives");
     if (!found) {
         file_.warn(mesh, "left out a mesh without primitives");
@@ -132,30 +150,66 @@ void SceneReader::read_mesh(const Node& node, const PosedNode& posed) {
 
     std::vector<double> weights = posed.weights;
     if (const auto own = mesh.find("weights"); own && weights.empty()) weights = own->numbers(own->size());
-    if (const auto skin = node.find("skin")) {
-        if (const auto instances = extension_of(node, "EXT_mesh_gpu_instancing"))
-            file_.warn(*instances, "the mesh has a skin, and is shown once");
-        const auto [known, is_new] = joints_.try_emplace(file_.index("skins", *skin));
-        if (is_new) known->second = joint_matrices(file_, file_.resolve("skins", *skin), nodes_);
-        const std::vector<glm::dmat4>& joints = known->second;
-        // The node's transform does not move a skinned mesh, but does determine which side is the front
-        // (3.7.4).
-        const bool mirrors = determinant(glm::dmat3(posed.world)) < 0.0;
-        for (const Node& primitive : primitives.elements()) {
-            add_primitive(primitive, {weights, joints, mirrors}, Transform());
-            progress_("meshes", ++done_, primitives_);
-        }
+    if (node.find("skin")) {
+        read_skinned_mesh(node, index, primitives, weights);
         return;
     }
+    const bool deforms = poser_ && poser_->deforms(index);
+    const bool changes = deforms || (poser_ && poser_->changes(index));
     for (const glm::dmat4& placement : read_instances(file_, node)) {
-        if (const auto transform = transform_of(posed.world * placement)) {
-            place_mesh(node, primitives, {index, weights}, *transform);
-        } else {
+        std::optional<Transform> transform = transform_of(posed.world * placement);
+        if (!transform && changes) transform = Transform();  // Until it is posed.
+        if (!transform) {
             file_.warn(node, "left out a mesh that its transform shrinks to a line or a point");
+            continue;
+        }
+        const size_t first = scene_.shapes.size();
+        if (!deforms) {
+            place_mesh(node, primitives, {mesh_index, weights}, *transform);
+            if (changes) note_changes(first, index, placement);
+            continue;
+        }
+        for (const Node& primitive : primitives.elements()) {
+            if (const auto shape = add_primitive(primitive, {.weights = weights}, *transform))
+                note_deformation(*shape, index, placement, primitive, {});
         }
         builder_.begin_copy();
     }
     progress_("meshes", done_ += primitives.size(), primitives_);
+}
+
+void SceneReader::read_skinned_mesh(const Node& node, uint32_t index, const Node& primitives,
+                                    const std::vector<double>& weights) {
+    if (const auto instances = extension_of(node, "EXT_mesh_gpu_instancing"))
+        file_.warn(*instances, "the mesh has a skin, and is shown once");
+    const Node reference = node.require("skin");
+    const Node skin = file_.resolve("skins", reference);
+    const auto [known, is_new] = joints_.try_emplace(file_.index("skins", reference));
+    if (is_new) known->second = joint_matrices(file_, skin, nodes_);
+    const std::vector<glm::dmat4>& joints = known->second;
+    // The node's transform does not move a skinned mesh, but does determine which side is the front (3.7.4).
+    const bool mirrors = determinant(glm::dmat3(nodes_[index].world)) < 0.0;
+    for (const Node& primitive : primitives.elements()) {
+        const auto shape = add_primitive(primitive, {weights, joints, mirrors}, Transform());
+        if (shape && poser_ && (poser_->deforms(index) || poser_->changes(index)))
+            note_deformation(*shape, index, glm::dmat4(1.0), primitive, skin);
+        progress_("meshes", ++done_, primitives_);
+    }
+}
+
+void SceneReader::note_changes(size_t first, uint32_t node, const glm::dmat4& placement) {
+    for (size_t i = first; i < scene_.shapes.size(); ++i)
+        poser_->add(Poser::PosedShape{.shape = uint32_t(i), .node = node, .placement = placement});
+}
+
+void SceneReader::note_deformation(size_t shape, uint32_t node, const glm::dmat4& placement,
+                                   const Node& primitive, const std::optional<Node>& skin) {
+    poser_->add(Poser::PosedShape{.shape = uint32_t(shape),
+                                  .node = node,
+                                  .placement = placement,
+                                  .primitive = primitive,
+                                  .skin = skin,
+                                  .has_alpha = has_alpha(primitive)});
 }
 
 void SceneReader::place_mesh(const Node& node, const Node& primitives, const StandingMesh& mesh,
@@ -178,13 +232,16 @@ std::optional<size_t> SceneReader::add_primitive(const Node& primitive, const De
                                                  const Transform& transform) {
     std::optional<TriangleMesh> mesh = read_primitive(file_, primitive, deformation);
     if (!mesh) return std::nullopt;
-    const std::optional<uint32_t> of_file = material_of(primitive);
-    const uint32_t material = material_for({of_file, !mesh->colors.empty()});
-    const bool has_alpha = of_file && alpha_counts(file_.element("materials", *of_file));
-    fit_attributes(file_, primitive, scene_.materials[material], has_alpha, *mesh);
+    const uint32_t material = material_for({material_of(primitive), !mesh->colors.empty()});
+    fit_attributes(file_, primitive, scene_.materials[material], has_alpha(primitive), *mesh);
     builder_.add_mesh(primitive.place(), {material, material_emission(scene_.materials[material])}, transform,
                       std::move(*mesh));
     return scene_.shapes.size() - 1;
+}
+
+bool SceneReader::has_alpha(const Node& primitive) const {
+    const std::optional<uint32_t> material = material_of(primitive);
+    return material && alpha_counts(file_.element("materials", *material));
 }
 
 std::optional<uint32_t> SceneReader::material_of(const Node& primitive) const {
@@ -216,15 +273,16 @@ uint32_t SceneReader::read_file_material(uint32_t index) {
     return builder_.add_material(std::move(material));
 }
 
-void SceneReader::read_camera(const Node& node, const Node& camera, const PosedNode& posed) {
+void SceneReader::read_camera(const Node& node, const Node& camera, uint32_t index) {
     Camera result = gltf::read_camera(file_, camera);
-    if (!place_camera(node, posed.world, result)) {
+    if (!place_camera(node, nodes_[index].world, result)) {
         file_.warn(node, "left out a camera that its transform flattens");
         return;
     }
     result.name =
         camera_names_.choose(name_of(node, name_of(camera, concat("camera ", scene_.cameras.size()))));
     scene_.cameras.push_back(result);
+    if (poser_ && poser_->changes(index)) poser_->add_camera(uint32_t(scene_.cameras.size() - 1), index);
 }
 
 }  // namespace candela::gltf

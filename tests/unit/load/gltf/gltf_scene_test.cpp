@@ -165,11 +165,12 @@ TEST_F(GltfScene, OtherFormatsRefuseItsOptions) {
                 load_scene(folder_.path() / name, {.images = {}, .gltf = options});
                 ADD_FAILURE() << name;
             } catch (const Error& error) {
-                EXPECT_EQ(folder_.without_folder(error.what()),
-                          name +
-                              ": --scene, --animation, --time, --variant and --light-units are for glTF "
-                              "files; leave "
-                              "them out");
+                EXPECT_EQ(
+                    folder_.without_folder(error.what()),
+                    name +
+                        ": --scene, --animation, --time, --frames, --variant and --light-units are for glTF "
+                        "files; leave "
+                        "them out");
                 EXPECT_EQ(error.kind(), ErrorKind::request);
             }
         }
