@@ -1,7 +1,9 @@
 // See frame_options.h.
 #include "cli/frame_options.h"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -37,6 +39,7 @@ std::optional<std::vector<uint32_t>> parse_frames(const std::string& text) {
     for (const std::string& part : split(text, ',')) {
         if (!add_frames(part, frames)) return std::nullopt;
     }
+    if (std::set(frames.begin(), frames.end()).size() != frames.size()) return std::nullopt;
     return frames;
 }
 
@@ -52,7 +55,8 @@ void FrameOptions::add_to(CLI::App& app) {
     CLI::Option* const shown =
         add_value(app, "--frames", frames, parse_frames,
                   concat("all, or whole numbers from 0 to ", LAST_FRAME,
-                         " such as 7, 1..120, 1..120:2 or 1,5,9..12, with A <= B in A..B:STEP and a step of "
+                         " such as 7, 1..120, 1..120:2 or 1,5,9..12, each once, with A <= B in A..B:STEP and "
+                         "a step of "
                          "at least 1; at most ",
                          MOST_FRAMES, " frames"),
                   "A picture of each of these frames, B included; all: of the whole animation")

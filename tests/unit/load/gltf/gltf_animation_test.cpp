@@ -202,6 +202,46 @@ TEST_F(GltfAnimation, WhatItCannotAnimateIsNoted) {
     EXPECT_TRUE(load(file).warnings.empty());
 }
 
+TEST_F(GltfAnimation, HidesAndShowsNodes) {
+    const auto hiding = [](const char* interpolation, const std::string& pointer = "/nodes/0") {
+        const std::vector<uint8_t> values = interpolation == std::string("CUBICSPLINE")
+                                                ? std::vector<uint8_t>(9)
+                                                : std::vector<uint8_t>{1, 0, 1};
+        GltfFile file = animated("pointer", {0, 1, 2}, interpolation, "SCALAR", values);
+        Json& target = file.root["animations"][0]["channels"][0]["target"];
+        target.erase("node");
+        target["extensions"]["KHR_animation_pointer"] = {
+            {"pointer", pointer + "/extensions/KHR_node_visibility/visible"}};
+        return file;
+    };
+    const auto shapes = [&](const GltfFile& file, double time) {
+        return load(file, {.time = time}).shapes.size();
+    };
+    const GltfFile file = hiding("STEP");
+    EXPECT_EQ(shapes(file, 0.9), 1u);
+    EXPECT_EQ(shapes(file, 1.0), 0u);
+    EXPECT_EQ(shapes(file, 1.9), 0u);
+    EXPECT_EQ(shapes(file, 2.0), 1u);
+    EXPECT_TRUE(load(file, {.time = 0.0}).warnings.empty());
+    const std::string only = "a node is either visible or not, so the interpolation must be STEP";
+    const Scene scene =
+        expect_warning(hiding("LINEAR"), "#/animations/0/samplers/0: " + only + ", and is read as if it were",
+                       {.time = 1.9});
+    EXPECT_TRUE(scene.shapes.empty());
+    expect_error(hiding("CUBICSPLINE"), "#/animations/0/samplers/0: " + only + "; export the file again",
+                 {.time = 1.0});
+    expect_error(
+        hiding("STEP", "/nodes/1"),
+        "#/animations/0/channels/0/target/extensions/KHR_animation_pointer/pointer: there are only 1 "
+        "nodes; export the file again",
+        {.time = 1.0});
+    expect_warning(
+        hiding("STEP", "/nodes/x"),
+        "#/animations/0/channels/0/target: ignored the targets of KHR_animation_pointer: only nodes "
+        "and weights are animated",
+        {.time = 1.0});
+}
+
 TEST_F(GltfAnimation, NotesRotationsOfAnotherLength) {
     // The tangents of a spline may have any length.
     const std::vector<float> halves{9, 0, 0, 0, 0, 0, 0,    1,    0, 9, 0, 0,
