@@ -171,7 +171,7 @@ TEST_F(AnimatedSceneTest, WarnsOnce) {
     const std::vector<std::string> warnings = scene.take_warnings();
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(folder_.without_folder(warnings[0]),
-              "m.gltf#/nodes/8: at some times, the node's transform flattens its camera, which is then where "
+              "m.gltf#/nodes/9: at some times, the node's transform flattens its camera, which is then where "
               "it is without the animation");
     scene.pose(1.0);
     EXPECT_TRUE(scene.take_warnings().empty());

@@ -9,9 +9,9 @@
 
 namespace candela {
 
-// From 0 s to 1 s: "spin" turns by 90 degrees about +z; "morph" grows; "strip" bends at a joint; "blink" is
-// hidden from 0.5 s on, and is moved there; "pop" grows from a point; "eye" is a camera that moves. "still",
-// of SIDE x SIDE squares, does not move.
+// From 0 s to 1 s: "spin" turns by 90 degrees about +z; "morph" grows; "strip" bends at a joint; "blink" is,
+// with the node below it, hidden from 0.5 s on, and is moved there; "pop" grows from a point; "eye" is a
+// camera that moves. "still", of SIDE x SIDE squares, does not move.
 inline GltfFile moving_file() {
     constexpr uint32_t SIDE = 4;
     GltfFile file;
@@ -43,7 +43,9 @@ inline GltfFile moving_file() {
     skinned["attributes"]["JOINTS_0"] = file.add<uint8_t>("VEC4", {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0});
     skinned["attributes"]["WEIGHTS_0"] = file.add<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
     const size_t strip = file.show(skinned, {{"name", "strip"}, {"skin", 0}});
-    const size_t blink = file.show(triangle, {{"name", "blink"}, {"translation", {0, -1, 0}}});
+    const size_t below = file.show(triangle);
+    const size_t blink =
+        file.push("nodes", {{"name", "blink"}, {"translation", {0, -1, 0}}, {"children", {below}}});
     const size_t pop = file.show(triangle, {{"name", "pop"}, {"translation", {0.5, -1, 0}}});
     file.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"aspectRatio", 1}}}});
     const size_t eye = file.push("nodes", {{"name", "eye"}, {"camera", 0}, {"translation", {0, 0, 5}}});
