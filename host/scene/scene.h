@@ -293,7 +293,7 @@ struct Motion {
     uint32_t first_shape = 0;
     std::vector<bool> moves{};  // Whether the shape moves, deforms, or is hidden at some time.
     DoubleBox still{};          // Around those that do not.
-    // Around the others at all times: the corners of a body, of which they may exceed 2 %.
+    // Corners of a body that holds the others at all times, but for about 2 % of their extent.
     std::vector<dvec3> ways{};
 
     bool covers(size_t shape) const { return shape - first_shape < moves.size(); }
