@@ -68,7 +68,7 @@ bool is_within(const TriangleMesh& mesh, dvec3 p) {
 
 // Boxes that all rays meet: traversal then tests every leaf of every instance.
 void open_all_boxes(GpuScene& scene) {
-    std::vector<uvec4>& words = scene.arrays[ARRAY_NODES];
+    std::vector<uvec4> words = scene.arrays[ARRAY_NODES];
     for (size_t i = 0; i < words.size(); i += BVH_NODE_WORDS) {
         PackedBvhNode packed;
         std::copy_n(words.begin() + std::ptrdiff_t(i), BVH_NODE_WORDS, packed.begin());
@@ -82,12 +82,13 @@ void open_all_boxes(GpuScene& scene) {
             q = uvec3(0xFFFFFFFFu);
         std::ranges::copy(pack(node), words.begin() + std::ptrdiff_t(i));
     }
+    scene.arrays[ARRAY_NODES] = std::move(words);
 }
 
 // Puts nodes that nothing refers to between the top tree and that of the only mesh, so that its root is
 // `root`.
 void push_mesh_back(GpuScene& scene, uint32_t root) {
-    std::vector<uvec4>& words = scene.arrays[ARRAY_NODES];
+    std::vector<uvec4> words = scene.arrays[ARRAY_NODES];
     const uint32_t first = instance_at(scene, scene.instances.at(0)).root, count = root - first;
     for (const InstancePlace& place : scene.instances)
         words[size_t{place.node} * BVH_NODE_WORDS].w += count << 8u;
@@ -100,6 +101,7 @@ void push_mesh_back(GpuScene& scene, uint32_t root) {
         std::ranges::copy(pack(node), i);
     }
     words.insert(begin, size_t{count} * BVH_NODE_WORDS, uvec4(~0u));
+    scene.arrays[ARRAY_NODES] = std::move(words);
 }
 
 class InstanceTest : public DeviceTest {

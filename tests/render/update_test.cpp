@@ -132,13 +132,13 @@ TEST_F(UpdateTest, WhatOthersMoveIsCopied) {
     info.limits.max_per_stage_descriptor_storage_buffers = 4;
     GpuScene scene;
     const auto resize = [&](uint32_t lights, uint32_t environment) {
-        scene.arrays[ARRAY_LIGHTS].resize(lights);
-        scene.arrays[ARRAY_ENVIRONMENT].resize(environment);
+        scene.arrays[ARRAY_LIGHTS] = std::vector<uvec4>(lights);
+        scene.arrays[ARRAY_ENVIRONMENT] = std::vector<uvec4>(environment);
     };
     const auto map = [&] { return map_arrays(info, scene, SceneAccess::storage_buffers); };
-    scene.arrays[ARRAY_NODES].resize(20);
-    scene.arrays[ARRAY_PRIMITIVES].resize(20);
-    scene.arrays[ARRAY_MATERIALS].resize(6);
+    scene.arrays[ARRAY_NODES] = std::vector<uvec4>(20);
+    scene.arrays[ARRAY_PRIMITIVES] = std::vector<uvec4>(20);
+    scene.arrays[ARRAY_MATERIALS] = std::vector<uvec4>(6);
     resize(8, 4);
     SceneBuffers buffers(device(), scene, {}, map());
     const uint32_t before = map().starts[ARRAY_MATERIALS];
