@@ -41,11 +41,11 @@ uint32_t environment_constant(uint32_t environment, Backdrop backdrop) {
     return backdrop == Backdrop::transmitted ? hidden | ENVIRONMENT_BEHIND_GLASS : hidden;
 }
 
-uint32_t aperture_constant(const Camera& camera) {
-    if (camera.ortho_height) return APERTURE_NONE;
+uint32_t camera_constant(const Camera& camera) {
+    if (camera.ortho_height) return CAMERA_ORTHOGRAPHIC;
     const Lens& lens = camera.lens;
-    if (lens.radius == 0.0f) return APERTURE_PINHOLE;
-    return lens.blades == 0 ? APERTURE_DISK : APERTURE_POLYGON;
+    if (lens.radius == 0.0f) return CAMERA_PINHOLE;
+    return lens.blades == 0 ? CAMERA_DISK : CAMERA_POLYGON;
 }
 
 // The length of the list that replaces the tree; 0 for the tree. Only on lavapipe: a GPU has no registers for
@@ -82,7 +82,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_HAS_NORMALS] = scene.has_normals;
     constants[CONSTANT_SMOOTH_TERMINATOR] = settings.terminator == Terminator::smooth;
     constants[CONSTANT_HAS_AOVS] = settings.aovs;
-    constants[CONSTANT_APERTURE] = aperture_constant(camera);
+    constants[CONSTANT_CAMERA] = camera_constant(camera);
     constants[CONSTANT_ENVIRONMENT] = environment_constant(scene.environment, settings.backdrop);
     constants[CONSTANT_EVEN_SKY] = scene.even_sky;
     constants[CONSTANT_MATERIALS] = scene.materials_present;

@@ -22,7 +22,7 @@ Ray camera_ray_parallel(Parameters camera, vec2 film) {
 
 // The ray through a film position and the centre of the aperture. Unit direction.
 Ray camera_ray_sharp(Parameters camera, vec2 film) {
-    if (APERTURE == APERTURE_NONE) return camera_ray_parallel(camera, film);
+    if (CAMERA == CAMERA_ORTHOGRAPHIC) return camera_ray_parallel(camera, film);
     return Ray(camera.position, normalize(camera_film_direction(camera, film)));
 }
 
@@ -30,8 +30,8 @@ Ray camera_ray_sharp(Parameters camera, vec2 film) {
 // of one film position meet in the plane of focus. Unit direction.
 // Ref: Cook, Porter and Carpenter 1984, Distributed Ray Tracing, section 2.
 Ray camera_ray(Parameters camera, vec2 film, vec2 u) {
-    if (APERTURE == APERTURE_PINHOLE || APERTURE == APERTURE_NONE) return camera_ray_sharp(camera, film);
-    vec2 aperture = APERTURE == APERTURE_DISK ? warp_disk(u) : warp_polygon(u, camera.blades);
+    if (CAMERA == CAMERA_PINHOLE || CAMERA == CAMERA_ORTHOGRAPHIC) return camera_ray_sharp(camera, film);
+    vec2 aperture = CAMERA == CAMERA_DISK ? warp_disk(u) : warp_polygon(u, camera.blades);
     vec3 offset = aperture.x * camera.lens_x + aperture.y * camera.lens_y;
     vec3 to_focus = camera_film_direction(camera, film) - offset / camera.focal_distance;
     return Ray(camera.position + offset, normalize(to_focus));

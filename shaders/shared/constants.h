@@ -77,11 +77,11 @@ const uint BINDING_COUNTERS = 19u;
 const uint BINDING_ITEMS = 20u;  // Items of probes.
 const uint BINDING_RESULTS = 21u;
 
-// The camera's aperture.
-const uint APERTURE_PINHOLE = 0u;
-const uint APERTURE_DISK = 1u;
-const uint APERTURE_POLYGON = 2u;
-const uint APERTURE_NONE = 3u;  // Orthographic: parallel rays.
+// Kinds of camera.
+const uint CAMERA_PINHOLE = 0u;
+const uint CAMERA_DISK = 1u;          // A thin lens with a round aperture,
+const uint CAMERA_POLYGON = 2u;       // or with a polygonal one.
+const uint CAMERA_ORTHOGRAPHIC = 3u;  // Parallel rays.
 
 // Kinds of environment that a kernel distinguishes.
 const uint ENVIRONMENT_NONE = 0u;
