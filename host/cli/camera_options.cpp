@@ -8,6 +8,9 @@
 #include "base/file.h"
 #include "base/memory_limit.h"
 #include "cli/arguments.h"
+#include "load/quote.h"
+#include "scene/lens_shift.h"
+#include "scene/names.h"
 
 namespace candela {
 namespace {
@@ -57,6 +60,42 @@ std::optional<decltype(ViewStyle::lens)> parse_lens(const std::string& text) {
     const auto degrees = parse_within(text.ends_with("deg") ? without("deg") : text, 0.1, 179.0);
     return degrees ? std::optional<decltype(ViewStyle::lens)>(VerticalFov{glm::radians(*degrees)})
                    : std::nullopt;
+}
+
+// "equirectangular", "fisheye" or "equisolid", the last two also with ",DEGREES".
+std::optional<Panorama> parse_projection(const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    Panorama panorama;
+    const auto named =
+        std::ranges::find(MAPPING_NAMES, parts[0], &decltype(MAPPING_NAMES)::value_type::first);
+    if (named == MAPPING_NAMES.end() || parts.size() > 2) return std::nullopt;
+    panorama.mapping = named->second;
+    if (parts.size() == 1) return panorama;
+    const auto degrees = parse_within(parts[1], double(MIN_FISHEYE_DEGREES), double(MAX_FISHEYE_DEGREES));
+    if (!degrees || panorama.mapping == Mapping::equirectangular) return std::nullopt;
+    panorama.fisheye_fov = float(glm::radians(*degrees));
+    return panorama;
+}
+
+// "X,Y".
+std::optional<glm::dvec2> parse_shift(const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    if (parts.size() != 2) return std::nullopt;
+    const auto x = parse_number(parts[0]), y = parse_number(parts[1]);
+    return x && y ? std::optional(glm::dvec2(*x, *y)) : std::nullopt;
+}
+
+// Throws Error if the camera cannot be shifted.
+void shift_camera(Camera& camera, glm::dvec2 shift, uvec2 size) {
+    const bool sees_all = camera.panorama && camera.panorama->mapping == Mapping::equirectangular;
+    if (camera.ortho_height || sees_all) {
+        throw Error("--shift: the camera " + quote(camera.name) + " is " +
+                        (sees_all ? "equirectangular; turn it" : "orthographic; move it") + " instead",
+                    ErrorKind::request);
+    }
+    const auto offset = shifted_offset(shift, size);
+    if (!offset) throw Error(std::string("--shift: ") + SHIFT_TOO_LARGE, ErrorKind::request);
+    camera.principal_offset = *offset;
 }
 
 // A path as one below another folder, if it can be.
@@ -113,6 +152,16 @@ void CameraOptions::add_to(CLI::App& app) {
         "a number from 0 to 0.45",
         "Share of the picture's shorter side to leave free along each edge (default: 0.05)")
         ->type_name("M");
+    add_value(
+        app, "--projection", projection, parse_projection,
+        "equirectangular, fisheye or equisolid; the last two also with a comma and the full angle, from 1 to "
+        "360 degrees",
+        "See to all sides from the camera's place: equirectangular, or a fisheye of 180 degrees or that "
+        "angle, equidistant or equisolid")
+        ->type_name("NAME[,DEGREES]");
+    add_value(app, "--shift", shift, parse_shift, "two numbers X,Y, such as 0,0.1",
+              "Show what is farther to the right and upwards, by shares of the picture's longer side")
+        ->type_name("X,Y");
     app.add_option("--camera-file", file, "Cameras of NeRF's transforms.json, or K, R and t of OpenCV")
         ->type_name("FILE")
         ->excludes(view)
@@ -129,6 +178,13 @@ void CameraOptions::check(CommandFiles& files) const {
         throw Error(std::string(lens ? "--lens" : "--margin") +
                         ": only cameras around the scene have it; also give --view, --turntable or --dome",
                     ErrorKind::request);
+    }
+    if ((projection || shift) && (!views.empty() || turntable || dome)) {
+        throw Error(
+            std::string(projection ? "--projection" : "--shift") +
+                ": cameras around the scene are placed for a view in perspective without a shift; leave out "
+                "--view, --turntable and --dome",
+            ErrorKind::request);
     }
     if (file) files.read("--camera-file", *file);
 }
@@ -154,6 +210,19 @@ std::vector<Camera> CameraOptions::cameras(const Scene& scene, std::optional<uve
             if (dome) std::ranges::move(surroundings.dome(*dome, style), std::back_inserter(result));
             return result;
         });
+}
+
+Camera CameraOptions::changed(Camera camera, uvec2 size) const {
+    if (projection) {
+        camera.panorama = projection;
+        camera.vertical_fov = 0.0f;
+        camera.principal_offset = vec2(0.0f);
+        camera.focal_ratio = 1.0f;
+        camera.ortho_height.reset();
+        camera.lens = {};
+    }
+    if (shift) shift_camera(camera, *shift, size);
+    return camera;
 }
 
 void write_cameras(const std::string& file, std::vector<PictureCamera> pictures) {

@@ -123,6 +123,7 @@ RenderJob RenderOptions::job(const Scene& loaded, const std::optional<std::strin
         .write_every = outputs.write_every,
         .aovs = outputs.images.written_aovs(),
         .checkpoint = checkpoint};
+    job.camera = cameras.changed(camera, job.settings.size);
     job.settings.first_sample = samples ? samples->first : 0;
     job.settings.aovs = job.aovs.needs_layers();
     job.settings.backdrop = outputs.images.screen.backdrop();

@@ -72,8 +72,8 @@ struct RenderOptions {
         return list.all_cameras || (list.cameras.empty() && cameras.view_count() > 1);
     }
     // Combines them with what the scene proposes, for its camera of that name, or its first. Throws Error
-    // (usage) for a camera that the scene lacks, a crop that reaches beyond the picture, or --adaptive with
-    // an odd number of samples.
+    // (usage) for a camera that the scene lacks or that cannot be shifted, a crop that reaches beyond the
+    // picture, or --adaptive with an odd number of samples.
     RenderJob job(const Scene& loaded, const std::optional<std::string>& camera = {}) const;
 };
 

@@ -41,8 +41,21 @@ uint32_t environment_constant(uint32_t environment, Backdrop backdrop) {
     return backdrop == Backdrop::transmitted ? hidden | ENVIRONMENT_BEHIND_GLASS : hidden;
 }
 
+uint32_t panorama_constant(Mapping mapping) {
+    switch (mapping) {
+        case Mapping::fisheye:
+            return CAMERA_FISHEYE;
+        case Mapping::equisolid:
+            return CAMERA_EQUISOLID;
+        case Mapping::equirectangular:
+            break;
+    }
+    return CAMERA_EQUIRECTANGULAR;
+}
+
 uint32_t camera_constant(const Camera& camera) {
     if (camera.ortho_height) return CAMERA_ORTHOGRAPHIC;
+    if (camera.panorama) return panorama_constant(camera.panorama->mapping);
     const Lens& lens = camera.lens;
     if (lens.radius == 0.0f) return CAMERA_PINHOLE;
     return lens.blades == 0 ? CAMERA_DISK : CAMERA_POLYGON;

@@ -26,10 +26,15 @@ std::string exact(const glm::vec<3, Number>& v) {
     return exact(v.x) + ' ' + exact(v.y) + ' ' + exact(v.z);
 }
 
+std::string offset_text(vec2 principal_offset) {
+    if (principal_offset == vec2(0.0f)) return "";
+    return ", principal point " + exact(principal_offset.x) + ' ' + exact(principal_offset.y) +
+           " off the centre";
+}
+
 std::string perspective_text(const Camera& camera) {
     std::string text = ", field of view " + exact(camera.vertical_fov) + " rad";
-    if (const vec2 offset = camera.principal_offset; offset != vec2(0.0f))
-        text += ", principal point " + exact(offset.x) + ' ' + exact(offset.y) + " off the centre";
+    text += offset_text(camera.principal_offset);
     if (camera.focal_ratio != 1.0f) text += ", focal ratio " + exact(camera.focal_ratio);
     const Lens& lens = camera.lens;
     if (lens.radius > 0.0f) {
@@ -40,11 +45,18 @@ std::string perspective_text(const Camera& camera) {
     return text;
 }
 
+std::string panorama_text(const Panorama& panorama, vec2 principal_offset) {
+    std::string text = ", " + name_of(panorama.mapping, MAPPING_NAMES);
+    if (panorama.mapping != Mapping::equirectangular) text += " of " + exact(panorama.fisheye_fov) + " rad";
+    return text + offset_text(principal_offset);
+}
+
 std::string camera_text(const Camera& camera) {
     const std::string text =
         "at " + exact(camera.position) + " towards " + exact(camera.look_at) + ", up " + exact(camera.up);
-    return text + (camera.ortho_height ? ", orthographic, " + exact(*camera.ortho_height) + " m high"
-                                       : perspective_text(camera));
+    if (camera.ortho_height) return text + ", orthographic, " + exact(*camera.ortho_height) + " m high";
+    return text + (camera.panorama ? panorama_text(*camera.panorama, camera.principal_offset)
+                                   : perspective_text(camera));
 }
 
 std::string frame_text(const SceneFrame& frame) {

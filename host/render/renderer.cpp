@@ -120,6 +120,30 @@ std::span<const uint32_t> spirv_of(RenderKernel which, const vk::Device& device,
     return inlined ? kernels::render_inlined : kernels::render;
 }
 
+// Half the width and height of the view: at distance 1, or for parallel rays; of a panorama, see Parameters.
+vec2 half_view(const SceneFrame& frame, const Camera& camera, vec2 size) {
+    if (camera.panorama) {
+        const bool has_circle = camera.panorama->mapping != Mapping::equirectangular;
+        return has_circle ? size / std::min(size.x, size.y) : vec2(1);
+    }
+    const float half_y = camera.ortho_height ? 0.5f * frame.length(*camera.ortho_height)
+                                             : std::tan(0.5f * camera.vertical_fov);
+    return {half_y * size.x / size.y / camera.focal_ratio, half_y};
+}
+
+// See Parameters.
+float fisheye_edge(const Panorama& panorama) {
+    switch (panorama.mapping) {
+        case Mapping::fisheye:
+            return panorama.fisheye_fov / (4.0f * PI);
+        case Mapping::equisolid:
+            return std::sin(0.25f * panorama.fisheye_fov);
+        case Mapping::equirectangular:
+            break;
+    }
+    return 0.0f;
+}
+
 }  // namespace
 
 Parameters make_parameters(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
@@ -127,19 +151,16 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
     const vec3 forward(normalize(camera.look_at - camera.position));
     const vec3 right = normalize(cross(forward, camera.up));
     const vec3 up = cross(right, forward);
-    // Half the view: at distance 1, or for parallel rays.
-    const float half_y = camera.ortho_height ? 0.5f * frame.length(*camera.ortho_height)
-                                             : std::tan(0.5f * camera.vertical_fov);
     const vec2 size(settings.size);
-    const float half_x = half_y * size.x / size.y / camera.focal_ratio;
+    const vec2 half = half_view(frame, camera, size);
     const Lens& lens = camera.lens;
     static_assert(MAX_BOUNCES == DEPTH_SAFETY_LIMIT);
     const float lens_radius = frame.length(double(lens.radius));
     const float cos_lens = std::cos(lens.rotation);
     const float sin_lens = std::sin(lens.rotation);
     return {.position = frame.point(camera.position),
-            .right = half_x * right,
-            .up = half_y * up,
+            .right = half.x * right,
+            .up = half.y * up,
             .forward = forward,
             .full_size = settings.size,
             .principal_point = 1.0f + 2.0f * camera.principal_offset * vec2(size.y / size.x, 1.0f),
@@ -156,7 +177,8 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .blades = lens.blades,
             .first_sample = settings.first_sample,
             .camera_media = media_at(scene, camera.position),
-            .sky_rival = scene.sky_rival};
+            .sky_rival = scene.sky_rival,
+            .fisheye_edge = camera.panorama ? fisheye_edge(*camera.panorama) : 0.0f};
 }
 
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants) {

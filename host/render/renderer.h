@@ -91,8 +91,8 @@ class Renderer {
     Accumulation download() const;
     void upload(const Accumulation& state);
 
-    // x, y, z of the hit of the pinhole ray through each pixel's centre, and its depth along the view axis
-    // [m]; row-major. 0 0 0 infinity at a miss.
+    // x, y, z of the hit of the pinhole ray through each pixel's centre, and its depth along the view axis,
+    // or, of a panorama, its distance from the camera [m]; row-major. 0 0 0 infinity at a miss.
     std::vector<float> positions();
 
     // The distances of these positions along their rays [m], infinite at a miss.

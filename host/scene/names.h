@@ -36,6 +36,10 @@ inline constexpr Choices<LightSampler, 4> LIGHT_SAMPLER_NAMES{{{"auto", LightSam
 inline constexpr Choices<Terminator, 2> TERMINATOR_NAMES{
     {{"smooth", Terminator::smooth}, {"flat", Terminator::flat}}};
 
+inline constexpr Choices<Mapping, 3> MAPPING_NAMES{{{"equirectangular", Mapping::equirectangular},
+                                                    {"fisheye", Mapping::fisheye},
+                                                    {"equisolid", Mapping::equisolid}}};
+
 inline constexpr Choices<Fresnel, 2> FRESNEL_NAMES{
     {{"schlick", Fresnel::schlick}, {"exact", Fresnel::exact}}};
 

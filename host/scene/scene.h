@@ -33,7 +33,24 @@ inline constexpr uint32_t MAX_BLADES = 64;
 inline constexpr float MAX_PRINCIPAL_OFFSET = 1000.0f;
 inline constexpr float MAX_FOCAL_RATIO = 1000.0f;
 
-// A perspective or orthographic camera. Right is cross(forward, up).
+// How a camera sees all around, or far to the sides.
+enum class Mapping {
+    equirectangular,  // Longitude to the right, over 360 degrees, and latitude upwards, over 180.
+    fisheye,          // Equidistant: the distance from the centre is proportional to the angle to the axis.
+    equisolid,        // A fisheye in which equal areas show equal solid angles.
+};
+
+// What such a camera shows. A fisheye sees within a circle that touches the longer sides of the picture.
+struct Panorama {
+    Mapping mapping = Mapping::equirectangular;
+    float fisheye_fov = PI;  // Full angle across the circle [rad], within the limits below.
+
+    bool operator==(const Panorama&) const = default;
+};
+inline constexpr float MIN_FISHEYE_DEGREES = 1.0f;
+inline constexpr float MAX_FISHEYE_DEGREES = 360.0f;
+
+// A camera. Right is cross(forward, up).
 struct Camera {
     std::string name;
     dvec3 position{0};
@@ -49,6 +66,9 @@ struct Camera {
     // Full height of the view [m], above 0. If there is one, all rays are parallel and leave the plane
     // through the position; the camera has square pixels around its axis, no field of view and no lens.
     std::optional<double> ortho_height{};
+    // If there is one, the camera is no plane's projection: it has no field of view, height or lens, and
+    // square pixels. An equirectangular one has its axis in the middle.
+    std::optional<Panorama> panorama{};
     Lens lens;
     std::optional<uvec2> film_size{};  // Size of the picture [pixels], if the file states it for this camera.
 

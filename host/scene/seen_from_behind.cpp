@@ -131,7 +131,8 @@ void make_double_sided(Scene& scene) {
 }
 
 std::optional<double> share_seen_from_behind(const Scene& scene, const Camera& camera, uvec2 size) {
-    if (!std::ranges::any_of(scene.materials, is_culled) || triangle_count(scene) > MAX_TRIANGLES)
+    if (camera.panorama || !std::ranges::any_of(scene.materials, is_culled) ||
+        triangle_count(scene) > MAX_TRIANGLES)
         return std::nullopt;
     Grid grid(camera, size);
     for (const Shape& shape : scene.shapes) {

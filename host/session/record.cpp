@@ -76,7 +76,8 @@ std::string samples_text(const RenderRecord& record) {
 
 void add_attributes(Image& image, const RenderRecord& record) {
     image.attributes["worldToCamera"] = mat4(world_to_camera(record.camera));
-    image.attributes["worldToNDC"] = mat4(world_to_ndc(record.camera, record.settings.size));
+    if (!record.camera.panorama)
+        image.attributes["worldToNDC"] = mat4(world_to_ndc(record.camera, record.settings.size));
     image.attributes["samplesPerPixel"] = float(record.spp);
     image.attributes["renderTimeSeconds"] = float(record.render_seconds);
     image.attributes["candela.samples"] = samples_text(record);

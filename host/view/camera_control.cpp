@@ -7,6 +7,7 @@
 
 #include "load/quote.h"
 #include "scene/camera_axes.h"
+#include "scene/names.h"
 
 namespace candela {
 namespace {
@@ -46,6 +47,21 @@ std::string pair(glm::dvec2 v) {
     return "[" + number(v.x) + ", " + number(v.y) + "]";
 }
 
+// How high the view is around the axis, at distance 1; of a fisheye, in a picture that is not upright.
+double view_height(const Camera& camera) {
+    if (!camera.panorama) return 2.0 * std::tan(0.5 * double(camera.vertical_fov));
+    const double angle = double(camera.panorama->fisheye_fov);
+    switch (camera.panorama->mapping) {
+        case Mapping::fisheye:
+            return angle;
+        case Mapping::equisolid:
+            return 4.0 * std::sin(0.25 * angle);
+        case Mapping::equirectangular:
+            break;
+    }
+    return double(PI);
+}
+
 std::string lens_json(const Lens& lens) {
     std::string text =
         R"({ "radius": )" + number(lens.radius) + R"(, "focal_distance": )" + number(lens.focal_distance);
@@ -65,7 +81,20 @@ std::string film_json(const Camera& camera, double aspect) {
            ",\n      \"principal_point\": " + pair(middle + glm::dvec2(camera.principal_offset));
 }
 
+// The shift of a fisheye's circle is in the longer sides of the picture.
+std::string panorama_json(const Panorama& panorama, glm::dvec2 principal_offset, double aspect) {
+    std::string text = ",\n      \"projection\": " + json_string(name_of(panorama.mapping, MAPPING_NAMES));
+    if (panorama.mapping == Mapping::equirectangular) return text;
+    const double degrees = std::clamp(glm::degrees(double(panorama.fisheye_fov)), double(MIN_FISHEYE_DEGREES),
+                                      double(MAX_FISHEYE_DEGREES));
+    text += ",\n      \"fisheye_fov\": " + number(degrees);
+    if (principal_offset == glm::dvec2(0.0)) return text;
+    return text +
+           ",\n      \"shift\": " + pair(principal_offset * glm::dvec2(-1.0, 1.0) / std::max(aspect, 1.0));
+}
+
 std::string projection_json(const Camera& camera, double aspect) {
+    if (camera.panorama) return panorama_json(*camera.panorama, glm::dvec2(camera.principal_offset), aspect);
     if (camera.ortho_height) return ",\n      \"orthographic_height\": " + number(*camera.ortho_height);
     const bool is_plain = camera.principal_offset == vec2(0.0f) && camera.focal_ratio == 1.0f;
     const std::string view =
@@ -93,8 +122,8 @@ void orbit(Camera& camera, float azimuth, float elevation) {
 
 void pan(Camera& camera, vec2 shift) {
     const CameraAxes frame = axes_of(camera);
-    const double height = camera.ortho_height.value_or(2.0 * std::tan(0.5 * double(camera.vertical_fov)) *
-                                                       length(camera.look_at - camera.position));
+    const double height =
+        camera.ortho_height.value_or(view_height(camera) * length(camera.look_at - camera.position));
     const double across = double(shift.x) / double(camera.focal_ratio);
     move(camera, -height * (across * frame.right + double(shift.y) * frame.up));
 }

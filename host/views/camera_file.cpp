@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "scene/names.h"
 #include "views/intrinsics.h"
 #include "views/read_parts.h"
 
@@ -98,8 +99,11 @@ std::vector<Camera> read_camera_file(const std::filesystem::path& path, uvec2 si
 
 std::string camera_file_text(const std::filesystem::path& path, std::span<const PictureCamera> pictures) {
     for (const PictureCamera& picture : pictures) {
-        if (!picture.camera.ortho_height) continue;
-        throw Error(quoted(path) + " cannot hold the orthographic camera " + quote(picture.camera.name) +
+        const Camera& camera = picture.camera;
+        if (!camera.ortho_height && !camera.panorama) continue;
+        const std::string kind =
+            camera.panorama ? name_of(camera.panorama->mapping, MAPPING_NAMES) : "orthographic";
+        throw Error(quoted(path) + " cannot hold the " + kind + " camera " + quote(camera.name) +
                         "; give it a field of view, or choose another camera",
                     ErrorKind::request);
     }

@@ -24,7 +24,7 @@ struct PictureCamera {
 };
 
 // The text of a file at that path: OpenCV's convention if its name ends with "opencv.json", otherwise NeRF's.
-// Lenses are left out. Throws Error (usage) for an orthographic camera, which neither knows.
+// Lenses are left out. Throws Error (usage) for an orthographic camera or a panorama, which neither knows.
 std::string camera_file_text(const std::filesystem::path& path, std::span<const PictureCamera> pictures);
 
 }  // namespace candela

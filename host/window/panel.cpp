@@ -69,7 +69,7 @@ void show_camera(ViewState& state, ViewRequests& requests, std::span<const Camer
     requests.home |= ImGui::Button("camera back");
     ImGui::SameLine();
     requests.save_camera |= ImGui::Button("save camera");
-    if (state.camera.ortho_height) return;  // It has no lens.
+    if (state.camera.ortho_height || state.camera.panorama) return;  // It has no lens.
     const float distance = float(length(home.look_at - home.position));
     Lens& lens = state.camera.lens;
     constexpr ImGuiSliderFlags LOGARITHMIC = ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp;

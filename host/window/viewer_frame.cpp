@@ -71,8 +71,8 @@ void Viewer::apply(const ViewRequests& requests) {
 }
 
 void Viewer::set_focus(vec2 place) {
-    if (state_.camera.ortho_height) {
-        tell("an orthographic camera is sharp everywhere");
+    if (state_.camera.ortho_height || state_.camera.panorama) {
+        tell("this camera is sharp everywhere");
         return;
     }
     const uvec2 size = figures_.size;

@@ -23,6 +23,7 @@
 #include "integrator/surface.glsl"
 #include "light/light_sampler.glsl"
 #include "medium/medium.glsl"
+#include "scene/camera.glsl"
 #include "scene/interaction.glsl"
 
 // Survival is never more likely than this, so that every path ends.
@@ -67,6 +68,11 @@ struct ShadowRay {
 // A path that begins with a camera ray within these media, and an empty estimate.
 Path path_begin(Ray ray, uvec2 media) {
     return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u, true);
+}
+
+// Whether the path begins where the camera does not see anything: its throughput is then 0.
+bool path_is_blind(Path path) {
+    return IS_FISHEYE && path.depth == 0u && path.beta == vec3(0.0);
 }
 
 Estimate estimate_begin() {
@@ -193,6 +199,10 @@ bool path_survives(inout Path path, float u) {
 bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, Hit hit, Sampler random,
                Parameters parameters) {
     shadow = shadow_none();
+    if (path_is_blind(path)) {
+        estimate.transmission = 1.0;
+        return false;
+    }
     if (!is_hit(hit)) {
         path.beta *= media_transmittance(path.media, FLOAT_MAX);  // Through a medium without an end.
         if (BEFORE_BACKGROUND && path.clear) {

@@ -187,9 +187,9 @@ Sample sample_none() {
 // Begins the sample of that index with its camera ray. The shadow ray and the estimate of the previous sample remain.
 void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index) {
     s.random = sampler_make(pixel, index, parameters.seed);
-    vec2 film = vec2(pixel) + unit_float(sampler_pair(s.random, PAIR_PIXEL));
-    s.path = path_begin(camera_ray(parameters, film, unit_float(sampler_pair(s.random, PAIR_LENS))),
-                        parameters.camera_media);
+    CameraSample view = camera_sample(parameters, pixel, s.random);
+    s.path = path_begin(view.ray, parameters.camera_media);
+    if (IS_FISHEYE && !view.sees) s.path.beta = vec3(0.0);
     s.alive = true;
 }
 

@@ -82,6 +82,9 @@ const uint CAMERA_PINHOLE = 0u;
 const uint CAMERA_DISK = 1u;          // A thin lens with a round aperture,
 const uint CAMERA_POLYGON = 2u;       // or with a polygonal one.
 const uint CAMERA_ORTHOGRAPHIC = 3u;  // Parallel rays.
+const uint CAMERA_EQUIRECTANGULAR = 4u;
+const uint CAMERA_FISHEYE = 5u;    // Equidistant.
+const uint CAMERA_EQUISOLID = 6u;  // A fisheye that keeps the ratio of solid angles.
 
 // Kinds of environment that a kernel distinguishes.
 const uint ENVIRONMENT_NONE = 0u;

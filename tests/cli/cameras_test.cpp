@@ -111,6 +111,83 @@ TEST_F(Cameras, EveryViewHasAPicture) {
     EXPECT_EQ(written.at("frames").at(1).at("file_path"), "turntable_001.exr");
 }
 
+// A quarter of the width to the right, an eighth of it upwards: what was there moves into the middle.
+TEST_F(Cameras, AShiftMovesThePicture) {
+    const std::string cameras =
+        write("opencv.json", R"({"cameras": [{"name": "front", "width": 48, "height": 32,
+        "K": [[60, 0, 23.5], [0, 60, 15.5], [0, 0, 1]], "R": [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
+        "t": [-1, 2, 7]}]})");
+    const PixelRect plain = seen(image_of({"--camera-file", cameras}));
+    EXPECT_EQ(plain, (PixelRect{16, 8, 32, 24}));
+    EXPECT_EQ(seen(image_of({"--camera-file", cameras, "--shift", "0.25,0.125"})),
+              (PixelRect{4, 14, 20, 30}));
+    EXPECT_EQ(seen(image_of({"--camera-file", cameras, "--shift", "-0.25,-0.125"})),
+              (PixelRect{28, 2, 44, 18}));
+    // In a higher picture, the longer side is the height.
+    EXPECT_EQ(seen(image_of({"--camera-file", cameras, "--size", "32x48", "--shift", "0,0"})),
+              (PixelRect{5, 13, 27, 35}));
+    EXPECT_EQ(seen(image_of({"--camera-file", cameras, "--size", "32x48", "--shift", "-0.0625,0.25"})),
+              (PixelRect{8, 25, 30, 47}));
+}
+
+// The camera is at (0, 0, 9) and looks along -Z; the middle of the sphere is at (1, 2, 3).
+TEST_F(Cameras, AProjectionReplacesTheCamerasOwn) {
+    const double distance = std::sqrt(1 + 4 + 36);
+    const auto expect_middle = [&](const std::string& projection, double x, double y) {
+        const Image image = image_of({"--projection", projection, "--size", "256x128"});
+        const auto [x0, y0, x1, y1] = seen(image);
+        EXPECT_NEAR(0.5 * (x0 + x1), x, 1.0) << projection;
+        EXPECT_NEAR(0.5 * (y0 + y1), y, 1.0) << projection;
+        const float nearest = *std::ranges::min_element(image.find("Z")->values);
+        EXPECT_NEAR(nearest, distance - 0.5, 0.02) << projection;  // Along the ray.
+        EXPECT_FALSE(image.attributes.contains("worldToNDC"));
+        EXPECT_TRUE(image.attributes.contains("worldToCamera"));
+    };
+    const double longitude = std::atan2(1.0, 6.0), latitude = std::asin(2.0 / distance);
+    expect_middle("equirectangular", 128 + 256 * longitude / (2 * M_PI), 64 - 128 * latitude / M_PI);
+    const double angle = std::acos(6.0 / distance), right = 1 / std::sqrt(5.0), up = 2 / std::sqrt(5.0);
+    const double even = 64 * angle / (M_PI / 2), equisolid = 64 * std::sin(angle / 2) / std::sin(M_PI / 4);
+    expect_middle("fisheye", 128 + right * even, 64 - up * even);
+    expect_middle("fisheye,90", 128 + 2 * right * even, 64 - 2 * up * even);
+    expect_middle("equisolid", 128 + right * equisolid, 64 - up * equisolid);
+}
+
+TEST_F(Cameras, ProjectionsThatCannotBeAreRefused) {
+    const auto error = [&](const Words& arguments, const std::string& message) {
+        const ProcessResult result = refused(arguments);
+        EXPECT_EQ(result.exit_code, 2) << result.err;
+        EXPECT_CONTAINS(result.err, message);
+    };
+    for (const char* text : {"fisheye,400", "fisheye,0", "fisheye,nan", "fisheye,", "fisheye,90,1",
+                             "equirectangular,180", "cubic", ""}) {
+        error({"--projection", text},
+              "--projection: cannot use \"" + std::string(text) +
+                  "\"; expected equirectangular, fisheye or equisolid; the last two also "
+                  "with a comma and the full angle, from 1 to 360 degrees");
+    }
+    for (const char* text : {"1", "1,nan", "1,2,3"}) {
+        error({"--shift", text},
+              "--shift: cannot use \"" + std::string(text) + "\"; expected two numbers X,Y, such as 0,0.1");
+    }
+    error({"--shift", "0,1001"},
+          "--shift: the shift is more than 1000 heights of the picture; it is in its longer "
+          "sides, such as 0.1");
+    const std::string placed =
+        ": cameras around the scene are placed for a view in perspective without a shift; "
+        "leave out --view, --turntable and --dome";
+    error({"--projection", "fisheye", "--view", "0,0"}, "--projection" + placed);
+    error({"--shift", "0,0", "--dome", "1"}, "--shift" + placed);
+    error({"--shift", "0,0", "--projection", "equirectangular"},
+          "--shift: the camera \"main\" is equirectangular; turn it instead");
+    error({"--projection", "fisheye", "--write-cameras", file("f.json")},
+          "cannot hold the fisheye camera \"main\"; give it a field of view, or choose another camera");
+    const ProcessResult parallel = candela({"render", CANDELA_SCENES "/../tests/references/orthographic.json",
+                                            "-o", file("a.exr"), "--shift", "0,0"},
+                                           NO_DRIVER);
+    EXPECT_EQ(parallel.exit_code, 2);
+    EXPECT_CONTAINS(parallel.err, "is orthographic; move it instead");
+}
+
 TEST_F(Cameras, WhatCannotBeIsRefused) {
     const auto error = [&](const Words& arguments, const std::string& message) {
         const ProcessResult result = refused(arguments);

@@ -65,6 +65,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
 TREES = ("LightTree*:LightChoice*", "EstimatorTest*HoweverLights*:ManyLight*", "LightTree*:TextureMean*")
 PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Orthographic*:ScaleTest*Mean*")
 TERMINATOR = ("Interaction*", "Terminator*")
+CAMERAS = ("Records*", "PanoramaTest*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 INSTANCES = ("InstanceTest*", "InstancedNormals*:*InstanceTest*", "Instancing*:MediaAt*")
@@ -166,8 +167,8 @@ GROUPS = [
     ]),
     (SAMPLES, [
         ("aperture not uniform", CAMERA, "? warp_disk(u)", "? u.x * cos_sin_turn(u.y)"),
-        ("lens and pixel share their random numbers", RENDER, "PAIR_LENS", "PAIR_PIXEL"),
-        ("half a pixel off", RENDER, "vec2(pixel) + unit_float", "vec2(pixel) + 0.5 + unit_float"),
+        ("lens and pixel share their random numbers", CAMERA, "PAIR_LENS", "PAIR_PIXEL"),
+        ("half a pixel off", CAMERA, "vec2(pixel) + unit_float", "vec2(pixel) + 0.5 + unit_float"),
         ("a fold of the Sobol matrix missing", SAMPLER, "i ^= (i >> 4u) & 0x0F0F0F0Fu;", ""),
         ("adaptive samples steered by those of the same half", "host/session/adaptive.cpp",
          "plan_extra_samples(states[2 * (1 - h)]", "plan_extra_samples(states[2 * h]"),
@@ -364,6 +365,12 @@ GROUPS = [
          "dvec3(intensity) / (frame_.unit * frame_.unit)", "dvec3(intensity)"),
         ("parallel rays from one point", CAMERA, "Ray(camera.position + s.x * camera.right - s.y * camera.up, camera.forward)",
          "Ray(camera.position, camera.forward)"),
+    ]),
+    (CAMERAS, [
+        ("an equirectangular picture mirrored", CAMERA, "fract(0.5 * s.x)", "fract(-0.5 * s.x)"),
+        ("an equisolid fisheye that is equidistant", CAMERA, "if (CAMERA == CAMERA_FISHEYE) {", "if (true) {"),
+        ("light outside of a fisheye's circle", PATH, "return IS_FISHEYE &&", "return false &&"),
+        ("depth along the axis of a panorama", "shaders/kernels/position.comp.glsl", "IS_PANORAMA ? length(away) : ", ""),
     ]),
     (INSTANCES, [
         ("what follows an instance traversed in its space", TRAVERSAL, "if (t.node < t.root) {", "if (false) {"),

@@ -16,7 +16,7 @@
 namespace candela {
 namespace {
 
-constexpr uint32_t SPP = 64;  // In more than one submission.
+constexpr uint32_t SESSION_SPP = 64;  // In more than one submission.
 
 using Layers = std::vector<std::vector<float>>;
 
@@ -79,7 +79,7 @@ class SessionTest : public testing::Test {
         Session session(options());
         session.load(file(text));
         session.choose(picture);
-        EXPECT_TRUE(session.render(SPP));
+        EXPECT_TRUE(session.render(SESSION_SPP));
         return layers(session);
     }
 
@@ -109,7 +109,7 @@ TEST_F(SessionTest, AfterEachChangeThePictureIsThatOfAFreshLoad) {
         Session session(options());
         session.load(file(scene_text(CAMERA, FLOOR, LAMP, SKY)));
         const auto render = [&] {
-            EXPECT_TRUE(session.render(SPP));
+            EXPECT_TRUE(session.render(SESSION_SPP));
             pictures.push_back(layers(session));
         };
         session.choose({.all_layers = true});
@@ -145,7 +145,7 @@ TEST_F(SessionTest, AfterEachPoseThePictureIsThatOfAFreshLoad) {
         EXPECT_EQ(error_of([&] { session.pose(0.5); }), "no scene has been loaded yet; call load() first");
         session.load(file(text(FLOOR)));
         const auto render = [&](Layers& picture) {
-            EXPECT_TRUE(session.render(SPP));
+            EXPECT_TRUE(session.render(SESSION_SPP));
             picture = layers(session);
         };
         render(layers_at[0]);
@@ -166,7 +166,7 @@ TEST_F(SessionTest, AfterEachPoseThePictureIsThatOfAFreshLoad) {
         SceneFile posed = file(text(last ? blue : FLOOR));
         posed.time = last ? 1.0 : 0.5;
         session.load(posed);
-        EXPECT_TRUE(session.render(SPP));
+        EXPECT_TRUE(session.render(SESSION_SPP));
         EXPECT_TRUE(layers_at[last ? 2 : 1] == layers(session));
     }
 }
@@ -179,16 +179,16 @@ TEST_F(SessionTest, RendersOnAndWithOtherPicturesToTheSameBits) {
         Session session(options());
         session.load(file(text));
         EXPECT_TRUE(session.render(1));
-        EXPECT_FALSE(session.render(SPP, [](double) { return false; }));
-        EXPECT_TRUE(session.render(SPP));
+        EXPECT_FALSE(session.render(SESSION_SPP, [](double) { return false; }));
+        EXPECT_TRUE(session.render(SESSION_SPP));
         on = layers(session);
         session.choose(wide);
-        EXPECT_TRUE(session.render(SPP));
+        EXPECT_TRUE(session.render(SESSION_SPP));
         EXPECT_EQ(session.width(), 40u);
         EXPECT_EQ(session.height(), 12u);
         wider = layers(session);
         session.load(file(text));
-        EXPECT_TRUE(session.render(SPP));
+        EXPECT_TRUE(session.render(SESSION_SPP));
         again = layers(session);
     }
     EXPECT_TRUE(again == on);
@@ -201,7 +201,7 @@ TEST_F(SessionTest, AFailureLeavesSceneAndPicture) {
     EXPECT_EQ(error_of([&] { session.render(1); }), "no scene has been loaded yet; call load() first");
     session.load(file(scene_text(CAMERA, FLOOR, LAMP, SKY)));
     EXPECT_EQ(error_of([&] { session.layers(); }), "nothing has been rendered yet; call render() first");
-    EXPECT_TRUE(session.render(SPP));
+    EXPECT_TRUE(session.render(SESSION_SPP));
     const Layers before = layers(session);
     const auto expect_refused = [&](const std::string& change, const std::string& message) {
         EXPECT_EQ(error_of([&] { session.change(change); }).substr(0, message.size()), message);
@@ -226,7 +226,7 @@ TEST_F(SessionTest, AFailureLeavesSceneAndPicture) {
     EXPECT_EQ(error_of([&] { session.render(0); }), "cannot render 0 samples per pixel; give 1 to 16777216");
     EXPECT_TRUE(layers(session) == before);
     session.choose({});  // Begins the picture anew.
-    EXPECT_TRUE(session.render(SPP));
+    EXPECT_TRUE(session.render(SESSION_SPP));
     EXPECT_TRUE(layers(session) == before);
 }
 

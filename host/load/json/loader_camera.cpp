@@ -1,9 +1,13 @@
-// Cameras: place and view, field of view (an angle, or film and focal length) and lens, or parallel
+// Cameras: place and view, field of view (an angle, or film and focal length) and lens, or another
 // projection.
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <string>
 
 #include "load/json/loader_parts.h"
+#include "scene/lens_shift.h"
+#include "scene/names.h"
 
 namespace candela {
 namespace {
@@ -48,6 +52,22 @@ vec2 read_principal_offset(const Node& node, glm::dvec2 film_size) {
     return offset;
 }
 
+vec2 read_shift(const Node& node, const Film& film) {
+    const std::vector<double> shift = node.numbers(2);
+    const auto offset = shifted_offset({shift[0], shift[1]}, film.size);
+    if (!offset) node.fail(SHIFT_TOO_LARGE);
+    return *offset;
+}
+
+// Throws Error, which ends with how to choose, for the first of these keys that the camera has.
+void refuse_keys(const Node& node, std::initializer_list<const char*> keys, const std::string& kind,
+                 const std::string& reason, const std::string& alternative) {
+    for (const char* key : keys) {
+        if (const auto other = node.find(key))
+            other->fail(kind + ' ' + reason + "; remove \"" + key + "\" or " + alternative);
+    }
+}
+
 // Reads the field of view, by an angle or by film and focal length.
 void read_view(const Node& node, const Film& film, Camera& camera) {
     const auto degrees = node.find("vertical_fov");
@@ -56,7 +76,8 @@ void read_view(const Node& node, const Film& film, Camera& camera) {
     const auto principal_point = node.find("principal_point");
     if (degrees ? (size || focal_length) : !(size && focal_length)) {
         node.fail(
-            "a camera needs either vertical_fov, or film_size and focal_length, or orthographic_height");
+            "a camera needs either vertical_fov, or film_size and focal_length, or orthographic_height, or "
+            "projection");
     }
     if (degrees) {
         if (principal_point) {
@@ -70,6 +91,12 @@ void read_view(const Node& node, const Film& film, Camera& camera) {
         camera.vertical_fov = float(2.0 * std::atan(sides.y / (2.0 * length.y)));
         camera.focal_ratio = float(length.x / length.y);
         if (principal_point) camera.principal_offset = read_principal_offset(*principal_point, sides);
+    }
+    if (const auto shift = node.find("shift")) {
+        if (principal_point) {
+            shift->fail("a shift moves the principal point, which the camera has; remove one of the two");
+        }
+        camera.principal_offset = read_shift(*shift, film);
     }
     if (!(camera.vertical_fov > 0.0f && camera.vertical_fov < PI)) {
         (degrees ? *degrees : *focal_length)
@@ -97,15 +124,30 @@ Lens read_lens(const Node& node) {
 
 // The height of the view of a camera with parallel rays, which has none of the keys of a perspective one.
 double read_ortho_height(const Node& node, const Node& height) {
-    for (const char* key : {"vertical_fov", "film_size", "focal_length", "principal_point", "lens"}) {
-        if (const auto other = node.find(key)) {
-            other->fail(
-                std::string("a camera with orthographic_height is sharp everywhere and has no field of "
-                            "view; remove \"") +
-                key + "\" or orthographic_height");
-        }
-    }
+    refuse_keys(node, {"vertical_fov", "film_size", "focal_length", "principal_point", "shift", "lens"},
+                "a camera with orthographic_height", "is sharp everywhere and has no field of view",
+                "orthographic_height");
     return height.positive();
+}
+
+// A camera that sees all around or far to the sides, which has none of the keys of others.
+void read_panorama(const Node& node, const Node& projection, const Film& film, Camera& camera) {
+    Panorama& panorama = camera.panorama.emplace();
+    panorama.mapping = projection.choice(MAPPING_NAMES);
+    refuse_keys(
+        node, {"vertical_fov", "film_size", "focal_length", "principal_point", "orthographic_height", "lens"},
+        "a camera with a projection to all sides", "is sharp everywhere and has no other field of view",
+        "projection");
+    if (panorama.mapping == Mapping::equirectangular) {
+        refuse_keys(node, {"fisheye_fov", "shift"}, "an equirectangular camera", "sees all around",
+                    "projection");
+        return;
+    }
+    if (const auto angle = node.find("fisheye_fov")) {
+        read_number(*angle, scene_key("camera", "fisheye_fov"));  // Checks it.
+        panorama.fisheye_fov = float(glm::radians(angle->number()));
+    }
+    if (const auto shift = node.find("shift")) camera.principal_offset = read_shift(*shift, film);
 }
 
 }  // namespace
@@ -128,6 +170,13 @@ Camera read_camera(const Node& node, const Film& film) {
         (up ? *up : node)
             .fail("the camera's up direction is zero or parallel to its view; give another \"up\"");
     }
+    if (const auto projection = node.find("projection")) {
+        read_panorama(node, *projection, film, camera);
+        return camera;
+    }
+    if (const auto angle = node.find("fisheye_fov"))
+        angle->fail(
+            "fisheye_fov is the angle of a fisheye; add \"projection\": \"fisheye\" or \"equisolid\"");
     if (const auto height = node.find("orthographic_height")) {
         camera.ortho_height = read_ortho_height(node, *height);
         return camera;

@@ -34,6 +34,25 @@ TEST(RenderOptions, APictureHasTheSizeOfItsCameraUnlessTheCommandLineSaysOtherwi
     EXPECT_EQ(options.job(scene, "second").settings.size, uvec2(5, 5));
 }
 
+// Cameras without a picture do not matter. The longer side is twice the height.
+TEST(RenderOptions, AJobsCameraIsProjectedAndShifted) {
+    Scene scene;
+    scene.cameras = {Camera{.name = "first", .focal_ratio = 2.0f, .lens = {.radius = 1.0f}},
+                     Camera{.name = "second", .ortho_height = 1.0, .lens = {}}};
+    RenderOptions options;
+    options.cameras.shift = glm::dvec2(0.25, 0.125);
+    options.rendering.picture.size = uvec2(40, 20);
+    EXPECT_EQ(options.job(scene).camera.principal_offset, vec2(-0.5f, 0.25f));
+    EXPECT_EQ(options.job(scene).camera.lens.radius, 1.0f);
+    EXPECT_THROW(options.job(scene, "second"), Error);
+    options.cameras.projection = Panorama{Mapping::fisheye, 2.0f};
+    for (const char* name : {"first", "second"}) {
+        Camera expected{.name = name, .principal_offset = vec2(-0.5f, 0.25f), .lens = {}};
+        expected.panorama = options.cameras.projection;
+        EXPECT_EQ(options.job(scene, name).camera, expected) << name;
+    }
+}
+
 TEST(RenderOptions, AJobIsTheSceneUnlessTheCommandLineSaysOtherwise) {
     Scene scene;
     scene.cameras = {Camera{.name = "first", .lens = {}}, Camera{.name = "second", .lens = {}}};

@@ -68,7 +68,8 @@ TEST_F(PictureIdentity, EveryPartOfTheCameraIsPartOfIt) {
         [](Camera& c) { c.lens.radius *= 1.5f; },    [](Camera& c) { c.lens.focal_distance *= 1.5f; },
         [](Camera& c) { ++c.lens.blades; },          [](Camera& c) { c.lens.rotation += 0.1f; },
         [](Camera& c) { c.ortho_height = 2.0; },     [](Camera& c) { c.principal_offset.x = 0.1f; },
-        [](Camera& c) { c.focal_ratio = 1.1f; },     [](Camera& c) { c.principal_offset.y = 0.1f; }};
+        [](Camera& c) { c.focal_ratio = 1.1f; },     [](Camera& c) { c.principal_offset.y = 0.1f; },
+        [](Camera& c) { c.panorama.emplace(); }};
     for (const auto& change : changes) {
         const std::string message =
             after([&](RenderSettings&, Scene& scene) { change(scene.cameras.front()); });
@@ -80,6 +81,17 @@ TEST_F(PictureIdentity, EveryPartOfTheCameraIsPartOfIt) {
     const std::string taller =
         after([](RenderSettings&, Scene& scene) { scene.cameras.front().ortho_height = 2.5; });
     EXPECT_NE(taller.find("orthographic, 2.5 m high, not at "), std::string::npos) << taller;
+    scene_.cameras.front().ortho_height.reset();
+    scene_.cameras.front().panorama = Panorama{Mapping::fisheye, 2.0f};
+    for (const auto& [change, text] : std::vector<std::pair<std::function<void(Camera&)>, std::string>>{
+             {[](Camera& c) { c.panorama->fisheye_fov = 2.5f; }, ", fisheye of 2.5 rad, not at "},
+             {[](Camera& c) { c.panorama->mapping = Mapping::equisolid; }, ", equisolid of 2 rad, not at "},
+             {[](Camera& c) { c.principal_offset.x = 0.5f; },
+              ", fisheye of 2 rad, principal point 0.5 0 off the centre, not at "}}) {
+        const std::string message =
+            after([&](RenderSettings&, Scene& scene) { change(scene.cameras.front()); });
+        EXPECT_NE(message.find(text), std::string::npos) << message;
+    }
 }
 
 TEST_F(PictureIdentity, AnotherSceneIsAnother) {

@@ -39,6 +39,13 @@ double share(const Scene& scene) {
     return share_seen_from_behind(scene, scene.cameras[0], SIZE).value();
 }
 
+TEST(SeenFromBehind, IsNotSoughtInAPanorama) {
+    Scene scene = scene_seen(false);
+    add_square(scene, vec3(0), false, 0);
+    scene.cameras[0].panorama.emplace();
+    EXPECT_FALSE(share_seen_from_behind(scene, scene.cameras[0], SIZE));
+}
+
 TEST(SeenFromBehind, IsTheShareOfThePicture) {
     for (const bool parallel : {false, true}) {
         for (const bool mirrored : {false, true}) {

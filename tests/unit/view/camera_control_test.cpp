@@ -130,6 +130,40 @@ TEST(CameraControl, JsonHasThePrincipalPointAndBothFocalLengths) {
     }
 }
 
+TEST(CameraControl, JsonHasThePanoramaAndItsShift) {
+    Camera saved = camera();
+    saved.vertical_fov = 0.0f;
+    for (const uvec2 size : {uvec2(1920, 1080), uvec2(360, 640)}) {
+        for (const Mapping mapping : {Mapping::equirectangular, Mapping::fisheye, Mapping::equisolid}) {
+            for (const float fov : {PI / 180.0f, PI, 1.0f / 3, 2.0f * PI}) {
+                const bool has_circle = mapping != Mapping::equirectangular;
+                saved.panorama = Panorama{mapping, has_circle ? fov : PI};
+                saved.principal_offset = has_circle && fov > 1.0f ? vec2(0.1f, -3.0f / 7) : vec2(0.0f);
+                std::string text = camera_json(saved, "main", size);
+                text.insert(text.rfind('}'), R"(, "film": {"size": [)" + std::to_string(size.x) + ", " +
+                                                 std::to_string(size.y) + "]}, \"shapes\": []");
+                SceneFolder folder;
+                EXPECT_EQ(folder.load(text).cameras.at(0), saved) << text;
+            }
+        }
+    }
+}
+
+// Around the axis, at a distance of 2 m, the picture is 2 pi m high if it shows 180 degrees evenly; of an
+// equisolid fisheye of that angle, 2 * 4 sin(45 degrees).
+TEST(CameraControl, APanMovesAPanorama) {
+    for (const auto& [mapping, height] :
+         {std::pair(Mapping::equirectangular, 2 * M_PI), std::pair(Mapping::fisheye, 2 * M_PI),
+          std::pair(Mapping::equisolid, 8 * std::sin(M_PI / 4))}) {
+        Camera moved = camera();
+        moved.vertical_fov = 0.0f;
+        moved.panorama = Panorama{mapping};
+        pan(moved, vec2(0.25f, 0.5f));
+        EXPECT_NEAR(moved.look_at.x, -0.25 * height, 1e-6);
+        EXPECT_NEAR(moved.look_at.y, -0.5 * height, 1e-6);
+    }
+}
+
 TEST(CameraControl, APanMovesThePictureAsFarWithAnyPixels) {
     Camera moved = camera();
     moved.focal_ratio = 2.0f;

@@ -205,6 +205,14 @@ TEST_F(CameraFile, TheFilesHaveTheKeysOfTheirConventions) {
               "\"t.json\" cannot hold the orthographic camera \"front\"; give it a field of view, or choose "
               "another "
               "camera");
+    camera.ortho_height.reset();
+    camera.panorama = Panorama{Mapping::fisheye};
+    EXPECT_EQ(
+        error_of([&] {
+            camera_file_text("t.json", std::vector<PictureCamera>{{camera, {40, 20}, "a.png"}});
+        }),
+        "\"t.json\" cannot hold the fisheye camera \"front\"; give it a field of view, or choose another "
+        "camera");
 }
 
 TEST_F(CameraFile, SaysWhatAFileLacks) {

@@ -65,7 +65,8 @@ TEST(SceneCamera, ChecksItsFieldOfView) {
                             "the vertical field of view must lie between 0 and 180 degrees");
     }
     const std::string either =
-        "a camera needs either vertical_fov, or film_size and focal_length, or orthographic_height";
+        "a camera needs either vertical_fov, or film_size and focal_length, or orthographic_height, or "
+        "projection";
     folder.expect_error(lens(""), either);
     folder.expect_error(lens(", \"film_size\": [2, 1]"), either);
     folder.expect_error(lens(", \"focal_length\": 1"), either);
@@ -145,7 +146,71 @@ TEST(SceneCamera, ReadsAnOrthographicView) {
     folder.expect_error(view("1, \"film_size\": @[2, 1]"), remove("film_size"));
     folder.expect_error(view("1, \"focal_length\": @1"), remove("focal_length"));
     folder.expect_error(view("1, \"principal_point\": @[1, 1]"), remove("principal_point"));
+    folder.expect_error(view("1, \"shift\": @[0, 0]"), remove("shift"));
     folder.expect_error(view("1, \"lens\": @{\"radius\": 0}"), remove("lens"));
+}
+
+TEST(SceneCamera, ReadsAViewToAllSides) {
+    SceneFolder folder;
+    const auto view = [](const std::string& members) {
+        return camera(R"({"position": [0, 0, 1], "look_at": [0, 0, 0], )" + members + "}");
+    };
+    const auto panorama = [&](const std::string& members) {
+        return folder.load(view("\"projection\": " + members)).cameras[0].panorama.value();
+    };
+    EXPECT_EQ(panorama("\"equirectangular\"").mapping, Mapping::equirectangular);
+    EXPECT_EQ(panorama("\"fisheye\""), (Panorama{Mapping::fisheye, PI}));
+    EXPECT_EQ(panorama("\"equisolid\", \"fisheye_fov\": 360"), (Panorama{Mapping::equisolid, 2.0f * PI}));
+    EXPECT_EQ(panorama("\"fisheye\", \"fisheye_fov\": 1").fisheye_fov, float(M_PI / 180.0));
+    EXPECT_FALSE(folder.load(settings(GOOD_CAMERA)).cameras[0].panorama);
+    const auto fisheye = [&](const std::string& members) {
+        return view("\"projection\": \"fisheye\", " + members);
+    };
+    for (const char* angle : {"400", "0", "-90", "360.001"}) {
+        folder.expect_error(fisheye("\"fisheye_fov\": @" + std::string(angle)),
+                            "\"fisheye_fov\": expected a number from 1 to 360, found " + std::string(angle));
+    }
+    folder.expect_error(view("\"projection\": @\"cubic\""),
+                        "unknown projection \"cubic\" (known: equirectangular, fisheye, equisolid)");
+    folder.expect_error(
+        view("\"vertical_fov\": 40, \"fisheye_fov\": @180"),
+        "fisheye_fov is the angle of a fisheye; add \"projection\": \"fisheye\" or \"equisolid\"");
+    const auto remove = [](const std::string& key) {
+        return "a camera with a projection to all sides is sharp everywhere and has no other field of view; "
+               "remove "
+               "\"" +
+               key + "\" or projection";
+    };
+    folder.expect_error(fisheye("\"vertical_fov\": @40"), remove("vertical_fov"));
+    folder.expect_error(fisheye("\"focal_length\": @1"), remove("focal_length"));
+    folder.expect_error(fisheye("\"orthographic_height\": @1"), remove("orthographic_height"));
+    folder.expect_error(fisheye("\"lens\": @{\"radius\": 0}"), remove("lens"));
+    const std::string all = "\"projection\": \"equirectangular\", ";
+    folder.expect_error(view(all + "\"shift\": @[0, 0]"),
+                        "an equirectangular camera sees all around; remove \"shift\" or projection");
+    folder.expect_error(view(all + "\"fisheye_fov\": @90"),
+                        "an equirectangular camera sees all around; remove \"fisheye_fov\" or projection");
+}
+
+// The picture is twice as wide as high, and what was 0.1 of its width to the right is in the middle.
+TEST(SceneCamera, ReadsAShift) {
+    SceneFolder folder;
+    const auto view = [](const std::string& members) {
+        return camera(R"({"position": [0, 0, 1], "look_at": [0, 0, 0], )" + members + "}");
+    };
+    for (const char* members : {R"("vertical_fov": 40)", R"("film_size": [2, 1], "focal_length": 1)",
+                                R"("projection": "fisheye")"}) {
+        const std::string text = members + std::string(R"(, "shift": [0.1, 0.25])");
+        EXPECT_EQ(folder.load(view(text)).cameras[0].principal_offset, vec2(-0.2f, 0.5f)) << members;
+    }
+    folder.expect_error(view("\"vertical_fov\": 40, \"shift\": @[0]"),
+                        "\"shift\": expected two numbers, found [0]");
+    folder.expect_error(
+        view("\"vertical_fov\": 40, \"shift\": @[0, -501]"),
+        "the shift is more than 1000 heights of the picture; it is in its longer sides, such as 0.1");
+    folder.expect_error(
+        view(R"("film_size": [2, 1], "focal_length": 1, "principal_point": [1, 1], "shift": @[0, 0])"),
+        "a shift moves the principal point, which the camera has; remove one of the two");
 }
 
 TEST(SceneCamera, ReadsItsLens) {

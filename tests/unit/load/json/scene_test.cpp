@@ -122,7 +122,8 @@ TEST(Scene, SaysWhichKeysItKnows) {
     folder.expect_error(
         settings(R"("cameras": {"m": {"position": [0, 0, 1], "look_at": [0, 0, 0], @"vertcal_fov": 40}})"),
         "unknown key \"vertcal_fov\" (did you mean \"vertical_fov\"? known: position, look_at, up, "
-        "vertical_fov, film_size, focal_length, principal_point, orthographic_height, lens)");
+        "vertical_fov, film_size, focal_length, principal_point, shift, orthographic_height, projection, "
+        "fisheye_fov, lens)");
     folder.expect_error(
         scene_of(R"({"type": "box", "min": [0, 0, 0], "max": [1, 1, 1], @"colour": "white"})"),
         "unknown key \"colour\" (known: type, min, max, material, emission, two_sided, transform)");
