@@ -88,12 +88,10 @@ Command add_merge_command(CLI::App& app, const std::string& command_line) {
         "  candela render box.json -o b.exr --samples 64..128\n"
         "  candela merge a.exr b.exr -o box.exr -o box.png\n"
         "  candela merge --missing 0..256 a.exr b.exr\n\n"
-        "Scene, size, crop, camera, seed, sampler, estimator and depths must be the same, and no two parts "
-        "may\n"
-        "hold the same sample. Missing samples cause a warning. The result equals one rendering of all\n"
-        "samples, up to rounding (a few units of 2^-24), and can be merged again; parts by --half have "
-        "three\n"
-        "digits.");
+        "Scene, size, crop, camera, seed, sampler, estimator, filter and depths must be the same, and no\n"
+        "two parts may hold the same sample. Missing samples cause a warning. The result equals one\n"
+        "rendering of all samples, up to rounding (a few units of 2^-24), and can be merged again; parts\n"
+        "by --half have three digits.");
     return {command, [arguments, command_line] { return run(*arguments, command_line); }};
 }
 

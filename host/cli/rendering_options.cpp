@@ -1,6 +1,10 @@
 // See rendering_options.h.
 #include "cli/rendering_options.h"
 
+#include <algorithm>
+#include <vector>
+
+#include "scene/default_filter.h"
 #include "session/job.h"
 #include "shared/constants.h"
 
@@ -20,6 +24,27 @@ static std::optional<uint32_t> parse_depth(const std::string& text) {
 
 static std::optional<uint32_t> parse_max_depth(const std::string& text) {
     return text == "unlimited" ? DEPTH_SAFETY_LIMIT : parse_depth(text);
+}
+
+// "tent" or "tent,2.5".
+static std::optional<PixelFilter> parse_filter(const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    const auto named =
+        std::ranges::find(FILTER_SHAPE_NAMES, parts[0], &decltype(FILTER_SHAPE_NAMES)::value_type::first);
+    if (named == FILTER_SHAPE_NAMES.end() || parts.size() > 2) return std::nullopt;
+    PixelFilter filter = default_filter(named->second);
+    if (parts.size() == 1) return filter;
+    const auto width = parse_number(parts[1]);
+    if (!width) return std::nullopt;
+    filter.width = float(*width);
+    if (!(filter.width >= MIN_FILTER_WIDTH && filter.width <= MAX_FILTER_WIDTH)) return std::nullopt;
+    return filter;
+}
+
+static std::optional<float> parse_clamp(const std::string& text) {
+    const auto limit = parse_number(text);
+    if (!limit || !(*limit >= double(FLOAT_MIN) && *limit <= double(FLOAT_MAX))) return std::nullopt;
+    return float(*limit);
 }
 
 void SceneOptions::add_file_to(CLI::App& app) {
@@ -59,6 +84,15 @@ void SamplingOptions::add_to(CLI::App& app) {
     add_choice(app, "--terminator", terminator, TERMINATOR_NAMES,
                "Where light ends on meshes with smooth normals: along the smooth surface, or along the flat "
                "triangles");
+    add_value(app, "--filter", filter, parse_filter,
+              "box, tent, gaussian or blackman-harris, also with a comma and a width from 0.01 to 10 pixels",
+              "How samples are spread around a pixel's centre: box, tent, gaussian or blackman-harris, and "
+              "the filter's full width in pixels")
+        ->type_name("NAME[,WIDTH]");
+    add_value(app, "--clamp-indirect", clamp_indirect, parse_clamp, "a number above 0, such as 10",
+              "Scale down contributions of light that has bounced more than once to this radiance: removes "
+              "fireflies, and some of the light (default: never)")
+        ->type_name("L");
 }
 
 void DeviceOptions::add_to(CLI::App& app) {
@@ -85,6 +119,8 @@ RenderSettings RenderingOptions::settings(const Scene& scene, const Camera& came
     result.sampler = sampling.sampler.value_or(result.sampler);
     result.light_sampler = sampling.light_sampler.value_or(result.light_sampler);
     result.terminator = sampling.terminator.value_or(result.terminator);
+    result.filter = sampling.filter.value_or(result.filter);
+    if (sampling.clamp_indirect) result.clamp_indirect = sampling.clamp_indirect;
     result.seed = sampling.seed.value_or(result.seed);
     result.max_depth = sampling.max_depth.value_or(result.max_depth);
     result.rr_depth = sampling.rr_depth.value_or(result.rr_depth);

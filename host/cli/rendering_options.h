@@ -45,6 +45,8 @@ struct SamplingOptions {
     std::optional<SamplerKind> sampler;
     std::optional<LightSampler> light_sampler;
     std::optional<Terminator> terminator;
+    std::optional<PixelFilter> filter;
+    std::optional<float> clamp_indirect;
 
     void add_to(CLI::App& app);
 };

@@ -19,18 +19,22 @@ constexpr const char* ANOTHER_SCENE = "it shows another scene, or another versio
 struct SettingName {
     const char* word;
     const char* attribute;
+    const char* older = nullptr;  // What it is where an older candela did not write the attribute.
 };
-constexpr std::array<SettingName, Identity::SETTING_COUNT> NAMES{{{"size", nullptr},
-                                                                  {"crop", nullptr},
-                                                                  {"seed", "candela.seed"},
-                                                                  {"sampler", "candela.sampler"},
-                                                                  {"estimator", "candela.estimator"},
-                                                                  {"light sampler", "candela.lightSampler"},
-                                                                  {"terminator", "candela.terminator"},
-                                                                  {"max depth", "candela.maxDepth"},
-                                                                  {"rr depth", "candela.rrDepth"},
-                                                                  {"camera", "candela.camera"},
-                                                                  {"frame", FRAME_ATTRIBUTE}}};
+constexpr std::array<SettingName, Identity::SETTING_COUNT> NAMES{
+    {{"size", nullptr},
+     {"crop", nullptr},
+     {"seed", "candela.seed"},
+     {"sampler", "candela.sampler"},
+     {"estimator", "candela.estimator"},
+     {"light sampler", "candela.lightSampler"},
+     {"terminator", "candela.terminator"},
+     {"max depth", "candela.maxDepth"},
+     {"rr depth", "candela.rrDepth"},
+     {"filter", "candela.filter", "box,1"},
+     {"clamp of indirect light", "candela.clampIndirect", NO_CLAMP_TEXT},
+     {"camera", "candela.camera"},
+     {"frame", FRAME_ATTRIBUTE, OLDER}}};
 
 }  // namespace
 
@@ -75,9 +79,8 @@ Identity identity_of(const Image& image, const std::string& name) {
     }
     for (size_t i = 0; i < NAMES.size(); ++i) {
         if (NAMES[i].attribute == nullptr) continue;
-        const bool older =
-            NAMES[i].attribute == FRAME_ATTRIBUTE && !image.attributes.contains(FRAME_ATTRIBUTE);
-        identity.settings[i] = older ? OLDER : text_attribute(image, NAMES[i].attribute, name);
+        const bool is_older = NAMES[i].older != nullptr && !image.attributes.contains(NAMES[i].attribute);
+        identity.settings[i] = is_older ? NAMES[i].older : text_attribute(image, NAMES[i].attribute, name);
     }
     identity.settings[0] = size_text(image.full);
     identity.settings[1] = crop_text(image.data);

@@ -12,12 +12,14 @@ namespace candela {
 
 struct Identity {
     // The settings as text: size, crop, seed, sampler, estimator, light sampler, terminator, max depth, rr
-    // depth, camera and frame.
-    static constexpr size_t SETTING_COUNT = 11;
+    // depth, filter, clamp, camera and frame.
+    static constexpr size_t SETTING_COUNT = 13;
     std::array<std::string, SETTING_COUNT> settings;
     // Hash of the scene's arrays, the record of camera and settings, and the specialization constants.
     uint64_t hash = 0;
 };
+
+inline constexpr const char* NO_CLAMP_TEXT = "none";
 
 // The maker of an image or a state. With another maker, the same samples may have other bits.
 struct Maker {

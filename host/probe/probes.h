@@ -128,6 +128,7 @@ struct WarpResult {
     vec2 triangle;
     vec3 power_cosine, sphere, cone, normal;
     vec2 polygon;
+    vec2 tent, gaussian, blackman_harris;  // Of the filters of pixels.
 };
 
 // interaction: a ray, and a direction in which another leaves from where it hits.

@@ -74,6 +74,20 @@ uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
                : 0;
 }
 
+uint32_t filter_constant(const PixelFilter& filter) {
+    switch (filter.shape) {
+        case FilterShape::tent:
+            return PIXEL_FILTER_TENT;
+        case FilterShape::gaussian:
+            return PIXEL_FILTER_GAUSSIAN;
+        case FilterShape::blackman_harris:
+            return PIXEL_FILTER_BLACKMAN_HARRIS;
+        case FilterShape::box:
+            break;
+    }
+    return filter.width == 1.0f ? PIXEL_FILTER_SQUARE : PIXEL_FILTER_BOX;
+}
+
 uint32_t sampler_constant(SamplerKind sampler) {
     switch (sampler) {
         case SamplerKind::independent:
@@ -96,6 +110,9 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_SMOOTH_TERMINATOR] = settings.terminator == Terminator::smooth;
     constants[CONSTANT_HAS_AOVS] = settings.aovs;
     constants[CONSTANT_CAMERA] = camera_constant(camera);
+    constants[CONSTANT_PIXEL_FILTER] = filter_constant(settings.filter);
+    constants[CONSTANT_PIXEL_FILTER_WIDTH] = floatBitsToUint(settings.filter.width);
+    constants[CONSTANT_CLAMP_INDIRECT] = floatBitsToUint(settings.clamp_indirect.value_or(0.0f));
     constants[CONSTANT_ENVIRONMENT] = environment_constant(scene.environment, settings.backdrop);
     constants[CONSTANT_EVEN_SKY] = scene.even_sky;
     constants[CONSTANT_MATERIALS] = scene.materials_present;

@@ -59,6 +59,10 @@ std::string camera_text(const Camera& camera) {
                                    : perspective_text(camera));
 }
 
+std::string filter_text(const PixelFilter& filter) {
+    return name_of(filter.shape, FILTER_SHAPE_NAMES) + ',' + exact(filter.width);
+}
+
 std::string frame_text(const SceneFrame& frame) {
     return "origin " + exact(frame.origin) + ", unit " + exact(frame.unit) + " m, records " +
            std::to_string(RECORDS_VERSION);
@@ -95,7 +99,9 @@ Identity make_identity(const GpuScene& scene, uint64_t arrays_hash, const Camera
                      name_of(settings.sampler, SAMPLER_NAMES), name_of(settings.estimator, ESTIMATOR_NAMES),
                      name_of(chosen_light_sampler(settings.light_sampler, scene), LIGHT_SAMPLER_NAMES),
                      name_of(settings.terminator, TERMINATOR_NAMES), std::to_string(settings.max_depth),
-                     std::to_string(settings.rr_depth), camera_text(camera), frame_text(scene.frame)},
+                     std::to_string(settings.rr_depth), filter_text(settings.filter),
+                     settings.clamp_indirect ? exact(*settings.clamp_indirect) : NO_CLAMP_TEXT,
+                     camera_text(camera), frame_text(scene.frame)},
         .hash = hash};
 }
 

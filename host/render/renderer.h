@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "film/accumulation.h"
@@ -37,6 +38,10 @@ struct RenderSettings {
     SamplerKind sampler = SamplerKind::sobol;
     LightSampler light_sampler = LightSampler::automatic;
     Terminator terminator = Terminator::smooth;
+    PixelFilter filter{};
+    // Contributions of light that has bounced more than once are scaled down to this mean of their channels
+    // [W/(m^2 sr)], above 0; none: they are not.
+    std::optional<float> clamp_indirect{};
     uint32_t seed = 0;
     uint32_t first_sample = 0;  // Index of each pixel's first sample.
     uint32_t max_depth = DEPTH_SAFETY_LIMIT;

@@ -36,6 +36,12 @@ inline constexpr Choices<LightSampler, 4> LIGHT_SAMPLER_NAMES{{{"auto", LightSam
 inline constexpr Choices<Terminator, 2> TERMINATOR_NAMES{
     {{"smooth", Terminator::smooth}, {"flat", Terminator::flat}}};
 
+inline constexpr Choices<FilterShape, 4> FILTER_SHAPE_NAMES{
+    {{"box", FilterShape::box},
+     {"tent", FilterShape::tent},
+     {"gaussian", FilterShape::gaussian},
+     {"blackman-harris", FilterShape::blackman_harris}}};
+
 inline constexpr Choices<Mapping, 3> MAPPING_NAMES{{{"equirectangular", Mapping::equirectangular},
                                                     {"fisheye", Mapping::fisheye},
                                                     {"equisolid", Mapping::equisolid}}};

@@ -75,8 +75,20 @@ struct Camera {
     bool operator==(const Camera&) const = default;
 };
 
+// How the samples of a pixel are spread around its centre. A sample belongs to one pixel.
+enum class FilterShape { box, tent, gaussian, blackman_harris };
+struct PixelFilter {
+    FilterShape shape = FilterShape::box;
+    float width = 1.0f;  // Beyond half of it the filter is 0 [pixels].
+
+    bool operator==(const PixelFilter&) const = default;
+};
+inline constexpr float MIN_FILTER_WIDTH = 0.01f;
+inline constexpr float MAX_FILTER_WIDTH = 10.0f;
+
 struct Film {
     uvec2 size{512, 512};  // Pixels.
+    PixelFilter filter{};
 };
 
 enum class Estimator { bsdf, light, mis };
@@ -98,6 +110,7 @@ struct IntegratorSettings {
     LightSampler light_sampler = LightSampler::automatic;
     Terminator terminator = Terminator::smooth;
     uint32_t seed = 0;
+    std::optional<float> clamp_indirect{};  // See RenderSettings.
 };
 
 // Lambert: f = reflectance / pi on both sides.

@@ -99,7 +99,7 @@ std::vector<Row> rows() {
         {"warps",
          "samples",
          {always<test_basic_warps>, always<test_power_cosines>, always<test_sphere_and_cones>,
-          always<test_polygons>, always<test_visible_normals>}},
+          always<test_polygons>, always<test_pixel_filters>, always<test_visible_normals>}},
         {"BSDFs", "samples", {always<test_bsdfs>}},
         {"layered BSDFs", "samples", {always<test_layers>}},
         {"BSDFs at extremes", "samples", {always<test_extreme_bsdfs>}},

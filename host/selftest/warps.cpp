@@ -50,6 +50,20 @@ glm::dvec2 in_polygon(vec2 p, uint32_t corners) {
     return {sum * sum, (k + (sum > 0.0 ? b2 / sum : 0.0)) / corners};
 }
 
+// The share of a filter by Blackman and Harris below x in [-1, 1], along one axis.
+double blackman_harris_below(float x) {
+    const auto part = [&](double weight, int k) {
+        return weight * std::sin(k * M_PI * double(x)) / (k * M_PI);
+    };
+    const double sum = part(0.48829, 1) + part(0.14128, 2) + part(0.01168, 3);
+    return 0.5 + 0.5 * (double(x) + sum / 0.35875);
+}
+
+double tent_below(float x) {
+    const double tail = 0.5 * std::pow(1.0 - std::abs(double(x)), 2.0);
+    return x < 0.0f ? tail : 1.0 - tail;
+}
+
 // The fraction of visible normals in each cell, up to a factor, by slopes (x, y) = alpha sqrt(a / (1 - a))
 // (cos, sin): d(slopes) = pi alpha^2 / (1 - a)^2 da db, d(normal) = n.z^3 d(slopes), with 1 - a = (1 - s)^2.
 // The density is D(n) max(0, w.n) over the projected area of all facets that w sees, which a sum over the
@@ -177,6 +191,25 @@ Evidence test_polygons(const vk::Device& device) {
         test_uniformity(
             name, results, [&](const WarpResult& r) { return in_polygon(r.polygon, corners); }, evidence);
     }
+    return evidence;
+}
+
+// In the coordinates of the distribution functions.
+Evidence test_pixel_filters(const vk::Device& device) {
+    Evidence evidence;
+    const std::vector<WarpResult> results = run_warps(device, 12);
+    const auto test = [&](const char* name, const auto& coordinates) {
+        test_uniformity(name, results, coordinates, evidence);
+    };
+    test("tent", [](const WarpResult& r) { return glm::dvec2(tent_below(r.tent.x), tent_below(r.tent.y)); });
+    test("gaussian", [](const WarpResult& r) {
+        const glm::dvec2 d(r.gaussian);
+        return glm::dvec2(std::expm1(-4.5 * dot(d, d)) / std::expm1(-4.5), turn_of(d.y, d.x));
+    });
+    test("blackman-harris", [](const WarpResult& r) {
+        return glm::dvec2(blackman_harris_below(r.blackman_harris.x),
+                          blackman_harris_below(r.blackman_harris.y));
+    });
     return evidence;
 }
 

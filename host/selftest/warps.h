@@ -20,6 +20,8 @@ Evidence test_power_cosines(const vk::Device& device);
 Evidence test_sphere_and_cones(const vk::Device& device);
 // Regular polygons of 3 to 64 corners.
 Evidence test_polygons(const vk::Device& device);
+// Filters of pixels.
+Evidence test_pixel_filters(const vk::Device& device);
 // Visible normals of GGX for three views and roughnesses.
 Evidence test_visible_normals(const vk::Device& device);
 

@@ -30,6 +30,8 @@ RenderSettings proposed_settings(const Scene& scene, const Camera& camera) {
             .sampler = proposed.sampler,
             .light_sampler = proposed.light_sampler,
             .terminator = proposed.terminator,
+            .filter = scene.film.filter,
+            .clamp_indirect = proposed.clamp_indirect,
             .seed = proposed.seed,
             .max_depth = std::min(proposed.max_depth.value_or(DEPTH_SAFETY_LIMIT), DEPTH_SAFETY_LIMIT),
             .rr_depth = proposed.rr_depth};

@@ -107,12 +107,21 @@ float emission_weight(Path path, float pdf_bsdf, float pdf_light) {
     return power_heuristic(pdf_bsdf, pdf_light);
 }
 
+// What a contribution adds to L that comes to the camera by that many bounces. With a limit, light that has bounced
+// more than once is scaled down to it, as the mean of its channels: this removes fireflies, and some of the light.
+vec3 clamp_indirect(vec3 L, uint bounces) {
+    if (CLAMP_INDIRECT == 0u || bounces < 2u) return L;
+    float limit = uintBitsToFloat(CLAMP_INDIRECT), mean = dot(L, vec3(1.0 / 3.0));
+    return mean > limit ? L * (limit / mean) : L;
+}
+
 // Adds the radiance of the sky, for a path whose ray left the scene.
 void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u && ENVIRONMENT != ENVIRONMENT_VISIBLE) return;
     EnvironmentTexel texel = environment_texel(path.ray.d);
     float pdf_light = environment_pdf_li(texel, path_lit_point(path));
-    estimate.L += emission_weight(path, environment_rival_pdf(path.pdf_bsdf), pdf_light) * path.beta * texel.radiance;
+    float weight = emission_weight(path, environment_rival_pdf(path.pdf_bsdf), pdf_light);
+    estimate.L += clamp_indirect(weight * path.beta * texel.radiance, path.depth);
     if (path.depth == 0u) estimate.visible = true;
 }
 
@@ -125,8 +134,9 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     if (HAS_COATED_EMISSION) {
         fraction = emitted_fraction(s.material, s.attributes, dot(s.wo, s.n), unit_float(hit_random(path.ray).xy));
     }
-    estimate.L += emission_weight(path, path.pdf_bsdf, pdf_light) * fraction * path.beta *
-                  area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
+    vec3 L = emission_weight(path, path.pdf_bsdf, pdf_light) * fraction * path.beta *
+             area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
+    estimate.L += clamp_indirect(L, path.depth);
 }
 
 // A sample of a light for the surface, as lit; layers above the emitter pass a fraction of its radiance.
@@ -161,7 +171,7 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
         bool is_sky = SKY_IS_LIGHT && light.light == sky_light();
         weight = power_heuristic(light.pdf, is_sky ? environment_rival_pdf(value.pdf) : value.pdf);
     }
-    return ShadowRay(ray, dark ? 0.0 : light.t_max, weight * Ld / light.pdf);
+    return ShadowRay(ray, dark ? 0.0 : light.t_max, clamp_indirect(weight * Ld / light.pdf, path.depth + 1u));
 }
 
 // Continues the path in the direction that the BSDF sampled; returns whether the path goes on. A direction carries no
@@ -225,7 +235,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     // Add what the surface emits; light samples of the previous vertex may already account for a part.
     if (x.s.light != NO_LIGHT) add_emission(path, estimate, x.s, hit.t);
     if (is_model(x.bsdf, 1u << MATERIAL_UNLIT)) {
-        estimate.L += path.beta * x.bsdf.base;
+        estimate.L += clamp_indirect(path.beta * x.bsdf.base, path.depth);
         return false;
     }
 

@@ -4,7 +4,8 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 3u
-#define RESULT_WORDS 22u
+#define RESULT_WORDS 28u
+#include "base/pixel_filter.glsl"
 #include "base/warp.glsl"
 #include "probes/items.glsl"
 
@@ -21,4 +22,7 @@ void main() {
     put(warp_cone(v.xy, v.w));
     put(warp_ggx_visible_normal(v.xy, item_floats(1u).w, item_floats(1u).xyz));
     put(warp_polygon(v.xy, item(2u).x));
+    put(filter_tent(v.xy));
+    put(filter_gaussian(v.xy));
+    put(filter_blackman_harris(v.xy));
 }

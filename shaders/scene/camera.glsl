@@ -2,6 +2,7 @@
 #ifndef SCENE_CAMERA_GLSL
 #define SCENE_CAMERA_GLSL
 
+#include "base/pixel_filter.glsl"
 #include "base/ray.glsl"
 #include "base/sampler.glsl"
 #include "base/warp.glsl"
@@ -92,7 +93,7 @@ struct CameraSample {
 
 // The sample of that pixel of the whole picture.
 CameraSample camera_sample(Parameters camera, uvec2 pixel, Sampler random) {
-    vec2 film = vec2(pixel) + unit_float(sampler_pair(random, PAIR_PIXEL));
+    vec2 film = filter_film_position(pixel, unit_float(sampler_pair(random, PAIR_PIXEL)));
     return CameraSample(camera_ray(camera, film, unit_float(sampler_pair(random, PAIR_LENS))),
                         camera_sees(camera, film));
 }

@@ -86,6 +86,13 @@ const uint CAMERA_EQUIRECTANGULAR = 4u;
 const uint CAMERA_FISHEYE = 5u;    // Equidistant.
 const uint CAMERA_EQUISOLID = 6u;  // A fisheye that keeps the ratio of solid angles.
 
+// Filters of pixels.
+const uint PIXEL_FILTER_SQUARE = 0u;  // The pixel itself.
+const uint PIXEL_FILTER_BOX = 1u;     // Of another width.
+const uint PIXEL_FILTER_TENT = 2u;
+const uint PIXEL_FILTER_GAUSSIAN = 3u;
+const uint PIXEL_FILTER_BLACKMAN_HARRIS = 4u;
+
 // Kinds of environment that a kernel distinguishes.
 const uint ENVIRONMENT_NONE = 0u;
 const uint ENVIRONMENT_HIDDEN = 1u;  // Camera rays do not see it.

@@ -41,8 +41,52 @@ TEST_F(RenderOptionsTest, CropHasTheSameBitsAsTheWhole) {
     }
 }
 
+TEST_F(RenderOptionsTest, FiltersAndLimitsThatCannotBeAreRefused) {
+    const auto error = [&](const std::string& option, const std::string& text, const std::string& expected) {
+        const ProcessResult result =
+            candela({"render", CORNELL_BOX, "-o", file("a.exr"), option, text}, NO_DRIVER);
+        EXPECT_EQ(result.exit_code, 2) << result.err;
+        EXPECT_CONTAINS(result.err, option + ": cannot use \"" + text + "\"; expected " + expected);
+    };
+    for (const char* filter :
+         {"box,0", "gaussian,100", "tent,-1", "tent,nan", "tent,", "sinc", "box,1,1", ""}) {
+        error("--filter", filter,
+              "box, tent, gaussian or blackman-harris, also with a comma and a width from 0.01 to 10 pixels");
+    }
+    for (const char* limit : {"-1", "0", "nan", "inf", "1e39", "1e-40", "L"})
+        error("--clamp-indirect", limit, "a number above 0, such as 10");
+}
+
+// Parts belong together only if their filter and their limit are the same.
+TEST_F(RenderOptionsTest, FilterAndLimitAreInTheFile) {
+    const auto render_part = [&](const char* name, const char* samples, const Words& arguments) {
+        const ProcessResult part =
+            candela(Words{"render", CORNELL_BOX, "--size", "8x8", "-o", file(name), "--samples", samples} +
+                    arguments);
+        ASSERT_EQ(part.exit_code, 0) << part.err;
+    };
+    const Words filtered{"--filter", "gaussian", "--clamp-indirect", "10"};
+    render_part("a.exr", "0..2", filtered);
+    render_part("b.exr", "2..4", filtered);
+    render_part("c.exr", "2..4", {});
+    const Image image = read_exr(file("a.exr"));
+    EXPECT_EQ(std::get<std::string>(image.attributes.at("candela.filter")), "gaussian,3");
+    EXPECT_EQ(std::get<std::string>(image.attributes.at("candela.clampIndirect")), "10");
+    EXPECT_EQ(candela({"merge", file("a.exr"), file("b.exr"), "-o", file("whole.exr")}).exit_code, 0);
+    const ProcessResult refused = candela({"merge", file("a.exr"), file("c.exr"), "-o", file("d.exr")});
+    EXPECT_NE(refused.exit_code, 0);
+    EXPECT_CONTAINS(refused.err,
+                    "its filter is box,1, not gaussian,3, its clamp of indirect light is none, not 10");
+    const auto report = report_of({"--size", "8x8", "--filter", "gaussian", "--clamp-indirect", "10"});
+    EXPECT_EQ(report["filter"], "gaussian");
+    EXPECT_EQ(report["filter_width"], 3.0);
+    EXPECT_EQ(report["clamp_indirect"], 10.0);
+    EXPECT_EQ(report_of({"--size", "8x8"})["clamp_indirect"], nullptr);
+}
+
 TEST_F(RenderOptionsTest, SamplingOptionsChangeTheImage) {
     const std::string plain = hash_of({});
+    EXPECT_EQ(plain, hash_of({"--filter", "box,1", "--clamp-indirect", "1e30"}));
     EXPECT_EQ(plain, hash_of({"--seed", "0", "--estimator", "mis", "--sampler", "sobol", "--rr-depth", "3"}));
     std::set<std::string> hashes = {plain};
     for (const Words& change : std::vector<Words>{{"--seed", "1"},
@@ -52,6 +96,8 @@ TEST_F(RenderOptionsTest, SamplingOptionsChangeTheImage) {
                                                   {"--sampler", "stratified"},
                                                   {"--rr-depth", "0"},
                                                   {"--max-depth", "1"},
+                                                  {"--filter", "tent"},
+                                                  {"--clamp-indirect", "0.1"},
                                                   {"--spp", "5"}}) {
         EXPECT_TRUE(hashes.insert(hash_of(change)).second)
             << change[0] << ' ' << change[1] << " changed nothing";

@@ -53,6 +53,35 @@ TEST_F(WarpTest, TheFirstCornerOfAPolygonIsOnTheXAxis) {
     }
 }
 
+TEST_F(WarpTest, FiltersOfPixelsFollowTheirDensities) {
+    expect_holds(test_pixel_filters(device()));
+}
+
+// Per axis, in squared halves of the width: 1/6 of a tent; of a gaussian with the standard deviation 1/3 that
+// ends at 3 of these, 1/9 (1 - 9/2 e^-4.5 / (1 - e^-4.5)); of Blackman and Harris, 1/3 + 2 / pi^2 times the
+// sum of (-1)^k b_k / k^2. The mean of n squares is off by the standard deviation of a square over sqrt(n),
+// which is at most sqrt(2) times their mean, as of normal numbers: none of these filters has longer tails.
+TEST_F(WarpTest, FiltersOfPixelsHaveTheirVariances) {
+    const std::vector<WarpResult> results = run_warps(device(), 13);
+    const auto expect_variance = [&](vec2 WarpResult::*place, double expected) {
+        glm::dvec2 mean(0), square(0);
+        for (const WarpResult& r : results) {
+            const glm::dvec2 p(r.*place);
+            mean += p / double(results.size());
+            square += p * p / double(results.size());
+        }
+        for (const glm::length_t axis : {0, 1}) {
+            const double error = std::sqrt(2.0 / double(results.size())) * expected;
+            EXPECT_NEAR(square[axis], expected, 5.0 * error);
+            EXPECT_NEAR(mean[axis], 0.0, 5.0 * std::sqrt(expected / double(results.size())));
+        }
+    };
+    expect_variance(&WarpResult::tent, 1.0 / 6.0);
+    expect_variance(&WarpResult::gaussian, (1.0 + 4.5 * std::exp(-4.5) / std::expm1(-4.5)) / 9.0);
+    const double sum = (-0.48829 + 0.14128 / 4.0 - 0.01168 / 9.0) / 0.35875;
+    expect_variance(&WarpResult::blackman_harris, 1.0 / 3.0 + 2.0 / (M_PI * M_PI) * sum);
+}
+
 TEST_F(WarpTest, VisibleNormalsFollowTheirDensity) {
     expect_holds(test_visible_normals(device()));
 }
@@ -78,6 +107,8 @@ TEST_F(WarpTest, ResultsLieInTheirDomains) {
         ASSERT_NEAR(length(glm::dvec3(r.sphere)), 1.0, 0x1p-20);
         ASSERT_NEAR(length(glm::dvec3(r.cone)), 1.0, 0x1p-20);
         ASSERT_NEAR(length(glm::dvec3(r.normal)), 1.0, 0x1p-20);
+        for (const vec2 place : {r.tent, r.gaussian, r.blackman_harris})
+            ASSERT_LE(std::max(std::abs(place.x), std::abs(place.y)), 1.0f + 0x1p-20f);
         ASSERT_GE(r.triangle.x, 0.0f);
         ASSERT_GE(r.triangle.y, 0.0f);
         ASSERT_LE(double(r.triangle.x) + double(r.triangle.y), 1.0);

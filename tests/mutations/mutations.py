@@ -44,6 +44,7 @@ BENT_NORMAL = "shaders/integrator/bent_normal.glsl"
 CAMERA = "shaders/scene/camera.glsl"
 RENDER = "shaders/kernels/render.glsl"
 FIRST_HITS = "shaders/kernels/first_hits.comp.glsl"
+PIXEL_FILTER = "shaders/base/pixel_filter.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
 RENDERER = "host/render/renderer.cpp"
 FLATTEN = "host/gpu_scene/flatten.cpp"
@@ -65,7 +66,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
 TREES = ("LightTree*:LightChoice*", "EstimatorTest*HoweverLights*:ManyLight*", "LightTree*:TextureMean*")
 PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Orthographic*:ScaleTest*Mean*")
 TERMINATOR = ("Interaction*", "Terminator*")
-CAMERAS = ("Records*", "PanoramaTest*")
+CAMERAS = ("WarpTest*", "PanoramaTest*:PixelFilterTest*:ClampTest*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 INSTANCES = ("InstanceTest*", "InstancedNormals*:*InstanceTest*", "Instancing*:MediaAt*")
@@ -168,7 +169,7 @@ GROUPS = [
     (SAMPLES, [
         ("aperture not uniform", CAMERA, "? warp_disk(u)", "? u.x * cos_sin_turn(u.y)"),
         ("lens and pixel share their random numbers", CAMERA, "PAIR_LENS", "PAIR_PIXEL"),
-        ("half a pixel off", CAMERA, "vec2(pixel) + unit_float", "vec2(pixel) + 0.5 + unit_float"),
+        ("half a pixel off", PIXEL_FILTER, "return vec2(pixel) + u;", "return vec2(pixel) + 0.5 + u;"),
         ("a fold of the Sobol matrix missing", SAMPLER, "i ^= (i >> 4u) & 0x0F0F0F0Fu;", ""),
         ("adaptive samples steered by those of the same half", "host/session/adaptive.cpp",
          "plan_extra_samples(states[2 * (1 - h)]", "plan_extra_samples(states[2 * h]"),
@@ -371,6 +372,11 @@ GROUPS = [
         ("an equisolid fisheye that is equidistant", CAMERA, "if (CAMERA == CAMERA_FISHEYE) {", "if (true) {"),
         ("light outside of a fisheye's circle", PATH, "return IS_FISHEYE &&", "return false &&"),
         ("depth along the axis of a panorama", "shaders/kernels/position.comp.glsl", "IS_PANORAMA ? length(away) : ", ""),
+        ("a tent that is a box", PIXEL_FILTER, "PIXEL_FILTER == PIXEL_FILTER_TENT", "false"),
+        ("a gaussian that ends too late", PIXEL_FILTER, "within = 0.98889100346", "within = 0.999"),
+        ("a single step of Newton's method", PIXEL_FILTER, "i < 4u", "i < 1u"),
+        ("direct light limited, too", PATH, "bounces < 2u", "bounces < 1u"),
+        ("light samples of the second vertex not limited", PATH, "path.depth + 1u));", "path.depth));"),
     ]),
     (INSTANCES, [
         ("what follows an instance traversed in its space", TRAVERSAL, "if (t.node < t.root) {", "if (false) {"),

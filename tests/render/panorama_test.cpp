@@ -202,12 +202,14 @@ TEST_F(PanoramaTest, NothingIsOutsideOfAFisheyesCircle) {
     }
 }
 
+// Also with a filter that reaches beyond poles and edges.
 TEST_F(PanoramaTest, APartHasTheBitsOfTheWhole) {
     for (const Mapping mapping : {Mapping::equirectangular, Mapping::fisheye, Mapping::equisolid}) {
         Scene scene = scene_in_sphere({mapping, 4.0f});
         scene.lights = {{"", PointLight{scene.cameras[0].position + 0.5, vec3(1, 2, 3)}}};
         const GpuScene gpu_scene = build_gpu_scene(scene);
         RenderSettings settings = settings_for(24, 16);
+        settings.filter = {FilterShape::gaussian, 6.0f};
         const Accumulation whole = render(gpu_scene, scene.cameras[0], settings, 4);
         settings.crop = {5, 0, 17, 9};
         const Accumulation part = render(gpu_scene, scene.cameras[0], settings, 4);

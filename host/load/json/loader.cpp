@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "load/json/loader_parts.h"
 #include "load/quote.h"
+#include "scene/default_filter.h"
 #include "scene/names.h"
 
 namespace candela {
@@ -20,7 +21,14 @@ Film read_film(const Node& node) {
     const Node size = node.require("size");
     const std::vector<Node> sides = size.elements();
     if (sides.size() != 2) size.fail_expected("two whole numbers [width, height]");
-    return {uvec2(read_integer(sides[0], side), read_integer(sides[1], side))};
+    Film film{.size = uvec2(read_integer(sides[0], side), read_integer(sides[1], side))};
+    const auto shape = node.find("filter"), width = node.find("filter_width");
+    if (shape) film.filter = default_filter(shape->choice(FILTER_SHAPE_NAMES));
+    if (width) {
+        if (!shape) width->fail("filter_width is the width of a filter; add \"filter\"");
+        film.filter.width = read_number(*width, scene_key("film", "filter_width"));
+    }
+    return film;
 }
 
 IntegratorSettings read_integrator(const Node& node) {
@@ -41,6 +49,7 @@ IntegratorSettings read_integrator(const Node& node) {
         settings.light_sampler = sampler->choice(LIGHT_SAMPLER_NAMES);
     if (const auto terminator = node.find("terminator"))
         settings.terminator = terminator->choice(TERMINATOR_NAMES);
+    if (const auto limit = node.find("clamp_indirect")) settings.clamp_indirect = float(limit->positive());
     if (const auto seed = node.find("seed"))
         settings.seed = read_integer(*seed, scene_key("integrator", "seed"));
     return settings;

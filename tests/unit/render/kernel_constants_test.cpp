@@ -24,6 +24,21 @@ TEST(KernelConstants, WhatTheDeviceSetsHasItsDefaultUntilThereIsOne) {
     EXPECT_EQ(constants[CONSTANT_SAMPLER], SAMPLER_INDEPENDENT);
 }
 
+// A box of one pixel is the pixel itself, whoever asks for it, with the code for that.
+TEST(KernelConstants, OnlyOtherFiltersThanThePixelHaveCode) {
+    const GpuScene scene = build_gpu_scene(scene_of_shapes({emitter(SQUARE, vec3(1))}));
+    RenderSettings settings;
+    const auto filter = [&](const PixelFilter& wanted) {
+        settings.filter = wanted;
+        return make_constants(scene, Camera{}, settings)[CONSTANT_PIXEL_FILTER];
+    };
+    EXPECT_EQ(filter({}), PIXEL_FILTER_SQUARE);
+    EXPECT_EQ(filter({FilterShape::box, 1.0f}), PIXEL_FILTER_SQUARE);
+    EXPECT_EQ(filter({FilterShape::box, 2.0f}), PIXEL_FILTER_BOX);
+    EXPECT_EQ(filter({FilterShape::tent, 1.0f}), PIXEL_FILTER_TENT);
+    EXPECT_EQ(make_constants(scene, Camera{}, settings)[CONSTANT_CLAMP_INDIRECT], 0u);
+}
+
 TEST(KernelConstants, AreNumberedInTheOrderOfTheList) {
     for (uint32_t i = 0; i < CONSTANT_COUNT; ++i)
         EXPECT_EQ(CONSTANT_ENTRIES[i].number, i);

@@ -55,6 +55,12 @@ TEST_F(PictureIdentity, EverySettingIsNamedWithBothValues) {
     expect_named("its terminator is flat, not smooth",
                  [](RenderSettings& s) { s.terminator = Terminator::flat; });
     expect_named("its max depth is 5, not 4096", [](RenderSettings& s) { s.max_depth = 5; });
+    expect_named("its filter is tent,2, not box,1", [](RenderSettings& s) {
+        s.filter = {FilterShape::tent, 2.0f};
+    });
+    expect_named("its filter is box,1.5, not box,1", [](RenderSettings& s) { s.filter.width = 1.5f; });
+    expect_named("its clamp of indirect light is 10, not none",
+                 [](RenderSettings& s) { s.clamp_indirect = 10.0f; });
     expect_named("its seed is 2, not 0, its rr depth is 4, not 3", [](RenderSettings& s) {
         s.rr_depth = 4;
         s.seed = 2;
@@ -134,6 +140,13 @@ TEST_F(PictureIdentity, AnImageCarriesIt) {
     image.data.x1 = 14;
     EXPECT_EQ(difference(identity_of(image, "a.exr"), identity()),
               "its crop is 10,20,14,22, not 10,20,13,22");
+
+    // Before there were filters and limits, there was this one filter, and no limit.
+    Image older = image;
+    older.data.x1 = 13;
+    older.attributes.erase("candela.filter");
+    older.attributes.erase("candela.clampIndirect");
+    EXPECT_EQ(difference(identity_of(older, "a.exr"), identity()), "");
 
     const std::string remedy = "; give a file that candela render wrote, unchanged";
     for (const char* name :

@@ -92,7 +92,7 @@ TEST(Scene, ReadsTheIntegrator) {
     SceneFolder folder;
     const Scene scene = folder.load(settings(GOOD_CAMERA + R"(, "integrator": {"spp": 16777216,
         "max_depth": 0, "rr_depth": 4096, "estimator": "light", "sampler": "stratified", "light_sampler": "power",
-        "terminator": "flat", "seed": 4294967295})"));
+        "terminator": "flat", "clamp_indirect": 2.5, "seed": 4294967295})"));
     EXPECT_EQ(scene.integrator.spp, 1u << 24);
     EXPECT_EQ(scene.integrator.max_depth, 0u);
     EXPECT_EQ(scene.integrator.rr_depth, 4096u);
@@ -101,6 +101,35 @@ TEST(Scene, ReadsTheIntegrator) {
     EXPECT_EQ(scene.integrator.estimator, Estimator::light);
     EXPECT_EQ(scene.integrator.sampler, SamplerKind::stratified);
     EXPECT_EQ(scene.integrator.seed, 0xFFFFFFFFu);
+    EXPECT_EQ(scene.integrator.clamp_indirect, 2.5f);
+    EXPECT_FALSE(folder.load(settings(GOOD_CAMERA)).integrator.clamp_indirect);
+    for (const char* limit : {"0", "-1"}) {
+        folder.expect_error(settings(GOOD_CAMERA + ", \"integrator\": {\"clamp_indirect\": @" + limit + "}"),
+                            "\"clamp_indirect\": expected a number above 0, found " + std::string(limit));
+    }
+}
+
+TEST(Scene, ReadsTheFilterOfItsFilm) {
+    SceneFolder folder;
+    const auto film = [](const std::string& members) {
+        return settings(GOOD_CAMERA + ", \"film\": {\"size\": [4, 4]" + members + "}");
+    };
+    const auto filter = [&](const std::string& members) { return folder.load(film(members)).film.filter; };
+    EXPECT_EQ(filter(""), (PixelFilter{FilterShape::box, 1.0f}));
+    EXPECT_EQ(filter(R"(, "filter": "box")"), (PixelFilter{FilterShape::box, 1.0f}));
+    EXPECT_EQ(filter(R"(, "filter": "tent")"), (PixelFilter{FilterShape::tent, 2.0f}));
+    EXPECT_EQ(filter(R"(, "filter": "gaussian")"), (PixelFilter{FilterShape::gaussian, 3.0f}));
+    EXPECT_EQ(filter(R"(, "filter": "blackman-harris", "filter_width": 10)"),
+              (PixelFilter{FilterShape::blackman_harris, 10.0f}));
+    folder.expect_error(film(", \"filter\": @\"sinc\""),
+                        "unknown filter \"sinc\" (known: box, tent, gaussian, blackman-harris)");
+    for (const char* width : {"0", "100"}) {
+        folder.expect_error(
+            film(R"(, "filter": "tent", "filter_width": @)" + std::string(width)),
+            "\"filter_width\": expected a number from 0.01 to 10, found " + std::string(width));
+    }
+    folder.expect_error(film(", \"filter_width\": @2"),
+                        "filter_width is the width of a filter; add \"filter\"");
 }
 
 TEST(Scene, WarnsOfWhatIsOddButUsable) {
