@@ -374,7 +374,7 @@ std::vector<float> Renderer::positions() {
 
 std::vector<float> Renderer::distances() {
     const std::vector<float> values = positions_in_frame();
-    const bool parallel = constants_[CONSTANT_APERTURE] == APERTURE_NONE;
+    const bool parallel = constants_[CONSTANT_CAMERA] == CAMERA_ORTHOGRAPHIC;
     std::vector<float> distances(values.size() / 4, INFINITE);
     for (size_t i = 0; i < distances.size(); ++i) {
         const float* const at = &values[4 * i];

@@ -22,9 +22,9 @@ void main() {
     Parameters parameters = scene_parameters();
     uvec2 pixel = parameters.crop + uvec2(number % run.width, number / run.width);
     Sampler random = sampler_make(pixel, gl_LocalInvocationIndex, parameters.seed);
-    vec2 film = vec2(pixel) + unit_float(sampler_pair(random, PAIR_PIXEL));
-    Hit hit = bvh_intersect(camera_ray(parameters, film, unit_float(sampler_pair(random, PAIR_LENS))));
+    CameraSample view = camera_sample(parameters, pixel, random);
+    Hit hit = bvh_intersect(view.ray);
     uint word = 0u;
-    if (is_hit(hit)) word = is_instanced(hit.instance) ? FIRST_HIT_INSTANCE | hit.instance : hit_id(hit) + 1u;
+    if (view.sees && is_hit(hit)) word = is_instanced(hit.instance) ? FIRST_HIT_INSTANCE | hit.instance : hit_id(hit) + 1u;
     words[gl_WorkGroupID.x * FIRST_HITS + gl_LocalInvocationIndex] = word;
 }
