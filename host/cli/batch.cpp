@@ -50,7 +50,9 @@ ExitCode Batch::run() {
             break;
         }
         if (renderer_.time_is_over()) {
+            if (next_.valid()) next_.wait();  // It may change the plan.
             leave_out(plan_.scenes()[i]);
+            more = next_of(i).exists;
             continue;
         }
         PreparedScene scene = prepare(i);

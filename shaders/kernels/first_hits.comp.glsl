@@ -25,6 +25,7 @@ void main() {
     CameraSample view = camera_sample(parameters, pixel, random);
     Hit hit = bvh_intersect(view.ray);
     uint word = 0u;
-    if (view.sees && is_hit(hit)) word = is_instanced(hit.instance) ? FIRST_HIT_INSTANCE | hit.instance : hit_id(hit) + 1u;
+    if (view.sees && is_hit(hit))
+        word = is_instanced(hit.instance) ? FIRST_HIT_INSTANCE | hit.instance : hit_id(hit) + 1u;
     words[gl_WorkGroupID.x * FIRST_HITS + gl_LocalInvocationIndex] = word;
 }

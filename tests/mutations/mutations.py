@@ -81,8 +81,7 @@ DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:Fi
 
 GROUPS = [
     (COVERAGE, [
-        ("first hits through the middle of the lens", FIRST_HITS, "unit_float(sampler_pair(random, PAIR_LENS))",
-         "vec2(0.5)"),
+        ("first hits outside of a fisheye", FIRST_HITS, "view.sees && is_hit(hit)", "is_hit(hit)"),
         ("first hits of another crop", FIRST_HITS, "parameters.crop + uvec2", "uvec2"),
         ("first hits by any sampler", "host/render/first_hits.cpp", "constants[CONSTANT_SAMPLER] = SAMPLER_SOBOL;", ""),
         ("first hits of the shape before", FIRST_HITS, "hit_id(hit) + 1u", "max(hit_id(hit), 1u)"),

@@ -92,6 +92,26 @@ class CoverageTest : public RenderTest {
                       const RenderSettings& settings = settings_for(WIDTH, HEIGHT)) const {
         return coverage(build_gpu_scene(scene), scene.cameras[0], settings);
     }
+
+    // Shape 1 covers much of the picture.
+    void expect_alpha(const Scene& scene, const RenderSettings& settings) const {
+        const Coverage covered = coverage(scene, settings);
+        const Image image = image_of(render(scene, settings, FIRST_HITS));
+        uint32_t different = 0, total = 0, of_second = 0;
+        for (size_t i = 0; i < covered.pixel_count(); ++i) {
+            uint32_t hits = 0;
+            for (const CoveredPart& part : covered.at(i)) {
+                hits += part.hits;
+                if (part.part.shape == 1) of_second += part.hits;
+            }
+            const double alpha = double(image.find("A")->values[i]);
+            different += uint32_t(std::abs(double(hits) - alpha * FIRST_HITS) + 0.5);
+            total += hits;
+        }
+        EXPECT_GT(of_second, 500u);
+        EXPECT_GT(total, 5000u);
+        EXPECT_LT(different, total / 1000);
+    }
 };
 
 uint32_t hits_of(const Coverage& coverage, size_t pixel, uint32_t shape) {
@@ -233,21 +253,15 @@ TEST_F(CoverageTest, IsThatOfTheFirstSamples) {
     scene.shapes[0].material = 1;
     scene.materials.push_back({.name = "veil", .model = DiffuseMaterial{}, .opacity = {.value = 0.5f}});
     scene.shapes[1].material = 2;
-    const RenderSettings settings = settings_for(WIDTH, HEIGHT);
-    const Coverage covered = coverage(scene, settings);
-    const Image image = image_of(render(scene, settings, FIRST_HITS));
-    uint32_t different = 0, total = 0, of_veil = 0;
-    for (size_t i = 0; i < covered.pixel_count(); ++i) {
-        uint32_t hits = 0;
-        for (const CoveredPart& part : covered.at(i))
-            hits += part.hits;
-        different += uint32_t(std::abs(double(hits) - double(image.find("A")->values[i]) * FIRST_HITS) + 0.5);
-        total += hits;
-        of_veil += hits_of(covered, i, 1);
-    }
-    EXPECT_GT(of_veil, 500u);
-    EXPECT_GT(total, 5000u);
-    EXPECT_LT(different, total / 1000);
+    RenderSettings settings = settings_for(WIDTH, HEIGHT);
+    expect_alpha(scene, settings);
+    settings.filter = {FilterShape::gaussian, 5.0f};
+    expect_alpha(scene, settings);
+    // A fisheye sees nothing outside of its circle, even from within a shape.
+    scene.cameras[0].lens = {};
+    scene.cameras[0].panorama = Panorama{.mapping = Mapping::fisheye, .fisheye_fov = 1.0f};
+    scene.shapes[1].geometry = Sphere{scene.cameras[0].position, 0.1};
+    expect_alpha(scene, settings_for(WIDTH, HEIGHT));
 }
 
 // Squares from left to right, of groups 2, 0 and 1, in a mesh that has a flat triangle, too.

@@ -167,11 +167,11 @@ void SceneReader::read_mesh(const Node& node, uint32_t index) {
         if (!deforms) {
             place_mesh(node, primitives, {mesh_index, weights}, *transform);
             if (changes) note_changes(first, index, placement);
-            continue;
-        }
-        for (const Node& primitive : primitives.elements()) {
-            if (const auto shape = add_primitive(primitive, {.weights = weights}, *transform))
-                note_deformation(*shape, index, placement, primitive, {});
+        } else {
+            for (const Node& primitive : primitives.elements()) {
+                if (const auto shape = add_primitive(primitive, {.weights = weights}, *transform))
+                    note_deformation(*shape, index, placement, primitive, {});
+            }
         }
         builder_.begin_copy();
     }
