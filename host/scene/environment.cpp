@@ -59,6 +59,18 @@ dvec3 latitude_longitude_direction(glm::dvec2 uv) {
     return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
+dvec3 paper_radiance(const Environment& environment) {
+    const uvec2 size = environment.size;
+    dvec3 sum(0.0);
+    for (uint32_t y = 0; y < size.y / 2; ++y) {
+        // Integral of cos(theta) / pi over a texel.
+        const double s0 = std::sin(double(PI) * y / size.y), s1 = std::sin(double(PI) * (y + 1) / size.y);
+        for (uint32_t x = 0; x < size.x; ++x)
+            sum += (s1 * s1 - s0 * s0) / size.x * dvec3(environment.radiance[size_t{y} * size.x + x]);
+    }
+    return sum;
+}
+
 Environment load_environment(const std::filesystem::path& file, const FileReach& reach,
                              std::vector<std::string>& warnings) {
     const std::string name = file.string();

@@ -13,6 +13,9 @@ namespace candela {
 // downwards, both in [0, 1].
 dvec3 latitude_longitude_direction(glm::dvec2 uv);
 
+// The radiance of white paper that lies in the light of a map's upper half.
+dvec3 paper_radiance(const Environment& environment);
+
 // Loads a latitude-longitude map from an OpenEXR or Radiance file (.exr, .hdr, .pic): the channels R, G and B
 // as radiance [W/(m^2 sr)] in linear Rec.709, or Y for all three if they are missing; other channels are
 // ignored. Rotation and visibility keep their defaults. A texel with a negative or non-finite channel becomes

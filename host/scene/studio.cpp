@@ -117,19 +117,6 @@ dvec3 direction_of(uvec2 size, uint32_t x, uint32_t y) {
     return latitude_longitude_direction({(x + 0.5) / size.x, (y + 0.5) / size.y});
 }
 
-// The radiance of white paper that lies in the light of the map's upper half.
-dvec3 paper_radiance(const Environment& environment) {
-    const uvec2 size = environment.size;
-    dvec3 sum(0.0);
-    for (uint32_t y = 0; y < size.y / 2; ++y) {
-        // Integral of cos(theta) / pi over a texel.
-        const double s0 = std::sin(double(PI) * y / size.y), s1 = std::sin(double(PI) * (y + 1) / size.y);
-        for (uint32_t x = 0; x < size.x; ++x)
-            sum += (s1 * s1 - s0 * s0) / size.x * dvec3(environment.radiance[size_t{y} * size.x + x]);
-    }
-    return sum;
-}
-
 }  // namespace
 
 Environment studio_environment(StudioChoice studio) {
