@@ -16,7 +16,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 KEYS, VALUES = "host/load/json/scene_keys.inc", "host/scene/principled_values.inc"
 SCHEMA, PAGE = "scenes/scene.schema.json", "docs/scene-format.md"
-CONSTANTS = ["host/base/limits.h", "host/scene/scene.h", "host/scene/principled.h", "host/scene/texture.h"]
+CONSTANTS = ["host/base/limits.h", "host/scene/scene.h", "host/scene/principled.h", "host/scene/sky.h",
+             "host/scene/texture.h"]
 NAMES = ["host/scene/names.h", "host/load/json/loader_mesh_files.cpp"]
 
 # The tables of the page, by section: the objects whose keys each lists, or rows that are no key's.
@@ -34,6 +35,7 @@ TABLES = {
     "Shapes": [["shape"], ["quad", "box", "mesh", "sphere", "disk", "obj", "ply", "instance"]],
     "Lights": [["light", "point", "spot", "directional"]],
     "Environment": [["environment"]],
+    "Sky": [["sky"]],
 }
 # Objects that are the value of the key of their name: the page calls their keys NAME.KEY.
 PARTS = {"absorption", "normal_map", "bump_map", "opacity"}
@@ -182,7 +184,7 @@ def places_of(schema):
     places = {"scene": [schema], "film": [schema["properties"]["film"]],
               "integrator": [schema["properties"]["integrator"]], "environment": defs["environment"]["oneOf"],
               "normal_map": [defs["normalMap"]], "bump_map": [defs["bumpMap"]], "opacity": [defs["opacity"]["oneOf"][1]]}
-    places |= {name: [defs[name]] for name in ("camera", "lens", "texture", "absorption")}
+    places |= {name: [defs[name]] for name in ("camera", "lens", "texture", "absorption", "sky")}
     for family, common in COMMON.items():
         places[family] = [{"properties": {key: defs[name] for key, name in common.items()}}]
         for variant in defs[family]["oneOf"]:

@@ -1,6 +1,8 @@
 // See lighting_options.h.
 #include "cli/lighting_options.h"
 
+#include <cmath>
+
 #include "cli/arguments.h"
 
 namespace candela {
@@ -8,6 +10,20 @@ namespace candela {
 static std::optional<double> parse_intensity(const std::string& text) {
     const auto value = parse_number(text);
     return value && *value >= 0.0 ? value : std::nullopt;
+}
+
+// "ELEVATION,AZIMUTH" or "ELEVATION,AZIMUTH,TURBIDITY", angles in degrees.
+static std::optional<Sky> parse_sky(const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    if (parts.size() != 2 && parts.size() != 3) return std::nullopt;
+    const auto elevation = parse_number(parts[0]), azimuth = parse_number(parts[1]);
+    const auto turbidity = parts.size() == 3 ? parse_number(parts[2]) : Sky().turbidity;
+    if (!elevation || !(*elevation >= MIN_SUN_ELEVATION && *elevation <= MAX_SUN_ELEVATION) || !azimuth ||
+        !turbidity || !(*turbidity >= MIN_TURBIDITY && *turbidity <= MAX_TURBIDITY))
+        return std::nullopt;
+    return Sky{.sun_elevation = glm::radians(*elevation),
+               .sun_azimuth = glm::radians(std::remainder(*azimuth, 360.0)),
+               .turbidity = *turbidity};
 }
 
 void LightingArguments::add_to(CLI::App& app) {
@@ -21,6 +37,12 @@ void LightingArguments::add_to(CLI::App& app) {
         [](const std::string& text) { return std::optional<std::filesystem::path>(text); }, "a file",
         "Image of a sky (.exr, .hdr), in place of the scene's")
         ->type_name("FILE");
+    add_value(app, "--sky", sky, parse_sky,
+              "ELEVATION,AZIMUTH or ELEVATION,AZIMUTH,TURBIDITY: where the sun stands in degrees, with an "
+              "elevation from -6 to 90 (below 0 is twilight), and a turbidity from 1 to 10, such as 30,120,2",
+              "Clear sky with the sun there (azimuths as for --view), in place of the scene's; hazy with a "
+              "turbidity of 6 (default: 2)")
+        ->type_name("ELEVATION,AZIMUTH[,TURBIDITY]");
     add_value(app, "--environment-rotation", rotation, parse_number, "a number of degrees, such as 90",
               "Turn the sky or studio about the vertical, counter-clockwise seen from above")
         ->type_name("DEGREES");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/error.h"
 #include "base/file_reach.h"
@@ -73,13 +74,26 @@ void check_light(Scene& scene, const std::string& name) {
         scene.warnings.push_back(name + ": the scene has no light: the image will be black");
 }
 
+// Only one of the options may replace the environment.
+void refuse_two(const LightingOptions& options) {
+    std::vector<std::string> given;
+    if (options.environment) given.emplace_back("--environment");
+    if (options.sky) given.emplace_back("--sky");
+    if (options.studio && is_named(*options.studio)) given.emplace_back("--studio");
+    if (given.size() > 1)
+        throw Error(given[0] + " and " + given[1] + " both light the scene; give one of them",
+                    ErrorKind::request);
+}
+
 // The environment, or what replaces it.
 void choose_light(Scene& scene, const std::string& name, SceneSource source, const LightingOptions& options) {
     const StudioChoice studio = options.studio.value_or(StudioChoice::automatic);
-    if (options.environment && is_named(studio)) {
-        throw Error("--environment and --studio both light the scene; give one of them", ErrorKind::request);
-    }
+    refuse_two(options);
     if (is_named(studio)) return put_into_studio(scene, studio);
+    if (options.sky) {
+        scene.environment = sky_environment(*options.sky);
+        return;
+    }
     if (options.environment) {
         scene.environment =
             load_environment(*options.environment, FileReach(*options.environment), scene.warnings);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scene/scene.h"
+#include "scene/sky.h"
 #include "scene/studio.h"
 
 namespace candela {
@@ -13,6 +14,7 @@ namespace candela {
 struct LightingOptions {
     std::optional<StudioChoice> studio{};                // None: automatic.
     std::optional<std::filesystem::path> environment{};  // An image, in place of the scene's environment.
+    std::optional<Sky> sky{};                            // The same.
     // Changes of the environment, wherever it comes from.
     std::optional<double> rotation{};   // About +Y, counter-clockwise seen from above [degrees].
     std::optional<double> intensity{};  // A factor of its radiance, at least 0.

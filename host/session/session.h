@@ -66,9 +66,9 @@ class Session {
     // Reads a scene, which replaces any earlier one and its changes.
     void load(const SceneFile& file);
 
-    // Changes the scene by `json`, an object with any of the keys "cameras", "materials" and "environment",
-    // in the syntax of scene files (docs/scene-format.md): it replaces cameras and materials of the same
-    // names, and the environment, and adds cameras of new names. Files that it names are relative to the
+    // Changes the scene by `json`, an object with any of the keys "cameras", "materials", "environment" and
+    // "sky", in the syntax of scene files (docs/scene-format.md): it replaces cameras and materials of the
+    // same names, and the environment, and adds cameras of new names. Files that it names are relative to the
     // scene's folder. Whether a mesh has tangents is decided when it is read, so that a material on meshes
     // can neither get nor lose a normal map or anisotropy.
     void change(std::string_view json);

@@ -64,6 +64,16 @@ TEST_F(LightingOptionsTest, TheSkyIsReplacedScaledTurnedAndHidden) {
     EXPECT_NEAR(red(0, 0), 1.0f, 1e-5f);
 }
 
+// The camera looks along -Z, so that the sun, low over it at azimuth 180, shines into it.
+TEST_F(LightingOptionsTest, ASkyHasItsSunWhereTheNumbersSay) {
+    const std::string scene = write("front.json", square(true));
+    ASSERT_EQ(picture(scene, {"--sky", "0,540,3"}).exit_code, 0);
+    const float sun = red(0, 0);
+    ASSERT_EQ(picture(scene, {"--sky", "0,0,3"}).exit_code, 0);
+    EXPECT_GT(sun, 100.0f * red(0, 0));
+    ASSERT_EQ(picture(scene, {"--sky", "-6,0"}).err, "");
+}
+
 // Not black: a dark model would vanish. The EXR stays as it is, and its parts are developed in the same way.
 TEST_F(LightingOptionsTest, AModelInTheStudioStandsBeforeASoftGrey) {
     const std::string scene = write("front.json", square(true));
@@ -92,6 +102,17 @@ TEST_F(LightingOptionsTest, WhatCannotBeDoneIsRefused) {
         "--environment-intensity: cannot use \"-1\"; expected a number of at least 0, such as 1.5");
     expect_refused({"--environment-rotation", "east"},
                    "--environment-rotation: cannot use \"east\"; expected a number of degrees, such as 90");
+    for (const char* text :
+         {"-6.1,0", "90.1,0", "30", "30,east", "30,0,0.9", "30,0,11", "30,0,2,1", "nan,0"}) {
+        expect_refused(
+            {"--sky", text},
+            std::string("--sky: cannot use \"") + text +
+                "\"; expected ELEVATION,AZIMUTH or ELEVATION,AZIMUTH,TURBIDITY: where the sun stands "
+                "in degrees, with an elevation from -6 to 90 (below 0 is twilight), and a turbidity "
+                "from 1 to 10, such as 30,120,2");
+    }
+    expect_refused({"--studio", "white", "--sky", "30,0"},
+                   "--sky and --studio both light the scene; give one of them");
     expect_refused({"--studio", "white", "--environment", "sky.exr"},
                    "--environment and --studio both light the scene; give one of them");
     const ProcessResult none = picture(CORNELL_BOX, {"--environment-hidden"});

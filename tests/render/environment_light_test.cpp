@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "render_fixture.h"
+#include "scene/sky.h"
 
 namespace candela {
 namespace {
@@ -45,6 +46,23 @@ TEST_F(EnvironmentLightTest, TheUpperHalfLightsAFloorAndTheLowerDoesNot) {
 
 TEST_F(EnvironmentLightTest, TheRightHalfLightsAFloorWithHalf) {
     expect_form_factor(floor_under({.size = {2, 1}, .radiance = {vec3(0), RADIANCE}}), 0.5, 2048, 1024);
+}
+
+// A floor reflects the integral of the sky above, over texels: sum of radiance * (sin^2 theta_1 - sin^2
+// theta_0) / width. The sun, three texels wide, gives most of it: an edge that is off by 2^-22 changes it by
+// 2^-13.
+TEST_F(EnvironmentLightTest, AClearSkyLightsAFloor) {
+    const Environment sky = sky_environment({.sun_elevation = 0.6, .sun_azimuth = 2.0});
+    dvec3 paper(0.0);
+    for (uint32_t y = 0; y < sky.size.y / 2; ++y) {
+        const double s0 = std::sin(y * M_PI / sky.size.y), s1 = std::sin((y + 1) * M_PI / sky.size.y);
+        for (uint32_t x = 0; x < sky.size.x; ++x)
+            paper += (s1 * s1 - s0 * s0) / sky.size.x * dvec3(sky.radiance[size_t{y} * sky.size.x + x]);
+    }
+    const Scene scene = floor_under(sky);
+    for (const Estimator estimator : {Estimator::light, Estimator::mis})
+        expect_mean(image_of(render(scene, settings(estimator), samples(256))), dvec3(REFLECTANCE) * paper,
+                    0x1p-13);
 }
 
 // Integral of cos(theta) / pi over a texel of a map of 8 x 4: (sin^2(theta_1) - sin^2(theta_0)) / 8.

@@ -134,9 +134,8 @@ SceneChange change_scene(Scene& scene, std::string_view text, const std::string&
                          const std::filesystem::path& folder, SceneEdits& edits) {
     const json::Document document{name, json::parse(text, name)};
     const Node root(document);
-    root.allow_only({"cameras", "materials", "environment"});
-    const auto cameras = root.find("cameras"), materials = root.find("materials"),
-               environment = root.find("environment");
+    root.allow_only({"cameras", "materials", "environment", "sky"});
+    const auto cameras = root.find("cameras"), materials = root.find("materials");
 
     // All is read into a scene of its own before this one changes; images are read anew.
     Scene change;
@@ -147,7 +146,7 @@ SceneChange change_scene(Scene& scene, std::string_view text, const std::string&
         for (const Node& camera : cameras->members())
             change.cameras.push_back(read_camera(camera, scene.film));
     }
-    if (environment) change.environment = read_environment(*environment, folder, change);
+    change.environment = read_distant_light(root, folder, change);
     DecodedImages decoded;
     load_images(change, {}, no_progress, decoded);
 
@@ -157,7 +156,7 @@ SceneChange change_scene(Scene& scene, std::string_view text, const std::string&
     for (const Camera& camera : change.cameras)
         edits.cameras.insert(camera.name);
     take_cameras(scene, change);
-    if (environment) {
+    if (change.environment) {
         note_environment(result, scene.environment, change.environment);
         scene.environment = std::move(change.environment);
         edits.environment = true;

@@ -17,11 +17,11 @@ struct SceneEdits {
     bool environment = false;
 };
 
-// Reads `text`, an object with any of the keys "cameras", "materials" and "environment" of a scene file, and
-// replaces cameras and materials of the same names, and the environment. A camera of a new name joins the
-// others. Shapes without an emission of their own emit as their new material does. Files are relative to
-// `folder` and within scene.reach; images are read anew. What is replaced joins `edits`. Returns what has
-// changed of the scene, besides cameras.
+// Reads `text`, an object with any of the keys "cameras", "materials", "environment" and "sky" of a scene
+// file, and replaces cameras and materials of the same names, and the environment. A camera of a new name
+// joins the others. Shapes without an emission of their own emit as their new material does. Files are
+// relative to `folder` and within scene.reach; images are read anew. What is replaced joins `edits`. Returns
+// what has changed of the scene, besides cameras.
 //
 // Throws Error, beginning with `name:line:column:`, for what is also an error in a scene file, and where a
 // mesh would have been read in another way for the new material; the scene is then unchanged.

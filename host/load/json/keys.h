@@ -10,6 +10,7 @@
 #include "base/limits.h"
 #include "load/node.h"
 #include "scene/scene.h"
+#include "scene/sky.h"
 
 namespace candela {
 

@@ -101,9 +101,8 @@ JsonScene scene_of(const json::Document& document, const std::filesystem::path& 
     if (shapes) read_shapes(*shapes, objects, folder, scene, progress);
     if (const auto lights = root.find("lights"))
         std::ranges::move(read_lights(*lights, scene), std::back_inserter(scene.lights));
-    if (const auto environment = root.find("environment")) {
-        scene.environment = read_environment(*environment, folder, scene);
-    }
+    if (auto environment = read_distant_light(root, folder, scene))
+        scene.environment = std::move(environment);
 
     if (base) {
         complete_gltf_scene(base->place(), scene);

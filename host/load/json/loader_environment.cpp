@@ -1,8 +1,9 @@
-// The environment: a constant sky, or one from an image.
+// The environment: a constant sky, one from an image, or a computed one.
 #include "base/error.h"
 #include "load/json/loader_parts.h"
 #include "scene/environment.h"
 #include "scene/geometry.h"
+#include "scene/sky.h"
 
 namespace candela {
 namespace {
@@ -33,8 +34,6 @@ void scale(Environment& environment, const Node& node) {
     }
 }
 
-}  // namespace
-
 Environment read_environment(const Node& node, const std::filesystem::path& folder, Scene& scene) {
     node.allow_only({}, keys_of({"environment"}));
     const auto file = node.find("file");
@@ -62,6 +61,34 @@ Environment read_environment(const Node& node, const std::filesystem::path& fold
         scene.warnings.push_back(node.place() + ": the environment is black: it gives no light");
     }
     return environment;
+}
+
+Environment read_sky(const Node& node) {
+    node.allow_only({}, keys_of({"sky"}));
+    Sky sky;
+    const float elevation = read_number(node.require("sun_elevation"), scene_key("sky", "sun_elevation"));
+    sky.sun_elevation = glm::radians(double(elevation));
+    if (const auto azimuth = node.find("sun_azimuth")) sky.sun_azimuth = azimuth->angle();
+    if (const auto turbidity = node.find("turbidity"))
+        sky.turbidity = double(read_number(*turbidity, scene_key("sky", "turbidity")));
+    if (const auto ground = node.find("ground")) sky.ground = vec3(ground->reflectance());
+    Environment environment = sky_environment(sky);
+    if (const auto intensity = node.find("intensity")) scale(environment, *intensity);
+    if (const auto visible = node.find("visible")) environment.visible = visible->boolean();
+    return environment;
+}
+
+}  // namespace
+
+std::optional<Environment> read_distant_light(const Node& root, const std::filesystem::path& folder,
+                                              Scene& scene) {
+    const auto environment = root.find("environment"), sky = root.find("sky");
+    if (environment && sky)
+        sky->fail(
+            R"(the scene already has an "environment", and the sky is one, too; leave one of them out)");
+    if (environment) return read_environment(*environment, folder, scene);
+    if (sky) return read_sky(*sky);
+    return std::nullopt;
 }
 
 }  // namespace candela

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -35,9 +36,10 @@ MaterialModel read_rough_dielectric(const Node& node, const ImageFolder& images)
 // Reads the list of lights without a surface, in its order. scene.warnings gets what is odd.
 std::vector<Light> read_lights(const Node& node, Scene& scene);
 
-// Reads the environment. Its file is relative to `folder` and goes to scene.files; what is odd goes to
-// scene.warnings.
-Environment read_environment(const Node& node, const std::filesystem::path& folder, Scene& scene);
+// Reads the light from infinitely far away that an object has, "environment" or "sky". A file is relative to
+// `folder` and goes to scene.files; what is odd goes to scene.warnings.
+std::optional<Environment> read_distant_light(const Node& root, const std::filesystem::path& folder,
+                                              Scene& scene);
 
 // Reads the list of shapes into the scene, with their meshes, files and warnings; and the objects, if there
 // are any, that instances among the shapes place. Files are relative to `folder`. scene.materials must hold

@@ -154,6 +154,19 @@ TEST_F(LightingTest, AnImageLightsAnyScene) {
     }
 }
 
+TEST_F(LightingTest, ASkyLightsAnyScene) {
+    const Sky sky{.sun_elevation = 0.5, .sun_azimuth = 1.0};
+    const Environment expected = sky_environment(sky);
+    for (const char* name : {"m.obj", "m.gltf"}) {
+        const Scene scene = load(name, {.sky = sky});
+        ASSERT_TRUE(scene.environment);
+        EXPECT_EQ(scene.environment->radiance, expected.radiance) << name;
+        EXPECT_TRUE(scene.environment->visible);
+        for (const std::string& warning : scene.warnings)
+            EXPECT_EQ(warning.find("no light"), std::string::npos) << warning;
+    }
+}
+
 TEST_F(LightingTest, AnEnvironmentIsTurnedScaledAndHidden) {
     for (const bool image : {true, false}) {
         LightingOptions options{.rotation = 450.0, .intensity = 2.5, .hidden = true};
@@ -168,6 +181,10 @@ TEST_F(LightingTest, AnEnvironmentIsTurnedScaledAndHidden) {
 TEST_F(LightingTest, WhatCannotBeDoneIsRefused) {
     EXPECT_EQ(error("m.obj", {.studio = StudioChoice::white, .environment = sky_}),
               "--environment and --studio both light the scene; give one of them");
+    EXPECT_EQ(error("m.obj", {.studio = StudioChoice::white, .sky = Sky{}}),
+              "--sky and --studio both light the scene; give one of them");
+    EXPECT_EQ(error("m.obj", {.environment = sky_, .sky = Sky{}}),
+              "--environment and --sky both light the scene; give one of them");
     for (const LightingOptions& options :
          {LightingOptions{.rotation = 1.0}, LightingOptions{.intensity = 1.0},
           LightingOptions{.hidden = true}}) {

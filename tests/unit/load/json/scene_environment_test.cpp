@@ -3,6 +3,7 @@
 
 #include "image/image_io.h"
 #include "scene/geometry.h"
+#include "scene/sky.h"
 #include "unit/load/scene_fixture.h"
 
 namespace candela {
@@ -130,6 +131,51 @@ TEST_F(SceneEnvironment, ChecksItsValues) {
     folder_.expect_error(lit(R"({"radiance": [0, 0, 1e20], "intensity": @1e19})"), range);
     write_sky(1e30f);
     folder_.expect_error(lit(R"({"file": "sky.exr", "intensity": @1e8})"), range);
+}
+
+// A scene with an emitter and this sky.
+std::string under(const std::string& sky) {
+    return "{" + GOOD_CAMERA + ",\n\"shapes\": [{\"type\": \"sphere\", \"emission\": 1}],\n\"sky\": " + sky +
+           "}";
+}
+
+TEST_F(SceneEnvironment, MayBeASky) {
+    const Scene scene = folder_.load(under(R"({"sun_elevation": 25, "sun_azimuth": 470, "turbidity": 3,
+        "ground": [0.1, 0.2, 0.3], "intensity": 2, "visible": false})"));
+    EXPECT_TRUE(scene.warnings.empty());
+    const Environment& sky = scene.environment.value();
+    EXPECT_FALSE(sky.visible);
+    const Environment expected = sky_environment({.sun_elevation = glm::radians(25.0),
+                                                  .sun_azimuth = glm::radians(110.0),
+                                                  .turbidity = 3.0,
+                                                  .ground = vec3(0.1f, 0.2f, 0.3f)});
+    ASSERT_EQ(sky.radiance.size(), expected.radiance.size());
+    // The azimuth is rounded at 2^-50, which may move parts of the disk's edge between texels.
+    for (size_t i = 0; i < sky.radiance.size(); i += 997) {
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(sky.radiance[i][c], 2.0f * expected.radiance[i][c], 1e-5f * sky.radiance[i].x);
+    }
+}
+
+TEST_F(SceneEnvironment, ChecksTheNumbersOfASky) {
+    folder_.expect_error(under("@{}"), "the key \"sun_elevation\" is missing here; add it");
+    for (const std::string elevation : {"-6.1", "90.1"})
+        folder_.expect_error(under("{\"sun_elevation\": @" + elevation + "}"),
+                             "\"sun_elevation\": expected a number from -6 to 90, found " + elevation);
+    for (const std::string turbidity : {"0.9", "11"})
+        folder_.expect_error(under("{\"sun_elevation\": 3, \"turbidity\": @" + turbidity + "}"),
+                             "\"turbidity\": expected a number from 1 to 10, found " + turbidity);
+    folder_.expect_error(under(R"({"sun_elevation": 3, "sun_azimuth": @"east"})"),
+                         "\"sun_azimuth\": expected a number, found \"east\"");
+    folder_.expect_error(under(R"({"sun_elevation": 3, "ground": @2})"),
+                         "\"ground\": expected numbers from 0 to 1, found 2");
+    folder_.expect_error(under(R"({"sun_elevation": 3, @"rotation": 2})"),
+                         "unknown key \"rotation\" (known: sun_elevation, sun_azimuth, turbidity, ground, "
+                         "intensity, visible)");
+    folder_.expect_error(
+        under(R"(@{"sun_elevation": 3}, "environment": {"radiance": 1})"),
+        "the scene already has an \"environment\", and the sky is one, too; leave one of them "
+        "out");
 }
 
 }  // namespace

@@ -69,6 +69,10 @@ TEST(SceneKeys, DefaultsAreThoseOfTheScene) {
     const Environment sky;
     EXPECT_EQ(stated("environment", "rotation"), text_of(sky.rotation));
     EXPECT_EQ(stated("environment", "visible"), sky.visible ? "true" : "false");
+    const Sky clear;
+    EXPECT_EQ(stated("sky", "sun_azimuth"), number_text(clear.sun_azimuth, 6));
+    EXPECT_EQ(stated("sky", "turbidity"), number_text(clear.turbidity, 6));
+    EXPECT_EQ(stated("sky", "ground"), text_of(clear.ground.x));
 }
 
 }  // namespace
