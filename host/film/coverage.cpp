@@ -9,7 +9,7 @@ namespace candela {
 void Coverage::add(std::span<const ShapePart, FIRST_HITS> parts) {
     std::array<ShapePart, FIRST_HITS> sorted;
     std::ranges::copy(parts, sorted.begin());
-    std::ranges::sort(sorted);
+    std::sort(sorted.begin(), sorted.end());
     const size_t begin = parts_.size();
     for (const ShapePart& part : sorted) {
         if (part == NO_PART) break;

@@ -15,7 +15,10 @@ struct ShapePart {
     uint32_t shape = 0;
     uint32_t group = 0;
 
-    auto operator<=>(const ShapePart&) const = default;
+    bool operator==(const ShapePart&) const = default;
+    bool operator<(const ShapePart& other) const {
+        return shape != other.shape ? shape < other.shape : group < other.group;
+    }
 };
 
 // Nothing, behind all parts in their order.

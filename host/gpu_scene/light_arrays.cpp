@@ -95,7 +95,7 @@ void add_dark_records(LightArrays& arrays) {
     if (arrays.lights.empty()) append(arrays.lights, pack(LightRecord{}));
     LightTreeChild none{};
     none.at = LIGHT_TREE_LEAF_BIT;
-    while (arrays.tree.nodes.size() < LIGHT_TREE_WIDTH * LIGHT_TREE_WORDS)
+    while (arrays.tree.nodes.size() < size_t{LIGHT_TREE_WIDTH} * LIGHT_TREE_WORDS)
         append(arrays.tree.nodes, pack(none));
     if (arrays.tree.trails.empty()) arrays.tree.trails.resize(1);
 }

@@ -234,7 +234,8 @@ Spectrum Atmosphere::isotropic(Slant slant) const {
         return Slant{radius, dot(point, sun) / radius};
     };
     for (int i = 0; i < HEIGHTS * AZIMUTHS; ++i) {
-        const double mu = 2.0 * (i / AZIMUTHS + 0.5) / HEIGHTS - 1.0, sine = std::sqrt(1.0 - mu * mu);
+        const int height = i / AZIMUTHS;
+        const double mu = 2.0 * (height + 0.5) / HEIGHTS - 1.0, sine = std::sqrt(1.0 - mu * mu);
         const double azimuth =
             std::numbers::pi * (i % AZIMUTHS + 0.5) / AZIMUTHS;  // The other half is alike.
         const dvec3 towards(sine * std::cos(azimuth), mu, sine * std::sin(azimuth));

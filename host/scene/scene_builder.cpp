@@ -112,7 +112,7 @@ void SceneBuilder::begin_objects(const std::vector<std::string>& names) {
 void SceneBuilder::push(Shape shape) {
     shape.object = object_;
     shape.copy = copy_;
-    scene_.shapes.push_back(std::move(shape));
+    scene_.shapes.push_back(shape);
 }
 
 void SceneBuilder::add_mesh(const std::string& place, const Transform& transform,
@@ -148,7 +148,7 @@ void SceneBuilder::add_instance(const std::string& place, size_t shape, const Tr
     auto& instance = std::get<MeshInstance>(copy.geometry);
     instance.transform = transform;
     if (!instance_fits(instance)) throw Error(place + ": " + TOO_FAR);
-    push(std::move(copy));
+    push(copy);
 }
 
 void SceneBuilder::complete_mesh(const std::string& place, const Appearance& appearance, uint32_t mesh) {
@@ -168,7 +168,7 @@ bool SceneBuilder::add_placed(Shape shape) {
     if (!std::visit(geometry_fits, shape.geometry)) return false;
     if (instance != nullptr)
         shape.material = material_at_scale(shape.material, instance->transform.mean_scale());
-    push(std::move(shape));
+    push(shape);
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "base/text.h"
 #include "load/json/loader_parts.h"
 #include "scene/lens_shift.h"
 #include "scene/names.h"
@@ -64,7 +65,7 @@ void refuse_keys(const Node& node, std::initializer_list<const char*> keys, cons
                  const std::string& reason, const std::string& alternative) {
     for (const char* key : keys) {
         if (const auto other = node.find(key))
-            other->fail(kind + ' ' + reason + "; remove \"" + key + "\" or " + alternative);
+            other->fail(concat(kind, ' ', reason, "; remove \"", key, "\" or ", alternative));
     }
 }
 
@@ -175,8 +176,7 @@ Camera read_camera(const Node& node, const Film& film) {
         return camera;
     }
     if (const auto angle = node.find("fisheye_fov"))
-        angle->fail(
-            "fisheye_fov is the angle of a fisheye; add \"projection\": \"fisheye\" or \"equisolid\"");
+        angle->fail(R"(fisheye_fov is the angle of a fisheye; add "projection": "fisheye" or "equisolid")");
     if (const auto height = node.find("orthographic_height")) {
         camera.ortho_height = read_ortho_height(node, *height);
         return camera;
