@@ -12,8 +12,8 @@ namespace {
 constexpr double EARTH = 6371.0, TOP = EARTH + 100.0;
 constexpr double FIRST_WAVELENGTH = 380.0, LAST_WAVELENGTH = 740.0;  // [nm]
 
-// Shares of molecules, aerosol and ozone that scatter what they take from a ray; the rest is absorbed. Ref:
-// Bruneton and Neyret, "Precomputed Atmospheric Scattering", 2008, for aerosol.
+// Share of what aerosol takes from a ray that it scatters; it absorbs the rest. Ref: Bruneton and Neyret,
+// "Precomputed Atmospheric Scattering", 2008.
 constexpr double AEROSOL_ALBEDO = 0.9;
 
 // [1/km] Ref: the scale heights of Bruneton and Neyret; ozone between 10 and 40 km, most at 25 km.

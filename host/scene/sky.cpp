@@ -112,7 +112,7 @@ void add_sun(Environment& environment, const Atmosphere& atmosphere, const Sky& 
     };
     struct Covered {
         size_t texel;
-        dvec3 light;  // In units of its mean over a disk without air.
+        dvec3 light;  // Mean over the texel, as if the disk covered 1 sr.
     };
     std::vector<Covered> covered;
     double solid_angle = 0.0;

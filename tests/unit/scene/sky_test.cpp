@@ -1,8 +1,8 @@
 // A computed sky as an image: what its sun and its upper half send, where they are, and what lies below.
 #include "scene/sky.h"
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 
 #include <gtest/gtest.h>
 

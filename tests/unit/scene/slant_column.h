@@ -1,6 +1,7 @@
 // Air along a ray to space, as an integral over height: a second opinion on host/scene/atmosphere.cpp.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/math.h"
