@@ -80,9 +80,9 @@ std::array<Scattered, AZIMUTHS + 1> scattered_in_row(const Atmosphere& atmospher
     return row;
 }
 
-// Fills rows with the sky, and with a ground on which white paper has that radiance.
-void fill(Environment& environment, const Atmosphere& atmosphere, const Sky& sky, uint32_t first_row,
-          uint32_t end_row, dvec3 paper) {
+// Adds the sky to rows, and a ground on which white paper has that radiance.
+void add_sky(Environment& environment, const Atmosphere& atmosphere, const Sky& sky, uint32_t first_row,
+             uint32_t end_row, dvec3 paper) {
     const dvec3 sun = sun_direction(sky);
     const std::vector<Column> columns = columns_of(sky);
     for (uint32_t y = first_row; y < end_row; ++y) {
@@ -96,7 +96,7 @@ void fill(Environment& environment, const Atmosphere& atmosphere, const Sky& sky
             const double cosine = dot(std::sin(theta) * column.towards + dvec3(0, std::cos(theta), 0), sun);
             const dvec3 light =
                 molecule_phase(cosine) * part.molecules + aerosol_phase(cosine) * part.aerosol + part.rest;
-            environment.radiance[size_t{y} * SIZE.x + x] = vec3(glm::max(light, dvec3(0.0)));
+            environment.radiance[size_t{y} * SIZE.x + x] += vec3(glm::max(light, dvec3(0.0)));
         }
     }
 }
@@ -146,9 +146,9 @@ void add_sun(Environment& environment, const Atmosphere& atmosphere, const Sky& 
 Environment sky_environment(const Sky& sky) {
     const Atmosphere atmosphere(clear_air(sky.turbidity), luminance(sky.ground));
     Environment environment{.size = SIZE, .radiance = std::vector<vec3>(size_t{SIZE.x} * SIZE.y)};
-    fill(environment, atmosphere, sky, 0, SIZE.y / 2, dvec3(0.0));
+    add_sky(environment, atmosphere, sky, 0, SIZE.y / 2, dvec3(0.0));
     add_sun(environment, atmosphere, sky);
-    fill(environment, atmosphere, sky, SIZE.y / 2, SIZE.y, paper_radiance(environment));
+    add_sky(environment, atmosphere, sky, SIZE.y / 2, SIZE.y, paper_radiance(environment));
     return environment;
 }
 

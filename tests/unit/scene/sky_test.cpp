@@ -136,6 +136,15 @@ TEST(Sky, TheGroundReflectsSunAndSky) {
     EXPECT_GT(below.z, 0.0f);
 }
 
+// The eye is a little above the ground, so that it sees all of a sun whose middle is at 0 degrees.
+TEST(Sky, ASettingSunReachesBelowTheMiddleOfTheImage) {
+    Sky at = sky_at(0, 180);
+    at.turbidity = 1.0;
+    const Environment sky = sky_environment(at);
+    const vec3* const row = &sky.radiance[size_t{sky.size.y / 2} * sky.size.x];
+    EXPECT_GT(row[sky.size.x / 2].x, 100.0f * row[sky.size.x / 2 + 4].x);
+}
+
 TEST(Sky, IsDimmerAfterSunsetAndHasNoSun) {
     const Environment dusk = sky_environment(sky_at(-5, 0));
     float brightest = 0.0f;
