@@ -34,6 +34,7 @@ def add_sky(file):
     image = nodes.new("ShaderNodeTexEnvironment")
     image.image = bpy.data.images.load(file)
     image.image.colorspace_settings.name = "Linear Rec.709"
+    image.interpolation = "Closest"  # As candela's texels.
     turn = nodes.new("ShaderNodeMapping")
     turn.inputs["Rotation"].default_value[2] = math.radians(-90)
     links.new(nodes.new("ShaderNodeTexCoord").outputs["Generated"], turn.inputs["Vector"])
