@@ -20,6 +20,18 @@ double texel_solid_angle(uvec2 size, uint32_t row) {
     return 4.0 * std::numbers::pi / size.x * std::sin((row + 0.5) * step) * std::sin(0.5 * step);
 }
 
+// The sky's luminance, averaged over the sphere.
+double mean_luminance(const Environment& environment) {
+    double sum = 0.0;
+    for (uint32_t y = 0; y < environment.size.y; ++y) {
+        double row = 0.0;
+        for (uint32_t x = 0; x < environment.size.x; ++x)
+            row += luminance(environment.radiance[size_t(y) * environment.size.x + x]);
+        sum += row * texel_solid_angle(environment.size, y);
+    }
+    return sum / (4.0 * std::numbers::pi);
+}
+
 // The unit directions through the middles of texels, in the map's own axes.
 class Directions {
   public:
@@ -53,9 +65,10 @@ EnvironmentMap build_environment_map(const Environment& environment) {
         map.texels.push_back({radiance, 0.0f});
     map.even = std::ranges::all_of(environment.radiance,
                                    [&](vec3 radiance) { return radiance == environment.radiance[0]; });
-    std::vector<double> weights, rows;  // Of texels and of rows: luminance times solid angle.
+    if (map.even) return map;
+    const double mean = mean_luminance(environment);
+    std::vector<double> weights, rows;  // Of texels and of rows: luminance above the mean times solid angle.
     weights.reserve(environment.radiance.size());
-    double squares = 0.0;
     Directions directions(size);
     for (uint32_t y = 0; y < size.y; ++y) {
         directions.begin_row(y);
@@ -63,16 +76,14 @@ EnvironmentMap build_environment_map(const Environment& environment) {
         rows.push_back(0.0);
         for (uint32_t x = 0; x < size.x; ++x) {
             const double bright = luminance(environment.radiance[size_t(y) * size.x + x]);
-            weights.push_back(bright * solid_angle);
+            weights.push_back(std::max(bright - mean, 0.0) * solid_angle);
             // The first two bands of max(0, cos) in spherical harmonics.
             map.flux += weights.back() * dvec4(0.5 * directions(x), 0.25);
             rows.back() += weights.back();
-            squares += bright * weights.back();
         }
     }
     map.irradiance = std::accumulate(rows.begin(), rows.end(), 0.0);
     if (map.irradiance == 0.0) return map;
-    map.contrast = 4.0 * std::numbers::pi * squares / (map.irradiance * map.irradiance);
     const std::vector<uint64_t> row_words = divide_words(rows);
     for (uint32_t y = 0; y < size.y; ++y) {
         const std::span row = std::span(weights).subspan(size_t(y) * size.x, size.x);

@@ -9,20 +9,22 @@
 
 namespace candela {
 
-// The sky as a light.
+// The sky as a light. Light samples look for the luminance above the sky's mean. BSDF samples find what is
+// less bright well enough, behind a building that hides the sun, too; for an even sky there are no light
+// samples. Ref: Karlik et al. 2019, MIS Compensation: Optimizing Sampling Techniques in Multiple Importance
+// Sampling.
 struct SkyLight {
-    double irradiance = 0.0;  // Luminance, integrated over the whole sphere [W/m^2].
+    double irradiance = 0.0;  // What light samples look for, integrated over the whole sphere [W/m^2].
     dvec4 flux{0.0};          // As in LightGroups::sky_flux, in the map's own axes [W/m^2].
-    double contrast = 1.0;  // Mean of the squared luminance over the square of its mean, on the sphere; >= 1.
-    bool even = false;      // The same radiance from everywhere.
 };
 
 struct EnvironmentMap : SkyLight {
+    bool even = false;  // The same radiance from everywhere.
     // Row-major from the top. pdf is the density [1/sr], before the choice among lights, of texels chosen in
-    // proportion to luminance times solid angle, as whole numbers of random words allow.
+    // proportion to luminance above the mean times solid angle, as whole numbers of random words allow.
     std::vector<EnvironmentTexel> texels;
     // For each row of texels a table that chooses a column, and at the end one that chooses a row; empty for
-    // a black environment.
+    // an even environment.
     std::vector<CdfEntry> cdf;
 };
 

@@ -21,25 +21,10 @@ namespace {
 // samples: a large floor receives much light from the sky and yet is no brighter for it, and half as many
 // samples as needed cost less than a tenth as many. Ref: Pharr, Jakob and Humphreys 2023, Physically Based
 // Rendering, section 12.5.
-//
-// It is 0 for an even sky: BSDF samples find it as well as light samples would, and those are better spent on
-// the lamps.
 double power_of(const SkyLight& sky, const Box& box, std::span<const double> others) {
-    if (sky.even) return 0.0;
     const double radius = box.is_empty() ? 0.0 : 0.5 * length(glm::dvec3(box.extent()));
     const double power = radius * radius * sky.irradiance;
     return others.empty() ? power : std::min(power, std::accumulate(others.begin(), others.end(), 0.0));
-}
-
-// The factor of a broad BSDF's density in the MIS weights of sky samples: less than 1 if light samples are
-// the better strategy there. On a diffuse surface, averaged over its orientations, the second moment of light
-// samples, which choose the sky with the probability pmf, is 1 / (6 pi^2 pmf) times the squared irradiance of
-// a sphere, and that of BSDF samples contrast / (16 pi^2) times it. So the former are ahead if contrast * pmf
-// is above 8/3; the power and the bound are measured (see the notebook), since random numbers in order favour
-// light samples further.
-float sky_rival(const SkyLight& sky, double pmf) {
-    const double ratio = 8.0 / 3.0 / (sky.contrast * pmf);
-    return float(std::clamp(ratio * ratio * ratio, 0.2, 1.0));
 }
 
 void append_lights(PoweredLights& all, const PoweredLights& lights) {
@@ -135,7 +120,6 @@ LightArrays build_light_arrays(const SceneLights& lights, const Box& box, bool o
     }
     LightGroups& groups = result.facts.light_groups;
     groups = group_lights(all);
-    if (result.sky_is_light) result.facts.sky_rival = sky_rival(*lights.sky, double(all.records.back().pmf));
     result.first_of_lamps = result.facts.light_count = uint32_t(all.records.size());
     const std::vector<LampRecord> lamps =
         lamp_records(lights, result.first_of_lamps, groups.placed + groups.suns);

@@ -23,7 +23,6 @@ struct LightFacts {
     uint32_t lights_present = 0;  // Bit i: a light of kind i.
     LightGroups light_groups{};
     bool light_tree_pays = false;  // See light_sampler_rule.h.
-    float sky_rival = 1.0f;        // See environment_rival_pdf in shaders/light/environment.glsl.
 };
 
 struct LightArrays {

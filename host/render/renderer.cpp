@@ -177,7 +177,6 @@ Parameters make_parameters(const GpuScene& scene, const Camera& camera, const Re
             .blades = lens.blades,
             .first_sample = settings.first_sample,
             .camera_media = media_at(scene, camera.position),
-            .sky_rival = scene.sky_rival,
             .fisheye_edge = camera.panorama ? fisheye_edge(*camera.panorama) : 0.0f};
 }
 

@@ -100,7 +100,7 @@ struct Item {
 
 // The kernel's result.
 struct Result {
-    std::array<uint, 263> words;
+    std::array<uint, 262> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -131,7 +131,6 @@ Records filled(Fields& fields) {
                     .blades = fields.u(),
                     .first_sample = fields.u(),
                     .camera_media = fields.u2(),
-                    .sky_rival = fields.f(),
                     .fisheye_edge = fields.f()};
     r.node.origin = fields.f3();
     r.node.scale = vec3(0x1p-30f, 0x1p7f, 0x1p-126f);

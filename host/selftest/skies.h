@@ -24,8 +24,8 @@ std::vector<SkyTexel> look_up(const vk::Device& device, const Environment& sky,
 // Skies of several sizes: every direction has the texel that the convention prescribes.
 Evidence test_sky_lookup(const vk::Device& device);
 
-// Texels are sampled in proportion to luminance times solid angle, and within a texel uniformly over its
-// solid angle.
+// Texels are sampled in proportion to luminance above the mean times solid angle, and within a texel
+// uniformly over its solid angle.
 Evidence test_sky_samples(const vk::Device& device, Effort effort);
 
 // The sky and another light are chosen by their power.

@@ -120,7 +120,7 @@ void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u && ENVIRONMENT != ENVIRONMENT_VISIBLE) return;
     EnvironmentTexel texel = environment_texel(path.ray.d);
     float pdf_light = environment_pdf_li(texel, path_lit_point(path));
-    float weight = emission_weight(path, environment_rival_pdf(path.pdf_bsdf), pdf_light);
+    float weight = emission_weight(path, path.pdf_bsdf, pdf_light);
     estimate.L += clamp_indirect(weight * path.beta * texel.radiance, path.depth);
     if (path.depth == 0u) estimate.visible = true;
 }
@@ -167,10 +167,7 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
                                         : dot(light.wi, x.horizon) <= 0.0;
     bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
     float weight = 1.0;
-    if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) {
-        bool is_sky = SKY_IS_LIGHT && light.light == sky_light();
-        weight = power_heuristic(light.pdf, is_sky ? environment_rival_pdf(value.pdf) : value.pdf);
-    }
+    if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, value.pdf);
     return ShadowRay(ray, dark ? 0.0 : light.t_max, clamp_indirect(weight * Ld / light.pdf, path.depth + 1u));
 }
 

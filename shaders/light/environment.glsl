@@ -1,5 +1,5 @@
 // The environment: radiance from infinitely far away, constant over the texels of a latitude-longitude map, sampled in
-// proportion to luminance times solid angle.
+// proportion to solid angle times what its luminance has above the mean.
 #ifndef LIGHT_ENVIRONMENT_GLSL
 #define LIGHT_ENVIRONMENT_GLSL
 
@@ -78,14 +78,6 @@ LightSample environment_light_sample_li(uvec2 u) {
     s.shadow = s.wi;
     s.t_max = FLOAT_MAX;
     return s;
-}
-
-// The density [1/sr] that the MIS weights of sky samples use in place of a BSDF's, the same for both strategies, so
-// that the estimate stays unbiased. A light sample of the sky brings f times a constant: where the BSDF is broad, that
-// is smooth, and BSDF samples, which bring the sky's contrast, only add noise to it. A density above 10 / pi is a
-// lobe's, and is used as it is.
-float environment_rival_pdf(float pdf_bsdf) {
-    return pdf_bsdf * clamp(pdf_bsdf * (PI / 10.0), scene_parameters().sky_rival, 1.0);
 }
 
 #endif

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 263u
+#define RESULT_WORDS 262u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -32,7 +32,6 @@ void put_parameters(Parameters p) {
     put(p.blades);
     put(p.first_sample);
     put(p.camera_media);
-    put(p.sky_rival);
     put(p.fisheye_edge);
 }
 

@@ -3,7 +3,7 @@
 //
 //   0: position.xyz, seed         6: lens_y.xyz, blades
 //   1: right.xyz, max_depth       7: environment_size.xy, environment_turn.xy
-//   2: up.xyz, rr_depth           8: camera_media.xy, sky_rival, fisheye_edge
+//   2: up.xyz, rr_depth           8: camera_media.xy, fisheye_edge
 //   3: forward.xyz, first_sample  9: principal_point.xy
 //   4: full_size.xy, crop.xy      10 to 12: lights
 //   5: lens_x.xyz, focal_distance
@@ -45,7 +45,6 @@ struct Parameters {
     uint blades;           // Corners of a polygonal aperture.
     uint first_sample;     // Index of the first sample of every pixel.
     uvec2 camera_media;    // Around the camera: see medium/medium.glsl.
-    float sky_rival;       // In (0, 1]: see environment_rival_pdf.
     // What the edge of a fisheye's circle shows: its angle to the axis in turns, or, if it is equisolid, the sine of
     // half of it; in (0, 0.5] and (0, 1].
     float fisheye_edge;
@@ -74,7 +73,7 @@ inline std::array<uvec4, PARAMETERS_WORDS> pack(const Parameters& p) {
         word(p.lens_y, p.blades),
         uvec4(p.environment_size.x, p.environment_size.y, floatBitsToUint(p.environment_turn.x),
               floatBitsToUint(p.environment_turn.y)),
-        uvec4(p.camera_media.x, p.camera_media.y, floatBitsToUint(p.sky_rival), floatBitsToUint(p.fisheye_edge)),
+        uvec4(p.camera_media.x, p.camera_media.y, floatBitsToUint(p.fisheye_edge), 0),
         uvec4(floatBitsToUint(p.principal_point.x), floatBitsToUint(p.principal_point.y), 0, 0),
         lights[0],
         lights[1],
@@ -104,8 +103,7 @@ Parameters parameters_unpack(uvec4 w[PARAMETERS_WORDS]) {
     p.environment_size = w[7].xy;
     p.environment_turn = uintBitsToFloat(w[7].zw);
     p.camera_media = w[8].xy;
-    p.sky_rival = uintBitsToFloat(w[8].z);
-    p.fisheye_edge = uintBitsToFloat(w[8].w);
+    p.fisheye_edge = uintBitsToFloat(w[8].z);
     p.principal_point = uintBitsToFloat(w[9].xy);
     p.lights = light_groups_unpack(w[10], w[11], w[12]);
     return p;

@@ -107,8 +107,8 @@ uint32_t TracerScene::add_lamp(const Shape& shape, vec3 p, vec3 e1, vec3 e2, boo
     return uint32_t(lamps.size() - 1);
 }
 
-// Lamps are weighted by area times luminance, the environment by the light that falls onto a disk as wide as
-// the scene, but at most as much as all lamps together; an even one not at all. candela does the same.
+// Lamps are weighted by area times luminance, the environment by the light above its mean that falls onto a
+// disk as wide as the scene, but at most as much as all lamps together. candela does the same.
 void TracerScene::build_lights() {
     map_ = build_environment_map(environment_);
     for (uint32_t y = 0; y <= environment_.size.y; ++y)
@@ -126,7 +126,7 @@ void TracerScene::build_lights() {
         powers.push_back(lamp.area * luminance(lamp.radiance));
     const double all_lamps = std::accumulate(powers.begin(), powers.end(), 0.0);
     const double sky = 0.25 * diagonal * diagonal * map_.irradiance;
-    powers.push_back(map_.even ? 0.0 : lamps.empty() ? sky : std::min(sky, all_lamps));
+    powers.push_back(lamps.empty() ? sky : std::min(sky, all_lamps));
     const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
     has_lights = total > 0.0;
     for (EnvironmentTexel& texel : map_.texels)
@@ -174,7 +174,7 @@ LightSample TracerScene::sample_light(vec3 from, Random& random) const {
     return {wi, lamp.radiance, distance, lamp.pdf_area * distance_squared / cosine};
 }
 
-// Chooses a texel by luminance times solid angle, and a direction uniformly within it.
+// Chooses a texel by luminance above the mean times solid angle, and a direction uniformly within it.
 LightSample TracerScene::sample_environment(Random& random) const {
     const uint32_t texel = choose(sky_alias_, random);
     const uvec2 size = environment_.size;
