@@ -82,6 +82,17 @@ class Corners {
     uint32_t vertex(uint32_t c) const { return mesh_.triangles[c / 3][glm::length_t(c % 3)]; }
     vec3 position(uint32_t c) const { return mesh_.positions[vertex(c)]; }
     vec2 uv(uint32_t c) const { return uvs_[vertex(c)]; }
+    // For each corner a number, the same for all that MikkTSpace treats as one vertex.
+    std::vector<uint32_t> same_vertices() const {
+        if (!flat_normals_.empty())
+            return first_equal(count(), [&](uint32_t c) { return key(vertex(c), normal(c)); });
+        const std::vector<uint32_t> first =
+            first_equal(mesh_.positions.size(), [&](uint32_t v) { return key(v, mesh_.normals[v]); });
+        std::vector<uint32_t> numbers(count());
+        for (uint32_t c = 0; c < count(); ++c)
+            numbers[c] = first[vertex(c)];
+        return numbers;
+    }
     // The mesh's normal, of any length above 0; the triangle's if there is none.
     vec3 normal(uint32_t c) const {
         const vec3 n = mesh_.normals.empty() ? vec3(0.0f) : mesh_.normals[vertex(c)];
@@ -90,16 +101,14 @@ class Corners {
     dvec3 unit_normal(uint32_t c) const { return normalize(dvec3(normal(c))); }
     dvec3 edge(uint32_t from, uint32_t to) const { return dvec3(position(to)) - dvec3(position(from)); }
 
-    // The same for all corners that MikkTSpace treats as one vertex.
-    std::array<uint32_t, 8> key(uint32_t c) const {
-        const vec3 p = position(c);
-        const vec3 n = normal(c);
-        const vec2 t = uv(c);
+  private:
+    std::array<uint32_t, 8> key(uint32_t v, vec3 n) const {
+        const vec3 p = mesh_.positions[v];
+        const vec2 t = uvs_[v];
         return {bits_of(p.x), bits_of(p.y), bits_of(p.z), bits_of(n.x),
                 bits_of(n.y), bits_of(n.z), bits_of(t.x), bits_of(t.y)};
     }
 
-  private:
     const TriangleMesh& mesh_;
     const std::vector<vec2>& uvs_;
     std::vector<vec3> flat_normals_;  // Unit normals of the triangles; empty if every vertex has a normal.
@@ -181,8 +190,7 @@ struct Group {
 class Grouping {
   public:
     explicit Grouping(const Corners& corners) : corners_(corners), group_of_(corners.count(), NONE) {
-        const std::vector<uint32_t> vertices =
-            first_equal(corners.count(), [&](uint32_t c) { return corners.key(c); });
+        const std::vector<uint32_t> vertices = corners.same_vertices();
         facets_.reserve(corners.count() / 3);
         for (uint32_t c = 0; c < corners.count(); c += 3)
             facets_.push_back(facet_of(corners, c));
@@ -244,7 +252,8 @@ class Grouping {
 
     // Puts the corners of triangles without neighbours into the group of the first other one at their vertex.
     void adopt_groups(const std::vector<uint32_t>& vertices) {
-        std::vector<uint32_t> model(vertices.size(), NONE);
+        if (vertices.empty()) return;
+        std::vector<uint32_t> model(*std::ranges::max_element(vertices) + size_t{1}, NONE);
         const auto is_orphan = [&](size_t c) { return facets_[c / 3].kind == Facet::Kind::without_edge; };
         for (size_t c = 0; c < vertices.size(); ++c) {
             if (!is_orphan(c) && model[vertices[c]] == NONE) model[vertices[c]] = uint32_t(c);
