@@ -148,6 +148,7 @@ GROUPS = [
          "return light_pmf(i, lamp, lit) * pdf;", "return pdf;"),
         ("solid angle missing from the choice of texels", "host/gpu_scene/environment_map.cpp",
          "0.0) * solid_angle", "0.0) * (solid_angle > 0.0 ? 1.0 : 0.0)"),
+        ("light samples of all of the sky", "host/gpu_scene/environment_map.cpp", "bright - mean", "bright"),
         ("columns of the row above", SKY, "environment_choose(row.i * size.x, size.x, u.x)",
          "environment_choose(max(row.i, 1u) * size.x - size.x, size.x, u.x)"),
         ("texels next to those that the tables chose", SKY, "return EnvironmentChoice(lo, min(",
