@@ -18,7 +18,7 @@
 
 namespace candela {
 
-// The images that --aov can name.
+// The images that --aov can name, but for "motion", which needs frames and is not among "all".
 inline constexpr const char* AOV_NAMES = "albedo,n,p,z,variance,samples,depth,ids,cryptomatte";
 
 // The parts of `text` between separators, including empty ones.

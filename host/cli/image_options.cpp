@@ -63,8 +63,9 @@ void ImageOutputs::add_to(CLI::App& app) {
 }
 
 void ImageOutputs::add_aovs_to(CLI::App& app) {
-    add_value(app, "--aov", aovs, parse_aovs, std::string("all, none or a list of ") + AOV_NAMES,
-              "EXR: none, all or a list of " + std::string(AOV_NAMES) + " (default: the first six)")
+    add_value(app, "--aov", aovs, parse_aovs, std::string("all, none or a list of ") + AOV_NAMES + ",motion",
+              "EXR: none, all or a list of " + std::string(AOV_NAMES) +
+                  " (default: the first six), and, with --frames, motion")
         ->type_name("LIST");
 }
 

@@ -68,6 +68,8 @@ PicturePlan::PicturePlan(const RenderOptions& options, std::istream& standard_in
     if (options.rendering.loading.gltf.animation && !options.rendering.loading.gltf.time &&
         !options.frames.frames)
         refuse_pictures("--animation: it is not shown without a time; also give --time or --frames");
+    if (outputs.images.aovs.motion && !options.frames.frames)
+        refuse_pictures("--aov: motion is that since the frame before; also give --frames");
     if (options.wants_all_cameras()) refuse_one_name_for("camera", "camera");
     if (options.frames.are_several()) refuse_one_name_for("frame", "frame");
     scene_files_ = list.scenes;

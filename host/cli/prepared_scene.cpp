@@ -137,7 +137,25 @@ class Preparation {
         prepared_.records = with_memory_for(
             "the tree and the records of what it shows", [this] { return prepared_.file; },
             [this] { return kept_->scene.build(); });
+        find_motion();
         warn(kept_->scene.take_warnings());
+    }
+
+    // Looks up where everything was in the frame before, if a picture shows it.
+    void find_motion() {
+        const auto shows_motion = [](const PreparedPicture& picture) {
+            return picture.job && picture.job->aovs.motion;
+        };
+        if (std::ranges::none_of(prepared_.pictures, shows_motion)) return;
+        const double frame = *plan_.scenes()[number_].frame;
+        const auto motion = std::make_shared<const SceneMotion>(
+            kept_->scene.motion_since((frame - 1.0) / options_.frames.fps));
+        Scene before;
+        before.cameras = kept_->cameras->empty() ? motion->cameras : *kept_->cameras;
+        before.film = prepared_.scene.film;
+        for_each([&](PreparedPicture& picture) {
+            picture.job->motion = {options_.job(before, picture.picture.camera).camera, motion};
+        });
     }
 
     void load() {

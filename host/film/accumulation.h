@@ -80,6 +80,7 @@ struct AovSelection {
     bool distance = false;     // Depth.V: distance of that hit along its ray [m]; infinity at a miss.
     bool ids = false;          // ObjectId.V, InstanceId.V, MaterialId.V: see id_layers.h.
     bool cryptomatte = false;  // CryptoObject, CryptoMaterial: see id_layers.h.
+    bool motion = false;       // Motion.X/Y: since the frame before; see render/motion.h.
 
     bool operator==(const AovSelection&) const = default;
     // Whether the accumulation needs LAYER_COUNT_AOVS.

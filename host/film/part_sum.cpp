@@ -14,7 +14,7 @@ static constexpr std::string_view VARIANCE = "Variance.";
 static constexpr std::string_view MEANS[] = {"R",        "G",   "B",   "A",   "Albedo.R",     "Albedo.G",
                                              "Albedo.B", "N.X", "N.Y", "N.Z", FIRST_HIT_ALPHA};
 static constexpr std::string_view VARIANCES[] = {"Variance.R", "Variance.G", "Variance.B"};
-static constexpr std::string_view CONSTANTS[] = {"P.X", "P.Y", "P.Z", "Z", "Depth.V"};
+static constexpr std::string_view CONSTANTS[] = {"P.X", "P.Y", "P.Z", "Z", "Depth.V", "Motion.X", "Motion.Y"};
 static constexpr std::string_view COUNT = "SampleCount.V";
 
 template <size_t N>

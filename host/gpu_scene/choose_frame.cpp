@@ -25,4 +25,11 @@ SceneFrame choose_frame(const Scene& scene) {
     return frame_around(bounds(scene));
 }
 
+SceneFrame frame_around(const TriangleMesh& mesh) {
+    DoubleBox box;
+    for (const vec3 p : mesh.positions)
+        box.extend(mesh.origin + dvec3(p));
+    return frame_around(box);
+}
+
 }  // namespace candela

@@ -10,7 +10,8 @@ namespace candela {
 // two that is greater than the box's longest side. It depends on no camera.
 SceneFrame choose_frame(const Scene& scene);
 
-// The same for a box.
+// The same for a box, and for a mesh in its own space.
 SceneFrame frame_around(const DoubleBox& box);
+SceneFrame frame_around(const TriangleMesh& mesh);
 
 }  // namespace candela

@@ -38,6 +38,11 @@ PieceUv piece_uv(vec2 a, vec2 b, vec2 c) {
     return {a, b - a, c - a};
 }
 
+// The triangles of an emitter are lights of their own, so they are not paired.
+std::vector<TrianglePair> primitives_of(const TriangleMesh& mesh, bool emits) {
+    return emits ? single_triangles(mesh) : pair_triangles(mesh);
+}
+
 class Flattener {
   public:
     Flattener(const Scene& scene, const SceneFrame& frame, uint attributes, bool has_normals)
@@ -60,7 +65,6 @@ class Flattener {
     FlatScene take() { return std::move(flat_); }
 
   private:
-    // The triangles of an emitter are lights of their own, so they are not paired.
     void add(const Shape& shape, const MeshInstance& instance) {
         TriangleMesh mesh = placed(scene_.meshes[instance.mesh], instance.transform, frame_);
         flat_.triangles += mesh.triangles.size();
@@ -72,8 +76,7 @@ class Flattener {
         const bool smooth = !mesh.normals.empty();
         const std::vector<vec3>& p = mesh.positions;
         const std::vector<vec3>& n = mesh.normals;
-        for (const auto& [v, first, second] :
-             shape.emission ? single_triangles(mesh) : pair_triangles(mesh)) {
+        for (const auto& [v, first, second] : primitives_of(mesh, shape.emission.has_value())) {
             const double error = pair_error(p[v.x], p[v.y], p[v.z], p[v.w]);
             const uint light = add_flat_piece(shape, LIGHT_TRIANGLE, p[v.x], p[v.y] - p[v.x], p[v.z] - p[v.x],
                                               error, emission_uv(shape, mesh, v));
@@ -262,6 +265,19 @@ FlatScene flatten_mesh(const Scene& scene, const ShownMesh& shown, bool passable
     if (shown.emitter != NO_EMITTER) shape.emission = scene.shapes[shown.emitter].emission;
     flattener.add(shape, shown.emitter, passable);
     return flattener.take();
+}
+
+std::vector<uvec3> corners_by_id(const TriangleMesh& mesh, const Transform& transform,
+                                 const SceneFrame& frame, bool emits) {
+    TriangleMesh bare = placed(
+        {.origin = mesh.origin, .positions = mesh.positions, .triangles = mesh.triangles}, transform, frame);
+    drop_flat_triangles(bare);
+    std::vector<uvec3> corners(bare.triangles.size());
+    for (const auto& [v, first, second] : primitives_of(bare, emits)) {
+        corners[second] = {v.x, v.z, v.w};
+        corners[first] = {v.x, v.y, v.z};
+    }
+    return corners;
 }
 
 bool has_shading_normals(const Scene& scene) {

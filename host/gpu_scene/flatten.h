@@ -62,6 +62,11 @@ FlatScene flatten(const Scene& scene, const SceneFrame& frame, uint attributes =
 FlatScene flatten_mesh(const Scene& scene, const ShownMesh& shown, bool passable, const SceneFrame& frame,
                        uint attributes, bool has_normals);
 
+// For each id of the triangles of a mesh, in order, the vertices a, b, c of its surface coordinates: these
+// say a + x (b - a) + y (c - a). The mesh is placed and emits as flatten() or flatten_mesh() was told.
+std::vector<uvec3> corners_by_id(const TriangleMesh& mesh, const Transform& transform,
+                                 const SceneFrame& frame, bool emits);
+
 // Whether a mesh that is shown has shading normals.
 bool has_shading_normals(const Scene& scene);
 

@@ -31,11 +31,7 @@ std::vector<Box> upper_boxes(const Bvh& bvh) {
 MeshTree build_mesh_tree(const Scene& scene, const ShownMesh& shown, uint attributes, bool passable,
                          bool normals) {
     MeshTree tree{.passable = passable};
-    DoubleBox box;
-    const TriangleMesh& m = scene.meshes[shown.mesh];
-    for (const vec3 p : m.positions)
-        box.extend(m.origin + dvec3(p));
-    tree.frame = frame_around(box);
+    tree.frame = frame_around(scene.meshes[shown.mesh]);
     tree.flat = flatten_mesh(scene, shown, passable, tree.frame, attributes, normals);
     tree.bvh = build_bvh(boxes_of(tree.flat.primitives));
     if (!tree.flat.primitives.empty()) tree.boxes = upper_boxes(tree.bvh);

@@ -6,7 +6,7 @@
 
 namespace candela::kernels {
 
-extern const std::span<const uint32_t> render, position, first_hits;
+extern const std::span<const uint32_t> render, position, first_hits, first_points;
 extern const std::span<const uint32_t> render_layered;  // For scenes with principled materials.
 // The same with all functions inlined: lavapipe compiles them in half the time, but other compilers keep more
 // values alive.

@@ -13,6 +13,7 @@
 #include "gpu_scene/light_tree_arrays.h"
 #include "render/kernels.h"
 #include "render/media_at.h"
+#include "shared/first_points.h"
 #include "vk/transfer.h"
 
 namespace candela {
@@ -114,6 +115,7 @@ std::span<const uint32_t> spirv_of(RenderKernel which, const vk::Device& device,
                                    const KernelConstants& constants) {
     if (which == RenderKernel::position) return kernels::position;
     if (which == RenderKernel::first_hits) return kernels::first_hits;
+    if (which == RenderKernel::first_points) return kernels::first_points;
     const bool inlined = device.info().is_lavapipe();
     if ((constants[CONSTANT_MATERIALS] & 1u << MATERIAL_PRINCIPLED) != 0)
         return inlined ? kernels::render_layered_inlined : kernels::render_layered;
@@ -187,6 +189,11 @@ vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const Kerne
         bindings.push_back({BINDING_FIRST_HITS, vk::BindingType::storage_buffer});
         return {device,      spirv_of(which, device, constants), bindings, sizeof(PixelRun), constants.values,
                 "first hits"};
+    }
+    if (which == RenderKernel::first_points) {
+        bindings.push_back({BINDING_FIRST_POINTS, vk::BindingType::storage_buffer});
+        return {device,        spirv_of(which, device, constants), bindings, sizeof(Tile), constants.values,
+                "first points"};
     }
     bindings.push_back({BINDING_IMAGE, vk::BindingType::storage_image});
     if (render) bindings.push_back({BINDING_COUNTERS, vk::BindingType::storage_buffer});

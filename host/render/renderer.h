@@ -11,6 +11,7 @@
 #include "film/coverage.h"
 #include "gpu_scene/gpu_scene.h"
 #include "render/array_map.h"
+#include "render/motion.h"
 #include "render/scene_buffers.h"
 #include "render/schedule.h"
 #include "scene/scene.h"
@@ -64,7 +65,7 @@ KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene
                                  const Camera& camera, const RenderSettings& settings);
 
 // The renderer's kernels, compiled for kernel_constants(), with nothing bound.
-enum class RenderKernel { render, position, first_hits };
+enum class RenderKernel { render, position, first_hits, first_points };
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants);
 
 // The state before the first sample: it holds no values yet.
@@ -106,6 +107,10 @@ class Renderer {
     // What the pixels show first, by FIRST_HITS camera rays each: a function of pixel, seed and filter alone,
     // whichever samples and sampler were asked for. `scene` is the one that was rendered.
     Coverage coverage(const GpuScene& scene);
+
+    // How far what the centre of each pixel shows has moved in the picture since the frame before; row-major.
+    // See render/motion.h. `scene` and `camera` are those that were rendered.
+    std::vector<vec2> motion(const GpuScene& scene, const Camera& camera, const MotionSince& since);
 
     const RenderCounters& counters() const { return counters_; }
     // The sums of samples, layers LAYER_*, for kernels that display them. A reset() to another size replaces

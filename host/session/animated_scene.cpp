@@ -35,6 +35,12 @@ const GpuScene& AnimatedScene::build() {
     return stages_->joined();
 }
 
+SceneMotion AnimatedScene::motion_since(double time) {
+    PlacesBefore before = poser_->places_at(scene_, time);
+    warn(poser_->take_warnings());
+    return make_scene_motion(scene_, stages_->joined(), std::move(before));
+}
+
 std::vector<std::string> AnimatedScene::take_warnings() {
     return std::exchange(warnings_, {});
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "gpu_scene/scene_motion.h"
 #include "gpu_scene/scene_stages.h"
 #include "load/load.h"
 #include "scene/scene.h"
@@ -30,6 +31,8 @@ class AnimatedScene {
     const Scene& scene() const { return scene_; }
     // Makes the records of the last pose. Throws what build_gpu_scene() throws. It is then unusable.
     const GpuScene& build();
+    // How cameras and shapes have moved since that time [s], after build().
+    SceneMotion motion_since(double time);
     // The warnings since the last call, each only once.
     std::vector<std::string> take_warnings();
 

@@ -38,6 +38,7 @@ struct RenderJob {
     std::optional<double> write_every{};     // Seconds from one image on the way to the next.
     AovSelection aovs{};                     // The images besides R G B A.
     std::shared_ptr<const Labels> labels{};  // Of the scene, for images of ids.
+    std::optional<MotionSince> motion{};     // For the image of motion.
     CheckpointOptions checkpoint{};
 };
 

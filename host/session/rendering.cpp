@@ -17,6 +17,14 @@ std::vector<Accumulation> first_states(const RenderJob& job, std::optional<Check
     return {empty_state(job.settings)};
 }
 
+void add_motion(Image& image, const std::vector<vec2>& motion) {
+    for (const auto& [name, axis] : {std::pair("Motion.X", 0), std::pair("Motion.Y", 1)}) {
+        std::vector<float>& values = image.add(name).values;
+        for (size_t i = 0; i < values.size(); ++i)
+            values[i] = motion[i][axis];
+    }
+}
+
 }  // namespace
 
 Rendering::Rendering(Source source, RenderJob job, RenderRecord record)
@@ -31,7 +39,8 @@ Rendering::Rendering(Source source, RenderJob job, RenderRecord record)
                  .states = first_states(job_, source.resumed),
                  .positions = job_.aovs.needs_positions(),
                  .distances = job_.aovs.distance,
-                 .coverage = job_.aovs.needs_coverage()},
+                 .coverage = job_.aovs.needs_coverage(),
+                 .motion = &job_.motion},
                 [this](const Error& error, uint32_t kept, double submission_seconds) {
                     callbacks_.device_failed(error, kept, submission_seconds);
                 }),
@@ -86,6 +95,7 @@ Image Rendering::collect_image(RenderRecord& record) const {
     Image image = make_image(states, job_.aovs, renderer_.positions());
     if (job_.aovs.distance) image.add("Depth.V").values = renderer_.distances();
     if (job_.aovs.needs_coverage()) add_id_layers(image, job_.aovs, renderer_.coverage(), *job_.labels);
+    if (job_.aovs.motion) add_motion(image, renderer_.motion());
     return image;
 }
 

@@ -45,6 +45,8 @@ void SteadyRenderer::look_up_first_hits() {
     if (source_.positions && positions_.empty()) positions_ = renderer_->positions();
     if (source_.distances && distances_.empty()) distances_ = renderer_->distances();
     if (source_.coverage && coverage_.pixel_count() == 0) coverage_ = renderer_->coverage(*source_.scene);
+    if (source_.motion != nullptr && *source_.motion && motion_.empty())
+        motion_ = renderer_->motion(*source_.scene, *source_.camera, **source_.motion);
 }
 
 void SteadyRenderer::restart(const BufferSet& changed, const RenderSettings& settings,
@@ -54,6 +56,7 @@ void SteadyRenderer::restart(const BufferSet& changed, const RenderSettings& set
     positions_.clear();
     distances_.clear();
     coverage_ = {};
+    motion_.clear();
     selected_ = 0;
     recovery_ = {};
     if (changed.all()) renderer_.reset();  // Before the next one takes memory.

@@ -25,7 +25,9 @@ class SteadyRenderer {
         bool positions = false;            // Whether positions() will be called,
         bool distances = false;            // distances(),
         bool coverage = false;             // and coverage().
-        double copy_seconds = 10.0;        // Between two copies of the state.
+        // For motion(), which will be called if there is one.
+        const std::optional<MotionSince>* motion = nullptr;
+        double copy_seconds = 10.0;  // Between two copies of the state.
     };
     // Called after every failure that is survived, with its cause, the samples that every pixel still holds
     // at least, and how long submissions will take from now on [s].
@@ -64,6 +66,8 @@ class SteadyRenderer {
     const std::vector<float>& distances() const { return distances_; }
     // As Renderer::coverage(), by the seed of the first state, if the source asks for it.
     const Coverage& coverage() const { return coverage_; }
+    // As Renderer::motion(), if the source asks for it.
+    const std::vector<vec2>& motion() const { return motion_; }
     // How the arrays of the scene are read.
     const ArrayMap& array_map() const { return array_map_; }
     double pipeline_seconds() const { return pipeline_seconds_; }
@@ -88,6 +92,7 @@ class SteadyRenderer {
     std::vector<float> positions_;
     std::vector<float> distances_;
     Coverage coverage_;
+    std::vector<vec2> motion_;
     ArrayMap array_map_;
     double pipeline_seconds_ = 0.0;
     double pipeline_cpu_seconds_ = 0.0;

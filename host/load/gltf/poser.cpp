@@ -11,7 +11,6 @@
 #include "load/gltf/fit_attributes.h"
 #include "load/gltf/light.h"
 #include "load/gltf/placement.h"
-#include "load/gltf/primitive.h"
 #include "load/gltf/skin.h"
 #include "scene/geometry.h"
 #include "scene/scene_builder.h"
@@ -186,23 +185,49 @@ const std::vector<glm::dmat4>& Poser::joints_of(const Node& skin) {
     return known->second;
 }
 
-// The mesh of a shape as it is now; without triangles if it has no area.
-TriangleMesh Poser::deformed(const Scene& scene, const PosedShape& posed) {
-    const Shape& shape = scene.shapes[posed.shape];
-    const std::vector<double> weights = weights_of(posed.node);
+// What deforms a mesh now. `weights`: of the shape's node; it must outlive the result.
+Deformation Poser::deformation_of(const PosedShape& posed, const std::vector<double>& weights) {
     Deformation deformation{.weights = weights};
     if (posed.skin) {
         deformation.joints = joints_of(*posed.skin);
         deformation.mirrors = determinant(glm::dmat3(nodes_[posed.node].world)) < 0.0;
     }
-    std::optional<TriangleMesh> mesh = read_primitive(file_, *posed.primitive, deformation);
+    return deformation;
+}
+
+// The mesh of a shape as it is now; without triangles if it has no area.
+TriangleMesh Poser::deformed(const Scene& scene, PosedShape& posed) {
+    const Shape& shape = scene.shapes[posed.shape];
+    const std::vector<double> weights = weights_of(posed.node);
+    std::optional<TriangleMesh> mesh =
+        read_primitive(file_, *posed.primitive, deformation_of(posed, weights));
+    posed.copies.clear();
     if (!mesh) return {};
+    const size_t own = mesh->positions.size();
+    const std::vector<uvec3> triangles = mesh->triangles;
     fit_attributes(file_, *posed.primitive, scene.materials[shape.material], posed.has_alpha, *mesh);
     finish_mesh(scene, posed.primitive->place(), {shape.material, shape.emission}, *mesh);
+    posed.copies.resize(mesh->positions.size() - own);
+    for (size_t i = 0; i < triangles.size() && !posed.copies.empty(); ++i) {
+        for (const int c : {0, 1, 2}) {
+            const uint32_t vertex = mesh->triangles[i][c];
+            if (vertex >= own) posed.copies[vertex - own] = triangles[i][c];
+        }
+    }
     return std::move(*mesh);
 }
 
-void Poser::pose_shape(Scene& scene, const PosedShape& posed, SceneChange& change) {
+// The positions of the vertices of a mesh that deforms, if the nodes are placed at another time than when the
+// mesh was made.
+std::vector<dvec3> Poser::positions_of(const PosedShape& posed) {
+    const std::vector<double> weights = weights_of(posed.node);
+    std::vector<dvec3> positions = read_positions(file_, *posed.primitive, deformation_of(posed, weights));
+    for (const uint32_t vertex : posed.copies)
+        positions.push_back(positions[vertex]);
+    return positions;
+}
+
+void Poser::pose_shape(Scene& scene, PosedShape& posed, SceneChange& change) {
     Shape& shape = scene.shapes[posed.shape];
     const Shape before = shape;
     const PosedNode& node = nodes_[posed.node];
@@ -223,22 +248,24 @@ void Poser::pose_shape(Scene& scene, const PosedShape& posed, SceneChange& chang
         throw Error(file_.element("nodes", posed.node).place() + ": " + TOO_FAR);
 }
 
+void Poser::pose_camera(PosedCamera& posed, Camera& camera) {
+    if (!posed.before) posed.before = camera;
+    const Node node = file_.element("nodes", posed.node);
+    if (place_camera(node, nodes_[posed.node].world, camera)) return;
+    camera = *posed.before;
+    file_.warn(node,
+               "at some times, the node's transform flattens its camera, which is then where it is "
+               "without the animation");
+}
+
 SceneChange Poser::pose(Scene& scene, double time) {
     place(time);
     joints_.clear();
     SceneChange change;
-    for (const PosedShape& posed : shapes_)
+    for (PosedShape& posed : shapes_)
         pose_shape(scene, posed, change);
-    for (PosedCamera& posed : cameras_) {
-        Camera& camera = scene.cameras[posed.camera];
-        if (!posed.before) posed.before = camera;
-        const Node node = file_.element("nodes", posed.node);
-        if (place_camera(node, nodes_[posed.node].world, camera)) continue;
-        camera = *posed.before;
-        file_.warn(node,
-                   "at some times, the node's transform flattens its camera, which is then where it is "
-                   "without the animation");
-    }
+    for (PosedCamera& posed : cameras_)
+        pose_camera(posed, scene.cameras[posed.camera]);
     for (const PosedLight& posed : lights_) {
         Light& light = scene.lights[posed.light];
         light = read_light(file_, posed.reference, nodes_[posed.node].world, units_of(file_, options_));
@@ -246,6 +273,26 @@ SceneChange Poser::pose(Scene& scene, double time) {
         change.lights = true;
     }
     return change;
+}
+
+PlacesBefore Poser::places_at(const Scene& scene, double time) {
+    place(time);
+    joints_.clear();
+    PlacesBefore places{.cameras = scene.cameras, .shapes = {}};
+    for (const PosedShape& posed : shapes_) {
+        if (std::get<MeshInstance>(scene.shapes[posed.shape].geometry).mesh == nothing_) continue;
+        PlaceBefore& before = places.shapes.emplace_back();
+        before.shape = posed.shape;
+        if (!posed.skin) {
+            const glm::dmat4 world = nodes_[posed.node].world * posed.placement;
+            const std::optional<Transform> transform = transform_of(world);
+            before.transform = transform ? transform->matrix() : world;
+        }
+        if (posed.primitive) before.positions = positions_of(posed);
+    }
+    for (PosedCamera& posed : cameras_)
+        pose_camera(posed, places.cameras[posed.camera]);
+    return places;
 }
 
 std::vector<std::string> Poser::take_warnings() {

@@ -15,7 +15,9 @@
 #include "load/gltf/gltf.h"
 #include "load/gltf/gltf_file.h"
 #include "load/gltf/node_trees.h"
+#include "load/gltf/primitive.h"
 #include "load/gltf/ways.h"
+#include "scene/places_before.h"
 #include "scene/scene.h"
 #include "scene/scene_change.h"
 
@@ -32,6 +34,8 @@ class Poser {
         std::optional<Node> skin{};       // and its skin.
         bool has_alpha = false;           // The file's material uses alpha.
         uint32_t mesh = 0;                // Set by complete(): the shape's mesh where it is visible.
+        // Of a mesh that deforms: for each vertex that was added for attributes, the one that it copies.
+        std::vector<uint32_t> copies{};
     };
     struct PosedLight {
         uint32_t light = 0;
@@ -63,6 +67,8 @@ class Poser {
     // Shows the scene at that time [s], and returns what of it has changed. If it throws Error, the scene is
     // unusable.
     SceneChange pose(Scene& scene, double time);
+    // Where what `scene` shows, as pose() has left it, was at another time [s].
+    PlacesBefore places_at(const Scene& scene, double time);
     // The warnings since the last call.
     std::vector<std::string> take_warnings();
 
@@ -79,8 +85,11 @@ class Poser {
     std::map<uint32_t, WeightRanges> weights_at(const std::vector<double>& times);
     std::vector<dvec3> find_ways(const Scene& scene);
     std::vector<double> weights_of(uint32_t node) const;
-    void pose_shape(Scene& scene, const PosedShape& posed, SceneChange& change);
-    TriangleMesh deformed(const Scene& scene, const PosedShape& posed);
+    Deformation deformation_of(const PosedShape& posed, const std::vector<double>& weights);
+    void pose_shape(Scene& scene, PosedShape& posed, SceneChange& change);
+    void pose_camera(PosedCamera& posed, Camera& camera);
+    TriangleMesh deformed(const Scene& scene, PosedShape& posed);
+    std::vector<dvec3> positions_of(const PosedShape& posed);
     const std::vector<glm::dmat4>& joints_of(const Node& skin);
 
     std::shared_ptr<Contents> contents_;

@@ -247,6 +247,18 @@ bool is_empty(const File& file, const Node& reference) {
     return count && count->is_number() && count->number() == 0.0;
 }
 
+// The mesh with all of its triangles, also those without area. `position` refers to the accessor.
+TriangleMesh read_all(File& file, const Node& primitive, const Deformation& deformation,
+                      const Node& position) {
+    const uint32_t vertices = Accessor(file, position, {"VEC3"}).count();
+    std::vector<uvec3> triangles = read_triangles(file, primitive, mode_of(primitive), vertices);
+    if (deformation.mirrors) {
+        for (uvec3& t : triangles)
+            std::swap(t.y, t.z);
+    }
+    return PrimitiveReader(file, primitive, deformation).read(std::move(triangles), vertices);
+}
+
 }  // namespace
 
 std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive,
@@ -268,19 +280,23 @@ std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive,
         file.warn(primitive, "left out a primitive without triangles");
         return std::nullopt;
     }
-    const uint32_t vertices = Accessor(file, *position, {"VEC3"}).count();
-    std::vector<uvec3> triangles = read_triangles(file, primitive, mode, vertices);
-    if (deformation.mirrors) {
-        for (uvec3& t : triangles)
-            std::swap(t.y, t.z);
-    }
-    TriangleMesh mesh = PrimitiveReader(file, primitive, deformation).read(std::move(triangles), vertices);
+    TriangleMesh mesh = read_all(file, primitive, deformation, *position);
     drop_flat_triangles(mesh);
     if (mesh.triangles.empty()) {
         file.warn(primitive, "left out a primitive without area");
         return std::nullopt;
     }
     return mesh;
+}
+
+std::vector<dvec3> read_positions(File& file, const Node& primitive, const Deformation& deformation) {
+    const TriangleMesh mesh =
+        read_all(file, primitive, deformation, primitive.require("attributes").require("POSITION"));
+    std::vector<dvec3> positions;
+    positions.reserve(mesh.positions.size());
+    for (const vec3 p : mesh.positions)
+        positions.push_back(mesh.origin + dvec3(p));
+    return positions;
 }
 
 }  // namespace candela::gltf

@@ -22,4 +22,8 @@ struct Deformation {
 // area. Throws Error for what cannot be read.
 std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive, const Deformation& deformation);
 
+// The positions of the mesh's first vertices, those that it has before any is added for attributes, of a
+// primitive that has been read before. They are the same vertices under any deformation.
+std::vector<dvec3> read_positions(File& file, const Node& primitive, const Deformation& deformation);
+
 }  // namespace candela::gltf

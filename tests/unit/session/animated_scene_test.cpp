@@ -63,6 +63,49 @@ TEST_F(AnimatedSceneTest, APoseIsThatOfTheLoader) {
     }
 }
 
+// Every vertex is where a fresh scene has it, whichever frames were shown before.
+TEST_F(AnimatedSceneTest, MotionLeadsToWhereEverythingWas) {
+    AnimatedScene scene = loaded();
+    for (const auto& [time, before] : {std::pair(0.5, 0.25), std::pair(1.0, 0.75), std::pair(0.25, 0.5)}) {
+        SCOPED_TRACE(time);
+        scene.pose(time);
+        const GpuScene records = scene.build();
+        const SceneMotion motion = scene.motion_since(before);
+        AnimatedScene fresh = loaded();
+        fresh.pose(before);
+        EXPECT_EQ(motion.cameras, fresh.scene().cameras);
+        size_t deforming = 0;
+        for (uint32_t i = 0; i < scene.scene().shapes.size(); ++i) {
+            const auto& now = std::get<MeshInstance>(scene.scene().shapes[i].geometry);
+            const auto& then = std::get<MeshInstance>(fresh.scene().shapes[i].geometry);
+            const TriangleMesh& mesh = scene.scene().meshes[now.mesh];
+            const TriangleMesh& mesh_then = fresh.scene().meshes[then.mesh];
+            const auto moved = motion.shapes.find(i);
+            if (moved == motion.shapes.end()) {
+                EXPECT_TRUE(now == then || mesh.positions.empty() || mesh_then.positions.empty());
+                continue;
+            }
+            EXPECT_EQ(moved->second.now, now.transform.matrix());
+            if (mesh_then.positions.empty()) continue;  // It was hidden.
+            EXPECT_EQ(moved->second.before, then.transform.matrix());
+            if (moved->second.corners.empty()) continue;
+            ++deforming;
+            EXPECT_EQ(moved->second.corners.size(), mesh.triangles.size());
+            ASSERT_EQ(mesh.positions.size(), mesh_then.positions.size());
+            for (size_t v = 0; v < mesh.positions.size(); ++v) {
+                EXPECT_EQ(moved->second.positions_now[v], mesh.origin + dvec3(mesh.positions[v]));
+                EXPECT_EQ(moved->second.positions_before[v],
+                          mesh_then.origin + dvec3(mesh_then.positions[v]));
+            }
+        }
+        EXPECT_EQ(deforming, 2u);
+        // The records do not know of it.
+        AnimatedScene other = loaded();
+        other.pose(time);
+        expect_equal(records, other.build());
+    }
+}
+
 TEST_F(AnimatedSceneTest, WhatDoesNotMoveIsNeitherReadNorBuiltAgain) {
     AnimatedScene scene = loaded();
     scene.pose(0.6);
