@@ -176,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
                    by_fisheye,
                    dvec2(-12, 6)},
         CameraCase{"Equisolid", {"--projection", "equisolid,220"}, false, by_equisolid, dvec2(0)}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& each) { return each.param.name; });
 
 // The camera turns by 7.5 degrees to the left, so all that is infinitely far moves to the right.
 TEST_F(MotionLayer, OfTheSkyIsThatOfTheCamerasTurning) {
