@@ -119,7 +119,8 @@ void PictureRenderer::start(const PreparedScene& scene, const PreparedPicture& p
     rendering_ = std::make_unique<Rendering>(Rendering::Source{.device = &*device_,
                                                                .scene = &records_,
                                                                .resumed = std::move(resumed),
-                                                               .reference = picture.reference},
+                                                               .reference = picture.reference,
+                                                               .keep_going = [this] { return goes_on(); }},
                                              job, std::move(record));
 }
 
@@ -138,7 +139,7 @@ RenderedPicture PictureRenderer::run(const PreparedScene& scene, const PreparedP
     const ImageOutputs outputs = options_.outputs.images.renamed(picture.picture.files);
     std::optional<Error> failure = rendering_->run(
         {.progress = [&](double done, std::optional<double> error) { progress->update(done, error); },
-         .keep_going = [&] { return !guard_->interrupted() && !time_is_over(); },
+         .keep_going = [&] { return goes_on(); },
          .warn = [&](const std::string& warning) { print_warning(name + warning); },
          .device_failed =
              [&](const Error& error, uint32_t kept, double submission_seconds) {

@@ -70,6 +70,7 @@ class PictureRenderer {
 
   private:
     RenderRecord record_of(const PreparedScene& scene, const RenderJob& job) const;
+    bool goes_on() const { return !interrupted() && !time_is_over(); }
     void start(const PreparedScene& scene, const PreparedPicture& picture);
     RenderedPicture run(const PreparedScene& scene, const PreparedPicture& picture);
     void print_details(const GpuScene& scene) const;

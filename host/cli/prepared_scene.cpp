@@ -148,8 +148,9 @@ class Preparation {
         };
         if (std::ranges::none_of(prepared_.pictures, shows_motion)) return;
         const double frame = *plan_.scenes()[number_].frame;
-        const auto motion = std::make_shared<const SceneMotion>(
-            kept_->scene.motion_since((frame - 1.0) / options_.frames.fps));
+        const auto motion = std::make_shared<const SceneMotion>(with_memory_for(
+            "the motion since the frame before", [this] { return prepared_.file; },
+            [&] { return kept_->scene.motion_since((frame - 1.0) / options_.frames.fps); }));
         Scene before;
         before.cameras = kept_->cameras->empty() ? motion->cameras : *kept_->cameras;
         before.film = prepared_.scene.film;

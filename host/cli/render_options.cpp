@@ -126,6 +126,7 @@ RenderJob RenderOptions::job(const Scene& loaded, const std::optional<std::strin
     job.camera = cameras.changed(camera, job.settings.size);
     job.settings.first_sample = samples ? samples->first : 0;
     job.settings.aovs = job.aovs.needs_layers();
+    job.settings.layer_bytes = layer_bytes(job.aovs);
     job.settings.backdrop = outputs.images.screen.backdrop();
     job.settings.pass_growth = job.time_limit || job.write_every ? EVEN_PASS_GROWTH : PASS_GROWTH;
     if (job.adaptive && job.target % 2 != 0) {

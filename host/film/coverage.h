@@ -34,6 +34,10 @@ struct CoveredPart {
 
 class Coverage {
   public:
+    Coverage() = default;
+    // Of about so many pixels.
+    explicit Coverage(size_t pixels) { ends_.reserve(pixels); }
+
     // Adds the next pixel, row-major: what each ray hits, or NO_PART.
     void add(std::span<const ShapePart, FIRST_HITS> parts);
 

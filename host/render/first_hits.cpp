@@ -11,12 +11,12 @@
 namespace candela {
 namespace {
 
-// Pixels of a submission: at 64 rays each, far below a watchdog's limit.
-constexpr uint32_t RUN_PIXELS = 1u << 15;
+// Pixels of a submission: at 64 rays each, far below a watchdog's limit, and a fraction of a second on a CPU.
+constexpr uint32_t RUN_PIXELS = 1u << 13;
 
 }  // namespace
 
-Coverage Renderer::coverage(const GpuScene& scene) {
+Coverage Renderer::coverage(const GpuScene& scene, const std::function<bool()>& keep_going) {
     // Only this sampler has one of the first 64 samples in each cell of an 8 x 8 grid, and their lens points
     // as even.
     KernelConstants constants = constants_;
@@ -29,11 +29,11 @@ Coverage Renderer::coverage(const GpuScene& scene) {
                            vk::BufferUsage::readback, "first hits");
     kernel.bind(BINDING_FIRST_HITS, words);
 
-    Coverage coverage;
+    Coverage coverage(pixels);
     PartOfWord part_of(scene);
     std::array<uint32_t, FIRST_HITS> of_pixel;
     std::array<ShapePart, FIRST_HITS> shown;
-    for (uint32_t first = 0; first < pixels; first += at_once) {
+    for (uint32_t first = 0; first < pixels && keep_going(); first += at_once) {
         const PixelRun run{first, settings_.crop.width()};
         const uint32_t count = std::min(at_once, pixels - first);
         commands_.dispatch(kernel, std::as_bytes(std::span(&run, 1)), {count, 1, 1});
@@ -44,6 +44,9 @@ Coverage Renderer::coverage(const GpuScene& scene) {
             coverage.add(shown);
         }
     }
+    shown.fill(NO_PART);
+    while (coverage.pixel_count() < pixels)
+        coverage.add(shown);
     return coverage;
 }
 

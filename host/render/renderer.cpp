@@ -53,7 +53,9 @@ std::string gibibytes(uint64_t bytes) {
 void check_host_memory(const vk::Device& device, const GpuScene& scene, const RenderSettings& settings) {
     const uint64_t on_device = device_bytes(scene, settings);
     const uint64_t picture = on_device - scene.bytes();
-    const uint64_t needed = 3 * picture / 2 + (device.info().type == vk::DeviceType::cpu ? on_device : 0);
+    const uint64_t layers = uint64_t{settings.crop.width()} * settings.crop.height() * settings.layer_bytes;
+    const uint64_t needed =
+        3 * picture / 2 + layers + (device.info().type == vk::DeviceType::cpu ? on_device : 0);
     if (memory_in_use() + needed <= memory_limit()) return;
     throw Error("rendering a picture of " + std::to_string(settings.crop.width()) + "x" +
                     std::to_string(settings.crop.height()) + " needs " + gibibytes(needed) + ", where " +

@@ -49,6 +49,8 @@ struct RenderSettings {
     uint32_t rr_depth = 3;
     Backdrop backdrop = Backdrop::environment;
     bool aovs = false;  // Accumulate albedo and normal as well.
+    // Bytes of the host's memory that each pixel needs besides what is accumulated.
+    uint32_t layer_bytes = 0;
     SceneAccess scene_access = SceneAccess::automatic;
     double submission_seconds = 0.0;     // Duration of a submission; 0: suitable for the device.
     uint32_t pass_growth = PASS_GROWTH;  // See Schedule; changes no bit.
@@ -105,8 +107,9 @@ class Renderer {
     std::vector<float> distances();
 
     // What the pixels show first, by FIRST_HITS camera rays each: a function of pixel, seed and filter alone,
-    // whichever samples and sampler were asked for. `scene` is the one that was rendered.
-    Coverage coverage(const GpuScene& scene);
+    // whichever samples and sampler were asked for. `scene` is the one that was rendered. If keep_going(),
+    // which is called between submissions, returns false, the pixels that are left show nothing.
+    Coverage coverage(const GpuScene& scene, const std::function<bool()>& keep_going);
 
     // How far what the centre of each pixel shows has moved in the picture since the frame before; row-major.
     // See render/motion.h. `scene` and `camera` are those that were rendered.

@@ -17,7 +17,7 @@ struct PlaceBefore {
 struct PlacesBefore {
     std::vector<Camera> cameras{};  // As Scene::cameras.
     std::vector<PlaceBefore>
-        shapes{};  // Those that move, deform or are hidden at some time, if they are shown.
+        shapes{};  // Those that move, deform or are hidden at some time, if they show anything.
 };
 
 }  // namespace candela

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "image/cryptomatte.h"
 
 namespace candela {
 
@@ -35,6 +36,15 @@ RenderSettings proposed_settings(const Scene& scene, const Camera& camera) {
             .seed = proposed.seed,
             .max_depth = std::min(proposed.max_depth.value_or(DEPTH_SAFETY_LIMIT), DEPTH_SAFETY_LIMIT),
             .rr_depth = proposed.rr_depth};
+}
+
+uint32_t layer_bytes(const AovSelection& aovs) {
+    // Most pixels show one part or two; a vector has room for up to twice as many as it holds.
+    constexpr size_t COVERAGE = sizeof(size_t) + 2 * 2 * sizeof(CoveredPart);
+    constexpr size_t IDS = 3 * sizeof(float), CRYPTOMATTE = 2 * CRYPTO_RANKS * 2 * sizeof(float);
+    constexpr size_t MOTION = 2 * sizeof(vec2);
+    return uint32_t((aovs.needs_coverage() ? COVERAGE : 0) + (aovs.ids ? IDS : 0) +
+                    (aovs.cryptomatte ? CRYPTOMATTE : 0) + (aovs.motion ? MOTION : 0));
 }
 
 }  // namespace candela

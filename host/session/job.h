@@ -27,6 +27,9 @@ const Camera& choose_camera(const Scene& scene, const std::optional<std::string>
 // What the scene proposes for a picture by one of its cameras.
 RenderSettings proposed_settings(const Scene& scene, const Camera& camera);
 
+// RenderSettings::layer_bytes for these images: what rays find first, and the layers that it is made into.
+uint32_t layer_bytes(const AovSelection& aovs);
+
 // What a rendering needs in addition to the scene.
 struct RenderJob {
     Camera camera;

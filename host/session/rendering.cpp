@@ -40,6 +40,7 @@ Rendering::Rendering(Source source, RenderJob job, RenderRecord record)
                  .positions = job_.aovs.needs_positions(),
                  .distances = job_.aovs.distance,
                  .coverage = job_.aovs.needs_coverage(),
+                 .keep_going = std::move(source.keep_going),
                  .motion = &job_.motion},
                 [this](const Error& error, uint32_t kept, double submission_seconds) {
                     callbacks_.device_failed(error, kept, submission_seconds);

@@ -39,6 +39,9 @@ class Rendering {
         const GpuScene* scene;
         std::optional<Checkpoint> resumed;  // To continue from.
         std::optional<Image> reference;     // To measure the error against.
+        // Asked before the first sample, while ids are looked up. If it says no, so must the keep_going of
+        // run(), and pixels may lack their ids.
+        std::function<bool()> keep_going = [] { return true; };
     };
 
     // Prepares everything, as SteadyRenderer does; what `source` points to must outlive the rendering.

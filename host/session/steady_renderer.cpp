@@ -44,7 +44,8 @@ void SteadyRenderer::load(const BufferSet& changed) {
 void SteadyRenderer::look_up_first_hits() {
     if (source_.positions && positions_.empty()) positions_ = renderer_->positions();
     if (source_.distances && distances_.empty()) distances_ = renderer_->distances();
-    if (source_.coverage && coverage_.pixel_count() == 0) coverage_ = renderer_->coverage(*source_.scene);
+    if (source_.coverage && coverage_.pixel_count() == 0)
+        coverage_ = renderer_->coverage(*source_.scene, source_.keep_going);
     if (source_.motion != nullptr && *source_.motion && motion_.empty())
         motion_ = renderer_->motion(*source_.scene, *source_.camera, **source_.motion);
 }

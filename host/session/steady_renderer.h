@@ -25,6 +25,8 @@ class SteadyRenderer {
         bool positions = false;            // Whether positions() will be called,
         bool distances = false;            // distances(),
         bool coverage = false;             // and coverage().
+        // Whether to go on with coverage(); if not, pixels that are left show nothing.
+        std::function<bool()> keep_going = [] { return true; };
         // For motion(), which will be called if there is one.
         const std::optional<MotionSince>* motion = nullptr;
         double copy_seconds = 10.0;  // Between two copies of the state.

@@ -225,6 +225,25 @@ TEST_F(CostOfFiles, OfAPictureIsItsPixels) {
     EXPECT_CONTAINS(result.err, " GiB are in use and --memory-limit allows 0.09 GiB; use a smaller picture");
 }
 
+// Of ids and motion, the channels of a file, 4 bytes each, and less than as much again for how they are made.
+TEST_F(CostOfFiles, OfAPictureIsAlsoThatOfItsIds) {
+    const std::string file = scene(R"("film": {"size": [4096, 4096]}, "shapes": [])");
+    const auto gibibytes_of = [&](const char* layers) {
+        const ProcessResult result = candela({"render", file, "--spp", "1", "-o", this->file("a.exr"),
+                                              "--aov", layers, "--memory-limit", "100M"});
+        EXPECT_EQ(result.exit_code, 5) << result.err;
+        const std::string needs = " needs ";
+        const size_t number = result.err.find(needs);
+        return number == std::string::npos ? 0.0 : std::stod(result.err.substr(number + needs.size()));
+    };
+    const double none = gibibytes_of("none");
+    for (const auto& [layers, channels] : {std::pair("ids", 3), std::pair("cryptomatte", 24)}) {
+        const double least = channels * 4 * 4096.0 * 4096.0 / (1 << 30), more = gibibytes_of(layers) - none;
+        EXPECT_GT(more, least) << layers;
+        EXPECT_LT(more, least + 1.0) << layers;
+    }
+}
+
 TEST_F(CostOfFiles, HasALimitThatIsASize) {
     const ProcessResult result = candela({"info", CORNELL_BOX, "--memory-limit", "much"});
     EXPECT_EQ(result.exit_code, 2);

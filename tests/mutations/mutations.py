@@ -43,6 +43,7 @@ BUMP = "shaders/scene/bump.glsl"
 BENT_NORMAL = "shaders/integrator/bent_normal.glsl"
 CAMERA = "shaders/scene/camera.glsl"
 RENDER = "shaders/kernels/render.glsl"
+FIRST_POINTS = "shaders/kernels/first_points.comp.glsl"
 FIRST_HITS = "shaders/kernels/first_hits.comp.glsl"
 PIXEL_FILTER = "shaders/base/pixel_filter.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
@@ -76,6 +77,7 @@ TEXTURES = ("TextureTest*", "TexturedTest*:NormalMap*:Bump*:Opacity*:*Reference*
 MEDIA = ("Records*", "NestedMedia*:*Reference*/nested_glass")
 LAYERED = ("PrincipledTest*:Records*", "PrincipledPicture*")
 CHANGES = ("Records*", "SessionTest*:UpdateTest*", "LiveScene*:SceneStages*")
+MOTION = ("InstanceTest*", "MotionTest*", "Projection*:AnimatedScene*")
 COVERAGE = ("InstanceTest*", "CoverageTest*:AovTest*", "IdLayers*")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
@@ -87,6 +89,16 @@ GROUPS = [
         ("first hits of the shape before", FIRST_HITS, "hit_id(hit) + 1u", "max(hit_id(hit), 1u)"),
         ("distances along the axis", RENDERER, "parallel ? double(at[3])", "true ? double(at[3])"),
         ("the least covering first", "host/film/id_layers.cpp", "a.hits > b.hits", "a.hits < b.hits"),
+    ]),
+    (MOTION, [
+        ("motion of another crop", FIRST_POINTS, "parameters.crop + tile.origin + at", "tile.origin + at"),
+        ("motion back to the frame before", "host/render/motion.cpp", "now.way(*from, to.value_or(film))",
+         "now.way(to.value_or(film), *from)"),
+        ("motion of a deformed mesh as it is", "host/render/motion.cpp", "transformed(motion.before, at(motion.positions_before))",
+         "transformed(motion.before, at(motion.positions_now))"),
+        ("motion the long way around", "host/scene/projection.cpp", "way.x = std::remainder(way.x, size_.x)", "way.x += 0.0"),
+        ("positions before without added vertices", "host/load/gltf/poser.cpp", "positions.push_back(positions[vertex])",
+         "positions.push_back(dvec3(0.0))"),
     ]),
     (INTEGRATOR, [
         ("cosine dropped from direct light", PATH, "value.f * cosine * light.Li", "value.f * light.Li"),

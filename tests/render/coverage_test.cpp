@@ -86,7 +86,7 @@ Scene some_things() {
 class CoverageTest : public RenderTest {
   protected:
     Coverage coverage(const GpuScene& gpu, const Camera& camera, const RenderSettings& settings) const {
-        return Renderer(device(), gpu, camera, settings).coverage(gpu);
+        return Renderer(device(), gpu, camera, settings).coverage(gpu, [] { return true; });
     }
     Coverage coverage(const Scene& scene,
                       const RenderSettings& settings = settings_for(WIDTH, HEIGHT)) const {
@@ -174,6 +174,26 @@ TEST_F(CoverageTest, FromWithinAShapeIsThatShape) {
     const Coverage all = coverage(scene);
     for (size_t i = 0; i < all.pixel_count(); ++i)
         ASSERT_EQ(hits_of(all, i, 4), FIRST_HITS);
+}
+
+// It is asked at least every so many pixels; those that are left show nothing.
+TEST_F(CoverageTest, StopsSoonAfterItIsToldTo) {
+    constexpr uint32_t SIDE = 128, MOST_AT_ONCE = SIDE * SIDE / 2;
+    const Scene scene = some_things();
+    const GpuScene gpu = build_gpu_scene(scene);
+    Renderer renderer(device(), gpu, scene.cameras[0], settings_for(SIDE, SIDE));
+    const Coverage all = renderer.coverage(gpu, [] { return true; });
+    int asked = 0;
+    const Coverage part = renderer.coverage(gpu, [&] { return asked++ < 1; });
+    EXPECT_EQ(asked, 2);
+    ASSERT_EQ(part.pixel_count(), SIDE * SIDE);
+    bool is_whole = true;
+    for (size_t i = 0; i < part.pixel_count(); ++i) {
+        is_whole = is_whole && std::ranges::equal(part.at(i), all.at(i));
+        if (!is_whole) EXPECT_TRUE(part.at(i).empty());
+        if (i >= MOST_AT_ONCE) EXPECT_TRUE(part.at(i).empty());
+    }
+    EXPECT_FALSE(part.at(SIDE * SIDE / 2 - SIDE / 2).empty());
 }
 
 TEST_F(CoverageTest, DependsOnPixelAndSeedAlone) {

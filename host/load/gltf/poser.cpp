@@ -280,7 +280,8 @@ PlacesBefore Poser::places_at(const Scene& scene, double time) {
     joints_.clear();
     PlacesBefore places{.cameras = scene.cameras, .shapes = {}};
     for (const PosedShape& posed : shapes_) {
-        if (std::get<MeshInstance>(scene.shapes[posed.shape].geometry).mesh == nothing_) continue;
+        const uint32_t mesh = std::get<MeshInstance>(scene.shapes[posed.shape].geometry).mesh;
+        if (scene.meshes[mesh].triangles.empty()) continue;
         PlaceBefore& before = places.shapes.emplace_back();
         before.shape = posed.shape;
         if (!posed.skin) {

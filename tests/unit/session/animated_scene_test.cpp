@@ -65,6 +65,13 @@ TEST_F(AnimatedSceneTest, APoseIsThatOfTheLoader) {
 
 // Every vertex is where a fresh scene has it, whichever frames were shown before.
 TEST_F(AnimatedSceneTest, MotionLeadsToWhereEverythingWas) {
+    // Corners without a normal become vertices of their own.
+    GltfFile file = moving_file();
+    for (const size_t mesh : {2, 3}) {
+        file.root["meshes"][mesh]["primitives"][0]["attributes"]["NORMAL"] =
+            file.add<float>("VEC3", {0, 0, 1, 0, 0, 0, 0, 0, 1});
+    }
+    folder_.write("m.gltf", file.gltf());
     AnimatedScene scene = loaded();
     for (const auto& [time, before] : {std::pair(0.5, 0.25), std::pair(1.0, 0.75), std::pair(0.25, 0.5)}) {
         SCOPED_TRACE(time);
@@ -90,6 +97,7 @@ TEST_F(AnimatedSceneTest, MotionLeadsToWhereEverythingWas) {
             EXPECT_EQ(moved->second.before, then.transform.matrix());
             if (moved->second.corners.empty()) continue;
             ++deforming;
+            EXPECT_EQ(mesh.positions.size(), 4u);
             EXPECT_EQ(moved->second.corners.size(), mesh.triangles.size());
             ASSERT_EQ(mesh.positions.size(), mesh_then.positions.size());
             for (size_t v = 0; v < mesh.positions.size(); ++v) {
