@@ -40,7 +40,7 @@ std::optional<double> parse_duration(const std::string& text);
 std::optional<SampleRange> parse_samples(const std::string& text);
 inline constexpr const char* SAMPLES_EXPECTED = "A..B: samples A to B-1, with A < B, each at most 16777216";
 static_assert(MAX_SPP == 16777216);
-// "all", "none" or names of images with commas between, as AOV_NAMES lists them.
+// "all", "none" or names of images with commas between, as AOV_NAMES lists them, and "motion".
 std::optional<AovSelection> parse_aovs(const std::string& text);
 
 // Adds an option that stores parse(value) in `target` (a T or std::optional<T>) if there is one, and

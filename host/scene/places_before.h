@@ -16,8 +16,8 @@ struct PlaceBefore {
 
 struct PlacesBefore {
     std::vector<Camera> cameras{};  // As Scene::cameras.
-    std::vector<PlaceBefore>
-        shapes{};  // Those that move, deform or are hidden at some time, if they show anything.
+    // Of those that move, deform or are hidden at some time, if they show anything.
+    std::vector<PlaceBefore> shapes{};
 };
 
 }  // namespace candela

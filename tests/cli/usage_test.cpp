@@ -69,7 +69,8 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
     const std::string crop = "x0,y0,x1,y1 in pixels from the top left, with x0 < x1 and y0 < y1";
     const std::string spp = "a whole number from 1 to 16777216";
     const std::string duration = "a duration such as 90, 90s, 1.5m or 2h";
-    const std::string aovs = "all, none or a list of albedo,n,p,z,variance,samples,depth,ids,cryptomatte";
+    const std::string aovs =
+        "all, none or a list of albedo,n,p,z,variance,samples,depth,ids,cryptomatte,motion";
     const std::string view =
         "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ROLL in degrees, such as 30,20, with an elevation from -90 "
         "to 90";
