@@ -42,7 +42,8 @@ PARTS = {"absorption", "normal_map", "bump_map", "opacity"}
 # Where the schema has the keys that all variants of an object share.
 COMMON = {"material": {"normal_map": "normalMap", "bump_map": "bumpMap", "opacity": "opacity",
                        "vertex_colors": "vertexColors"},
-          "shape": {key: f"shape_{key}" for key in ("name", "material", "emission", "two_sided", "transform")},
+          "shape": {key: f"shape_{key}" for key in ("name", "material", "emission", "two_sided", "shadow_catcher",
+                                                         "transform")},
           "light": {"name": "light_name"}}
 # What the list of principled values does not say.
 TEXTURED = {"color": "texturedReflectance", "radiance": "texturedRadiance", "weight": "texturedWeight",

@@ -51,6 +51,19 @@ void LightingArguments::add_to(CLI::App& app) {
         ->type_name("FACTOR");
     app.add_flag("--environment-hidden", hidden,
                  "Hide the sky or studio from the camera; it still gives light");
+    add_choice(
+        app, "--ground", catchers.ground, GROUND_NAMES,
+        "Ground just below the scene: show, or catch, to see only the shadows on it, before --background, or "
+        "catch-reflections, with reflections");
+    const auto add_names = [&app](const char* option, std::vector<std::string>& names, const char* text) {
+        app.add_option(option, names, text)
+            ->type_name("MATERIAL")
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+            ->allow_extra_args(false);
+    };
+    add_names("--shadow-catcher", catchers.shadows,
+              "See only the shadows on surfaces of this material; repeat it for several");
+    add_names("--reflection-catcher", catchers.reflections, "The same, with reflections");
 }
 
 }  // namespace candela

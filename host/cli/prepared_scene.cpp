@@ -14,11 +14,19 @@
 #include "cli/loading.h"
 #include "cli/outputs.h"
 #include "render/make_identity.h"
+#include "scene/catchers.h"
 #include "scene/label_scene.h"
 #include "session/convergence.h"
 
 namespace candela {
 namespace {
+
+// Has catchers seen as such: the picture then stands before something other than the sky.
+void show_catchers(RenderJob& job) {
+    job.aovs.catchers = true;
+    job.settings.aovs = job.settings.catchers = true;
+    if (job.settings.backdrop == Backdrop::environment) job.settings.backdrop = Backdrop::background;
+}
 
 class Preparation {
   public:
@@ -96,6 +104,7 @@ class Preparation {
         load();
         for_each([this](PreparedPicture& picture) {
             picture.job = options_.job(prepared_.scene, picture.picture.camera);
+            if (has_catchers(shown())) show_catchers(*picture.job);
             if (picture.job->aovs.needs_coverage()) picture.job->labels = labels();
             if (options_.frames.seed_per_frame) picture.job->settings.seed += *picture.picture.frame;
             if (const auto& reference = options_.outputs.reference)

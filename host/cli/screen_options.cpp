@@ -11,6 +11,7 @@
 #include "base/memory_limit.h"
 #include "cli/arguments.h"
 #include "cli/console.h"
+#include "film/catcher_layers.h"
 #include "film/id_layers.h"
 #include "image/texel_io.h"
 #include "scene/studio.h"
@@ -44,6 +45,7 @@ std::optional<std::string> parse_background(const std::string& text) {
 // What a picture stands before if the user does not say: #bcbcbc, or what its scene shows.
 const Background* default_background(const Image& image) {
     static const Background grey = vec3(0.5f);
+    if (image.find(CATCHER_ALPHA) != nullptr) return &grey;
     const auto studio = image.attributes.find(STUDIO_ATTRIBUTE);
     if (studio == image.attributes.end()) return nullptr;
     const auto* const name = std::get_if<std::string>(&studio->second);

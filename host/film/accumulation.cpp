@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/hash.h"
+#include "film/catcher_layers.h"
 
 namespace candela {
 namespace {
@@ -62,6 +63,10 @@ class Half {
             if (state.sample_count(i) > 0) sum += dvec3(total(state, layer, i));
         }
         return sum / double(count(i));
+    }
+    // The fraction of camera rays that hit a catcher (LAYER_WITH), or one that reflects (LAYER_WITHOUT).
+    double caught(uint32_t layer, size_t i) const {
+        return sum(i, [&](const Accumulation& state) { return double(state.at(layer, i)[3]); }) / count(i);
     }
     double transmission(size_t i) const { return total(LAYER_ALBEDO, i, 3) / count(i); }
     // Variance of the mean, from the sum of the samples and the sum of their squares.
@@ -184,13 +189,26 @@ Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
             return mean_of(halves, i, [&](const Half& half) { return half.mean(layer, i); });
         });
     };
-    add_channels<4>(image, {"R", "G", "B", aovs.transmission ? FIRST_HIT_ALPHA : "A"}, [&](size_t i) {
-        return mean_of(halves, i, [&](const Half& half) { return half.colour(i); });
-    });
-    if (aovs.transmission) {
-        add_channel(image, "A", [&](size_t i) {
-            return mean_of(halves, i, [&](const Half& half) { return 1.0 - half.transmission(i); });
+    const bool has_others = aovs.catchers || aovs.transmission;
+    add_channels<4>(image, {"R", "G", "B", has_others ? FIRST_HIT_ALPHA : "A"}, [&](size_t i) {
+        return mean_of(halves, i, [&](const Half& half) {
+            return half.colour(i) + dvec4(0, 0, 0, aovs.catchers ? half.caught(LAYER_WITHOUT, i) : 0.0);
         });
+    });
+    if (has_others) {
+        add_channel(image, aovs.catchers ? FOREGROUND_ALPHA : "A", [&](size_t i) {
+            return mean_of(halves, i, [&](const Half& half) {
+                return aovs.transmission ? 1.0 - half.transmission(i) : half.colour(i).w;
+            });
+        });
+    }
+    if (aovs.catchers) {
+        add_channel(image, CATCHER_ALPHA, [&](size_t i) {
+            return mean_of(halves, i, [&](const Half& half) { return half.caught(LAYER_WITH, i); });
+        });
+        add_means(CATCHER_WITH, LAYER_WITH);
+        add_means(CATCHER_WITHOUT, LAYER_WITHOUT);
+        set_catcher_alpha(image);
     }
     if (aovs.albedo) add_means({"Albedo.R", "Albedo.G", "Albedo.B"}, LAYER_ALBEDO);
     if (aovs.normal) add_means({"N.X", "N.Y", "N.Z"}, LAYER_NORMAL);

@@ -27,7 +27,7 @@ struct Accumulation {
     PixelRect rect;    // The part of the picture that is held here.
     uint32_t seed = 0;
     uint32_t first_sample = 0;                  // Index of each pixel's first sample.
-    uint32_t layer_count = LAYER_COUNT_COLOUR;  // LAYER_COUNT_COLOUR or LAYER_COUNT_AOVS.
+    uint32_t layer_count = LAYER_COUNT_COLOUR;  // LAYER_COUNT_*
     std::vector<float> values;                  // Empty if no pixel has a sample or a limit.
     RenderCounters counters{};                  // Totals for all of the samples.
 
@@ -82,9 +82,11 @@ struct AovSelection {
     bool cryptomatte = false;  // CryptoObject, CryptoMaterial: see id_layers.h.
     bool motion = false;       // Motion.X/Y: since the frame before; see render/motion.h.
 
+    bool catchers = false;  // The scene has catchers, rendered as such: see catcher_layers.h.
+
     bool operator==(const AovSelection&) const = default;
-    // Whether the accumulation needs LAYER_COUNT_AOVS.
-    bool needs_layers() const { return albedo || normal || transmission; }
+    // Whether the accumulation needs more than LAYER_COUNT_COLOUR.
+    bool needs_layers() const { return albedo || normal || transmission || catchers; }
     bool needs_positions() const { return position || depth; }
     bool needs_coverage() const { return ids || cryptomatte; }
 };

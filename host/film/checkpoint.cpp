@@ -93,6 +93,7 @@ void add_layers(Image& image, size_t index, const Accumulation& state) {
 Accumulation read_layers(const Image& image, size_t index, const std::string& name) {
     Accumulation state{.full = image.full, .rect = image.data, .values = {}};
     if (image.find(channel_name(index, LAYER_ALBEDO, 0)) != nullptr) state.layer_count = LAYER_COUNT_AOVS;
+    if (image.find(channel_name(index, LAYER_WITH, 0)) != nullptr) state.layer_count = LAYER_COUNT_CATCHERS;
     state.values.resize(state.layer_count * state.pixel_count() * 4);
     for (uint32_t layer = 0; layer < state.layer_count; ++layer) {
         for (size_t c = 0; c < 4; ++c) {
@@ -144,6 +145,9 @@ void check_state(const Accumulation& state, const std::string& name) {
         expect(is_count(state.at(LAYER_L, i)[3], samples), "visible samples");
         expect(is_count(state.at(LAYER_SQUARE, i)[3], MAX_SPP), "samples as its limit");
         expect(is_count(state.at(LAYER_SQUARE_COMPENSATION, i)[3], MAX_RAYS), "rays");
+        if (state.layer_count != LAYER_COUNT_CATCHERS) continue;
+        expect(is_count(state.at(LAYER_WITH, i)[3], samples), "samples of catchers");
+        expect(is_count(state.at(LAYER_WITHOUT, i)[3], state.at(LAYER_WITH, i)[3]), "samples of reflections");
     }
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "film/catcher_layers.h"
 #include "film/id_layers.h"
 #include "film/identity.h"
 #include "film/part_sum.h"
@@ -285,6 +286,7 @@ Merged merge_files(const std::vector<std::filesystem::path>& files, const PartRe
         }
     }
     merged.image = sum.image();
+    set_catcher_alpha(merged.image);
     set_attributes(merged.image, parts, std::ranges::min(sum.counts()));
     drop_stray_label_attributes(merged.image);
     return merged;

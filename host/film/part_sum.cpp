@@ -6,13 +6,31 @@
 #include <string_view>
 #include <utility>
 
+#include "film/catcher_layers.h"
 #include "film/id_layers.h"
 
 namespace candela {
 
 static constexpr std::string_view VARIANCE = "Variance.";
-static constexpr std::string_view MEANS[] = {"R",        "G",   "B",   "A",   "Albedo.R",     "Albedo.G",
-                                             "Albedo.B", "N.X", "N.Y", "N.Z", FIRST_HIT_ALPHA};
+static constexpr std::string_view MEANS[] = {"R",
+                                             "G",
+                                             "B",
+                                             "A",
+                                             "Albedo.R",
+                                             "Albedo.G",
+                                             "Albedo.B",
+                                             "N.X",
+                                             "N.Y",
+                                             "N.Z",
+                                             FIRST_HIT_ALPHA,
+                                             CATCHER_ALPHA,
+                                             FOREGROUND_ALPHA,
+                                             CATCHER_WITH[0],
+                                             CATCHER_WITH[1],
+                                             CATCHER_WITH[2],
+                                             CATCHER_WITHOUT[0],
+                                             CATCHER_WITHOUT[1],
+                                             CATCHER_WITHOUT[2]};
 static constexpr std::string_view VARIANCES[] = {"Variance.R", "Variance.G", "Variance.B"};
 static constexpr std::string_view CONSTANTS[] = {"P.X", "P.Y", "P.Z", "Z", "Depth.V", "Motion.X", "Motion.Y"};
 static constexpr std::string_view COUNT = "SampleCount.V";

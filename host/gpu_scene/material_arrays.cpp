@@ -35,6 +35,18 @@ uint32_t textured_bits(const MaterialTextures& t) {
            bit(t.vertex_colors != 0, TEXTURED_VERTEX_COLORS);
 }
 
+uint catcher_code(Catcher catcher) {
+    switch (catcher) {
+        case Catcher::shadows:
+            return CATCHER_SHADOWS;
+        case Catcher::reflections:
+            return CATCHER_REFLECTIONS;
+        case Catcher::none:
+            break;
+    }
+    return CATCHER_NONE;
+}
+
 MaterialTextures textures_of(const Material& material, const EncodedMaterial& encoded,
                              const SceneFrame& frame, TextureTable& textures) {
     constexpr float NO_CUTOFF = -1.0f;
@@ -55,7 +67,8 @@ MaterialTextures textures_of(const Material& material, const EncodedMaterial& en
             .opacity = opacity.factor,
             .cutoff = cutoff.value_or(NO_CUTOFF),
             .vertex_colors = material.vertex_colors ? 1u : 0u,
-            .culled = is_culled(material) ? 1u : 0u};
+            .culled = is_culled(material) ? 1u : 0u,
+            .catcher = catcher_code(material.catcher)};
 }
 
 // What materials know a medium by; appends it to the media if it is new. (The first of them, outside of
@@ -140,6 +153,7 @@ void append_materials(MaterialArrays& out, const Scene& scene, const SceneFrame&
         const MaterialTextures used = textures_of(material, encoded, frame, textures);
         append(out.material_textures, pack(used));
         out.facts.textured |= textured_bits(used);
+        if (used.catcher != CATCHER_NONE) out.facts.has_catchers = true;
         if (used.culled != 0) out.facts.principled |= PRINCIPLED_HAS_CULLED;
     }
     for (const auto& [word, encoded] : principled) {
@@ -150,7 +164,7 @@ void append_materials(MaterialArrays& out, const Scene& scene, const SceneFrame&
         append(out.media, pack(MediumRecord{vec3(frame.unit * dvec3(m.medium.absorption)), m.ior}));
         out.facts.has_media |= m.medium != Medium{};
     }
-    if (out.facts.textured == 0 && !out.facts.small_model) out.material_textures.clear();
+    if (out.facts.textured == 0 && !out.facts.small_model && !out.facts.has_catchers) out.material_textures.clear();
 }
 
 // What the emissions of shapes look up, and what else of a material depends on the shapes that have it.

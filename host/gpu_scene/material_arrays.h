@@ -14,6 +14,7 @@ namespace candela {
 struct MaterialFacts {
     uint32_t material_count = 0;
     bool has_media = false;          // Some medium absorbs light.
+    bool has_catchers = false;       // Some material is a catcher's.
     uint32_t materials_present = 0;  // Bit i: a material of model i.
     uint32_t principled = 0;         // Bits PRINCIPLED_HAS_*: of all principled materials.
     uint32_t textured = 0;           // Bits TEXTURED_*.

@@ -129,6 +129,7 @@ void scale(Environment& environment, double intensity) {
 
 void light_scene(Scene& scene, const std::string& name, SceneSource source, const LightingOptions& options) {
     choose_light(scene, name, source, options);
+    make_catchers(scene, name, options.catchers);
     if (!options.rotation && !options.intensity && !options.hidden) return;
     if (!scene.environment) {
         throw Error(

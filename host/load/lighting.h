@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "scene/catchers.h"
 #include "scene/scene.h"
 #include "scene/sky.h"
 #include "scene/studio.h"
@@ -19,6 +20,7 @@ struct LightingOptions {
     std::optional<double> rotation{};   // About +Y, counter-clockwise seen from above [degrees].
     std::optional<double> intensity{};  // A factor of its radiance, at least 0.
     bool hidden = false;                // From the camera.
+    CatcherOptions catchers{};          // Among them, a ground.
 
     bool operator==(const LightingOptions&) const = default;
 };

@@ -64,12 +64,13 @@ uint32_t camera_constant(const Camera& camera) {
 // The length of the list that replaces the tree; 0 for the tree. Only on lavapipe: a GPU has no registers for
 // a list, and runs other work while some lanes wait; on SwiftShader the list is 2.4 times as slow as the
 // tree. Only for triangles, since every lane executes the tests of all kinds in the scene for each primitive;
-// and only if rays pass none of them.
-uint32_t list_constant(const vk::Device& device, const GpuScene& scene) {
+// and only if rays pass none of them, and none is left out beside catchers.
+uint32_t list_constant(const vk::Device& device, const GpuScene& scene, bool catchers) {
     const bool triangles = scene.primitives_present == 1u << PRIMITIVE_TRIANGLES;
     if (!scene.instances.empty() || scene.small_model) return 0;
     const bool opaque = (scene.textured & TEXTURED_PASSABLE) == 0;
-    return device.info().is_lavapipe() && triangles && opaque && scene.primitive_count <= LIST_MAX
+    return device.info().is_lavapipe() && triangles && !catchers && opaque &&
+                   scene.primitive_count <= LIST_MAX
                ? scene.primitive_count
                : 0;
 }
@@ -109,6 +110,9 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_HAS_NORMALS] = scene.has_normals;
     constants[CONSTANT_SMOOTH_TERMINATOR] = settings.terminator == Terminator::smooth;
     constants[CONSTANT_HAS_AOVS] = settings.aovs;
+    constants[CONSTANT_CATCHERS] = !scene.has_catchers ? CATCHERS_NONE
+                                   : settings.catchers ? CATCHERS_SEEN
+                                                       : CATCHERS_SHOWN;
     constants[CONSTANT_CAMERA] = camera_constant(camera);
     constants[CONSTANT_PIXEL_FILTER] = filter_constant(settings.filter);
     constants[CONSTANT_PIXEL_FILTER_WIDTH] = floatBitsToUint(settings.filter.width);
@@ -139,7 +143,7 @@ KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene
                                  const Camera& camera, const RenderSettings& settings) {
     auto constants = make_constants(scene, camera, settings);
     set_arrays(constants, map);
-    constants[CONSTANT_LIST] = list_constant(device, scene);
+    constants[CONSTANT_LIST] = list_constant(device, scene, settings.catchers);
     if (constants[CONSTANT_LIST] > 0) {
         std::ranges::copy(scene.list_corners, &constants[CONSTANT_LIST_CORNERS_0]);
     } else if (device.info().is_lavapipe()) {

@@ -73,6 +73,14 @@ uint64_t add_to_hash(uint64_t hash, const T& array) {
     return hash_words(std::as_bytes(std::span(array)), hash);
 }
 
+// The constants, as they were before there were catchers if there are none: then the hash is that of older
+// files.
+std::vector<uint32_t> hashed_values(const KernelConstants& constants) {
+    std::vector<uint32_t> values(constants.values.begin(), constants.values.end());
+    if (constants[CONSTANT_CATCHERS] == CATCHERS_NONE) values.erase(values.begin() + CONSTANT_CATCHERS);
+    return values;
+}
+
 }  // namespace
 
 uint64_t hash_arrays(const GpuScene& scene) {
@@ -92,7 +100,7 @@ Identity make_identity(const GpuScene& scene, uint64_t arrays_hash, const Camera
     fixed.first_sample = 0;
     fixed.aovs = false;
     uint64_t hash = add_to_hash(arrays_hash, pack(make_parameters(scene, camera, fixed)));
-    hash = add_to_hash(hash, make_constants(scene, camera, fixed).values);
+    hash = add_to_hash(hash, hashed_values(make_constants(scene, camera, fixed)));
     hash = add_to_hash(hash, std::array<uint32_t, 2>{settings.crop.x1, settings.crop.y1});
     return {
         .settings = {size_text(settings.size), crop_text(settings.crop), std::to_string(settings.seed),

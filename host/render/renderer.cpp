@@ -38,6 +38,7 @@ std::span<const std::byte> bytes_of(const T& value) {
 }
 
 uint32_t layer_count(const RenderSettings& settings) {
+    if (settings.catchers) return LAYER_COUNT_CATCHERS;
     return settings.aovs ? LAYER_COUNT_AOVS : LAYER_COUNT_COLOUR;
 }
 

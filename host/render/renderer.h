@@ -48,7 +48,8 @@ struct RenderSettings {
     uint32_t max_depth = DEPTH_SAFETY_LIMIT;
     uint32_t rr_depth = 3;
     Backdrop backdrop = Backdrop::environment;
-    bool aovs = false;  // Accumulate albedo and normal as well.
+    bool aovs = false;      // Accumulate albedo and normal as well.
+    bool catchers = false;  // Catchers are seen as such, otherwise as other surfaces (needs `aovs`).
     // Bytes of the host's memory that each pixel needs besides what is accumulated.
     uint32_t layer_bytes = 0;
     SceneAccess scene_access = SceneAccess::automatic;

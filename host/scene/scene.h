@@ -193,6 +193,14 @@ struct Opacity {
     bool operator==(const Opacity&) const = default;
 };
 
+// Whether the camera sees a surface only by how it darkens what is behind the picture; docs/catcher.md
+// defines it.
+enum class Catcher {
+    none,
+    shadows,
+    reflections,  // It also reflects the rest of the scene.
+};
+
 struct Material {
     std::string name;
     std::variant<DiffuseMaterial, PhongMaterial, MirrorMaterial, ConductorMaterial, DielectricMaterial,
@@ -203,6 +211,7 @@ struct Material {
     Opacity opacity{};
     bool vertex_colors =
         false;  // The colours of vertices are factors of the model's first colour and of opacity.
+    Catcher catcher = Catcher::none;
 
     bool operator==(const Material&) const = default;
 };
@@ -345,6 +354,7 @@ struct Scene {
     std::vector<std::string> objects;          // Names, all different, of what shapes are parts of.
     std::vector<Light> lights;                 // Besides shapes that emit and the environment.
     std::optional<Environment> environment;    // None: black.
+    std::optional<uint32_t> ground{};          // A shape that was added below the others; views ignore it.
     std::optional<Motion> motion;              // Only of a scene that shows a frame of an animation.
     FileReach reach;                           // The files that may be read for it.
     std::vector<std::filesystem::path> files;  // Files read in addition to a JSON scene file: meshes,

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <span>
 
+#include "scene/catchers.h"
 #include "scene/environment.h"
-#include "scene/geometry.h"
-#include "scene/scene_builder.h"
 
 namespace candela {
 namespace {
@@ -145,20 +144,9 @@ void put_into_studio(Scene& scene, StudioChoice studio) {
     scene.environment = studio_environment(studio);
     scene.attributes.emplace_back(STUDIO_ATTRIBUTE, name_of(studio, STUDIO_NAMES));
     const Design design = design_of(studio);
-    const DoubleBox box = bounds(scene);
-    if (design.ground == 0.0 || box.is_empty()) return;
-    constexpr double REACH = 30.0, GAP = 1e-4;  // Of the radius of the sphere around the scene.
-    const double radius = std::max(0.5 * length(box.extent()), 1e-6);
-    const dvec3 middle = box.centroid();
-    const Disk disk{.center = {middle.x, box.lo.y - GAP * radius, middle.z},
-                    .e1 = {REACH * radius, 0, 0},
-                    .e2 = {0, 0, -REACH * radius}};
-    const auto material = uint32_t(scene.materials.size());
-    scene.materials.push_back(
-        {.name = "studio ground", .model = DiffuseMaterial{.reflectance = vec3(float(design.ground))}});
-    SceneBuilder builder(scene);
-    builder.begin_object(scene.materials.back().name);
-    builder.add({.material = material, .emission = {}}, disk);
+    if (design.ground == 0.0) return;
+    add_ground(scene, {.name = "studio ground",
+                       .model = DiffuseMaterial{.reflectance = vec3(float(design.ground))}});
 }
 
 }  // namespace candela

@@ -199,15 +199,16 @@ Records filled(Fields& fields) {
     r.texel_odd = {.last_word = fields.u(), .range = fields.u()};
     r.material_textures = {.base = fields.keep(0x2BCDEF01u),
                            .specular = fields.keep(0x3C4D5E6Fu),
-                           .parameter = fields.u(),
+                           .parameter = fields.keep(0x5E6F7081u),
                            .normal = fields.keep(0x4D3C2B1Au),
                            .bump = fields.keep(1u),
                            .normal_scale = fields.f(),
-                           .opacity_texture = fields.u(),
+                           .opacity_texture = fields.keep(0x6F708192u),
                            .opacity = fields.f(),
                            .cutoff = fields.f(),
                            .vertex_colors = fields.keep(1u),
-                           .culled = fields.keep(1u)};
+                           .culled = fields.keep(1u),
+                           .catcher = fields.keep(CATCHER_REFLECTIONS)};
     r.light_textures = {.primitive = fields.u(), .emission = fields.u(), .material = fields.u()};
     r.texture = {.first = fields.u(),
                  .size = {fields.keep(0xABCDu), fields.keep(0xFEDCu)},

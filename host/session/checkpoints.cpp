@@ -43,7 +43,7 @@ std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& i
                    std::to_string(job.settings.first_sample),
                same);
     }
-    if ((state.layer_count == LAYER_COUNT_AOVS) != job.settings.aovs) {
+    if ((state.layer_count != LAYER_COUNT_COLOUR) != job.settings.aovs) {
         refuse(std::string("it holds ") + (job.settings.aovs ? "no " : "") +
                    "albedo and normals, which the outputs " + (job.settings.aovs ? "need" : "do not need"),
                "give the same outputs and --aov as for the checkpoint");

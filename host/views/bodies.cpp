@@ -105,7 +105,7 @@ ShownBodies shown_bodies(const Scene& scene) {
     }
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         const Shape& shape = scene.shapes[i];
-        if (is_invisible(scene.materials[shape.material])) continue;
+        if (i == scene.ground || is_invisible(scene.materials[shape.material])) continue;
         if (scene.motion && scene.motion->moves_shape(i)) continue;
         std::visit([&](const auto& geometry) { collector.add(geometry); }, shape.geometry);
     }

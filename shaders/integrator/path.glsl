@@ -11,6 +11,9 @@
 //         sample a direction of the BSDF: beta *= f cos / pdf, ray = from the hit in that direction
 //         if depth >= rr_depth: stop with the probability 1 - q, else beta /= q
 //
+// If the camera ray hits a catcher, the kernel traces a second path by the same random numbers, for which only
+// catchers, sky and lights are there: see docs/catcher.md.
+//
 // path_step is one iteration without the search for the hit: the kernel traces the rays of many paths side by side, and
 // traces the shadow ray of one iteration together with the ray of the next.
 //
@@ -44,6 +47,7 @@ struct Path {
     uvec2 media;      // Around `ray`: see medium/medium.glsl.
     uint depth;       // Scattering vertices so far.
     bool clear;       // Nothing but ideal transmission so far; only if BEFORE_BACKGROUND.
+    bool alone;       // Only catchers, sky and lights are there; only if HAS_CATCHERS.
 };
 
 // The estimate of a path so far.
@@ -56,6 +60,13 @@ struct Estimate {
     // Luminance of the throughput with which the path reached the sky by ideal transmission alone, without the factors
     // by which refraction scales radiance; 0 for all other paths. Only if BEFORE_BACKGROUND.
     float transmission;
+    // The rest only if HAS_CATCHERS, and the camera ray hit a catcher. `with` is its light with everything there;
+    // then L is its light without the rest of the scene. If it reflects, `with` is only what has not met the rest, and
+    // `reflected` what has.
+    uint catcher;  // CATCHER_*
+    vec3 with;
+    vec3 reflected;
+    bool strayed;  // The path from a catcher that reflects has met the rest of the scene.
 };
 
 // A ray towards a light sample, which may be blocked.
@@ -67,7 +78,8 @@ struct ShadowRay {
 
 // A path that begins with a camera ray within these media, and an empty estimate.
 Path path_begin(Ray ray, uvec2 media) {
-    return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u, true);
+    return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u, true,
+                false);
 }
 
 // Whether the path begins where the camera does not see anything: its throughput is then 0.
@@ -76,7 +88,33 @@ bool path_is_blind(Path path) {
 }
 
 Estimate estimate_begin() {
-    return Estimate(vec3(0.0), false, vec3(0.0), vec3(0.0), false, 0.0);
+    return Estimate(vec3(0.0), false, vec3(0.0), vec3(0.0), false, 0.0, CATCHER_NONE, vec3(0.0), vec3(0.0), false);
+}
+
+// Notes that the path's first hit is a catcher, if it is one.
+void estimate_catch(inout Estimate estimate, inout Path path, ShadedSurface x) {
+    estimate.catcher = scene_material_textures(x.s.material).catcher;
+    if (estimate.catcher != CATCHER_NONE) path.clear = false;
+}
+
+// Keeps what the estimate holds as light that has not met the rest of the scene, if the path meets it first at x.
+void estimate_stray(inout Estimate estimate, ShadedSurface x) {
+    if (estimate.catcher != CATCHER_REFLECTIONS || estimate.strayed) return;
+    if (x.s.light != NO_LIGHT || scene_material_textures(x.s.material).catcher != CATCHER_NONE) return;
+    estimate.strayed = true;
+    estimate.with = estimate.L;
+    estimate.L = vec3(0.0);
+}
+
+// Makes the estimate of a path from a catcher ready for the path without the rest of the scene.
+void estimate_turn(inout Estimate estimate) {
+    if (estimate.strayed) {
+        estimate.reflected = estimate.L;
+    } else {
+        estimate.with = estimate.L;
+    }
+    estimate.strayed = false;
+    estimate.L = vec3(0.0);
 }
 
 ShadowRay shadow_none() {
@@ -224,6 +262,13 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         estimate.visible = true;
         estimate.albedo = bsdf_albedo(x.bsdf);
         estimate.normal = x.s.ns;
+    }
+    if (HAS_CATCHERS && !path.alone) {
+        if (path.depth == 0u) {
+            estimate_catch(estimate, path, x);
+        } else {
+            estimate_stray(estimate, x);
+        }
     }
 
     // Attenuate by the medium on the way.

@@ -6,7 +6,8 @@
 //     trace the shadow ray of vertex k - 1, then the path's ray to vertex k
 //     add the direct light of vertex k - 1; if the path ended there, fold the sample
 //     shade vertex k, which yields its shadow ray and the path's next ray
-// For a new sample, "vertex k - 1" is the last one of the sample before.
+// For a new sample, "vertex k - 1" is the last one of the sample before. A sample that hits a catcher first is begun
+// twice: with everything there, and then with catchers, sky and lights alone.
 #ifndef KERNELS_RENDER_GLSL
 #define KERNELS_RENDER_GLSL
 
@@ -72,9 +73,13 @@ struct ScalarSum {
 // The state of a pixel.
 struct Pixel {
     Sum L;
-    Sum square;              // Sum of L^2.
-    Sum albedo;              // Sum over the first hits; only if HAS_AOVS.
-    Sum normal;              // Sum over the first hits; only if HAS_AOVS.
+    Sum square;  // Sum of L^2.
+    Sum albedo;  // Sum over the first hits; only if HAS_AOVS.
+    Sum normal;  // Sum over the first hits; only if HAS_AOVS.
+    Sum with;    // Sums over the first hits that are catchers; only if HAS_CATCHERS.
+    Sum without;
+    float caught;            // Samples whose camera ray hit a catcher,
+    float reflecting;        // and one that reflects; only if HAS_CATCHERS.
     ScalarSum transmission;  // Only if BEFORE_BACKGROUND.
     float visible;           // Samples whose camera ray hit something visible.
     float rays;              // At most MAX_RAYS.
@@ -109,6 +114,18 @@ Pixel pixel_load(uvec2 at) {
         if (BEFORE_BACKGROUND) p.transmission = ScalarSum(albedo.a, albedo_compensation.a);
         p.normal = Sum(layer_load(at, LAYER_NORMAL).rgb, layer_load(at, LAYER_NORMAL_COMPENSATION).rgb);
     }
+    p.with = Sum(vec3(0.0), vec3(0.0));
+    p.without = Sum(vec3(0.0), vec3(0.0));
+    p.caught = 0.0;
+    p.reflecting = 0.0;
+    if (HAS_CATCHERS) {
+        vec4 with = layer_load(at, LAYER_WITH);
+        vec4 without = layer_load(at, LAYER_WITHOUT);
+        p.with = Sum(with.rgb, layer_load(at, LAYER_WITH_COMPENSATION).rgb);
+        p.without = Sum(without.rgb, layer_load(at, LAYER_WITHOUT_COMPENSATION).rgb);
+        p.caught = with.a;
+        p.reflecting = without.a;
+    }
     p.visible = L.a;
     p.rays = square_compensation.a;
     p.limit = square.a;
@@ -127,6 +144,12 @@ void pixel_store(uvec2 at, Pixel p) {
         layer_store(at, LAYER_NORMAL, vec4(p.normal.sum, 0.0));
         layer_store(at, LAYER_NORMAL_COMPENSATION, vec4(p.normal.compensation, 0.0));
     }
+    if (HAS_CATCHERS) {
+        layer_store(at, LAYER_WITH, vec4(p.with.sum, p.caught));
+        layer_store(at, LAYER_WITH_COMPENSATION, vec4(p.with.compensation, 0.0));
+        layer_store(at, LAYER_WITHOUT, vec4(p.without.sum, p.reflecting));
+        layer_store(at, LAYER_WITHOUT_COMPENSATION, vec4(p.without.compensation, 0.0));
+    }
 }
 
 // The number of samples for the pixel when others have `target`.
@@ -144,8 +167,28 @@ void add(inout ScalarSum sum, float x) {
     sum = ScalarSum(total.x, compensation.x);
 }
 
+// Folds what a sample says of catchers into the pixel, and leaves in L what is added to the picture. The background is
+// seen through a catcher. A sample that is not finite adds no light, but is counted as a hit of the catcher.
+void pixel_fold_catcher(inout Pixel p, inout Estimate estimate) {
+    bool caught = estimate.catcher != CATCHER_NONE;
+    vec3 with = caught ? estimate.with : vec3(0.0), without = caught ? estimate.L : vec3(0.0);
+    if (!is_finite(with) || !is_finite(without)) {
+        count(COUNTER_NONFINITE, 1u);
+        with = without = vec3(0.0);
+    }
+    add(p.with, with);
+    add(p.without, without);
+    p.caught += caught ? 1.0 : 0.0;
+    p.reflecting += estimate.catcher == CATCHER_REFLECTIONS ? 1.0 : 0.0;
+    if (!caught) return;
+    estimate.visible = false;
+    estimate.L = estimate.reflected;
+    estimate.transmission = 1.0;
+}
+
 // Folds a sample into the pixel. One whose value or square is not finite adds zero and is counted.
 void pixel_fold(inout Pixel p, Estimate estimate) {
+    if (HAS_CATCHERS) pixel_fold_catcher(p, estimate);
     if (!is_finite(estimate.L * estimate.L) || (BEFORE_BACKGROUND && !is_finite(vec3(estimate.transmission)))) {
         count(COUNTER_NONFINITE, 1u);
         estimate.L = vec3(0.0);
@@ -168,10 +211,11 @@ struct Sample {
     Sampler random;
     Path path;
     Estimate estimate;
-    ShadowRay shadow;  // From the previous vertex.
-    bool alive;        // The path continues.
-    bool ended;        // The path has ended; its last shadow ray may still have to be traced.
-    uint rays;         // Traced so far.
+    ShadowRay shadow;   // From the previous vertex.
+    bool alive;         // The path continues.
+    bool ended;         // The path has ended; its last shadow ray may still have to be traced.
+    uint rays;          // Traced so far.
+    bool shadow_alone;  // As Path::alone, of the shadow ray.
 };
 
 // No sample yet.
@@ -181,14 +225,21 @@ Sample sample_none() {
     s.alive = false;
     s.ended = false;
     s.rays = 0u;
+    s.shadow_alone = false;
     return s;
 }
 
-// Begins the sample of that index with its camera ray. The shadow ray and the estimate of the previous sample remain.
-void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index) {
+// Begins the sample of that index with its camera ray; the second path of a sample is alone. The shadow ray and the
+// estimate of the previous path remain.
+void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index, bool alone) {
     s.random = sampler_make(pixel, index, parameters.seed);
     CameraSample view = camera_sample(parameters, pixel, s.random);
     s.path = path_begin(view.ray, parameters.camera_media);
+    s.path.alone = alone;
+    if (HAS_CATCHERS && alone) {
+        s.path.media = MEDIA_NONE;
+        s.path.clear = false;
+    }
     if (IS_FISHEYE && !view.sees) s.path.beta = vec3(0.0);
     s.alive = true;
 }
@@ -207,6 +258,7 @@ void sample_advance(Sample s, inout Traversal traversal, inout bool lit) {
         lit = !is_hit(traversal.hit);
         if (HAS_PASSABLE) traversal.any_hit = false;
         if (s.alive) traversal = bvh_begin(s.path.ray, FLOAT_MAX, false);
+        if (HAS_CATCHERS) traversal.alone = s.path.alone;
     }
 }
 
@@ -217,6 +269,7 @@ TraceResult sample_trace(Sample s) {
     Ray first = s.path.ray;
     if (shadowed) first = s.shadow.ray;
     Traversal traversal = bvh_begin(first, shadowed ? s.shadow.t_max : FLOAT_MAX, shadowed);
+    if (HAS_CATCHERS) traversal.alone = shadowed ? s.shadow_alone : s.path.alone;
     if (!shadowed && !s.alive) bvh_end(traversal);
     bool lit = false;
     if (HAS_PASSABLE) {
@@ -240,7 +293,8 @@ TraceResult sample_trace(Sample s) {
 
 // Advances the path past the hit of its ray, or past its miss.
 void sample_step(inout Sample s, Hit hit, Parameters parameters) {
-    if (s.path.depth == 0u) s.estimate = estimate_begin();
+    if (s.path.depth == 0u && !(HAS_CATCHERS && s.path.alone)) s.estimate = estimate_begin();
+    s.shadow_alone = s.path.alone;
     s.alive = path_step(s.path, s.estimate, s.shadow, hit, s.random, parameters);
     s.rays += s.shadow.t_max > 0.0 ? 2u : 1u;
     s.ended = !s.alive;
@@ -273,14 +327,17 @@ void render_pixel() {
     uint begun = before;  // Samples begun; pixel.samples of them are folded.
     uint rays = 0u;       // Rays of the folded samples.
     while (pixel.samples < target) {
-        if (!s.alive && begun < target) {
-            sample_begin(s, parameters, parameters.crop + at, parameters.first_sample + begun);
-            ++begun;
+        bool again = HAS_CATCHERS && s.ended && !s.path.alone && s.estimate.catcher != CATCHER_NONE;
+        if (!s.alive && (again || begun < target)) {
+            if (!again) ++begun;
+            sample_begin(s, parameters, parameters.crop + at, parameters.first_sample + begun - 1u, again);
         }
         TraceResult met = sample_trace(s);
         if (!met.complete) break;
         if (met.lit) s.estimate.L += s.shadow.Ld;
-        if (s.ended) {
+        if (again) {
+            estimate_turn(s.estimate);
+        } else if (s.ended) {
             pixel_fold(pixel, s.estimate);
             rays += s.rays;
             s.rays = 0u;

@@ -136,6 +136,7 @@ void put_material_textures(MaterialTextures t) {
     put(t.cutoff);
     put(t.vertex_colors);
     put(t.culled);
+    put(t.catcher);
 }
 
 void put_principled(PrincipledRecord p) {

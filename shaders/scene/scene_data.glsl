@@ -10,6 +10,8 @@
 #include "shared/kernel_constants.h"
 #include "shared/parameters.h"
 
+const bool HAS_CATCHERS = CATCHERS == CATCHERS_SEEN;
+
 #define BUFFER(number, name) layout(binding = number) uniform usamplerBuffer texels_##name;
 #include "shared/scene_buffers.inc"
 #undef BUFFER
@@ -204,7 +206,7 @@ CdfEntry scene_environment_cdf(uint i) {
 MaterialTextures scene_material_textures(uint i) {
     uvec4 a, b;
     READ_2(MATERIALS, MATERIAL_TEXTURES, i * MATERIAL_TEXTURES_WORDS, a, b);
-    return material_textures_unpack(a, b);
+    return material_textures_unpack(a, b, CATCHERS != CATCHERS_NONE);
 }
 
 // The textures of the light at that place.

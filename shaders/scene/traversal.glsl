@@ -31,6 +31,7 @@ struct Traversal {
     Ray outside;          // In the frame of the scene.
     uint instance;        // The instance that the ray is in, or NO_INSTANCE.
     uint root;            // The root of its mesh, followed by all nodes of the mesh; 0 outside instances.
+    bool alone;           // Only catchers and what emits are there; only if HAS_CATCHERS.
 };
 
 // A traversal at the root that looks for hits with t in (0, t_max). bvh_prepare comes first.
@@ -38,7 +39,12 @@ Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack[0] = PENDING_NONE;
     vec3 inv_d = reciprocals(ray.d);
     return Traversal(ray, inv_d, ray_shear(ray.d, inv_d), any_hit, hit_none(t_max), 0u, PENDING_NONE, 0u, 0u,
-                     candidate_none(), ray, NO_INSTANCE, 0u);
+                     candidate_none(), ray, NO_INSTANCE, 0u, false);
+}
+
+// Whether the surface also belongs to the scene without what is seen before catchers: it is one, or it emits.
+bool stays_alone(Surface surface) {
+    return surface.light != NO_LIGHT || scene_material_textures(surface.material).catcher != CATCHER_NONE;
 }
 
 // Ends a traversal: no node is left to visit, no leaf to test.
@@ -139,6 +145,7 @@ void bvh_advance(inout Traversal t) {
     while (t.leaves != 0u && !bvh_waits(t)) {
         uint position = t.first_leaf + uint(findLSB(t.leaves));
         t.leaves &= t.leaves - 1u;
+        if (HAS_CATCHERS && t.alone && !stays_alone(scene_surface(position))) continue;
         Hit first = primitive_hit(t.ray, t.shear, scene_primitive(position), position, t.instance);
         meet(position, first, t.hit, t.candidate);
     }

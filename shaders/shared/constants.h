@@ -51,8 +51,14 @@ const uint LAYER_ALBEDO = 4u;               // rgb: sum of the first hit's albed
 const uint LAYER_ALBEDO_COMPENSATION = 5u;  // rgb; a.
 const uint LAYER_NORMAL = 6u;               // rgb: sum of the first hit's shading normal, world space.
 const uint LAYER_NORMAL_COMPENSATION = 7u;  // rgb.
-const uint LAYER_COUNT_COLOUR = 4u;         // Layers of an image without AOVs.
-const uint LAYER_COUNT_AOVS = 8u;           // Layers of an image with AOVs.
+// Of catchers: see Estimate in integrator/path.glsl.
+const uint LAYER_WITH = 8u;                   // rgb: sum of `with`; a: camera rays that hit a catcher.
+const uint LAYER_WITH_COMPENSATION = 9u;      // rgb.
+const uint LAYER_WITHOUT = 10u;               // rgb: sum of `without`; a: camera rays that hit one that reflects.
+const uint LAYER_WITHOUT_COMPENSATION = 11u;  // rgb.
+const uint LAYER_COUNT_COLOUR = 4u;           // Layers of an image without AOVs.
+const uint LAYER_COUNT_AOVS = 8u;             // Layers of an image with AOVs.
+const uint LAYER_COUNT_CATCHERS = 12u;        // The same with catchers.
 
 // Floats represent every whole number up to this, so sums do not depend on how they are split.
 const float MAX_RAYS = 16777216.0;
@@ -92,6 +98,11 @@ const uint PIXEL_FILTER_BOX = 1u;     // Of another width.
 const uint PIXEL_FILTER_TENT = 2u;
 const uint PIXEL_FILTER_GAUSSIAN = 3u;
 const uint PIXEL_FILTER_BLACKMAN_HARRIS = 4u;
+
+// Whether surfaces are catchers: see integrator/path.glsl.
+const uint CATCHERS_NONE = 0u;
+const uint CATCHERS_SHOWN = 1u;  // As other surfaces.
+const uint CATCHERS_SEEN = 2u;   // As such. Only with LAYER_COUNT_CATCHERS.
 
 // Kinds of environment that a kernel distinguishes.
 const uint ENVIRONMENT_NONE = 0u;

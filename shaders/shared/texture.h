@@ -5,8 +5,10 @@
 //     0: first, size, traits      0: base | vertex_colors << 31,      0: primitive, emission, material
 //     1: row_u.xyz                   specular | culled << 31, parameter,
 //     2: row_v.xyz                   normal | bump << 31
+//                                    catcher & 1 in bit 31 of parameter
 //                                 1: opacity_texture, opacity,
-//                                    cutoff, normal_scale
+//                                    cutoff, normal_scale;
+//                                    catcher >> 1 in bit 31 of opacity_texture
 //
 // Texels lie in tiles of 4 x 4, row by row from the top; so do the texels of a tile. Tiles at the right and
 // lower edges are whole.
@@ -18,6 +20,7 @@
 #ifndef SHARED_TEXTURE_H
 #define SHARED_TEXTURE_H
 
+#include "shared/catcher.h"
 #include "shared/primitive.h"
 
 #ifdef __cplusplus
@@ -82,6 +85,7 @@ struct MaterialTextures {
                            // elsewhere.
     uint vertex_colors;    // 1: `base` and opacity are multiplied by the colours of vertices.
     uint culled;           // 1: rays pass the surface from behind.
+    uint catcher;          // CATCHER_*
 };
 
 // The surface of a light, and the factors of its radiance.
@@ -121,8 +125,9 @@ inline std::array<uvec4, TEXTURE_WORDS> pack(const TextureRecord& t) {
 }
 
 inline std::array<uvec4, MATERIAL_TEXTURES_WORDS> pack(const MaterialTextures& t) {
-    return {uvec4(t.base | t.vertex_colors << 31u, t.specular | t.culled << 31u, t.parameter, t.normal | t.bump << 31u),
-            uvec4(t.opacity_texture, floatBitsToUint(t.opacity), floatBitsToUint(t.cutoff),
+    return {uvec4(t.base | t.vertex_colors << 31u, t.specular | t.culled << 31u, t.parameter | (t.catcher & 1u) << 31u,
+                  t.normal | t.bump << 31u),
+            uvec4(t.opacity_texture | t.catcher >> 1u << 31u, floatBitsToUint(t.opacity), floatBitsToUint(t.cutoff),
                   floatBitsToUint(t.normal_scale))};
 }
 
@@ -155,16 +160,18 @@ TextureRecord texture_unpack(uvec4 a, uvec4 b, uvec4 c) {
     return t;
 }
 
-MaterialTextures material_textures_unpack(uvec4 a, uvec4 b) {
+// `catchers`: whether some material may be a catcher.
+MaterialTextures material_textures_unpack(uvec4 a, uvec4 b, bool catchers) {
     MaterialTextures t;
     t.base = a.x & MAX_TEXTURES;
     t.vertex_colors = a.x >> 31u;
     t.specular = a.y & MAX_TEXTURES;
     t.culled = a.y >> 31u;
-    t.parameter = a.z;
+    t.parameter = catchers ? a.z & MAX_TEXTURES : a.z;
     t.normal = a.w & MAX_TEXTURES;
     t.bump = a.w >> 31u;
-    t.opacity_texture = b.x;
+    t.opacity_texture = catchers ? b.x & MAX_TEXTURES : b.x;
+    t.catcher = catchers ? a.z >> 31u | b.x >> 31u << 1u : CATCHER_NONE;
     t.opacity = uintBitsToFloat(b.y);
     t.cutoff = uintBitsToFloat(b.z);
     t.normal_scale = uintBitsToFloat(b.w);

@@ -183,7 +183,9 @@ void read_shapes(const Node& node, const std::optional<Node>& objects, const std
     for (const Node& object : members)
         of += object.size();
     const auto read = [&](const Node& shape) {
+        const size_t first = scene.shapes.size();
         shape.require("type").choice(READERS)(shape, known, shapes);
+        if (const auto catcher = shape.find("shadow_catcher")) shapes.make_catchers(*catcher, first);
         progress("shapes", ++done, of);
     };
     for (const Node& object : members) {

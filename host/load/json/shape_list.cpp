@@ -3,7 +3,9 @@
 
 #include <utility>
 
+#include "scene/catchers.h"
 #include "scene/materials.h"
+#include "scene/names.h"
 
 namespace candela {
 
@@ -55,6 +57,21 @@ std::optional<Emission> ShapeList::emission_of(const Node& node) {
     const Textured<vec3> radiance = read_radiance(*emission, {folder_, scene()});
     if (radiance.factor == vec3(0.0f)) return std::nullopt;
     return Emission{radiance, both_sides};
+}
+
+void ShapeList::make_catchers(const Node& node, size_t first) {
+    const Catcher catcher = node.choice(CATCHER_NAMES);
+    for (size_t i = first; i < scene().shapes.size(); ++i) {
+        const Material material = scene().materials[scene().shapes[i].material];
+        if (scene().shapes[i].emission || is_unlit(material))
+            node.fail(std::string("the shape ") + CATCHER_EMITS);
+        const auto [known, is_new] = catchers_.try_emplace({scene().shapes[i].material, catcher});
+        if (is_new) {
+            known->second = add_material(material);
+            scene().materials[known->second].catcher = catcher;
+        }
+        scene().shapes[i].material = known->second;
+    }
 }
 
 Transform ShapeList::transform_of(const Node& node) {

@@ -36,6 +36,9 @@ class ShapeList : public SceneBuilder {
     Appearance appearance_of(const Node& node, const Shape& shape);
     // The emission of a shape's node; none if it is absent or zero. Throws Error for two_sided without it.
     std::optional<Emission> emission_of(const Node& node);
+    // Makes the shapes from that one on catchers, as the node of their key says. Throws Error if one emits
+    // light.
+    void make_catchers(const Node& node, size_t first);
     // The transform of a shape's node; the identity if it has none.
     static Transform transform_of(const Node& node);
 
@@ -45,6 +48,7 @@ class ShapeList : public SceneBuilder {
     std::filesystem::path folder_;
     std::map<std::string, uint32_t, std::less<>> indices_;  // Indices of the materials that the scene file
                                                             // defines.
+    std::map<std::pair<uint32_t, Catcher>, uint32_t> catchers_;  // Materials of catchers, by those without.
 };
 
 // Returns a point in world space. Throws Error at the place of `node`, where it came from, if it lies too far
