@@ -164,7 +164,8 @@ void append_materials(MaterialArrays& out, const Scene& scene, const SceneFrame&
         append(out.media, pack(MediumRecord{vec3(frame.unit * dvec3(m.medium.absorption)), m.ior}));
         out.facts.has_media |= m.medium != Medium{};
     }
-    if (out.facts.textured == 0 && !out.facts.small_model && !out.facts.has_catchers) out.material_textures.clear();
+    if (out.facts.textured == 0 && !out.facts.small_model && !out.facts.has_catchers)
+        out.material_textures.clear();
 }
 
 // What the emissions of shapes look up, and what else of a material depends on the shapes that have it.

@@ -62,7 +62,7 @@ class CheckpointFile : public testing::Test {
 };
 
 TEST_F(CheckpointFile, KeepsEveryBit) {
-    for (const uint32_t layers : {LAYER_COUNT_COLOUR, LAYER_COUNT_AOVS}) {
+    for (const uint32_t layers : {LAYER_COUNT_COLOUR, LAYER_COUNT_AOVS, LAYER_COUNT_CATCHERS}) {
         Accumulation state = sampled(layers).state;
         state.values[4] = -0.0f;
         state.values[5] = 0x1p-149f;
@@ -162,6 +162,14 @@ TEST_F(CheckpointFile, WhatNoRendererLeavesIsRefused) {
     expect_alpha_refused(LAYER_L, "visible samples");
     expect_alpha_refused(LAYER_SQUARE, "samples as its limit");
     expect_alpha_refused(LAYER_SQUARE_COMPENSATION, "rays");
+    for (const auto& [layer, what] : {std::pair(LAYER_WITH, "samples of catchers"),
+                                      std::pair(LAYER_WITHOUT, "samples of reflections")}) {
+        for (const float bad : {-1.0f, 0.5f, 3.0f, INFINITE, std::nanf("")}) {
+            Accumulation state = sampled(LAYER_COUNT_CATCHERS).state;
+            state.values[(layer * state.pixel_count() + 2) * 4 + 3] = bad;
+            expect_refused({state}, std::string("pixel 2 of a state has no whole number of ") + what);
+        }
+    }
     States states = four_states();
     states[2].seed += 1;
     expect_refused(states, "its states are not those of one rendering");
