@@ -1,6 +1,9 @@
 // Where cameras show points.
 #include "scene/projection.h"
 
+#include <cmath>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace candela {
@@ -8,11 +11,16 @@ namespace {
 
 using glm::dvec2;
 
-constexpr uvec2 SIZE(40, 20);
+constexpr uvec2 PICTURE(40, 20);
 
 // It looks along -x from (1, 2, 3), with +z up.
 Camera some_camera() {
-    return {.position = {1, 2, 3}, .look_at = {0, 2, 3}, .up = {0, 0, 1}, .vertical_fov = PI / 2};
+    Camera camera;
+    camera.position = {1, 2, 3};
+    camera.look_at = {0, 2, 3};
+    camera.up = {0, 0, 1};
+    camera.vertical_fov = PI / 2;
+    return camera;
 }
 
 // In the axes of that camera.
@@ -41,7 +49,7 @@ std::vector<Camera> some_cameras() {
 TEST(Projection, ShowsDirectionsInTheirPlaces) {
     const std::vector<Camera> cameras = some_cameras();
     const auto place = [&](size_t camera, dvec3 d) {
-        return Projection(cameras[camera], SIZE).place_of_direction(d);
+        return Projection(cameras[camera], PICTURE).place_of_direction(d);
     };
     // The upper edge of the picture is at 45 degrees.
     expect_at(place(0, direction(0, 2, 2)), {20, 0});
@@ -56,15 +64,15 @@ TEST(Projection, ShowsDirectionsInTheirPlaces) {
     EXPECT_FALSE(place(0, direction(1, 0, 0)));
     EXPECT_FALSE(place(2, dvec3(0)));
     EXPECT_FALSE(place(5, direction(0, 0, 1)));
-    const Projection parallel(cameras[5], SIZE);
+    const Projection parallel(cameras[5], PICTURE);
     expect_at(parallel.place_of(dvec3(1, 2, 3) + direction(2.5, 1, -7)), {30, 6});
-    expect_at(Projection(cameras[0], SIZE).place_of(dvec3(1, 2, 3) + direction(0, 2, 2)), {20, 0});
+    expect_at(Projection(cameras[0], PICTURE).place_of(dvec3(1, 2, 3) + direction(0, 2, 2)), {20, 0});
 }
 
 TEST(Projection, SeesDirectionsWhereItShowsThem) {
     for (const Camera& camera : some_cameras()) {
         if (camera.ortho_height) continue;
-        const Projection projection(camera, SIZE);
+        const Projection projection(camera, PICTURE);
         size_t seen = 0;
         for (int i = 0; i < 800; ++i) {
             const dvec2 place(i % 40 + 0.5, i / 40 + 0.5);
@@ -75,12 +83,12 @@ TEST(Projection, SeesDirectionsWhereItShowsThem) {
         }
         EXPECT_GT(seen, 100u);
     }
-    EXPECT_FALSE(Projection(some_cameras()[3], SIZE).direction_at({31, 10})) << "outside of the circle";
+    EXPECT_FALSE(Projection(some_cameras()[3], PICTURE).direction_at({31, 10})) << "outside of the circle";
 }
 
 TEST(Projection, GoesTheShorterWayAround) {
     const std::vector<Camera> cameras = some_cameras();
-    const Projection around(cameras[2], SIZE), plane(cameras[0], SIZE);
+    const Projection around(cameras[2], PICTURE), plane(cameras[0], PICTURE);
     EXPECT_EQ(around.way({39, 3}, {2, 4}), dvec2(3, 1));
     EXPECT_EQ(around.way({2, 4}, {39, 3}), dvec2(-3, -1));
     EXPECT_EQ(around.way({2, 4}, {12, 3}), dvec2(10, -1));
