@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 262u
+#define RESULT_WORDS 263u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
