@@ -223,7 +223,8 @@ TEST_F(CatcherTest, CropsAndContinuedRenderingsHaveTheSameBits) {
     Renderer first(device(), scene, camera, settings);
     ASSERT_TRUE(first.render(5, [](double) { return true; }));
     const Accumulation half = first.download();
-    save_checkpoint(directory / "half.exr", {.identity = make_identity(scene, camera, settings), .maker = {}}, {&half, 1});
+    save_checkpoint(directory / "half.exr", {.identity = make_identity(scene, camera, settings), .maker = {}},
+                    {&half, 1});
     settings.submission_seconds = 1e-6;
     Renderer second(device(), scene, camera, settings);
     second.upload(load_checkpoint(directory / "half.exr").states.at(0));

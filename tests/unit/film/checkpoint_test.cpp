@@ -162,8 +162,8 @@ TEST_F(CheckpointFile, WhatNoRendererLeavesIsRefused) {
     expect_alpha_refused(LAYER_L, "visible samples");
     expect_alpha_refused(LAYER_SQUARE, "samples as its limit");
     expect_alpha_refused(LAYER_SQUARE_COMPENSATION, "rays");
-    for (const auto& [layer, what] : {std::pair(LAYER_WITH, "samples of catchers"),
-                                      std::pair(LAYER_WITHOUT, "samples of reflections")}) {
+    for (const auto& [layer, what] :
+         {std::pair(LAYER_WITH, "samples of catchers"), std::pair(LAYER_WITHOUT, "samples of reflections")}) {
         for (const float bad : {-1.0f, 0.5f, 3.0f, INFINITE, std::nanf("")}) {
             Accumulation state = sampled(LAYER_COUNT_CATCHERS).state;
             state.values[(layer * state.pixel_count() + 2) * 4 + 3] = bad;

@@ -49,8 +49,8 @@ TEST_F(CatchersTest, AShapeOfANativeSceneIsOneByItself) {
               scene.materials[scene.shapes[1].material].model);
     EXPECT_TRUE(has_catchers(scene));
     EXPECT_FALSE(has_catchers(folder_.load(balls(""))));
-    folder_.expect_error(balls(R"(, "shadow_catcher": @true)"),
-                         R"("shadow_catcher": expected "catch" or "catch-reflections", found true)");
+    folder_.expect_error(balls(R"(, "shadow_catcher": @"shadows")"),
+                         R"(unknown shadow_catcher "shadows" (known: catch, catch-reflections))");
     folder_.expect_error(balls("", R"(, "shadow_catcher": @"catch")"),
                          std::string("the shape ") + CATCHER_EMITS);
 }
