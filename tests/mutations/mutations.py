@@ -69,6 +69,7 @@ PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Orthographic*:ScaleTe
 TERMINATOR = ("Interaction*", "Terminator*")
 CAMERAS = ("WarpTest*", "PanoramaTest*:PixelFilterTest*:ClampTest*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
+CATCHERS = ("*Traversal*", "CatcherTest*")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 INSTANCES = ("InstanceTest*", "InstancedNormals*:*InstanceTest*", "Instancing*:MediaAt*")
 LAMPS = ("LampTest*", "LampTest*", "Instancing*")
@@ -174,6 +175,13 @@ GROUPS = [
          "vec3 p = LIT_FROM_BEHIND ? v.p + v.lift : vertex_spawn_origin(v, true);", "vec3 p = v.p + v.error * v.n;"),
         ("the horizon is that of the triangle", SURFACE, "x.horizon = x.unbent;", ""),
         ("the back of a shading normal is black", SURFACE, "x.unbent = facing_normal(x.s.wo, x.s.n, x.unbent);", ""),
+    ]),
+    (CATCHERS, [
+        ("a catcher's shadow is also there without what casts it", TRAVERSAL,
+         "if (HAS_CATCHERS && t.alone && !stays_alone(scene_surface(position))) continue;", ""),
+        ("lamps are no bodies beside catchers", TRAVERSAL, "return surface.light != NO_LIGHT || scene_material",
+         "return scene_material"),
+        ("what a catcher reflects is part of its shadow", PATH, "    estimate.strayed = true;\n", ""),
     ]),
     (SAMPLES, [
         ("aperture not uniform", CAMERA, "? warp_disk(u)", "? u.x * cos_sin_turn(u.y)"),
