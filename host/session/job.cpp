@@ -40,8 +40,8 @@ RenderSettings proposed_settings(const Scene& scene, const Camera& camera) {
 
 uint32_t layer_bytes(const AovSelection& aovs) {
     // Most pixels show one part or two; a vector has room for up to twice as many as it holds.
-    constexpr size_t COVERAGE = sizeof(size_t) + 2 * 2 * sizeof(CoveredPart);
-    constexpr size_t IDS = 3 * sizeof(float), CRYPTOMATTE = 2 * CRYPTO_RANKS * 2 * sizeof(float);
+    constexpr size_t COVERAGE = sizeof(size_t) + size_t{4} * sizeof(CoveredPart);
+    constexpr size_t IDS = 3 * sizeof(float), CRYPTOMATTE = size_t{4} * CRYPTO_RANKS * sizeof(float);
     constexpr size_t MOTION = 2 * sizeof(vec2);
     return uint32_t((aovs.needs_coverage() ? COVERAGE : 0) + (aovs.ids ? IDS : 0) +
                     (aovs.cryptomatte ? CRYPTOMATTE : 0) + (aovs.motion ? MOTION : 0));

@@ -42,7 +42,7 @@ OPACITY = "shaders/scene/opacity.glsl"
 BUMP = "shaders/scene/bump.glsl"
 BENT_NORMAL = "shaders/integrator/bent_normal.glsl"
 CAMERA = "shaders/scene/camera.glsl"
-RENDER = "shaders/kernels/render.glsl"
+PIXEL = "shaders/kernels/pixel.glsl"
 FIRST_POINTS = "shaders/kernels/first_points.comp.glsl"
 FIRST_HITS = "shaders/kernels/first_hits.comp.glsl"
 PIXEL_FILTER = "shaders/base/pixel_filter.glsl"
@@ -435,9 +435,9 @@ GROUPS = [
          "if (!is_same(before.meshes[i], now.meshes[i]))", "if (false)"),
     ]),
     (DEVICES, [
-        ("a work group's counts in the place of those before", RENDER, "if (n > 0u) atomicAdd(counters[i], n);",
+        ("a work group's counts in the place of those before", PIXEL, "if (n > 0u) atomicAdd(counters[i], n);",
          "if (n > 0u) atomicExchange(counters[i], n);"),
-        ("an invocation hands on the work group's counts before all are there", RENDER,
+        ("an invocation hands on the work group's counts before all are there", PIXEL,
          "if (atomicAdd(group_finished, 1u) + 1u <", "if (atomicAdd(group_finished, 1u) + 9u <"),
         ("the first array of the scene decides how all are read", "host/render/array_map.cpp",
          "sizes[i] > device.limits", "sizes[0] > device.limits"),

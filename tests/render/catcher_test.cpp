@@ -252,7 +252,9 @@ TEST_F(CatcherTest, ScenesWithoutCatchersKeepTheirKernel) {
     const Scene scene = ball_on_floor(Catcher::none);
     const GpuScene records = build_gpu_scene(scene);
     EXPECT_FALSE(records.has_catchers);
-    const KernelConstants constants = make_constants(records, scene.cameras[0], settings_for(8, 8));
+    RenderSettings settings = settings_for(8, 8);
+    settings.aovs = settings.catchers = true;
+    const KernelConstants constants = make_constants(records, scene.cameras[0], settings);
     EXPECT_EQ(constants[CONSTANT_CATCHERS], CATCHERS_NONE);
     const Scene with = ball_on_floor(Catcher::shadows);
     EXPECT_EQ(make_constants(build_gpu_scene(with), with.cameras[0], settings_for(8, 8))[CONSTANT_CATCHERS],
