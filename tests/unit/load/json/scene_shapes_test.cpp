@@ -83,7 +83,7 @@ TEST(SceneShapes, CheckSpheres) {
     folder.expect_error(sphere("\"center\": @[0, 0]"), "\"center\": expected three numbers, found [0, 0]");
     folder.expect_error(sphere("@\"centre\": [0, 0, 0]"),
                         "unknown key \"centre\" (did you mean \"center\"? known: type, center, radius, "
-                        "name, material, emission, two_sided, transform)");
+                        "name, material, emission, two_sided, shadow_catcher, transform)");
     const std::string uneven =
         "a sphere may only be moved, turned, mirrored and scaled evenly; use a mesh instead";
     folder.expect_error(sphere(R"("transform": @[{"scale": [1, 1, 2]}])"), uneven);
