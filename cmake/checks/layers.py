@@ -9,7 +9,7 @@ from pathlib import Path
 
 # Where kernels are, what several of them share, and the only other files that declare buffers or images.
 KERNEL_FOLDERS = ("shaders/kernels", "shaders/probes")
-KERNEL_BODIES = ("shaders/kernels/render.glsl",)
+KERNEL_BODIES = ("shaders/kernels/pixel.glsl", "shaders/kernels/render.glsl")
 DECLARE_BUFFERS = ("shaders/scene/scene_data.glsl", "shaders/probes/items.glsl", *KERNEL_BODIES)
 
 # Library -> what its includes look like. The table of layers says which folders may see it, directly or through other
