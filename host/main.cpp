@@ -2,9 +2,9 @@
 #include <csignal>
 #include <exception>
 
-#include "cli/caught_error.h"
+#include "base/caught_error.h"
 #include "cli/console.h"
-#include "cli/exit_code.h"
+#include "base/exit_code.h"
 #include "cli/program.h"
 
 int main(int argc, char** argv) {

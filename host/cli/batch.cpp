@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/caught_error.h"
 #include "base/cpu_time.h"
 #include "base/file.h"
-#include "cli/caught_error.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "film/accumulation.h"

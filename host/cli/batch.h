@@ -16,7 +16,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/exit_code.h"
+#include "base/exit_code.h"
 #include "cli/picture_plan.h"
 #include "cli/picture_renderer.h"
 #include "cli/prepared_scene.h"

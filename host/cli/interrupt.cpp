@@ -6,8 +6,8 @@
 
 #include <unistd.h>
 
+#include "base/exit_code.h"
 #include "cli/console.h"
-#include "cli/exit_code.h"
 
 namespace candela {
 

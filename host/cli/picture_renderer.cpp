@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/caught_error.h"
 #include "base/cpu_time.h"
-#include "cli/caught_error.h"
 #include "cli/console.h"
 #include "cli/label_attributes.h"
 #include "cli/outputs.h"

@@ -7,9 +7,9 @@
 #include <memory>
 #include <utility>
 
+#include "base/caught_error.h"
 #include "base/cpu_time.h"
 #include "base/memory_limit.h"
-#include "cli/caught_error.h"
 #include "cli/console.h"
 #include "cli/loading.h"
 #include "cli/outputs.h"

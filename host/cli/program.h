@@ -1,7 +1,7 @@
 // The command line as a whole: from its words to the command that they name.
 #pragma once
 
-#include "cli/exit_code.h"
+#include "base/exit_code.h"
 
 namespace candela {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "cli/exit_code.h"
+#include "base/exit_code.h"
 #include "selftest/selftest.h"
 #include "vk/device_info.h"
 

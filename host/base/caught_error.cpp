@@ -1,5 +1,5 @@
 // See caught_error.h.
-#include "cli/caught_error.h"
+#include "base/caught_error.h"
 
 #include <exception>
 #include <new>
