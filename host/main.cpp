@@ -3,8 +3,8 @@
 #include <exception>
 
 #include "base/caught_error.h"
-#include "cli/console.h"
 #include "base/exit_code.h"
+#include "cli/console.h"
 #include "cli/program.h"
 
 int main(int argc, char** argv) {

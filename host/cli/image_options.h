@@ -12,14 +12,9 @@
 #include "image/image_io.h"
 #include "image/tonemap.h"
 #include "scene/names.h"
+#include "session/picture_file.h"
 
 namespace candela {
-
-inline constexpr Choices<Tonemap, 5> TONEMAP_NAMES{{{"linear", Tonemap::linear},
-                                                    {"reinhard", Tonemap::reinhard},
-                                                    {"aces", Tonemap::aces},
-                                                    {"agx", Tonemap::agx},
-                                                    {"neutral", Tonemap::neutral}}};
 
 struct Exposure {
     double ev = 0.0;

@@ -11,10 +11,8 @@
 #include "base/memory_limit.h"
 #include "cli/arguments.h"
 #include "cli/console.h"
-#include "film/catcher_layers.h"
-#include "film/id_layers.h"
 #include "image/texel_io.h"
-#include "scene/studio.h"
+#include "session/picture_file.h"
 
 namespace candela {
 namespace {
@@ -40,16 +38,6 @@ std::optional<vec3> parse_colour(const std::string& text) {
 std::optional<std::string> parse_background(const std::string& text) {
     if (text.empty() || (text[0] == '#' && !parse_colour(text))) return std::nullopt;
     return text;
-}
-
-// What a picture stands before if the user does not say: #bcbcbc, or what its scene shows.
-const Background* default_background(const Image& image) {
-    static const Background grey = vec3(0.5f);
-    if (image.find(CATCHER_ALPHA) != nullptr) return &grey;
-    const auto studio = image.attributes.find(STUDIO_ATTRIBUTE);
-    if (studio == image.attributes.end()) return nullptr;
-    const auto* const name = std::get_if<std::string>(&studio->second);
-    return name != nullptr && is_unseen_studio(*name) ? &grey : nullptr;
 }
 
 TexelImage load_image(const std::string& file) {
@@ -113,12 +101,8 @@ TexelImage ScreenOptions::develop(const Image& image, ImageFormat format, Tonema
 }
 
 PictureNotes ScreenOptions::notes(const Image& image) const {
-    PictureNotes notes{.texts = {}, .quality = quality};
-    for (const auto& [name, attribute] : image.attributes) {
-        const auto* const text = std::get_if<std::string>(&attribute);
-        const bool is_for_exr = name == "candela.commandLine" || is_label_attribute(name);
-        if (text != nullptr && !is_for_exr) notes.texts.emplace_back(name, *text);
-    }
+    PictureNotes notes = picture_notes(image);
+    notes.quality = quality;
     return notes;
 }
 

@@ -65,6 +65,14 @@ void Rendering::restart(RenderJob job, RenderRecord record, const BufferSet& cha
     complete_record();
 }
 
+void Rendering::set_target(uint32_t spp, std::optional<double> error) {
+    job_.target = spp;
+    if (error == job_.target_error) return;
+    job_.target_error = error;
+    record_.target_error = error;
+    convergence_ = Convergence(error, {});
+}
+
 // Notes what the device says.
 void Rendering::complete_record() {
     record_.maker = make_maker(device_->info());

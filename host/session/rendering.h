@@ -55,8 +55,8 @@ class Rendering {
     // otherwise.
     std::optional<Error> run(RenderCallbacks callbacks);
 
-    // Changes the samples per pixel that run() renders to.
-    void set_target(uint32_t spp) { job_.target = spp; }
+    // Changes the samples per pixel and the error that run() renders to. There is no reference.
+    void set_target(uint32_t spp, std::optional<double> error);
     // Starts over, on the same device, with another job, which may not ask for files, and with the source's
     // scene as it is now, of which these buffers have changed. Throws Error if that fails; the object is then
     // unusable.
@@ -70,6 +70,8 @@ class Rendering {
     const RenderRecord& record() const { return record_; }
     // The samples per pixel so far.
     uint32_t spp() const { return samples_per_pixel(renderer_.states()); }
+    // The most samples that a pixel has.
+    uint32_t max_spp() const { return count_samples(renderer_.states()).max; }
     // The device, unless run() has returned an Error.
     const vk::Device& device() const { return renderer_.device(); }
 

@@ -7,8 +7,7 @@
 #include "base/error.h"
 #include "film/sample_range.h"
 #include "load/load.h"
-#include "session/live_scene.h"
-#include "session/rendering.h"
+#include "session/live_picture.h"
 #include "vk/instance.h"
 
 namespace candela {
@@ -21,45 +20,44 @@ class Session::Impl {
           device_(instance_,
                   vk::select_device(instance_.devices(),
                                     options_.device.empty() ? std::nullopt : std::optional(options_.device)),
-                  options_.kernel_cache) {}
+                  options_.kernel_cache),
+          picture_(device_) {}
 
     void load(const SceneFile& file) {
         LoadOptions options;
         options.gltf.time = file.time;
         options.gltf.animation = file.animation;
         options.reach.folders = file.folders;
-        scene_.load(file.path, options);
-        picture_ = {};
-        is_new_ = true;
-        warn(scene_.take_warnings());
+        scene().load(file.path, options);
+        request_ = {};
+        warn(scene().take_warnings());
     }
 
     void change(std::string_view json) {
         require_scene();
-        scene_.change(json);
-        is_new_ = true;
-        warn(scene_.take_warnings());
+        scene().change(json);
+        warn(scene().take_warnings());
     }
 
     void pose(std::optional<double> time, std::optional<std::string> animation) {
         require_scene();
-        scene_.pose(time, std::move(animation));
-        is_new_ = true;
-        warn(scene_.take_warnings());
+        scene().pose(time, std::move(animation));
+        warn(scene().take_warnings());
     }
 
     void choose(const PictureRequest& picture) {
         require_scene();
         job_for(picture, 1);
-        picture_ = picture;
-        is_new_ = true;
+        request_ = picture;
     }
 
     bool render(uint32_t spp, const std::function<bool(double)>& keep_going) {
         require_scene();
-        prepare(spp);
-        const std::optional<Error> failure =
-            rendering_->run({.progress = [&](double done, std::optional<double>) { done_ = done; },
+        RenderJob job = job_for(request_, spp);
+        picture_.update();
+        warn(scene().take_warnings());
+        const std::optional<Error> failure = picture_.render(
+            std::move(job), {.progress = [&](double done, std::optional<double>) { done_ = done; },
                              .keep_going = [&] { return !keep_going || keep_going(done_); },
                              .warn = [this](const std::string& warning) { warn({warning}); },
                              .device_failed =
@@ -71,18 +69,21 @@ class Session::Impl {
              validation_messages_ < messages.size(); ++validation_messages_)
             warn({messages[validation_messages_]});
         if (failure) throw Error(*failure);
-        return rendering_->record().complete;
+        return picture_.rendered().record().complete;
     }
 
     // What was rendered last.
     Rendering& rendered() const {
-        if (!rendering_) throw Error("nothing has been rendered yet; call render() first");
-        return *rendering_;
+        if (!picture_.has_picture()) throw Error("nothing has been rendered yet; call render() first");
+        return picture_.rendered();
     }
 
   private:
+    LiveScene& scene() { return picture_.scene(); }
+    const LiveScene& scene() const { return picture_.scene(); }
+
     void require_scene() const {
-        if (scene_.scene().cameras.empty()) throw Error("no scene has been loaded yet; call load() first");
+        if (scene().scene().cameras.empty()) throw Error("no scene has been loaded yet; call load() first");
     }
 
     void warn(const std::vector<std::string>& warnings) const {
@@ -96,8 +97,8 @@ class Session::Impl {
             throw Error("cannot render " + std::to_string(spp) + " samples per pixel; give 1 to " +
                         std::to_string(MAX_SPP));
         }
-        const Camera& camera = choose_camera(scene_.scene(), picture.camera, "");
-        RenderSettings settings = proposed_settings(scene_.scene(), camera);
+        const Camera& camera = choose_camera(scene().scene(), picture.camera, "");
+        RenderSettings settings = proposed_settings(scene().scene(), camera);
         settings.size = {picture.width.value_or(settings.size.x), picture.height.value_or(settings.size.y)};
         if (settings.size.x == 0 || settings.size.y == 0)
             throw Error("a picture without width or height cannot be rendered; give at least 1 for each");
@@ -109,40 +110,11 @@ class Session::Impl {
             .camera = camera, .settings = settings, .target = spp, .aovs = {all, all, all, all, all, all}};
     }
 
-    // Makes rendering_ one of the current scene and picture.
-    void prepare(uint32_t spp) {
-        RenderJob job = job_for(picture_, spp);
-        if (rendering_ && !is_new_) {
-            rendering_->set_target(spp);
-            return;
-        }
-        changed_ |= scene_.update();
-        warn(scene_.take_warnings());
-        RenderRecord record = make_record(scene_.scene(), scene_.records(), job);
-        std::unique_ptr<Rendering> rendering = std::move(rendering_);  // If this fails, the rendering is
-                                                                       // unusable.
-        if (rendering) {
-            rendering->restart(std::move(job), std::move(record), changed_);
-        } else {
-            device_.close();  // The last rendering may have lost it.
-            rendering = std::make_unique<Rendering>(
-                Rendering::Source{
-                    .device = &device_, .scene = &scene_.records(), .resumed = {}, .reference = {}},
-                std::move(job), std::move(record));
-        }
-        rendering_ = std::move(rendering);
-        changed_.reset();
-        is_new_ = false;
-    }
-
     SessionOptions options_;
     vk::Instance instance_;
     DeviceSlot device_;
-    LiveScene scene_;
-    PictureRequest picture_;
-    bool is_new_ = true;  // Scene or picture are others than at the last rendering,
-    BufferSet changed_;   // and so are these buffers of the scene.
-    std::unique_ptr<Rendering> rendering_;
+    LivePicture picture_;
+    PictureRequest request_;
     double done_ = 0.0;
     size_t validation_messages_ = 0;  // Those already given to warn().
 };

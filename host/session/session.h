@@ -80,10 +80,11 @@ class Session {
     // Chooses the picture. By default, and after load(), it is the one that the scene proposes.
     void choose(const PictureRequest& picture);
 
-    // Renders until every pixel has `spp` samples, continuing from the samples so far; a change discards
-    // those. Calls `keep_going` regularly, with the fraction of the samples that are done, in [0, 1];
-    // rendering stops when it returns false, and continues in the next call. Returns whether all samples are
-    // done. A lost device is reopened, at most five times in a row.
+    // Renders until every pixel has `spp` samples. Continues from the samples so far if they are no more than
+    // that and the picture is the same; otherwise it begins anew. Calls `keep_going` regularly, with the
+    // fraction of the samples that are done, in [0, 1]; rendering stops when it returns false, and continues
+    // in the next call. Returns whether all samples are done. A lost device is reopened, at most five times
+    // in a row.
     bool render(uint32_t spp, const std::function<bool(double done)>& keep_going = {});
 
     // The picture that was rendered last, from the samples so far: its size, and its layers, including R, G,
