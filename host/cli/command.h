@@ -24,6 +24,7 @@ Command add_merge_command(CLI::App& app, const std::string& command_line);
 Command add_plot_command(CLI::App& app);
 Command add_selftest_command(CLI::App& app);
 Command add_bench_command(CLI::App& app);
+Command add_serve_command(CLI::App& app, const std::string& command_line);
 Command add_view_command(CLI::App& app, const std::string& command_line);
 
 }  // namespace candela

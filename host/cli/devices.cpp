@@ -5,41 +5,17 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "base/printable.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/json_text.h"
 #include "cli/vulkan.h"
+#include "serve/describe.h"
 #include "vk/device_info.h"
 #include "vk/instance.h"
 
 namespace candela {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json describe(const vk::DeviceInfo& info, bool is_default) {
-    const vk::DeviceLimits& limits = info.limits;
-    return {{"index", info.index},
-            {"name", info.name},
-            {"type", vk::to_string(info.type)},
-            {"default", is_default},
-            {"usable", info.reason.empty()},
-            {"reason", info.reason},
-            {"vulkan", vk::version_text(info.api_version)},
-            {"driver", info.driver},
-            {"memory_bytes", info.device_heap},
-            {"subgroup_size", info.subgroup_size},
-            {"timestamps", info.timestamp_bits > 0},
-            {"ray_query", info.ray_query},
-            {"limits",
-             {{"maxTexelBufferElements", limits.max_texel_buffer_elements},
-              {"maxStorageBufferRange", limits.max_storage_buffer_range},
-              {"maxImageDimension2D", limits.max_image_dimension_2d},
-              {"maxMemoryAllocationSize", limits.max_memory_allocation_size}}}};
-}
 
 const char* yes_or_no(bool value) {
     return value ? "yes" : "no";
@@ -87,10 +63,7 @@ ExitCode devices(bool json) {
     const std::optional<uint32_t> best = find_default(devices, failure);
 
     if (json) {
-        Json list = Json::array();
-        for (const vk::DeviceInfo& info : devices)
-            list.push_back(describe(info, best == info.index));
-        std::printf("%s\n", json_text(list).c_str());
+        std::printf("%s\n", json_text(serve::describe_devices(devices)).c_str());
     } else {
         for (const vk::DeviceInfo& info : devices)
             print(info, best == info.index);

@@ -18,17 +18,7 @@ void LoadingOptions::add_to(CLI::App& app) {
     add_choice(app, "--missing-images", missing_images, IF_MISSING_NAMES,
                "What to use for missing images of glTF and MTL files (default: "
                "white)");
-    app.option_defaults()->group("Limits on files and memory");
-    app.add_option("--allow-folder", folders,
-                   "Also allow files in this folder (default: only those in the folder "
-                   "of SCENE); repeat it for several")
-        ->type_name("DIR")
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->allow_extra_args(false);
-    app.add_flag("--allow-any-folder", any_folder, "Allow files in any folder, for scenes that you trust");
-    add_value(app, "--memory-limit", memory_limit, parse_memory_size, "a size such as 500M, 1.5GB or 4GiB",
-              "Use no more memory than 500M, 1.5GB or 4GiB (default: three quarters of the machine's)")
-        ->type_name("SIZE");
+    add_limits_to(app);
     app.option_defaults()->group("glTF files");
     app.add_option("--scene", gltf.scene, "Scene by name or index (default: the file's)")->type_name("NAME");
     add_value(app, "--time", gltf.time, parse_number, "a number of seconds, such as 1.5",
@@ -43,6 +33,20 @@ void LoadingOptions::add_to(CLI::App& app) {
     app.add_flag("--double-sided", double_sided,
                  "Show all surfaces from both sides, also those that the file says are single-sided");
     lighting.add_to(app);
+}
+
+void LoadingOptions::add_limits_to(CLI::App& app) {
+    app.option_defaults()->group("Limits on files and memory");
+    app.add_option("--allow-folder", folders,
+                   "Also allow files in this folder (default: only those in the folder "
+                   "of SCENE); repeat it for several")
+        ->type_name("DIR")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
+    app.add_flag("--allow-any-folder", any_folder, "Allow files in any folder, for scenes that you trust");
+    add_value(app, "--memory-limit", memory_limit, parse_memory_size, "a size such as 500M, 1.5GB or 4GiB",
+              "Use no more memory than 500M, 1.5GB or 4GiB (default: three quarters of the machine's)")
+        ->type_name("SIZE");
 }
 
 }  // namespace candela

@@ -27,8 +27,9 @@ struct LoadingOptions {
     LightingArguments lighting;
     bool double_sided = false;
 
-    // Declares them on `app`; this object must not move.
+    // Declares them on `app`, in the second case only those on files and memory; this object must not move.
     void add_to(CLI::App& app);
+    void add_limits_to(CLI::App& app);
 };
 
 }  // namespace candela

@@ -27,7 +27,8 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
                                   add_merge_command(app, command_line),
                                   add_plot_command(app),
                                   add_selftest_command(app),
-                                  add_bench_command(app)};
+                                  add_bench_command(app),
+                                  add_serve_command(app, command_line)};
     app.footer(
         "`candela COMMAND --help` lists the options of a command.\n\n"
         "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no suitable device, 4 device lost,\n"
@@ -99,8 +100,8 @@ ExitCode run_program(int argc, const char* const* argv) {
         if (command.app->parsed()) return command.run();
     }
     throw Error(
-        "no command given; use render, view, info, devices, compare, merge, plot, selftest or bench, or "
-        "see candela --help",
+        "no command given; use render, view, info, devices, compare, merge, plot, selftest, bench or "
+        "serve, or see candela --help",
         ErrorKind::request);
 }
 

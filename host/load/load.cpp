@@ -56,7 +56,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, Loaded
     Scene scene;
     std::string place = path.string();
     SceneSource source = SceneSource::mesh;
-    switch (format_of(path)) {
+    switch (options.text ? Format::json : format_of(path)) {
         case Format::gltf:
             scene = load_gltf_scene(path, gltf, options.progress, options.reach, files.gltf);
             source = SceneSource::gltf;
@@ -70,7 +70,10 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, Loaded
             scene = load_ply_scene(path);
             break;
         case Format::json: {
-            JsonScene json = load_json_scene(path, gltf, options.progress, options.reach, files.gltf);
+            JsonScene json =
+                options.text
+                    ? parse_json_scene(*options.text, path, gltf, options.progress, options.reach, files.gltf)
+                    : load_json_scene(path, gltf, options.progress, options.reach, files.gltf);
             scene = std::move(json.scene);
             place = json.place;
             source = json.is_gltf ? SceneSource::gltf : SceneSource::native;

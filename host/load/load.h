@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "load/gltf/gltf.h"
 #include "load/lighting.h"
@@ -18,6 +20,9 @@ struct LoadOptions {
     bool double_sided = false;  // make_double_sided().
     LoadProgress progress = no_progress;
     ReachOptions reach{};  // The files that may be named outside the folder of `path`.
+    // What a native scene says. There is then no file: `path` names it in messages, in the folder of the
+    // files that it names.
+    std::optional<std::string> text{};
 };
 
 // Files shared by several scenes, such as the same one at several times: parsed glTF files and decoded

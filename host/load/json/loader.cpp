@@ -125,6 +125,13 @@ JsonScene load_json_scene(const std::filesystem::path& path, const GltfOptions& 
     return scene_of(document, path.parent_path(), gltf, progress, FileReach(path, reach), files);
 }
 
+JsonScene parse_json_scene(std::string_view text, const std::filesystem::path& path, const GltfOptions& gltf,
+                           const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files) {
+    const std::string file = path.string();
+    return scene_of({file, json::parse(text, file)}, path.parent_path(), gltf, progress,
+                    FileReach(path, reach), files);
+}
+
 Scene parse_scene(std::string_view text, const std::string& file) {
     GltfFiles files;
     return scene_of({file, json::parse(text, file)}, {}, {}, no_progress, {}, files).scene;

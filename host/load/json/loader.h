@@ -26,6 +26,11 @@ struct JsonScene {
 JsonScene load_json_scene(const std::filesystem::path& path, const GltfOptions& gltf,
                           const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files);
 
+// The same for the text of a scene, which `path` names in messages, and which is not glTF; there need not be
+// such a file.
+JsonScene parse_json_scene(std::string_view text, const std::filesystem::path& path, const GltfOptions& gltf,
+                           const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files);
+
 // The same for the text of a scene file that names no other files; `file` is its name in messages.
 Scene parse_scene(std::string_view text, const std::string& file);
 

@@ -1,0 +1,33 @@
+// Memory that another program of the same user can map: a file in memory, or else among the temporary files.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+namespace candela {
+
+// A file of this program, for this user alone, which is removed with this object. It is locked as long as the
+// program lives. Its name says which program made it.
+class SharedMemory {
+  public:
+    // Zeros. Throws Error (out_of_memory) if neither folder has the room.
+    explicit SharedMemory(uint64_t size);
+    SharedMemory(const SharedMemory&) = delete;
+    SharedMemory& operator=(const SharedMemory&) = delete;
+    ~SharedMemory();
+
+    const std::filesystem::path& path() const { return path_; }
+    std::span<std::byte> bytes() const { return bytes_; }
+
+  private:
+    std::filesystem::path path_;
+    std::span<std::byte> bytes_;
+    int file_ = -1;
+};
+
+// Removes the files of this user's programs that were killed.
+void remove_abandoned_memory();
+
+}  // namespace candela

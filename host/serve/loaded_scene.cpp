@@ -1,0 +1,94 @@
+// See loaded_scene.h.
+#include "serve/loaded_scene.h"
+
+#include <chrono>
+#include <iterator>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "base/memory_limit.h"
+#include "session/interval.h"
+
+namespace candela::serve {
+namespace {
+
+// The seconds between two reports of progress.
+constexpr double BETWEEN_REPORTS = 0.05;
+
+// Returns action() within the limit on memory, which the scene is said to need.
+template <class Action>
+auto within_memory(const Action& action) {
+    const LimitedMemory limited;
+    return with_memory_for(
+        "the scene", [] { return std::string("request"); }, action);
+}
+
+}  // namespace
+
+LoadedScene::LoadedScene(DeviceSlot device, const std::filesystem::path& path, LoadOptions options,
+                         const Call& call)
+    : device_(std::move(device)), picture_(device_) {
+    options.progress = [&call](const char*, size_t, size_t) {
+        if (call.is_cancelled())
+            throw RequestError(Code::cancelled, "the scene: cancelled while it was loaded");
+    };
+    within_memory([&] { picture_.scene().load(path, options); });
+}
+
+void LoadedScene::change(std::string_view json) {
+    within_memory([&] { picture_.scene().change(json); });
+}
+
+void LoadedScene::pose(std::optional<double> time, std::optional<std::string> animation) {
+    within_memory([&] { picture_.scene().pose(time, std::move(animation)); });
+}
+
+Json LoadedScene::render(RenderJob job, const Call& call, bool tells_progress) {
+    within_memory([this] { picture_.update(); });
+    Interval reports(BETWEEN_REPORTS);
+    const auto report = [&](double done, std::optional<double> error) {
+        if (!tells_progress || !reports.over()) return;
+        Json progress{{"done", done}};
+        if (error) progress["error"] = *error;
+        call.progress(progress);
+        reports.restart();
+    };
+    const std::optional<Error> failure = picture_.render(
+        std::move(job), {.progress = report,
+                         .keep_going = [&] { return !call.is_cancelled(); },
+                         .warn = [this](const std::string& warning) { warnings_.push_back(warning); },
+                         .device_failed =
+                             [this](const Error& error, uint32_t, double) {
+                                 warnings_.push_back(std::string(error.what()) + "; reopening the device");
+                             },
+                         .write = {}});
+    if (failure) throw Error(*failure);
+    const RenderRecord& record = picture_.rendered().record();
+    Json result{{"complete", record.complete},
+                {"spp", picture_.rendered().spp()},
+                {"seconds", record.render_seconds},
+                {"error", nullptr}};
+    if (record.estimated_error) result["error"] = *record.estimated_error;
+    return result;
+}
+
+Image LoadedScene::image(const std::string& command_line) {
+    if (!picture_.has_picture()) {
+        throw RequestError(Code::failed,
+                           "image: nothing of this scene has been rendered yet; render it first");
+    }
+    Image image = picture_.rendered().image();
+    RenderRecord record = picture_.rendered().record();
+    record.command_line = command_line;
+    add_attributes(image, record);
+    return image;
+}
+
+std::vector<std::string> LoadedScene::take_warnings() {
+    std::vector<std::string> warnings = picture_.scene().take_warnings();
+    std::ranges::move(std::exchange(warnings_, {}), std::back_inserter(warnings));
+    return warnings;
+}
+
+}  // namespace candela::serve

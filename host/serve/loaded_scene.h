@@ -1,0 +1,42 @@
+// A scene that a client has loaded, and its picture.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "load/load.h"
+#include "serve/server.h"
+#include "session/device_slot.h"
+#include "session/live_picture.h"
+
+namespace candela::serve {
+
+// Each has a device of its own, so that a lost device takes no other picture along. If a function throws, the
+// scene is as before. Everything of the scene is within the limit on memory.
+class LoadedScene {
+  public:
+    // Throws Error if the scene cannot be read, or the call is cancelled.
+    LoadedScene(DeviceSlot device, const std::filesystem::path& path, LoadOptions options, const Call& call);
+
+    const Scene& scene() const { return picture_.scene().scene(); }
+    void change(std::string_view json);
+    void pose(std::optional<double> time, std::optional<std::string> animation);
+
+    // Renders until the job is done or the call is cancelled. Returns how that went.
+    Json render(RenderJob job, const Call& call, bool tells_progress);
+    // The picture so far, with its attributes. Throws Error if there is none.
+    Image image(const std::string& command_line);
+
+    // The warnings since the last call.
+    std::vector<std::string> take_warnings();
+
+  private:
+    DeviceSlot device_;
+    LivePicture picture_;
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace candela::serve
