@@ -13,7 +13,7 @@
 namespace candela::serve {
 namespace {
 
-constexpr uint32_t MAX_VIEWS = 65536;
+constexpr uint32_t MAX_VIEWS = 4096;
 
 double read_elevation(const Node& node) {
     return glm::radians(double(node.number(-90.0f, 90.0f)));

@@ -13,10 +13,16 @@ void LineReader::add(std::string_view bytes) {
         bytes.remove_prefix(end + 1);
         is_skipping_ = false;
     }
-    bytes_.erase(0, begin_);
+    drop_lines();
+    bytes_ += bytes;
+}
+
+// Forgets what has been read, and the memory of a long line.
+void LineReader::drop_lines() {
+    if (begin_ == 0) return;
+    bytes_.substr(begin_).swap(bytes_);  // An assignment would keep the memory.
     searched_ -= begin_;
     begin_ = 0;
-    bytes_ += bytes;
 }
 
 std::optional<std::string> LineReader::next() {
@@ -28,6 +34,7 @@ std::optional<std::string> LineReader::next() {
     std::string line = end - begin_ <= max_ ? bytes_.substr(begin_, end - begin_) : "";
     const bool is_too_long = end - begin_ > max_;
     begin_ = searched_ = is_whole ? end + 1 : end;
+    if (begin_ == bytes_.size()) drop_lines();
     if (!is_too_long) return line;
     is_skipping_ = !is_whole;
     throw RequestError(Code::invalid_request,

@@ -22,6 +22,8 @@ class LineReader {
     void finish() const;
 
   private:
+    void drop_lines();
+
     size_t max_;
     std::string bytes_;
     size_t begin_ = 0;          // Where the next line begins,

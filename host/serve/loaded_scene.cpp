@@ -33,19 +33,19 @@ LoadedScene::LoadedScene(DeviceSlot device, const std::filesystem::path& path, L
         if (call.is_cancelled())
             throw RequestError(Code::cancelled, "the scene: cancelled while it was loaded");
     };
-    within_memory([&] { picture_.scene().load(path, options); });
+    within_memory([&] { picture_->scene().load(path, options); });
 }
 
 void LoadedScene::change(std::string_view json) {
-    within_memory([&] { picture_.scene().change(json); });
+    within_memory([&] { picture_->scene().change(json); });
 }
 
 void LoadedScene::pose(std::optional<double> time, std::optional<std::string> animation) {
-    within_memory([&] { picture_.scene().pose(time, std::move(animation)); });
+    within_memory([&] { picture_->scene().pose(time, std::move(animation)); });
 }
 
-Json LoadedScene::render(RenderJob job, const Call& call, bool tells_progress) {
-    within_memory([this] { picture_.update(); });
+void LoadedScene::render(RenderJob job, const Call& call, bool tells_progress) {
+    within_memory([this] { picture_->update(); });
     Interval reports(BETWEEN_REPORTS);
     const auto report = [&](double done, std::optional<double> error) {
         if (!tells_progress || !reports.over()) return;
@@ -54,7 +54,7 @@ Json LoadedScene::render(RenderJob job, const Call& call, bool tells_progress) {
         call.progress(progress);
         reports.restart();
     };
-    const std::optional<Error> failure = picture_.render(
+    const std::optional<Error> failure = picture_->render(
         std::move(job), {.progress = report,
                          .keep_going = [&] { return !call.is_cancelled(); },
                          .warn = [this](const std::string& warning) { warnings_.push_back(warning); },
@@ -64,9 +64,19 @@ Json LoadedScene::render(RenderJob job, const Call& call, bool tells_progress) {
                              },
                          .write = {}});
     if (failure) throw Error(*failure);
-    const RenderRecord& record = picture_.rendered().record();
+}
+
+Rendering& LoadedScene::rendered() {
+    if (!picture_->has_picture())
+        throw RequestError(Code::failed, "nothing of this scene has been rendered yet; render it first");
+    return picture_->rendered();
+}
+
+Json LoadedScene::outcome() {
+    const Rendering& rendering = rendered();
+    const RenderRecord& record = rendering.record();
     Json result{{"complete", record.complete},
-                {"spp", picture_.rendered().spp()},
+                {"spp", rendering.spp()},
                 {"seconds", record.render_seconds},
                 {"error", nullptr}};
     if (record.estimated_error) result["error"] = *record.estimated_error;
@@ -74,21 +84,22 @@ Json LoadedScene::render(RenderJob job, const Call& call, bool tells_progress) {
 }
 
 Image LoadedScene::image(const std::string& command_line) {
-    if (!picture_.has_picture()) {
-        throw RequestError(Code::failed,
-                           "image: nothing of this scene has been rendered yet; render it first");
-    }
-    Image image = picture_.rendered().image();
-    RenderRecord record = picture_.rendered().record();
+    Image image = rendered().image();
+    RenderRecord record = rendered().record();
     record.command_line = command_line;
     add_attributes(image, record);
     return image;
 }
 
 std::vector<std::string> LoadedScene::take_warnings() {
-    std::vector<std::string> warnings = picture_.scene().take_warnings();
+    std::vector<std::string> warnings = picture_->scene().take_warnings();
     std::ranges::move(std::exchange(warnings_, {}), std::back_inserter(warnings));
     return warnings;
+}
+
+DeviceSlot LoadedScene::device_of(std::unique_ptr<LoadedScene> scene) {
+    scene->picture_.reset();
+    return std::move(scene->device_);
 }
 
 }  // namespace candela::serve

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,21 +22,28 @@ class LoadedScene {
     // Throws Error if the scene cannot be read, or the call is cancelled.
     LoadedScene(DeviceSlot device, const std::filesystem::path& path, LoadOptions options, const Call& call);
 
-    const Scene& scene() const { return picture_.scene().scene(); }
+    const Scene& scene() const { return picture_->scene().scene(); }
     void change(std::string_view json);
     void pose(std::optional<double> time, std::optional<std::string> animation);
 
-    // Renders until the job is done or the call is cancelled. Returns how that went.
-    Json render(RenderJob job, const Call& call, bool tells_progress);
+    // Renders until the job is done or the call is cancelled.
+    void render(RenderJob job, const Call& call, bool tells_progress);
+    // How far the picture has got. Throws Error if there is none.
+    Json outcome();
     // The picture so far, with its attributes. Throws Error if there is none.
     Image image(const std::string& command_line);
 
     // The warnings since the last call.
     std::vector<std::string> take_warnings();
 
+    // The device of a scene that ends here.
+    static DeviceSlot device_of(std::unique_ptr<LoadedScene> scene);
+
   private:
+    Rendering& rendered();
+
     DeviceSlot device_;
-    LivePicture picture_;
+    std::optional<LivePicture> picture_;  // Until the device is taken.
     std::vector<std::string> warnings_;
 };
 

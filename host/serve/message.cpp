@@ -99,9 +99,15 @@ std::string result_line(const std::string& id, const Json& result) {
 std::string error_line(const std::optional<std::string>& id, const Error& error) {
     const auto* const answer = dynamic_cast<const RequestError*>(&error);
     const Code code = answer == nullptr ? Code::failed : answer->code();
-    const bool cancelled = code == Code::cancelled;
-    const ExitCode exit = cancelled ? ExitCode::interrupted : exit_code(error.kind());
-    const char* const kind = cancelled ? "cancelled" : code == Code::busy ? "busy" : kind_of(error.kind());
+    const char* kind = kind_of(error.kind());
+    ExitCode exit = exit_code(error.kind());
+    if (code == Code::cancelled) {
+        kind = "cancelled";
+        exit = ExitCode::interrupted;
+    } else if (code == Code::busy) {
+        kind = "busy";
+        exit = ExitCode::failed;
+    }
     return line_with_id(id.value_or("null"), "error",
                         {{"code", int(code)},
                          {"message", printable(error.what(), MAX_MESSAGE_BYTES)},

@@ -142,14 +142,27 @@ Methods::LoadRequest Methods::read_load(const Node& parameters) const {
     return request;
 }
 
+DeviceSlot Methods::take_device() {
+    if (idle_) return *std::exchange(idle_, std::nullopt);
+    return {instance(), vk::select_device(instance().devices(), options_.device), options_.kernel_cache};
+}
+
+// Frees a scene, if there is one of that name.
+void Methods::remove_scene(const std::string& id) {
+    const auto found = scenes_.find(id);
+    if (found == scenes_.end()) return;
+    idle_ = LoadedScene::device_of(std::move(found->second));
+    scenes_.erase(found);
+}
+
 Json Methods::load(const Node& parameters, const Call& call) {
     LoadRequest request = checked([&] { return read_load(parameters); });
-    const vk::DeviceInfo device = vk::select_device(instance().devices(), options_.device);
-    auto loaded = std::make_unique<LoadedScene>(DeviceSlot(instance(), device, options_.kernel_cache),
-                                                request.path, std::move(request.options), call);
+    auto loaded =
+        std::make_unique<LoadedScene>(take_device(), request.path, std::move(request.options), call);
     Json result = describe_scene(loaded->scene());
     result["scene"] = request.id;
     result["warnings"] = to_json(loaded->take_warnings());
+    remove_scene(request.id);
     scenes_[request.id] = std::move(loaded);
     return result;
 }
@@ -197,7 +210,8 @@ Json Methods::render(const Node& parameters, const Call& call) {
         const std::optional<Node> progress = parameters.find("progress");
         return std::pair(read_job(parameters, scene.scene()), progress && progress->boolean());
     });
-    Json result = scene.render(std::move(job), call, tells_progress);
+    scene.render(std::move(job), call, tells_progress);
+    Json result = scene.outcome();
     result["cancelled"] = call.is_cancelled();
     result["warnings"] = to_json(scene.take_warnings());
     return result;
@@ -210,7 +224,8 @@ Json Methods::image(const Node& parameters, const Call&) {
     auto shared = with_memory_for(
         "the image", [] { return std::string("request"); },
         [&] { return std::make_unique<SharedImage>(scene.image(options_.command_line)); });
-    Json result = shared->describe();
+    Json result = scene.outcome();
+    result.update(shared->describe());
     const std::string id = std::to_string(next_image_++);
     result["image"] = id;
     images_[id] = std::move(shared);
@@ -237,7 +252,7 @@ Json Methods::close(const Node& parameters, const Call&) {
     checked([&] { parameters.allow_only({"scene"}); });
     if (!parameters.find("scene")) return Json::object();  // The server ends.
     find_scene(parameters);
-    scenes_.erase(parameters.require("scene").string());
+    remove_scene(parameters.require("scene").string());
     return Json::object();
 }
 

@@ -59,12 +59,15 @@ class Methods {
     Json close(const Node& parameters, const Call& call);
 
     const vk::Instance& instance();
+    DeviceSlot take_device();
+    void remove_scene(const std::string& id);
     LoadRequest read_load(const Node& parameters) const;
     LoadedScene& find_scene(const Node& parameters);
     SharedImage& find_image(const Node& parameters);
 
     Options options_;
     std::unique_ptr<vk::Instance> instance_;
+    std::optional<DeviceSlot> idle_;  // Of a scene that is gone: the next finds its kernels.
     std::map<std::string, std::unique_ptr<LoadedScene>> scenes_;
     std::map<std::string, std::unique_ptr<SharedImage>> images_;
     uint64_t next_image_ = 1;

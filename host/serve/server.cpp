@@ -33,7 +33,7 @@ Server::Server(int in, int out, Handler handler, std::function<bool()> is_stoppe
 
 // Whether nobody waits for answers any more. `mutex_` is held.
 bool Server::is_over() {
-    is_stopping_ |= output_.is_gone();
+    is_stopping_ |= output_.is_gone() || is_stopped_();
     return is_stopping_;
 }
 
@@ -100,7 +100,6 @@ void Server::read() {
         lines.add({buffer.data(), step.bytes});
         read_lines(lines);
         const std::lock_guard lock(mutex_);
-        is_stopping_ |= is_stopped_();
         ended |= is_over() || has_ended_;
         if (is_stopping_) wake_.notify_one();
     }
@@ -130,7 +129,7 @@ void Server::answer(const Waiting& waiting) {
     const Call call{.is_cancelled =
                         [this] {
                             const std::lock_guard lock(mutex_);
-                            return current_is_cancelled_ || is_over() || is_stopped_();
+                            return current_is_cancelled_ || is_over();
                         },
                     .progress =
                         [&](const Json& parameters) {

@@ -46,7 +46,7 @@ void LivePicture::prepare(RenderJob job) {
     }
     const bool fits = !rendering_ || looks_up_the_same(job.aovs, job_.aovs);
     std::unique_ptr<Rendering> rendering = std::move(rendering_);  // If this fails, it is unusable.
-    if (!rendering) device_->close();                              // The last rendering may have lost it.
+    if (std::exchange(has_failed_, true)) device_->close();
     if (!fits) rendering.reset();
     job_ = job;
     if (rendering) {
@@ -58,6 +58,7 @@ void LivePicture::prepare(RenderJob job) {
     }
     rendering_ = std::move(rendering);
     changed_.reset();
+    has_failed_ = false;
 }
 
 std::optional<Error> LivePicture::render(RenderJob job, RenderCallbacks callbacks) {

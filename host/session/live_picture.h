@@ -15,7 +15,7 @@ namespace candela {
 // The picture is a function of the scene and the job, regardless of what was rendered before.
 class LivePicture {
   public:
-    // The device serves no other picture, and outlives this one.
+    // The device serves no other picture, and outlives this one; it may be open.
     explicit LivePicture(DeviceSlot& device) : device_(&device) {}
 
     // The scene, which may be loaded and changed at any time.
@@ -42,6 +42,7 @@ class LivePicture {
     LiveScene scene_;
     BufferSet changed_;         // The buffers of the scene that the device does not hold yet.
     uint64_t arrays_hash_ = 0;  // hash_arrays() of the records.
+    bool has_failed_ = false;   // A rendering has not begun, so that the device may be lost.
     RenderJob job_;             // What rendering_ renders.
     std::unique_ptr<Rendering> rendering_;
 };

@@ -1,9 +1,12 @@
 // See targets.h.
 #include "fuzz/targets.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "base/memory_limit.h"
 #include "cli/report_curve.h"
@@ -17,11 +20,17 @@
 #include "image/image_io.h"
 #include "image/texel_io.h"
 #include "load/gltf/gltf.h"
+#include "load/json/change.h"
 #include "load/json/loader.h"
 #include "load/obj/mtl.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
 #include "scene/images.h"
+#include "serve/describe_views.h"
+#include "serve/line_reader.h"
+#include "serve/message.h"
+#include "serve/picture_request.h"
+#include "serve/save_image.h"
 #include "session/adaptive.h"
 #include "support/png_writer.h"
 #include "views/camera_file.h"
@@ -31,6 +40,9 @@ namespace {
 
 // Keeps a run short: more pixels are only more of the same.
 const ImageLimits SMALL{.max_pixels = 1 << 14};
+
+// The most bytes of a message.
+constexpr size_t MAX_LINE = 1 << 14;
 
 void texels(std::string_view bytes, const char* name) {
     std::vector<std::string> warnings;
@@ -198,6 +210,37 @@ void cameras(std::string_view bytes) {
         pictures.push_back({camera, camera.film_size.value(), camera.name});
     camera_file_text("fuzz.json", pictures);
     camera_file_text("opencv.json", pictures);
+}
+
+void messages(std::string_view bytes) {
+    static const Scene scene =
+        parse_scene(R"({"cameras": {"main": {"position": [0, 0, 3], "look_at": [0, 0, 0],
+        "vertical_fov": 40}}, "materials": {"clay": {"type": "diffuse", "reflectance": 0.5}},
+        "shapes": [{"type": "sphere", "radius": 1, "material": "clay"}]})",
+                    "fuzz.json");
+    serve::LineReader lines(MAX_LINE);
+    lines.add(bytes);
+    while (true) {
+        std::optional<std::string> id;
+        try {
+            const std::optional<std::string> line = lines.next();
+            if (!line) break;
+            const serve::Request request = serve::parse_request(*line, id);
+            const Node parameters = request.parameters();
+            if (request.method == "render") serve::read_job(parameters, scene);
+            if (request.method == "views") serve::describe_views(parameters, scene);
+            if (request.method == "save") serve::read_save(parameters);
+            if (request.method == "set") {
+                Scene changed = scene;
+                SceneEdits edits;
+                change_scene(changed, parameters.require("change").text(), "change", {}, edits);
+            }
+            serve::result_line(id.value_or("null"), {{"line", *line}});
+        } catch (const Error& error) {
+            serve::error_line(id, error);
+        }
+    }
+    lines.finish();
 }
 
 }  // namespace candela::fuzz

@@ -30,29 +30,20 @@ void merge(std::string_view bytes);
 void compare(std::string_view bytes);  // The last image with each.
 void plot(std::string_view bytes);     // A report.
 void cameras(std::string_view bytes);  // A file of cameras, and as it is written in both conventions.
+// Lines for candela serve, and what they ask of a scene, but for its rendering and for files.
+void messages(std::string_view bytes);
 
 struct Target {
     std::string_view name;  // Its inputs are in corpora/NAME.
     void (*run)(std::string_view bytes);
 };
-inline constexpr std::array<Target, 19> TARGETS{{{"scene", scene},
-                                                 {"gltf", gltf},
-                                                 {"glb", glb},
-                                                 {"cost", cost},
-                                                 {"obj", obj},
-                                                 {"mtl", mtl},
-                                                 {"ply", ply},
-                                                 {"hdr", hdr},
-                                                 {"exr", exr},
-                                                 {"png", png},
-                                                 {"jpeg", jpeg},
-                                                 {"webp", webp},
-                                                 {"targa", targa},
-                                                 {"bmp", bmp},
-                                                 {"checkpoint", checkpoint},
-                                                 {"merge", merge},
-                                                 {"compare", compare},
-                                                 {"plot", plot},
-                                                 {"cameras", cameras}}};
+inline constexpr std::array<Target, 20> TARGETS{
+    {{"scene", scene},     {"gltf", gltf},        {"glb", glb},
+     {"cost", cost},       {"obj", obj},          {"mtl", mtl},
+     {"ply", ply},         {"hdr", hdr},          {"exr", exr},
+     {"png", png},         {"jpeg", jpeg},        {"webp", webp},
+     {"targa", targa},     {"bmp", bmp},          {"checkpoint", checkpoint},
+     {"merge", merge},     {"compare", compare},  {"plot", plot},
+     {"cameras", cameras}, {"messages", messages}}};
 
 }  // namespace candela::fuzz

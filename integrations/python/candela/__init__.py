@@ -1,0 +1,21 @@
+"""Physically based path tracing on any Vulkan device, to arrays of NumPy.
+
+    import candela
+    image = candela.load("scene.glb").render(spp=64, size=(640, 480))
+    image.rgb      # (480, 640, 3), float32, linear Rec.709 radiance
+    image.save("scene.png")
+
+Lengths are in metres, angles in degrees; world space is right-handed with +Y up. Arrays of images are row-major, with
+the origin at the top left.
+"""
+from candela._camera import Camera
+from candela._errors import Error
+from candela._image import Image
+from candela._scene import Scene
+from candela._session import Session, devices, load
+from candela._tools import Comparison, Verdict, compare, selftest
+
+__version__ = "0.1.0"
+
+__all__ = ["Camera", "Comparison", "Error", "Image", "Scene", "Session", "Verdict", "compare", "devices", "load",
+           "selftest"]

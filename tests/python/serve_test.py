@@ -1,0 +1,292 @@
+#!/usr/bin/env python3
+"""The program `candela serve`, as any client sees it. usage: serve_test.py CANDELA [TEST...]
+
+Each message is checked against integrations/protocol.schema.json."""
+import glob
+import json
+import os
+import re
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import jsonschema
+
+ROOT = Path(__file__).resolve().parents[2]
+SCHEMA = json.loads((ROOT / "integrations/protocol.schema.json").read_text(encoding="utf-8"))
+MESSAGE = jsonschema.Draft202012Validator(SCHEMA)
+METHODS = {name: {part: jsonschema.Draft202012Validator({"$defs": SCHEMA["$defs"], **method[part]})
+                  for part in ("params", "result")} for name, method in SCHEMA["$defs"]["methods"].items()}
+SCENE = json.dumps({
+    "cameras": {"main": {"position": [0, 0, 3], "look_at": [0, 0, 0], "vertical_fov": 40},
+                "side": {"position": [3, 0, 0], "look_at": [0, 0, 0], "vertical_fov": 40}},
+    "film": {"size": [16, 12]}, "materials": {"clay": {"type": "diffuse", "reflectance": 0.5}},
+    "shapes": [{"type": "sphere", "radius": 1, "material": "clay"}], "environment": {"radiance": 1}})
+FOREVER = 1 << 24  # Samples per pixel that no test waits for.
+
+
+class Client:
+    def __init__(self, *options):
+        self.process = subprocess.Popen([CANDELA, "serve", "--stdio", *options], stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.count = 0
+        self.methods = {}
+        self.told = []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.communicate()
+
+    def write(self, text):
+        self.process.stdin.write(text.encode())
+        self.process.stdin.flush()
+
+    def send(self, method, **params):
+        self.count += 1
+        self.methods[self.count] = method
+        message = {"jsonrpc": "2.0", "id": self.count, "method": method, "params": params}
+        MESSAGE.validate(message)
+        METHODS[method]["params"].validate(params)
+        self.write(json.dumps(message) + "\n")
+        return self.count
+
+    def read(self):
+        """The next message that is not about progress."""
+        while True:
+            line = self.process.stdout.readline()
+            if not line:
+                return None
+            message = json.loads(line)
+            MESSAGE.validate(message)
+            if "method" not in message:
+                break
+            self.told.append(message["params"])
+        if "result" in message:
+            METHODS[self.methods[message["id"]]]["result"].validate(message["result"])
+        return message
+
+    def call(self, method, **params):
+        number = self.send(method, **params)
+        message = self.read()
+        assert message["id"] == number, message
+        assert "result" in message, message
+        return message["result"]
+
+    def error(self, method, **params):
+        self.send(method, **params)
+        return self.read()["error"]
+
+    def load(self, **params):
+        return self.call("load", text=SCENE, folder="/", **params)["scene"]
+
+    def pixels(self, scene="1"):
+        """The bytes of the layer rgb of the picture so far."""
+        image = self.call("image", scene=scene)
+        data = Path(image["file"]).read_bytes()
+        assert len(data) == image["bytes"]
+        offset = image["layers"]["rgb"]["offset"]
+        return data[offset:offset + 12 * image["width"] * image["height"]]
+
+    def files(self):
+        return glob.glob(f"/dev/shm/candela-shared-{self.process.pid}-*")
+
+    def end(self):
+        self.process.stdin.close()
+        self.process.stdin = None
+        errors = self.process.communicate()[1]
+        return self.process.returncode, errors.decode()
+
+
+class Serve(unittest.TestCase):
+    def test_describes_itself_and_its_scenes(self):
+        with Client() as client:
+            self.assertEqual(client.call("version", protocol=1)["protocol"], 1)
+            error = client.error("version", protocol=2)
+            self.assertRegex(error["message"], "the client speaks version 2 of the protocol, and candela .* speaks version 1; "
+                                               "update the older of the two")
+            self.assertEqual(error["data"], {"kind": "usage", "exit_code": 2})
+            self.assertTrue(any(device["default"] for device in client.call("devices")["devices"]))
+            loaded = client.call("load", text=SCENE, folder="/")
+            self.assertEqual((loaded["scene"], loaded["size"], loaded["materials"]), ("1", [16, 12], ["clay"]))
+            self.assertEqual(list(loaded["cameras"]), ["main", "side"])
+            self.assertEqual(loaded["cameras"]["side"]["position"], [3, 0, 0])
+            self.assertEqual(loaded["bounds"], [[-1, -1, -1], [1, 1, 1]])
+            described = client.call("scene", scene="1")
+            self.assertEqual(described, {key: loaded[key] for key in described})
+            self.assertEqual(client.end(), (0, ""))
+
+    def test_a_picture_depends_on_nothing_before_it(self):
+        near = {"position": [0, 0, 2], "look_at": [0, 0, 0], "vertical_fov": 40}
+        clay = {"type": "diffuse", "reflectance": 0.5}
+        with Client() as client, Client() as fresh:
+            client.load()
+            client.call("render", scene="1", spp=8)
+            self.assertEqual(client.call("render", scene="1", spp=2)["spp"], 2)
+            few = client.pixels()
+            client.call("render", scene="1", spp=4, layers="all", target_error=1e-9)
+            self.assertEqual(client.call("render", scene="1", spp=8, layers="all")["spp"], 8)
+            image = client.call("image", scene="1")
+            self.assertEqual(set(image["layers"]), set(SCHEMA["$defs"]["methods"]["render"]["params"]["properties"]
+                                                       ["layers"]["oneOf"][1]["items"]["enum"]))
+            self.assertEqual(struct.unpack_from("f", Path(image["file"]).read_bytes(), image["layers"]["samples"]["offset"]),
+                             (8.0,))
+            on = client.pixels()
+            client.call("set", scene="1", change={"cameras": {"main": near}, "materials": {"clay": {"type": "mirror"}}})
+            client.call("render", scene="1", spp=8, camera="main")
+            moved = client.pixels()
+            client.call("set", scene="1", change={"materials": {"clay": clay}})
+            client.call("render", scene="1", spp=8, camera={**near, "position": [0, 0, 3]})
+            back = client.pixels()
+            fresh.load()
+            fresh.call("render", scene="1", spp=2)
+            self.assertTrue(fresh.pixels() == few)
+            fresh.call("render", scene="1", spp=8)
+            whole = fresh.pixels()
+            self.assertTrue(whole == on)
+            self.assertTrue(whole == back)
+            self.assertTrue(whole != moved)
+
+    def test_cancels_a_rendering_and_goes_on(self):
+        with Client() as client, Client() as fresh:
+            client.load()
+            first = client.send("render", scene="1", spp=FOREVER, progress=True)
+            waiting = client.send("render", scene="1", spp=1)
+            while not client.told:
+                client.told.append(json.loads(client.process.stdout.readline())["params"])
+            self.assertEqual(client.told[0]["request"], first)
+            self.assertEqual(client.call("cancel")["cancelled"], 2)
+            answer = client.read()
+            self.assertEqual((answer["id"], answer["result"]["complete"], answer["result"]["cancelled"]), (first, False, True))
+            refused = client.read()
+            self.assertEqual((refused["id"], refused["error"]["code"]), (waiting, -32800))
+            self.assertEqual(refused["error"]["data"], {"kind": "cancelled", "exit_code": 130})
+            spp = answer["result"]["spp"] + 3
+            self.assertEqual(client.call("render", scene="1", spp=spp)["spp"], spp)
+            fresh.load()
+            fresh.call("render", scene="1", spp=spp)
+            self.assertTrue(client.pixels() == fresh.pixels())
+
+    def test_keeps_several_scenes(self):
+        with Client() as client:
+            self.assertEqual([client.load(), client.load(scene="b"), client.load()], ["1", "b", "2"])
+            for scene in ("1", "b"):
+                client.call("render", scene=scene, spp=2, camera="main" if scene == "b" else "side", seed=len(scene))
+            client.call("set", scene="b", change={"materials": {"clay": {"type": "mirror"}}})
+            client.call("render", scene="b", spp=2, seed=1)
+            self.assertTrue(client.pixels("1") != client.pixels("b"))
+            client.call("close", scene="b")
+            self.assertRegex(client.error("image", scene="b")["message"], r'unknown scene "b" \(known: 1, 2\)')
+            client.call("render", scene="2", spp=2, seed=1, camera="side")
+            self.assertTrue(client.pixels("1") == client.pixels("2"))
+
+    def test_errors_leave_the_session_alive(self):
+        with Client("--memory-limit", "64M") as client:
+            client.load()
+            wrong = [("render", {"scene": "1", "sp": 4}, 'unknown key "sp" (did you mean "spp"?'),
+                     ("render", {"scene": "1", "layers": ["colour"]}, 'unknown layer "colour"'),
+                     ("render", {"scene": "1", "layers": "some"}, 'expected "all" or an array of names'),
+                     ("render", {"scene": "1", "size": [0, 4]}, "expected a whole number from 1 to 65536"),
+                     ("render", {"scene": "1", "crop": [0, 0, 17, 12]}, "expected a whole number from 1 to 16"),
+                     ("render", {"scene": "1", "crop": [0, 0, 3]}, "expected four whole numbers"),
+                     ("render", {"scene": "1", "size": [4]}, "expected two whole numbers"),
+                     ("render", {"scene": "1", "camera": "top"}, 'unknown camera "top" (defined: main, side)'),
+                     ("views", {"scene": "1", "elevation": 5}, '"elevation" goes with "turntable"'),
+                     ("set", {"scene": "1"}, 'give either "change" or "time"'),
+                     ("set", {"scene": "1", "change": {}, "animation": "a"}, '"animation" goes with "time"'),
+                     ("load", {}, 'give either "file", or "text" and "folder"'),
+                     ("save", {"image": "7", "file": "a.png"}, 'unknown image "7"')]
+            for method, params, message in wrong:
+                client.count += 1
+                client.write(json.dumps({"jsonrpc": "2.0", "id": client.count, "method": method, "params": params}) + "\n")
+                error = client.read()["error"]
+                self.assertIn(message, error["message"])
+                self.assertEqual(error["code"], -32602, error)
+            failing = [("load", {"file": "/none.json"}, "failed", 'cannot read "/none.json"'),
+                       ("load", {"text": "{", "folder": "/"}, "failed", "/scene:1:2: "),
+                       ("image", {"scene": "1"}, "usage", "nothing of this scene has been rendered yet"),
+                       ("set", {"scene": "1", "change": {"materials": {"x": {}}}}, "failed", 'unknown material "x"'),
+                       ("load", {"text": SCENE.replace('"shapes": [', '"shapes": [' + '{"type": "sphere", "material": "clay"}, '
+                                                       * 200000), "folder": "/"}, "out_of_memory", "not enough memory")]
+            for method, params, kind, message in failing:
+                error = client.error(method, **params)
+                self.assertIn(message, error["message"])
+                self.assertEqual((error["code"], error["data"]["kind"]), (-32000, kind), error)
+            client.write(json.dumps({"jsonrpc": "2.0", "id": 99, "method": "nothing"}) + "\ngarbage\n\xff\n")
+            answers = [client.read() for _ in range(3)]  # Lines that are not requests are answered at once.
+            self.assertEqual([a["error"]["code"] for a in answers if a["id"] is None], [-32700, -32700])
+            unknown = [a["error"]["message"] for a in answers if a["id"] == 99]
+            self.assertIn('unknown method "nothing" (known: version, ', unknown[0])
+            client.write("x" * ((64 << 20) + 1) + "\n")
+            self.assertIn("a line has more than 67108864 bytes", client.read()["error"]["message"])
+            self.assertEqual(client.call("render", scene="1", spp=1)["spp"], 1)
+
+    def test_images_stay_until_they_are_released(self):
+        with Client() as client:
+            client.load()
+            client.call("render", scene="1", spp=1)
+            images = [client.call("image", scene="1") for _ in range(2)]
+            self.assertEqual(sorted(client.files()), sorted(image["file"] for image in images))
+            self.assertEqual(os.stat(images[0]["file"]).st_mode & 0o777, 0o600)
+            client.call("release", image=images[0]["image"])
+            self.assertEqual(client.files(), [images[1]["file"]])
+            client.call("close")
+            self.assertEqual(client.end(), (0, ""))
+            self.assertEqual(client.files(), [])
+
+    def test_whoever_dies_leaves_no_file(self):
+        def begin(client):
+            client.load()
+            client.call("render", scene="1", spp=1)
+            client.call("image", scene="1")
+            client.send("render", scene="1", spp=FOREVER, progress=True)
+            client.process.stdout.readline()
+            self.assertEqual(len(client.files()), 1)
+        with Client() as client:  # The client: its ends of the pipes are closed.
+            begin(client)
+            client.process.stdin.close()
+            client.process.stdout.close()
+            self.assertEqual(client.process.wait(), 0)
+            self.assertEqual(client.files(), [])
+            client.process.stdin = client.process.stdout = None
+        with Client() as client:  # The program, by a signal that it can answer.
+            begin(client)
+            client.process.send_signal(signal.SIGTERM)
+            client.process.communicate()
+            self.assertEqual(client.process.returncode, 130)
+            self.assertEqual(client.files(), [])
+        with Client() as client:  # The program, at once: the next one removes its files.
+            begin(client)
+            client.process.kill()
+            client.process.communicate()
+            self.assertEqual(len(client.files()), 1)
+            with Client() as another:
+                another.call("version")
+            self.assertEqual(client.files(), [])
+
+    def test_answers_all_that_a_file_asks(self):
+        text = (ROOT / "docs/protocol.md").read_text(encoding="utf-8")
+        example = re.search("```json\n(.*?)```", text, re.DOTALL)[1]
+        with tempfile.TemporaryDirectory() as folder:
+            example = example.replace("scenes/", f"{ROOT}/scenes/")
+            done = subprocess.run([CANDELA, "serve", "--stdio"], input=example.encode(), cwd=folder, check=True,
+                                  stdout=subprocess.PIPE)
+            answers = [json.loads(line) for line in done.stdout.splitlines()]
+            self.assertEqual([answer["id"] for answer in answers if "result" in answer], [1, 2, 3, 4, 5])
+            self.assertTrue((Path(folder) / "box.png").exists())
+
+    def test_needs_to_know_where_requests_come_from(self):
+        done = subprocess.run([CANDELA, "serve"], stderr=subprocess.PIPE, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"--stdio is required", done.stderr)
+
+
+if __name__ == "__main__":
+    CANDELA = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
