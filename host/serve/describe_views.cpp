@@ -52,7 +52,7 @@ Json describe_views(const Node& parameters, const Scene& scene) {
     parameters.allow_only(
         {"scene", "views", "turntable", "elevation", "dome", "size", "vertical_fov", "margin"});
     if (parameters.find("elevation") && !parameters.find("turntable"))
-        parameters.fail("\"elevation\" goes with \"turntable\"");
+        parameters.fail(R"("elevation" goes with "turntable")");
     const ViewStyle style = read_style(parameters, scene);
     Json list = Json::array();
     for (const Camera& camera : cameras_of(parameters, scene, style))

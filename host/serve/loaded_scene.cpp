@@ -29,11 +29,18 @@ auto within_memory(const Action& action) {
 LoadedScene::LoadedScene(DeviceSlot device, const std::filesystem::path& path, LoadOptions options,
                          const Call& call)
     : device_(std::move(device)), picture_(device_) {
-    options.progress = [&call](const char*, size_t, size_t) {
-        if (call.is_cancelled())
-            throw RequestError(Code::cancelled, "the scene: cancelled while it was loaded");
+    // The scene keeps the options, and poses report their progress, too.
+    options.progress = [this](const char*, size_t, size_t) {
+        if (call_ != nullptr && call_->is_cancelled()) throw Error("the scene: cancelled");
     };
-    within_memory([&] { picture_->scene().load(path, options); });
+    call_ = &call;
+    try {
+        within_memory([&] { picture_->scene().load(path, options); });
+    } catch (const Error&) {
+        if (!call.is_cancelled()) throw;
+        throw RequestError(Code::cancelled, "the scene: cancelled while it was loaded");
+    }
+    call_ = nullptr;
 }
 
 void LoadedScene::change(std::string_view json) {

@@ -44,6 +44,7 @@ class LoadedScene {
 
     DeviceSlot device_;
     std::optional<LivePicture> picture_;  // Until the device is taken.
+    const Call* call_ = nullptr;          // While the scene is loaded.
     std::vector<std::string> warnings_;
 };
 

@@ -25,7 +25,7 @@ std::string read_id(const json::Value& value) {
     const auto* const number = std::get_if<double>(&value.data);
     const bool whole = number != nullptr && std::trunc(*number) == *number && std::abs(*number) <= MAX_ID;
     if (whole || std::holds_alternative<std::string>(value.data)) return json::to_text(value);
-    refuse("request: \"id\" must be a text or a whole number of at most 2^53");
+    refuse(R"(request: "id" must be a text or a whole number of at most 2^53)");
 }
 
 // What programs tell errors apart by.
@@ -51,8 +51,8 @@ std::string line_of(const Json& message) {
 
 // The same with a member that is JSON already.
 std::string line_with_id(const std::string& id, const char* key, const Json& value) {
-    return "{\"jsonrpc\":\"2.0\",\"id\":" + id + ",\"" + key +
-           "\":" + printable_json(value.dump(-1, ' ', false, Json::error_handler_t::replace)) + "}\n";
+    return R"({"jsonrpc":"2.0","id":)" + id + R"(,")" + key + R"(":)" +
+           printable_json(value.dump(-1, ' ', false, Json::error_handler_t::replace)) + "}\n";
 }
 
 }  // namespace
@@ -76,19 +76,19 @@ Request parse_request(std::string_view line, std::optional<std::string>& id) {
     if (root.is_array())
         refuse("request: several requests in one message are not supported; send them one by one");
     if (!root.is_object())
-        refuse("request: expected an object with \"jsonrpc\", \"method\", \"params\" and \"id\"");
+        refuse(R"(request: expected an object with "jsonrpc", "method", "params" and "id")");
     const auto& members = std::get<json::Object>(request.document->root.data);
     if (const json::Member* const member = members.find("id")) request.id = id = read_id(member->value);
     const json::Member* const version = members.find("jsonrpc");
     const auto* const text = version == nullptr ? nullptr : std::get_if<std::string>(&version->value.data);
-    if (text == nullptr || *text != "2.0") refuse("request: \"jsonrpc\" must be \"2.0\"");
+    if (text == nullptr || *text != "2.0") refuse(R"(request: "jsonrpc" must be "2.0")");
     const json::Member* const method = members.find("method");
     const auto* const name = method == nullptr ? nullptr : std::get_if<std::string>(&method->value.data);
-    if (name == nullptr) refuse("request: \"method\" must be the name of a method");
+    if (name == nullptr) refuse(R"(request: "method" must be the name of a method)");
     request.method = *name;
     const std::optional<Node> parameters = root.find("params");
     if (parameters && !parameters->is_object())
-        throw RequestError(Code::invalid_parameters, "request: \"params\" must be an object, by names");
+        throw RequestError(Code::invalid_parameters, R"(request: "params" must be an object, by names)");
     return request;
 }
 

@@ -38,6 +38,18 @@ class RequestError : public Error {
     Code code_;
 };
 
+// Returns read(), which reads parameters: what it throws is that they are wrong.
+template <class Read>
+decltype(auto) checked(const Read& read) {
+    try {
+        return read();
+    } catch (const RequestError&) {
+        throw;
+    } catch (const Error& error) {
+        throw RequestError(Code::invalid_parameters, error.what());
+    }
+}
+
 struct Request {
     std::optional<std::string> id{};  // As JSON; none: the client wants no answer.
     std::string method{};

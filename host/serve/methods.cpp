@@ -34,18 +34,6 @@ std::optional<double> number_of(const Node& parameters, std::string_view key) {
     return found ? std::optional(found->number()) : std::nullopt;
 }
 
-// Returns read(), which reads parameters: what it throws is that they are wrong.
-template <class Read>
-decltype(auto) checked(const Read& read) {
-    try {
-        return read();
-    } catch (const RequestError&) {
-        throw;
-    } catch (const Error& error) {
-        throw RequestError(Code::invalid_parameters, error.what());
-    }
-}
-
 // The names of the elements of a map.
 template <class Things>
 std::vector<std::string> known_in(const Things& things) {
@@ -69,15 +57,15 @@ auto& find(const Node& parameters, const char* key, Things& things) {
 }  // namespace
 
 Json Methods::operator()(const Request& request, const Call& call) {
-    static const std::vector<std::pair<std::string, Method>> METHODS{
+    static const std::vector<std::pair<std::string, Method>> methods{
         {"version", &Methods::version}, {"devices", &Methods::devices}, {"load", &Methods::load},
         {"scene", &Methods::scene},     {"set", &Methods::set},         {"views", &Methods::views},
         {"render", &Methods::render},   {"image", &Methods::image},     {"save", &Methods::save},
         {"release", &Methods::release}, {"close", &Methods::close}};
-    for (const auto& [name, method] : METHODS) {
+    for (const auto& [name, method] : methods) {
         if (name == request.method) return (this->*method)(request.parameters(), call);
     }
-    std::vector<std::string> names = known_in(METHODS);
+    std::vector<std::string> names = known_in(methods);
     names.emplace_back("cancel");
     throw RequestError(Code::unknown_method, "request: unknown method \"" +
                                                  printable(request.method, MAX_NAME_BYTES) +
@@ -120,7 +108,7 @@ Methods::LoadRequest Methods::read_load(const Node& parameters) const {
     parameters.allow_only({"scene", "file", "text", "folder", "folders", "time", "animation"});
     const std::optional<Node> file = parameters.find("file"), text = parameters.find("text");
     if (file.has_value() == text.has_value())
-        parameters.fail("give either \"file\", or \"text\" and \"folder\"");
+        parameters.fail(R"(give either "file", or "text" and "folder")");
     LoadRequest request{.options = options_.loading};
     LoadOptions& options = request.options;
     options.gltf.time = number_of(parameters, "time");
@@ -177,9 +165,9 @@ Json Methods::set(const Node& parameters, const Call&) {
     checked([&] {
         parameters.allow_only({"scene", "change", "time", "animation"});
         if (parameters.find("change").has_value() == parameters.find("time").has_value())
-            parameters.fail("give either \"change\" or \"time\"");
+            parameters.fail(R"(give either "change" or "time")");
         if (parameters.find("change") && parameters.find("animation"))
-            parameters.fail("\"animation\" goes with \"time\"");
+            parameters.fail(R"("animation" goes with "time")");
     });
     if (const auto change = parameters.find("change")) {
         scene.change(change->text());

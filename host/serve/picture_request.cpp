@@ -61,7 +61,7 @@ AovSelection read_layers(const Node& parameters) {
     std::vector<std::string> names;
     for (const LayerKind& kind : layer_kinds())
         names.emplace_back(kind.name);
-    if (!all && !layers->is_array()) layers->fail_expected("\"all\" or an array of names");
+    if (!all && !layers->is_array()) layers->fail_expected(R"("all" or an array of names)");
     std::vector<std::string> wanted;
     if (all) {
         wanted = names;

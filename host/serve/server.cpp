@@ -13,6 +13,9 @@
 
 namespace candela::serve {
 
+// The most bytes of a line whose values need no memory to speak of.
+static constexpr size_t SHORT_LINE = size_t{1} << 16;
+
 // The answer that the exception being handled is.
 static std::string line_of_caught(const std::optional<std::string>& id) {
     try {
@@ -39,7 +42,7 @@ bool Server::is_over() {
 
 Json Server::cancel(const Request& request) {
     const Node parameters = request.parameters();
-    parameters.allow_only({"request"});
+    checked([&] { parameters.allow_only({"request"}); });
     const std::optional<Node> wanted = parameters.find("request");
     const std::lock_guard lock(mutex_);
     const auto is_meant = [&](const std::optional<std::string>& id) {
@@ -57,7 +60,9 @@ Json Server::cancel(const Request& request) {
 void Server::take(const std::string& line) {
     std::optional<std::string> id;
     try {
-        const LimitedMemory limited;
+        // A short one is read whatever is in use, so that scenes can be closed.
+        std::optional<LimitedMemory> limited;
+        if (line.size() > SHORT_LINE) limited.emplace();
         Request request = with_memory_for(
             "its values", [] { return std::string("request"); }, [&] { return parse_request(line, id); });
         if (request.method == "cancel") {

@@ -43,7 +43,8 @@ TEST_F(Usage, HelpOfRenderListsEveryOption) {
 
 TEST_F(Usage, UnknownWordsAreNamed) {
     const std::vector<std::pair<Words, const char*>> cases = {
-        {{}, "no command given; use render, view, info, devices, compare, merge, plot, selftest, bench or serve"},
+        {{},
+         "no command given; use render, view, info, devices, compare, merge, plot, selftest, bench or serve"},
         {{"trace"}, "unknown command \"trace\""},
         {{"--trace"}, "unknown argument \"--trace\""},
         {{"render", CORNELL_BOX, "-o", "x.png", "--trace"},

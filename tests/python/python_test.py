@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The Python package, with the program that it runs. usage: python_test.py CANDELA [TEST...]"""
+import base64
 import glob
 import json
 import os
@@ -139,6 +140,29 @@ class Python(unittest.TestCase):
         warnings.simplefilter("always")
         with self.assertWarnsRegex(UserWarning, "the environment is black"):
             candela.load({**SCENE, "environment": {"radiance": 0}})
+
+    def test_poses(self):
+        numbers = numpy.array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 5, 0, 0], "<f4").tobytes()
+        views = [(0, 36), (36, 8), (44, 24)]  # Positions; times; places.
+        gltf = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+                "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                "buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64," +
+                             base64.b64encode(numbers).decode()}],
+                "bufferViews": [{"buffer": 0, "byteOffset": at, "byteLength": size} for at, size in views],
+                "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                               "max": [1, 1, 0]},
+                              {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+                              {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+                "animations": [{"samplers": [{"input": 1, "output": 2}],
+                                "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]}
+        warnings.simplefilter("ignore")  # It has no camera.
+        scene = candela.load(json.dumps(gltf).encode())
+        numpy.testing.assert_array_equal(scene.bounds, [[0, 0, 0], [1, 1, 0]])
+        scene.pose(1)
+        numpy.testing.assert_array_equal(scene.bounds, [[5, 0, 0], [6, 1, 0]])
+        numpy.testing.assert_array_equal(candela.load(json.dumps(gltf).encode(), time=0.5).bounds, [[2.5, 0, 0], [3.5, 1, 0]])
+        scene.pose(None)
+        numpy.testing.assert_array_equal(scene.bounds, [[0, 0, 0], [1, 1, 0]])
 
     def test_views(self):
         scene = candela.load(SCENE)

@@ -173,6 +173,16 @@ class Serve(unittest.TestCase):
             fresh.call("render", scene="1", spp=spp)
             self.assertTrue(client.pixels() == fresh.pixels())
 
+    def test_cancels_loading(self):
+        many = SCENE.replace('"shapes": [', '"shapes": [' + '{"type": "sphere", "material": "clay"}, ' * 200000)
+        with Client() as client:
+            loading = client.send("load", text=many, folder="/")
+            stop = client.send("cancel", request=loading)
+            answers = {message["id"]: message for message in (client.read(), client.read())}
+            self.assertEqual(answers[stop]["result"], {"cancelled": 1})
+            self.assertEqual(answers[loading]["error"]["code"], -32800)
+            self.assertIn("scene", client.call("load", text=SCENE, folder="/"))
+
     def test_keeps_several_scenes(self):
         with Client() as client:
             self.assertEqual([client.load(), client.load(scene="b"), client.load()], ["1", "b", "2"])

@@ -196,6 +196,26 @@ TEST_F(SessionTest, RendersOnAndWithOtherPicturesToTheSameBits) {
     EXPECT_TRUE(on == fresh(text, {}));
 }
 
+TEST_F(SessionTest, APictureDependsOnNothingBeforeIt) {
+    const std::string text = scene_text(CAMERA, FLOOR, LAMP, SKY);
+    Layers fewer, all;
+    {
+        Session session(options());
+        session.load(file(text));
+        EXPECT_TRUE(session.render(SESSION_SPP));
+        EXPECT_TRUE(session.render(1));  // Fewer than there are.
+        fewer = layers(session);
+        session.choose({.all_layers = true});  // What pixels show first has not been looked up yet.
+        EXPECT_TRUE(session.render(SESSION_SPP));
+        all = layers(session);
+    }
+    EXPECT_TRUE(all == fresh(text, {.all_layers = true}));
+    Session session(options());
+    session.load(file(text));
+    EXPECT_TRUE(session.render(1));
+    EXPECT_TRUE(fewer == layers(session));
+}
+
 TEST_F(SessionTest, AFailureLeavesSceneAndPicture) {
     Session session(options());
     EXPECT_EQ(error_of([&] { session.render(1); }), "no scene has been loaded yet; call load() first");

@@ -4,6 +4,7 @@ from __future__ import annotations
 import functools
 import importlib
 import os
+import shutil
 import threading
 import warnings
 import weakref
@@ -27,6 +28,7 @@ class Scene:
         self._connection = connection
         self._id: str = description["scene"]
         self._finalizer = weakref.finalize(self, connection.call_later, "close", {"scene": self._id})
+        self._folder: Optional[Callable[[], object]] = None
         self._lock = threading.RLock()
         self._description: Optional[Dict[str, Any]] = description  # None: it has to be asked for.
         self._cameras: Dict[str, Camera] = {}
@@ -122,11 +124,14 @@ class Scene:
         instead of the sky. Further options are those of docs/protocol.md: estimator, sampler, max_depth.
         """
         given = {"spp": spp, "size": size, "crop": crop, "seed": seed, "target_error": target_error,
-                 "time_limit": time_limit, "camera": self._name_of(camera), "layers": layers,
+                 "time_limit": time_limit, "camera": self._name_of(camera), "layers": layers if isinstance(layers, str) else list(layers),
                  "background": "transparent" if transparent else None, "progress": bool(progress) or None, **options}
         params = {key: _plain(value) for key, value in given.items() if value is not None}
         with self._lock, _Bar(progress) as bar:
-            _warn(self._connection.call("render", {"scene": self._id, **params}, bar))
+            outcome = self._connection.call("render", {"scene": self._id, **params}, bar)
+            _warn(outcome)
+            if outcome["complete"]:
+                bar.finish()
             return self.image()
 
     def image(self) -> Image:
@@ -172,10 +177,16 @@ class Scene:
         known = [name for name, ours in self._cameras.items() if ours is camera]
         return known[0] if known else camera.to_dict()
 
+    def keep(self, folder: str) -> None:
+        """Removes the folder with the scene, whose poses may read it."""
+        self._folder = weakref.finalize(self, shutil.rmtree, folder, True)
+
     def close(self) -> None:
         """Frees the scene, as it is when nothing uses it any more."""
         if self._finalizer.detach() and self._connection.is_open:
             self._connection.call("close", {"scene": self._id})
+        if self._folder is not None:
+            self._folder()
 
     def __enter__(self) -> Scene:
         return self
@@ -193,6 +204,7 @@ class _Bar:
     def __init__(self, progress: Progress) -> None:
         self._tell = progress if callable(progress) else None
         self._bar: Any = None
+        self._done = 0.0
         if progress is True:
             try:
                 self._bar = importlib.import_module("tqdm.auto").tqdm(total=100, unit="%", leave=False)
@@ -206,7 +218,13 @@ class _Bar:
         if self._bar is not None:
             self._bar.close()
 
+    def finish(self) -> None:
+        """The program reports often, but not every step."""
+        if self._done < 1.0:
+            self({"done": 1.0})
+
     def __call__(self, told: Dict[str, Any]) -> None:
+        self._done = told["done"]
         if self._tell is not None:
             self._tell(told["done"])
         if self._bar is not None:

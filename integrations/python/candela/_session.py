@@ -4,6 +4,7 @@ from __future__ import annotations
 import atexit
 import json
 import os
+import shutil
 import tempfile
 import threading
 from dataclasses import dataclass
@@ -60,10 +61,16 @@ class Session:
             return self._load({**params, "text": json.dumps(source), "folder": absolute(folder or ".")})
         if not isinstance(source, bytes):
             return self._load({**params, "file": absolute(source)})
-        with tempfile.TemporaryDirectory() as temporary:  # The program has read it all when it answers.
+        temporary = tempfile.mkdtemp(prefix="candela-")
+        try:
             file = Path(temporary) / "scene"
             file.write_bytes(source)
-            return self._load({**params, "file": str(file)})
+            scene = self._load({**params, "file": str(file)})
+        except BaseException:
+            shutil.rmtree(temporary, ignore_errors=True)
+            raise
+        scene.keep(temporary)
+        return scene
 
     def _load(self, params: Dict[str, Any]) -> Scene:
         return Scene(self._connection, self._connection.call("load", params))
