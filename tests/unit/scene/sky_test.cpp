@@ -78,12 +78,12 @@ double measured_sky(double sine) {
     return (0.8 + 15.5 * std::sqrt(sine)) / 127.5;
 }
 
-struct Place {
+struct SunPlace {
     double elevation, azimuth;
 };
 
 TEST(Sky, SunAndSkySendWhatTheyShould) {
-    for (const auto& [elevation, azimuth] : {Place{90, 0}, Place{30, 123.4}, Place{6, 3}}) {
+    for (const auto& [elevation, azimuth] : {SunPlace{90, 0}, SunPlace{30, 123.4}, SunPlace{6, 3}}) {
         SCOPED_TRACE(elevation);
         const Sky at = sky_at(elevation, azimuth);
         const Environment sky = sky_environment(at);
