@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/math.h"
+#include "shared/constants.h"
 #include "shared/material.h"
 #include "shared/principled.h"
 
