@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "base/printable.h"
 #include "cli/command.h"
 #include "cli/console.h"

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "cli/command.h"
