@@ -109,6 +109,7 @@ std::vector<Half> halves_of(std::span<const Accumulation> states) {
 template <class Value>
 auto mean_of(const std::vector<Half>& halves, size_t i, const Value& value) {
     decltype(value(halves.front())) sum(0.0);
+    if (halves.size() == 1) return halves[0].count(i) == 0 ? sum : value(halves[0]);
     int count = 0;
     for (const Half& half : halves) {
         if (half.count(i) == 0) continue;
@@ -192,7 +193,9 @@ Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
     const bool has_others = aovs.catchers || aovs.transmission;
     add_channels<4>(image, {"R", "G", "B", has_others ? FIRST_HIT_ALPHA : "A"}, [&](size_t i) {
         return mean_of(halves, i, [&](const Half& half) {
-            return half.colour(i) + dvec4(0, 0, 0, aovs.catchers ? half.caught(LAYER_WITHOUT, i) : 0.0);
+            dvec4 colour = half.colour(i);
+            if (aovs.catchers) colour.w += half.caught(LAYER_WITHOUT, i);
+            return colour;
         });
     });
     if (has_others) {
