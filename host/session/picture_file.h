@@ -15,8 +15,8 @@ inline constexpr Choices<Tonemap, 5> TONEMAP_NAMES{{{"linear", Tonemap::linear},
                                                     {"agx", Tonemap::agx},
                                                     {"neutral", Tonemap::neutral}}};
 
-// What a picture stands before if nobody says: a soft grey if its scene is in a studio that the camera does
-// not see; null: what the image shows.
+// What a picture stands before if nobody says: a soft grey if its scene has catchers, or is in a studio that
+// the camera does not see; null: what the image shows.
 const Background* default_background(const Image& image);
 
 // What the file states: the image's texts, without the command line and the time, so that files of equal

@@ -47,6 +47,7 @@ FIRST_POINTS = "shaders/kernels/first_points.comp.glsl"
 FIRST_HITS = "shaders/kernels/first_hits.comp.glsl"
 PIXEL_FILTER = "shaders/base/pixel_filter.glsl"
 SCENE_BUFFERS = "host/render/scene_buffers.cpp"
+POSITIONS = "host/render/positions.cpp"
 RENDERER = "host/render/renderer.cpp"
 FLATTEN = "host/gpu_scene/flatten.cpp"
 LIGHT_TREE = "shaders/light/tree.glsl"
@@ -88,7 +89,7 @@ GROUPS = [
         ("first hits of another crop", FIRST_HITS, "parameters.crop + uvec2", "uvec2"),
         ("first hits by any sampler", "host/render/first_hits.cpp", "constants[CONSTANT_SAMPLER] = SAMPLER_SOBOL;", ""),
         ("first hits of the shape before", FIRST_HITS, "hit_id(hit) + 1u", "max(hit_id(hit), 1u)"),
-        ("distances along the axis", RENDERER, "parallel ? double(at[3])", "true ? double(at[3])"),
+        ("distances along the axis", POSITIONS, "parallel ? double(at[3])", "true ? double(at[3])"),
         ("the least covering first", "host/film/id_layers.cpp", "a.hits > b.hits", "a.hits < b.hits"),
     ]),
     (MOTION, [
@@ -238,7 +239,7 @@ GROUPS = [
          "vec3(frame.unit * dvec3(m.medium.absorption))", "vec3(0.0 * frame.unit + dvec3(m.medium.absorption))"),
         ("the camera rounded before it is in the frame", RENDERER, ".position = frame.point(camera.position)",
          ".position = frame.point(dvec3(vec3(camera.position)))"),
-        ("depths left in the frame", RENDERER, "values[i + 3] *= float(frame_.unit);", ""),
+        ("depths left in the frame", POSITIONS, "values[i + 3] *= float(frame_.unit);", ""),
         ("the bound on a triangle's points halved", "host/gpu_scene/ray_error.cpp", "3.0 * max(abs(lo)",
          "1.5 * max(abs(lo)"),
         ("rays begin on their surfaces", VERTEX, "(viewers_side ? v.error : -v.error) * v.n", "0.0 * v.n"),
