@@ -1,6 +1,6 @@
 #!/bin/sh
-# Repeats the tests that wait (for windows, signals, intervals, time limits, failing devices) beside other work: at nice
-# 19, beside four busy loops, each of which has a session of its own, like the work of other users. Up to eight
+# Repeats the tests that wait (for windows, signals, intervals, time limits, failing devices, clients) beside other work:
+# at nice 19, beside four busy loops, each of which has a session of its own, like the work of other users. Up to eight
 # repetitions run at once, four tests at a time in each, which makes it harder for each and an hour of fifty. (Where
 # Linux groups tasks by session, nice counts within a session only: each loop then gets as much as a repetition.)
 #   usage: sh tests/stress.sh [REPETITIONS [TESTS]]   (50; TESTS: a regular expression of names, as for ctest -R)
@@ -11,7 +11,8 @@ windows='View\.|ViewControls|ViewUsage|Presenter'
 signals='Interrupt|CheckpointTest|AdaptiveCli.AResumed|AnInterrupted|ChangedPlaces|cli.Kills'
 intervals='Progressive|TimeLimit|ByTheClock|CpuTime|IsTimed'
 devices='DeviceFailure|SteadyRenderer'
-tests=${2:-$windows|$signals|$intervals|$devices}
+servers='ServerTest|^serve$|^python$'
+tests=${2:-$windows|$signals|$intervals|$devices|$servers}
 
 # CTest asks the programs for their tests where they are new. It keeps the answers in build/ci, so once, and alone.
 number=$(ctest --test-dir build/ci -R "$tests" -LE '^slow$' --show-only | sed -n 's/^Total Tests: *//p')
