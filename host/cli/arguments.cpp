@@ -98,6 +98,8 @@ std::optional<AovSelection> parse_aovs(const std::string& text) {
             aovs.ids = true;
         } else if (name == "cryptomatte") {
             aovs.cryptomatte = true;
+        } else if (name == "denoising") {
+            aovs.denoising = true;
         } else if (name == "motion") {
             aovs.motion = true;
         } else {

@@ -215,6 +215,10 @@ Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
     }
     if (aovs.albedo) add_means({"Albedo.R", "Albedo.G", "Albedo.B"}, LAYER_ALBEDO);
     if (aovs.normal) add_means({"N.X", "N.Y", "N.Z"}, LAYER_NORMAL);
+    if (aovs.denoising) {
+        add_means(DENOISING_ALBEDO, first.denoising_layer + GUIDE_ALBEDO);
+        add_means(DENOISING_NORMAL, first.denoising_layer + GUIDE_NORMAL);
+    }
     if (aovs.position) {
         constexpr const char* NAMES[] = {"P.X", "P.Y", "P.Z"};
         for (size_t c = 0; c < 3; ++c)

@@ -27,13 +27,16 @@ struct Accumulation {
     PixelRect rect;    // The part of the picture that is held here.
     uint32_t seed = 0;
     uint32_t first_sample = 0;                  // Index of each pixel's first sample.
-    uint32_t layer_count = LAYER_COUNT_COLOUR;  // LAYER_COUNT_*
+    uint32_t layer_count = LAYER_COUNT_COLOUR;  // LAYER_COUNT_*, and LAYER_COUNT_GUIDES
+    uint32_t denoising_layer = 0;               // if there are guides: the first layer of theirs; else 0.
     std::vector<float> values;                  // Empty if no pixel has a sample or a limit.
     RenderCounters counters{};                  // Totals for all of the samples.
 
     size_t pixel_count() const { return size_t(rect.width()) * rect.height(); }
     // RGBA of a layer at pixel i of `rect`.
     const float* at(uint32_t layer, size_t i) const { return &values[(layer * pixel_count() + i) * 4]; }
+    // LAYER_COUNT_*
+    uint32_t layers_before_guides() const { return denoising_layer != 0 ? denoising_layer : layer_count; }
     uint32_t sample_count(size_t i) const {
         return values.empty() ? 0 : uint32_t(at(LAYER_L_COMPENSATION, i)[3]);
     }
@@ -81,6 +84,7 @@ struct AovSelection {
     bool ids = false;          // ObjectId.V, InstanceId.V, MaterialId.V: see id_layers.h.
     bool cryptomatte = false;  // CryptoObject, CryptoMaterial: see id_layers.h.
     bool motion = false;       // Motion.X/Y: since the frame before; see render/motion.h.
+    bool denoising = false;    // DenoisingAlbedo.R/G/B, DenoisingNormal.X/Y/Z: see integrator/guides.glsl.
 
     bool catchers = false;  // The scene has catchers, rendered as such: see catcher_layers.h.
 
@@ -97,6 +101,12 @@ struct AovSelection {
 // be empty if the selection does not need it.
 Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
                  const std::vector<float>& positions);
+
+// The layers of guides.
+inline constexpr std::array<const char*, 3> DENOISING_ALBEDO{"DenoisingAlbedo.R", "DenoisingAlbedo.G",
+                                                             "DenoisingAlbedo.B"};
+inline constexpr std::array<const char*, 3> DENOISING_NORMAL{"DenoisingNormal.X", "DenoisingNormal.Y",
+                                                             "DenoisingNormal.Z"};
 
 inline Image make_image(const Accumulation& state, const AovSelection& aovs,
                         const std::vector<float>& positions) {

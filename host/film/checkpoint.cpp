@@ -1,8 +1,10 @@
 // See checkpoint.h.
 #include "film/checkpoint.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/error.h"
@@ -20,9 +22,11 @@ constexpr const char* PLANNED_ATTRIBUTE = "candela.planned";
 constexpr const char* SECONDS_ATTRIBUTE = "candela.renderSeconds";
 constexpr const char* FORMAT_ATTRIBUTE = "candela.checkpoint";
 constexpr const char* STATES_ATTRIBUTE = "candela.states";
+constexpr const char* GUIDES_ATTRIBUTE = "candela.denoisingLayer";  // Accumulation::denoising_layer
 
-// Version of the file format; it increases when older programs cannot read newer checkpoints.
-constexpr uint32_t FORMAT = 1;
+// Version of the file format; it increases when older programs cannot read newer checkpoints. Files that need
+// no guides are of the first.
+constexpr uint32_t FORMAT = 2, FORMAT_WITHOUT_GUIDES = 1;
 
 // Numbers of states of a plain and of an adaptive rendering; see adaptive.h.
 constexpr size_t PLAIN_STATES = 1, ADAPTIVE_STATES = 4;
@@ -90,10 +94,25 @@ void add_layers(Image& image, size_t index, const Accumulation& state) {
     }
 }
 
+[[noreturn]] void fail_damaged(const std::string& name, const std::string& what) {
+    throw Error(name + ": the checkpoint is damaged: " + what +
+                "; use an undamaged copy, or remove the file to start over");
+}
+
 Accumulation read_layers(const Image& image, size_t index, const std::string& name) {
     Accumulation state{.full = image.full, .rect = image.data, .values = {}};
-    if (image.find(channel_name(index, LAYER_ALBEDO, 0)) != nullptr) state.layer_count = LAYER_COUNT_AOVS;
-    if (image.find(channel_name(index, LAYER_WITH, 0)) != nullptr) state.layer_count = LAYER_COUNT_CATCHERS;
+    if (image.attributes.contains(GUIDES_ATTRIBUTE)) {
+        state.denoising_layer = number_attribute<uint32_t>(image, GUIDES_ATTRIBUTE, name);
+        constexpr uint32_t BEFORE[] = {LAYER_COUNT_COLOUR, LAYER_COUNT_AOVS, LAYER_COUNT_CATCHERS};
+        if (std::ranges::find(BEFORE, state.denoising_layer) == std::end(BEFORE))
+            fail_damaged(name, "it says that the layers of guides begin with " +
+                                   std::to_string(state.denoising_layer));
+        state.layer_count = state.denoising_layer + LAYER_COUNT_GUIDES;
+    } else if (image.find(channel_name(index, LAYER_WITH, 0)) != nullptr) {
+        state.layer_count = LAYER_COUNT_CATCHERS;
+    } else if (image.find(channel_name(index, LAYER_ALBEDO, 0)) != nullptr) {
+        state.layer_count = LAYER_COUNT_AOVS;
+    }
     state.values.resize(state.layer_count * state.pixel_count() * 4);
     for (uint32_t layer = 0; layer < state.layer_count; ++layer) {
         for (size_t c = 0; c < 4; ++c) {
@@ -107,11 +126,6 @@ Accumulation read_layers(const Image& image, size_t index, const std::string& na
         }
     }
     return state;
-}
-
-[[noreturn]] void fail_damaged(const std::string& name, const std::string& what) {
-    throw Error(name + ": the checkpoint is damaged: " + what +
-                "; use an undamaged copy, or remove the file to start over");
 }
 
 // Throws Error if a newer version wrote the file, or if it does not hold as many states as it says.
@@ -145,7 +159,7 @@ void check_state(const Accumulation& state, const std::string& name) {
         expect(is_count(state.at(LAYER_L, i)[3], samples), "visible samples");
         expect(is_count(state.at(LAYER_SQUARE, i)[3], MAX_SPP), "samples as its limit");
         expect(is_count(state.at(LAYER_SQUARE_COMPENSATION, i)[3], MAX_RAYS), "rays");
-        if (state.layer_count != LAYER_COUNT_CATCHERS) continue;
+        if (state.layers_before_guides() != LAYER_COUNT_CATCHERS) continue;
         expect(is_count(state.at(LAYER_WITH, i)[3], samples), "samples of catchers");
         expect(is_count(state.at(LAYER_WITHOUT, i)[3], state.at(LAYER_WITH, i)[3]), "samples of reflections");
     }
@@ -157,7 +171,7 @@ void check_together(const Checkpoint& checkpoint, const std::string& name) {
     for (size_t i = 0; i < checkpoint.states.size(); ++i) {
         const Accumulation& state = checkpoint.states[i];
         if (state.seed != (first.seed ^ uint32_t(i) << 30) || state.first_sample != first.first_sample ||
-            state.layer_count != first.layer_count)
+            state.layer_count != first.layer_count || state.denoising_layer != first.denoising_layer)
             fail_damaged(name, "its states are not those of one rendering");
     }
     const CheckpointHeader& header = checkpoint.header;
@@ -178,7 +192,9 @@ void save_checkpoint(const std::filesystem::path& path, const CheckpointHeader& 
         });
         add_layers(image, index, states[index]);
     }
-    image.attributes[FORMAT_ATTRIBUTE] = std::to_string(FORMAT);
+    const bool has_guides = first.denoising_layer != 0;
+    image.attributes[FORMAT_ATTRIBUTE] = std::to_string(has_guides ? FORMAT : FORMAT_WITHOUT_GUIDES);
+    if (has_guides) image.attributes[GUIDES_ATTRIBUTE] = std::to_string(first.denoising_layer);
     image.attributes[STATES_ATTRIBUTE] = std::to_string(states.size());
     image.attributes[PLANNED_ATTRIBUTE] = std::to_string(header.planned);
     image.attributes[SECONDS_ATTRIBUTE] = std::to_string(header.render_seconds);

@@ -22,6 +22,7 @@ constexpr const char* SAMPLES = "candela.samples";
 constexpr const char* SPP = "samplesPerPixel";
 constexpr const char* SECONDS = "renderTimeSeconds";
 constexpr const char* COUNT_CHANNEL = "SampleCount.V";
+constexpr const char* DENOISED_LAYER = "Denoised.";
 
 // The header of a file: the description of the part, and its channels without their values.
 struct Part {
@@ -152,6 +153,7 @@ std::vector<std::string> common_channels(const std::vector<Part>& parts, std::ve
         const auto lacking =
             std::ranges::find_if(parts, [&](const Part& part) { return part.header.find(name) == nullptr; });
         const std::string quoted_name = '"' + printable(name, MAX_NAME_BYTES) + '"';
+        if (name.starts_with(DENOISED_LAYER)) continue;
         if (!PartSum::knows(name)) {
             warnings.push_back("the channel " + quoted_name +
                                " is left out: candela does not know how to merge it");
@@ -270,6 +272,11 @@ Merged merge_files(const std::vector<std::filesystem::path>& files, const PartRe
         merged.warnings.push_back("the samples " + ranges_text(missing) + " are missing: no part holds them");
     warn_of_makers(parts, merged.warnings);
     const std::vector<std::string> channels = common_channels(parts, merged.warnings);
+    merged.had_denoised = std::ranges::any_of(parts, [](const Part& part) {
+        return std::ranges::any_of(part.header.channels, [](const Channel& channel) {
+            return channel.name.starts_with(DENOISED_LAYER);
+        });
+    });
     PartSum sum(first.header, channels);
     Image first_image;  // Only what is the same in all parts.
     for (const Part& part : parts) {

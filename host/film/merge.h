@@ -15,7 +15,8 @@ namespace candela {
 struct Merged {
     Image image;
     std::vector<std::string>
-        warnings;  // Oddities that can be merged: gaps, interrupted parts, other devices.
+        warnings;               // Oddities that can be merged: gaps, interrupted parts, other devices.
+    bool had_denoised = false;  // Parts have denoised layers, which are left out.
 };
 
 // How the files of parts are read: first their headers, then, once, their values.

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "film/accumulation.h"
 #include "film/catcher_layers.h"
 #include "film/id_layers.h"
 
@@ -22,6 +23,12 @@ static constexpr std::string_view MEANS[] = {"R",
                                              "N.X",
                                              "N.Y",
                                              "N.Z",
+                                             DENOISING_ALBEDO[0],
+                                             DENOISING_ALBEDO[1],
+                                             DENOISING_ALBEDO[2],
+                                             DENOISING_NORMAL[0],
+                                             DENOISING_NORMAL[1],
+                                             DENOISING_NORMAL[2],
                                              FIRST_HIT_ALPHA,
                                              CATCHER_ALPHA,
                                              FOREGROUND_ALPHA,

@@ -27,8 +27,8 @@ namespace candela {
 class PartSum {
   public:
     // For images of the size of `like`; sums their channels of these names, in this order. It knows R, G, B,
-    // A, Albedo, N and the layers of catchers (means), Variance of R, G and B, SampleCount.V, and what
-    // is_constant().
+    // A, Albedo, N and the layers of guides and catchers (means), Variance of R, G and B, SampleCount.V, and
+    // what is_constant().
     PartSum(const Image& like, std::vector<std::string> channels);
     static bool knows(const std::string& channel);
     // Whether the channel depends on no sample, and is the same in all images.

@@ -103,6 +103,11 @@ uint32_t sampler_constant(SamplerKind sampler) {
 
 }  // namespace
 
+uint32_t layers_before_guides(const RenderSettings& settings) {
+    if (settings.catchers) return LAYER_COUNT_CATCHERS;
+    return settings.aovs ? LAYER_COUNT_AOVS : LAYER_COUNT_COLOUR;
+}
+
 KernelConstants make_constants(const GpuScene& scene, const Camera& camera, const RenderSettings& settings) {
     KernelConstants constants;
     constants[CONSTANT_SAMPLER] = sampler_constant(settings.sampler);
@@ -110,6 +115,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_HAS_NORMALS] = scene.has_normals;
     constants[CONSTANT_SMOOTH_TERMINATOR] = settings.terminator == Terminator::smooth;
     constants[CONSTANT_HAS_AOVS] = settings.aovs;
+    constants[CONSTANT_DENOISING_LAYER] = settings.guides ? layers_before_guides(settings) : 0;
     constants[CONSTANT_CATCHERS] = !scene.has_catchers ? CATCHERS_NONE
                                    : settings.catchers ? CATCHERS_SEEN
                                                        : CATCHERS_SHOWN;

@@ -73,10 +73,11 @@ uint64_t add_to_hash(uint64_t hash, const T& array) {
     return hash_words(std::as_bytes(std::span(array)), hash);
 }
 
-// The constants, as they were before there were catchers if there are none: then the hash is that of older
-// files.
+// The constants, as they were before there were guides and, if there are none, before there were catchers:
+// then the hash is that of older files.
 std::vector<uint32_t> hashed_values(const KernelConstants& constants) {
     std::vector<uint32_t> values(constants.values.begin(), constants.values.end());
+    values.erase(values.begin() + CONSTANT_DENOISING_LAYER);
     if (constants[CONSTANT_CATCHERS] == CATCHERS_NONE) values.erase(values.begin() + CONSTANT_CATCHERS);
     return values;
 }
@@ -99,6 +100,7 @@ Identity make_identity(const GpuScene& scene, uint64_t arrays_hash, const Camera
     RenderSettings fixed = settings;
     fixed.first_sample = 0;
     fixed.aovs = false;
+    fixed.guides = false;
     uint64_t hash = add_to_hash(arrays_hash, pack(make_parameters(scene, camera, fixed)));
     hash = add_to_hash(hash, hashed_values(make_constants(scene, camera, fixed)));
     hash = add_to_hash(hash, std::array<uint32_t, 2>{settings.crop.x1, settings.crop.y1});

@@ -35,8 +35,7 @@ std::span<const std::byte> bytes_of(const T& value) {
 }
 
 uint32_t layer_count(const RenderSettings& settings) {
-    if (settings.catchers) return LAYER_COUNT_CATCHERS;
-    return settings.aovs ? LAYER_COUNT_AOVS : LAYER_COUNT_COLOUR;
+    return layers_before_guides(settings) + (settings.guides ? LAYER_COUNT_GUIDES : 0);
 }
 
 std::string gibibytes(uint64_t bytes) {
@@ -52,8 +51,8 @@ void check_host_memory(const vk::Device& device, const GpuScene& scene, const Re
     const uint64_t on_device = device_bytes(scene, settings);
     const uint64_t picture = on_device - scene.bytes();
     const uint64_t layers = uint64_t{settings.crop.width()} * settings.crop.height() * settings.layer_bytes;
-    const uint64_t needed =
-        3 * picture / 2 + layers + (device.info().type == vk::DeviceType::cpu ? on_device : 0);
+    const uint64_t needed = 3 * picture / 2 + layers + settings.later_bytes +
+                            (device.info().type == vk::DeviceType::cpu ? on_device : 0);
     if (memory_in_use() + needed <= memory_limit()) return;
     throw Error("rendering a picture of " + std::to_string(settings.crop.width()) + "x" +
                     std::to_string(settings.crop.height()) + " needs " + gibibytes(needed) + ", where " +
@@ -207,6 +206,7 @@ Accumulation empty_state(const RenderSettings& settings) {
             .seed = settings.seed,
             .first_sample = settings.first_sample,
             .layer_count = layer_count(settings),
+            .denoising_layer = settings.guides ? layers_before_guides(settings) : 0,
             .values = {}};
 }
 
@@ -342,7 +342,8 @@ Accumulation Renderer::download() const {
 
 void Renderer::upload(const Accumulation& state) {
     if (state.full != settings_.size || state.rect != settings_.crop || state.seed != settings_.seed ||
-        state.first_sample != settings_.first_sample || state.layer_count != image_.layers()) {
+        state.first_sample != settings_.first_sample || state.layer_count != image_.layers() ||
+        state.denoising_layer != constants_[CONSTANT_DENOISING_LAYER]) {
         throw Error(
             "the state does not fit: its size, crop, seed, first sample or set of images differs from this "
             "rendering's; render with the settings that it was made with");

@@ -50,8 +50,10 @@ struct RenderSettings {
     Backdrop backdrop = Backdrop::environment;
     bool aovs = false;      // Accumulate albedo and normal as well.
     bool catchers = false;  // Catchers are seen as such, otherwise as other surfaces (needs `aovs`).
+    bool guides = false;    // Accumulate what guides denoisers as well.
     // Bytes of the host's memory that each pixel needs besides what is accumulated.
     uint32_t layer_bytes = 0;
+    uint64_t later_bytes = 0;  // Bytes of it that are needed when the picture is there, whatever its size.
     SceneAccess scene_access = SceneAccess::automatic;
     double submission_seconds = 0.0;     // Duration of a submission; 0: suitable for the device.
     uint32_t pass_growth = PASS_GROWTH;  // See Schedule; changes no bit.
@@ -70,6 +72,9 @@ KernelConstants kernel_constants(const vk::Device& device, const GpuScene& scene
 // The renderer's kernels, compiled for kernel_constants(), with nothing bound.
 enum class RenderKernel { render, position, first_hits, first_points };
 vk::Kernel make_kernel(const vk::Device& device, RenderKernel which, const KernelConstants& constants);
+
+// The layers of the accumulation image without those of guides: LAYER_COUNT_*.
+uint32_t layers_before_guides(const RenderSettings& settings);
 
 // The state before the first sample: it holds no values yet.
 Accumulation empty_state(const RenderSettings& settings);

@@ -43,10 +43,16 @@ std::optional<Checkpoint> load_to_resume(const RenderJob& job, const Identity& i
                    std::to_string(job.settings.first_sample),
                same);
     }
-    if ((state.layer_count != LAYER_COUNT_COLOUR) != job.settings.aovs) {
+    if ((state.layers_before_guides() != LAYER_COUNT_COLOUR) != job.settings.aovs) {
         refuse(std::string("it holds ") + (job.settings.aovs ? "no " : "") +
                    "albedo and normals, which the outputs " + (job.settings.aovs ? "need" : "do not need"),
                "give the same outputs and --aov as for the checkpoint");
+    }
+    if ((state.denoising_layer != 0) != job.settings.guides) {
+        refuse(std::string("it holds ") + (job.settings.guides ? "no " : "") +
+                   "guides for denoisers, which the outputs " +
+                   (job.settings.guides ? "need" : "do not need"),
+               "give the same outputs, --aov and --denoise as for the checkpoint");
     }
     const uint32_t max = adaptive ? std::max(checkpoint.header.planned, samples_per_pixel(checkpoint.states))
                                   : state.max_samples();

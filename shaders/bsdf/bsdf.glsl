@@ -104,6 +104,15 @@ BsdfSample bsdf_sample_f(Bsdf b, vec3 wo, float uc, vec2 u) {
     return bsdf_sample_failed();
 }
 
+// Whether the lobe that uc in [0, 1) chooses is as sharp as a mirror or clear glass, nearly, and such lobes scatter
+// most of the light.
+bool bsdf_is_sharp(Bsdf b, float uc) {
+    if (is_model(b, MATERIALS_DIELECTRIC | 1u << MATERIAL_MIRROR)) return true;
+    if (is_model(b, 1u << MATERIAL_CONDUCTOR)) return b.parameter <= SHARP_ALPHA;
+    if (is_model(b, 1u << MATERIAL_PRINCIPLED)) return principled_is_sharp(b.principled, uc);
+    return false;
+}
+
 // Fraction of the light that the surface scatters at normal incidence, per channel, for the albedo image.
 vec3 bsdf_albedo(Bsdf b) {
     if (is_model(b, MATERIALS_DIELECTRIC)) return vec3(1.0);

@@ -17,6 +17,10 @@ BsdfValue principled_coat_evaluate(Principled p, vec3 wo, vec3 wi, float cosine)
     return bsdf_zero();
 }
 
+bool principled_is_sharp(Principled p, float uc) {
+    return false;
+}
+
 BsdfSample principled_sample_f(Principled p, vec3 wo, float uc, vec2 u) {
     return bsdf_sample_failed();
 }

@@ -135,6 +135,15 @@ BsdfValue principled_evaluate(Principled p, vec3 wo, vec3 wi) {
     return value;
 }
 
+// See bsdf_is_sharp().
+bool principled_is_sharp(Principled p, float uc) {
+    bool coat = principled_has(PRINCIPLED_HAS_COAT) && (p.coat_ideal || p.coat_alpha <= SHARP_ALPHA);
+    bool base = p.ideal || max(p.alpha.x, p.alpha.y) <= SHARP_ALPHA;
+    float sharp = (coat ? p.pmf.x : 0.0) + (base ? p.pmf.y : 0.0);
+    bool chosen = uc < p.pmf.x ? coat : uc < p.pmf.x + p.pmf.y && base;
+    return chosen && sharp >= 0.5;
+}
+
 // An ideal direction and its weight; `chosen` is the probability of choosing it.
 BsdfSample principled_ideal(vec3 wi, vec3 weight, float chosen, float eta) {
     return bsdf_sample_delta(wi, weight / chosen, chosen, eta);

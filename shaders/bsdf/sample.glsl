@@ -7,6 +7,9 @@
 #ifndef BSDF_SAMPLE_GLSL
 #define BSDF_SAMPLE_GLSL
 
+// Facets up to this roughness are as good as a mirror for those who ask what is seen in it.
+const float SHARP_ALPHA = 0.05;
+
 // The value for a pair of directions.
 struct BsdfValue {
     vec3 f;     // [1/sr]

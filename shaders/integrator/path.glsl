@@ -23,6 +23,7 @@
 #define INTEGRATOR_PATH_GLSL
 
 #include "base/sampler.glsl"
+#include "integrator/guides.glsl"
 #include "integrator/surface.glsl"
 #include "light/light_sampler.glsl"
 #include "medium/medium.glsl"
@@ -66,7 +67,8 @@ struct Estimate {
     uint catcher;  // CATCHER_*
     vec3 with;
     vec3 reflected;
-    bool strayed;  // The path from a catcher that reflects has met the rest of the scene.
+    bool strayed;   // The path from a catcher that reflects has met the rest of the scene.
+    Guides guides;  // Only if HAS_GUIDES.
 };
 
 // A ray towards a light sample, which may be blocked.
@@ -88,7 +90,8 @@ bool path_is_blind(Path path) {
 }
 
 Estimate estimate_begin() {
-    return Estimate(vec3(0.0), false, vec3(0.0), vec3(0.0), false, 0.0, CATCHER_NONE, vec3(0.0), vec3(0.0), false);
+    return Estimate(vec3(0.0), false, vec3(0.0), vec3(0.0), false, 0.0, CATCHER_NONE, vec3(0.0), vec3(0.0), false,
+                    guides_begin());
 }
 
 // Notes that the path's first hit is a catcher, if it is one.
@@ -153,14 +156,25 @@ vec3 clamp_indirect(vec3 L, uint bounces) {
     return mean > limit ? L * (limit / mean) : L;
 }
 
+// Whether the path is still to find what guides a denoiser.
+bool seeks_guides(Path path, Estimate estimate) {
+    return HAS_GUIDES && !estimate.guides.found && !(HAS_CATCHERS && path.alone);
+}
+
 // Adds the radiance of the sky, for a path whose ray left the scene.
 void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u && ENVIRONMENT != ENVIRONMENT_VISIBLE) return;
     EnvironmentTexel texel = environment_texel(path.ray.d);
     float pdf_light = environment_pdf_li(texel, path_lit_point(path));
     float weight = emission_weight(path, path.pdf_bsdf, pdf_light);
+    if (seeks_guides(path, estimate)) guides_meet(estimate.guides, vec3(0.0), texel.radiance, vec3(0.0));
     estimate.L += clamp_indirect(weight * path.beta * texel.radiance, path.depth);
     if (path.depth == 0u) estimate.visible = true;
+}
+
+// The radiance that light s.light emits at s.
+vec3 surface_le(Interaction s) {
+    return area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
 }
 
 // Adds the emission of light s.light, which the path's ray hit at s, at that `t`.
@@ -172,8 +186,7 @@ void add_emission(Path path, inout Estimate estimate, Interaction s, float t) {
     if (HAS_COATED_EMISSION) {
         fraction = emitted_fraction(s.material, s.attributes, dot(s.wo, s.n), unit_float(hit_random(path.ray).xy));
     }
-    vec3 L = emission_weight(path, path.pdf_bsdf, pdf_light) * fraction * path.beta *
-             area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
+    vec3 L = emission_weight(path, path.pdf_bsdf, pdf_light) * fraction * path.beta * surface_le(s);
     estimate.L += clamp_indirect(L, path.depth);
 }
 
@@ -249,6 +262,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         return false;
     }
     if (!is_hit(hit)) {
+        if (seeks_guides(path, estimate)) guides_meet(estimate.guides, vec3(0.0), vec3(0.0), vec3(0.0));
         path.beta *= media_transmittance(path.media, FLOAT_MAX);  // Through a medium without an end.
         if (BEFORE_BACKGROUND && path.clear) {
             estimate.transmission = path.eta_scale * dot(path.beta, LUMINANCE);
@@ -273,6 +287,10 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
 
     // Attenuate by the medium on the way.
     path.beta *= media_transmittance(path.media, hit.t);
+    if (seeks_guides(path, estimate)) {
+        estimate.guides.tint *= media_transmittance(path.media, hit.t);
+        guides_meet(estimate.guides, bsdf_albedo(x.bsdf), x.s.light == NO_LIGHT ? vec3(0.0) : surface_le(x.s), x.s.ns);
+    }
 
     // Add what the surface emits; light samples of the previous vertex may already account for a part.
     if (x.s.light != NO_LIGHT) add_emission(path, estimate, x.s, hit.t);
@@ -296,13 +314,18 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     if (ESTIMATOR != ESTIMATOR_BSDF) light = sample_light(lit, random, pair);
     surface_add_layers(x, path.ray, path.beta);
     if (path.depth == 0u && is_principled(x.material)) estimate.albedo = bsdf_albedo(x.bsdf);
+    if (seeks_guides(path, estimate)) {
+        guides_meet(estimate.guides, bsdf_albedo(x.bsdf), x.s.light == NO_LIGHT ? vec3(0.0) : surface_le(x.s), x.s.ns);
+    }
 
     // Add direct light.
     if (ESTIMATOR != ESTIMATOR_BSDF) shadow = direct_light(path, x, lit, light);
 
     // Scatter.
     uvec3 u = sampler_triple(random, pair + PAIR_BSDF);
-    if (!path_scatter(path, x, lit, surface_sample_f(x, unit_float(u.z), unit_float(u.xy)))) return false;
+    BsdfSample scattered = surface_sample_f(x, unit_float(u.z), unit_float(u.xy));
+    if (seeks_guides(path, estimate)) guides_scatter(estimate.guides, x, unit_float(u.z), scattered);
+    if (!path_scatter(path, x, lit, scattered)) return false;
     if (path.depth >= parameters.rr_depth) {
         if (!path_survives(path, unit_float(sampler_pair(random, pair + PAIR_SURVIVAL).x))) return false;
     }

@@ -62,6 +62,8 @@ struct Pixel {
     Sum normal;  // Sum over the first hits; only if HAS_AOVS.
     Sum with;    // Sums over the first hits that are catchers; only if HAS_CATCHERS.
     Sum without;
+    Sum guide_albedo;  // Sums of Guides; only if HAS_GUIDES.
+    Sum guide_normal;
     float caught;            // Samples whose camera ray hit a catcher,
     float reflecting;        // and one that reflects; only if HAS_CATCHERS.
     ScalarSum transmission;  // Only if BEFORE_BACKGROUND.
@@ -110,6 +112,14 @@ Pixel pixel_load(uvec2 at) {
         p.caught = with.a;
         p.reflecting = without.a;
     }
+    p.guide_albedo = Sum(vec3(0.0), vec3(0.0));
+    p.guide_normal = Sum(vec3(0.0), vec3(0.0));
+    if (HAS_GUIDES) {
+        p.guide_albedo = Sum(layer_load(at, DENOISING_LAYER + GUIDE_ALBEDO).rgb,
+                             layer_load(at, DENOISING_LAYER + GUIDE_ALBEDO_COMPENSATION).rgb);
+        p.guide_normal = Sum(layer_load(at, DENOISING_LAYER + GUIDE_NORMAL).rgb,
+                             layer_load(at, DENOISING_LAYER + GUIDE_NORMAL_COMPENSATION).rgb);
+    }
     p.visible = L.a;
     p.rays = square_compensation.a;
     p.limit = square.a;
@@ -133,6 +143,12 @@ void pixel_store(uvec2 at, Pixel p) {
         layer_store(at, LAYER_WITH_COMPENSATION, vec4(p.with.compensation, 0.0));
         layer_store(at, LAYER_WITHOUT, vec4(p.without.sum, p.reflecting));
         layer_store(at, LAYER_WITHOUT_COMPENSATION, vec4(p.without.compensation, 0.0));
+    }
+    if (HAS_GUIDES) {
+        layer_store(at, DENOISING_LAYER + GUIDE_ALBEDO, vec4(p.guide_albedo.sum, 0.0));
+        layer_store(at, DENOISING_LAYER + GUIDE_ALBEDO_COMPENSATION, vec4(p.guide_albedo.compensation, 0.0));
+        layer_store(at, DENOISING_LAYER + GUIDE_NORMAL, vec4(p.guide_normal.sum, 0.0));
+        layer_store(at, DENOISING_LAYER + GUIDE_NORMAL_COMPENSATION, vec4(p.guide_normal.compensation, 0.0));
     }
 }
 
@@ -186,6 +202,12 @@ void pixel_fold(inout Pixel p, Estimate estimate) {
         add(p.albedo, estimate.albedo);
         add(p.normal, estimate.normal);
         if (BEFORE_BACKGROUND) add(p.transmission, estimate.transmission);
+    }
+    if (HAS_GUIDES) {
+        Guides guides = estimate.guides;
+        bool finite = is_finite(guides.albedo) && is_finite(guides.normal);
+        add(p.guide_albedo, finite ? guides.albedo : vec3(0.0));
+        add(p.guide_normal, finite ? guides.normal : vec3(0.0));
     }
     ++p.samples;
 }

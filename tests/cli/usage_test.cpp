@@ -18,8 +18,8 @@ TEST_F(Usage, VersionAndHelpGoToStdout) {
     const ProcessResult help = candela({"--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_EQ(help.err, "");
-    for (const char* command : {"render", "view", "info", "devices", "compare", "merge", "plot", "selftest",
-                                "bench", "Exit codes"}) {
+    for (const char* command : {"render", "view", "info", "devices", "compare", "merge", "denoise", "plot",
+                                "selftest", "bench", "Exit codes"}) {
         EXPECT_CONTAINS(help.out, command);
     }
 }
@@ -27,16 +27,18 @@ TEST_F(Usage, VersionAndHelpGoToStdout) {
 TEST_F(Usage, HelpOfRenderListsEveryOption) {
     const ProcessResult help = candela({"render", "--help"});
     EXPECT_EQ(help.exit_code, 0);
-    for (const char* option :
-         {"--output",        "--aov",           "--half",        "--exposure",         "--tonemap",
-          "--report",        "--size",          "--crop",        "--camera",           "--spp",
-          "--time-limit",    "--seed",          "--max-depth",   "--rr-depth",         "--estimator",
-          "--sampler",       "--light-sampler", "--device",      "--scene-buffers",    "--quiet",
-          "--verbose",       "--samples",       "--checkpoint",  "--checkpoint-every", "--resume",
-          "--write-every",   "--target-error",  "--progress",    "--reference",        "--cameras",
-          "--skip-existing", "--stop-on-error", "--view",        "--turntable",        "--dome",
-          "--lens",          "--margin",        "--camera-file", "--write-cameras",    "--batch-time",
-          "--labels",        "--labels-of",     "--depth-png",   "--depth-unit",       "--manifest"}) {
+    for (const char* option : {"--output",        "--aov",         "--half",           "--exposure",
+                               "--tonemap",       "--report",      "--size",           "--crop",
+                               "--camera",        "--spp",         "--time-limit",     "--seed",
+                               "--max-depth",     "--rr-depth",    "--estimator",      "--sampler",
+                               "--light-sampler", "--device",      "--scene-buffers",  "--quiet",
+                               "--verbose",       "--samples",     "--checkpoint",     "--checkpoint-every",
+                               "--resume",        "--write-every", "--target-error",   "--progress",
+                               "--reference",     "--cameras",     "--skip-existing",  "--stop-on-error",
+                               "--view",          "--turntable",   "--dome",           "--lens",
+                               "--margin",        "--camera-file", "--write-cameras",  "--batch-time",
+                               "--labels",        "--labels-of",   "--depth-png",      "--depth-unit",
+                               "--manifest",      "--denoise",     "--denoise-quality"}) {
         EXPECT_CONTAINS(help.out, option);
     }
 }
@@ -44,7 +46,8 @@ TEST_F(Usage, HelpOfRenderListsEveryOption) {
 TEST_F(Usage, UnknownWordsAreNamed) {
     const std::vector<std::pair<Words, const char*>> cases = {
         {{},
-         "no command given; use render, view, info, devices, compare, merge, plot, selftest, bench or serve"},
+         "no command given; use render, view, info, devices, compare, merge, denoise, plot, selftest, "
+         "bench or serve"},
         {{"trace"}, "unknown command \"trace\""},
         {{"--trace"}, "unknown argument \"--trace\""},
         {{"render", CORNELL_BOX, "-o", "x.png", "--trace"},
@@ -71,7 +74,7 @@ TEST_F(Usage, BadValuesAreNamedWithWhatIsExpected) {
     const std::string spp = "a whole number from 1 to 16777216";
     const std::string duration = "a duration such as 90, 90s, 1.5m or 2h";
     const std::string aovs =
-        "all, none or a list of albedo,n,p,z,variance,samples,depth,ids,cryptomatte,motion";
+        "all, none or a list of albedo,n,p,z,variance,samples,depth,ids,cryptomatte,denoising,motion";
     const std::string view =
         "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ROLL in degrees, such as 30,20, with an elevation from -90 "
         "to 90";

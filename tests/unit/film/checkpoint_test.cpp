@@ -43,6 +43,7 @@ class CheckpointFile : public testing::Test {
             EXPECT_EQ(a.seed, b.seed);
             EXPECT_EQ(a.first_sample, b.first_sample);
             EXPECT_EQ(a.layer_count, b.layer_count);
+            EXPECT_EQ(a.denoising_layer, b.denoising_layer);
             EXPECT_EQ(a.counters, b.counters);
             ASSERT_EQ(a.values.size(), b.values.size());
             EXPECT_EQ(std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)), 0);
@@ -70,6 +71,26 @@ TEST_F(CheckpointFile, KeepsEveryBit) {
         save({state});
         expect_same(load_checkpoint(file_), {state});
     }
+}
+
+// The same number of layers may be those of colour and guides, or of colour, albedo and normals.
+TEST_F(CheckpointFile, TellsGuidesFromOtherLayers) {
+    for (const uint32_t layers : {LAYER_COUNT_COLOUR, LAYER_COUNT_AOVS, LAYER_COUNT_CATCHERS}) {
+        Accumulation state = sampled(layers + LAYER_COUNT_GUIDES).state;
+        state.denoising_layer = layers;
+        save({state});
+        EXPECT_EQ(std::get<std::string>(read_exr(file_).attributes.at("candela.checkpoint")), "2");
+        expect_same(load_checkpoint(file_), {state});
+    }
+    save({sampled(LAYER_COUNT_AOVS).state});
+    Image image = read_exr(file_);
+    EXPECT_EQ(std::get<std::string>(image.attributes.at("candela.checkpoint")), "1");
+    image.attributes["candela.denoisingLayer"] = std::string("7");
+    write_exr(file_, image);
+    EXPECT_EQ(error_of([&] { load_checkpoint(file_); }),
+              file_.string() +
+                  ": the checkpoint is damaged: it says that the layers of guides begin with 7; use an "
+                  "undamaged copy, or remove the file to start over");
 }
 
 TEST_F(CheckpointFile, KeepsSeveralStates) {
@@ -196,11 +217,11 @@ TEST_F(CheckpointFile, HeadersThatNoRendererLeavesAreRefused) {
 TEST_F(CheckpointFile, ANewerFormatIsRefused) {
     save({sampled(LAYER_COUNT_COLOUR).state});
     Image image = read_exr(file_);
-    image.attributes["candela.checkpoint"] = std::string("2");
+    image.attributes["candela.checkpoint"] = std::string("3");
     write_exr(file_, image);
     EXPECT_EQ(error_of([&] { load_checkpoint(file_); }),
               file_.string() +
-                  ": the checkpoint was made by a newer version of candela (its format is 2, and 1 is the "
+                  ": the checkpoint was made by a newer version of candela (its format is 3, and 2 is the "
                   "newest known here); continue with that version");
 }
 
