@@ -23,6 +23,7 @@ std::string about(const std::string& scene, const std::string& message) {
 RenderedPicture written(RenderedPicture rendered, const ImageOutputs& outputs, bool is_reported) {
     if (is_reported) rendered.image_hash = image_hash(rendered.image);
     rendered.attempts.attempt([&] {
+        rendered.denoising = outputs.denoise(rendered.image);
         const CpuWatch watch;
         try {
             rendered.overhead.encode = write_images(outputs, rendered.record, std::move(rendered.image));

@@ -21,6 +21,7 @@ Command add_info_command(CLI::App& app);
 Command add_devices_command(CLI::App& app);
 Command add_compare_command(CLI::App& app);
 Command add_merge_command(CLI::App& app, const std::string& command_line);
+Command add_denoise_command(CLI::App& app, const std::string& command_line);
 Command add_plot_command(CLI::App& app);
 Command add_selftest_command(CLI::App& app);
 Command add_bench_command(CLI::App& app);

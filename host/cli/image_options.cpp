@@ -78,6 +78,27 @@ AovSelection ImageOutputs::written_aovs() const {
     return written;
 }
 
+AovSelection ImageOutputs::rendered_aovs() const {
+    AovSelection rendered = written_aovs();
+    rendered.denoising |= denoising.is_on();
+    rendered.variance |= denoising.is_on();
+    return rendered;
+}
+
+std::optional<DenoisingRecord> ImageOutputs::denoise(Image& image) const {
+    std::optional<DenoisingRecord> record = denoising.denoise_or_warn(image, shows_alpha(image));
+    const AovSelection written = written_aovs();
+    std::erase_if(image.channels, [&](const Channel& channel) {
+        return (!written.denoising && channel.name.starts_with("Denoising")) ||
+               (!written.variance && channel.name.starts_with("Variance."));
+    });
+    return record;
+}
+
+bool ImageOutputs::shows_alpha(const Image& image) const {
+    return screen.background || default_background(image) != nullptr;
+}
+
 std::vector<ImageOutputs::Output> ImageOutputs::outputs() const {
     std::vector<Output> all;
     for (const std::string& file : files)

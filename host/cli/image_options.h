@@ -1,12 +1,14 @@
 // Which images a command writes, and how.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "cli/data_outputs.h"
+#include "cli/denoising_options.h"
 #include "cli/screen_options.h"
 #include "film/accumulation.h"
 #include "image/image_io.h"
@@ -44,8 +46,9 @@ struct ImageOutputs {
     bool half = false;                                      // EXR: R G B A and Albedo with 16 bits.
     DevelopmentOptions development;
     ScreenOptions screen;
+    DenoisingOptions denoising;
 
-    // Declares all but --aov and --alpha on `app`; this object must not move.
+    // Declares all but --aov, --alpha and --denoise on `app`; this object must not move.
     void add_to(CLI::App& app);
     void add_aovs_to(CLI::App& app);
 
@@ -63,6 +66,12 @@ struct ImageOutputs {
     // The images besides R G B A that will be made: those selected, if one of the files is an EXR, and what
     // files of data need.
     AovSelection written_aovs() const;
+    // The same, and what the denoiser needs.
+    AovSelection rendered_aovs() const;
+    // Denoises a rendered image, and removes what only the denoiser needed. A failure is a warning.
+    std::optional<DenoisingRecord> denoise(Image& image) const;
+    // Whether the image stands before something, so that its alpha is to be denoised, too.
+    bool shows_alpha(const Image& image) const;
     // Whether an EXR file goes to standard output.
     bool uses_stdout() const;
     // The same with the exposure for this image, if it is automatic.

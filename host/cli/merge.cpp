@@ -48,11 +48,18 @@ ExitCode run(MergeArguments& arguments, const std::string& command_line) {
     if (const auto background = screen.background_file()) files.read("--background", *background);
     check_outputs(arguments.images);
     screen.load();
+    arguments.images.denoising.load();
     Merged merged = merge_files({arguments.parts.begin(), arguments.parts.end()});
+    if (merged.had_denoised && !arguments.images.denoising.is_on()) {
+        merged.warnings.emplace_back(
+            "the layers Denoised of the parts are left out: the merged picture is denoised anew, by "
+            "--denoise");
+    }
     print_warnings(merged.warnings);
     merged.image.attributes["candela.commandLine"] = command_line;
     const std::string samples = std::get<std::string>(merged.image.attributes.at("candela.samples"));
     const size_t count = arguments.parts.size();
+    arguments.images.denoising.denoise_or_warn(merged.image, arguments.images.shows_alpha(merged.image));
     write_images(arguments.images, std::move(merged.image));
     const std::string note = concat("merged ", count, count == 1 ? " part" : " parts", ": samples ",
                                     printable(samples, MAX_MESSAGE_BYTES));
@@ -76,6 +83,7 @@ Command add_merge_command(CLI::App& app, const std::string& command_line) {
         ->type_name("")
         ->take_all();
     arguments->images.add_to(*command);
+    arguments->images.denoising.add_to(*command);
     add_value(
         *command, "--missing", arguments->missing, parse_samples, SAMPLES_EXPECTED,
         "Only print which of these samples no part holds, one range per line; a file that cannot be read "

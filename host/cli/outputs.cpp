@@ -14,18 +14,22 @@
 #include "base/file.h"
 #include "cli/attempts.h"
 #include "cli/console.h"
+#include "denoise/denoise_image.h"
 #include "image/image_io.h"
 
 namespace candela {
 namespace {
 
-// Marks R G B A and Albedo as 16-bit. A channel whose values exceed 16 bits keeps 32, with a warning: no
-// sample may be lost.
+// Marks R G B A, albedos and what is denoised as 16-bit. A channel whose values exceed 16 bits keeps 32, with
+// a warning: no sample may be lost.
 void use_half(Image& image) {
     constexpr float LARGEST_HALF = 65504.0f;
     constexpr std::string_view COLOUR_CHANNELS[] = {"R", "G", "B", "A", "Albedo.R", "Albedo.G", "Albedo.B"};
     for (Channel& channel : image.channels) {
-        if (std::ranges::find(COLOUR_CHANNELS, channel.name) == std::end(COLOUR_CHANNELS)) continue;
+        const bool is_colour =
+            std::ranges::find(COLOUR_CHANNELS, channel.name) != std::end(COLOUR_CHANNELS) ||
+            channel.name.starts_with("DenoisingAlbedo.") || is_denoised_channel(channel.name);
+        if (!is_colour) continue;
         channel.half = std::ranges::all_of(
             channel.values, [](float v) { return !std::isfinite(v) || std::abs(v) <= LARGEST_HALF; });
         if (!channel.half) {
@@ -41,8 +45,7 @@ void print_bytes(const std::filesystem::path& /*path*/, std::string_view bytes) 
 }
 
 // Returns the CPU time of all but developing [s].
-double write_image(const ImageOutputs& outputs, const std::string& path, const Image& image,
-                   FileWriter write) {
+double write_image(const ImageOutputs& outputs, const std::string& path, Image& image, FileWriter write) {
     const ImageFormat format = output_format(path);
     const CpuWatch all;
     if (format == ImageFormat::exr) {
@@ -50,6 +53,7 @@ double write_image(const ImageOutputs& outputs, const std::string& path, const I
         return all.seconds();
     }
     const DevelopmentOptions& development = outputs.development;
+    const DenoisedView denoised(image);
     const TexelImage picture =
         outputs.screen.develop(image, format, development.tonemap, float(development.exposure.ev));
     const CpuWatch encoding;
@@ -99,6 +103,7 @@ double write_images(const ImageOutputs& given, Image image) {
 void write_current_images(const ImageOutputs& given, const RenderRecord& record, Image image) {
     const ImageOutputs outputs = given.exposed_for(image);
     add_attributes(image, record);
+    outputs.denoise(image);
     if (outputs.half) use_half(image);
     for (const std::string& path : outputs.files) {
         if (path == STDOUT) continue;  // Gets the finished image alone.

@@ -36,7 +36,8 @@ struct RenderedPicture {
     Image image;
     std::string state;  // How it ended: "done", "interrupted", "left out" or "time limit".
     std::unique_ptr<Progress> progress;
-    double exposure = 0.0;  // Of its pictures for the screen [EV].
+    double exposure = 0.0;                       // Of its pictures for the screen [EV].
+    std::optional<DenoisingRecord> denoising{};  // If it was denoised.
     OverheadTimes overhead{};
     uint64_t image_hash = 0;         // If there is a report.
     Attempts attempts{};             // To write its files.

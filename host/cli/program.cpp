@@ -25,6 +25,7 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
                                   add_devices_command(app),
                                   add_compare_command(app),
                                   add_merge_command(app, command_line),
+                                  add_denoise_command(app, command_line),
                                   add_plot_command(app),
                                   add_selftest_command(app),
                                   add_bench_command(app),
@@ -34,7 +35,8 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
         "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no suitable device, 4 device lost,\n"
         "            5 out of memory, 6 images differ, 7 time over (--batch-time),\n"
         "            130 interrupted (with a valid partial image)\n"
-        "Environment: CANDELA_NO_CACHE=1 disables the cache of compiled kernels ($XDG_CACHE_HOME/candela);\n"
+        "Environment: CANDELA_OIDN=FILE names the library Open Image Denoise;\n"
+        "             CANDELA_NO_CACHE=1 disables the cache of compiled kernels ($XDG_CACHE_HOME/candela);\n"
         "             CANDELA_VALIDATION=1 turns on the Vulkan validation layer; its messages are errors");
     return commands;
 }
@@ -100,8 +102,8 @@ ExitCode run_program(int argc, const char* const* argv) {
         if (command.app->parsed()) return command.run();
     }
     throw Error(
-        "no command given; use render, view, info, devices, compare, merge, plot, selftest, bench or "
-        "serve, or see candela --help",
+        "no command given; use render, view, info, devices, compare, merge, denoise, plot, selftest, bench "
+        "or serve, or see candela --help",
         ErrorKind::request);
 }
 

@@ -34,6 +34,7 @@ void OutputOptions::add_to(CLI::App& app) {
     app.option_defaults()->group("Output");
     images.add_to(app);
     images.add_aovs_to(app);
+    images.denoising.add_to(app);
     images.screen.add_alpha_to(app);
     add_value(app, "--write-every", write_every, parse_duration, DURATIONS,
               "Also write the images while rendering (default: only at the end)")
@@ -121,12 +122,17 @@ RenderJob RenderOptions::job(const Scene& loaded, const std::optional<std::strin
         .target_error = stopping.target_error,
         .time_limit = stopping.time_limit,
         .write_every = outputs.write_every,
-        .aovs = outputs.images.written_aovs(),
+        .aovs = outputs.images.rendered_aovs(),
         .checkpoint = checkpoint};
     job.camera = cameras.changed(camera, job.settings.size);
     job.settings.first_sample = samples ? samples->first : 0;
     job.settings.aovs = job.aovs.needs_layers();
+    job.settings.guides = job.aovs.denoising;
     job.settings.layer_bytes = layer_bytes(job.aovs);
+    if (outputs.images.denoising.is_on()) {
+        job.settings.layer_bytes += DENOISED_BYTES;
+        job.settings.later_bytes = OIDN_BYTES;
+    }
     job.settings.backdrop = outputs.images.screen.backdrop();
     job.settings.pass_growth = job.time_limit || job.write_every ? EVEN_PASS_GROWTH : PASS_GROWTH;
     if (job.adaptive && job.target % 2 != 0) {

@@ -119,6 +119,10 @@ void Report::add(const RenderedPicture& rendered, const std::optional<Error>& fa
     entry.update(facts_of(rendered.record));
     entry["image_hash"] = hexadecimal(rendered.image_hash);
     entry["exposure"] = rendered.exposure;
+    const std::optional<DenoisingRecord>& denoising = rendered.denoising;
+    entry["denoiser"] = denoising ? Json(denoising->denoiser) : Json();
+    entry["denoiser_version"] = denoising ? Json(denoising->description) : Json();
+    entry["denoise_seconds"] = denoising ? Json(denoising->seconds) : Json();
     const OverheadTimes& overhead = rendered.overhead;
     entry["overhead_cpu_seconds"] = {{"scene", overhead.scene},
                                      {"kernels", overhead.kernels},

@@ -1,0 +1,75 @@
+// See denoising_options.h.
+#include "cli/denoising_options.h"
+
+#include <chrono>
+#include <utility>
+
+#include "base/caught_error.h"
+#include "cli/arguments.h"
+#include "cli/console.h"
+#include "denoise/denoise_image.h"
+
+namespace candela {
+namespace {
+
+constexpr Choices<DenoiserChoice, 4> CHOICE_NAMES{{{"auto", DenoiserChoice::automatic},
+                                                   {"oidn", DenoiserChoice::oidn},
+                                                   {"variance", DenoiserChoice::variance},
+                                                   {"none", DenoiserChoice::none}}};
+constexpr Choices<DenoiserChoice, 3> WAY_NAMES{{{"auto", DenoiserChoice::automatic},
+                                                {"oidn", DenoiserChoice::oidn},
+                                                {"variance", DenoiserChoice::variance}}};
+constexpr Choices<DenoiserQuality, 3> QUALITY_NAMES{{{"fast", DenoiserQuality::fast},
+                                                     {"balanced", DenoiserQuality::balanced},
+                                                     {"high", DenoiserQuality::high}}};
+
+void add_quality(CLI::App& app, DenoiserQuality& quality) {
+    add_choice(app, "--denoise-quality", quality, QUALITY_NAMES, "How long oidn may take (default: high)");
+}
+
+}  // namespace
+
+void DenoisingOptions::add_to(CLI::App& app) {
+    CLI::Option* const denoise = add_choice(
+        app, "--denoise", choice, CHOICE_NAMES,
+        "Denoise PNG, JPEG and WebP; EXR: add the layers Denoised. auto: the best that is there; oidn: "
+        "Open Image Denoise (default: none)");
+    add_quality(app, quality);
+    app.get_option("--denoise-quality")->needs(denoise);
+}
+
+void DenoisingOptions::add_required_to(CLI::App& app) {
+    choice = DenoiserChoice::automatic;
+    is_required = true;
+    add_choice(app, "--denoise", choice, WAY_NAMES,
+               "How: by the best that is there, or by Open Image Denoise (default: auto)");
+    add_quality(app, quality);
+}
+
+void DenoisingOptions::load() {
+    if (!is_on()) return;
+    ChosenDenoiser chosen = choose_denoiser(choice, quality);
+    denoiser = std::move(chosen.denoiser);
+    if (denoiser != nullptr) return;
+    if (is_required) throw Error(*chosen.why_not_oidn);
+    print_warning("--denoise auto: pictures stay noisy: " + std::string(chosen.why_not_oidn->what()));
+}
+
+DenoisingRecord DenoisingOptions::denoise(Image& image, bool with_alpha, const std::string& name) const {
+    const auto start = std::chrono::steady_clock::now();
+    add_denoised(image, *denoiser, with_alpha, name);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    return {.denoiser = denoiser->name(), .description = denoiser->description(), .seconds = seconds.count()};
+}
+
+std::optional<DenoisingRecord> DenoisingOptions::denoise_or_warn(Image& image, bool with_alpha) const {
+    if (denoiser == nullptr) return std::nullopt;
+    try {
+        return denoise(image, with_alpha, "the picture");
+    } catch (...) {
+        print_warning("the picture stays noisy: " + std::string(caught_error().what()));
+        return std::nullopt;
+    }
+}
+
+}  // namespace candela
