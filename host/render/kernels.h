@@ -12,5 +12,6 @@ extern const std::span<const uint32_t> render_layered;  // For scenes with princ
 // values alive.
 extern const std::span<const uint32_t> render_inlined, render_layered_inlined;
 extern const std::span<const uint32_t> display;  // Reads no scene.
+extern const std::span<const uint32_t> denoise;  // Neither does this.
 
 }  // namespace candela::kernels

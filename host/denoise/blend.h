@@ -1,0 +1,44 @@
+// The guarantee for denoised pictures: a blend with the noisy one, by how much of their difference noise
+// explains.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "image/image.h"
+
+namespace candela {
+
+// The planes of a denoised picture, row-major.
+struct Denoised {
+    std::array<std::vector<float>, 3> rgb;
+    std::vector<float> alpha;  // Empty if the picture has none.
+    // The weight with which a pixel's own noisy value went into its denoised one; empty if unknown, and taken
+    // for 0.
+    std::vector<float> own_weight;
+};
+
+// The weights of the noisy picture in the best blend with `denoised`, one per pixel, from 0 to 1.
+//
+// With d = denoised - noisy, V the variance of the noisy value and s the own weight, the blend that minimises
+// the expected squared error weighs the noisy value by 1 - (1 - s) V / E d^2, whatever the bias of the
+// denoised one. This is positive-part James-Stein shrinkage. E d^2 and V are means over 5 x 5 pixels,
+// relative to the level of each. As samples are added, V falls and the bias stays, so that the blend
+// converges to the noisy picture.
+//
+// Where V is infinite (below two samples) or no number, nothing is known and the weight is 0. So it is where
+// only the noisy value is not finite; where the denoised one is not, it is 1. Where nothing around has noise,
+// it is exactly 1.
+//
+// Ref: Stein, "Estimation of the Mean of a Multivariate Normal Distribution" (1981); James, Stein,
+// "Estimation with Quadratic Loss" (1961).
+std::vector<float> noisy_weights(uvec2 size, const RgbPlanes& noisy, const RgbPlanes& variance,
+                                 const Denoised& denoised);
+
+// Replaces `denoised` by its blend with the noisy picture; `alpha` may be empty. A weight of 1 gives the
+// noisy value, and a weight of 0 the denoised one, bit by bit.
+void blend(const std::vector<float>& noisy_weights, const RgbPlanes& noisy, std::span<const float> alpha,
+           Denoised& denoised);
+
+}  // namespace candela

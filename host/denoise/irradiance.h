@@ -1,0 +1,34 @@
+// What the kernel of denoising works on: irradiance, its variance and the features of a pixel, and the way
+// back.
+#pragma once
+
+#include <cstdint>
+
+#include "base/math.h"
+#include "denoise/variance.h"
+
+namespace candela {
+
+class Irradiance {
+  public:
+    // `picture` must live as long.
+    explicit Irradiance(const NoisyPicture& picture);
+
+    // The texel of pixel i in a layer below DENOISE_LAYERS_GIVEN, as shared/denoise.h says.
+    vec4 texel(uint32_t layer, size_t i) const;
+
+    // Puts the pixel with that filtered irradiance (rgb) and coverage (a) into `result`: the picture's own
+    // values unless it `is_there`.
+    void put(size_t i, vec4 filtered, bool is_there, Denoised& result) const;
+
+  private:
+    vec3 colour(size_t i) const;
+    // What irradiance is multiplied by.
+    vec3 reflected(size_t i) const;
+    bool has_value(size_t i) const;
+
+    const NoisyPicture* picture_;
+    float unit_;  // Of radiance: a power of two near the median of the picture's positive values.
+};
+
+}  // namespace candela
