@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "denoise/level.h"
 
 namespace candela {
 namespace {
@@ -17,7 +18,7 @@ constexpr uint32_t RADIUS = uint32_t(WINDOW.size()) / 2;
 // The share of the variance that is taken for noise: samples of a low-discrepancy sequence differ more than
 // their mean errs. Taking all of it for noise would hide a bias.
 constexpr double NOISE_SHARE = 0.85;
-// The level below which errors count as if absolute, of the picture's mean.
+// The level below which errors count as if absolute, of the picture's.
 constexpr double DARKNESS = 1e-3;
 // Rows that one step weighs, of those for which it computes moments.
 constexpr uint32_t STRIP_ROWS = 32;
@@ -38,20 +39,6 @@ bool is_finite_at(const Planes& planes, size_t i) {
     return std::isfinite(planes[0][i]) && std::isfinite(planes[1][i]) && std::isfinite(planes[2][i]);
 }
 
-// The mean of the finite values.
-double mean_level(const RgbPlanes& planes) {
-    double sum = 0.0;
-    size_t count = 0;
-    for (const std::span<const float> plane : planes) {
-        for (const float value : plane) {
-            if (!std::isfinite(value)) continue;
-            sum += std::abs(double(value));
-            ++count;
-        }
-    }
-    return count > 0 ? sum / double(count) : 0.0;
-}
-
 class Weights {
   public:
     Weights(uvec2 size, const RgbPlanes& noisy, const RgbPlanes& variance, const Denoised& denoised)
@@ -59,7 +46,8 @@ class Weights {
           noisy_(noisy),
           variance_(variance),
           denoised_(denoised),
-          darkness_(std::pow(DARKNESS * mean_level(noisy), 2.0)) {}
+          level_(noisy),
+          darkness_(std::pow(DARKNESS * double(level_.unit()), 2.0)) {}
 
     // Fills the rows from y0 to y1, exclusive.
     void fill(uint32_t y0, uint32_t y1, std::vector<float>& weights) const {
@@ -89,7 +77,8 @@ class Weights {
 
   private:
     Moments moments_of(size_t i) const {
-        if (!is_finite_at(noisy_, i) || !is_finite_at(variance_, i) || !is_finite_at(denoised_.rgb, i))
+        if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i) ||
+            !is_finite_at(denoised_.rgb, i))
             return {};
         const double others = denoised_.own_weight.empty() ? 1.0 : 1.0 - double(denoised_.own_weight[i]);
         Moments moments;
@@ -105,7 +94,7 @@ class Weights {
 
     float weight(size_t i, const Moments& sum) const {
         if (!is_finite_at(denoised_.rgb, i)) return 1.0f;
-        if (!is_finite_at(noisy_, i) || !is_finite_at(variance_, i)) return 0.0f;
+        if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i)) return 0.0f;
         if (sum.noise <= 0.0) return 1.0f;
         return float(std::max(0.0, 1.0 - NOISE_SHARE * sum.noise / sum.difference));
     }
@@ -114,6 +103,7 @@ class Weights {
     const RgbPlanes& noisy_;
     const RgbPlanes& variance_;
     const Denoised& denoised_;
+    PictureLevel level_;
     double darkness_;
 };
 

@@ -28,8 +28,8 @@ struct Denoised {
 // converges to the noisy picture.
 //
 // Where V is infinite (below two samples) or no number, nothing is known and the weight is 0. So it is where
-// only the noisy value is not finite; where the denoised one is not, it is 1. Where nothing around has noise,
-// it is exactly 1.
+// only the noisy value is not finite, or beyond 2^40 times the picture's level; where the denoised one is
+// not, it is 1. Where nothing around has noise, it is exactly 1.
 //
 // Ref: Stein, "Estimation of the Mean of a Multivariate Normal Distribution" (1981); James, Stein,
 // "Estimation with Quadratic Loss" (1961).

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/math.h"
+#include "denoise/level.h"
 #include "denoise/variance.h"
 
 namespace candela {
@@ -25,10 +26,13 @@ class Irradiance {
     vec3 colour(size_t i) const;
     // What irradiance is multiplied by.
     vec3 reflected(size_t i) const;
+    // The mean albedo of the 3 x 3 pixels around one without.
+    vec3 albedo_around(size_t i) const;
     bool has_value(size_t i) const;
+    bool has_features(size_t i) const;
 
     const NoisyPicture* picture_;
-    float unit_;  // Of radiance: a power of two near the median of the picture's positive values.
+    PictureLevel level_;
 };
 
 }  // namespace candela

@@ -144,8 +144,8 @@ class Tiles {
 
 }  // namespace
 
-std::optional<Denoised> denoise_by_variance(const vk::Device& device, const NoisyPicture& picture,
-                                            uint32_t tile, const std::function<bool()>& keep_going) {
+std::optional<Denoised> filter_by_variance(const vk::Device& device, const NoisyPicture& picture,
+                                           uint32_t tile, const std::function<bool()>& keep_going) {
     assert(tile > 0 && picture.rgb[0].size() == size_t(picture.size.x) * picture.size.y);
     const uvec2 size = picture.size;
     const size_t pixels = size_t(size.x) * size.y;
@@ -164,9 +164,16 @@ std::optional<Denoised> denoise_by_variance(const vk::Device& device, const Nois
             }
         }
     }
-    if (picture.variance) {
-        blend(noisy_weights(size, picture.rgb, *picture.variance, result), picture.rgb, picture.alpha,
-              result);
+    return result;
+}
+
+std::optional<Denoised> denoise_by_variance(const vk::Device& device, const NoisyPicture& picture,
+                                            uint32_t tile, const std::function<bool()>& keep_going) {
+    std::optional<Denoised> result = filter_by_variance(device, picture, tile, keep_going);
+    if (result && picture.variance) {
+        const std::vector<float> weights =
+            noisy_weights(picture.size, picture.rgb, *picture.variance, *result);
+        blend(weights, picture.rgb, picture.alpha, *result);
     }
     return result;
 }

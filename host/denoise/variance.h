@@ -34,11 +34,15 @@ struct NoisyPicture {
 // Pixels along the edge of the squares that a device works on; 150 MiB.
 inline constexpr uint32_t DENOISE_TILE = 768;
 
-// Denoises, blends with the noisy picture, and returns the result, which does not depend on `tile`, the
-// pixels along the edge of what the device works on at a time. A pixel depends on those up to 34 away, and on
-// the level of the whole picture, so that a crop has other bits. Without a variance there is no blend.
-// Between tiles `keep_going` is asked; if it says no, nothing is returned. Throws an Error if the device is
-// lost or has too little memory.
+// Filters. The result does not depend on `tile`, the pixels along the edge of what the device works on at a
+// time. A pixel depends on those up to 34 away, and on the level of the whole picture, so that a crop has
+// other bits. Between tiles `keep_going` is asked; if it says no, nothing is returned. Throws an Error if the
+// device is lost or has too little memory.
+std::optional<Denoised> filter_by_variance(const vk::Device& device, const NoisyPicture& picture,
+                                           uint32_t tile = DENOISE_TILE,
+                                           const std::function<bool()>& keep_going = {});
+
+// The same, blended with the noisy picture; but not if the picture has no variance.
 std::optional<Denoised> denoise_by_variance(const vk::Device& device, const NoisyPicture& picture,
                                             uint32_t tile = DENOISE_TILE,
                                             const std::function<bool()>& keep_going = {});

@@ -50,6 +50,7 @@ float squared(vec3 v) {
 // noise, too.
 float feature_distance(vec4 normal, vec3 albedo, ivec2 neighbour) {
     vec4 other = load(DENOISE_LAYER_NORMAL, neighbour);
+    if (normal.a < 0.0 || other.a < 0.0) return 0.0;
     float noise = normal.a + other.a;
     float bend = max(0.0, squared(normal.rgb - other.rgb) - noise) / (NORMAL_SIGMA * NORMAL_SIGMA + noise);
     vec3 difference = albedo - load(DENOISE_LAYER_ALBEDO, neighbour).rgb;

@@ -10,10 +10,11 @@ namespace candela {
 
 // Layers of the working image (rgba32f). The *irradiance* of a pixel is its colour over its albedo, in a unit that
 // makes it about 1; variances are those of it, per channel. A layer of irradiance is followed by that of its variance.
-const uint DENOISE_LAYER_NORMAL = 0u;          // rgb: mean normal; a: variance of that mean, all coordinates together.
-const uint DENOISE_LAYER_ALBEDO = 1u;          // rgb: albedo.
-const uint DENOISE_LAYER_SAMPLED = 2u;         // rgb: variance from the samples, or DENOISE_*.
-const uint DENOISE_LAYER_NOISY = 3u;           // rgb: irradiance; a: coverage.
+const uint DENOISE_LAYER_NORMAL = 0u;   // rgb: mean normal; a: variance of that mean, all coordinates together; below 0
+                                        // if the features of the pixel are unknown.
+const uint DENOISE_LAYER_ALBEDO = 1u;   // rgb: albedo.
+const uint DENOISE_LAYER_SAMPLED = 2u;  // rgb: variance from the samples, or DENOISE_*.
+const uint DENOISE_LAYER_NOISY = 3u;    // rgb: irradiance; a: coverage.
 const uint DENOISE_LAYER_VARIANCE = 4u;        // rgb: smoothed variance; a: 1.
 const uint DENOISE_LAYER_FIRST = 5u;           // rgb: filtered irradiance; a: filtered coverage.
 const uint DENOISE_LAYER_FIRST_VARIANCE = 6u;  // rgb: its variance; a: weight of the pixel's own noisy value.

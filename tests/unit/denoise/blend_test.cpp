@@ -1,0 +1,132 @@
+// The blend of a denoised picture with the noisy one: its weights, and that it is never much worse than the
+// noisy one.
+#include "denoise/blend.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace candela {
+namespace {
+
+constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
+constexpr uvec2 SIZE(120, 99);
+constexpr size_t PIXELS = size_t{SIZE.x} * SIZE.y;
+
+using Planes = std::array<std::vector<float>, 3>;
+
+Planes filled(float value) {
+    Planes planes;
+    for (std::vector<float>& plane : planes)
+        plane.assign(PIXELS, value);
+    return planes;
+}
+
+RgbPlanes view(const Planes& planes) {
+    return {planes[0], planes[1], planes[2]};
+}
+
+std::vector<float> weights_of(const Planes& noisy, const Planes& variance, const Planes& denoised,
+                              float own = 0.0f) {
+    return noisy_weights(SIZE, view(noisy), view(variance), {denoised, {}, std::vector<float>(PIXELS, own)});
+}
+
+// All pixels differ by 0.1. Where the variance is V, noise explains 0.85 (1 - s) V of the squared difference.
+TEST(Blend, TheWeightIsTheShareOfTheDifferenceThatNoiseDoesNotExplain) {
+    for (const float variance : {0.008f, 1e-3f, 1e-6f}) {
+        for (const float own : {0.0f, 0.25f}) {
+            const double expected = 1.0 - 0.85 * (1.0 - own) * variance / 0.01;
+            for (const float weight : weights_of(filled(1.1f), filled(variance), filled(1.0f), own))
+                EXPECT_NEAR(weight, expected, 1e-5);
+        }
+    }
+    for (const float weight : weights_of(filled(1.1f), filled(0.02f), filled(1.0f)))
+        EXPECT_EQ(weight, 0.0f);
+}
+
+TEST(Blend, WithoutNoiseItIsTheNoisyPictureBitByBit) {
+    const Planes noisy = filled(0.1f);
+    Denoised denoised{filled(0.7f), std::vector<float>(PIXELS, 0.3f), {}};
+    const std::vector<float> alpha(PIXELS, 0.9f);
+    blend(noisy_weights(SIZE, view(noisy), view(filled(0.0f)), denoised), view(noisy), alpha, denoised);
+    EXPECT_EQ(denoised.rgb, noisy);
+    EXPECT_EQ(denoised.alpha, alpha);
+}
+
+// The weights are those of a window of 5 x 5: a pixel three away changes nothing.
+TEST(Blend, ValuesThatAreNotFiniteStayWhereTheyAre) {
+    Planes noisy = filled(1.1f), variance = filled(0.001f), denoised = filled(1.0f);
+    const std::vector<float> clean = weights_of(noisy, variance, denoised);
+    const size_t at = 10 * SIZE.x + 10;
+    noisy[1][at] = NOT_A_NUMBER;
+    variance[0][at + 5] = INFINITE;
+    denoised[2][at + 10] = NOT_A_NUMBER;
+    const std::vector<float> weights = weights_of(noisy, variance, denoised);
+    EXPECT_EQ(weights[at], 0.0f);
+    EXPECT_EQ(weights[at + 5], 0.0f);
+    EXPECT_EQ(weights[at + 10], 1.0f);
+    for (size_t i = 0; i < PIXELS; ++i) {
+        if (i == at || i == at + 5 || i == at + 10) continue;
+        EXPECT_NEAR(weights[i], clean[i], 1e-5) << i;
+    }
+}
+
+// A value that cannot be light counts as missing, and overflows nothing.
+TEST(Blend, TheGreatestValuesAreReplaced) {
+    Planes noisy = filled(1.1f);
+    noisy[0][500] = 3e38f;
+    const std::vector<float> weights = weights_of(noisy, filled(0.001f), filled(1.0f));
+    EXPECT_EQ(weights[500], 0.0f);
+    EXPECT_NEAR(weights[501], 1.0 - 0.85 * 0.1, 1e-5);
+}
+
+TEST(Blend, OnePixelIsEnough) {
+    const std::vector<float> noisy{1.1f}, variance{0.001f};
+    const Denoised denoised{{std::vector{1.0f}, std::vector{1.0f}, std::vector{1.0f}}, {}, {}};
+    const std::vector<float> weights = noisy_weights({1, 1}, RgbPlanes{noisy, noisy, noisy},
+                                                     RgbPlanes{variance, variance, variance}, denoised);
+    ASSERT_EQ(weights.size(), 1u);
+    EXPECT_NEAR(weights[0], 1.0 - 0.85 * 0.1, 1e-5);
+}
+
+// Gaussian noise of deviation 1, and a denoised picture with a bias of b in each pixel. With D the mean of
+// d^2 in a window, the blend is the noisy value minus 0.85 d / D. By Stein's lemma its risk is at most
+//     1 + E (0.85^2 - 2 * 0.85 + 4 * 0.85 omega) / D,
+// where omega is the weight of a value in its own window, at most 9 of 81 over three channels, and more only
+// at the picture's edge. E 1/D is at least 1 / E D = 1 / (1 + b^2). Weights below 0 would be worse than 0.
+// The mean over the picture differs by chance, by the product of noise and bias, with 2 w (1 - w) b for each
+// value.
+TEST(Blend, ItIsNeverWorseThanTheNoisyPicture) {
+    std::mt19937 random(11);
+    std::normal_distribution<float> normal;
+    for (const double bias : {0.0, 0.3, 1.0, 2.0, 5.0, 30.0}) {
+        const float deviation = 0.05f;
+        Planes noisy = filled(0.0f);
+        for (std::vector<float>& plane : noisy) {
+            for (float& value : plane)
+                value = 1.0f + deviation * normal(random);
+        }
+        Denoised denoised{filled(1.0f + deviation * float(bias)), {}, {}};
+        const auto error = [](const Planes& planes) {
+            double sum = 0.0;
+            for (const std::vector<float>& plane : planes) {
+                for (const float value : plane)
+                    sum += std::pow(double(value) - 1.0, 2.0);
+            }
+            return sum;
+        };
+        const double before = error(noisy);
+        blend(noisy_weights(SIZE, view(noisy), view(filled(deviation * deviation)), denoised), view(noisy),
+              {}, denoised);
+        const double omega = 9.0 / 81.0 / 3.0,
+                     gain = (2 * 0.85 - 0.85 * 0.85 - 4 * 0.85 * omega) / (1 + bias * bias);
+        const double w = 1.0 - 0.85 / (1.0 + bias * bias);
+        const double chance = 4.0 * 2.0 * w * (1.0 - w) * bias / std::sqrt(3.0 * PIXELS);
+        EXPECT_LT(error(denoised.rgb) / before, 1.0 - gain + chance) << bias;
+    }
+}
+
+}  // namespace
+}  // namespace candela
