@@ -34,6 +34,9 @@ class Batch {
     // failed: `failed` if theirs differ. Throws the Error of a single one, and if there is no device.
     ExitCode run();
 
+    // See PictureRenderer; only once run() has begun.
+    const vk::Device& denoising_device() { return renderer_.denoising_device(); }
+
   private:
     PreparedScene prepare(size_t i);
     // Whether there is a scene after i, and whether it is a frame of the same one.

@@ -32,27 +32,36 @@ void add_quality(CLI::App& app, DenoiserQuality& quality) {
 void DenoisingOptions::add_to(CLI::App& app) {
     CLI::Option* const denoise = add_choice(
         app, "--denoise", choice, CHOICE_NAMES,
-        "Denoise PNG, JPEG and WebP; EXR: add the layers Denoised. auto: the best that is there; oidn: "
-        "Open Image Denoise (default: none)");
+        "Denoise PNG, JPEG and WebP; EXR: add the layers Denoised. oidn: by Open Image Denoise; variance: by "
+        "candela itself, on its device; auto: by the first of them that is there (default: none)");
     add_quality(app, quality);
     app.get_option("--denoise-quality")->needs(denoise);
 }
 
 void DenoisingOptions::add_required_to(CLI::App& app) {
     choice = DenoiserChoice::automatic;
-    is_required = true;
-    add_choice(app, "--denoise", choice, WAY_NAMES,
-               "How: by the best that is there, or by Open Image Denoise (default: auto)");
+    add_choice(
+        app, "--denoise", choice, WAY_NAMES,
+        "How: by Open Image Denoise, by candela itself, or by the first of them that is there (default: "
+        "auto)");
     add_quality(app, quality);
 }
 
-void DenoisingOptions::load() {
-    if (!is_on()) return;
-    ChosenDenoiser chosen = choose_denoiser(choice, quality);
-    denoiser = std::move(chosen.denoiser);
-    if (denoiser != nullptr) return;
-    if (is_required) throw Error(*chosen.why_not_oidn);
-    print_warning("--denoise auto: pictures stay noisy: " + std::string(chosen.why_not_oidn->what()));
+void DenoisingOptions::add_shown_to(CLI::App& app) {
+    CLI::Option* const denoise =
+        add_choice(app, "--denoise", choice, CHOICE_NAMES,
+                   "Show the picture at rest denoised, as N does at any time: by oidn (Open Image Denoise), by variance "
+                   "(candela itself), or auto, the first of them that is there (default: none)");
+    add_quality(app, quality);
+    app.get_option("--denoise-quality")->needs(denoise);
+}
+
+std::unique_ptr<Denoiser> DenoisingOptions::make(std::function<const vk::Device&()> open) const {
+    return choose_denoiser(is_on() ? choice : DenoiserChoice::automatic, quality, std::move(open));
+}
+
+void DenoisingOptions::load(std::function<const vk::Device&()> open) {
+    if (is_on()) denoiser = make(std::move(open));
 }
 
 DenoisingRecord DenoisingOptions::denoise(Image& image, bool with_alpha, const std::string& name) const {

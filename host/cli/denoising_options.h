@@ -1,6 +1,7 @@
 // The options by which commands denoise.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,18 +26,21 @@ struct DenoisingRecord {
 struct DenoisingOptions {
     DenoiserChoice choice = DenoiserChoice::none;
     DenoiserQuality quality = DenoiserQuality::high;
-    bool is_required = false;              // There is nothing to do without.
     std::shared_ptr<Denoiser> denoiser{};  // See load().
 
     // Declares them on `app`, for images that may be denoised, or for those that are; this object must not
     // move.
     void add_to(CLI::App& app);
     void add_required_to(CLI::App& app);
+    // The same for a window, whose switch denoises if the option does not.
+    void add_shown_to(CLI::App& app);
 
     bool is_on() const { return choice != DenoiserChoice::none; }
-    // Loads the denoiser, if one is asked for. Where `auto` finds none, throws Error if one is required, and
-    // prints a warning if not. Throws Error (request) if the one that is asked for is missing.
-    void load();
+    // Loads the denoiser, if one is asked for. Throws Error (request) if it is missing. `open`: see
+    // make_variance().
+    void load(std::function<const vk::Device&()> open);
+    // The denoiser; if none is asked for, the best.
+    std::unique_ptr<Denoiser> make(std::function<const vk::Device&()> open) const;
 
     // Adds the image's denoised layers, by the denoiser that was loaded. Throws Error as add_denoised() does;
     // messages call the image `name`.

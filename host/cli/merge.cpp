@@ -17,6 +17,7 @@
 #include "cli/console.h"
 #include "cli/image_options.h"
 #include "cli/outputs.h"
+#include "cli/vulkan.h"
 #include "film/sample_range.h"
 
 namespace candela {
@@ -48,7 +49,8 @@ ExitCode run(MergeArguments& arguments, const std::string& command_line) {
     if (const auto background = screen.background_file()) files.read("--background", *background);
     check_outputs(arguments.images);
     screen.load();
-    arguments.images.denoising.load();
+    LazyDevice device;
+    arguments.images.denoising.load([&]() -> const vk::Device& { return device.open(); });
     Merged merged = merge_files({arguments.parts.begin(), arguments.parts.end()});
     if (merged.had_denoised && !arguments.images.denoising.is_on()) {
         merged.warnings.emplace_back(
@@ -60,6 +62,7 @@ ExitCode run(MergeArguments& arguments, const std::string& command_line) {
     const std::string samples = std::get<std::string>(merged.image.attributes.at("candela.samples"));
     const size_t count = arguments.parts.size();
     arguments.images.denoising.denoise_or_warn(merged.image, arguments.images.shows_alpha(merged.image));
+    device.check();
     write_images(arguments.images, std::move(merged.image));
     const std::string note = concat("merged ", count, count == 1 ? " part" : " parts", ": samples ",
                                     printable(samples, MAX_MESSAGE_BYTES));

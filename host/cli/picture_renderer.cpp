@@ -54,6 +54,11 @@ void PictureRenderer::choose_device() {
                     pipeline_cache_folder());
 }
 
+const vk::Device& PictureRenderer::denoising_device() {
+    if (!denoising_device_) denoising_device_.emplace(*instance_, device_->info(), pipeline_cache_folder());
+    return denoising_device_->open();
+}
+
 // What --verbose adds before rendering.
 void PictureRenderer::print_details(const GpuScene& scene) const {
     const RenderRecord& record = rendering_->record();

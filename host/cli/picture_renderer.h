@@ -51,6 +51,8 @@ class PictureRenderer {
 
     // Chooses the device. Throws Error if there is none. Does nothing the second time.
     void choose_device();
+    // The same device, opened a second time for what runs beside rendering.
+    const vk::Device& denoising_device();
     // Renders a picture that has a job. The pictures of a scene and its frames are rendered one after the
     // other, since what the device holds of the scene, as far as they share it, stays until leave_scene().
     // Throws Error if there are no samples, or the device fails for good; the next call opens it again.
@@ -82,7 +84,7 @@ class PictureRenderer {
     std::string command_line_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     std::optional<vk::Instance> instance_;
-    std::optional<DeviceSlot> device_;
+    std::optional<DeviceSlot> device_, denoising_device_;
     GpuScene records_;                      // Of the current scene.
     std::unique_ptr<Rendering> rendering_;  // Of them.
     std::optional<InterruptGuard> guard_;

@@ -17,7 +17,7 @@ ExitCode render(RenderOptions& options, const std::string& command_line) {
     Batch batch(plan, options, command_line);
     check_checkpoint(options.checkpoint);
     options.outputs.images.screen.load();
-    options.outputs.images.denoising.load();
+    options.outputs.images.denoising.load([&]() -> const vk::Device& { return batch.denoising_device(); });
     return batch.run();
 }
 

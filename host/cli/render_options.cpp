@@ -131,7 +131,7 @@ RenderJob RenderOptions::job(const Scene& loaded, const std::optional<std::strin
     job.settings.layer_bytes = layer_bytes(job.aovs);
     if (outputs.images.denoising.is_on()) {
         job.settings.layer_bytes += DENOISED_BYTES;
-        job.settings.later_bytes = OIDN_BYTES;
+        job.settings.later_bytes = DENOISER_BYTES;
     }
     job.settings.backdrop = outputs.images.screen.backdrop();
     job.settings.pass_growth = job.time_limit || job.write_every ? EVEN_PASS_GROWTH : PASS_GROWTH;

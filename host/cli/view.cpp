@@ -12,12 +12,14 @@
 #include "cli/command.h"
 #include "cli/command_files.h"
 #include "cli/console.h"
+#include "cli/denoising_options.h"
 #include "cli/image_options.h"
 #include "cli/interrupt.h"
 #include "cli/loading.h"
 #include "cli/rendering_options.h"
 #include "cli/vulkan.h"
 #include "image/image_io.h"
+#include "session/device_slot.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 #include "vk/presenter.h"
@@ -33,6 +35,7 @@ struct ViewArguments {
     DevelopmentOptions development;
     std::optional<uint32_t> frames;
     std::vector<std::string> screenshots;
+    DenoisingOptions denoising;
 
     // Declares all options on `app`; this object must not move.
     void add_to(CLI::App& app);
@@ -53,6 +56,7 @@ void ViewArguments::add_to(CLI::App& app) {
         ->take_all()
         ->allow_extra_args(false);
     development.add_to(app, false);
+    denoising.add_shown_to(app);
     rendering.add_to(app);
     scene.add_camera_to(app);
     app.get_option("--crop")->group("");  // Hidden; check() refuses it with the reason.
@@ -103,7 +107,8 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     const ViewState state{.camera = camera,
                           .settings = rendering.settings(scene, camera),
                           .exposure_ev = float(arguments.development.exposure.ev),
-                          .tonemap = arguments.development.tonemap};
+                          .tonemap = arguments.development.tonemap,
+                          .denoise = arguments.denoising.is_on()};
 
     print_warnings(warnings_of_unseen_lights(scene, state.settings.estimator));
     const std::string name = std::filesystem::path(arguments.scene.file).stem().string();
@@ -111,18 +116,23 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     vk::Instance::Options instance_wishes = instance_options();
     instance_wishes.extensions = window.instance_extensions();
     const vk::Instance instance(instance_wishes);
+    const vk::DeviceInfo device = choose_device(instance, window, rendering.device.name);
+    DeviceSlot denoising_device(instance, device, pipeline_cache_folder());
+    const std::shared_ptr<Denoiser> denoiser = arguments.denoising.make(
+        [&denoising_device]() -> const vk::Device& { return denoising_device.open(); });
     const InterruptGuard guard;
     bool complete = false;
     {
         Viewer viewer(window, instance, std::move(scene), state,
-                      {.device = choose_device(instance, window, rendering.device.name),
+                      {.device = device,
                        .pipeline_cache_folder = pipeline_cache_folder(),
                        .name = name,
                        .command_line = command_line,
                        .target = arguments.frames.value_or(rendering.sampling.spp.value_or(MAX_SPP)),
                        .close_at_target = arguments.frames.has_value(),
                        .stopped = [&guard] { return guard.interrupted(); },
-                       .say = print_note});
+                       .say = print_note,
+                       .denoiser = denoiser});
         complete = viewer.run();
         Attempts attempts;
         for (const std::string& path : arguments.screenshots) {

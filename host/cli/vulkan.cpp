@@ -100,4 +100,16 @@ std::optional<std::filesystem::path> pipeline_cache_folder() {
     return home ? std::optional(*home / "candela") : std::nullopt;
 }
 
+const vk::Device& LazyDevice::open() {
+    if (!slot_) {
+        instance_.emplace(instance_options());
+        slot_.emplace(*instance_, vk::select_device(instance_->devices(), name_), pipeline_cache_folder());
+    }
+    return slot_->open();
+}
+
+void LazyDevice::check() const {
+    if (instance_) check_validation(*instance_);
+}
+
 }  // namespace candela

@@ -3,7 +3,10 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
 
+#include "session/device_slot.h"
 #include "vk/instance.h"
 
 namespace candela {
@@ -19,5 +22,22 @@ void check_validation(const vk::Instance& instance);
 // The folder where compiled kernels are kept: candela in $XDG_CACHE_HOME or ~/.cache. None if there is no
 // such place or CANDELA_NO_CACHE is set.
 std::optional<std::filesystem::path> pipeline_cache_folder();
+
+// A device for commands that may need one, which is opened when they do.
+class LazyDevice {
+  public:
+    // `name`: index or part of the name; by default the best.
+    explicit LazyDevice(std::optional<std::string> name = std::nullopt) : name_(std::move(name)) {}
+
+    // Throws Error if there is none.
+    const vk::Device& open();
+    // See check_validation().
+    void check() const;
+
+  private:
+    std::optional<std::string> name_;
+    std::optional<vk::Instance> instance_;
+    std::optional<DeviceSlot> slot_;
+};
 
 }  // namespace candela

@@ -138,4 +138,9 @@ void blend(const std::vector<float>& noisy_weights, const RgbPlanes& noisy, std:
     if (!denoised.alpha.empty()) blend_plane(alpha, denoised.alpha);
 }
 
+void blend_with(const NoisyPicture& noisy, Denoised& denoised) {
+    if (!noisy.variance) return;
+    blend(noisy_weights(noisy.size, noisy.rgb, *noisy.variance, denoised), noisy.rgb, noisy.alpha, denoised);
+}
+
 }  // namespace candela

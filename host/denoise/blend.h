@@ -6,18 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "image/image.h"
+#include "denoise/denoiser.h"
 
 namespace candela {
-
-// The planes of a denoised picture, row-major.
-struct Denoised {
-    std::array<std::vector<float>, 3> rgb;
-    std::vector<float> alpha;  // Empty if the picture has none.
-    // The weight with which a pixel's own noisy value went into its denoised one; empty if unknown, and taken
-    // for 0.
-    std::vector<float> own_weight;
-};
 
 // The weights of the noisy picture in the best blend with `denoised`, one per pixel, from 0 to 1.
 //
@@ -40,5 +31,8 @@ std::vector<float> noisy_weights(uvec2 size, const RgbPlanes& noisy, const RgbPl
 // noisy value, and a weight of 0 the denoised one, bit by bit.
 void blend(const std::vector<float>& noisy_weights, const RgbPlanes& noisy, std::span<const float> alpha,
            Denoised& denoised);
+
+// Replaces `denoised` by its best blend with the noisy picture, if the variance of that is known.
+void blend_with(const NoisyPicture& noisy, Denoised& denoised);
 
 }  // namespace candela

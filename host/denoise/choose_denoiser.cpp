@@ -1,30 +1,22 @@
 // See choose_denoiser.h.
 #include "denoise/choose_denoiser.h"
 
+#include <utility>
+
+#include "base/error.h"
+
 namespace candela {
 
-// The way without a library.
-static std::unique_ptr<Denoiser> make_variance() {
-    return nullptr;
-}
-
-ChosenDenoiser choose_denoiser(DenoiserChoice choice, DenoiserQuality quality) {
-    ChosenDenoiser chosen;
-    if (choice != DenoiserChoice::variance) {
+std::unique_ptr<Denoiser> choose_denoiser(DenoiserChoice choice, DenoiserQuality quality,
+                                          std::function<const vk::Device&()> open) {
+    if (choice == DenoiserChoice::oidn) return make_oidn(oidn_candidates(), quality);
+    if (choice == DenoiserChoice::automatic) {
         try {
-            chosen.denoiser = make_oidn(oidn_candidates(), quality);
-            return chosen;
-        } catch (const Error& error) {
-            if (choice == DenoiserChoice::oidn) throw;
-            chosen.why_not_oidn = error;
+            return make_oidn(oidn_candidates(), quality);
+        } catch (const Error&) {  // It is missing, or does not run here.
         }
     }
-    chosen.denoiser = make_variance();
-    if (chosen.denoiser == nullptr && choice == DenoiserChoice::variance) {
-        throw Error("--denoise variance: this program does not have it; use --denoise oidn",
-                    ErrorKind::request);
-    }
-    return chosen;
+    return make_variance(std::move(open));
 }
 
 }  // namespace candela

@@ -1,24 +1,24 @@
 // Which denoiser is used.
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <memory>
-#include <optional>
 
-#include "base/error.h"
 #include "denoise/denoiser.h"
 #include "denoise/oidn.h"
+#include "denoise/variance_denoiser.h"
 
 namespace candela {
 
 enum class DenoiserChoice { none, automatic, oidn, variance };
 
-struct ChosenDenoiser {
-    std::unique_ptr<Denoiser> denoiser;   // None if `automatic` finds none.
-    std::optional<Error> why_not_oidn{};  // Of `automatic`, if it is another.
-};
+// The denoiser for a choice that is not `none`; `automatic` is Open Image Denoise, or else the one by
+// variance. Throws Error (request) if the library that is asked for is missing. `open`: see make_variance().
+std::unique_ptr<Denoiser> choose_denoiser(DenoiserChoice choice, DenoiserQuality quality,
+                                          std::function<const vk::Device&()> open);
 
-// The denoiser for a choice that is not `none`; for `automatic`, the best that is there. Throws Error
-// (request) if the one that is asked for is missing.
-ChosenDenoiser choose_denoiser(DenoiserChoice choice, DenoiserQuality quality);
+// What any of them needs at most, besides the picture and its denoised planes [bytes].
+inline constexpr uint64_t DENOISER_BYTES = std::max(OIDN_BYTES, VARIANCE_BYTES);
 
 }  // namespace candela

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "denoise/blend.h"
 
 namespace candela {
 namespace {
@@ -57,20 +58,21 @@ bool is_denoised_channel(const std::string& name) {
     return name == DENOISED_ALPHA || std::ranges::find(DENOISED, name) != DENOISED.end();
 }
 
-DenoiserInput denoiser_input(const Image& image, bool with_alpha, const std::string& name) {
+NoisyPicture noisy_picture(const Image& image, bool with_alpha, const std::string& name) {
     const auto colour = image.find_rgb();
     if (!colour) {
         throw Error(name +
                     ": it has no channels R, G and B, so that there is nothing to denoise; give an image "
                     "such as candela render writes");
     }
-    DenoiserInput input{.width = image.data.width(), .height = image.data.height(), .colour = *colour};
+    NoisyPicture picture{.size = {image.data.width(), image.data.height()}, .rgb = *colour};
     if (const Channel* const alpha = image.find("A"); with_alpha && varies(alpha))
-        input.alpha = alpha->values;
-    if (const auto albedo = albedo_of(image)) input.albedo = albedo->planes;
-    if (const auto normal = normal_of(image)) input.normal = normal->planes;
-    input.variance = image.find_rgb("Variance");
-    return input;
+        picture.alpha = alpha->values;
+    if (const auto albedo = albedo_of(image)) picture.albedo = albedo->planes;
+    if (const auto normal = normal_of(image)) picture.normal = normal->planes;
+    picture.variance = image.find_rgb("Variance");
+    if (const Channel* const samples = image.find("SampleCount.V")) picture.samples = samples->values;
+    return picture;
 }
 
 std::string describe_guides(const Image& image) {
@@ -82,11 +84,13 @@ std::string describe_guides(const Image& image) {
 }
 
 void add_denoised(Image& image, Denoiser& denoiser, bool with_alpha, const std::string& name) {
-    DenoisedPicture picture = denoiser.run(denoiser_input(image, with_alpha, name));
+    const NoisyPicture noisy = noisy_picture(image, with_alpha, name);
+    Denoised denoised = denoiser.run(noisy);
+    blend_with(noisy, denoised);
     for (size_t c = 0; c < 3; ++c)
-        set_channel(image, DENOISED[c], std::move(picture.colour[c]));
-    if (!picture.alpha.empty()) {
-        set_channel(image, DENOISED_ALPHA, std::move(picture.alpha));
+        set_channel(image, DENOISED[c], std::move(denoised.rgb[c]));
+    if (!denoised.alpha.empty()) {
+        set_channel(image, DENOISED_ALPHA, std::move(denoised.alpha));
     } else {
         std::erase_if(image.channels, [](const Channel& channel) { return channel.name == DENOISED_ALPHA; });
     }

@@ -19,12 +19,13 @@ bool is_denoised_channel(const std::string& name);
 // The image's layers as a denoiser takes them; valid as long as the channels are. Albedo and normals are
 // those made for denoisers or, if they are missing, those of first hits. Alpha is left out if it is the same
 // everywhere. Throws Error that begins with `name` if the image lacks R, G or B.
-DenoiserInput denoiser_input(const Image& image, bool with_alpha, const std::string& name);
+NoisyPicture noisy_picture(const Image& image, bool with_alpha, const std::string& name);
 
 // For people: "with DenoisingAlbedo and DenoisingNormal", "with colour alone: there is no layer Albedo".
 std::string describe_guides(const Image& image);
 
-// Denoises the image, and adds or replaces the layers. Throws Error as denoiser_input() and Denoiser::run()
+// Denoises the image, blends the result with it if it has its variance (blend.h), and adds or replaces the
+// layers. Throws Error as noisy_picture() and Denoiser::run()
 // do; the image is then unchanged.
 void add_denoised(Image& image, Denoiser& denoiser, bool with_alpha, const std::string& name);
 

@@ -13,21 +13,26 @@
 
 namespace candela {
 
-// A noisy picture: planes of width * height values, row-major from the top; any float may occur in them.
-struct DenoiserInput {
-    uint32_t width = 0, height = 0;
-    RgbPlanes colour;                     // Linear, of any range.
-    std::span<const float> alpha{};       // In [0, 1]; empty: none, and none is made.
-    std::optional<RgbPlanes> albedo{};    // In [0, 1].
-    std::optional<RgbPlanes> normal{};    // In [-1, 1]: x, y and z in place of red, green and blue.
-    std::optional<RgbPlanes> variance{};  // Of the mean that `colour` is.
+// Planes of width * height values, row-major from the top; any float may occur in them.
+struct NoisyPicture {
+    uvec2 size{0, 0};
+    RgbPlanes rgb;                        // Linear radiance, of any range.
+    std::optional<RgbPlanes> variance{};  // Of each pixel's mean, which `rgb` is.
+    std::optional<RgbPlanes> albedo{};    // Mean albedo, in [0, 1].
+    std::optional<RgbPlanes> normal{};  // Mean normal, at most 1 long: x, y, z in place of red, green, blue.
+    std::span<const float> alpha{};     // In [0, 1]; empty: none, and none is made.
+    std::span<const float> samples{};   // Of each pixel; empty: unknown.
 
-    size_t pixel_count() const { return size_t{width} * height; }
+    size_t pixel_count() const { return size_t{size.x} * size.y; }
 };
 
-struct DenoisedPicture {
-    std::array<std::vector<float>, 3> colour;  // All finite and at least 0.
-    std::vector<float> alpha;                  // In [0, 1]; empty without DenoiserInput::alpha.
+// The planes of a denoised picture, row-major.
+struct Denoised {
+    std::array<std::vector<float>, 3> rgb;
+    std::vector<float> alpha;  // In [0, 1]; empty without NoisyPicture::alpha.
+    // The weight with which a pixel's own noisy value went into its denoised one; empty if unknown, and taken
+    // for 0.
+    std::vector<float> own_weight;
 };
 
 // A way to denoise.
@@ -42,7 +47,7 @@ class Denoiser {
     virtual std::string name() const = 0;
     virtual std::string description() const = 0;
     // Throws Error if it fails; another picture may then succeed. One picture at a time.
-    virtual DenoisedPicture run(const DenoiserInput& input) = 0;
+    virtual Denoised run(const NoisyPicture& picture) = 0;
 };
 
 }  // namespace candela

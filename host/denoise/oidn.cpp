@@ -51,20 +51,20 @@ float sane_fraction(float value) {
 // What colours are multiplied by so that the network sees them at an exposure it knows: the geometric mean
 // luminance of blocks becomes 0.18. The library finds it so itself, for each picture that it is given: a tile
 // shall not have its own.
-float exposure_of(const DenoiserInput& input) {
+float exposure_of(const NoisyPicture& input) {
     constexpr uint32_t BLOCK = 16;
     constexpr double KEY = 0.18, LEAST = 1e-8;
     double sum = 0.0;
     size_t count = 0;
-    for (uint32_t y0 = 0; y0 < input.height; y0 += BLOCK) {
-        for (uint32_t x0 = 0; x0 < input.width; x0 += BLOCK) {
-            const uint32_t x1 = std::min(x0 + BLOCK, input.width), y1 = std::min(y0 + BLOCK, input.height);
+    for (uint32_t y0 = 0; y0 < input.size.y; y0 += BLOCK) {
+        for (uint32_t x0 = 0; x0 < input.size.x; x0 += BLOCK) {
+            const uint32_t x1 = std::min(x0 + BLOCK, input.size.x), y1 = std::min(y0 + BLOCK, input.size.y);
             double luminance = 0.0;
             for (uint32_t y = y0; y < y1; ++y) {
-                for (size_t i = size_t{y} * input.width + x0; i < size_t{y} * input.width + x1; ++i) {
-                    luminance += 0.212671 * double(sane(input.colour[0][i])) +
-                                 0.715160 * double(sane(input.colour[1][i])) +
-                                 0.072169 * double(sane(input.colour[2][i]));
+                for (size_t i = size_t{y} * input.size.x + x0; i < size_t{y} * input.size.x + x1; ++i) {
+                    luminance += 0.212671 * double(sane(input.rgb[0][i])) +
+                                 0.715160 * double(sane(input.rgb[1][i])) +
+                                 0.072169 * double(sane(input.rgb[2][i]));
                 }
             }
             luminance /= double(x1 - x0) * double(y1 - y0);
@@ -214,7 +214,7 @@ class Oidn : public Denoiser {
 
     std::string name() const override { return "oidn"; }
     std::string description() const override { return "Open Image Denoise " + device_.version(); }
-    DenoisedPicture run(const DenoiserInput& input) override;
+    Denoised run(const NoisyPicture& input) override;
 
   private:
     OidnDevice device_;
@@ -224,7 +224,7 @@ class Oidn : public Denoiser {
 // The images of a tile, and the filters between them.
 class TileDenoiser {
   public:
-    TileDenoiser(const OidnDevice& device, DenoiserQuality quality, const DenoiserInput& input,
+    TileDenoiser(const OidnDevice& device, DenoiserQuality quality, const NoisyPicture& input,
                  const Tile& first)
         : input_(input),
           colour_(first.width, first.height),
@@ -252,18 +252,17 @@ class TileDenoiser {
         alpha_filter_->commit();
     }
 
-    void run(const Tile& tile, DenoisedPicture& picture) {
-        const uint32_t width = input_.width;
+    void run(const Tile& tile, Denoised& picture) {
+        const uint32_t width = input_.size.x;
         if (albedo_) load(*albedo_, tile, width, *input_.albedo, sane_fraction);
         if (normal_) load(*normal_, tile, width, *input_.normal, sane_normal);
         if (albedo_filter_) albedo_filter_->execute();
         if (normal_filter_) normal_filter_->execute();
-        load(colour_, tile, width, input_.colour, [&](float value) { return std::min(sane(value), limit_); });
+        load(colour_, tile, width, input_.rgb, [&](float value) { return std::min(sane(value), limit_); });
         filter_.execute();
         store(output_, tile, width, [&](size_t i, const float* rgb) {
             for (size_t c = 0; c < 3; ++c)
-                picture.colour[c][i] =
-                    std::isfinite(rgb[c]) ? std::max(rgb[c], 0.0f) : sane(input_.colour[c][i]);
+                picture.rgb[c][i] = std::isfinite(rgb[c]) ? std::max(rgb[c], 0.0f) : sane(input_.rgb[c][i]);
         });
         if (!alpha_filter_) return;
         load(colour_, tile, width, {input_.alpha, input_.alpha, input_.alpha}, sane_fraction);
@@ -288,7 +287,7 @@ class TileDenoiser {
         filter.set("cleanAux", is_clean && albedo_.has_value());
     }
 
-    const DenoiserInput& input_;
+    const NoisyPicture& input_;
     float limit_ = 0.0f;  // Of colours.
     TileImage colour_, output_;
     std::optional<TileImage> albedo_{}, normal_{};
@@ -296,15 +295,15 @@ class TileDenoiser {
     OidnFilter filter_;
 };
 
-DenoisedPicture Oidn::run(const DenoiserInput& input) {
-    DenoisedPicture picture;
-    for (std::vector<float>& plane : picture.colour)
+Denoised Oidn::run(const NoisyPicture& input) {
+    Denoised picture;
+    for (std::vector<float>& plane : picture.rgb)
         plane.resize(input.pixel_count());
     if (!input.alpha.empty()) picture.alpha.resize(input.pixel_count());
-    const std::vector<TileSpan> columns = tile_spans(input.width, TILE, OVERLAP);
-    const std::vector<TileSpan> rows = tile_spans(input.height, TILE, OVERLAP);
+    const std::vector<TileSpan> columns = tile_spans(input.size.x, TILE, OVERLAP);
+    const std::vector<TileSpan> rows = tile_spans(input.size.y, TILE, OVERLAP);
     const auto tile_at = [&](const TileSpan& x, const TileSpan& y) {
-        return Tile{x, y, std::min(input.width, TILE), std::min(input.height, TILE)};
+        return Tile{x, y, std::min(input.size.x, TILE), std::min(input.size.y, TILE)};
     };
     TileDenoiser tiles(device_, quality_, input, tile_at(columns.front(), rows.front()));
     for (const TileSpan& y : rows) {

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
 
 #include "denoise/blend.h"
 #include "image/image.h"
@@ -17,24 +16,14 @@
 
 namespace candela {
 
-// Planes of width * height values, row-major.
-struct NoisyPicture {
-    uvec2 size{0, 0};
-    RgbPlanes rgb;  // Linear radiance. Values that are not finite, or 2^40 times the level of the
-                    // picture, count as missing and are filled from around.
-    std::optional<RgbPlanes>
-        variance;  // Of each pixel's mean. Where it is not finite, or without it, what surfaces of
-                   // the same features show within 5 x 5 pixels takes its place.
-    std::optional<RgbPlanes> albedo;  // Mean albedo; without it, textures are known only by their colour.
-    std::optional<RgbPlanes> normal;  // Mean normal, at most 1 long.
-    std::span<const float> alpha;     // May be empty. Filtered by the weights of the colour.
-    std::span<const float> samples;   // Per pixel; may be empty: the noise of normals is then that of 16.
-};
-
 // Pixels along the edge of the squares that a device works on; 150 MiB.
 inline constexpr uint32_t DENOISE_TILE = 768;
 
-// Filters. The result does not depend on `tile`, the pixels along the edge of what the device works on at a
+// Filters. Values that are not finite, or 2^40 times the level of the picture, count as missing and are
+// filled from around; alpha is filtered by the weights of the colour. Where a variance is not finite, or
+// without it, what surfaces of the same features show within 5 x 5 pixels takes its place; without an albedo,
+// textures are known only by their colour; without the numbers of samples, the noise of normals is that
+// of 16. The result does not depend on `tile`, the pixels along the edge of what the device works on at a
 // time. A pixel depends on those up to 34 away, and on the level of the whole picture, so that a crop has
 // other bits. Between tiles `keep_going` is asked; if it says no, nothing is returned. Throws an Error if the
 // device is lost or has too little memory.

@@ -64,6 +64,9 @@ void apply_press(int key, ViewState& state, ViewRequests& requests) {
         case GLFW_KEY_TAB:
             state.panel = !state.panel;
             break;
+        case GLFW_KEY_N:
+            state.denoise = !state.denoise;
+            break;
         case GLFW_KEY_R:
             requests.restart = true;
             break;

@@ -17,6 +17,7 @@ inline constexpr const char* CONTROLS_HELP =
     "WASD, QE    fly; with Shift faster\n"
     "Space  pause        R    restart\n"
     "P      save PNG     X    save EXR\n"
+    "N      denoise\n"
     "C      save camera  Home camera back\n"
     "Tab    panel        Esc  close";
 

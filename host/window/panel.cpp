@@ -118,6 +118,7 @@ void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& fig
     ImGui::SliderFloat("exposure", &state.exposure_ev, -EXPOSURE_RANGE, EXPOSURE_RANGE, "%.2f EV",
                        ImGuiSliderFlags_AlwaysClamp);
     choose("tone map", state.tonemap, TONEMAPS);
+    ImGui::Checkbox("denoise at rest", &state.denoise);
     ImGui::Separator();
     show_camera(state, requests, cameras, home);
     show_rendering(state);

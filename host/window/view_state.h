@@ -19,6 +19,7 @@ struct ViewState {
     float environment_intensity = 1.0f;  // Relative to the scene's.
     float intensity_slider = 1.0f;       // The same, while the slider is dragged.
     bool paused = false;
+    bool denoise = false;  // Whether the picture at rest is shown denoised.
     bool panel = true;  // Whether it is shown.
 };
 

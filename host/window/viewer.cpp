@@ -44,6 +44,7 @@ Viewer::Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewSt
       options_(std::move(options)),
       home_(state_.camera),
       gui_(window),
+      denoiser_(options_.denoiser),
       next_scale_(FIRST_SCALE) {
     state_.settings.submission_seconds = SUBMISSION_SECONDS;
     state_.settings.aovs = true;  // EXRs hold them.
@@ -95,6 +96,7 @@ void Viewer::recover(const Error& error) {
     const bool again = recovery_.survives(error, renderer_ != nullptr, samples);
     if (renderer_) state_.settings.submission_seconds /= 2;
     renderer_.reset();
+    denoised_.reset();
     display_.reset();
     presenter_.reset();
     device_.reset();
@@ -124,6 +126,9 @@ void Viewer::begin() {
     }
     if (restart_) {
         copy_.clear();
+        denoiser_.clear();
+        denoised_.reset();
+        denoised_samples_ = 0.0;
         recovery_.forget_progress();
         render_seconds_ = 0.0;
     }

@@ -18,6 +18,7 @@
 #include "view/clock.h"
 #include "view/display.h"
 #include "view/picture_copy.h"
+#include "view/view_denoiser.h"
 #include "vk/device.h"
 #include "vk/instance.h"
 #include "vk/presenter.h"
@@ -37,6 +38,7 @@ struct ViewerOptions {
     bool close_at_target = false;   // Close then, and keep the picture's size regardless of the window's.
     std::function<bool()> stopped;  // Called regularly; returns whether to end.
     std::function<void(const std::string&)> say;  // Gets events, such as "wrote box-1.png".
+    std::shared_ptr<Denoiser> denoiser;           // Not null.
 };
 
 class Viewer {
@@ -65,6 +67,8 @@ class Viewer {
     void measure(double progress);
     bool step(double progress);
     void frame();
+    const vk::StorageImage& shown();
+    void denoise();
     void turn(const Input* input);
     void apply(const ViewRequests& requests);
     void set_focus(vec2 place);
@@ -98,6 +102,7 @@ class Viewer {
     std::unique_ptr<vk::Presenter> presenter_;
     std::unique_ptr<Display> display_;
     std::unique_ptr<Renderer> renderer_;
+    std::unique_ptr<vk::StorageImage> denoised_;  // Like an accumulation of one sample; null without a result.
     Recovery recovery_;
 
     // The picture in progress: its camera and settings, the samples that every pixel has, the number of
@@ -108,6 +113,8 @@ class Viewer {
     uint32_t stop_ = 0;
     double render_seconds_ = 0.0;
     PictureCopy copy_;
+    ViewDenoiser denoiser_;
+    double denoised_samples_ = 0.0;  // Of the picture when the last run began.
 
     uint32_t scale_ = 1;    // The picture's sides are divided by this; 1 if it was begun at rest.
     bool moving_ = false;   // Whether it was begun while the camera moved.

@@ -1,6 +1,7 @@
 // See viewer.h. The files that the viewer writes.
 #include "base/error.h"
 #include "base/file.h"
+#include "denoise/denoise_image.h"
 #include "image/develop.h"
 #include "image/image_io.h"
 #include "session/record.h"
@@ -30,7 +31,9 @@ void Viewer::save(const std::filesystem::path& path) {
         write_radiance(path, state, renderer_->positions());
     } else {
         const Development development{.curve = state_.tonemap, .exposure_ev = state_.exposure_ev};
-        write_picture(path, develop(make_image(state, {}, {}), development), {}, write_finished_work);
+        Image image = state_.denoise ? denoiser_.denoised(state) : make_image(state, {}, {});
+        const DenoisedView denoised(image);
+        write_picture(path, develop(image, development), {}, write_finished_work);
     }
 }
 

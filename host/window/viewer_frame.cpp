@@ -5,6 +5,8 @@
 #include <string>
 
 #include "base/printable.h"
+#include "shared/constants.h"
+#include "vk/transfer.h"
 #include "window/controls.h"
 #include "window/panel.h"
 #include "window/viewer.h"
@@ -17,6 +19,19 @@ constexpr double DRAWING_FRACTION = 0.1;
 
 // After a pause, the camera flies no farther than in this time [s].
 constexpr double LONGEST_FRAME = 0.1;
+
+// Makes the image an accumulation whose means are these planes.
+void upload_mean(const vk::StorageImage& image, const RgbPlanes& rgb) {
+    const size_t pixels = rgb[0].size();
+    std::vector<float> layers(pixels * vk::StorageImage::CHANNELS * 2);
+    for (size_t i = 0; i < pixels; ++i) {
+        for (size_t c = 0; c < 3; ++c)
+            layers[4 * i + c] = rgb[c][i];
+        layers[4 * (pixels + i) + 3] = 1.0f;  // Samples.
+    }
+    static_assert(LAYER_L == 0 && LAYER_L_COMPENSATION == 1);
+    vk::upload(image, LAYER_L, layers);
+}
 
 }  // namespace
 
@@ -43,10 +58,40 @@ void Viewer::frame() {
     if (scale_ > 1 && !changed_lately()) restart_ = true;  // The camera rests.
     update_title();
     if (visible) {
-        display_->draw(renderer_->accumulation(), size, state_.tonemap, state_.exposure_ev, gui_.draw(size));
+        denoise();
+        display_->draw(shown(), size, state_.tonemap, state_.exposure_ev, gui_.draw(size));
         presenter_->show(display_->screen(), size.x, size.y);
     }
     next_draw_ = later(Clock::now(), seconds_between(start, Clock::now()) / DRAWING_FRACTION);
+}
+
+// What the window shows.
+const vk::StorageImage& Viewer::shown() {
+    return state_.denoise && denoised_ ? *denoised_ : renderer_->accumulation();
+}
+
+// Takes over what has been denoised, and begins the next run on a picture at rest that has more samples. A
+// failure is told, and turns the switch off.
+void Viewer::denoise() {
+    if (!state_.denoise || scale_ > 1 || restart_) return;
+    try {
+        if (denoiser_.take()) {
+            const Image& image = *denoiser_.picture();
+            if (!denoised_) {
+                denoised_ = std::make_unique<vk::StorageImage>(
+                    vk::make_storage_image(*device_, image.data.width(), image.data.height(),
+                                           LAYER_L_COMPENSATION + 1, "denoised picture"));
+            }
+            upload_mean(*denoised_, image.find_rgb("Denoised").value());
+        }
+        if (figures_.samples >= 1.0 && figures_.samples > denoised_samples_ && denoiser_.due()) {
+            denoised_samples_ = figures_.samples;
+            denoiser_.begin(renderer_->download());
+        }
+    } catch (const Error& error) {
+        state_.denoise = false;
+        tell("the picture stays noisy: " + std::string(error.what()));
+    }
 }
 
 // One turn of the user interface: the mouse and keys, then the panel.

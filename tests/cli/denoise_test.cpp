@@ -127,15 +127,30 @@ TEST_F(DenoiseTest, WithoutTheLibraryOidnIsAUsageErrorBeforeAnythingIsRendered) 
     EXPECT_FALSE(std::filesystem::exists(file("a.png")));
 }
 
-TEST_F(DenoiseTest, WithoutTheLibraryAutoTakesTheOtherWayOrLeavesThePictureNoisy) {
-    render_box({"-o", file("plain.png")});
-    const ProcessResult result = candela(box({"-o", file("a.png"), "--denoise", "auto"}), MISSING);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_CONTAINS(result.err, "candela: warning: --denoise auto: pictures stay noisy: " + IS_MISSING);
-    EXPECT_EQ(read_file(file("a.png")), read_file(file("plain.png")));
-    const ProcessResult variance = candela(box({"-o", file("a.png"), "--denoise", "variance"}), FAKE);
-    EXPECT_EQ(variance.exit_code, 2);
-    EXPECT_CONTAINS(variance.err, "--denoise variance: this program does not have it; use --denoise oidn");
+// On the device, in `render`, `merge` and `denoise` alike, to the same bits.
+TEST_F(DenoiseTest, WithoutTheLibraryAutoIsByVariance) {
+    const Words aovs = {"--aov", "albedo,n,variance,samples,denoising"};
+    const ProcessResult automatic =
+        candela(box(Words{"-o", file("a.exr"), "--denoise", "auto", "--report", "-"} + aovs), MISSING);
+    ASSERT_EQ(automatic.exit_code, 0) << automatic.err;
+    EXPECT_EQ(nlohmann::json::parse(automatic.out)["denoiser"], "variance");
+    const Image image = read_exr(file("a.exr"));
+    const Channel* const denoised = image.find("Denoised.G");
+    ASSERT_NE(denoised, nullptr);
+    EXPECT_NE(denoised->values, image.find("G")->values);
+    const std::vector<Words> ways = {
+        box(Words{"-o", file("b.exr"), "--denoise", "variance"} + aovs),
+        {"merge", file("a.exr"), "-o", file("b.exr"), "--denoise", "variance"},
+        {"denoise", file("a.exr"), "-o", file("b.exr"), "--denoise", "variance", "--device", "0"}};
+    for (const Words& way : ways) {
+        const ProcessResult result = candela(way, FAKE);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_EQ(read_exr(file("b.exr")).find("Denoised.G")->values, denoised->values) << way.front();
+    }
+    const ProcessResult none =
+        candela({"denoise", file("a.exr"), "-o", file("c.png"), "--denoise", "variance"}, NO_DRIVER);
+    EXPECT_EQ(none.exit_code, 3) << none.err;
+    EXPECT_FALSE(std::filesystem::exists(file("c.png")));
 }
 
 // Whatever fails when the picture is there: it is written as it is, and a warning says why.
@@ -310,7 +325,6 @@ TEST_F(DenoiseTest, TheCommandExplainsWhatIsWrong) {
          1,
          "it has no channels R, G and B, so that there is nothing to denoise"},
         {{"denoise", file("none.exr"), "-o", file("b.png")}, FAKE, 1, "none.exr"},
-        {{"denoise", file("a.exr"), "-o", file("b.png")}, MISSING, 2, IS_MISSING},
         {{"denoise", file("a.exr"), "-o", file("b.png"), "--denoise", "oidn"}, MISSING, 2, IS_MISSING},
         {{"denoise", file("a.exr"), "-o", file("b.png"), "--denoise", "none"},
          FAKE,
@@ -320,7 +334,7 @@ TEST_F(DenoiseTest, TheCommandExplainsWhatIsWrong) {
          FAKE + Environment{{"FAKE_OIDN_FAILS", "execute"}},
          1,
          "failed: out of luck in execute"},
-        {{"denoise", file("a.exr"), "-o", file("b.png")},
+        {{"denoise", file("a.exr"), "-o", file("b.png"), "--denoise", "oidn"},
          FAKE + Environment{{"FAKE_OIDN_VERSION", "3"}},
          1,
          "it is version 3.5.1, and candela needs version 2"}};

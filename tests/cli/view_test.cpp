@@ -113,6 +113,33 @@ TEST_F(View, TheEstimatedErrorIsThatOfRender) {
     expect_clean_end();
 }
 
+// N shows the picture denoised, and noisy again. What it shows is what P saves, and `candela denoise` makes of what X
+// saves.
+TEST_F(View, TheSwitchDenoises) {
+    const Words settings{"--size", "320x240", "--denoise", "variance"};
+    const ProcessResult result =
+        view(settings + Words{"--frames", "2", "--screenshot", "a.png", "--screenshot", "a.exr"}).finish();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const Words denoise{"denoise", file("a.exr"), "-o", file("b.png"), "-o", file("b.exr"), "--denoise", "variance"};
+    const ProcessResult denoised = candela(denoise);
+    ASSERT_EQ(denoised.exit_code, 0) << denoised.err;
+    EXPECT_EQ(codes_of(file("a.png")), codes_of(file("b.png")));
+    Image clean = read_exr(file("b.exr"));
+    for (const char* const channel : {"R", "G", "B"}) {
+        const std::vector<float> values = clean.find(std::string("Denoised.") + channel)->values;
+        std::ranges::find(clean.channels, channel, &Channel::name)->values = values;
+    }
+    const Image noisy = read_exr(file("a.exr"));
+
+    view({"--size", "320x240", "--spp", "2", "--denoise", "variance"});
+    press("Tab");
+    for (const Image* const image : {&clean, &noisy, &clean}) {
+        wait_until("the screen shows it", [&] { return wrong_codes(screen(), *image) == 0; });
+        press("n");
+    }
+    expect_clean_end();
+}
+
 // The panel hides a part of the picture; Tab hides the panel.
 TEST_F(View, TheScreenShowsWhatTheFileHolds) {
     view({"--size", "320x240", "--spp", "2"});

@@ -104,26 +104,26 @@ TEST(DenoiseImage, AddsLayersBesideTheNoisyOnes) {
 
 TEST(DenoiseImage, PrefersGuidesMadeForDenoisers) {
     const Image both = image_of(4, 4, COLOUR + FIRST_HITS + GUIDES);
-    const DenoiserInput input = denoiser_input(both, true, "a.exr");
+    const NoisyPicture input = noisy_picture(both, true, "a.exr");
     EXPECT_EQ(input.albedo->at(0).data(), both.find("DenoisingAlbedo.R")->values.data());
     EXPECT_EQ(input.normal->at(2).data(), both.find("DenoisingNormal.Z")->values.data());
     EXPECT_EQ(describe_guides(both), "with DenoisingAlbedo and DenoisingNormal");
     const Image first = image_of(4, 4, COLOUR + FIRST_HITS);
-    EXPECT_EQ(denoiser_input(first, true, "a.exr").albedo->at(1).data(),
+    EXPECT_EQ(noisy_picture(first, true, "a.exr").albedo->at(1).data(),
               first.find("Albedo.G")->values.data());
     EXPECT_EQ(describe_guides(first), "with Albedo and N");
 }
 
 TEST(DenoiseImage, SaysWhatItLacks) {
     const Image colour = image_of(4, 4, COLOUR);
-    EXPECT_FALSE(denoiser_input(colour, true, "a.exr").albedo);
+    EXPECT_FALSE(noisy_picture(colour, true, "a.exr").albedo);
     EXPECT_EQ(describe_guides(colour),
               "with colour alone: it has no layer Albedo (--aov albedo,n or, better, denoising)");
     const Image albedo = image_of(4, 4, COLOUR + std::vector(FIRST_HITS.begin(), FIRST_HITS.begin() + 3));
     EXPECT_EQ(describe_guides(albedo), "with Albedo, but without normals: it has no layer N (--aov n)");
     EXPECT_EQ(
         error_of([] {
-            denoiser_input(image_of(4, 4, {{"R", 0}, {"G", 0}}), true, "a.exr");
+            noisy_picture(image_of(4, 4, {{"R", 0}, {"G", 0}}), true, "a.exr");
         }),
         "a.exr: it has no channels R, G and B, so that there is nothing to denoise; give an image such as "
         "candela render writes");
