@@ -20,17 +20,30 @@ constexpr uint32_t RADIUS = uint32_t(WINDOW.size()) / 2;
 constexpr double NOISE_SHARE = 0.85;
 // The level below which errors count as if absolute, of the picture's.
 constexpr double DARKNESS = 1e-3;
+// Differences of neighbours agree by a bias alone, whatever the noise: the share of the squared difference by
+// which they do is that of the bias, less what a window of 5 x 5 shows by chance, and more, since edges turn.
+constexpr double CHANCE = 0.2;
+constexpr double AGREEMENT_GAIN = 2.0;
 // Rows that one step weighs, of those for which it computes moments.
 constexpr uint32_t STRIP_ROWS = 32;
 
-// The relative squared difference of a pixel and the part of it that noise explains; zeros if it is not to
+// The relative difference of a pixel, and the part of its square that noise explains; zeros if it is not to
 // count.
+struct Difference {
+    dvec3 value{0.0};
+    double noise = 0.0;
+};
+
+// Sums over a window: of squared differences, of noise, and of products with the neighbours beside and
+// below.
 struct Moments {
-    double difference = 0.0, noise = 0.0;
+    double square = 0.0, noise = 0.0, beside = 0.0, below = 0.0;
 
     void add(double weight, const Moments& other) {
-        difference += weight * other.difference;
+        square += weight * other.square;
         noise += weight * other.noise;
+        beside += weight * other.beside;
+        below += weight * other.below;
     }
 };
 
@@ -52,10 +65,7 @@ class Weights {
     // Fills the rows from y0 to y1, exclusive.
     void fill(uint32_t y0, uint32_t y1, std::vector<float>& weights) const {
         const uint32_t first = y0 - std::min(y0, RADIUS), last = std::min(y1 + RADIUS, size_.y);
-        std::vector<Moments> moments;
-        moments.reserve(size_t(last - first) * size_.x);
-        for (size_t i = size_t(first) * size_.x; i < size_t(last) * size_.x; ++i)
-            moments.push_back(moments_of(i));
+        const std::vector<Moments> moments = moments_of_rows(first, last);
         std::vector<Moments> columns(size_.x);
         for (uint32_t y = y0; y < y1; ++y) {
             std::ranges::fill(columns, Moments{});
@@ -76,27 +86,66 @@ class Weights {
     }
 
   private:
-    Moments moments_of(size_t i) const {
-        if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i) ||
-            !is_finite_at(denoised_.rgb, i))
-            return {};
-        const double others = denoised_.own_weight.empty() ? 1.0 : 1.0 - double(denoised_.own_weight[i]);
-        Moments moments;
-        for (size_t c = 0; c < 3; ++c) {
-            const double value = denoised_.rgb[c][i], variance = variance_[c][i];
-            const double difference = value - noisy_[c][i], level = value * value + variance + darkness_;
-            if (level <= 0.0) continue;
-            moments.difference += difference * difference / level;
-            moments.noise += others * variance / level;
+    // Of the rows from `first` to `last`, exclusive. At the picture's edge, neighbours on the other side
+    // count.
+    std::vector<Moments> moments_of_rows(uint32_t first, uint32_t last) const {
+        std::vector<Moments> moments(size_t(last - first) * size_.x);
+        std::vector<Difference> above = neighbours(first, -1), row = differences(first), below;
+        for (uint32_t y = first; y < last; ++y) {
+            below = neighbours(y, 1);
+            const std::vector<Difference>& other = y + 1 < size_.y ? below : above;
+            for (uint32_t x = 0; x < size_.x; ++x) {
+                const dvec3 value = row[x].value;
+                const dvec3 beside = x + 1 < size_.x ? row[x + 1].value
+                                     : x > 0         ? row[x - 1].value
+                                                     : dvec3(0.0);
+                moments[size_t(y - first) * size_.x + x] = {dot(value, value), row[x].noise,
+                                                            dot(value, beside), dot(value, other[x].value)};
+            }
+            above.swap(row);
+            row.swap(below);
         }
         return moments;
+    }
+
+    // The row that many after row y, or zeros if there is none.
+    std::vector<Difference> neighbours(uint32_t y, int step) const {
+        const int64_t row = int64_t{y} + step;
+        return row >= 0 && row < int64_t{size_.y} ? differences(uint32_t(row))
+                                                  : std::vector<Difference>(size_.x);
+    }
+
+    std::vector<Difference> differences(uint32_t y) const {
+        std::vector<Difference> row(size_.x);
+        for (uint32_t x = 0; x < size_.x; ++x)
+            row[x] = difference(size_t(y) * size_.x + x);
+        return row;
+    }
+
+    Difference difference(size_t i) const {
+        Difference result;
+        if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i) ||
+            !is_finite_at(denoised_.rgb, i))
+            return result;
+        const double others = denoised_.own_weight.empty() ? 1.0 : 1.0 - double(denoised_.own_weight[i]);
+        for (int c = 0; c < 3; ++c) {
+            const double value = denoised_.rgb[size_t(c)][i], variance = variance_[size_t(c)][i];
+            const double level = value * value + variance + darkness_;
+            if (level <= 0.0) continue;
+            result.value[c] = (value - double(noisy_[size_t(c)][i])) / std::sqrt(level);
+            result.noise += others * variance / level;
+        }
+        return result;
     }
 
     float weight(size_t i, const Moments& sum) const {
         if (!is_finite_at(denoised_.rgb, i)) return 1.0f;
         if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i)) return 0.0f;
         if (sum.noise <= 0.0) return 1.0f;
-        return float(std::max(0.0, 1.0 - NOISE_SHARE * sum.noise / sum.difference));
+        if (sum.square <= 0.0) return 0.0f;
+        const double unexplained = 1.0 - NOISE_SHARE * sum.noise / sum.square;
+        const double agreeing = AGREEMENT_GAIN * (std::max(sum.beside, sum.below) / sum.square - CHANCE);
+        return float(std::clamp(std::max(unexplained, agreeing), 0.0, 1.0));
     }
 
     uvec2 size_;

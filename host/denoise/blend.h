@@ -18,6 +18,10 @@ namespace candela {
 // relative to the level of each. As samples are added, V falls and the bias stays, so that the blend
 // converges to the noisy picture.
 //
+// Samples of low-discrepancy sequences err less than V says, and a bias could hide behind it. But noise
+// differs from pixel to pixel, while a bias has the same sign along an edge: the weight is at least twice the
+// share of E d^2 by which neighbours agree, less 0.4.
+//
 // Where V is infinite (below two samples) or no number, nothing is known and the weight is 0. So it is where
 // only the noisy value is not finite, or beyond 2^40 times the picture's level; where the denoised one is
 // not, it is 1. Where nothing around has noise, it is exactly 1.

@@ -31,11 +31,17 @@ void denoise_file(const vk::Device& device, uint32_t tile, const char* from, con
     if (const Channel* alpha = image.find("A")) picture.alpha = alpha->values;
     if (const Channel* samples = image.find("SampleCount.V")) picture.samples = samples->values;
     const std::clock_t start = std::clock();
-    const Denoised denoised = denoise_by_variance(device, picture, tile).value();
+    Denoised denoised = filter_by_variance(device, picture, tile).value();
+    const Denoised filtered = denoised;
+    blend(noisy_weights(picture.size, picture.rgb, *picture.variance, denoised), picture.rgb, picture.alpha,
+          denoised);
     std::printf("%s %.3f\n", from, double(std::clock() - start) / CLOCKS_PER_SEC);
     Image result{image.full, image.data, {}, {}};
-    for (size_t c = 0; c < 3; ++c)
+    for (size_t c = 0; c < 3; ++c) {
         result.add(std::string(1, "RGB"[c])).values = denoised.rgb[c];
+        result.add(std::string("Filtered.") + "RGB"[c]).values = filtered.rgb[c];
+    }
+    result.add("OwnWeight.V").values = filtered.own_weight;
     write_exr(to, result);
 }
 

@@ -24,6 +24,16 @@ Planes filled(float value) {
     return planes;
 }
 
+// The value, and that much more or less on a checkerboard, so that neighbours do not agree.
+Planes checkered(float value, float difference) {
+    Planes planes = filled(value);
+    for (std::vector<float>& plane : planes) {
+        for (uint32_t i = 0; i < PIXELS; ++i)
+            plane[i] += (i % SIZE.x + i / SIZE.x) % 2 == 0 ? difference : -difference;
+    }
+    return planes;
+}
+
 RgbPlanes view(const Planes& planes) {
     return {planes[0], planes[1], planes[2]};
 }
@@ -35,15 +45,22 @@ std::vector<float> weights_of(const Planes& noisy, const Planes& variance, const
 
 // All pixels differ by 0.1. Where the variance is V, noise explains 0.85 (1 - s) V of the squared difference.
 TEST(Blend, TheWeightIsTheShareOfTheDifferenceThatNoiseDoesNotExplain) {
+    const Planes noisy = checkered(1.0f, 0.1f);
     for (const float variance : {0.008f, 1e-3f, 1e-6f}) {
         for (const float own : {0.0f, 0.25f}) {
             const double expected = 1.0 - 0.85 * (1.0 - own) * variance / 0.01;
-            for (const float weight : weights_of(filled(1.1f), filled(variance), filled(1.0f), own))
+            for (const float weight : weights_of(noisy, filled(variance), filled(1.0f), own))
                 EXPECT_NEAR(weight, expected, 1e-5);
         }
     }
-    for (const float weight : weights_of(filled(1.1f), filled(0.02f), filled(1.0f)))
+    for (const float weight : weights_of(noisy, filled(0.02f), filled(1.0f)))
         EXPECT_EQ(weight, 0.0f);
+}
+
+// Differences of one sign are a bias, however great the variance is said to be.
+TEST(Blend, WhereNeighboursAgreeTheDifferenceIsABias) {
+    for (const float weight : weights_of(filled(1.1f), filled(1.0f), filled(1.0f)))
+        EXPECT_EQ(weight, 1.0f);
 }
 
 TEST(Blend, WithoutNoiseItIsTheNoisyPictureBitByBit) {
@@ -57,7 +74,7 @@ TEST(Blend, WithoutNoiseItIsTheNoisyPictureBitByBit) {
 
 // The weights are those of a window of 5 x 5: a pixel three away changes nothing.
 TEST(Blend, ValuesThatAreNotFiniteStayWhereTheyAre) {
-    Planes noisy = filled(1.1f), variance = filled(0.001f), denoised = filled(1.0f);
+    Planes noisy = checkered(1.0f, 0.1f), variance = filled(0.001f), denoised = filled(1.0f);
     const std::vector<float> clean = weights_of(noisy, variance, denoised);
     const size_t at = 10 * SIZE.x + 10;
     noisy[1][at] = NOT_A_NUMBER;
@@ -75,7 +92,7 @@ TEST(Blend, ValuesThatAreNotFiniteStayWhereTheyAre) {
 
 // A value that cannot be light counts as missing, and overflows nothing.
 TEST(Blend, TheGreatestValuesAreReplaced) {
-    Planes noisy = filled(1.1f);
+    Planes noisy = checkered(1.0f, 0.1f);
     noisy[0][500] = 3e38f;
     const std::vector<float> weights = weights_of(noisy, filled(0.001f), filled(1.0f));
     EXPECT_EQ(weights[500], 0.0f);
@@ -91,8 +108,8 @@ TEST(Blend, OnePixelIsEnough) {
     EXPECT_NEAR(weights[0], 1.0 - 0.85 * 0.1, 1e-5);
 }
 
-// Gaussian noise of deviation 1, and a denoised picture with a bias of b in each pixel. With D the mean of
-// d^2 in a window, the blend is the noisy value minus 0.85 d / D. By Stein's lemma its risk is at most
+// Gaussian noise of deviation 1, and a denoised picture with a bias of b or -b in each pixel. With D the mean
+// of d^2 in a window, the blend is the noisy value minus 0.85 d / D. By Stein's lemma its risk is at most
 //     1 + E (0.85^2 - 2 * 0.85 + 4 * 0.85 omega) / D,
 // where omega is the weight of a value in its own window, at most 9 of 81 over three channels, and more only
 // at the picture's edge. E 1/D is at least 1 / E D = 1 / (1 + b^2). Weights below 0 would be worse than 0.
@@ -108,7 +125,7 @@ TEST(Blend, ItIsNeverWorseThanTheNoisyPicture) {
             for (float& value : plane)
                 value = 1.0f + deviation * normal(random);
         }
-        Denoised denoised{filled(1.0f + deviation * float(bias)), {}, {}};
+        Denoised denoised{checkered(1.0f, deviation * float(bias)), {}, {}};
         const auto error = [](const Planes& planes) {
             double sum = 0.0;
             for (const std::vector<float>& plane : planes) {
