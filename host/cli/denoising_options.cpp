@@ -48,10 +48,10 @@ void DenoisingOptions::add_required_to(CLI::App& app) {
 }
 
 void DenoisingOptions::add_shown_to(CLI::App& app) {
-    CLI::Option* const denoise =
-        add_choice(app, "--denoise", choice, CHOICE_NAMES,
-                   "Show the picture at rest denoised, as N does at any time: by oidn (Open Image Denoise), by variance "
-                   "(candela itself), or auto, the first of them that is there (default: none)");
+    CLI::Option* const denoise = add_choice(
+        app, "--denoise", choice, CHOICE_NAMES,
+        "Show the picture at rest denoised, as N does at any time: by oidn (Open Image Denoise), by variance "
+        "(candela itself), or auto, the first of them that is there (default: none)");
     add_quality(app, quality);
     app.get_option("--denoise-quality")->needs(denoise);
 }

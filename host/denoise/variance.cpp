@@ -144,8 +144,7 @@ class Tiles {
 
 }  // namespace
 
-std::optional<Denoised> filter_by_variance(const vk::Device& device, const NoisyPicture& picture,
-                                           uint32_t tile, const std::function<bool()>& keep_going) {
+Denoised filter_by_variance(const vk::Device& device, const NoisyPicture& picture, uint32_t tile) {
     assert(tile > 0 && picture.rgb[0].size() == size_t(picture.size.x) * picture.size.y);
     const uvec2 size = picture.size;
     const size_t pixels = size_t(size.x) * size.y;
@@ -158,22 +157,9 @@ std::optional<Denoised> filter_by_variance(const vk::Device& device, const Noisy
     {
         Tiles tiles(device, irradiance, size, tile);
         for (uint32_t y = 0; y < size.y; y += tile) {
-            for (uint32_t x = 0; x < size.x; x += tile) {
-                if (keep_going && !keep_going()) return std::nullopt;
+            for (uint32_t x = 0; x < size.x; x += tile)
                 tiles.denoise({x, y, std::min(x + tile, size.x), std::min(y + tile, size.y)}, result);
-            }
         }
-    }
-    return result;
-}
-
-std::optional<Denoised> denoise_by_variance(const vk::Device& device, const NoisyPicture& picture,
-                                            uint32_t tile, const std::function<bool()>& keep_going) {
-    std::optional<Denoised> result = filter_by_variance(device, picture, tile, keep_going);
-    if (result && picture.variance) {
-        const std::vector<float> weights =
-            noisy_weights(picture.size, picture.rgb, *picture.variance, *result);
-        blend(weights, picture.rgb, picture.alpha, *result);
     }
     return result;
 }

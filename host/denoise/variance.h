@@ -3,15 +3,12 @@
 //
 // A pixel becomes a weighted mean of its surroundings. Weights fall with differences of albedo and normal,
 // and with differences of irradiance (colour over albedo) that the variances do not explain. The result is
-// blended with the noisy picture (blend.h), and so converges to it.
+// to be blended with the noisy picture (blend.h), and then converges to it.
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
 
-#include "denoise/blend.h"
-#include "image/image.h"
+#include "denoise/denoiser.h"
 #include "vk/device.h"
 
 namespace candela {
@@ -25,15 +22,8 @@ inline constexpr uint32_t DENOISE_TILE = 768;
 // textures are known only by their colour; without the numbers of samples, the noise of normals is that
 // of 16. The result does not depend on `tile`, the pixels along the edge of what the device works on at a
 // time. A pixel depends on those up to 34 away, and on the level of the whole picture, so that a crop has
-// other bits. Between tiles `keep_going` is asked; if it says no, nothing is returned. Throws an Error if the
-// device is lost or has too little memory.
-std::optional<Denoised> filter_by_variance(const vk::Device& device, const NoisyPicture& picture,
-                                           uint32_t tile = DENOISE_TILE,
-                                           const std::function<bool()>& keep_going = {});
-
-// The same, blended with the noisy picture; but not if the picture has no variance.
-std::optional<Denoised> denoise_by_variance(const vk::Device& device, const NoisyPicture& picture,
-                                            uint32_t tile = DENOISE_TILE,
-                                            const std::function<bool()>& keep_going = {});
+// other bits. Throws an Error if the device is lost or has too little memory.
+Denoised filter_by_variance(const vk::Device& device, const NoisyPicture& picture,
+                            uint32_t tile = DENOISE_TILE);
 
 }  // namespace candela

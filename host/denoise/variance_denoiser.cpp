@@ -15,7 +15,7 @@ class VarianceDenoiser : public Denoiser {
 
     std::string name() const override { return "variance"; }
     std::string description() const override { return "variance"; }
-    Denoised run(const NoisyPicture& picture) override { return *filter_by_variance(open_(), picture); }
+    Denoised run(const NoisyPicture& picture) override { return filter_by_variance(open_(), picture); }
 
   private:
     std::function<const vk::Device&()> open_;

@@ -17,8 +17,7 @@ void ViewDenoiser::clear() {
 }
 
 void ViewDenoiser::begin(Accumulation state) {
-    running_ =
-        std::async(std::launch::async, [this, state = std::move(state)] { return run(state); });
+    running_ = std::async(std::launch::async, [this, state = std::move(state)] { return run(state); });
 }
 
 bool ViewDenoiser::take() {
@@ -38,8 +37,8 @@ Image ViewDenoiser::denoised(const Accumulation& state) {
 
 ViewDenoiser::Run ViewDenoiser::run(const Accumulation& state) const {
     const Clock::time_point start = Clock::now();
-    Image image = make_image(
-        state, {.albedo = true, .normal = true, .variance = true, .sample_count = true}, {});
+    Image image =
+        make_image(state, {.albedo = true, .normal = true, .variance = true, .sample_count = true}, {});
     add_denoised(image, *denoiser_, false, "the picture");
     return {std::move(image), seconds_between(start, Clock::now())};
 }

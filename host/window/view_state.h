@@ -20,7 +20,7 @@ struct ViewState {
     float intensity_slider = 1.0f;       // The same, while the slider is dragged.
     bool paused = false;
     bool denoise = false;  // Whether the picture at rest is shown denoised.
-    bool panel = true;  // Whether it is shown.
+    bool panel = true;     // Whether it is shown.
 };
 
 // The user's one-time requests.

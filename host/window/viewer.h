@@ -102,7 +102,8 @@ class Viewer {
     std::unique_ptr<vk::Presenter> presenter_;
     std::unique_ptr<Display> display_;
     std::unique_ptr<Renderer> renderer_;
-    std::unique_ptr<vk::StorageImage> denoised_;  // Like an accumulation of one sample; null without a result.
+    std::unique_ptr<vk::StorageImage>
+        denoised_;  // Like an accumulation of one sample; null without a result.
     Recovery recovery_;
 
     // The picture in progress: its camera and settings, the samples that every pixel has, the number of

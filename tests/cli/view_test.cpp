@@ -113,14 +113,15 @@ TEST_F(View, TheEstimatedErrorIsThatOfRender) {
     expect_clean_end();
 }
 
-// N shows the picture denoised, and noisy again. What it shows is what P saves, and `candela denoise` makes of what X
-// saves.
+// N shows the picture denoised, and noisy again. What it shows is what P saves, and `candela denoise` makes
+// of what X saves.
 TEST_F(View, TheSwitchDenoises) {
     const Words settings{"--size", "320x240", "--denoise", "variance"};
     const ProcessResult result =
         view(settings + Words{"--frames", "2", "--screenshot", "a.png", "--screenshot", "a.exr"}).finish();
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    const Words denoise{"denoise", file("a.exr"), "-o", file("b.png"), "-o", file("b.exr"), "--denoise", "variance"};
+    const Words denoise{"denoise", file("a.exr"), "-o",        file("b.png"),
+                        "-o",      file("b.exr"), "--denoise", "variance"};
     const ProcessResult denoised = candela(denoise);
     ASSERT_EQ(denoised.exit_code, 0) << denoised.err;
     EXPECT_EQ(codes_of(file("a.png")), codes_of(file("b.png")));
