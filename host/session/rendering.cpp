@@ -65,8 +65,9 @@ void Rendering::restart(RenderJob job, RenderRecord record, const BufferSet& cha
     complete_record();
 }
 
-void Rendering::set_target(uint32_t spp, std::optional<double> error) {
+void Rendering::set_target(uint32_t spp, std::optional<double> error, std::optional<double> time_limit) {
     job_.target = spp;
+    job_.time_limit = time_limit;
     if (error == job_.target_error) return;
     job_.target_error = error;
     record_.target_error = error;

@@ -153,6 +153,15 @@ class Serve(unittest.TestCase):
             self.assertTrue(whole == back)
             self.assertTrue(whole != moved)
 
+    def test_a_time_limit_is_that_of_the_request(self):
+        with Client() as client:
+            client.load()
+            client.call("render", scene="1", spp=1)
+            short = client.call("render", scene="1", spp=FOREVER, time_limit=0.1)  # Goes on from the first sample.
+            self.assertFalse(short["complete"])
+            more = short["spp"] + 10000  # For longer than that.
+            self.assertTrue(client.call("render", scene="1", spp=more)["complete"])
+
     def test_cancels_a_rendering_and_goes_on(self):
         with Client() as client, Client() as fresh:
             client.load()
