@@ -36,7 +36,9 @@ candela_check(session ${PYTHON3} tests/session/session_test.py $<TARGET_FILE:ren
 set_tests_properties(session PROPERTIES LABELS cli)
 candela_check(serve ${PYTHON3} tests/python/serve_test.py $<TARGET_FILE:candela>)
 candela_check(python ${PYTHON3} tests/python/python_test.py $<TARGET_FILE:candela>)
-set_tests_properties(serve python PROPERTIES LABELS cli)
+candela_check(http ${PYTHON3} tests/python/http_test.py $<TARGET_FILE:candela>)
+candela_check(http_limits ${PYTHON3} tests/python/http_limits_test.py $<TARGET_FILE:candela>)
+set_tests_properties(serve python http http_limits PROPERTIES LABELS cli)
 candela_check(submit ${PYTHON3} tests/slurm/submit_test.py)
 candela_check(slurm ${PYTHON3} tests/slurm/slurm_test.py $<TARGET_FILE:candela>)
 set_tests_properties(slurm PROPERTIES LABELS cli COST 100)  # Mostly waits.
