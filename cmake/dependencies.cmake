@@ -1,4 +1,8 @@
 # The packages that candela is built from (packages.txt says what each is for) and the flags that all targets share.
+if(CANDELA_PORTABLE)
+    set(CMAKE_FIND_LIBRARY_SUFFIXES .a)
+    set(ZLIB_USE_STATIC_LIBS ON)
+endif()
 find_package(Threads REQUIRED)
 find_package(glm REQUIRED)
 # Debian's Imath names a Python library that is in another package, and reports at length that it is missing.
@@ -55,6 +59,10 @@ target_compile_definitions(candela_flags INTERFACE GLM_FORCE_XYZW_ONLY GLM_FORCE
 target_include_directories(candela_flags INTERFACE ${CMAKE_SOURCE_DIR}/host ${CMAKE_SOURCE_DIR}/shaders)
 target_include_directories(candela_flags SYSTEM INTERFACE ${STB_INCLUDE_DIR} ${VOLK_INCLUDE_DIR})
 target_link_libraries(candela_flags INTERFACE Threads::Threads glm::glm)
+if(CANDELA_PORTABLE)
+    # A driver brings the C++ run-time library that it needs: the two must not see each other.
+    target_link_options(candela_flags INTERFACE -static-libstdc++ -static-libgcc LINKER:--exclude-libs,ALL)
+endif()
 if(CANDELA_SANITIZE)
     # GCC 12 believes that parts of vectors, variants and std::regex are uninitialised when it instruments them.
     target_compile_options(candela_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all

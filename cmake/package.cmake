@@ -4,6 +4,9 @@
 #
 # Configure with -DCANDELA_VIEW=OFF for that: the libraries of the window system must be the system's own.
 #
+# For the wheel (pyproject.toml), the component `wheel` has the program alone. With -DCANDELA_PORTABLE=ON, it has all
+# libraries but glibc inside (cmake/wheel.sh).
+#
 # Left out are the libraries that every system with a Vulkan driver has: glibc and the C++ run-time library. A process
 # should have only one of each, and drivers need the system's.
 include(GNUInstallDirs)
@@ -14,6 +17,10 @@ target_link_options(candela PRIVATE LINKER:--disable-new-dtags)
 install(TARGETS candela RUNTIME_DEPENDENCY_SET candela_libraries)
 install(RUNTIME_DEPENDENCY_SET candela_libraries
     PRE_EXCLUDE_REGEXES "^ld-linux" "^linux-vdso" "^lib(c|m|dl|rt|pthread|stdc\\+\\+|gcc_s)\\.so")
+install(TARGETS candela RUNTIME DESTINATION . COMPONENT wheel EXCLUDE_FROM_ALL)
+if(CANDELA_LICENSES)
+    install(DIRECTORY ${CANDELA_LICENSES}/ DESTINATION licenses COMPONENT wheel EXCLUDE_FROM_ALL)
+endif()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenes ${CMAKE_SOURCE_DIR}/integrations DESTINATION ${CMAKE_INSTALL_DATADIR}/candela
     USE_SOURCE_PERMISSIONS PATTERN __pycache__ EXCLUDE PATTERN build EXCLUDE PATTERN *.egg-info EXCLUDE)
 install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${CMAKE_SOURCE_DIR}/LICENSE

@@ -13,6 +13,7 @@ import threading
 import weakref
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
+from candela._driver import advice, environment
 from candela._errors import Error
 from candela._program import find_program
 
@@ -32,7 +33,8 @@ class Connection:
         self._errors = tempfile.TemporaryFile()
         # A session of its own: Ctrl-C in the terminal must not end the program.
         self._process = subprocess.Popen([program, "serve", "--stdio", *options], stdin=subprocess.PIPE,
-                                         stdout=subprocess.PIPE, stderr=self._errors, bufsize=0, start_new_session=True)
+                                         stdout=subprocess.PIPE, stderr=self._errors, bufsize=0, start_new_session=True,
+                                         env=environment(program))
         self._lock = threading.Lock()
         self._ids = itertools.count(1)
         self._answers: Dict[int, queue.SimpleQueue[Answer]] = {}
@@ -197,7 +199,8 @@ class Connection:
 def _result(kind: str, value: Any) -> Dict[str, Any]:
     if kind == "error":
         data = value.get("data", {})
-        raise Error(value["message"], data.get("kind", "failed"), data.get("exit_code", 1))
+        kind = data.get("kind", "failed")
+        raise Error(value["message"] + (advice() if kind == "no_device" else ""), kind, data.get("exit_code", 1))
     result: Dict[str, Any] = value
     return result
 

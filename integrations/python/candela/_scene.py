@@ -104,7 +104,7 @@ class Scene:
     def pose(self, time: Optional[float], animation: Optional[str] = None) -> None:
         """Shows a glTF scene at that time [s] of its animation with that name or index (by default the first); None: as
         the file has it at rest."""
-        params = {"time": time} if animation is None else {"time": time, "animation": animation}
+        params: Dict[str, Any] = {"time": time} if animation is None else {"time": time, "animation": animation}
         with self._lock:
             _warn(self._connection.call("set", {"scene": self._id, **params}))
             self._description = None

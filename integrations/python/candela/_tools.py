@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Union
 
+from candela._driver import environment
 from candela._errors import Error
 from candela._image import Image
 from candela._program import find_program
@@ -43,8 +44,9 @@ class Verdict:
 
 def _run(arguments: List[str], fine: int) -> subprocess.CompletedProcess[str]:
     """Runs the program; raises Error unless it ends with 0 or the code `fine`, and prints a result."""
-    done = subprocess.run([find_program(), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          check=False)
+    program = find_program()
+    done = subprocess.run([program, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,
+                          env=environment(program))
     if done.returncode not in (_DONE, fine) or not done.stdout:
         lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
         raise Error(re.sub("^candela: error: ", "", lines[-1]), code=done.returncode)
