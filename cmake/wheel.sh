@@ -64,7 +64,8 @@ done
 }
 rm -rf "$folder/raw" "$folder"/candela_render-*.whl
 "$folder/tools/bin/pip" wheel --quiet --no-deps --no-build-isolation --wheel-dir "$folder/raw" \
-    --config-settings cmake.define.CANDELA_PORTABLE=ON --config-settings "cmake.define.CMAKE_PREFIX_PATH=$static" \
+    --config-settings build-dir=build/wheel/portable --config-settings cmake.define.CANDELA_PORTABLE=ON \
+    --config-settings "cmake.define.CMAKE_PREFIX_PATH=$static" \
     --config-settings "cmake.define.CANDELA_LICENSES=$folder/licenses" .
 "$folder/tools/bin/auditwheel" show "$folder"/raw/candela_render-*.whl
 PATH=$folder/tools/bin:$PATH auditwheel repair --only-plat --wheel-dir "$folder" "$folder"/raw/candela_render-*.whl
