@@ -39,6 +39,7 @@ ExitCode serve_client(const ServeArguments& arguments, const std::string& comman
         [&](const serve::Request& request, const serve::Call& call) { return methods(request, call); },
         [&guard] { return guard.interrupted(); });
     const serve::Server::End end = server.run();
+    remove_abandoned_memory();  // That of a client that was killed.
     if (end == serve::Server::End::given_up)
         throw Error(
             "serve: the client does not read the answers, and more wait than memory is set aside for");

@@ -70,10 +70,10 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, Loaded
             scene = load_ply_scene(path);
             break;
         case Format::json: {
-            JsonScene json =
-                options.text
-                    ? parse_json_scene(*options.text, path, gltf, options.progress, options.reach, files.gltf)
-                    : load_json_scene(path, gltf, options.progress, options.reach, files.gltf);
+            JsonScene json = options.text
+                                 ? parse_json_scene(*options.text, path, gltf, options.progress,
+                                                    options.reach, files.gltf, options.arrays)
+                                 : load_json_scene(path, gltf, options.progress, options.reach, files.gltf);
             scene = std::move(json.scene);
             place = json.place;
             source = json.is_gltf ? SceneSource::gltf : SceneSource::native;
@@ -81,6 +81,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, Loaded
     }
     if (is_last) files.gltf.contents.clear();
     load_images(scene, options.images, options.progress, files.images);
+    scene.arrays = nullptr;
     if (options.double_sided) make_double_sided(scene);
     light_scene(scene, place, source, options.lighting);
     return scene;

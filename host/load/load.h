@@ -23,6 +23,8 @@ struct LoadOptions {
     // What a native scene says. There is then no file: `path` names it in messages, in the folder of the
     // files that it names.
     std::optional<std::string> text{};
+    // The arrays that this text may name; needed only while the scene is loaded.
+    const NamedArrays* arrays = nullptr;
 };
 
 // Files shared by several scenes, such as the same one at several times: parsed glTF files and decoded

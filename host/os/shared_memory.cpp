@@ -1,6 +1,7 @@
 // See shared_memory.h.
 #include "os/shared_memory.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -96,6 +97,44 @@ SharedMemory::~SharedMemory() {
     ::munmap(bytes_.data(), bytes_.size());
     ::unlink(path_.c_str());
     ::close(file_);
+}
+
+SharedFile::SharedFile(const fs::path& path) : path_(path) {
+    const std::vector<fs::path> places = folders();
+    const auto is_place = [&](const fs::path& folder) { return path == folder / path.filename(); };
+    const bool is_named = path.filename().string().starts_with(PREFIX);
+    if (is_named && std::ranges::any_of(places, is_place))
+        file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    struct stat status {};
+    if (file_ >= 0 && ::fstat(file_, &status) == 0 && S_ISREG(status.st_mode) &&
+        status.st_uid == ::geteuid()) {
+        size_ = uint64_t(status.st_size);
+        return;
+    }
+    if (file_ >= 0) ::close(file_);
+    std::string where;
+    for (const fs::path& folder : places)
+        where += (where.empty() ? "" : " or ") + folder.string();
+    throw Error("no shared memory is called \"" + path.string() + "\": it must be a file of this user in " +
+                where + ", whose name begins with \"" + std::string(PREFIX) + '"');
+}
+
+SharedFile::~SharedFile() {
+    ::close(file_);
+}
+
+void SharedFile::read(uint64_t offset, std::span<std::byte> bytes) const {
+    while (!bytes.empty()) {
+        const ssize_t count = ::pread(file_, bytes.data(), bytes.size(), off_t(offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) {
+            throw Error("the shared memory \"" + path_.string() + "\" ends before byte " +
+                        std::to_string(offset + bytes.size()) +
+                        "; keep the file as it is until the scene is loaded");
+        }
+        offset += uint64_t(count);
+        bytes = bytes.subspan(size_t(count));
+    }
 }
 
 void remove_abandoned_memory() {

@@ -27,6 +27,27 @@ class SharedMemory {
     int file_ = -1;
 };
 
+// Such a file of another program of this user, who may change it at any moment: so it is read, and not
+// mapped.
+class SharedFile {
+  public:
+    // Throws Error for any other file.
+    explicit SharedFile(const std::filesystem::path& path);
+    SharedFile(const SharedFile&) = delete;
+    SharedFile& operator=(const SharedFile&) = delete;
+    ~SharedFile();
+
+    // Bytes, when it was opened.
+    uint64_t size() const { return size_; }
+    // Copies bytes from `offset` on. Throws Error if the file has become shorter.
+    void read(uint64_t offset, std::span<std::byte> bytes) const;
+
+  private:
+    std::filesystem::path path_;
+    int file_ = -1;
+    uint64_t size_ = 0;
+};
+
 // Removes the files of this user's programs that were killed.
 void remove_abandoned_memory();
 

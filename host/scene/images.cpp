@@ -84,6 +84,16 @@ void convert_gammas(Scene& scene) {
     });
 }
 
+// The image of a file.
+TexelImage read_image(const Scene& scene, ImageFile& file, std::vector<std::string>& warnings) {
+    if (file.bytes.empty()) file.bytes = scene.reach.read(file.path);
+    TexelLimits limits;
+    if (file.of_gltf) limits.formats = "PNG, JPEG or WebP";
+    TexelImage image = decode_texels(file.bytes, file.path, warnings, limits);
+    file.bytes = {};
+    return image;
+}
+
 // A message that begins with the name of an image, with the place before it.
 std::string at_place(const ImageFile& file, const std::string& message) {
     return is_within(file) ? message : file.place + ": " + message;
@@ -135,7 +145,7 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
         ImageFile& file = scene.images[i];
         kept.push_back(&decoded[concat(file.path.string(), '\n', file.real_path.string(), '\n', int(codes[i]),
                                        int(file.of_gltf))]);
-        file.image = kept[i]->image;
+        if (!file.image) file.image = kept[i]->image;
     }
     drop_missing_images(scene, options);
     std::mutex mutex;
@@ -145,11 +155,7 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
         if (file.image) return;
         const auto load = [&] {
             kept[i]->warnings.clear();  // From an attempt that failed.
-            if (file.bytes.empty()) file.bytes = scene.reach.read(file.path);
-            TexelLimits limits;
-            if (file.of_gltf) limits.formats = "PNG, JPEG or WebP";
-            TexelImage image = decode_texels(file.bytes, file.path, kept[i]->warnings, limits);
-            file.bytes = {};
+            TexelImage image = file.make ? file.make() : read_image(scene, file, kept[i]->warnings);
             if (file.of_gltf) image.gamma.reset();
             if (file.convert) image = file.convert(image);
             file.image =
@@ -167,6 +173,7 @@ void load_images(Scene& scene, const ImageOptions& options, const LoadProgress& 
     });
     for (size_t i = 0; i < scene.images.size(); ++i) {
         scene.images[i].bytes = {};
+        scene.images[i].make = {};
         for (const std::string& warning : kept[i]->warnings)
             scene.warnings.push_back(at_place(scene.images[i], warning));
     }

@@ -21,7 +21,7 @@ namespace {
 // reach exists.
 bool is_lost(const Scene& scene, const ImageFile& file, const ImageOptions& options) {
     if (std::max(file.if_missing, options.if_missing) == IfMissing::error) return false;
-    if (file.image || !file.bytes.empty()) return false;
+    if (file.image || !file.bytes.empty() || file.make) return false;
     if (!scene.reach.holds(file.path)) return true;
     std::error_code ignored;
     return std::filesystem::status(file.path, ignored).type() == std::filesystem::file_type::not_found;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -12,6 +13,7 @@
 
 #include "base/file_reach.h"
 #include "base/math.h"
+#include "scene/named_arrays.h"
 #include "scene/principled.h"
 #include "scene/texture.h"
 #include "scene/transform.h"
@@ -281,13 +283,24 @@ struct Disk {
 // No object: see Shape::object.
 inline constexpr uint32_t NO_OBJECT = UINT32_MAX;
 
+using Geometry = std::variant<MeshInstance, Quad, Sphere, Disk>;
+
+// What a shape is in the space of its object, and where the object is.
+struct Origin {
+    Geometry geometry;
+    Transform transform;
+};
+
 struct Shape {
-    std::variant<MeshInstance, Quad, Sphere, Disk> geometry;
-    uint32_t material = 0;             // Index into Scene::materials.
-    std::optional<Emission> emission;  // None: the shape does not emit.
-    bool states_emission = false;      // If false, the emission is its material's, and changes with it.
-    uint32_t object = NO_OBJECT;       // Index into Scene::objects; NO_OBJECT: it is one by itself.
-    uint32_t copy = 0;                 // The number of this instance among those of the object, from 0.
+    Geometry geometry;
+    uint32_t material = 0;                   // Index into Scene::materials.
+    std::optional<Emission> emission;        // None: the shape does not emit.
+    bool states_emission = false;            // If false, the emission is its material's, and changes with it.
+    uint32_t object = NO_OBJECT;             // Index into Scene::objects; NO_OBJECT: it is one by itself.
+    uint32_t copy = 0;                       // The number of this instance among those of the object, from 0.
+    std::shared_ptr<const Origin> origin{};  // None: a mesh that the object's transform alone places, or
+                                             // another geometry, of an object that no transform places.
+    bool visible = true;                     // If false, the geometry is a mesh without triangles.
 };
 
 // Radiance from infinitely far away, as a latitude-longitude map [W/(m^2 sr)], row-major from the top. Its
@@ -357,6 +370,7 @@ struct Scene {
     std::optional<uint32_t> ground{};          // A shape that was added below the others; views ignore it.
     std::optional<Motion> motion;              // Only of a scene that shows a frame of an animation.
     FileReach reach;                           // The files that may be read for it.
+    const NamedArrays* arrays = nullptr;       // Those that its text may name, while it is loaded.
     std::vector<std::filesystem::path> files;  // Files read in addition to a JSON scene file: meshes,
                                                // materials, images.
     std::vector<std::string> warnings;         // Oddities that the loader could use, each with its place.

@@ -158,8 +158,8 @@ void SceneBuilder::complete_mesh(const std::string& place, const Appearance& app
 bool SceneBuilder::add_placed(Shape shape) {
     const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
     const auto geometry_fits = [&](const auto& geometry) {
-        using Geometry = std::remove_cvref_t<decltype(geometry)>;
-        if constexpr (std::is_same_v<Geometry, MeshInstance>) {
+        using Type = std::remove_cvref_t<decltype(geometry)>;
+        if constexpr (std::is_same_v<Type, MeshInstance>) {
             return instance_fits(geometry);
         } else {
             return fits(geometry);

@@ -9,7 +9,7 @@
 
 namespace candela {
 
-// The numbers of materials, meshes and shapes are unchanged.
+// The numbers of materials and shapes are unchanged; meshes without triangles may be added.
 struct SceneChange {
     bool environment = false;  // All of it, or whether there is one.
     bool rotation = false;     // Only of the environment.

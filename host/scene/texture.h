@@ -27,6 +27,8 @@ struct ImageFile {
     std::filesystem::path path;
     std::filesystem::path real_path{};  // The same for all names of the file.
     std::string bytes{};                // The file's contents, if it is within another file.
+    // Makes the image, in place of a file; called once, by load_images().
+    std::function<TexelImage()> make{};
     // Converts the file's image to this one; none: it is the same.
     std::function<TexelImage(const TexelImage&)> convert{};
     // A glTF file names it: its own gamma is ignored, and messages advise only some formats.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/memory_limit.h"
+#include "scene/label_scene.h"
 #include "session/interval.h"
 
 namespace candela::serve {
@@ -43,16 +44,20 @@ LoadedScene::LoadedScene(DeviceSlot device, const std::filesystem::path& path, L
     call_ = nullptr;
 }
 
-void LoadedScene::change(std::string_view json) {
-    within_memory([&] { picture_->scene().change(json); });
+void LoadedScene::change(std::string_view json, const NamedArrays* arrays) {
+    within_memory([&] { picture_->scene().change(json, arrays); });
 }
 
 void LoadedScene::pose(std::optional<double> time, std::optional<std::string> animation) {
     within_memory([&] { picture_->scene().pose(time, std::move(animation)); });
+    labels_.reset();
 }
 
 void LoadedScene::render(RenderJob job, const Call& call, bool tells_progress) {
-    within_memory([this] { picture_->update(); });
+    within_memory([&] {
+        picture_->update();
+        if (job.aovs.needs_coverage()) job.labels = labels();
+    });
     Interval reports(BETWEEN_REPORTS);
     const auto report = [&](double done, std::optional<double> error) {
         if (!tells_progress || !reports.over()) return;
@@ -71,6 +76,11 @@ void LoadedScene::render(RenderJob job, const Call& call, bool tells_progress) {
                              },
                          .write = {}});
     if (failure) throw Error(*failure);
+}
+
+std::shared_ptr<const Labels> LoadedScene::labels() {
+    if (!labels_) labels_ = std::make_shared<const Labels>(label_scene(scene()));
+    return labels_;
 }
 
 Rendering& LoadedScene::rendered() {

@@ -23,7 +23,7 @@ class LoadedScene {
     LoadedScene(DeviceSlot device, const std::filesystem::path& path, LoadOptions options, const Call& call);
 
     const Scene& scene() const { return picture_->scene().scene(); }
-    void change(std::string_view json);
+    void change(std::string_view json, const NamedArrays* arrays);
     void pose(std::optional<double> time, std::optional<std::string> animation);
 
     // Renders until the job is done or the call is cancelled.
@@ -32,6 +32,8 @@ class LoadedScene {
     Json outcome();
     // The picture so far, with its attributes. Throws Error if there is none.
     Image image(const std::string& command_line);
+    // What the numbers of its layers of ids mean.
+    std::shared_ptr<const Labels> labels();
 
     // The warnings since the last call.
     std::vector<std::string> take_warnings();
@@ -43,8 +45,9 @@ class LoadedScene {
     Rendering& rendered();
 
     DeviceSlot device_;
-    std::optional<LivePicture> picture_;  // Until the device is taken.
-    const Call* call_ = nullptr;          // While the scene is loaded.
+    std::optional<LivePicture> picture_;    // Until the device is taken.
+    std::shared_ptr<const Labels> labels_;  // Of the scene, if they have been asked for.
+    const Call* call_ = nullptr;            // While the scene is loaded.
     std::vector<std::string> warnings_;
 };
 

@@ -46,6 +46,7 @@ decltype(auto) checked(const Read& read) {
     } catch (const RequestError&) {
         throw;
     } catch (const Error& error) {
+        if (error.kind() == ErrorKind::out_of_memory) throw;
         throw RequestError(Code::invalid_parameters, error.what());
     }
 }

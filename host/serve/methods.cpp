@@ -9,8 +9,10 @@
 
 #include "base/memory_limit.h"
 #include "base/printable.h"
+#include "film/id_layers.h"
 #include "image/image_io.h"
 #include "serve/describe.h"
+#include "serve/describe_parts.h"
 #include "serve/describe_views.h"
 #include "serve/picture_request.h"
 #include "serve/save_image.h"
@@ -32,6 +34,17 @@ std::optional<std::string> text_of(const Node& parameters, std::string_view key)
 std::optional<double> number_of(const Node& parameters, std::string_view key) {
     const std::optional<Node> found = parameters.find(key);
     return found ? std::optional(found->number()) : std::nullopt;
+}
+
+// The arrays of a request, if it has some. Throws Error if there is not enough memory for them.
+std::unique_ptr<SharedArrays> read_arrays(const Node& parameters) {
+    const std::optional<Node> found = parameters.find("arrays");
+    if (!found) return nullptr;
+    auto arrays = std::make_unique<SharedArrays>(*found);
+    const LimitedMemory limited;
+    with_memory_for(
+        "a scene of these arrays", [&] { return found->place(); }, [&] { const MemoryCharge estimate(arrays->needed()); });
+    return arrays;
 }
 
 // The names of the elements of a map.
@@ -59,8 +72,9 @@ auto& find(const Node& parameters, const char* key, Things& things) {
 Json Methods::operator()(const Request& request, const Call& call) {
     static const std::vector<std::pair<std::string, Method>> methods{
         {"version", &Methods::version}, {"devices", &Methods::devices}, {"load", &Methods::load},
-        {"scene", &Methods::scene},     {"set", &Methods::set},         {"views", &Methods::views},
-        {"render", &Methods::render},   {"image", &Methods::image},     {"save", &Methods::save},
+        {"scene", &Methods::scene},     {"object", &Methods::object},   {"material", &Methods::material},
+        {"set", &Methods::set},         {"views", &Methods::views},     {"render", &Methods::render},
+        {"image", &Methods::image},     {"labels", &Methods::labels},   {"save", &Methods::save},
         {"release", &Methods::release}, {"close", &Methods::close}};
     for (const auto& [name, method] : methods) {
         if (name == request.method) return (this->*method)(request.parameters(), call);
@@ -105,7 +119,7 @@ SharedImage& Methods::find_image(const Node& parameters) {
 
 // The parameters of `load`, and what the scene is called.
 Methods::LoadRequest Methods::read_load(const Node& parameters) const {
-    parameters.allow_only({"scene", "file", "text", "folder", "folders", "time", "animation"});
+    parameters.allow_only({"scene", "file", "text", "folder", "folders", "arrays", "time", "animation"});
     const std::optional<Node> file = parameters.find("file"), text = parameters.find("text");
     if (file.has_value() == text.has_value())
         parameters.fail(R"(give either "file", or "text" and "folder")");
@@ -120,7 +134,10 @@ Methods::LoadRequest Methods::read_load(const Node& parameters) const {
     if (text) {
         request.path = std::filesystem::path(parameters.require("folder").file_name()) / "scene";
         options.text = text->string();
+        request.arrays = read_arrays(parameters);
+        options.arrays = request.arrays.get();
     } else {
+        if (const auto arrays = parameters.find("arrays")) arrays->fail(R"("arrays" go with "text")");
         request.path = file->file_name();
     }
     uint64_t number = 1;
@@ -163,14 +180,17 @@ Json Methods::scene(const Node& parameters, const Call&) {
 Json Methods::set(const Node& parameters, const Call&) {
     LoadedScene& scene = find_scene(parameters);
     checked([&] {
-        parameters.allow_only({"scene", "change", "time", "animation"});
+        parameters.allow_only({"scene", "change", "arrays", "time", "animation"});
         if (parameters.find("change").has_value() == parameters.find("time").has_value())
             parameters.fail(R"(give either "change" or "time")");
         if (parameters.find("change") && parameters.find("animation"))
             parameters.fail(R"("animation" goes with "time")");
+        if (parameters.find("time") && parameters.find("arrays"))
+            parameters.fail(R"("arrays" go with "change")");
     });
     if (const auto change = parameters.find("change")) {
-        scene.change(change->text());
+        const auto arrays = checked([&] { return read_arrays(parameters); });
+        scene.change(change->text(), arrays.get());
     } else {
         const Node time = parameters.require("time");
         const auto [seconds, animation] = checked([&] {
@@ -180,6 +200,27 @@ Json Methods::set(const Node& parameters, const Call&) {
         scene.pose(seconds, animation);
     }
     return {{"warnings", to_json(scene.take_warnings())}};
+}
+
+Json Methods::object(const Node& parameters, const Call&) {
+    checked([&] { parameters.allow_only({"scene", "object"}); });
+    const Scene& scene = find_scene(parameters).scene();
+    return checked([&] { return describe_object(parameters.require("object"), scene); });
+}
+
+Json Methods::material(const Node& parameters, const Call&) {
+    checked([&] { parameters.allow_only({"scene", "material"}); });
+    const Scene& scene = find_scene(parameters).scene();
+    return checked([&] { return describe_material(parameters.require("material"), scene); });
+}
+
+Json Methods::labels(const Node& parameters, const Call&) {
+    checked([&] { parameters.allow_only({"image"}); });
+    const Labels* const labels = find_image(parameters).labels();
+    if (labels == nullptr)
+        throw RequestError(Code::failed,
+                           "the image has no layers of ids; render it with the layer object_id");
+    return describe_labels(*labels);
 }
 
 Json Methods::views(const Node& parameters, const Call&) {
@@ -211,7 +252,11 @@ Json Methods::image(const Node& parameters, const Call&) {
     const LimitedMemory limited;
     auto shared = with_memory_for(
         "the image", [] { return std::string("request"); },
-        [&] { return std::make_unique<SharedImage>(scene.image(options_.command_line)); });
+        [&] {
+            Image image = scene.image(options_.command_line);
+            auto labels = image.find(OBJECT_ID) == nullptr ? nullptr : scene.labels();
+            return std::make_unique<SharedImage>(std::move(image), std::move(labels));
+        });
     Json result = scene.outcome();
     result.update(shared->describe());
     const std::string id = std::to_string(next_image_++);

@@ -12,6 +12,7 @@
 #include "serve/loaded_scene.h"
 #include "serve/message.h"
 #include "serve/server.h"
+#include "serve/shared_arrays.h"
 #include "serve/shared_image.h"
 #include "vk/instance.h"
 
@@ -43,6 +44,7 @@ class Methods {
         std::string id{};
         std::filesystem::path path{};
         LoadOptions options{};
+        std::unique_ptr<SharedArrays> arrays{};
     };
     using Method = Json (Methods::*)(const Node& parameters, const Call& call);
 
@@ -54,6 +56,9 @@ class Methods {
     Json views(const Node& parameters, const Call& call);
     Json render(const Node& parameters, const Call& call);
     Json image(const Node& parameters, const Call& call);
+    Json labels(const Node& parameters, const Call& call);
+    Json object(const Node& parameters, const Call& call);
+    Json material(const Node& parameters, const Call& call);
     Json save(const Node& parameters, const Call& call);
     Json release(const Node& parameters, const Call& call);
     Json close(const Node& parameters, const Call& call);

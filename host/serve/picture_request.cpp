@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "film/id_layers.h"
 #include "film/sample_range.h"
 #include "load/json/loader_parts.h"
 #include "scene/names.h"
@@ -49,6 +50,9 @@ std::span<const LayerKind> layer_kinds() {
         {"distance", {"Depth.V"}, &AovSelection::distance},
         {"variance", {"Variance.R", "Variance.G", "Variance.B"}, &AovSelection::variance},
         {"samples", {"SampleCount.V"}, &AovSelection::sample_count},
+        {"object_id", {OBJECT_ID}, &AovSelection::ids},
+        {"instance_id", {INSTANCE_ID}, &AovSelection::ids},
+        {"material_id", {MATERIAL_ID}, &AovSelection::ids},
     };
     return kinds;
 }

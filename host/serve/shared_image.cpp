@@ -26,8 +26,11 @@ uint64_t SharedImage::bytes_of(const Image& image, const std::vector<Layer>& lay
     return last.offset + last.channels.size() * image.pixel_count() * sizeof(float);
 }
 
-SharedImage::SharedImage(Image image)
-    : layers_(layers_of(image)), charge_(bytes_of(image, layers_)), memory_(bytes_of(image, layers_)) {
+SharedImage::SharedImage(Image image, std::shared_ptr<const Labels> labels)
+    : layers_(layers_of(image)),
+      labels_(std::move(labels)),
+      charge_(bytes_of(image, layers_)),
+      memory_(bytes_of(image, layers_)) {
     for (const Layer& layer : layers_) {
         const size_t step = layer.channels.size();
         for (size_t c = 0; c < step; ++c) {

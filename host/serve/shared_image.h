@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/memory_limit.h"
 #include "image/image.h"
+#include "image/labels.h"
 #include "os/shared_memory.h"
 #include "serve/message.h"
 
@@ -15,11 +17,13 @@ namespace candela::serve {
 class SharedImage {
   public:
     // Takes the layers of an image that layer_kinds() knows. Throws Error if there is no memory for them.
-    explicit SharedImage(Image image);
+    explicit SharedImage(Image image, std::shared_ptr<const Labels> labels = nullptr);
 
     // The file, the size of the picture, and where the layers are in the file: each row-major, float32, with
     // the values of a pixel beside each other.
     Json describe() const;
+    // What the numbers of the layers of ids mean; null without such layers.
+    const Labels* labels() const { return labels_.get(); }
     // The image, as it was.
     Image image() const;
 
@@ -34,6 +38,7 @@ class SharedImage {
     float* values_of(const Layer& layer) const;
 
     std::vector<Layer> layers_;
+    std::shared_ptr<const Labels> labels_;
     Image frame_;  // With the channels of no layer alone.
     MemoryCharge charge_;
     SharedMemory memory_;

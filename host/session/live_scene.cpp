@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "base/error.h"
+
 namespace candela {
 
 // What messages about changes begin with.
@@ -15,19 +17,23 @@ void LiveScene::load(const std::filesystem::path& path, const LoadOptions& optio
     scene_ = load_scene(path, options, files);
     path_ = path;
     options_ = options;
+    has_arrays_ = std::exchange(options_.arrays, nullptr) != nullptr;
     files_ = std::move(files);
     edits_ = {};
     pending_.reset();
     keep_warnings(scene_.warnings);
 }
 
-void LiveScene::change(std::string_view json) {
-    const SceneChange change = change_scene(scene_, json, CHANGE, path_.parent_path(), edits_);
+void LiveScene::change(std::string_view json, const NamedArrays* arrays) {
+    const SceneChange change = change_scene(scene_, json, CHANGE, path_.parent_path(), edits_, arrays);
     if (pending_) pending_->add(change);
     keep_warnings(scene_.warnings);
 }
 
 void LiveScene::pose(std::optional<double> time, std::optional<std::string> animation) {
+    if (has_arrays_)
+        throw Error(
+            "the scene was made from arrays, and cannot be read at another time; load it at that time");
     LoadOptions options = options_;
     options.gltf.time = time;
     options.gltf.animation = std::move(animation);

@@ -23,9 +23,9 @@ class LiveScene {
     // Reads a scene, which replaces any previous one. Throws what load_scene() throws.
     void load(const std::filesystem::path& path, const LoadOptions& options);
     // Changes it as change_scene() does. Throws what that throws.
-    void change(std::string_view json);
+    void change(std::string_view json, const NamedArrays* arrays = nullptr);
     // Shows the glTF files at another time, without reading them again; changes stay. Throws what
-    // load_scene() and change_scene() throw.
+    // load_scene() and change_scene() throw, and Error for a scene that was read from arrays.
     void pose(std::optional<double> time, std::optional<std::string> animation);
 
     // Has no camera before the first load().
@@ -51,6 +51,7 @@ class LiveScene {
     std::optional<SceneStages> stages_;
     std::optional<SceneChange> pending_;
     std::vector<std::string> warnings_;
+    bool has_arrays_ = false;  // Which are gone.
 };
 
 }  // namespace candela

@@ -1,6 +1,7 @@
 // See targets.h.
 #include "fuzz/targets.h"
 
+#include <cstring>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,12 +26,15 @@
 #include "load/obj/mtl.h"
 #include "load/obj/obj.h"
 #include "load/ply/ply.h"
+#include "os/shared_memory.h"
 #include "scene/images.h"
+#include "serve/describe_parts.h"
 #include "serve/describe_views.h"
 #include "serve/line_reader.h"
 #include "serve/message.h"
 #include "serve/picture_request.h"
 #include "serve/save_image.h"
+#include "serve/shared_arrays.h"
 #include "session/adaptive.h"
 #include "support/png_writer.h"
 #include "views/camera_file.h"
@@ -43,6 +47,9 @@ const ImageLimits SMALL{.max_pixels = 1 << 14};
 
 // The most bytes of a message.
 constexpr size_t MAX_LINE = 1 << 14;
+
+// Of the file that messages call SHARED.
+constexpr size_t SHARED_BYTES = 256;
 
 void texels(std::string_view bytes, const char* name) {
     std::vector<std::string> warnings;
@@ -212,11 +219,44 @@ void cameras(std::string_view bytes) {
     camera_file_text("opencv.json", pictures);
 }
 
+// Reads the scene of a message whose arrays are in a file that it calls SHARED.
+void load_message(const Node& parameters) {
+    const serve::SharedArrays arrays(parameters.require("arrays"));
+    GltfFiles files;
+    Scene scene = parse_json_scene(parameters.require("text").string(), "/none/scene", {}, no_progress, {},
+                                   files, &arrays);
+    DecodedImages decoded;
+    load_images(scene, {}, no_progress, decoded);
+    build_gpu_scene(scene);
+}
+
+// The same line with the name of a file of 256 bytes: counting numbers of every type, some of them good.
+std::string with_shared_file(std::string line) {
+    static const SharedMemory memory(SHARED_BYTES);
+    static const bool filled = [] {
+        constexpr float POINTS[]{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+        constexpr int32_t FACES[]{0, 1, 2, 0, 1, 3, 1, 2, 3, 0, 2, 3};
+        std::memcpy(memory.bytes().data(), POINTS, sizeof POINTS);
+        std::memcpy(memory.bytes().data() + SHARED_BYTES / 4, FACES, sizeof FACES);
+        for (size_t i = SHARED_BYTES / 2; i < SHARED_BYTES; ++i)
+            memory.bytes()[i] = std::byte(i);
+        return true;
+    }();
+    constexpr std::string_view NAME = "SHARED";
+    for (size_t at = 0; filled && (at = line.find(NAME, at)) != std::string::npos;)
+        line.replace(at, NAME.size(), memory.path().string());
+    return line;
+}
+
 void messages(std::string_view bytes) {
     static const Scene scene =
         parse_scene(R"({"cameras": {"main": {"position": [0, 0, 3], "look_at": [0, 0, 0],
-        "vertical_fov": 40}}, "materials": {"clay": {"type": "diffuse", "reflectance": 0.5}},
-        "shapes": [{"type": "sphere", "radius": 1, "material": "clay"}]})",
+        "vertical_fov": 40}}, "materials": {"clay": {"type": "diffuse", "reflectance": 0.5},
+        "glaze": {"type": "principled", "coat": 1}}, "objects": {"set": [{"type": "box", "min": [0, 0, 0],
+        "max": [1, 1, 1], "material": "glaze"}, {"type": "mesh", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+        "triangles": [[0, 1, 2]], "material": "clay"}]},
+        "shapes": [{"type": "sphere", "radius": 1, "material": "clay", "name": "ball"},
+        {"type": "instance", "object": "set", "transforms": [[], [{"translate": [1, 0, 0]}]]}]})",
                     "fuzz.json");
     serve::LineReader lines(MAX_LINE);
     lines.add(bytes);
@@ -225,15 +265,19 @@ void messages(std::string_view bytes) {
         try {
             const std::optional<std::string> line = lines.next();
             if (!line) break;
-            const serve::Request request = serve::parse_request(*line, id);
+            const serve::Request request = serve::parse_request(with_shared_file(*line), id);
             const Node parameters = request.parameters();
             if (request.method == "render") serve::read_job(parameters, scene);
+            if (request.method == "load") load_message(parameters);
+            if (request.method == "object") serve::describe_object(parameters.require("object"), scene);
+            if (request.method == "material") serve::describe_material(parameters.require("material"), scene);
             if (request.method == "views") serve::describe_views(parameters, scene);
             if (request.method == "save") serve::read_save(parameters);
             if (request.method == "set") {
                 Scene changed = scene;
                 SceneEdits edits;
                 change_scene(changed, parameters.require("change").text(), "change", {}, edits);
+                build_gpu_scene(changed);
             }
             serve::result_line(id.value_or("null"), {{"line", *line}});
         } catch (const Error& error) {

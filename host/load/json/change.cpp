@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "scene/images.h"
 #include "scene/material_textures.h"
 #include "scene/materials.h"
+#include "scene/place.h"
 #include "scene/scene_builder.h"
 
 namespace candela {
@@ -22,6 +24,16 @@ struct MaterialChange {
     std::string place;
     size_t index;
 };
+
+// The material with its images in `change`.
+Material with_images(const Material& before, const Scene& scene, Scene& change) {
+    Material material = before;
+    for_each_texture(material, [&](Texture& texture) {
+        change.images.push_back(scene.images[texture.image]);
+        texture.image = uint32_t(change.images.size() - 1);
+    });
+    return material;
+}
 
 // Reads materials into `change`, which has read nothing else.
 std::vector<MaterialChange> read_materials(const Node& materials, const Scene& scene,
@@ -34,7 +46,11 @@ std::vector<MaterialChange> read_materials(const Node& materials, const Scene& s
         const auto found = std::ranges::find(names, node.key());
         if (found == names.end()) node.fail_unknown("material", node.key(), names, "defined");
         changes.push_back({node.place(), size_t(found - names.begin())});
-        change.materials.push_back(read_material(node, {folder, change}));
+        const Material& before = scene.materials[changes.back().index];
+        change.materials.push_back(
+            node.find("type")
+                ? read_material(node, {folder, change})
+                : read_changed_material(node, {folder, change}, with_images(before, scene, change)));
     }
     return changes;
 }
@@ -42,7 +58,8 @@ std::vector<MaterialChange> read_materials(const Node& materials, const Scene& s
 // Throws Error if a mesh of the material `before` lacks what the new material needs, or would have been read
 // in another way.
 void check_mesh(const std::string& place, const Material& before, const Shape& shape, Scene& scene) {
-    const auto* const instance = std::get_if<MeshInstance>(&shape.geometry);
+    const Geometry own = origin_of(shape).geometry;  // Also of what is hidden.
+    const auto* const instance = std::get_if<MeshInstance>(&own);
     if (instance == nullptr) return;
     const Material& now = scene.materials[shape.material];
     const bool tangents = needs_tangents(before);
@@ -82,6 +99,20 @@ bool drop_unused_images(Scene& scene) {
     return count < indices.size();
 }
 
+// Where in the scene the images of the change will be: those that it has already, and after them the others.
+std::vector<uint32_t> places_in(const Scene& scene, const Scene& change) {
+    std::map<const TexelImage*, uint32_t> known;
+    for (uint32_t i = 0; i < scene.images.size(); ++i)
+        known.emplace(scene.images[i].image.get(), i);
+    std::vector<uint32_t> places;
+    auto next = uint32_t(scene.images.size());
+    for (const ImageFile& file : change.images) {
+        const auto found = known.find(file.image.get());
+        places.push_back(found == known.end() ? next++ : found->second);
+    }
+    return places;
+}
+
 // Exchanges the materials of the change with those of the scene.
 void exchange_materials(Scene& scene, Scene& change, const std::vector<MaterialChange>& changes) {
     for (size_t i = 0; i < changes.size(); ++i)
@@ -92,8 +123,11 @@ void exchange_materials(Scene& scene, Scene& change, const std::vector<MaterialC
 // cannot have them. Returns what of the scene is other than before.
 SceneChange take_materials(Scene& scene, Scene& change, const std::vector<MaterialChange>& changes) {
     if (changes.empty()) return {};
-    SceneChange result{.materials = true, .images = !change.images.empty()};
-    for_each_texture_of(change, [&](Texture& texture) { texture.image += uint32_t(scene.images.size()); });
+    const std::vector<uint32_t> places = places_in(scene, change);
+    SceneChange result{.materials = true, .images = std::ranges::any_of(places, [&](uint32_t i) {
+                                              return i >= scene.images.size();
+                                          })};
+    for_each_texture_of(change, [&](Texture& texture) { texture.image = places[texture.image]; });
     exchange_materials(scene, change, changes);
     try {
         for (size_t i = 0; i < changes.size(); ++i) {
@@ -106,7 +140,10 @@ SceneChange take_materials(Scene& scene, Scene& change, const std::vector<Materi
         exchange_materials(scene, change, changes);
         throw;
     }
-    std::ranges::move(change.images, std::back_inserter(scene.images));
+    const size_t known = scene.images.size();
+    for (size_t i = 0; i < places.size(); ++i) {
+        if (places[i] >= known) scene.images.push_back(std::move(change.images[i]));
+    }
     for (const MaterialChange& made : changes) {
         for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
             Shape& shape = scene.shapes[i];
@@ -131,15 +168,16 @@ void take_cameras(Scene& scene, Scene& change) {
 }  // namespace
 
 SceneChange change_scene(Scene& scene, std::string_view text, const std::string& name,
-                         const std::filesystem::path& folder, SceneEdits& edits) {
+                         const std::filesystem::path& folder, SceneEdits& edits, const NamedArrays* arrays) {
     const json::Document document{name, json::parse(text, name)};
     const Node root(document);
-    root.allow_only({"cameras", "materials", "environment", "sky"});
+    root.allow_only({"cameras", "materials", "objects", "environment", "sky"});
     const auto cameras = root.find("cameras"), materials = root.find("materials");
 
     // All is read into a scene of its own before this one changes; images are read anew.
     Scene change;
     change.reach = scene.reach;
+    change.arrays = arrays;
     std::vector<MaterialChange> changes;
     if (materials) changes = read_materials(*materials, scene, folder, change);
     if (cameras) {
@@ -149,8 +187,13 @@ SceneChange change_scene(Scene& scene, std::string_view text, const std::string&
     change.environment = read_distant_light(root, folder, change);
     DecodedImages decoded;
     load_images(change, {}, no_progress, decoded);
+    InstanceEdits moves;
+    if (const auto objects = root.find("objects")) moves = read_object_changes(*objects, scene);
 
+    std::vector<MovedShape> moved = move_shapes(moves, name, scene);
     SceneChange result = take_materials(scene, change, changes);
+    take_shapes(std::move(moved), scene, result);
+    add(edits.objects, moves);
     for (const MaterialChange& made : changes)
         edits.materials.insert(scene.materials[made.index].name);
     for (const Camera& camera : change.cameras)
@@ -183,6 +226,8 @@ void carry_edits(const SceneEdits& edits, const Scene& from, const std::string& 
     }
     take_cameras(to, change);
     if (edits.environment) to.environment = from.environment;
+    SceneChange moved;
+    take_shapes(move_shapes(edits.objects, name, to), to, moved);
 }
 
 }  // namespace candela

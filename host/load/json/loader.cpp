@@ -69,12 +69,13 @@ void read_base(const Node& node, const std::filesystem::path& folder, const Gltf
 
 JsonScene scene_of(const json::Document& document, const std::filesystem::path& folder,
                    const GltfOptions& gltf, const LoadProgress& progress, const FileReach& reach,
-                   GltfFiles& files) {
+                   GltfFiles& files, const NamedArrays* arrays = nullptr) {
     const Node root(document);
     root.allow_only({"$schema"}, keys_of({"scene"}));
 
     Scene scene;
     scene.reach = reach;
+    scene.arrays = arrays;
     const auto base = root.find("scene");
     if (!base && gltf != GltfOptions{})
         throw Error(document.file + ": " + GLTF_OPTIONS_ALONE, ErrorKind::request);
@@ -126,10 +127,11 @@ JsonScene load_json_scene(const std::filesystem::path& path, const GltfOptions& 
 }
 
 JsonScene parse_json_scene(std::string_view text, const std::filesystem::path& path, const GltfOptions& gltf,
-                           const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files) {
+                           const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files,
+                           const NamedArrays* arrays) {
     const std::string file = path.string();
     return scene_of({file, json::parse(text, file)}, path.parent_path(), gltf, progress,
-                    FileReach(path, reach), files);
+                    FileReach(path, reach), files, arrays);
 }
 
 Scene parse_scene(std::string_view text, const std::string& file) {

@@ -27,9 +27,10 @@ JsonScene load_json_scene(const std::filesystem::path& path, const GltfOptions& 
                           const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files);
 
 // The same for the text of a scene, which `path` names in messages, and which is not glTF; there need not be
-// such a file.
+// such a file. It may name `arrays`.
 JsonScene parse_json_scene(std::string_view text, const std::filesystem::path& path, const GltfOptions& gltf,
-                           const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files);
+                           const LoadProgress& progress, const ReachOptions& reach, GltfFiles& files,
+                           const NamedArrays* arrays = nullptr);
 
 // The same for the text of a scene file that names no other files; `file` is its name in messages.
 Scene parse_scene(std::string_view text, const std::string& file);

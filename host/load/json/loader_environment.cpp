@@ -1,5 +1,8 @@
 // The environment: a constant sky, one from an image, or a computed one.
+#include <array>
+
 #include "base/error.h"
+#include "load/json/arrays.h"
 #include "load/json/loader_parts.h"
 #include "scene/environment.h"
 #include "scene/geometry.h"
@@ -34,6 +37,23 @@ void scale(Environment& environment, const Node& node) {
     }
 }
 
+// The latitude-longitude map that an array is, of height x width x 3 numbers.
+Environment read_map(const Node& node, const Scene& scene) {
+    const std::array<uint64_t, 3> shape = map_shape(node, scene);
+    const ArrayRows rows(node, scene, {shape[1] * shape[2]});
+    Environment environment{.size = uvec2(uint32_t(shape[1]), uint32_t(shape[0])), .radiance = {}};
+    environment.radiance.reserve(shape[0] * shape[1]);
+    rows.for_each([&](uint64_t row, const double* numbers) {
+        for (uint64_t i = 0; i < rows.columns(); i += 3) {
+            const dvec3 radiance(numbers[i], numbers[i + 1], numbers[i + 2]);
+            for (const int c : {0, 1, 2})
+                if (radiance[c] < 0.0) rows.fail(row, "radiance of at least 0", radiance[c]);
+            environment.radiance.emplace_back(radiance);
+        }
+    });
+    return environment;
+}
+
 Environment read_environment(const Node& node, const std::filesystem::path& folder, Scene& scene) {
     node.allow_only({}, keys_of({"environment"}));
     const auto file = node.find("file");
@@ -46,10 +66,15 @@ Environment read_environment(const Node& node, const std::filesystem::path& fold
         environment = load(*file, folder, scene);
         scene.files.push_back(folder / file->string());
     }
-    if (radiance) environment.radiance = {vec3(radiance->rgb())};
+    const bool is_map = radiance && is_array_name(*radiance);
+    if (is_map) {
+        environment = read_map(*radiance, scene);
+    } else if (radiance) {
+        environment.radiance = {vec3(radiance->rgb())};
+    }
     const bool reported = file && !gives_light(environment);  // Already, by load_environment().
     if (const auto rotation = node.find("rotation")) {
-        if (!file) {
+        if (!file && !is_map) {
             rotation->fail(
                 "a constant environment looks the same in all directions; rotation needs \"file\"");
         }

@@ -23,6 +23,13 @@ Camera read_camera(const Node& node, const Film& film);
 // Reads a material, whose key is its name.
 Material read_material(const Node& node, const ImageFolder& images);
 
+// Reads some values of a material, which has the others of `before`. The images of its textures are those of
+// images.scene.
+Material read_changed_material(const Node& node, const ImageFolder& images, const Material& before);
+
+// The same for the values of its model.
+void change_values(const Node& node, const ImageFolder& images, PrincipledMaterial& material);
+
 // Reads the object "absorption": the absorbing medium behind a surface.
 Medium read_absorption(const Node& node);
 

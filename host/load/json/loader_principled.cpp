@@ -112,6 +112,21 @@ typename ValueOf<kind>::Type read_value(const Node& node, const ImageFolder& ima
     if constexpr (kind == normal_map) return read_normal_map(node, images);
 }
 
+// Throws Error for other keys than those of the material, and the given one.
+void allow_principled(const Node& node, std::vector<std::string_view> keys) {
+    for (const std::string_view key : {
+#define VALUE(kind, name, initial, min, max, needs, text) std::string_view(#name),
+#define KEY(name, member, text) std::string_view(#name),
+#include "scene/principled_values.inc"
+#undef VALUE
+#undef KEY
+         })
+        keys.push_back(key);
+    for (const std::string_view key : keys_of({"material"}))
+        keys.push_back(key);
+    node.allow_only({}, keys);
+}
+
 // Reads the values that are present.
 void read_values(const Node& node, const ImageFolder& images, PrincipledMaterial& m) {
 #define VALUE(kind, name, initial, min, max, needs, text) \
@@ -131,16 +146,7 @@ void read_values(const Node& node, const ImageFolder& images, PrincipledMaterial
 }  // namespace
 
 MaterialModel read_principled(const Node& node, const ImageFolder& images) {
-    node.allow_only(
-        {
-            "type",
-#define VALUE(kind, name, initial, min, max, needs, text) #name,
-#define KEY(name, member, text) #name,
-#include "scene/principled_values.inc"
-#undef VALUE
-#undef KEY
-        },
-        keys_of({"material"}));
+    allow_principled(node, {"type"});
     PrincipledMaterial material;
     if (const auto unlit = node.find("unlit"); unlit && unlit->boolean()) check_unlit(node);
     check_companions(node);
@@ -148,6 +154,36 @@ MaterialModel read_principled(const Node& node, const ImageFolder& images) {
     read_inside(node, true, material);
     check_inside(node, material);
     return material;
+}
+
+// Keys need no others: they may come one after the other.
+void change_values(const Node& node, const ImageFolder& images, PrincipledMaterial& material) {
+    allow_principled(node, {});
+    read_values(node, images, material);
+    if (const auto absorption = node.find("absorption")) material.inside = read_absorption(*absorption);
+    if (const auto thin = node.find("thin_walled")) {
+        if (thin->boolean()) {
+            if (node.find("absorption"))
+                thin->fail(
+                    "a thin wall has no inside that could absorb light; remove thin_walled, or absorption");
+            material.inside.reset();
+        } else if (!material.inside) {
+            material.inside = Medium{};
+        }
+    }
+    if (const auto priority = node.find("priority"))
+        material.priority = read_integer(*priority, scene_key("dielectric", "priority"));
+    const auto is_black = [](const Textured<float>& weight) {
+        return !weight.texture && weight.factor == 0.0f;
+    };
+    if (material.inside && (material.ior == 0.0f ||
+                            (is_black(material.transmission) && is_black(material.diffuse_transmission)))) {
+        node.fail(
+            "no light would reach the medium inside; make the surface a thin wall (\"thin_walled\": true) in "
+            "the same change");
+    }
+    if (!material.inside && material.dispersion != 0.0f)
+        node.fail("a thin wall does not disperse light; set \"dispersion\" to 0 in the same change");
 }
 
 MaterialModel read_rough_conductor(const Node& node, const ImageFolder& images) {

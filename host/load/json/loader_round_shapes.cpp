@@ -57,7 +57,7 @@ void read_sphere(const Node& node, ShapeList& shapes) {
         node.fail("the transform makes the sphere too small for 32-bit floats; use greater factors");
     }
     check_reach(node, center, dvec3(radius));
-    shapes.add(appearance, Sphere{center, radius});
+    shapes.add_placed_by(appearance, Sphere{center_of(node), radius_of(node)}, transform);
 }
 
 void read_disk(const Node& node, ShapeList& shapes) {
@@ -78,13 +78,8 @@ void read_disk(const Node& node, ShapeList& shapes) {
     const dvec3 e1 = transform.vector(radius * u);
     const dvec3 e2 = transform.vector(radius * v);
     check_reach(node, center, abs(e1) + abs(e2));
-    Disk disk{center, e1, e2};
-    if (transform.mirrors()) {
-        std::swap(disk.e1, disk.e2);
-        std::swap(disk.uvs[1], disk.uvs[2]);
-    }
-    check_breadth(node, disk);
-    shapes.add(appearance, disk);
+    check_breadth(node, Disk{center, e1, e2});
+    shapes.add_placed_by(appearance, Disk{center_of(node), radius * u, radius * v}, transform);
 }
 
 }  // namespace candela

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/text.h"
+#include "load/json/arrays.h"
 #include "load/json/loader_parts.h"
 #include "load/json/objects.h"
 #include "scene/mesh.h"
@@ -42,14 +44,12 @@ void read_quad(const Node& node, ShapeList& shapes) {
     const Node vertices = node.require("vertices");
     const std::vector<Node> points = vertices.elements();
     if (points.size() != 4) vertices.fail_expected("four points");
-    Quad quad;
+    Quad own;
     for (size_t i = 0; i < 4; ++i) {
-        const size_t corner = transform.mirrors() ? (4 - i) % 4 : i;
-        quad.corners[corner] = within_reach(points[i], transform.point(points[i].vector()));
-        quad.uvs[corner] = Quad{}.uvs[i];
+        own.corners[i] = points[i].vector();
+        within_reach(points[i], transform.point(own.corners[i]));
     }
-    check_quad(vertices, quad);
-    shapes.add(appearance, quad);
+    check_quad(vertices, std::get<Quad>(shapes.add_placed_by(appearance, own, transform).geometry));
 }
 
 void read_box(const Node& node, ShapeList& shapes) {
@@ -67,16 +67,15 @@ void read_box(const Node& node, ShapeList& shapes) {
         node.require("max").fail("each number of max must be above that of min");
     }
     for (size_t side = 0; side < 6; ++side) {
-        Quad quad;
+        Quad own;
         for (size_t i = 0; i < 4; ++i) {
-            const size_t at = transform.mirrors() ? 3 - i : i;
-            const size_t corner = SIDES[side][at];
+            const size_t corner = SIDES[side][i];
             const dvec3 p(corner & 1u ? hi.x : lo.x, corner & 2u ? hi.y : lo.y, corner & 4u ? hi.z : lo.z);
-            quad.corners[i] = within_reach(node, transform.point(p));
-            quad.uvs[i] = Quad{}.uvs[(at + 4 - LOWER_LEFT[side]) % 4];
+            within_reach(node, transform.point(p));
+            own.corners[i] = p;
+            own.uvs[i] = Quad{}.uvs[(i + 4 - LOWER_LEFT[side]) % 4];
         }
-        check_quad(node, quad);
-        shapes.add(appearance, quad);
+        check_quad(node, std::get<Quad>(shapes.add_placed_by(appearance, own, transform).geometry));
     }
 }
 
@@ -88,8 +87,18 @@ std::vector<Node> one_per_position(const Node& node, size_t positions) {
     return elements;
 }
 
-std::vector<vec2> read_uvs(const Node& node, size_t positions) {
+std::vector<vec2> read_uvs(const Node& node, const Scene& scene, size_t positions) {
     std::vector<vec2> uvs;
+    if (is_array_name(node)) {
+        const ArrayRows rows(node, scene, {2}, positions);
+        uvs.reserve(positions);
+        rows.for_each([&](uint64_t i, const double* uv) {
+            for (const size_t c : {0, 1})
+                if (std::abs(uv[c]) > MAX_UV) rows.fail(i, "numbers from -1e30 to 1e30", uv[c]);
+            uvs.emplace_back(float(uv[0]), float(uv[1]));
+        });
+        return uvs;
+    }
     for (const Node& element : one_per_position(node, positions)) {
         const std::vector<Node> numbers = element.elements();
         if (numbers.size() != 2) element.fail_expected("two numbers [u, v]");
@@ -101,8 +110,22 @@ std::vector<vec2> read_uvs(const Node& node, size_t positions) {
     return uvs;
 }
 
-std::vector<vec4> read_colors(const Node& node, size_t positions) {
+std::vector<vec4> read_colors(const Node& node, const Scene& scene, size_t positions) {
     std::vector<vec4> colors;
+    if (is_array_name(node)) {
+        const ArrayRows rows(node, scene, {3, 4}, positions);
+        colors.reserve(positions);
+        rows.for_each([&](uint64_t i, const double* numbers) {
+            vec4 color(1.0f);
+            for (size_t c = 0; c < rows.columns(); ++c) {
+                if (!(numbers[c] >= 0.0 && numbers[c] <= 1.0))
+                    rows.fail(i, "numbers from 0 to 1", numbers[c]);
+                color[int(c)] = float(numbers[c]);
+            }
+            colors.push_back(color);
+        });
+        return colors;
+    }
     for (const Node& element : one_per_position(node, positions)) {
         const std::vector<Node> numbers = element.elements();
         if (numbers.size() != 3 && numbers.size() != 4) element.fail_expected("three or four numbers");
@@ -114,34 +137,68 @@ std::vector<vec4> read_colors(const Node& node, size_t positions) {
     return colors;
 }
 
+// Points or directions.
+std::vector<dvec3> read_vectors(const Node& node, const Scene& scene,
+                                std::optional<uint64_t> count = std::nullopt) {
+    std::vector<dvec3> vectors;
+    if (is_array_name(node)) {
+        const ArrayRows rows(node, scene, {3}, count);
+        vectors.reserve(rows.rows());
+        rows.for_each([&](uint64_t, const double* v) { vectors.emplace_back(v[0], v[1], v[2]); });
+        return vectors;
+    }
+    for (const Node& element : node.elements())
+        vectors.push_back(element.vector());
+    return vectors;
+}
+
+// Indices of positions, of which `last` is the last.
+std::vector<uvec3> read_triangles(const Node& node, const Scene& scene, uint32_t last) {
+    std::vector<uvec3> triangles;
+    if (is_array_name(node)) {
+        const ArrayRows rows(node, scene, {3});
+        triangles.reserve(rows.rows());
+        rows.for_each([&](uint64_t i, const double* corners) {
+            for (const size_t c : {0, 1, 2}) {
+                if (corners[c] != std::trunc(corners[c]) || corners[c] < 0.0 || corners[c] > double(last))
+                    rows.fail(i, concat("indices of positions, from 0 to ", last), corners[c]);
+            }
+            triangles.emplace_back(uint32_t(corners[0]), uint32_t(corners[1]), uint32_t(corners[2]));
+        });
+        return triangles;
+    }
+    for (const Node& triangle : node.elements()) {
+        const std::vector<Node> corners = triangle.elements();
+        if (corners.size() != 3) triangle.fail_expected("three indices of positions");
+        triangles.emplace_back(corners[0].integer(0, last), corners[1].integer(0, last),
+                               corners[2].integer(0, last));
+    }
+    return triangles;
+}
+
 void read_mesh(const Node& node, ShapeList& shapes) {
     node.allow_only({"type"}, keys_of({"mesh", "shape"}));
     const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
     TriangleMesh mesh;
     const Node positions = node.require("positions");
-    std::vector<dvec3> points;
-    for (const Node& p : positions.elements())
-        points.push_back(p.vector());
+    const Scene& scene = shapes.scene();
+    std::vector<dvec3> points = read_vectors(positions, scene);
     if (points.empty()) positions.fail_expected("at least one point");
     const auto last = uint32_t(points.size() - 1);
     set_positions(mesh, std::move(points));
-    for (const Node& triangle : node.require("triangles").elements()) {
-        const std::vector<Node> corners = triangle.elements();
-        if (corners.size() != 3) triangle.fail_expected("three indices of positions");
-        mesh.triangles.emplace_back(corners[0].integer(0, last), corners[1].integer(0, last),
-                                    corners[2].integer(0, last));
-    }
+    mesh.triangles = read_triangles(node.require("triangles"), scene, last);
     if (const auto normals = node.find("normals")) {
-        for (const Node& n : normals->elements())
-            mesh.normals.emplace_back(n.vector());
+        for (const dvec3 n : read_vectors(*normals, scene, mesh.positions.size()))
+            mesh.normals.emplace_back(n);
         if (mesh.normals.size() != mesh.positions.size()) {
             normals->fail_expected("as many normals as positions, " + std::to_string(mesh.positions.size()));
         }
     }
-    if (const auto uvs = node.find("uvs")) mesh.uv0 = read_uvs(*uvs, mesh.positions.size());
-    if (const auto uvs = node.find("uvs1")) mesh.uv1 = read_uvs(*uvs, mesh.positions.size());
-    if (const auto colors = node.find("colors")) mesh.colors = read_colors(*colors, mesh.positions.size());
+    if (const auto uvs = node.find("uvs")) mesh.uv0 = read_uvs(*uvs, scene, mesh.positions.size());
+    if (const auto uvs = node.find("uvs1")) mesh.uv1 = read_uvs(*uvs, scene, mesh.positions.size());
+    if (const auto colors = node.find("colors"))
+        mesh.colors = read_colors(*colors, scene, mesh.positions.size());
     shapes.add_mesh(node.place(), appearance, transform, std::move(mesh));
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "load/json/arrays.h"
 #include "load/json/keys.h"
 #include "scene/images.h"
 #include "scene/names.h"
@@ -64,7 +65,10 @@ Texture read_texture(const Node& node, const ImageFolder& folder, TextureEncodin
     node.allow_only({}, keys_of({"texture", more_keys}));
     const Node image = node.require("image");
     Texture texture{.encoding = encoding};
-    texture.image = add_image(folder.scene, find_file(image, folder.path, folder.scene.reach), image.place());
+    texture.image =
+        is_array_name(image)
+            ? add_image_array(image, folder.scene)
+            : add_image(folder.scene, find_file(image, folder.path, folder.scene.reach), image.place());
     if (const auto value = node.find("encoding")) texture.encoding = value->choice(ENCODING_NAMES);
     if (const auto value = node.find("wrap")) read_wrap(*value, texture);
     if (const auto value = node.find("filter")) texture.filter = value->choice(FILTER_NAMES);

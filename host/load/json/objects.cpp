@@ -5,51 +5,24 @@
 #include <utility>
 #include <variant>
 
+#include "load/json/arrays.h"
 #include "load/json/keys.h"
+#include "scene/place.h"
 
 namespace candela {
 namespace {
 
-// Each places a geometry once more, by a transform from the geometry's space; returns false if that is not
-// possible.
-bool place(MeshInstance& instance, const Transform& transform) {
-    return instance.transform.append(transform.matrix());
-}
-
-bool place(Quad& quad, const Transform& transform) {
-    for (dvec3& corner : quad.corners)
-        corner = transform.point(corner);
-    if (transform.mirrors()) {
-        std::swap(quad.corners[1], quad.corners[3]);
-        std::swap(quad.uvs[1], quad.uvs[3]);
-    }
-    return true;
-}
-
-bool place(Sphere& sphere, const Transform& transform) {
-    const std::optional<double> scale = transform.uniform_scale();
-    if (!scale) return false;
-    sphere = {transform.point(sphere.center), *scale * sphere.radius};
-    return true;
-}
-
-bool place(Disk& disk, const Transform& transform) {
-    disk.center = transform.point(disk.center);
-    disk.e1 = transform.vector(disk.e1);
-    disk.e2 = transform.vector(disk.e2);
-    if (transform.mirrors()) {
-        std::swap(disk.e1, disk.e2);
-        std::swap(disk.uvs[1], disk.uvs[2]);
-    }
-    return true;
-}
-
 // The transforms of an instance: its list, or its only one.
-std::vector<std::pair<Node, Transform>> transforms_of(const Node& node) {
+std::vector<std::pair<Node, Transform>> transforms_of(const Node& node, const Scene& scene) {
     std::vector<std::pair<Node, Transform>> transforms;
     if (const auto list = node.find("transforms")) {
         if (const auto one = node.find("transform"))
             one->fail("an instance has either transform or transforms; put this one into the list");
+        if (is_array_name(*list)) {
+            for (const Transform& transform : read_transforms(*list, scene))
+                transforms.emplace_back(*list, transform);
+            return transforms;
+        }
         for (const Node& transform : list->elements())
             transforms.emplace_back(transform, read_transform(transform));
         return transforms;
@@ -80,11 +53,12 @@ void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes
         if (instance != nullptr && (node.find("material") || node.find("emission")))
             shapes.complete_mesh(node.place(), appearance, instance->mesh);
     }
-    for (const auto& placement : transforms_of(node)) {
+    for (const auto& placement : transforms_of(node, shapes.scene())) {
         const Node& place_of = placement.first;
         const Transform& transform = placement.second;
         for (Shape shape : shown) {
-            if (!std::visit([&](auto& geometry) { return place(geometry, transform); }, shape.geometry)) {
+            const Geometry own = shape.geometry;
+            if (!place_object(shape, own, transform)) {
                 place_of.fail(
                     "the transform flattens the object, or scales a sphere in it unevenly; use other "
                     "factors, or a mesh instead of the sphere");

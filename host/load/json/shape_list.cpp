@@ -6,6 +6,7 @@
 #include "scene/catchers.h"
 #include "scene/materials.h"
 #include "scene/names.h"
+#include "scene/place.h"
 
 namespace candela {
 
@@ -72,6 +73,14 @@ void ShapeList::make_catchers(const Node& node, size_t first) {
         }
         scene().shapes[i].material = known->second;
     }
+}
+
+const Shape& ShapeList::add_placed_by(const Appearance& appearance, const Geometry& own,
+                                      const Transform& transform) {
+    add(appearance, own);
+    Shape& shape = scene().shapes.back();
+    place_object(shape, own, transform);
+    return shape;
 }
 
 Transform ShapeList::transform_of(const Node& node) {

@@ -39,6 +39,8 @@ class ShapeList : public SceneBuilder {
     // Makes the shapes from that one on catchers, as the node of their key says. Throws Error if one emits
     // light.
     void make_catchers(const Node& node, size_t first);
+    // Adds a geometry of a space of its own, which the transform places. Returns the shape.
+    const Shape& add_placed_by(const Appearance& appearance, const Geometry& own, const Transform& transform);
     // The transform of a shape's node; the identity if it has none.
     static Transform transform_of(const Node& node);
 

@@ -4,6 +4,8 @@
 #include <glm/gtc/matrix_access.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "load/json/arrays.h"
+
 namespace candela {
 namespace {
 
@@ -54,6 +56,22 @@ Transform read_transform(const Node& steps) {
         }
     }
     return transform;
+}
+
+std::vector<Transform> read_transforms(const Node& node, const Scene& scene) {
+    constexpr uint64_t NUMBERS = 16;
+    const ArrayRows rows(node, scene, {NUMBERS});
+    std::vector<Transform> transforms;
+    rows.for_each([&](uint64_t row, const double* numbers) {
+        glm::dmat4 matrix;
+        for (int i = 0; i < int(NUMBERS); ++i)
+            matrix[i % 4][i / 4] = numbers[i];
+        if (glm::row(matrix, 3) != glm::dvec4(0, 0, 0, 1))
+            rows.fail(row, "an affine matrix, whose last row is 0, 0, 0, 1", numbers[NUMBERS - 1]);
+        if (!transforms.emplace_back().append(matrix))
+            rows.fail(row, "a matrix that does not flatten the object", numbers[0]);
+    });
+    return transforms;
 }
 
 }  // namespace candela

@@ -1,7 +1,10 @@
 // The transforms of shapes in a scene file.
 #pragma once
 
+#include <vector>
+
 #include "load/node.h"
+#include "scene/scene.h"
 #include "scene/transform.h"
 
 namespace candela {
@@ -12,5 +15,8 @@ namespace candela {
 // Throws Error with a place for any other content, an axis without length, a matrix that is not affine, or a
 // singular result.
 Transform read_transform(const Node& steps);
+
+// Reads an array with a matrix a row, of 4 x 4 numbers or 16.
+std::vector<Transform> read_transforms(const Node& node, const Scene& scene);
 
 }  // namespace candela

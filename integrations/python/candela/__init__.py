@@ -14,8 +14,10 @@ from candela._image import Image
 from candela._scene import Scene
 from candela._session import Session, devices, load
 from candela._tools import Comparison, Verdict, compare, selftest
+from candela._trimesh import from_trimesh
+from candela._values import Texture
 
 __version__ = "0.1.0"
 
-__all__ = ["Camera", "Comparison", "Error", "Image", "Scene", "Session", "Verdict", "compare", "devices", "load",
-           "selftest"]
+__all__ = ["Camera", "Comparison", "Error", "Image", "Scene", "Session", "Texture", "Verdict", "compare", "devices",
+           "from_trimesh", "load", "selftest"]

@@ -10,6 +10,7 @@ import queue
 import subprocess
 import tempfile
 import threading
+import time
 import weakref
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
@@ -20,6 +21,8 @@ from candela._program import find_program
 PROTOCOL = 1
 # Seconds that a rendering gets to stop, and the program to end.
 PATIENCE = 10.0
+# Seconds that it gets to start.
+START = 60.0
 
 Progress = Callable[[Dict[str, Any]], None]
 Answer = Tuple[str, Any]
@@ -44,25 +47,30 @@ class Connection:
         self._reader.start()
         _all.add(self)
         try:
-            self.call("version", {"protocol": PROTOCOL})
+            self.call("version", {"protocol": PROTOCOL}, timeout=START)
         except BaseException:
             self.close()
             raise
 
-    def call(self, method: str, params: Dict[str, Any], progress: Optional[Progress] = None) -> Dict[str, Any]:
+    def call(self, method: str, params: Dict[str, Any], progress: Optional[Progress] = None,
+             timeout: Optional[float] = None) -> Dict[str, Any]:
         """The result of a request; raises Error for its error. If the caller is interrupted, or progress() raises, the
-        request is cancelled first."""
+        request is cancelled first; so it is after `timeout` seconds, without waiting for that, and Error is raised."""
+        end = None if timeout is None else time.monotonic() + timeout
         self._send_unused()
         number = next(self._ids)
         answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
         self._send(number, method, params, answers)
         try:
             while True:
-                kind, value = answers.get()
+                kind, value = _next(answers, end)
                 if kind != "progress":
                     return _result(kind, value)
                 if progress is not None:
                     progress(value)
+        except queue.Empty:
+            self._send(0, "cancel", {"request": number})
+            raise Error(f"{method}: not done within {timeout} seconds; allow more, or ask for less", "timeout", 7) from None
         except Error:
             raise
         except BaseException:
@@ -194,6 +202,11 @@ class Connection:
                     os.unlink(path)
                 except OSError:
                     pass
+
+
+def _next(answers: queue.SimpleQueue[Answer], end: Optional[float]) -> Answer:
+    """The next answer; raises queue.Empty if it does not come in time."""
+    return answers.get(timeout=None if end is None else max(0.0, end - time.monotonic()))
 
 
 def _result(kind: str, value: Any) -> Dict[str, Any]:

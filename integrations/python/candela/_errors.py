@@ -6,7 +6,7 @@ class Error(RuntimeError):
     """What candela reports: the message names the thing, the place, the cause and the remedy.
 
     Attributes:
-        kind: "usage", "no_device", "device_lost", "out_of_memory", "cancelled", "busy", or "failed" for all else.
+        kind: "usage", "no_device", "device_lost", "out_of_memory", "cancelled", "busy", "timeout", or "failed" for all else.
         code: The exit code of the command line for such an error.
     """
 

@@ -42,6 +42,7 @@ class Image:
         self.seconds: float = place["seconds"]
         self.layers: Tuple[str, ...] = tuple(place["layers"])
         self._connection = connection
+        self._names: Union[Dict[str, Tuple[Any, ...]], None] = None
         self._id: str = place["image"]
         weakref.finalize(self, connection.call_later, "release", {"image": self._id})
         file = os.open(place["file"], os.O_RDWR | getattr(os, "O_CLOEXEC", 0))
@@ -103,6 +104,32 @@ class Image:
     def variance(self) -> Array:
         """(H, W, 3): the variance of the pixel's mean, of `rgb`; infinity with fewer than two samples."""
         return self["variance"]
+
+    @property
+    def object_id(self) -> Array:
+        """(H, W): the number of the object that covers most of the pixel, in names["object_id"]; 0: none."""
+        return self["object_id"]
+
+    @property
+    def instance_id(self) -> Array:
+        """(H, W): the same for instances; names["instance_id"] has the object's name and the instance's number."""
+        return self["instance_id"]
+
+    @property
+    def material_id(self) -> Array:
+        """(H, W): the same for materials."""
+        return self["material_id"]
+
+    @property
+    def names(self) -> Dict[str, Tuple[Any, ...]]:
+        """What the numbers in the layers of ids mean: names["object_id"][number]. Number 0 is None."""
+        if self._names is None:
+            labels = self._connection.call("labels", {"image": self._id})
+            objects = (None, *labels["objects"])
+            instances = tuple((objects[one["object"]], one["instance"]) for one in labels["instances"])
+            self._names = {"object_id": objects, "instance_id": (None, *instances),
+                           "material_id": (None, *labels["materials"])}
+        return dict(self._names)
 
     @property
     def samples(self) -> Array:

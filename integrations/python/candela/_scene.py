@@ -8,38 +8,178 @@ import shutil
 import threading
 import warnings
 import weakref
-from typing import Any, Callable, Dict, Iterator, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, Optional, Sequence, Tuple, Union
 
 import numpy
 from numpy.typing import NDArray
 
 from candela._camera import Camera, _plain
 from candela._connection import Connection
+from candela._draft import Draft, environment_json
+from candela._errors import Error
 from candela._image import Image
+from candela._parts import Materials, Objects
+from candela._shared import SharedArrays
+from candela._values import Converter, environment_of, merge, object_changes
+
+if TYPE_CHECKING:
+    from candela._session import Session
 
 Progress = Union[bool, Callable[[float], None], None]
 
+# The azimuth and elevation of a camera that nobody has placed [degrees].
+_FIRST_LOOK = [35, 20]
+
 
 class Scene:
-    """A scene of a session, by candela.load(). After a change, only what depends on it is made again. Threads may share
-    it; a picture at a time is rendered."""
+    """A scene of a session: from a file, by candela.load(), or built of arrays:
 
-    def __init__(self, connection: Connection, description: Dict[str, Any]) -> None:
+        scene = candela.Scene(size=(640, 480))
+        scene.add_material("clay", type="diffuse", reflectance=0.5)
+        scene.add_mesh(vertices, faces, name="pot", material="clay")
+        scene.environment = 1.0
+        image = scene.render(spp=64)
+
+    After a change, only what depends on it is made again. Threads may share it; a picture at a time is rendered.
+    """
+
+    def __init__(self, size: Tuple[int, int] = (640, 480), session: Optional[Session] = None) -> None:
+        """A scene without anything in it. size: of its pictures, (width, height) in pixels. session: the one of
+        candela.Session() that it belongs to; by default the one that all share."""
+        if session is None:
+            from candela._session import default_session
+            session = default_session()
+        self._begin(session._connection)
+        self._draft: Optional[Draft] = Draft(size)
+
+    @classmethod
+    def _of(cls, connection: Connection, description: Dict[str, Any]) -> Scene:
+        """A scene that the program has loaded."""
+        scene = cls.__new__(cls)
+        scene._begin(connection)
+        scene._draft = None
+        scene._take(description)
+        return scene
+
+    def _begin(self, connection: Connection) -> None:
         self._connection = connection
-        self._id: str = description["scene"]
-        self._finalizer = weakref.finalize(self, connection.call_later, "close", {"scene": self._id})
+        self._name = ""  # What the program calls it, once it is loaded.
+        self._is_stale = False  # It has to be loaded again, with more in it.
+        self._edits: Dict[str, Dict[str, Any]] = {}  # All changes since the draft was loaded, for the next time.
+        self._finalizer: Optional[weakref.finalize[[str, Dict[str, str]], Scene]] = None
         self._folder: Optional[Callable[[], object]] = None
         self._lock = threading.RLock()
-        self._description: Optional[Dict[str, Any]] = description  # None: it has to be asked for.
+        self._description: Optional[Dict[str, Any]] = None  # None: it has to be asked for.
         self._cameras: Dict[str, Camera] = {}
+        self._environment: Optional[Dict[str, Any]] = None
+
+    def _take(self, description: Dict[str, Any]) -> None:
+        if not self._name:
+            self._name = description["scene"]
+            self._finalizer = weakref.finalize(self, self._connection.call_later, "close", {"scene": self._name})
+        self._is_stale = False
+        self._description = description
         self._add_cameras(description["cameras"])
         _warn(description)
 
+    @property
+    def _id(self) -> str:
+        """What the program calls the scene, which it then has."""
+        with self._lock:
+            if self._draft is not None and (not self._name or self._is_stale):
+                self._load(self._draft)
+            return self._name
+
+    def _load(self, draft: Draft) -> None:
+        text, arrays = draft.to_text()
+        with SharedArrays(arrays) as shared:
+            params: Dict[str, Any] = {"text": text, "folder": absolute("."), "arrays": shared}
+            if self._name:
+                params["scene"] = self._name
+            self._take(self._connection.call("load", params))
+        edits, self._edits = self._edits, {}
+        if edits:
+            self.change(**edits)
+        if not draft.cameras and "cameras" not in edits:
+            looks = self._connection.call("views", {"scene": self._name, "views": [_FIRST_LOOK], "size": list(draft.size)})
+            self.change(cameras={"main": looks["cameras"][0]})
+            self._edits.pop("cameras")  # It follows what is added.
+
+    def _call(self, method: str, **params: Any) -> Dict[str, Any]:
+        with self._lock:
+            return self._connection.call(method, {"scene": self._id, **params})
+
     def _describe(self) -> Dict[str, Any]:
         with self._lock:
+            name = self._id
             if self._description is None:
-                self._description = self._connection.call("scene", {"scene": self._id})
+                self._description = self._connection.call("scene", {"scene": name})
             return self._description
+
+    def _drafted(self) -> Draft:
+        """The draft, which is about to get more."""
+        if self._draft is None:
+            raise Error("the scene is from a file, and nothing can be added; begin with candela.Scene()", "usage", 2)
+        self._is_stale = True
+        return self._draft
+
+    def add_mesh(self, vertices: Any, faces: Any, *, name: Optional[str] = None, material: Optional[str] = None,
+                 normals: Any = None, uvs: Any = None, uvs1: Any = None, colors: Any = None, emission: Any = None,
+                 two_sided: Optional[bool] = None, transform: Any = None, transforms: Any = None) -> str:
+        """Adds an object of triangles; returns its name. It is read when the scene is next used: until then, its arrays must
+        stay as they are.
+
+        vertices: (N, 3), in the object's space [m]. faces: (M, 3), indices of vertices, counter-clockwise seen from the
+        front. material: a name; by default "default", a grey. normals: (N, 3), for smooth shading. uvs, uvs1: (N, 2), texture
+        coordinates, v upwards. colors: (N, 3) or (N, 4), linear, from 0 to 1; for materials with vertex_colors=True.
+        emission: radiance [W/(m² sr)]. transform: (4, 4), from the object's space to the world's. transforms: (K, 4, 4), of
+        as many instances.
+        """
+        if transform is not None and transforms is not None:
+            raise Error("give either transform or transforms", "usage", 2)
+        with self._lock:
+            draft = self._drafted()
+            chosen = draft.free_name(name, "mesh")
+            draft.meshes[chosen] = {"vertices": vertices, "faces": faces, "normals": normals, "uvs": uvs, "uvs1": uvs1,
+                                    "colors": colors, "emission": emission, "two_sided": two_sided, "transform": transform,
+                                    "transforms": transforms, "material": self._material_for(material, emission)}
+            return chosen
+
+    def _material_for(self, material: Optional[str], emission: Any) -> Optional[str]:
+        draft = self._drafted()
+        if material is None and emission is None:
+            draft.materials.setdefault("default", {"type": "diffuse", "reflectance": 0.5})
+            return "default"
+        return material
+
+    def add_shape(self, type: str, *, name: Optional[str] = None, material: Optional[str] = None, **keys: Any) -> str:
+        """Adds a shape of docs/scene-format.md as an object: a "sphere", "disk", "quad" or "box", or a file of the type "obj"
+        or "ply". keys: its own, such as radius, and transform, (4, 4). Returns its name."""
+        with self._lock:
+            draft = self._drafted()
+            chosen = draft.free_name(name, type)
+            shape = {"type": type, "material": self._material_for(material, keys.get("emission")), **keys}
+            draft.shapes[chosen] = {key: value for key, value in shape.items() if value is not None}
+            return chosen
+
+    def add_material(self, name: str, type: str = "principled", **values: Any) -> None:
+        """Adds a material, with values of docs/scene-format.md. Colours are linear; images are arrays or candela.Texture."""
+        with self._lock:
+            draft = self._drafted()
+            if name in draft.materials and name != "default":
+                raise Error(f"there is a material {name!r} already; choose another name", "usage", 2)
+            draft.materials[name] = {"type": type, **values}
+
+    def add_light(self, type: str, name: Optional[str] = None, **keys: Any) -> None:
+        """Adds a light without a surface: "point", "spot" or "directional", with keys of docs/scene-format.md."""
+        with self._lock:
+            self._drafted().lights.append({"type": type, **({} if name is None else {"name": name}), **keys})
+
+    def add_camera(self, camera: Camera, name: str = "main") -> None:
+        """Adds a camera. The first is the default; without one, a camera sees all of the scene from above the front."""
+        with self._lock:
+            self._drafted().cameras[name] = camera.to_dict()
+            self._edits.get("cameras", {}).pop(name, None)
 
     def _add_cameras(self, cameras: Dict[str, Any]) -> None:
         """Takes over what the scene's cameras are now. Cameras that the user holds stay those of the scene."""
@@ -52,27 +192,50 @@ class Scene:
     @property
     def cameras(self) -> Dict[str, Camera]:
         """The cameras by name, the default first."""
-        return dict(self._cameras)
+        with self._lock:
+            self._describe()
+            return dict(self._cameras)
 
     @property
     def camera(self) -> Camera:
         """The default camera. Set its attributes, or set another one in its place."""
-        return next(iter(self._cameras.values()))
+        return next(iter(self.cameras.values()))
 
     @camera.setter
     def camera(self, camera: Camera) -> None:
-        name = next(iter(self._cameras))
-        self.change(cameras={name: camera.to_dict()})
+        if self._draft is not None and not self._name and not self._draft.cameras:
+            self.add_camera(camera)
+            return
+        self.change(cameras={next(iter(self.cameras)): camera.to_dict()})
 
     @property
-    def materials(self) -> Tuple[str, ...]:
-        """The names of the materials."""
-        return tuple(self._describe()["materials"])
+    def materials(self) -> Materials:
+        """The materials by name: scene.materials["clay"].reflectance = 0.2."""
+        return Materials(self)
 
     @property
-    def objects(self) -> Tuple[str, ...]:
-        """The names of the objects."""
-        return tuple(self._describe()["objects"])
+    def objects(self) -> Objects:
+        """The objects by name: scene.objects["pot"].transform = matrix."""
+        return Objects(self)
+
+    @property
+    def environment(self) -> Optional[Dict[str, Any]]:
+        """The light from infinitely far away, as it was set: keys of docs/scene-format.md; None if there is none, and {} if it
+        is that of a file. Set it to such keys; or to its radiance, a number or (3,); or to a map of (H, W, 3), or its file."""
+        with self._lock:
+            if self._environment is not None:
+                return dict(self._environment)
+            return {} if self._describe()["environment"] else None
+
+    @environment.setter
+    def environment(self, value: Any) -> None:
+        keys = environment_of(value)
+        with self._lock:
+            if self._draft is not None and not self._name:
+                self._draft.environment, self._draft.sky = keys, None
+            else:
+                self.change(environment=keys)
+            self._environment = keys
 
     @property
     def lights(self) -> Tuple[str, ...]:
@@ -92,14 +255,25 @@ class Scene:
         return width, height
 
     def change(self, *, cameras: Optional[Dict[str, Any]] = None, materials: Optional[Dict[str, Any]] = None,
-               environment: Any = None, sky: Any = None) -> None:
-        """Replaces cameras, materials, the environment or the sky, in the syntax of scene files (docs/scene-format.md).
-        If it fails, the scene is as before."""
-        given = {"cameras": cameras, "materials": materials, "environment": environment, "sky": sky}
-        change = {key: _plain(value) for key, value in given.items() if value is not None}
-        with self._lock:
-            _warn(self._connection.call("set", {"scene": self._id, "change": change}))
-            self._add_cameras(change.get("cameras", {}))
+               objects: Optional[Dict[str, Any]] = None, environment: Any = None, sky: Any = None) -> None:
+        """Replaces cameras, materials, the environment or the sky, in the syntax of scene files (docs/scene-format.md); a
+        material without a type keeps its other values. objects: by name, with "transform", "visible", or the "instances" that
+        have them, by their numbers. If it fails, the scene is as before."""
+        given = {"cameras": cameras, "materials": materials, "objects": objects, "environment": environment, "sky": sky}
+        change = {key: value for key, value in given.items() if value is not None}
+        if objects is not None:
+            change["objects"] = object_changes(objects)
+        convert = Converter()
+        converted = {key: environment_json(convert, value) if key == "environment"
+                     else _plain(value) if key == "cameras" else convert(value, key) for key, value in change.items()}
+        with self._lock, SharedArrays(convert.arrays) as shared:
+            params = {"scene": self._id, "change": converted}
+            _warn(self._connection.call("set", {**params, "arrays": shared} if shared else params))
+            if objects is not None:
+                self._description = None
+            if self._draft is not None:
+                merge(self._edits, change)
+            self._add_cameras(converted.get("cameras", {}))
 
     def pose(self, time: Optional[float], animation: Optional[str] = None) -> None:
         """Shows a glTF scene at that time [s] of its animation with that name or index (by default the first); None: as
@@ -112,7 +286,7 @@ class Scene:
     def render(self, spp: Optional[int] = None, size: Optional[Tuple[int, int]] = None,
                camera: Union[str, Camera, None] = None, crop: Optional[Tuple[int, int, int, int]] = None,
                seed: Optional[int] = None, progress: Progress = None, *, target_error: Optional[float] = None,
-               time_limit: Optional[float] = None, layers: Union[str, Sequence[str]] = "all", transparent: bool = False,
+               time_limit: Optional[float] = None, timeout: Optional[float] = None, layers: Union[str, Sequence[str]] = "all", transparent: bool = False,
                **options: Any) -> Image:
         """Renders a picture. What is not given is what the scene proposes. If this is interrupted, image() is the picture
         so far, and the same call goes on to the same bits.
@@ -120,7 +294,8 @@ class Scene:
         spp: samples per pixel. size: (width, height) in pixels. camera: a name, or a Camera. crop: (x0, y0, x1, y1), only
         these pixels; x1 and y1 are exclusive. seed: each gives different noise. progress: True shows a bar, by tqdm if
         that is installed; or a function that gets the fraction that is done. target_error: ends at this estimated
-        relative error. time_limit: ends after these seconds. layers: names, or "all". transparent: before nothing
+        relative error. time_limit: ends after these seconds, with the picture so far. timeout: raises Error after these
+        seconds. layers: names, or "all". transparent: before nothing
         instead of the sky. Further options are those of docs/protocol.md: estimator, sampler, max_depth.
         """
         given = {"spp": spp, "size": size, "crop": crop, "seed": seed, "target_error": target_error,
@@ -128,7 +303,7 @@ class Scene:
                  "background": "transparent" if transparent else None, "progress": bool(progress) or None, **options}
         params = {key: _plain(value) for key, value in given.items() if value is not None}
         with self._lock, _Bar(progress) as bar:
-            outcome = self._connection.call("render", {"scene": self._id, **params}, bar)
+            outcome = self._connection.call("render", {"scene": self._id, **params}, bar, timeout)
             _warn(outcome)
             if outcome["complete"]:
                 bar.finish()
@@ -174,7 +349,7 @@ class Scene:
     def _name_of(self, camera: Union[str, Camera, None]) -> Union[str, Dict[str, Any], None]:
         if not isinstance(camera, Camera):
             return camera
-        known = [name for name, ours in self._cameras.items() if ours is camera]
+        known = [name for name, ours in self.cameras.items() if ours is camera]
         return known[0] if known else camera.to_dict()
 
     def keep(self, folder: str) -> None:
@@ -183,8 +358,8 @@ class Scene:
 
     def close(self) -> None:
         """Frees the scene, as it is when nothing uses it any more."""
-        if self._finalizer.detach() and self._connection.is_open:
-            self._connection.call("close", {"scene": self._id})
+        if self._finalizer is not None and self._finalizer.detach() and self._connection.is_open:
+            self._connection.call("close", {"scene": self._name})
         if self._folder is not None:
             self._folder()
 
@@ -195,7 +370,9 @@ class Scene:
         self.close()
 
     def __repr__(self) -> str:
-        return f"<candela.Scene {self._id}: {len(self.objects)} objects, cameras {', '.join(self._cameras)}>"
+        if self._draft is not None and (not self._name or self._is_stale):
+            return f"<candela.Scene of {len(self._draft.meshes) + len(self._draft.shapes)} objects, not loaded yet>"
+        return f"<candela.Scene {self._name}: {len(self.objects)} objects, cameras {', '.join(self._cameras)}>"
 
 
 class _Bar:

@@ -46,11 +46,11 @@ class Session:
 
     def load(self, source: Source, *, folder: Union[str, os.PathLike[str], None] = None,
              folders: Sequence[Union[str, os.PathLike[str]]] = (), time: Optional[float] = None,
-             animation: Optional[str] = None) -> Scene:
+             animation: Optional[str] = None, timeout: Optional[float] = None) -> Scene:
         """A scene from a file, the bytes of a file (.glb, .ply, or a scene in JSON), or a dictionary as in scene files.
 
         folder: where the files are that a dictionary names; by default the working folder. folders: further folders
-        from which files may be read. time, animation: see Scene.pose().
+        from which files may be read. time, animation: see Scene.pose(). timeout: raises Error after these seconds.
         """
         params: Dict[str, Any] = {"folders": [absolute(path) for path in folders]}
         if time is not None:
@@ -58,22 +58,22 @@ class Session:
         if animation is not None:
             params["animation"] = animation
         if isinstance(source, dict):
-            return self._load({**params, "text": json.dumps(source), "folder": absolute(folder or ".")})
+            return self._load({**params, "text": json.dumps(source), "folder": absolute(folder or ".")}, timeout)
         if not isinstance(source, bytes):
-            return self._load({**params, "file": absolute(source)})
+            return self._load({**params, "file": absolute(source)}, timeout)
         temporary = tempfile.mkdtemp(prefix="candela-")
         try:
             file = Path(temporary) / "scene"
             file.write_bytes(source)
-            scene = self._load({**params, "file": str(file)})
+            scene = self._load({**params, "file": str(file)}, timeout)
         except BaseException:
             shutil.rmtree(temporary, ignore_errors=True)
             raise
         scene.keep(temporary)
         return scene
 
-    def _load(self, params: Dict[str, Any]) -> Scene:
-        return Scene(self._connection, self._connection.call("load", params))
+    def _load(self, params: Dict[str, Any], timeout: Optional[float]) -> Scene:
+        return Scene._of(self._connection, self._connection.call("load", params, timeout=timeout))
 
     def devices(self) -> List[Device]:
         """All Vulkan devices."""

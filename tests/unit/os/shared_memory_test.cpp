@@ -2,6 +2,7 @@
 #include "os/shared_memory.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -38,6 +39,55 @@ TEST(SharedMemory, IsAFileOfThisUserThatOthersCanMap) {
         EXPECT_TRUE(std::filesystem::exists(path));
     }
     EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+// What SharedFile says of a path.
+std::string refusal_of(const std::filesystem::path& path) {
+    try {
+        const SharedFile file(path);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(SharedFile, ReadsTheMemoryOfAnotherProgram) {
+    const SharedMemory memory(100);
+    std::memcpy(memory.bytes().data() + 90, "0123456789", 10);
+    const SharedFile file(memory.path());
+    EXPECT_EQ(file.size(), 100u);
+    std::array<std::byte, 4> bytes{};
+    file.read(93, bytes);
+    EXPECT_EQ(std::memcmp(bytes.data(), "3456", 4), 0);
+    ASSERT_EQ(::truncate(memory.path().c_str(), 95), 0);
+    file.read(91, bytes);
+    try {
+        file.read(92, bytes);
+        FAIL() << "it ends there";
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  "the shared memory \"" + memory.path().string() +
+                      "\" ends before byte 96; keep the file as it is until the scene is "
+                      "loaded");
+    }
+}
+
+TEST(SharedFile, IsNoOtherFile) {
+    const SharedMemory memory(100);
+    const std::filesystem::path folder = memory.path().parent_path();
+    const std::filesystem::path link = folder / ("candela-shared-link-" + std::to_string(::getpid()));
+    std::filesystem::create_symlink(memory.path(), link);
+    for (const std::filesystem::path& path :
+         {std::filesystem::path("/etc/passwd"), std::filesystem::path("/"), std::filesystem::path(""), link,
+          folder / "candela-shared-none", folder / ".." / folder.filename() / memory.path().filename(),
+          std::filesystem::path(memory.path().filename())}) {
+        EXPECT_EQ(refusal_of(path).find("no shared memory is called \"" + path.string() +
+                                        "\": it must be a file of this user in /dev/shm or "),
+                  0u)
+            << path << ": " << refusal_of(path);
+    }
+    std::filesystem::remove(link);
+    EXPECT_EQ(refusal_of(memory.path()), "");
 }
 
 TEST(SharedMemory, WhatAKilledProgramLeftIsRemoved) {

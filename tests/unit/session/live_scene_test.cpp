@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "scene/geometry.h"
 #include "support/png_writer.h"
 #include "unit/load/gltf/gltf_fixture.h"
 
@@ -187,6 +188,42 @@ TEST_F(LiveSceneTest, ChangesStayInOtherPoses) {
     scene.pose(0.5, "move");
     EXPECT_TRUE(scene.pending() && !scene.pending()->materials && !scene.pending()->environment &&
                 !scene.pending()->images);
+}
+
+// The scene with the lamp's transform, or without the lamp, is that of a file.
+TEST_F(LiveSceneTest, ObjectsMoveAndHideWithoutTheRest) {
+    write(LAMP, SKY);
+    LiveScene scene = loaded();
+    scene.update();
+    const auto at_first = scene.records().arrays;
+    const std::vector<Shape> shapes = scene.scene().shapes;
+    const auto copy = std::ranges::find_if(shapes, [&](const Shape& shape) {
+        const auto* mesh = std::get_if<MeshInstance>(&shape.geometry);
+        return mesh != nullptr && scene.scene().meshes[mesh->mesh].triangles.size() > 1;
+    });
+    const auto index = uint32_t(copy - shapes.begin());
+    const std::string name = scene.scene().objects[copy->object];
+    const auto change = [&](const std::string& what) {
+        scene.change(R"({"objects": {")" + name + "\": {" + what + "}}}");
+    };
+    change(R"("transform": [{"translate": [0.25, 0, -1]}])");
+    expect_update(scene, {.moved = {index}}, set_of({BUFFER_NODES}));
+    change(R"("visible": false)");
+    expect_update(scene, {.shapes = {index}}, set_of({BUFFER_NODES}));
+    EXPECT_EQ(triangle_count(scene.scene()), 2 * 128 * 128 + 2 + 2);
+    change(R"("visible": true, "transform": [])");
+    EXPECT_EQ(scene.pending()->shapes, std::vector<uint32_t>{index});
+    scene.update();
+    EXPECT_EQ(scene.records().arrays, at_first);
+    scene.change(R"({"objects": {"quad 0": {"visible": false}}})");
+    scene.update();
+    EXPECT_EQ(scene.records().arrays, build_gpu_scene(scene.scene()).arrays);
+    scene.pose(0.5, "move");  // It stays hidden, and what was moved stays where it is.
+    EXPECT_FALSE(scene.scene().shapes.back().visible);
+    scene.change(R"({"objects": {"quad 0": {"visible": true}}})");
+    scene.pose(std::nullopt, std::nullopt);
+    scene.update();
+    EXPECT_EQ(scene.records().arrays, at_first);
 }
 
 // Materials that the change would read otherwise, and options that the file has no use for.
