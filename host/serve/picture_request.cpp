@@ -68,7 +68,8 @@ AovSelection read_layers(const Node& parameters) {
     if (!all && !layers->is_array()) layers->fail_expected(R"("all" or an array of names)");
     std::vector<std::string> wanted;
     if (all) {
-        wanted = names;
+        for (const LayerKind& kind : layer_kinds())
+            if (kind.selected != &AovSelection::ids) wanted.emplace_back(kind.name);
     } else {
         for (const Node& layer : layers->elements())
             wanted.push_back(layer.string());

@@ -26,7 +26,8 @@ std::span<const LayerKind> layer_kinds();
 // not given is what the scene proposes. Throws Error for what makes no sense.
 RenderJob read_job(const Node& parameters, const Scene& scene);
 
-// The layers that the parameter `layers` names, "all" being all; none if it is not given.
+// The layers that the parameter `layers` names, "all" being all but those of ids, which cost as much again as
+// the picture; none if it is not given.
 AovSelection read_layers(const Node& parameters);
 
 // A size [width, height] in pixels, if it is given.

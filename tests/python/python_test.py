@@ -126,7 +126,7 @@ class Python(unittest.TestCase):
         numpy.testing.assert_array_equal(scene.render(camera="side", spp=2).rgb,
                                          scene.render(camera=scene.cameras["side"], spp=2).rgb)
         numpy.testing.assert_array_equal(scene.bounds, [[-1, -1, -1], [1, 1, 1]])
-        self.assertEqual((scene.materials, scene.size, scene.lights), (("clay",), (16, 12), ()))
+        self.assertEqual((list(scene.materials), scene.size, scene.lights), (["clay"], (16, 12), ()))
 
     def test_sources(self):
         by_bytes = candela.load(json.dumps(SCENE).encode())

@@ -170,11 +170,11 @@ class Scenes(unittest.TestCase):
         scene = candela.Scene(size=(32, 32))
         scene.add_mesh(POINTS + 100, FACES)
         scene.environment = 1
-        alpha = scene.render(spp=4).alpha
+        alpha = scene.render(spp=4, transparent=True).alpha
         self.assertTrue(0.1 < alpha.mean() < 0.9)
         self.assertEqual(max(alpha[0].max(), alpha[-1].max(), alpha[:, 0].max(), alpha[:, -1].max()), 0)
         scene.add_mesh(POINTS + [104, 100, 100], FACES)  # It goes on to do so.
-        self.assertEqual(scene.render(spp=4).alpha[:, 0].max(), 0)
+        self.assertEqual(scene.render(spp=4, transparent=True).alpha[:, 0].max(), 0)
         scene.camera = candela.Camera((100, 100, 104), (100, 100, 100), 40)
         numpy.testing.assert_array_equal(scene.camera.position, (100, 100, 104))
 
@@ -190,7 +190,7 @@ class Scenes(unittest.TestCase):
             pot.transform[0, 3] = 1  # It would change a copy.
         scene.change(objects={"pot": {"transform": numpy.eye(4), "visible": False}})
         self.assertFalse(pot.visible)
-        self.assertTrue((scene.render(spp=2).alpha == 0).all())
+        self.assertTrue((scene.render(spp=2, transparent=True).alpha == 0).all())
         pot.visible = True
         numpy.testing.assert_array_equal(scene.render(spp=2).rgb, before)
         clay.reflectance = 0.25
@@ -208,7 +208,7 @@ class Scenes(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "no material 'paint'; there are: clay"):
             scene.materials["paint"]
         self.assertEqual(scene.environment, {})
-        scene.change(sky={"elevation": 30})
+        scene.change(sky={"sun_elevation": 30})
         self.assertIsNone(candela.load({key: value for key, value in file_of(emission=1).items() if key != "environment"}).environment)
 
     def test_ids_have_names(self):

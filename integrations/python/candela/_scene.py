@@ -295,7 +295,8 @@ class Scene:
         these pixels; x1 and y1 are exclusive. seed: each gives different noise. progress: True shows a bar, by tqdm if
         that is installed; or a function that gets the fraction that is done. target_error: ends at this estimated
         relative error. time_limit: ends after these seconds, with the picture so far. timeout: raises Error after these
-        seconds. layers: names, or "all". transparent: before nothing
+        seconds. layers: names, or "all" but the ids, which take longer: object_id,
+        instance_id, material_id. transparent: before nothing
         instead of the sky. Further options are those of docs/protocol.md: estimator, sampler, max_depth.
         """
         given = {"spp": spp, "size": size, "crop": crop, "seed": seed, "target_error": target_error,
