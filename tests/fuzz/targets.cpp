@@ -224,7 +224,8 @@ void load_message(const Node& parameters) {
     const serve::SharedArrays arrays(parameters.require("arrays"));
     GltfFiles files;
     Scene scene = parse_json_scene(parameters.require("text").string(), "/none/scene", {}, no_progress, {},
-                                   files, &arrays);
+                                   files, &arrays)
+                      .scene;
     DecodedImages decoded;
     load_images(scene, {}, no_progress, decoded);
     build_gpu_scene(scene);

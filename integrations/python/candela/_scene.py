@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import functools
-import importlib
 import os
 import shutil
 import threading
@@ -13,25 +12,24 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, Optional, Seque
 import numpy
 from numpy.typing import NDArray
 
+from candela._building import Building
 from candela._camera import Camera, _plain
 from candela._connection import Connection
 from candela._draft import Draft, environment_json
-from candela._errors import Error
 from candela._image import Image
 from candela._parts import Materials, Objects
+from candela._progress import Bar, Progress
 from candela._shared import SharedArrays
 from candela._values import Converter, environment_of, merge, object_changes
 
 if TYPE_CHECKING:
     from candela._session import Session
 
-Progress = Union[bool, Callable[[float], None], None]
-
 # The azimuth and elevation of a camera that nobody has placed [degrees].
 _FIRST_LOOK = [35, 20]
 
 
-class Scene:
+class Scene(Building):
     """A scene of a session: from a file, by candela.load(), or built of arrays:
 
         scene = candela.Scene(size=(640, 480))
@@ -115,71 +113,6 @@ class Scene:
             if self._description is None:
                 self._description = self._connection.call("scene", {"scene": name})
             return self._description
-
-    def _drafted(self) -> Draft:
-        """The draft, which is about to get more."""
-        if self._draft is None:
-            raise Error("the scene is from a file, and nothing can be added; begin with candela.Scene()", "usage", 2)
-        self._is_stale = True
-        return self._draft
-
-    def add_mesh(self, vertices: Any, faces: Any, *, name: Optional[str] = None, material: Optional[str] = None,
-                 normals: Any = None, uvs: Any = None, uvs1: Any = None, colors: Any = None, emission: Any = None,
-                 two_sided: Optional[bool] = None, transform: Any = None, transforms: Any = None) -> str:
-        """Adds an object of triangles; returns its name. It is read when the scene is next used: until then, its arrays must
-        stay as they are.
-
-        vertices: (N, 3), in the object's space [m]. faces: (M, 3), indices of vertices, counter-clockwise seen from the
-        front. material: a name; by default "default", a grey. normals: (N, 3), for smooth shading. uvs, uvs1: (N, 2), texture
-        coordinates, v upwards. colors: (N, 3) or (N, 4), linear, from 0 to 1; for materials with vertex_colors=True.
-        emission: radiance [W/(m² sr)]. transform: (4, 4), from the object's space to the world's. transforms: (K, 4, 4), of
-        as many instances.
-        """
-        if transform is not None and transforms is not None:
-            raise Error("give either transform or transforms", "usage", 2)
-        with self._lock:
-            draft = self._drafted()
-            chosen = draft.free_name(name, "mesh")
-            draft.meshes[chosen] = {"vertices": vertices, "faces": faces, "normals": normals, "uvs": uvs, "uvs1": uvs1,
-                                    "colors": colors, "emission": emission, "two_sided": two_sided, "transform": transform,
-                                    "transforms": transforms, "material": self._material_for(material, emission)}
-            return chosen
-
-    def _material_for(self, material: Optional[str], emission: Any) -> Optional[str]:
-        draft = self._drafted()
-        if material is None and emission is None:
-            draft.materials.setdefault("default", {"type": "diffuse", "reflectance": 0.5})
-            return "default"
-        return material
-
-    def add_shape(self, type: str, *, name: Optional[str] = None, material: Optional[str] = None, **keys: Any) -> str:
-        """Adds a shape of docs/scene-format.md as an object: a "sphere", "disk", "quad" or "box", or a file of the type "obj"
-        or "ply". keys: its own, such as radius, and transform, (4, 4). Returns its name."""
-        with self._lock:
-            draft = self._drafted()
-            chosen = draft.free_name(name, type)
-            shape = {"type": type, "material": self._material_for(material, keys.get("emission")), **keys}
-            draft.shapes[chosen] = {key: value for key, value in shape.items() if value is not None}
-            return chosen
-
-    def add_material(self, name: str, type: str = "principled", **values: Any) -> None:
-        """Adds a material, with values of docs/scene-format.md. Colours are linear; images are arrays or candela.Texture."""
-        with self._lock:
-            draft = self._drafted()
-            if name in draft.materials and name != "default":
-                raise Error(f"there is a material {name!r} already; choose another name", "usage", 2)
-            draft.materials[name] = {"type": type, **values}
-
-    def add_light(self, type: str, name: Optional[str] = None, **keys: Any) -> None:
-        """Adds a light without a surface: "point", "spot" or "directional", with keys of docs/scene-format.md."""
-        with self._lock:
-            self._drafted().lights.append({"type": type, **({} if name is None else {"name": name}), **keys})
-
-    def add_camera(self, camera: Camera, name: str = "main") -> None:
-        """Adds a camera. The first is the default; without one, a camera sees all of the scene from above the front."""
-        with self._lock:
-            self._drafted().cameras[name] = camera.to_dict()
-            self._edits.get("cameras", {}).pop(name, None)
 
     def _add_cameras(self, cameras: Dict[str, Any]) -> None:
         """Takes over what the scene's cameras are now. Cameras that the user holds stay those of the scene."""
@@ -303,7 +236,7 @@ class Scene:
                  "time_limit": time_limit, "camera": self._name_of(camera), "layers": layers if isinstance(layers, str) else list(layers),
                  "background": "transparent" if transparent else None, "progress": bool(progress) or None, **options}
         params = {key: _plain(value) for key, value in given.items() if value is not None}
-        with self._lock, _Bar(progress) as bar:
+        with self._lock, Bar(progress) as bar:
             outcome = self._connection.call("render", {"scene": self._id, **params}, bar, timeout)
             _warn(outcome)
             if outcome["complete"]:
@@ -374,39 +307,6 @@ class Scene:
         if self._draft is not None and (not self._name or self._is_stale):
             return f"<candela.Scene of {len(self._draft.meshes) + len(self._draft.shapes)} objects, not loaded yet>"
         return f"<candela.Scene {self._name}: {len(self.objects)} objects, cameras {', '.join(self._cameras)}>"
-
-
-class _Bar:
-    """Shows progress as the caller wants it."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._tell = progress if callable(progress) else None
-        self._bar: Any = None
-        self._done = 0.0
-        if progress is True:
-            try:
-                self._bar = importlib.import_module("tqdm.auto").tqdm(total=100, unit="%", leave=False)
-            except ImportError:
-                pass
-
-    def __enter__(self) -> _Bar:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._bar is not None:
-            self._bar.close()
-
-    def finish(self) -> None:
-        """The program reports often, but not every step."""
-        if self._done < 1.0:
-            self({"done": 1.0})
-
-    def __call__(self, told: Dict[str, Any]) -> None:
-        self._done = told["done"]
-        if self._tell is not None:
-            self._tell(told["done"])
-        if self._bar is not None:
-            self._bar.update(100.0 * told["done"] - self._bar.n)
 
 
 def _change_camera(scene: weakref.ref[Scene], name: str, keys: Dict[str, Any]) -> None:
