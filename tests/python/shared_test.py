@@ -4,7 +4,6 @@ usage: shared_test.py CANDELA [TEST...]"""
 import glob
 import json
 import os
-import signal
 import struct
 import subprocess
 import sys
@@ -48,6 +47,13 @@ def load(client, description, arrays=None, **params):
 def picture(client, scene="1", **params):
     client.call("render", scene=scene, spp=2, **params)
     return client.pixels(scene)
+
+
+def runs(process):
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def ours():
@@ -253,7 +259,7 @@ class Arrays(unittest.TestCase):
         self.assertTrue(os.path.exists(path))
         client.kill()
         client.communicate()
-        while os.path.exists(f"/proc/{program}") and Path(f"/proc/{program}/stat").read_text().split()[2] != "Z":
+        while runs(program):
             time.sleep(0.01)
         self.assertFalse(os.path.exists(path))
         with shared(a=numpy.zeros(9)) as arrays:  # The program, and another one.
