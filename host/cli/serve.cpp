@@ -28,6 +28,7 @@ struct ServeArguments {
 ExitCode serve_client(const ServeArguments& arguments, const std::string& command_line) {
     const InterruptGuard guard;
     const int out = take_standard_output();
+    const int client = ::getppid();
     remove_abandoned_memory();
     serve::Methods methods({.device = arguments.device,
                             .kernel_cache = pipeline_cache_folder(),
@@ -39,7 +40,7 @@ ExitCode serve_client(const ServeArguments& arguments, const std::string& comman
         [&](const serve::Request& request, const serve::Call& call) { return methods(request, call); },
         [&guard] { return guard.interrupted(); });
     const serve::Server::End end = server.run();
-    remove_abandoned_memory();  // That of a client that was killed.
+    remove_abandoned_memory_of(client);  // If it was killed.
     if (end == serve::Server::End::given_up)
         throw Error(
             "serve: the client does not read the answers, and more wait than memory is set aside for");

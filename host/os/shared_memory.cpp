@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include <fcntl.h>
@@ -152,6 +154,25 @@ void remove_abandoned_memory() {
             if (ours && ::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());
             ::close(file);
         }
+    }
+}
+
+void remove_abandoned_memory_of(int process) {
+    constexpr int TIMES = 200;
+    constexpr std::chrono::milliseconds PAUSE{10};
+    const std::string prefix = std::string(PREFIX) + std::to_string(process) + '-';
+    const auto has_some = [&](const fs::path& folder) {
+        std::error_code error;
+        for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+             entry.increment(error)) {
+            if (entry->path().filename().string().starts_with(prefix)) return true;
+        }
+        return false;
+    };
+    for (int i = 0; i < TIMES; ++i) {
+        remove_abandoned_memory();
+        if (std::ranges::none_of(folders(), has_some)) return;
+        std::this_thread::sleep_for(PAUSE);
     }
 }
 

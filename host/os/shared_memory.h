@@ -51,4 +51,8 @@ class SharedFile {
 // Removes the files of this user's programs that were killed.
 void remove_abandoned_memory();
 
+// The same, and waits a moment for the program with that number if it holds such files: one that is killed
+// loses them after its ends of pipes.
+void remove_abandoned_memory_of(int process);
+
 }  // namespace candela
