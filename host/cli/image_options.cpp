@@ -82,6 +82,7 @@ AovSelection ImageOutputs::rendered_aovs() const {
     AovSelection rendered = written_aovs();
     rendered.denoising |= denoising.is_on();
     rendered.variance |= denoising.is_on();
+    rendered.sample_count |= denoising.is_on();
     return rendered;
 }
 
@@ -90,7 +91,8 @@ std::optional<DenoisingRecord> ImageOutputs::denoise(Image& image) const {
     const AovSelection written = written_aovs();
     std::erase_if(image.channels, [&](const Channel& channel) {
         return (!written.denoising && channel.name.starts_with("Denoising")) ||
-               (!written.variance && channel.name.starts_with("Variance."));
+               (!written.variance && channel.name.starts_with("Variance.")) ||
+               (!written.sample_count && channel.name.starts_with("SampleCount."));
     });
     return record;
 }

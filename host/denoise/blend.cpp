@@ -15,15 +15,18 @@ namespace {
 // Weights of the pixels of a window along one axis.
 constexpr std::array<double, 5> WINDOW{1.0, 2.0, 3.0, 2.0, 1.0};
 constexpr uint32_t RADIUS = uint32_t(WINDOW.size()) / 2;
-// The share of the variance that is taken for noise: samples of a low-discrepancy sequence differ more than
-// their mean errs. Taking all of it for noise would hide a bias.
-constexpr double NOISE_SHARE = 0.85;
+// The share of the variance that is taken for noise, with few samples and with many: samples of a
+// low-discrepancy sequence differ more than their mean errs. Taking all of it for noise would hide a bias.
+constexpr double NOISE_SHARE_FEW = 0.85, NOISE_SHARE_MANY = 0.2;
+// By how much the agreement of neighbours counts, see below.
+constexpr double AGREEMENT_GAIN_FEW = 2.0, AGREEMENT_GAIN_MANY = 4.0;
+// Samples per pixel.
+constexpr double FEW = 64.0, MANY = 4096.0;
 // The level below which errors count as if absolute, of the picture's.
 constexpr double DARKNESS = 1e-3;
 // Differences of neighbours agree by a bias alone, whatever the noise: the share of the squared difference by
 // which they do is that of the bias, less what a window of 5 x 5 shows by chance, and more, since edges turn.
 constexpr double CHANCE = 0.2;
-constexpr double AGREEMENT_GAIN = 2.0;
 // Rows that one step weighs, of those for which it computes moments.
 constexpr uint32_t STRIP_ROWS = 32;
 
@@ -54,13 +57,19 @@ bool is_finite_at(const Planes& planes, size_t i) {
 
 class Weights {
   public:
-    Weights(uvec2 size, const RgbPlanes& noisy, const RgbPlanes& variance, const Denoised& denoised)
+    Weights(uvec2 size, const RgbPlanes& noisy, const RgbPlanes& variance, const Denoised& denoised,
+            double samples_per_pixel)
         : size_(size),
           noisy_(noisy),
           variance_(variance),
           denoised_(denoised),
           level_(noisy),
-          darkness_(std::pow(DARKNESS * double(level_.unit()), 2.0)) {}
+          darkness_(std::pow(DARKNESS * double(level_.unit()), 2.0)) {
+        const double many =
+            std::clamp(std::log(std::max(samples_per_pixel, FEW) / FEW) / std::log(MANY / FEW), 0.0, 1.0);
+        noise_share_ = std::lerp(NOISE_SHARE_FEW, NOISE_SHARE_MANY, many);
+        agreement_gain_ = std::lerp(AGREEMENT_GAIN_FEW, AGREEMENT_GAIN_MANY, many);
+    }
 
     // Fills the rows from y0 to y1, exclusive.
     void fill(uint32_t y0, uint32_t y1, std::vector<float>& weights) const {
@@ -143,8 +152,8 @@ class Weights {
         if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i)) return 0.0f;
         if (sum.noise <= 0.0) return 1.0f;
         if (sum.square <= 0.0) return 0.0f;
-        const double unexplained = 1.0 - NOISE_SHARE * sum.noise / sum.square;
-        const double agreeing = AGREEMENT_GAIN * (std::max(sum.beside, sum.below) / sum.square - CHANCE);
+        const double unexplained = 1.0 - noise_share_ * sum.noise / sum.square;
+        const double agreeing = agreement_gain_ * (std::max(sum.beside, sum.below) / sum.square - CHANCE);
         return float(std::clamp(std::max(unexplained, agreeing), 0.0, 1.0));
     }
 
@@ -154,15 +163,16 @@ class Weights {
     const Denoised& denoised_;
     PictureLevel level_;
     double darkness_;
+    double noise_share_, agreement_gain_;
 };
 
 }  // namespace
 
 std::vector<float> noisy_weights(uvec2 size, const RgbPlanes& noisy, const RgbPlanes& variance,
-                                 const Denoised& denoised) {
+                                 const Denoised& denoised, double samples_per_pixel) {
     std::vector<float> weights(size_t(size.x) * size.y);
     assert(denoised.rgb[0].size() == weights.size());
-    const Weights rows(size, noisy, variance, denoised);
+    const Weights rows(size, noisy, variance, denoised, samples_per_pixel);
     parallel_for((size.y + STRIP_ROWS - 1) / STRIP_ROWS, [&](size_t strip) {
         const uint32_t y0 = uint32_t(strip) * STRIP_ROWS;
         rows.fill(y0, std::min(y0 + STRIP_ROWS, size.y), weights);
@@ -187,9 +197,19 @@ void blend(const std::vector<float>& noisy_weights, const RgbPlanes& noisy, std:
     if (!denoised.alpha.empty()) blend_plane(alpha, denoised.alpha);
 }
 
+// 0 if unknown.
+static double mean_samples(const NoisyPicture& picture) {
+    double sum = 0.0;
+    for (const float samples : picture.samples)
+        sum += std::isfinite(samples) ? double(samples) : 0.0;
+    return picture.samples.empty() ? 0.0 : sum / double(picture.samples.size());
+}
+
 void blend_with(const NoisyPicture& noisy, Denoised& denoised) {
     if (!noisy.variance) return;
-    blend(noisy_weights(noisy.size, noisy.rgb, *noisy.variance, denoised), noisy.rgb, noisy.alpha, denoised);
+    const std::vector<float> weights =
+        noisy_weights(noisy.size, noisy.rgb, *noisy.variance, denoised, mean_samples(noisy));
+    blend(weights, noisy.rgb, noisy.alpha, denoised);
 }
 
 }  // namespace candela

@@ -43,7 +43,8 @@ std::unique_ptr<SharedArrays> read_arrays(const Node& parameters) {
     auto arrays = std::make_unique<SharedArrays>(*found);
     const LimitedMemory limited;
     with_memory_for(
-        "a scene of these arrays", [&] { return found->place(); }, [&] { const MemoryCharge estimate(arrays->needed()); });
+        "a scene of these arrays", [&] { return found->place(); },
+        [&] { const MemoryCharge estimate(arrays->needed()); });
     return arrays;
 }
 

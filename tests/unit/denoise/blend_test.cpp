@@ -57,6 +57,15 @@ TEST(Blend, TheWeightIsTheShareOfTheDifferenceThatNoiseDoesNotExplain) {
         EXPECT_EQ(weight, 0.0f);
 }
 
+// The same where the variance counts for a fifth.
+TEST(Blend, WithManySamplesLessIsTakenForNoise) {
+    const Planes noisy = checkered(1.0f, 0.1f), variance = filled(0.008f);
+    const std::vector<float> weights =
+        noisy_weights(SIZE, view(noisy), view(variance), {filled(1.0f), {}, {}}, 4096.0);
+    for (const float weight : weights)
+        EXPECT_NEAR(weight, 1.0 - 0.2 * 0.8, 1e-5);
+}
+
 // Differences of one sign are a bias, however great the variance is said to be.
 TEST(Blend, WhereNeighboursAgreeTheDifferenceIsABias) {
     for (const float weight : weights_of(filled(1.1f), filled(1.0f), filled(1.0f)))

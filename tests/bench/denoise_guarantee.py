@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Measures the guarantee of denoising: relMSE of the denoised picture over that of the noisy one.
+
+usage: denoise_guarantee.py BUILD [SCENE.json ...] [--spp 4,64,256,4096] [--seeds 8] [--width 256] [--reference 16384]
+           [--denoise variance|oidn]
+
+For each scene and number of samples, prints the mean ratio over the seeds with its 95 % interval, the median and the
+worst. The reference has other samples; its own variance, an upper bound on its share, is taken off both errors. Pictures
+are kept in BUILD/denoising. Needs NumPy.
+"""
+import argparse
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent / "rivals"))
+import exr  # noqa: E402
+
+SCENES = ("cornell-box", "cornell-glass", "cornell-glossy", "depth-of-field", "environment", "lemons", "materials", "mesh",
+          "showcase", "veach-mis")
+T_95 = {2: 12.7, 3: 4.3, 4: 3.18, 5: 2.78, 6: 2.57, 7: 2.45, 8: 2.36}  # Student's t, by the number of seeds.
+
+
+def planes(path, layer=""):
+    *_, channels = exr.read_all(path)
+    return np.stack([np.asarray(channels[f"{layer}{c}"], dtype=np.float64) for c in "RGB"])
+
+
+def render(build, scene, size, spp, seed, out):
+    if not out.exists():
+        subprocess.run([build / "candela", "render", scene, "-q", "--spp", str(spp), "--seed", str(seed), "--size", size,
+                        "--aov", "albedo,n,variance,samples,denoising", "-o", out], check=True)
+    return out
+
+
+def size_of(build, scene, width):
+    report = subprocess.run([build / "candela", "info", scene], check=True, capture_output=True, text=True).stdout
+    x, y = map(int, re.search(r"picture\s+(\d+)x(\d+)", report).groups())
+    return f"{width}x{round(width * y / x)}"
+
+
+def ratios(build, scene, spp, args):
+    folder = build / "denoising"
+    folder.mkdir(exist_ok=True)
+    size, stem = size_of(build, scene, args.width), scene.stem
+    reference = render(build, scene, size, args.reference, 1000, folder / f"{stem}-{size}-reference.exr")
+    r, own = planes(reference), planes(reference, "Variance.")
+    weight = 1.0 / (r * r + 0.01 * r.mean() ** 2)
+    result = []
+    for seed in range(1, args.seeds + 1):
+        noisy = render(build, scene, size, spp, seed, folder / f"{stem}-{size}-{spp}-{seed}.exr")
+        denoised = folder / "denoised.exr"
+        subprocess.run([build / "candela", "denoise", noisy, "-o", denoised, "--denoise", args.denoise], check=True,
+                       stdout=subprocess.DEVNULL)
+        errors = [np.mean(((found - r) ** 2 - own) * weight) for found in (planes(denoised, "Denoised."), planes(noisy))]
+        result.append(errors[0] / errors[1])
+    return np.array(result)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build", type=Path)
+    parser.add_argument("scenes", nargs="*", type=Path)
+    parser.add_argument("--spp", default="4,64,256,4096")
+    parser.add_argument("--seeds", type=int, default=8, choices=sorted(T_95))
+    parser.add_argument("--width", type=int, default=256)
+    parser.add_argument("--reference", type=int, default=16384)
+    parser.add_argument("--denoise", default="variance", choices=("oidn", "variance"))
+    args = parser.parse_args()
+    args.build = args.build.resolve()
+    scenes = args.scenes or [Path("scenes") / f"{name}.json" for name in SCENES]
+    for spp in map(int, args.spp.split(",")):
+        means = []
+        for scene in scenes:
+            values = ratios(args.build, scene, spp, args)
+            half = T_95[args.seeds] * values.std(ddof=1) / np.sqrt(args.seeds)
+            means.append(values.mean())
+            print(f"{spp:5} {scene.stem:16} {values.mean():.3f} ± {half:.3f}", flush=True)
+        print(f"{spp:5} median {np.median(means):.3f}, worst {max(means):.3f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
