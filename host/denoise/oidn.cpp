@@ -230,16 +230,16 @@ class TileDenoiser {
           colour_(first.width, first.height),
           output_(first.width, first.height),
           filter_(device, quality) {
-        const bool is_prefiltered = quality != DenoiserQuality::fast;
+        const bool trusts_guides = quality != DenoiserQuality::fast;
         if (input.albedo) {
-            albedo_.emplace(first.width, first.height);
-            if (is_prefiltered) prefilter(albedo_filter_, device, quality, "albedo", *albedo_);
+            albedo_.emplace(first.width,
+                            first.height);  // As it is: the filter of albedos smears small letters.
         }
         if (input.albedo && input.normal) {
             normal_.emplace(first.width, first.height);
-            if (is_prefiltered) prefilter(normal_filter_, device, quality, "normal", *normal_);
+            if (trusts_guides) prefilter_normal(device, quality);
         }
-        set_features(filter_, is_prefiltered);
+        set_features(filter_, trusts_guides);
         const float exposure = exposure_of(input);
         limit_ = LARGEST / exposure;
         filter_.set("hdr", true);
@@ -247,7 +247,7 @@ class TileDenoiser {
         filter_.commit();
         if (input.alpha.empty()) return;
         alpha_filter_.emplace(device, quality);
-        set_features(*alpha_filter_, is_prefiltered);
+        set_features(*alpha_filter_, trusts_guides);
         alpha_filter_->set("srgb", true);  // Numbers that need no curve.
         alpha_filter_->commit();
     }
@@ -256,7 +256,6 @@ class TileDenoiser {
         const uint32_t width = input_.size.x;
         if (albedo_) load(*albedo_, tile, width, *input_.albedo, sane_fraction);
         if (normal_) load(*normal_, tile, width, *input_.normal, sane_normal);
-        if (albedo_filter_) albedo_filter_->execute();
         if (normal_filter_) normal_filter_->execute();
         load(colour_, tile, width, input_.rgb, [&](float value) { return std::min(sane(value), limit_); });
         filter_.execute();
@@ -272,12 +271,11 @@ class TileDenoiser {
     }
 
   private:
-    static void prefilter(std::optional<OidnFilter>& filter, const OidnDevice& device,
-                          DenoiserQuality quality, const char* name, TileImage& image) {
-        filter.emplace(device, quality);
-        filter->set(name, image);
-        filter->set("output", image);
-        filter->commit();
+    void prefilter_normal(const OidnDevice& device, DenoiserQuality quality) {
+        normal_filter_.emplace(device, quality);
+        normal_filter_->set("normal", *normal_);
+        normal_filter_->set("output", *normal_);
+        normal_filter_->commit();
     }
     void set_features(OidnFilter& filter, bool is_clean) {
         filter.set("color", colour_);
@@ -291,7 +289,7 @@ class TileDenoiser {
     float limit_ = 0.0f;  // Of colours.
     TileImage colour_, output_;
     std::optional<TileImage> albedo_{}, normal_{};
-    std::optional<OidnFilter> albedo_filter_{}, normal_filter_{}, alpha_filter_{};
+    std::optional<OidnFilter> normal_filter_{}, alpha_filter_{};
     OidnFilter filter_;
 };
 

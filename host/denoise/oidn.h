@@ -13,8 +13,8 @@ namespace candela {
 
 enum class DenoiserQuality { fast, balanced, high };
 
-// Open Image Denoise, from the first of these files that is there. Albedo and normals that are noisy
-// themselves are denoised first. A large picture is denoised in tiles that overlap, each with the same
+// Open Image Denoise, from the first of these files that is there. Normals are denoised first, except with
+// `fast`; albedo is taken as it is. A large picture is denoised in tiles that overlap, each with the same
 // exposure, so that the memory that it takes does not grow with the picture. Throws Error if the library is
 // missing (request), is of another major version or does not run on this computer.
 // Ref: Áfra, "Intel Open Image Denoise" (2019), openimagedenoise.org.

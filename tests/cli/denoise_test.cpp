@@ -66,9 +66,8 @@ TEST_F(DenoiseTest, OnlyWhatIsAskedForIsInTheFile) {
     for (const char* c : {"R", "G", "B"}) {
         const std::string of(c);
         for (size_t i = 0; i < b.pixel_count(); ++i) {
-            // The library halves an albedo that it denoises alone.
             const float expected =
-                2.0f * values(b, of)[i] + 0.5f * std::min(values(b, "DenoisingAlbedo." + of)[i], 1.0f);
+                2.0f * values(b, of)[i] + std::min(values(b, "DenoisingAlbedo." + of)[i], 1.0f);
             ASSERT_FLOAT_EQ(values(b, "Denoised." + of)[i], expected);
         }
     }
@@ -159,7 +158,7 @@ TEST_F(DenoiseTest, ALibraryThatFailsHalfwayLosesNoPicture) {
     for (const std::string where : {"filter", "execute"}) {
         const ProcessResult result =
             candela(box({"-o", file("a.exr"), "-o", file("a.png"), "--denoise", "oidn"}),
-                    FAKE + Environment{{"FAKE_OIDN_FAILS", where}, {"FAKE_OIDN_AFTER", "2"}});
+                    FAKE + Environment{{"FAKE_OIDN_FAILS", where}, {"FAKE_OIDN_AFTER", "1"}});
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_EQ(result.err, "candela: warning: the picture stays noisy: Open Image Denoise (\"" +
                                   std::string(CANDELA_FAKE_OIDN) + "\") failed: out of luck in " + where +
@@ -184,7 +183,7 @@ TEST_F(DenoiseTest, PicturesOnTheWayAndOfBatchesAreDenoised) {
     // before.
     render_box({"-o", file("a.exr"), "--denoise", "oidn", "--spp", "64", "--write-every", "0.000001s"},
                FAKE + Environment{{"FAKE_OIDN_LOG", file("log")}});
-    EXPECT_GT(std::ranges::count(read_file(file("log")), '\n'), 3);
+    EXPECT_GT(std::ranges::count(read_file(file("log")), '\n'), 2);
 }
 
 // What glass shows of the background is as noisy as what it shows of the rest.
@@ -195,7 +194,7 @@ TEST_F(DenoiseTest, AlphaIsDenoisedWhereABackgroundIsSeen) {
     const Image image = read_exr(file("a.exr"));
     ASSERT_NE(image.find("Denoised.A"), nullptr);
     for (size_t i = 0; i < image.pixel_count(); ++i) {
-        // The library gives twice the alpha plus half of the albedo, which is at least that without it.
+        // The library gives twice the alpha plus the albedo, which is at least that without it.
         ASSERT_GE(values(image, "Denoised.A")[i], std::min(2.0f * values(image, "A")[i], 1.0f));
         ASSERT_LE(values(image, "Denoised.A")[i], 1.0f);
     }
