@@ -8,14 +8,14 @@
 Lengths are in metres, angles in degrees; world space is right-handed with +Y up. Arrays of images are row-major, with
 the origin at the top left.
 """
-from candela._camera import Camera
-from candela._errors import Error
-from candela._image import Image
-from candela._scene import Scene
-from candela._session import Session, devices, load
-from candela._tools import Comparison, Verdict, compare, selftest
-from candela._trimesh import from_trimesh
-from candela._values import Texture
+from ._camera import Camera
+from ._errors import Error
+from ._image import Image
+from ._scene import Scene
+from ._session import Session, devices, load
+from ._tools import Comparison, Verdict, compare, selftest
+from ._trimesh import from_trimesh
+from ._values import Texture
 
 __version__ = "0.1.0"
 

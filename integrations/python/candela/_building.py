@@ -4,9 +4,9 @@ from __future__ import annotations
 import threading
 from typing import Any, Dict, Optional
 
-from candela._camera import Camera
-from candela._draft import Draft
-from candela._errors import Error
+from ._camera import Camera
+from ._draft import Draft
+from ._errors import Error
 
 
 class Building:
@@ -26,7 +26,8 @@ class Building:
 
     def add_mesh(self, vertices: Any, faces: Any, *, name: Optional[str] = None, material: Optional[str] = None,
                  normals: Any = None, uvs: Any = None, uvs1: Any = None, colors: Any = None, emission: Any = None,
-                 two_sided: Optional[bool] = None, transform: Any = None, transforms: Any = None) -> str:
+                 two_sided: Optional[bool] = None, transform: Any = None, transforms: Any = None,
+                 shadow_catcher: Optional[str] = None) -> str:
         """Adds an object of triangles; returns its name. It is read when the scene is next used: until then, its arrays must
         stay as they are.
 
@@ -34,7 +35,7 @@ class Building:
         front. material: a name; by default "default", a grey. normals: (N, 3), for smooth shading. uvs, uvs1: (N, 2), texture
         coordinates, v upwards. colors: (N, 3) or (N, 4), linear, from 0 to 1; for materials with vertex_colors=True.
         emission: radiance [W/(m² sr)]. transform: (4, 4), from the object's space to the world's. transforms: (K, 4, 4), of
-        as many instances.
+        as many instances. shadow_catcher: "catch" or "catch-reflections", if only shadows on it are to be seen.
         """
         if transform is not None and transforms is not None:
             raise Error("give either transform or transforms", "usage", 2)
@@ -43,7 +44,8 @@ class Building:
             chosen = draft.free_name(name, "mesh")
             draft.meshes[chosen] = {"vertices": vertices, "faces": faces, "normals": normals, "uvs": uvs, "uvs1": uvs1,
                                     "colors": colors, "emission": emission, "two_sided": two_sided, "transform": transform,
-                                    "transforms": transforms, "material": self._material_for(material, emission)}
+                                    "transforms": transforms, "material": self._material_for(material, emission),
+                                    "shadow_catcher": shadow_catcher}
             return chosen
 
     def _material_for(self, material: Optional[str], emission: Any) -> Optional[str]:

@@ -14,9 +14,9 @@ import time
 import weakref
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
-from candela._driver import advice, environment
-from candela._errors import Error
-from candela._program import find_program
+from ._driver import advice, environment
+from ._errors import Error
+from ._program import find_program
 
 PROTOCOL = 1
 # Seconds that a rendering gets to stop, and the program to end.

@@ -6,9 +6,9 @@ from typing import Any, Dict, List, Optional, Tuple
 
 import numpy
 
-from candela._camera import _plain
-from candela._errors import Error
-from candela._values import AnyArray, Converter, environment_of, steps_of
+from ._camera import _plain
+from ._errors import Error
+from ._values import AnyArray, Converter, environment_of, steps_of
 
 # What stands in for a camera until one is placed around the scene.
 _PLACEHOLDER = {"position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40}
@@ -89,7 +89,7 @@ def _mesh(convert: Converter, name: str, mesh: Dict[str, Any]) -> Dict[str, Any]
             raise Error(f"{name}.colors: expected linear floats from 0 to 1, found {colors.dtype}; divide them by their range",
                         "usage", 2)
         shape["colors"] = convert.array(colors, f"{name}.colors", (None, 4 if colors.shape[-1:] == (4,) else 3))
-    for key in ("material", "emission", "two_sided"):
+    for key in ("material", "emission", "two_sided", "shadow_catcher"):
         if mesh[key] is not None:
             shape[key] = convert(mesh[key], f"{name}.{key}")
     return shape

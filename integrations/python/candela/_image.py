@@ -11,8 +11,8 @@ from typing import Any, Dict, Tuple, Union
 import numpy
 from numpy.typing import NDArray
 
-from candela._connection import Connection
-from candela._errors import Error
+from ._connection import Connection
+from ._errors import Error
 
 Array = NDArray[numpy.float32]
 

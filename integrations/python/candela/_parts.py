@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, Tuple
 import numpy
 from numpy.typing import NDArray
 
-from candela._values import steps_of
+from ._values import steps_of
 
 if TYPE_CHECKING:
-    from candela._scene import Scene
+    from ._scene import Scene
 
 Matrix = NDArray[numpy.float64]
 

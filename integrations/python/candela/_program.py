@@ -5,7 +5,7 @@ import os
 import shutil
 from pathlib import Path
 
-from candela._errors import Error
+from ._errors import Error
 
 
 def find_program() -> str:

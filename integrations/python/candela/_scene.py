@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, Optional, Seque
 import numpy
 from numpy.typing import NDArray
 
-from candela._building import Building
-from candela._camera import Camera, _plain
-from candela._connection import Connection
-from candela._draft import Draft, environment_json
-from candela._image import Image
-from candela._parts import Materials, Objects
-from candela._progress import Bar, Progress
-from candela._shared import SharedArrays
-from candela._values import Converter, environment_of, merge, object_changes
+from ._building import Building
+from ._camera import Camera, _plain
+from ._connection import Connection
+from ._draft import Draft, environment_json
+from ._image import Image
+from ._parts import Materials, Objects
+from ._progress import Bar, Progress
+from ._shared import SharedArrays
+from ._values import Converter, environment_of, merge, object_changes
 
 if TYPE_CHECKING:
-    from candela._session import Session
+    from ._session import Session
 
 # The azimuth and elevation of a camera that nobody has placed [degrees].
 _FIRST_LOOK = [35, 20]
@@ -45,7 +45,7 @@ class Scene(Building):
         """A scene without anything in it. size: of its pictures, (width, height) in pixels. session: the one of
         candela.Session() that it belongs to; by default the one that all share."""
         if session is None:
-            from candela._session import default_session
+            from ._session import default_session
             session = default_session()
         self._begin(session._connection)
         self._draft: Optional[Draft] = Draft(size)

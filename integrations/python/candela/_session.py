@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Union
 
-from candela._connection import Connection
-from candela._errors import Error
-from candela._scene import Scene, absolute
+from ._connection import Connection
+from ._errors import Error
+from ._scene import Scene, absolute
 
 Source = Union[str, "os.PathLike[str]", bytes, Dict[str, Any]]
 

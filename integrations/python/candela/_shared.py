@@ -13,7 +13,7 @@ from typing import Any, Dict, Optional, Tuple, Type
 import numpy
 from numpy.typing import NDArray
 
-from candela._errors import Error
+from ._errors import Error
 
 # So many bytes apart, arrays are where any machine reads them fast.
 ALIGNMENT = 64

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Union
 
-from candela._driver import environment
-from candela._errors import Error
-from candela._image import Image
-from candela._program import find_program
+from ._driver import environment
+from ._errors import Error
+from ._image import Image
+from ._program import find_program
 
 _DONE, _FAILED, _DIFFER = 0, 1, 6
 

@@ -5,8 +5,8 @@ from typing import Any, Dict, Optional, Tuple
 
 import numpy
 
-from candela._scene import Scene
-from candela._values import AnyArray, Texture
+from ._scene import Scene
+from ._values import AnyArray, Texture
 
 _OPAQUE, _MASK = "OPAQUE", "MASK"
 

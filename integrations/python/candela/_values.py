@@ -7,7 +7,7 @@ from typing import Any, Dict, Optional, Tuple, Union
 import numpy
 from numpy.typing import NDArray
 
-from candela._errors import Error
+from ._errors import Error
 
 AnyArray = NDArray[Any]
 
