@@ -16,9 +16,6 @@ constexpr Choices<DenoiserChoice, 4> CHOICE_NAMES{{{"auto", DenoiserChoice::auto
                                                    {"oidn", DenoiserChoice::oidn},
                                                    {"variance", DenoiserChoice::variance},
                                                    {"none", DenoiserChoice::none}}};
-constexpr Choices<DenoiserChoice, 3> WAY_NAMES{{{"auto", DenoiserChoice::automatic},
-                                                {"oidn", DenoiserChoice::oidn},
-                                                {"variance", DenoiserChoice::variance}}};
 constexpr Choices<DenoiserQuality, 3> QUALITY_NAMES{{{"fast", DenoiserQuality::fast},
                                                      {"balanced", DenoiserQuality::balanced},
                                                      {"high", DenoiserQuality::high}}};
@@ -41,7 +38,7 @@ void DenoisingOptions::add_to(CLI::App& app) {
 void DenoisingOptions::add_required_to(CLI::App& app) {
     choice = DenoiserChoice::automatic;
     add_choice(
-        app, "--denoise", choice, WAY_NAMES,
+        app, "--denoise", choice, DENOISER_NAMES,
         "How: by Open Image Denoise, by candela itself, or by the first of them that is there (default: "
         "auto)");
     add_quality(app, quality);

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
+#include <string_view>
+#include <utility>
 
 #include "denoise/denoiser.h"
 #include "denoise/oidn.h"
@@ -12,6 +15,12 @@
 namespace candela {
 
 enum class DenoiserChoice { none, automatic, oidn, variance };
+
+// The words for a denoiser that is asked for.
+inline constexpr std::array<std::pair<std::string_view, DenoiserChoice>, 3> DENOISER_NAMES{
+    {{"auto", DenoiserChoice::automatic},
+     {"oidn", DenoiserChoice::oidn},
+     {"variance", DenoiserChoice::variance}}};
 
 // The denoiser for a choice that is not `none`; `automatic` is Open Image Denoise, or else the one by
 // variance. Throws Error (request) if the library that is asked for is missing. `open`: see make_variance().

@@ -32,6 +32,8 @@ class LoadedScene {
     Json outcome();
     // The picture so far, with its attributes. Throws Error if there is none.
     Image image(const std::string& command_line);
+    // The device, which nothing uses between two calls.
+    const vk::Device& open_device() { return device_.open(); }
     // What the numbers of its layers of ids mean.
     std::shared_ptr<const Labels> labels();
 

@@ -9,6 +9,7 @@
 
 #include "base/memory_limit.h"
 #include "base/printable.h"
+#include "denoise/denoise_image.h"
 #include "film/id_layers.h"
 #include "image/image_io.h"
 #include "serve/describe.h"
@@ -247,14 +248,29 @@ Json Methods::render(const Node& parameters, const Call& call) {
     return result;
 }
 
+void Methods::denoise(Image& image, DenoiserChoice choice, LoadedScene& scene) {
+    denoised_ = &scene;
+    std::unique_ptr<Denoiser>& denoiser = denoisers_[choice];
+    if (denoiser == nullptr) {
+        denoiser = choose_denoiser(choice, DenoiserQuality::high,
+                                   [this]() -> const vk::Device& { return denoised_->open_device(); });
+    }
+    add_denoised(image, *denoiser, false, "the picture");
+}
+
 Json Methods::image(const Node& parameters, const Call&) {
-    checked([&] { parameters.allow_only({"scene"}); });
+    const std::optional<DenoiserChoice> way = checked([&] {
+        parameters.allow_only({"scene", "denoise"});
+        const auto denoise = parameters.find("denoise");
+        return denoise ? std::optional(denoise->choice(DENOISER_NAMES)) : std::nullopt;
+    });
     LoadedScene& scene = find_scene(parameters);
     const LimitedMemory limited;
     auto shared = with_memory_for(
         "the image", [] { return std::string("request"); },
         [&] {
             Image image = scene.image(options_.command_line);
+            if (way) denoise(image, *way, scene);
             auto labels = image.find(OBJECT_ID) == nullptr ? nullptr : scene.labels();
             return std::make_unique<SharedImage>(std::move(image), std::move(labels));
         });

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "denoise/choose_denoiser.h"
 #include "load/load.h"
 #include "serve/loaded_scene.h"
 #include "serve/message.h"
@@ -69,6 +70,7 @@ class Methods {
     LoadRequest read_load(const Node& parameters) const;
     LoadedScene& find_scene(const Node& parameters);
     SharedImage& find_image(const Node& parameters);
+    void denoise(Image& image, DenoiserChoice choice, LoadedScene& scene);
 
     Options options_;
     std::unique_ptr<vk::Instance> instance_;
@@ -76,6 +78,8 @@ class Methods {
     std::map<std::string, std::unique_ptr<LoadedScene>> scenes_;
     std::map<std::string, std::unique_ptr<SharedImage>> images_;
     uint64_t next_image_ = 1;
+    std::map<DenoiserChoice, std::unique_ptr<Denoiser>> denoisers_;  // Those that have been asked for.
+    LoadedScene* denoised_ = nullptr;                                // Whose device they use.
 };
 
 }  // namespace candela::serve

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "denoise/denoise_image.h"
 #include "film/id_layers.h"
 #include "film/sample_range.h"
 #include "load/json/loader_parts.h"
@@ -15,9 +16,9 @@ namespace candela::serve {
 namespace {
 
 // The keys of a picture, beside the scene's id.
-constexpr std::array<std::string_view, 12> KEYS{"camera",     "size",      "crop",       "spp",
-                                                "seed",       "layers",    "background", "target_error",
-                                                "time_limit", "estimator", "sampler",    "max_depth"};
+constexpr std::array<std::string_view, 13> KEYS{
+    "camera",       "size",       "crop",      "spp",     "seed",      "layers", "background",
+    "target_error", "time_limit", "estimator", "sampler", "max_depth", "denoise"};
 
 constexpr std::array<std::pair<std::string_view, Backdrop>, 2> BACKGROUND_NAMES{
     {{"environment", Backdrop::environment}, {"transparent", Backdrop::transmitted}}};
@@ -50,6 +51,7 @@ std::span<const LayerKind> layer_kinds() {
         {"distance", {"Depth.V"}, &AovSelection::distance},
         {"variance", {"Variance.R", "Variance.G", "Variance.B"}, &AovSelection::variance},
         {"samples", {"SampleCount.V"}, &AovSelection::sample_count},
+        {"denoised", {DENOISED.begin(), DENOISED.end()}, nullptr},
         {"object_id", {OBJECT_ID}, &AovSelection::ids},
         {"instance_id", {INSTANCE_ID}, &AovSelection::ids},
         {"material_id", {MATERIAL_ID}, &AovSelection::ids},
@@ -63,13 +65,16 @@ AovSelection read_layers(const Node& parameters) {
     if (!layers) return selection;
     const bool all = layers->is_string() && layers->string() == "all";
     std::vector<std::string> names;
-    for (const LayerKind& kind : layer_kinds())
-        names.emplace_back(kind.name);
+    for (const LayerKind& kind : layer_kinds()) {
+        if (kind.name != "denoised") names.emplace_back(kind.name);  // See the method `image`.
+    }
     if (!all && !layers->is_array()) layers->fail_expected(R"("all" or an array of names)");
     std::vector<std::string> wanted;
     if (all) {
-        for (const LayerKind& kind : layer_kinds())
-            if (kind.selected != &AovSelection::ids) wanted.emplace_back(kind.name);
+        for (const LayerKind& kind : layer_kinds()) {
+            if (kind.selected != nullptr && kind.selected != &AovSelection::ids)
+                wanted.emplace_back(kind.name);
+        }
     } else {
         for (const Node& layer : layers->elements())
             wanted.push_back(layer.string());
@@ -77,7 +82,7 @@ AovSelection read_layers(const Node& parameters) {
     for (const std::string& name : wanted) {
         const auto found = std::ranges::find(names, name);
         if (found == names.end()) layers->fail_unknown("layer", name, names);
-        const auto member = layer_kinds()[size_t(found - names.begin())].selected;
+        const auto member = std::ranges::find(layer_kinds(), name, &LayerKind::name)->selected;
         if (member != nullptr) selection.*member = true;
     }
     return selection;
@@ -110,6 +115,10 @@ RenderJob read_job(const Node& parameters, const Scene& scene) {
     if (const auto error = parameters.find("target_error")) job.target_error = error->positive();
     if (const auto limit = parameters.find("time_limit")) job.time_limit = limit->positive();
     job.aovs = read_layers(parameters);
+    if (const auto denoise = parameters.find("denoise"); denoise && denoise->boolean()) {
+        job.aovs.denoising = job.aovs.variance = job.aovs.sample_count = true;
+        job.settings.guides = true;
+    }
     job.aovs.transmission = settings.backdrop == Backdrop::transmitted;
     job.settings.aovs = job.aovs.needs_layers();
     if (job.time_limit) job.settings.pass_growth = EVEN_PASS_GROWTH;

@@ -1,6 +1,7 @@
 // See save_image.h.
 #include "serve/save_image.h"
 
+#include "denoise/denoise_image.h"
 #include "image/background.h"
 #include "image/develop.h"
 #include "session/picture_file.h"
@@ -20,7 +21,7 @@ SaveRequest read_save(const Node& parameters) {
     return request;
 }
 
-void save_image(const Image& image, const SaveRequest& request) {
+void save_image(Image image, const SaveRequest& request) {
     if (request.format == ImageFormat::exr) {
         write_exr(request.file, image);
         return;
@@ -28,6 +29,7 @@ void save_image(const Image& image, const SaveRequest& request) {
     static const Background transparent = Transparent{};
     const bool before_nothing = image.find(FIRST_HIT_ALPHA) != nullptr;
     const float exposure = request.automatic_exposure ? auto_exposure(image) : request.exposure_ev;
+    const DenoisedView denoised(image);
     write_picture(request.file,
                   develop(image, {.curve = request.curve,
                                   .exposure_ev = exposure,

@@ -24,6 +24,6 @@ SaveRequest read_save(const Node& parameters);
 
 // Writes what `candela render` would: an EXR file with all layers, or a picture for the screen. One that was
 // rendered before nothing is transparent. Throws Error if that fails.
-void save_image(const Image& image, const SaveRequest& request);
+void save_image(Image image, const SaveRequest& request);
 
 }  // namespace candela::serve

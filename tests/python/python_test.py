@@ -71,6 +71,22 @@ class Python(unittest.TestCase):
         with self.assertRaisesRegex(candela.Error, "the image has no layer 'albedo'"):
             crop.albedo
 
+    def test_denoises_as_the_command_line_does(self):
+        path = ROOT / "scenes/cornell-box.json"
+        _, _, png = command_line(path, "--size", "24x16", "--spp", "4", "--denoise", "variance")
+        scene = candela.load(path)
+        image = scene.render(spp=4, size=(24, 16), denoise="variance")
+        self.assertTrue(numpy.array_equal(image.rgb, scene.image().rgb))
+        self.assertEqual(image.denoised.shape, (16, 24, 3))
+        self.assertFalse(numpy.array_equal(image.denoised, image.rgb))
+        with tempfile.TemporaryDirectory() as folder:
+            image.save(f"{folder}/a.png")
+            self.assertEqual(Path(f"{folder}/a.png").read_bytes(), png)
+        with self.assertRaisesRegex(candela.Error, "denoise.*auto.*oidn.*variance"):
+            scene.image(denoise="magic")
+        with self.assertRaisesRegex(candela.Error, "no layer 'denoised'"):
+            scene.image().denoised
+
     def test_layers_are_what_they_say(self):
         scene = candela.load(SCENE)
         image = scene.render(spp=4)

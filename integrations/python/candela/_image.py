@@ -70,6 +70,11 @@ class Image:
         return self["rgb"]
 
     @property
+    def denoised(self) -> Array:
+        """(H, W, 3): the same, denoised; see Scene.render()."""
+        return self["denoised"]
+
+    @property
     def alpha(self) -> Array:
         """(H, W): the fraction of camera rays that hit something; of a picture before nothing, 1 minus the share of the
         background that is seen."""

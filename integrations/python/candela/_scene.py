@@ -219,7 +219,8 @@ class Scene(Building):
     def render(self, spp: Optional[int] = None, size: Optional[Tuple[int, int]] = None,
                camera: Union[str, Camera, None] = None, crop: Optional[Tuple[int, int, int, int]] = None,
                seed: Optional[int] = None, progress: Progress = None, *, target_error: Optional[float] = None,
-               time_limit: Optional[float] = None, timeout: Optional[float] = None, layers: Union[str, Sequence[str]] = "all", transparent: bool = False,
+               time_limit: Optional[float] = None, timeout: Optional[float] = None,
+               layers: Union[str, Sequence[str]] = "all", transparent: bool = False, denoise: Optional[str] = None,
                **options: Any) -> Image:
         """Renders a picture. What is not given is what the scene proposes. If this is interrupted, image() is the picture
         so far, and the same call goes on to the same bits.
@@ -228,25 +229,28 @@ class Scene(Building):
         these pixels; x1 and y1 are exclusive. seed: each gives different noise. progress: True shows a bar, by tqdm if
         that is installed; or a function that gets the fraction that is done. target_error: ends at this estimated
         relative error. time_limit: ends after these seconds, with the picture so far. timeout: raises Error after these
-        seconds. layers: names, or "all" but the ids, which take longer: object_id,
-        instance_id, material_id. transparent: before nothing
-        instead of the sky. Further options are those of docs/protocol.md: estimator, sampler, max_depth.
+        seconds. layers: names, or "all" but the ids, which take longer: object_id, instance_id, material_id.
+        transparent: before nothing instead of the sky. denoise: "oidn" (Open Image Denoise), "variance" (candela itself), or
+        "auto", the first of them that is there; the image then has `denoised`, too, which save() shows. Further options are those of docs/protocol.md: estimator, sampler, max_depth.
         """
         given = {"spp": spp, "size": size, "crop": crop, "seed": seed, "target_error": target_error,
-                 "time_limit": time_limit, "camera": self._name_of(camera), "layers": layers if isinstance(layers, str) else list(layers),
-                 "background": "transparent" if transparent else None, "progress": bool(progress) or None, **options}
+                 "time_limit": time_limit, "camera": self._name_of(camera),
+                 "layers": layers if isinstance(layers, str) else list(layers),
+                 "background": "transparent" if transparent else None, "progress": bool(progress) or None,
+                 "denoise": denoise is not None or None, **options}
         params = {key: _plain(value) for key, value in given.items() if value is not None}
         with self._lock, Bar(progress) as bar:
             outcome = self._connection.call("render", {"scene": self._id, **params}, bar, timeout)
             _warn(outcome)
             if outcome["complete"]:
                 bar.finish()
-            return self.image()
+            return self.image(denoise)
 
-    def image(self) -> Image:
-        """The picture that was rendered last, as far as it has got."""
+    def image(self, denoise: Optional[str] = None) -> Image:
+        """The picture that was rendered last, as far as it has got. denoise: see render()."""
         with self._lock:
-            return Image(self._connection, self._connection.call("image", {"scene": self._id}))
+            params = {"scene": self._id} if denoise is None else {"scene": self._id, "denoise": denoise}
+            return Image(self._connection, self._connection.call("image", params))
 
     def accumulate(self, spp: Optional[int] = None, **options: Any) -> Iterator[Image]:
         """Pictures of 1, 2, 4, ... and at last `spp` samples per pixel, each of which goes on from the one before."""
