@@ -2,8 +2,8 @@
 """How far denoised pictures are from the truth, for each scene of the gallery: their relMSE over that of the noisy ones.
 
 The relMSE is that of `candela compare`, to a reference of other samples (another seed). The reference's own noise, by its
-Variance, is taken off both. `first hits` are guided by Albedo and N, `guides` by --aov denoising. Needs numpy, and Open
-Image Denoise where candela finds it (cmake/denoiser.sh).
+Variance, is taken off both. Both ways, blended with the noisy picture; `first hits` are guided by Albedo and N, `guides` by
+--aov denoising. Needs numpy, and Open Image Denoise where candela finds it (cmake/denoiser.sh).
 
 usage: denoising.py CANDELA [--scenes NAME,...] [--spp 4,16,64] [--reference-spp N] [--width N] [--seeds N]
                     [--keep FOLDER] [--option=OPTION of denoise]... [--at-most RATIO]
@@ -27,7 +27,9 @@ from rivals import exr  # noqa: E402
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 GALLERY = ("cornell-box", "cornell-glass", "cornell-glossy", "depth-of-field", "environment", "lemons", "materials",
            "mesh", "showcase", "veach-mis")
-GUIDES = {"first hits": "albedo,n", "guides": "denoising"}
+FIRST_HITS, GUIDES = ("Albedo.", "N."), ("DenoisingAlbedo.", "DenoisingNormal.")
+WAYS = {"oidn, first hits": ("oidn", FIRST_HITS), "oidn, guides": ("oidn", GUIDES),
+        "variance, first hits": ("variance", FIRST_HITS), "variance, guides": ("variance", GUIDES)}
 
 
 def layer(path, name, letters="RGB"):
@@ -61,26 +63,25 @@ class Bench:
                          "--size", size_of(scene, self.options.width), "--aov", aovs, "--quiet")
         return path
 
-    def denoised(self, noisy, guides):
-        """The denoised layer, guided by those layers alone."""
-        names = {"albedo,n": ("Albedo.", "N."), "denoising": ("DenoisingAlbedo.", "DenoisingNormal.")}[guides]
+    def denoised(self, noisy, way, guides):
+        """The layer denoised in that way, guided by those layers alone."""
         only, out = self.folder / "only.exr", self.folder / "denoised.exr"
         width, height, attributes, channels = exr.read_all(noisy)
         exr_write(only, width, height, {name: values for name, values in channels.items()
-                                        if name in "RGB" or name.startswith(names)})
-        self.candela("denoise", str(only), "-o", str(out), "--denoise", "oidn", *self.options.option)
+                                        if name in "RGB" or name.startswith((*guides, "Variance.", "SampleCount."))})
+        self.candela("denoise", str(only), "-o", str(out), "--denoise", way, *self.options.option)
         return layer(out, "Denoised.")
 
     def measure(self, scene, spp):
-        """Ratios of denoised over noisy, for each kind of guides; the medians of the seeds."""
+        """Ratios of denoised over noisy, for each way; the medians of the seeds."""
         path = self.render(scene, f"{scene}-reference", self.options.reference_spp, 1000, "variance")
         reference, noise = layer(path, ""), layer(path, "Variance.")
-        ratios = {name: [] for name in GUIDES}
+        ratios = {name: [] for name in WAYS}
         for seed in range(self.options.seeds):
-            noisy = self.render(scene, f"{scene}-{spp}-{seed}", spp, seed, "albedo,n,denoising")
+            noisy = self.render(scene, f"{scene}-{spp}-{seed}", spp, seed, "albedo,n,denoising,variance,samples")
             before = relative_mse(layer(noisy, ""), reference, noise)
-            for name, guides in GUIDES.items():
-                ratios[name].append(relative_mse(self.denoised(noisy, guides), reference, noise) / before)
+            for name, how in WAYS.items():
+                ratios[name].append(relative_mse(self.denoised(noisy, *how), reference, noise) / before)
         return {name: median(values) for name, values in ratios.items()}
 
 
@@ -126,7 +127,7 @@ def main():
         folder.mkdir(exist_ok=True)
         bench = Bench(options, folder)
         counts = [int(spp) for spp in options.spp.split(",")]
-        columns = [(spp, name) for spp in counts for name in GUIDES]
+        columns = [(spp, name) for spp in counts for name in WAYS]
         print("| relMSE over the noisy picture's | " + " | ".join(f"{spp}, {name}" for spp, name in columns) + " |")
         print("|---|" + "---|" * len(columns))
         table = {}

@@ -10,10 +10,10 @@
 namespace candela {
 namespace {
 
-using Environment = std::map<std::string, std::string>;
+using Variables = std::map<std::string, std::string>;
 
-const Environment FAKE = {{"CANDELA_OIDN", CANDELA_FAKE_OIDN}};
-const Environment MISSING = {{"CANDELA_OIDN", "/nowhere/oidn.so"}};
+const Variables FAKE = {{"CANDELA_OIDN", CANDELA_FAKE_OIDN}};
+const Variables MISSING = {{"CANDELA_OIDN", "/nowhere/oidn.so"}};
 const std::string IS_MISSING = "Open Image Denoise, a library that removes noise, is not there";
 
 class DenoiseTest : public CliTest {
@@ -25,7 +25,7 @@ class DenoiseTest : public CliTest {
                arguments;
     }
     // Renders the Cornell box, and expects no message.
-    static void render_box(const Words& arguments, const Environment& environment = FAKE) {
+    static void render_box(const Words& arguments, const Variables& environment = FAKE) {
         const ProcessResult result = candela(box(arguments), environment);
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_EQ(result.err, "");
@@ -158,7 +158,7 @@ TEST_F(DenoiseTest, ALibraryThatFailsHalfwayLosesNoPicture) {
     for (const std::string where : {"filter", "execute"}) {
         const ProcessResult result =
             candela(box({"-o", file("a.exr"), "-o", file("a.png"), "--denoise", "oidn"}),
-                    FAKE + Environment{{"FAKE_OIDN_FAILS", where}, {"FAKE_OIDN_AFTER", "1"}});
+                    FAKE + Variables{{"FAKE_OIDN_FAILS", where}, {"FAKE_OIDN_AFTER", "1"}});
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_EQ(result.err, "candela: warning: the picture stays noisy: Open Image Denoise (\"" +
                                   std::string(CANDELA_FAKE_OIDN) + "\") failed: out of luck in " + where +
@@ -167,7 +167,7 @@ TEST_F(DenoiseTest, ALibraryThatFailsHalfwayLosesNoPicture) {
         EXPECT_EQ(read_file(file("a.png")), read_file(file("plain.png")));
     }
     const ProcessResult version = candela(box({"-o", file("b.png"), "--denoise", "oidn"}),
-                                          FAKE + Environment{{"FAKE_OIDN_VERSION", "1"}});
+                                          FAKE + Variables{{"FAKE_OIDN_VERSION", "1"}});
     EXPECT_EQ(version.exit_code, 1);
     EXPECT_CONTAINS(version.err, "it is version 1.5.1, and candela needs version 2");
 }
@@ -182,7 +182,7 @@ TEST_F(DenoiseTest, PicturesOnTheWayAndOfBatchesAreDenoised) {
     // The log has a line for each filter of each picture that is denoised: three of the last, and more
     // before.
     render_box({"-o", file("a.exr"), "--denoise", "oidn", "--spp", "64", "--write-every", "0.000001s"},
-               FAKE + Environment{{"FAKE_OIDN_LOG", file("log")}});
+               FAKE + Variables{{"FAKE_OIDN_LOG", file("log")}});
     EXPECT_GT(std::ranges::count(read_file(file("log")), '\n'), 2);
 }
 
@@ -312,7 +312,7 @@ TEST_F(DenoiseTest, TheCommandExplainsWhatIsWrong) {
     write_exr(file("grey.exr"), grey);
     struct Case {
         Words words;
-        Environment environment;
+        Variables environment;
         int exit_code;
         std::string message;
     };
@@ -330,11 +330,11 @@ TEST_F(DenoiseTest, TheCommandExplainsWhatIsWrong) {
          2,
          "--denoise: cannot use \"none\"; expected auto|oidn|variance"},
         {{"denoise", file("a.exr"), "-o", file("b.png")},
-         FAKE + Environment{{"FAKE_OIDN_FAILS", "execute"}},
+         FAKE + Variables{{"FAKE_OIDN_FAILS", "execute"}},
          1,
          "failed: out of luck in execute"},
         {{"denoise", file("a.exr"), "-o", file("b.png"), "--denoise", "oidn"},
-         FAKE + Environment{{"FAKE_OIDN_VERSION", "3"}},
+         FAKE + Variables{{"FAKE_OIDN_VERSION", "3"}},
          1,
          "it is version 3.5.1, and candela needs version 2"}};
     for (const Case& c : cases) {

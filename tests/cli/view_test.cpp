@@ -134,7 +134,8 @@ TEST_F(View, TheSwitchDenoises) {
 
     view({"--size", "320x240", "--spp", "2", "--denoise", "variance"});
     press("Tab");
-    for (const Image* const image : {&clean, &noisy, &clean}) {
+    const Image* const shown[] = {&clean, &noisy, &clean};
+    for (const Image* const image : shown) {
         wait_until("the screen shows it", [&] { return wrong_codes(screen(), *image) == 0; });
         press("n");
     }

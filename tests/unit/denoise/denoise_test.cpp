@@ -16,16 +16,16 @@
 namespace candela {
 namespace {
 
-constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
+constexpr float QUIET_NAN = std::numeric_limits<float>::quiet_NaN();
 constexpr float INFINITY_ = std::numeric_limits<float>::infinity();
 
 // Every pixel is kept once, at least `overlap` from the end of its tile unless the line ends there.
 TEST(TileSpans, CoverALineOnceFarFromTheEdges) {
-    constexpr uint32_t SIZE = 64, OVERLAP = 16;
+    constexpr uint32_t TILE_SIZE = 64, OVERLAP = 16;
     for (uint32_t length = 1; length < 400; ++length) {
         uint32_t next = 0;
-        for (const TileSpan& span : tile_spans(length, SIZE, OVERLAP)) {
-            const uint32_t size = std::min(SIZE, length), last = span.first + size;
+        for (const TileSpan& span : tile_spans(length, TILE_SIZE, OVERLAP)) {
+            const uint32_t size = std::min(TILE_SIZE, length), last = span.first + size;
             ASSERT_EQ(span.begin, next);
             ASSERT_GT(span.end, span.begin);
             ASSERT_LE(last, length);
@@ -137,7 +137,7 @@ TEST(DenoiseImage, AnAlphaThatMattersAndVariesIsDenoisedToo) {
     EXPECT_EQ(image.find(DENOISED_ALPHA), nullptr);
     std::vector<float>& alpha = image.channels[3].values;
     alpha[0] = 0.25f;
-    alpha[1] = NOT_A_NUMBER;
+    alpha[1] = QUIET_NAN;
     add_denoised(image, *denoiser, true, "a.exr");
     const std::vector<float>& denoised = image.find(DENOISED_ALPHA)->values;
     EXPECT_EQ(denoised[0], 0.5f);
@@ -168,7 +168,7 @@ TEST(DenoiseImage, PicturesAreOfTheDenoisedLayersWhileTheyAreMade) {
 // The library of the tests fails if it sees a number that is not finite.
 TEST(Oidn, GetsNumbersThatItCanTakeWhateverTheImageHolds) {
     for (const auto& [width, height] : {std::pair(1u, 1u), std::pair(7u, 1u), std::pair(3u, 5u)}) {
-        for (const float odd : {NOT_A_NUMBER, INFINITY_, -INFINITY_, 1e38f, -1.0f}) {
+        for (const float odd : {QUIET_NAN, INFINITY_, -INFINITY_, 1e38f, -1.0f}) {
             Image image = image_of(width, height, COLOUR + GUIDES);
             for (Channel& channel : image.channels)
                 channel.values[0] = odd;

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images as arrays."""
+import numpy
+
+_SRGB = {"sRGB"}
+_LINEAR = {"Non-Color", "Linear", "Linear Rec.709", "Raw"}
+
+
+def srgb_to_linear(values):
+    """The linear values of sRGB codes from 0 to 1 (IEC 61966-2-1)."""
+    return numpy.where(values <= 0.04045, values / 12.92, ((numpy.maximum(values, 0.04045) + 0.055) / 1.055) ** 2.4)
+
+
+def is_srgb(image, notices):
+    """Whether the colours of the image's pixels are sRGB codes."""
+    if image.is_float:
+        return False  # Blender keeps them linear.
+    space = image.colorspace_settings.name
+    if space not in _SRGB | _LINEAR:
+        notices.add(f'Image "{image.name}"', f"candela does not know the colour space {space}; it is taken for sRGB")
+    return space not in _LINEAR
+
+
+def raw_pixels(image):
+    """(H, W, 4): its pixels as Blender has them, rows from the top: uint8, or float32 of an image of floats. None if the
+    image has none, such as a file that is missing."""
+    width, height = image.size
+    if width == 0 or height == 0:
+        return None
+    pixels = numpy.empty(width * height * 4, numpy.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(height, width, 4)[::-1]
+    if image.is_float:
+        return numpy.ascontiguousarray(pixels)
+    return (numpy.clip(pixels, 0, 1) * 255 + 0.5).astype(numpy.uint8)
+
+
+def pixels_of(image, notices):
+    """(H, W, 4), float32: its linear pixels; pink if it has none."""
+    raw = raw_pixels(image)
+    if raw is None:
+        notices.add(f'Image "{image.name}"', "it has no pixels; is its file missing?")
+        return numpy.array([[[1, 0, 1, 1]]], numpy.float32)
+    if raw.dtype != numpy.uint8:
+        return raw
+    values = raw.astype(numpy.float32) / 255
+    if is_srgb(image, notices):
+        values[..., :3] = srgb_to_linear(values[..., :3])
+    return values

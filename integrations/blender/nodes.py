@@ -1,0 +1,343 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a socket of a node tree is: a number, a colour, or an image on a surface. What nodes make of images is computed
+here, pixel by pixel, so that candela gets an image again."""
+import math
+
+import numpy
+
+from .images import is_srgb, pixels_of, raw_pixels
+
+_LUMINANCE = numpy.array([0.2126, 0.7152, 0.0722])
+
+_MATH = {
+    "ADD": lambda a, b, c: a + b,
+    "SUBTRACT": lambda a, b, c: a - b,
+    "MULTIPLY": lambda a, b, c: a * b,
+    "DIVIDE": lambda a, b, c: numpy.divide(a, b, out=numpy.zeros_like(a * b), where=b != 0),
+    "MULTIPLY_ADD": lambda a, b, c: a * b + c,
+    "POWER": lambda a, b, c: numpy.power(numpy.maximum(a, 0), b),
+    "SQRT": lambda a, b, c: numpy.sqrt(numpy.maximum(a, 0)),
+    "ABSOLUTE": lambda a, b, c: numpy.abs(a),
+    "MINIMUM": lambda a, b, c: numpy.minimum(a, b),
+    "MAXIMUM": lambda a, b, c: numpy.maximum(a, b),
+    "LESS_THAN": lambda a, b, c: (a < b) * 1.0,
+    "GREATER_THAN": lambda a, b, c: (a > b) * 1.0,
+    "ROUND": lambda a, b, c: numpy.floor(a + 0.5),
+}
+
+_BLENDS = {
+    "MIX": lambda a, b: b,
+    "MULTIPLY": lambda a, b: a * b,
+    "ADD": lambda a, b: a + b,
+    "SUBTRACT": lambda a, b: a - b,
+    "DARKEN": numpy.minimum,
+    "LIGHTEN": numpy.maximum,
+    "SCREEN": lambda a, b: 1 - (1 - a) * (1 - b),
+    "DIFFERENCE": lambda a, b: numpy.abs(a - b),
+}
+
+
+class Mapping:
+    """Where on a surface an image is: the name of its texture coordinates (None: those of the render), and how they are
+    scaled, turned [degrees] and shifted."""
+
+    def __init__(self, uv=None, scale=(1, 1), rotation=0.0, offset=(0, 0), wrap="repeat", filter="bilinear"):
+        self.keys = {"uv_scale": list(scale), "uv_rotation": rotation, "uv_offset": list(offset), "wrap": wrap,
+                     "filter": filter}
+        self.uv = uv
+
+    def __eq__(self, other):
+        return self.keys == other.keys and self.uv == other.uv
+
+
+class Value:
+    """A constant of shape (4,), or an image of (H, W, 4) and its mapping; linear. `source` is the image of Blender that it
+    is without change, `is_color_attribute` whether it is the colour of vertices times the constant."""
+
+    def __init__(self, pixels, mapping=None, source=None, is_color_attribute=False):
+        self.pixels = numpy.asarray(pixels, numpy.float32)
+        self.mapping = mapping
+        self.source = source
+        self.is_color_attribute = is_color_attribute
+
+    @property
+    def is_constant(self):
+        return self.pixels.ndim == 1
+
+    @property
+    def color(self):
+        """(3,), of a constant."""
+        return self.pixels[:3].astype(float)
+
+    @property
+    def number(self):
+        """Of a constant."""
+        return float(self.pixels[:3] @ _LUMINANCE) if numpy.ptp(self.pixels[:3]) > 0 else float(self.pixels[0])
+
+
+def constant(value):
+    """A Value of a number, or of a colour with its alpha or without."""
+    if isinstance(value, (int, float)):
+        return Value([value, value, value, 1.0])
+    numbers = list(value)[:4]
+    return Value(numbers + [1.0] * (4 - len(numbers)))
+
+
+class Reader:
+    """Reads the sockets of a material's nodes."""
+
+    def __init__(self, place, notices):
+        self._place = place
+        self._notices = notices
+        self._groups = []  # The nodes of the groups that are being read, the innermost last.
+
+    def notice(self, node, text):
+        self._notices.add(f'{self._place}, node "{node.name}"', text)
+
+    def source(self, socket):
+        """The socket that feeds this one, behind reroutes and out of groups; None if nothing does. Ends with `leave` once it
+        has been read."""
+        while socket is not None and socket.links and not socket.links[0].is_muted:
+            output = socket.links[0].from_socket
+            node = output.node
+            if node.type == "REROUTE":
+                socket = node.inputs[0]
+            elif node.mute:
+                socket = next((link.from_socket for link in getattr(node, "internal_links", ())
+                               if link.to_socket == output), None)
+            elif node.type == "GROUP" and node.node_tree is not None:
+                inside = next((n for n in node.node_tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output), None)
+                if inside is None:
+                    return None
+                self._groups.append(node)
+                socket = inside.inputs[[s.identifier for s in node.outputs].index(output.identifier)]
+                if not socket.links:
+                    return socket
+            elif node.type == "GROUP_INPUT" and self._groups:
+                outer = self._groups.pop()
+                socket = outer.inputs[[s.identifier for s in node.outputs].index(output.identifier)]
+                if not socket.links:
+                    return socket
+            else:
+                return output
+        return None
+
+    def read(self, socket):
+        """The Value of an input."""
+        groups = list(self._groups)
+        source = self.source(socket)
+        try:
+            if source is None:
+                return constant(socket.default_value)
+            if not source.is_output:  # An input of a group, or of its end.
+                return constant(source.default_value)
+            return self._of_node(source.node, source)
+        finally:
+            self._groups = groups
+
+    def _of_node(self, node, output):
+        reader = getattr(self, "_read_" + node.type.lower(), None)
+        if reader is None:
+            self.notice(node, f"candela does not know nodes of the type {node.bl_label}; its value is 0.5")
+            return constant(0.5)
+        return reader(node, output)
+
+    # Each: the Value of an output of a node of this type.
+
+    def _read_rgb(self, node, output):
+        return constant(output.default_value)
+
+    def _read_value(self, node, output):
+        return constant(output.default_value)
+
+    def _read_vertex_color(self, node, output):
+        return Value([1, 1, 1, 1], is_color_attribute=True)
+
+    def _read_attribute(self, node, output):
+        if output.name == "Color":
+            return Value([1, 1, 1, 1], is_color_attribute=True)
+        self.notice(node, "candela knows the colours of vertices alone among attributes; its value is 0.5")
+        return constant(0.5)
+
+    def _read_tex_image(self, node, output):
+        if node.image is None:
+            return constant((1, 0, 1, 1))
+        mapping = self._mapping(node)
+        pixels = pixels_of(node.image, self._notices)
+        if output.name == "Alpha":
+            return Value(numpy.repeat(pixels[..., 3:], 4, -1), mapping)
+        return Value(pixels, mapping, node.image)
+
+    def _mapping(self, node):
+        if node.projection != "FLAT":
+            self.notice(node, f"candela has no projection {node.projection} of images; texture coordinates are used")
+        wraps = {"REPEAT": "repeat", "MIRROR": "mirror"}
+        if node.extension == "CLIP":
+            self.notice(node, "candela does not clip images; their edges are continued")
+        keys = {"wrap": wraps.get(node.extension, "clamp"),
+                "filter": "nearest" if node.interpolation == "Closest" else "bilinear"}
+        source = self.source(node.inputs["Vector"])
+        if source is not None and source.is_output and source.node.type == "MAPPING":
+            keys.update(self._transform(source.node))
+            source = self.source(source.node.inputs["Vector"])
+        if source is None or not source.is_output:
+            return Mapping(**keys)
+        if source.node.type == "UVMAP":
+            return Mapping(uv=source.node.uv_map or None, **keys)
+        if source.node.type != "TEX_COORD" or source.name != "UV":
+            self.notice(source.node, f"candela knows texture coordinates by UV only, not {source.name}")
+        return Mapping(**keys)
+
+    def _transform(self, node):
+        inputs = node.inputs
+        if node.vector_type not in {"POINT", "VECTOR"} or any(inputs[name].is_linked for name in ("Scale", "Rotation")):
+            self.notice(node, "candela knows mappings of the type Point, of constants; it is left out")
+            return {}
+        x, y, z = inputs["Rotation"].default_value
+        if x != 0 or y != 0:
+            self.notice(node, "candela turns texture coordinates about Z only")
+        offset = inputs["Location"].default_value[:2] if node.vector_type == "POINT" else (0, 0)
+        return {"scale": tuple(inputs["Scale"].default_value[:2]), "rotation": math.degrees(z), "offset": tuple(offset)}
+
+    def _combine(self, node, values, function):
+        """A function of several values, pixel by pixel."""
+        images = [value for value in values if not value.is_constant]
+        if any(value.is_color_attribute for value in values):
+            self.notice(node, "candela multiplies the colours of vertices only; they are white here")
+        if len({value.pixels.shape for value in images}) > 1 or any(v.mapping != images[0].mapping for v in images):
+            self.notice(node, "candela does not combine images of several sizes or places; the first is used")
+            values = [v if v.is_constant or v is images[0] else Value(v.pixels.mean((0, 1))) for v in values]
+        return Value(function(*(value.pixels for value in values)), images[0].mapping if images else None)
+
+    def _read_math(self, node, output):
+        function = _MATH.get(node.operation)
+        if function is None:
+            self.notice(node, f"candela does not know the operation {node.operation}; its first input is used")
+            return self.read(node.inputs[0])
+        values = [_gray(self.read(node.inputs[i])) for i in range(3)]
+        end = (lambda x: numpy.clip(x, 0, 1)) if node.use_clamp else (lambda x: x)
+        return self._combine(node, values, lambda a, b, c: end(function(a, b, c)))
+
+    def _read_mix(self, node, output):
+        if node.data_type not in {"RGBA", "FLOAT"}:
+            self.notice(node, f"candela does not mix values of the type {node.data_type}; the first is used")
+        inputs = [socket for socket in node.inputs if socket.enabled]
+        blend = node.blend_type if node.data_type == "RGBA" else "MIX"
+        return self._mix(node, inputs[0], inputs[1], inputs[2], blend, getattr(node, "clamp_result", False))
+
+    def _read_mix_rgb(self, node, output):
+        return self._mix(node, *node.inputs[:3], node.blend_type, node.use_clamp)
+
+    def _mix(self, node, factor, first, second, blend, clamp):
+        function = _BLENDS.get(blend)
+        if function is None:
+            self.notice(node, f"candela does not know the blend mode {blend}; it mixes")
+            function = _BLENDS["MIX"]
+        share, a, b = _gray(self.read(factor)), self.read(first), self.read(second)
+        if blend == "MULTIPLY" and share.is_constant and share.number == 1:
+            for attribute, other in ((a, b), (b, a)):
+                if attribute.is_color_attribute and not other.is_color_attribute:
+                    return Value(attribute.pixels * other.pixels, other.mapping, other.source, True)
+
+        def mixed(t, x, y):
+            t = numpy.clip(t, 0, 1)
+            result = x * (1 - t) + function(x, y) * t
+            return numpy.clip(result, 0, 1) if clamp else result
+        return self._combine(node, [share, a, b], mixed)
+
+    def _read_invert(self, node, output):
+        values = [_gray(self.read(node.inputs[0])), self.read(node.inputs[1])]
+        return self._combine(node, values, lambda t, x: x * (1 - t) + (1 - x) * t)
+
+    def _read_gamma(self, node, output):
+        values = [self.read(node.inputs[0]), _gray(self.read(node.inputs[1]))]
+        return self._combine(node, values, lambda x, g: numpy.power(numpy.maximum(x, 0), g))
+
+    def _read_brightcontrast(self, node, output):
+        values = [self.read(node.inputs[0]), _gray(self.read(node.inputs[1])), _gray(self.read(node.inputs[2]))]
+        return self._combine(node, values, lambda x, b, c: numpy.maximum(x * (1 + c) + b - c / 2, 0))
+
+    def _read_clamp(self, node, output):
+        values = [_gray(self.read(node.inputs[i])) for i in range(3)]
+        return self._combine(node, values, numpy.clip)
+
+    def _read_map_range(self, node, output):
+        if node.data_type != "FLOAT" or node.interpolation_type != "LINEAR":
+            self.notice(node, "candela knows linear ranges of numbers; the value is used as it is")
+            return self.read(node.inputs["Value"])
+        values = [_gray(self.read(socket)) for socket in list(node.inputs)[:5]]
+
+        def mapped(x, a, b, c, d):
+            t = (x - a) / numpy.where(b == a, 1, b - a)
+            return c + (numpy.clip(t, 0, 1) if node.clamp else t) * (d - c)
+        return self._combine(node, values, mapped)
+
+    def _read_valtorgb(self, node, output):
+        value = _gray(self.read(node.inputs[0]))
+        steps = numpy.linspace(0, 1, 1025)
+        table = numpy.array([node.color_ramp.evaluate(float(step)) for step in steps])
+        if output.name == "Alpha":
+            table = numpy.repeat(table[:, 3:], 4, 1)
+
+        def ramp(x):
+            at = numpy.clip(x[..., 0], 0, 1)
+            return numpy.stack([numpy.interp(at, steps, table[:, i]) for i in range(4)], -1)
+        return self._combine(node, [value], ramp)
+
+    def _read_separate_color(self, node, output):
+        if getattr(node, "mode", "RGB") != "RGB":
+            self.notice(node, "candela separates red, green and blue only")
+        channel = [socket.name for socket in node.outputs].index(output.name)
+        return self._combine(node, [self.read(node.inputs[0])], lambda x: numpy.repeat(x[..., channel:channel + 1], 4, -1))
+
+    _read_seprgb = _read_separate_color
+
+    def _read_combine_color(self, node, output):
+        values = [_gray(self.read(node.inputs[i])) for i in range(3)]
+        return self._combine(node, values, lambda r, g, b: _broadcast(r, g, b))
+
+    _read_combrgb = _read_combine_color
+
+    def _read_rgbtobw(self, node, output):
+        return _gray(self.read(node.inputs[0]))
+
+    def _read_hue_sat(self, node, output):
+        hue, saturation, value, share = (_gray(self.read(node.inputs[i])) for i in range(4))
+        if not (hue.is_constant and abs(hue.number - 0.5) < 1e-6):
+            self.notice(node, "candela does not turn hues")
+
+        def changed(x, s, v, t):
+            # Blender's HSV: saturation and value are factors.
+            top, low = x[..., :3].max(-1, keepdims=True), x[..., :3].min(-1, keepdims=True)
+            old = numpy.divide(top - low, top, out=numpy.zeros_like(top), where=top > 0)
+            new = numpy.clip(old * s[..., :1], 0, 1)
+            ratio = numpy.divide(new, old, out=numpy.ones_like(old), where=old > 0)
+            rgb = (top - (top - x[..., :3]) * ratio) * v[..., :1]
+            rgb = x[..., :3] * (1 - t[..., :1]) + numpy.maximum(rgb, 0) * t[..., :1]
+            return numpy.concatenate([rgb, numpy.broadcast_to(x[..., 3:], rgb[..., :1].shape)], -1)
+        return self._combine(node, [self.read(node.inputs[4]), saturation, value, share], changed)
+
+
+def _broadcast(r, g, b):
+    r, g, b = numpy.broadcast_arrays(r[..., 0], g[..., 0], b[..., 0])
+    return numpy.stack([r, g, b, numpy.ones_like(r)], -1)
+
+
+def _gray(value):
+    """The number that a colour is where a number is wanted: its luminance."""
+    if value.is_constant:
+        return constant(value.number)
+    if numpy.ptp(value.pixels[..., :3], -1).max() == 0:
+        return Value(value.pixels, value.mapping, value.source)
+    return Value(numpy.repeat((value.pixels[..., :3] @ _LUMINANCE)[..., None], 4, -1), value.mapping)
+
+
+gray = _gray
+
+
+def as_codes(value, notices):
+    """(H, W, 4), and "srgb" or "linear": the image of a Value as it is best kept."""
+    raw = raw_pixels(value.source) if value.source is not None else None
+    if raw is not None and raw.dtype == numpy.uint8:
+        return raw, "srgb" if is_srgb(value.source, notices) else "linear"
+    return value.pixels, "linear"

@@ -1,0 +1,474 @@
+"""Renders scenes with the add-on in Blender, without a window, and checks what must be seen in closed form.
+
+usage: python tests/blender/blender_test.py FOLDER PROGRAM [unittest's options]
+FOLDER: that of the add-on, build/blender/candela_blender (sh cmake/blender.sh). Needs PyPI's bpy.
+"""
+import math
+import os
+import signal
+import sys
+import tempfile
+import unittest
+import warnings
+from pathlib import Path
+
+import bpy
+import mathutils
+import numpy
+from bpy_extras.object_utils import world_to_camera_view
+
+FOLDER = Path(sys.argv.pop(1))
+os.environ["CANDELA"] = os.path.abspath(sys.argv.pop(1))
+sys.path.insert(0, str(FOLDER.parent.resolve()))
+addon = __import__(FOLDER.name)
+writer_of = addon.engine.SceneWriter
+Error = addon.engine.candela.Error
+
+SIZE = 64
+RHO = 0.5
+
+
+def link(thing):
+    bpy.context.collection.objects.link(thing)
+    return thing
+
+
+def look(thing, location, target):
+    thing.location = location
+    thing.rotation_euler = (mathutils.Vector(target) - mathutils.Vector(location)).to_track_quat("-Z", "Y").to_euler()
+    return thing
+
+
+def add_camera(location=(0, 0, 10), target=(0, 0, 0), **values):
+    data = bpy.data.cameras.new("Camera")
+    for key, value in values.items():
+        setattr(data, key, value)
+    camera = look(link(bpy.data.objects.new("Camera", data)), location, target)
+    bpy.context.scene.camera = camera
+    return camera
+
+
+def add_light(kind, location=(0, 0, 2), target=(0, 0, 0), **values):
+    data = bpy.data.lights.new(kind, kind)
+    for key, value in values.items():
+        setattr(data, key, value)
+    return look(link(bpy.data.objects.new(kind, data)), location, target)
+
+
+def principled(name="Material", **values):
+    material = bpy.data.materials.new(name)
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = True
+    node = material.node_tree.nodes["Principled BSDF"]
+    for key, value in values.items():
+        node.inputs[key.replace("_", " ")].default_value = value
+    return material
+
+
+def matte(name="Matte"):
+    return principled(name, Base_Color=(RHO, RHO, RHO, 1), Roughness=1.0, Specular_IOR_Level=0.0)
+
+
+def glowing(strength=1.0, name="Glow"):
+    return principled(name, Base_Color=(0, 0, 0, 1), Specular_IOR_Level=0.0, Emission_Color=(1, 1, 1, 1),
+                      Emission_Strength=strength)
+
+
+def add(kind, material, **values):
+    getattr(bpy.ops.mesh, f"primitive_{kind}_add")(**values)
+    thing = bpy.context.object
+    thing.data.materials.append(material)
+    return thing
+
+
+def centre(image):
+    """The mean of the four pixels in the middle."""
+    half = image.shape[0] // 2
+    return image[half - 1:half + 1, half - 1:half + 1].mean((0, 1))
+
+
+def spot_of(image):
+    """Where the light in a picture is on average: (x, y) in pixels from the top left."""
+    weight = image[..., 0]
+    y, x = numpy.mgrid[0:weight.shape[0], 0:weight.shape[1]] + 0.5
+    return numpy.array([(x * weight).sum(), (y * weight).sum()]) / weight.sum()
+
+
+class BlenderTest(unittest.TestCase):
+    """Each begins with an empty scene, black all around, and 16 samples."""
+
+    @classmethod
+    def setUpClass(cls):
+        warnings.simplefilter("ignore", DeprecationWarning)
+
+    def setUp(self):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        addon.register()
+        self.addCleanup(addon.unregister)
+        scene = bpy.context.scene
+        scene.render.engine = "CANDELA"
+        scene.render.resolution_x = scene.render.resolution_y = SIZE
+        scene.candela.samples = 16
+        scene.render.image_settings.file_format = "OPEN_EXR"
+        scene.render.image_settings.color_depth = "32"
+        scene.view_settings.view_transform = "Raw"
+        world = bpy.data.worlds.new("World")
+        scene.world = world
+        if bpy.app.version < (5, 0, 0):
+            world.use_nodes = True
+        self.background = world.node_tree.nodes["Background"]
+        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.file = str(Path(folder.name) / "picture.exr")
+
+    def render(self):
+        """(H, W, 4): the picture, rows from the top."""
+        bpy.context.scene.render.filepath = self.file
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(self.file)
+        pixels = numpy.empty(image.size[0] * image.size[1] * 4, numpy.float32)
+        image.pixels.foreach_get(pixels)
+        width, height = image.size
+        bpy.data.images.remove(image)
+        return pixels.reshape(height, width, 4)[::-1].astype(float)
+
+    def notices(self):
+        writer = writer_of(bpy.context.evaluated_depsgraph_get(), addon.program.session(), (SIZE, SIZE))
+        writer.write().close()
+        return "\n".join(writer.notices)
+
+    def expect_spot(self, image, thing, point=(0, 0, 0)):
+        """A small light is where Blender itself projects it, within a tenth of a pixel."""
+        world = thing.matrix_world @ mathutils.Vector(point)
+        x, y, _ = world_to_camera_view(bpy.context.scene, bpy.context.scene.camera, world)
+        expected = numpy.array([x * image.shape[1], (1 - y) * image.shape[0]])
+        self.assertLess(numpy.abs(spot_of(image) - expected).max(), 0.1)
+
+    def expect_close(self, found, expected, tolerance):
+        self.assertLess(abs(found / expected - 1), tolerance, f"{found}, not {expected}")
+
+    # Lights: the radiance of a matte floor below them is RHO / pi times its irradiance. What is left is how the floor's
+    # irradiance varies over the four pixels, and for those with an area, the noise of 1024 samples.
+
+    def floor_below(self, samples=16):
+        add("plane", matte(), size=4)
+        add_camera(location=(6, -6, 6), lens=200)  # The lights are not in the way.
+        bpy.context.scene.candela.samples = samples
+        return centre(self.render())[1] * math.pi / RHO
+
+    def test_a_point_light_sends_its_power_evenly(self):
+        add_light("POINT", location=(1, 0, 2), energy=100, shadow_soft_size=0)
+        self.expect_close(self.floor_below(), 100 / (4 * math.pi) * 2 / 5 ** 1.5, 0.005)
+
+    def test_a_soft_point_light_is_a_sphere(self):
+        add_light("POINT", location=(0, 0, 2), energy=100, shadow_soft_size=0.5)
+        self.expect_close(self.floor_below(1024), 100 / (4 * math.pi) / 4, 0.005)
+
+    def test_a_sun_has_the_irradiance_that_it_says(self):
+        add_light("SUN", location=(0, 3, 4), energy=2, angle=0)
+        self.expect_close(self.floor_below(), 2 * 0.8, 1e-4)
+
+    def test_a_spot_is_a_part_of_a_point_light(self):
+        add_light("SPOT", location=(0, 0, 2), energy=100, shadow_soft_size=0, spot_size=1.0, spot_blend=0.2)
+        self.expect_close(self.floor_below(), 100 / (4 * math.pi) / 4, 0.005)
+
+    def test_areas_shine_by_their_shape_and_scale(self):
+        # Small ones, 2 m away: irradiance = power / (pi d²).
+        for shape, scale in (("SQUARE", 1), ("RECTANGLE", 1), ("DISK", 1), ("ELLIPSE", 1), ("SQUARE", 3)):
+            with self.subTest(shape=shape, scale=scale):
+                bpy.ops.object.select_all(action="SELECT")
+                bpy.ops.object.delete()
+                light = add_light("AREA", location=(0, 0, 2), energy=100, shape=shape, size=0.03, size_y=0.02)
+                light.scale = (scale, scale, 1)
+                self.expect_close(self.floor_below(1024), 100 / (math.pi * 4), 0.01)
+
+    def test_a_constant_world_lights_evenly(self):
+        self.background.inputs["Color"].default_value = (0.5, 0.25, 1, 1)
+        self.background.inputs["Strength"].default_value = 2
+        add("uv_sphere", principled(Base_Color=(1, 1, 1, 1), Roughness=1.0, Specular_IOR_Level=0.0), radius=1)
+        add_camera()
+        image = self.render()
+        for x, y in ((0, 0), (SIZE // 2, SIZE // 2)):
+            numpy.testing.assert_allclose(image[y, x, :3], (1, 0.5, 2), rtol=0.05)
+
+    def test_an_image_of_the_world_is_where_blender_has_it(self):
+        image = bpy.data.images.new("Sky", 64, 32, float_buffer=True)
+        pixels = numpy.zeros((32, 64, 4), numpy.float32)
+        pixels[15:17, 31:33] = 1  # The middle is +X, and turned by 90 degrees about Z the picture is turned by -90: -Y.
+        image.pixels.foreach_set(pixels.ravel())
+        tree = bpy.context.scene.world.node_tree
+        texture = tree.nodes.new("ShaderNodeTexEnvironment")
+        texture.image = image
+        mapping = tree.nodes.new("ShaderNodeMapping")
+        tree.links.new(texture.outputs[0], self.background.inputs["Color"])
+        camera = add_camera(location=(0, 0, 0), target=(1, 0, 0), lens=36)
+        self.assertLess(numpy.abs(spot_of(self.render()) - SIZE / 2).max(), 0.5)
+        mapping.inputs["Rotation"].default_value = (0, 0, math.pi / 2)
+        coordinates = tree.nodes.new("ShaderNodeTexCoord")
+        tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
+        tree.links.new(mapping.outputs[0], texture.inputs["Vector"])
+        look(camera, (0, 0, 0), (0, -1, 0))
+        self.assertLess(numpy.abs(spot_of(self.render()) - SIZE / 2).max(), 0.5)
+
+    # Cameras.
+
+    def test_cameras_see_things_where_blender_does(self):
+        ball = add("uv_sphere", glowing(), radius=0.02, location=(0.7, 0.3, 0.5))
+        views = ({}, {"lens": 35, "sensor_fit": "VERTICAL", "sensor_height": 20}, {"shift_x": 0.1, "shift_y": -0.2},
+                 {"type": "ORTHO", "ortho_scale": 4}, {"type": "ORTHO", "ortho_scale": 4, "shift_x": 0.1})
+        bpy.context.scene.render.resolution_x = 96
+        for values in views:
+            with self.subTest(**values):
+                add_camera(location=(1, -4, 2), target=(0.4, 0, 0.2), **values)
+                bpy.context.scene.candela.samples = 64
+                self.expect_spot(self.render(), ball)
+
+    def test_a_border_is_a_part_of_the_picture(self):
+        add("plane", glowing(), size=1, location=(1, 1, 0))
+        add_camera(type="ORTHO", ortho_scale=4)
+        whole = self.render()
+        render = bpy.context.scene.render
+        render.use_border, render.use_crop_to_border = True, True
+        render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.5, 1.0, 0.25, 1.0
+        numpy.testing.assert_array_equal(self.render(), whole[:SIZE * 3 // 4, SIZE // 2:])
+
+    def test_what_is_out_of_focus_is_blurred(self):
+        add("uv_sphere", glowing(), radius=0.02)
+        camera = add_camera(location=(0, 0, 5), lens=50)
+        sharp = (self.render()[..., 0] > 0).sum()
+        camera.data.dof.use_dof = True
+        camera.data.dof.aperture_fstop = 0.1
+        focus = link(bpy.data.objects.new("Focus", None))
+        focus.location = (0.3, 0.2, 0)
+        camera.data.dof.focus_object = focus
+        self.assertLess((self.render()[..., 0] > 0).sum(), sharp + 8)
+        focus.location = (0, 0, 2.5)
+        # The circle of confusion of a radius of 0.25 m, from 5 m, focused at 2.5 m: as large as the aperture there.
+        bpy.context.scene.candela.samples = 256
+        radius = 0.25 / 5 * 50 / 36 * SIZE
+        blurred = (self.render()[..., 0] > 0).sum()
+        self.expect_close(blurred, math.pi * radius ** 2, 0.2)
+
+    # Materials and textures.
+
+    def test_images_are_upright(self):
+        image = bpy.data.images.new("Corners", 2, 2)
+        image.pixels = [1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 1, 1, 1, 1]  # From the lower left.
+        material = glowing()
+        texture = material.node_tree.nodes.new("ShaderNodeTexImage")
+        texture.image, texture.interpolation = image, "Closest"
+        material.node_tree.links.new(texture.outputs[0], material.node_tree.nodes["Principled BSDF"].inputs["Emission Color"])
+        add("plane", material, size=2)
+        add_camera(type="ORTHO", ortho_scale=2)
+        found = self.render()
+        quarter = SIZE // 4
+        for (y, x), color in (((3, 1), (1, 0, 0)), ((3, 3), (0, 1, 0)), ((1, 1), (0, 0, 1)), ((1, 3), (1, 1, 1))):
+            numpy.testing.assert_allclose(found[y * quarter, x * quarter, :3], color, atol=1e-6)
+
+    def test_nodes_compute_on_images(self):
+        image = bpy.data.images.new("Half", 1, 1, float_buffer=True)
+        image.pixels = [0.5, 0.25, 0.125, 1]
+        material = glowing()
+        tree = material.node_tree
+        texture, ramp = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeValToRGB")
+        multiply, separate = tree.nodes.new("ShaderNodeMath"), tree.nodes.new("ShaderNodeSeparateColor")
+        texture.image, multiply.operation = image, "MULTIPLY"
+        multiply.inputs[1].default_value = 2
+        ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0, 0, 1, 1), (1, 0, 0, 1)
+        tree.links.new(texture.outputs["Color"], separate.inputs[0])
+        tree.links.new(separate.outputs[1], multiply.inputs[0])
+        tree.links.new(multiply.outputs[0], ramp.inputs[0])
+        tree.links.new(ramp.outputs[0], tree.nodes["Principled BSDF"].inputs["Emission Color"])
+        add("plane", material, size=20)
+        add_camera()
+        numpy.testing.assert_allclose(centre(self.render())[:3], (0.5, 0, 0.5), atol=1e-3)
+
+    def test_shaders_are_read(self):
+        """Of each shader below a world of radiance 1: white ones are as bright as the world, whatever they are."""
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.background.inputs["Strength"].default_value = 1
+        for kind in ("BsdfDiffuse", "BsdfGlossy", "BsdfGlass", "BsdfTranslucent", "BsdfTransparent"):
+            with self.subTest(kind=kind):
+                bpy.ops.object.select_all(action="SELECT")
+                bpy.ops.object.delete()
+                material = principled()
+                tree = material.node_tree
+                shader = tree.nodes.new("ShaderNode" + kind)
+                shader.inputs["Color"].default_value = (1, 1, 1, 1)
+                tree.links.new(shader.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+                add("uv_sphere", material, radius=1)
+                add_camera()
+                self.assertEqual(self.notices(), "")
+                self.expect_close(centre(self.render())[1], 1.0, 0.1)
+
+    def test_what_candela_does_not_know_is_named(self):
+        material = principled("Clouds", Subsurface_Weight=0.5)
+        noise = material.node_tree.nodes.new("ShaderNodeTexNoise")
+        material.node_tree.links.new(noise.outputs[0], material.node_tree.nodes["Principled BSDF"].inputs["Base Color"])
+        ball = add("uv_sphere", material, radius=1)
+        ball.modifiers.new("Hair", "PARTICLE_SYSTEM")
+        ball.particle_systems[0].settings.type = "HAIR"
+        link(bpy.data.objects.new("Smoke", bpy.data.volumes.new("Smoke")))
+        add_camera()
+        found = self.notices()
+        for text in ('Material "Clouds", node "Noise Texture": candela does not know', "does not scatter light below",
+                     '"Sphere": candela has no hair', 'Object "Smoke": candela has no volumes'):
+            self.assertIn(text, found)
+        self.render()
+
+    # Scenes.
+
+    def test_instances_of_collections_and_geometry_nodes_are_shown(self):
+        collection = bpy.data.collections.new("Balls")
+        ball = add("uv_sphere", glowing(), radius=0.3)
+        bpy.context.collection.objects.unlink(ball)
+        collection.objects.link(ball)
+        for x in (-1.5, 0, 1.5):
+            empty = link(bpy.data.objects.new("Instance", None))
+            empty.instance_type, empty.instance_collection = "COLLECTION", collection
+            empty.location = (x, 1, 0)
+        grid = add("grid", glowing(), x_subdivisions=2, y_subdivisions=2, size=3)
+        grid.location = (0, -2, 0)
+        group = bpy.data.node_groups.new("Points", "GeometryNodeTree")
+        group.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
+        group.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+        begin, end = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+        instances, cube = group.nodes.new("GeometryNodeInstanceOnPoints"), group.nodes.new("GeometryNodeMeshCube")
+        material = group.nodes.new("GeometryNodeSetMaterial")
+        material.inputs["Material"].default_value = bpy.data.materials["Glow"]
+        cube.inputs["Size"].default_value = (0.3, 0.3, 0.3)
+        group.links.new(begin.outputs[0], instances.inputs["Points"])
+        group.links.new(cube.outputs[0], material.inputs["Geometry"])
+        group.links.new(material.outputs[0], instances.inputs["Instance"])
+        group.links.new(instances.outputs[0], end.inputs[0])
+        grid.modifiers.new("Points", "NODES").node_group = group
+        add_camera(type="ORTHO", ortho_scale=8)
+        image = self.render()[..., 0]
+        pixel = (8 / SIZE) ** 2
+        self.expect_close(image[:SIZE // 2].sum() * pixel, 3 * math.pi * 0.09, 0.03)
+        self.expect_close(image.sum() * pixel, 3 * math.pi * 0.09 + 9 * 0.09, 0.03)
+
+    def test_animations_move_objects_and_bones(self):
+        bpy.context.scene.candela.samples = 256
+        ball = add("uv_sphere", glowing(), radius=0.05)
+        for frame, x in ((1, -1), (11, 1)):
+            ball.location = (x, 0, 0)
+            ball.keyframe_insert("location", frame=frame)
+        add_camera()
+        for frame in (1, 4, 11):
+            bpy.context.scene.frame_set(frame)
+            self.expect_spot(self.render(), ball)
+        bpy.data.objects.remove(ball)
+        armature = link(bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones")))
+        bpy.context.view_layer.objects.active = armature
+        bpy.ops.object.mode_set(mode="EDIT")
+        bone = armature.data.edit_bones.new("Bone")
+        bone.head, bone.tail = (0, 0, 0), (0, 1, 0)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        ball = add("uv_sphere", glowing(), radius=0.05, location=(0, 1, 0))
+        bpy.ops.object.transform_apply()
+        ball.vertex_groups.new(name="Bone").add(range(len(ball.data.vertices)), 1.0, "ADD")
+        ball.modifiers.new("Bones", "ARMATURE").object = armature
+        pose = armature.pose.bones["Bone"]
+        pose.rotation_mode = "XYZ"
+        for angle in (0, 0.5, 1.0):
+            pose.rotation_euler = (0, 0, angle)
+            bpy.context.view_layer.update()
+            self.expect_spot(self.render(), armature, (-math.sin(angle), math.cos(angle), 0))
+
+    def test_a_transparent_film_has_no_world_in_it(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.background.inputs["Strength"].default_value = 1
+        bpy.context.scene.render.film_transparent = True
+        add("uv_sphere", matte(), radius=1)
+        add_camera()
+        image = self.render()
+        numpy.testing.assert_array_equal(image[0, 0], 0)
+        self.assertEqual(centre(image)[3], 1)
+        self.assertGreater(centre(image)[0], 0.3)
+
+    def test_denoises(self):
+        bpy.context.scene.candela.samples = 4
+        add("plane", matte(), size=20)
+        add_light("AREA", location=(0, 0, 3), energy=100, size=3)
+        add_camera(location=(0, -5, 5))
+        noisy = self.render()
+        bpy.context.scene.candela.denoise = "variance"
+        smooth = self.render()
+        # Half of the differences between pixels beside each other are noise, or more.
+        roughness = [numpy.abs(numpy.diff(image[SIZE // 2:, :, 1])).mean() for image in (noisy, smooth)]
+        self.assertLess(roughness[1], roughness[0] / 2)
+
+    def test_passes_are_blenders(self):
+        layer = bpy.context.view_layer
+        layer.use_pass_z = layer.use_pass_normal = layer.use_pass_position = True
+        add("plane", matte(), size=2, location=(0, 0, 1), rotation=(0.5, 0, 0))
+        add_camera(location=(0, 0, 5))
+        read = {}
+        show = addon.engine.CandelaEngine._show
+
+        def spy(engine, image, view_layer, settings):
+            show(engine, image, view_layer, settings)
+            read.update({name: values(image) for name, _, _, _, values in addon.engine._passes(view_layer, settings)})
+        addon.engine.CandelaEngine._show = spy
+        self.addCleanup(setattr, addon.engine.CandelaEngine, "_show", show)
+        self.render()
+        self.expect_close(centre(read["Depth"])[0], 4, 1e-3)
+        # Normals of vertices have 16 bits a coordinate.
+        numpy.testing.assert_allclose(centre(read["Normal"]), (0, -math.sin(0.5), math.cos(0.5)), atol=1e-4)
+        numpy.testing.assert_allclose(centre(read["Position"]), (0, 0, 1), atol=1e-3)
+
+    # What goes wrong.
+
+    def test_what_candela_refuses_is_an_error_with_blenders_names(self):
+        plane = add("plane", matte())
+        plane.name = "Broken"
+        plane.data.vertices[0].co.x = math.nan
+        add_camera()
+        with self.assertRaisesRegex(RuntimeError, "Broken.vertices.*finite"):
+            self.render()
+
+    def test_a_cancelled_rendering_keeps_its_picture(self):
+        add("plane", glowing(), size=20)
+        add_camera()
+        bpy.context.scene.candela.samples = 1 << 20
+        engine = addon.engine.CandelaEngine
+        tell = engine._tell
+
+        def stop(self, done, began):
+            if done > 0:
+                raise addon.engine._Cancelled
+            tell(self, done, began)
+        engine._tell = stop
+        self.addCleanup(setattr, engine, "_tell", tell)
+        numpy.testing.assert_allclose(centre(self.render())[:3], 1, rtol=1e-6)
+
+    def test_a_program_that_dies_is_an_error_and_the_next_picture_begins_another(self):
+        add("plane", glowing(), size=20)
+        add_camera()
+        bpy.context.scene.candela.samples = 1 << 20
+        engine = addon.engine.CandelaEngine
+        tell = engine._tell
+
+        def kill(self, done, began):
+            os.kill(addon.program.session()._connection._process.pid, signal.SIGKILL)
+        engine._tell = kill
+        with self.assertRaisesRegex(RuntimeError, "the program ended: signal 9"):
+            self.render()
+        engine._tell = tell
+        bpy.context.scene.candela.samples = 4
+        numpy.testing.assert_allclose(centre(self.render())[:3], 1, rtol=1e-6)
+
+    def test_registers_again(self):
+        addon.unregister()
+        with self.assertRaises(TypeError):
+            bpy.context.scene.render.engine = "CANDELA"
+        addon.register()
+        bpy.context.scene.render.engine = "CANDELA"
+
+
+if __name__ == "__main__":
+    outcome = unittest.main(exit=False).result
+    sys.stdout.flush()
+    os._exit(0 if outcome.wasSuccessful() and outcome.testsRun else 1)
