@@ -13,7 +13,7 @@ constexpr size_t MEDIAN_PIXELS = 1 << 16;
 
 }  // namespace
 
-PictureLevel::PictureLevel(const RgbPlanes& rgb) : unit_(1.0f) {
+PictureLevel::PictureLevel(const RgbPlanes& rgb) {
     const size_t pixels = rgb[0].size(), stride = pixels / MEDIAN_PIXELS + 1;
     std::vector<float> levels;
     for (size_t i = 0; i < pixels; i += stride) {

@@ -25,7 +25,7 @@ class PictureLevel {
     // A sun is some 2^20 times as bright as what it lights. Squares of greater values would soon overflow.
     static constexpr float GREATEST_VALUE = 0x1p40f;
 
-    float unit_;
+    float unit_ = 1.0f;
 };
 
 inline vec3 rgb_at(const RgbPlanes& planes, size_t i) {

@@ -14,8 +14,8 @@
 namespace candela {
 namespace {
 
-// A tile of this size takes, with the library's own memory, no more than OIDN_BYTES in any quality. What lies
-// beyond the overlap changes a pixel by less than an 8-bit picture shows.
+// A tile of this size takes, with the library's own memory, no more than OIDN_BYTES in any quality.
+// Tiles overlap, so that what is missing beyond their edges does not show.
 constexpr uint32_t TILE = 512, OVERLAP = 64;
 constexpr int SCRATCH_MEBIBYTES = 128;
 
@@ -136,8 +136,8 @@ struct TileImage {
     uint32_t width, height;
     std::vector<float> values;
 
-    TileImage(uint32_t width_, uint32_t height_)
-        : width(width_), height(height_), values(size_t{3} * width_ * height_) {}
+    TileImage(uint32_t columns, uint32_t rows)
+        : width(columns), height(rows), values(size_t{3} * columns * rows) {}
 };
 
 // A part of the picture.

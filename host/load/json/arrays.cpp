@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <tuple>
 #include <utility>
 
 #include "base/error.h"
@@ -99,23 +100,21 @@ bool is_array_name(const Node& node) {
 ArrayRows::ArrayRows(const Node& node, const Scene& scene, std::initializer_list<uint64_t> columns,
                      std::optional<uint64_t> rows)
     : node_(node), arrays_(scene.arrays) {
-    const auto [name, array] = find_array(node, scene);
-    name_ = name;
-    array_ = array;
+    std::tie(name_, array_) = find_array(node, scene);
     std::string wanted;
     for (const uint64_t count : columns)
         wanted += (wanted.empty() ? "" : " or ") + std::to_string(count);
-    const std::vector<uint64_t>& shape = array->shape;
+    const std::vector<uint64_t>& shape = array_->shape;
     const auto refuse = [&](const std::string& what) {
-        node.fail(concat("the array ", quote(name), ": expected ", what, ", found ", text_of(shape)));
+        node.fail(concat("the array ", quote(name_), ": expected ", what, ", found ", text_of(shape)));
     };
     if (shape.size() < 2) refuse(concat("rows of ", wanted, " numbers"));
     for (size_t i = 1; i < shape.size(); ++i)
         columns_ *= shape[i];
     if (std::ranges::find(columns, columns_) == columns.end()) refuse(concat("rows of ", wanted, " numbers"));
     if (rows && shape.front() != *rows) refuse(concat(*rows, " rows, one for each position"));
-    if (array->type == NumberType::float16)
-        node.fail(concat("the array ", quote(name),
+    if (array_->type == NumberType::float16)
+        node.fail(concat("the array ", quote(name_),
                          " is of the type float16, which only images may be; use float32"));
 }
 

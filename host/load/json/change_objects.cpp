@@ -100,7 +100,7 @@ Shape edited(const InstanceEdit& edit, const std::string& place, const Shape& be
                     " cannot be placed so: the transform flattens it, or scales a sphere in it unevenly; use "
                     "other factors");
     if (!reaches_no_farther(scene, shape.geometry)) throw Error(place + ": " + object + ": " + TOO_FAR);
-    if (!shape.visible) shape.origin = std::make_shared<const Origin>(std::move(origin));
+    if (!shape.visible) shape.origin = std::make_shared<const Origin>(origin);
     return shape;
 }
 

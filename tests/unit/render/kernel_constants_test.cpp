@@ -44,7 +44,7 @@ TEST(KernelConstants, AreNumberedInTheOrderOfTheList) {
         EXPECT_EQ(CONSTANT_ENTRIES[i].number, i);
     for (uint32_t i = 0; i < ARRAY_COUNT; ++i)
         EXPECT_EQ(SCENE_ARRAYS[i].number, i);
-    EXPECT_EQ(BUFFER_COUNT, CONSTANT_COUNT - CONSTANT_SLOT_NODES);
+    EXPECT_EQ(CONSTANT_SLOT_NODES + BUFFER_COUNT, CONSTANT_DENOISING_LAYER);  // Which follows them.
 }
 
 }  // namespace
