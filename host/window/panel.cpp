@@ -118,11 +118,11 @@ void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& fig
     ImGui::SliderFloat("exposure", &state.exposure_ev, -EXPOSURE_RANGE, EXPOSURE_RANGE, "%.2f EV",
                        ImGuiSliderFlags_AlwaysClamp);
     choose("tone map", state.tonemap, TONEMAPS);
-    ImGui::Checkbox("denoise at rest", &state.denoise);
     ImGui::Separator();
     show_camera(state, requests, cameras, home);
     show_rendering(state);
     if (has_environment) show_environment(state);
+    ImGui::Checkbox("denoise at rest", &state.denoise);
     if (ImGui::CollapsingHeader("mouse and keys")) ImGui::TextUnformatted(CONTROLS_HELP);
     // Last, so that nothing above moves when it appears.
     if (!figures.message.empty()) ImGui::TextWrapped("%s", figures.message.c_str());
