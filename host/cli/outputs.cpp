@@ -28,7 +28,8 @@ void use_half(Image& image) {
     for (Channel& channel : image.channels) {
         const bool is_colour =
             std::ranges::find(COLOUR_CHANNELS, channel.name) != std::end(COLOUR_CHANNELS) ||
-            channel.name.starts_with("DenoisingAlbedo.") || is_denoised_channel(channel.name);
+            (channel.name.starts_with("DenoisingAlbedo.") && channel.name != DENOISING_ALBEDO_VARIANCE) ||
+            is_denoised_channel(channel.name);
         if (!is_colour) continue;
         channel.half = std::ranges::all_of(
             channel.values, [](float v) { return !std::isfinite(v) || std::abs(v) <= LARGEST_HALF; });

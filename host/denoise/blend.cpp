@@ -15,13 +15,17 @@ namespace {
 // Weights of the pixels of a window along one axis.
 constexpr std::array<double, 5> WINDOW{1.0, 2.0, 3.0, 2.0, 1.0};
 constexpr uint32_t RADIUS = uint32_t(WINDOW.size()) / 2;
-// The share of the variance that is taken for noise, with few samples and with many: samples of a
-// low-discrepancy sequence differ more than their mean errs. Taking all of it for noise would hide a bias.
-constexpr double NOISE_SHARE_FEW = 0.85, NOISE_SHARE_MANY = 0.2;
-// By how much the agreement of neighbours counts, see below.
-constexpr double AGREEMENT_GAIN_FEW = 2.0, AGREEMENT_GAIN_MANY = 4.0;
-// Samples per pixel.
-constexpr double FEW = 64.0, MANY = 4096.0;
+// How much is believed of a difference, by samples per pixel.
+struct Belief {
+    double samples;
+    // How much of the variance is taken for noise. Samples of a low-discrepancy sequence differ more than
+    // their mean errs, and taking all of it for noise would hide a bias; few samples tell the variance badly,
+    // and a denoised picture errs far less than they do.
+    double noise_share;
+    double agreement_gain;  // By how much the agreement of neighbours counts, see below.
+};
+constexpr std::array BELIEFS{Belief{16.0, 1.2, 1.0}, Belief{64.0, 0.85, 2.0}, Belief{4096.0, 0.2, 4.0}};
+constexpr double UNKNOWN_SAMPLES = 64.0;  // Taken if nothing says how many there are.
 // The level below which errors count as if absolute, of the picture's.
 constexpr double DARKNESS = 1e-3;
 // Differences of neighbours agree by a bias alone, whatever the noise: the share of the squared difference by
@@ -36,6 +40,18 @@ struct Difference {
     dvec3 value{0.0};
     double noise = 0.0;
 };
+
+// Between those of BELIEFS, in proportion to the logarithm of the samples.
+Belief belief_of(double samples_per_pixel) {
+    const double samples = samples_per_pixel > 0.0 ? samples_per_pixel : UNKNOWN_SAMPLES;
+    const auto after = std::ranges::find_if(BELIEFS, [&](const Belief& b) { return b.samples >= samples; });
+    if (after == BELIEFS.begin()) return BELIEFS.front();
+    if (after == BELIEFS.end()) return BELIEFS.back();
+    const Belief &a = after[-1], &b = *after;
+    const double t = std::log(samples / a.samples) / std::log(b.samples / a.samples);
+    return {samples, std::lerp(a.noise_share, b.noise_share, t),
+            std::lerp(a.agreement_gain, b.agreement_gain, t)};
+}
 
 // Sums over a window: of squared differences, of noise, and of products with the neighbours beside and
 // below.
@@ -64,12 +80,8 @@ class Weights {
           variance_(variance),
           denoised_(denoised),
           level_(noisy),
-          darkness_(std::pow(DARKNESS * double(level_.unit()), 2.0)) {
-        const double many =
-            std::clamp(std::log(std::max(samples_per_pixel, FEW) / FEW) / std::log(MANY / FEW), 0.0, 1.0);
-        noise_share_ = std::lerp(NOISE_SHARE_FEW, NOISE_SHARE_MANY, many);
-        agreement_gain_ = std::lerp(AGREEMENT_GAIN_FEW, AGREEMENT_GAIN_MANY, many);
-    }
+          darkness_(std::pow(DARKNESS * double(level_.unit()), 2.0)),
+          belief_(belief_of(samples_per_pixel)) {}
 
     // Fills the rows from y0 to y1, exclusive.
     void fill(uint32_t y0, uint32_t y1, std::vector<float>& weights) const {
@@ -152,8 +164,9 @@ class Weights {
         if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i)) return 0.0f;
         if (sum.noise <= 0.0) return 1.0f;
         if (sum.square <= 0.0) return 0.0f;
-        const double unexplained = 1.0 - noise_share_ * sum.noise / sum.square;
-        const double agreeing = agreement_gain_ * (std::max(sum.beside, sum.below) / sum.square - CHANCE);
+        const double unexplained = 1.0 - belief_.noise_share * sum.noise / sum.square;
+        const double agreeing =
+            belief_.agreement_gain * (std::max(sum.beside, sum.below) / sum.square - CHANCE);
         return float(std::clamp(std::max(unexplained, agreeing), 0.0, 1.0));
     }
 
@@ -163,7 +176,7 @@ class Weights {
     const Denoised& denoised_;
     PictureLevel level_;
     double darkness_;
-    double noise_share_, agreement_gain_;
+    Belief belief_;
 };
 
 }  // namespace

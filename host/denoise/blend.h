@@ -19,10 +19,10 @@ namespace candela {
 // converges to the noisy picture.
 //
 // Samples of low-discrepancy sequences err less than V says, and a bias could hide behind it. But noise
-// differs from pixel to pixel, while a bias has the same sign along an edge: the weight is at least twice the
-// share of E d^2 by which neighbours agree, less 0.4. Both become stricter from 64 `samples_per_pixel` on (0
-// if unknown), where there is more to lose than to win: at 4096, V counts for a fifth instead of 85 %, and
-// the share four times.
+// differs from pixel to pixel, while a bias has the same sign along an edge: the weight is at least what the
+// share of E d^2 says by which neighbours agree. Both become stricter with `samples_per_pixel` (0 if
+// unknown), when there is more to lose than to win: up to 16 samples, V counts for 120 % and the share once;
+// at 64, for 85 % and twice; from 4096 on, for 20 % and four times.
 //
 // Where V is infinite (below two samples) or no number, nothing is known and the weight is 0. So it is where
 // only the noisy value is not finite, or beyond 2^40 times the picture's level; where the denoised one is

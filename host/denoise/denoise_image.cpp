@@ -68,7 +68,11 @@ NoisyPicture noisy_picture(const Image& image, bool with_alpha, const std::strin
     NoisyPicture picture{.size = {image.data.width(), image.data.height()}, .rgb = *colour};
     if (const Channel* const alpha = image.find("A"); with_alpha && varies(alpha))
         picture.alpha = alpha->values;
-    if (const auto albedo = albedo_of(image)) picture.albedo = albedo->planes;
+    if (const auto albedo = albedo_of(image)) {
+        picture.albedo = albedo->planes;
+        const Channel* const variance = image.find(std::string(albedo->layer) + ".V");
+        if (variance != nullptr) picture.albedo_variance = variance->values;
+    }
     if (const auto normal = normal_of(image)) picture.normal = normal->planes;
     picture.variance = image.find_rgb("Variance");
     if (const Channel* const samples = image.find("SampleCount.V")) picture.samples = samples->values;

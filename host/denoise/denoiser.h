@@ -22,6 +22,8 @@ struct NoisyPicture {
     std::optional<RgbPlanes> normal{};  // Mean normal, at most 1 long: x, y, z in place of red, green, blue.
     std::span<const float> alpha{};     // In [0, 1]; empty: none, and none is made.
     std::span<const float> samples{};   // Of each pixel; empty: unknown.
+    // Of each pixel's albedo, which is a mean, too: added up over red, green and blue; empty: unknown.
+    std::span<const float> albedo_variance{};
 
     size_t pixel_count() const { return size_t{size.x} * size.y; }
 };

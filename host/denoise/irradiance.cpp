@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "denoise/smooth_albedo.h"
 #include "shared/denoise.h"
 
 namespace candela {
@@ -17,8 +18,7 @@ constexpr float GREATEST_VARIANCE = 0x1p80f;
 // Taken for the samples of a pixel, if nothing says how many it has.
 constexpr float USUAL_SAMPLES = 16.0f;
 
-vec3 at(const std::optional<RgbPlanes>& planes, size_t i) {
-    const vec3 value = planes ? rgb_at(*planes, i) : vec3(0.0f);
+vec3 finite(vec3 value) {
     return is_finite(value) ? value : vec3(0.0f);
 }
 
@@ -26,14 +26,25 @@ vec3 at(const std::optional<RgbPlanes>& planes, size_t i) {
 
 Irradiance::Irradiance(const NoisyPicture& picture) : picture_(&picture), level_(picture.rgb) {}
 
+void Irradiance::load(const PixelRect& rect) {
+    rect_ = rect;
+    if (picture_->albedo) albedo_ = smooth_albedo(*picture_, rect);
+}
+
+vec3 Irradiance::albedo(size_t i) const {
+    if (albedo_.empty()) return vec3(0.0f);
+    const size_t x = i % picture_->size.x - rect_.x0, y = i / picture_->size.x - rect_.y0;
+    return albedo_[y * rect_.width() + x];
+}
+
 vec3 Irradiance::colour(size_t i) const {
     return rgb_at(picture_->rgb, i) / level_.unit();
 }
 
 vec3 Irradiance::reflected(size_t i) const {
     if (!picture_->albedo) return vec3(1.0f);
-    const vec3 albedo = rgb_at(*picture_->albedo, i);
-    return glm::clamp(is_finite(albedo) ? albedo : albedo_around(i), vec3(LEAST_ALBEDO), vec3(1.0f));
+    const vec3 own = albedo(i);
+    return glm::clamp(is_finite(own) ? own : albedo_around(i), vec3(LEAST_ALBEDO), vec3(1.0f));
 }
 
 vec3 Irradiance::albedo_around(size_t i) const {
@@ -64,7 +75,7 @@ vec4 Irradiance::texel(uint32_t layer, size_t i) const {
     switch (layer) {
         case DENOISE_LAYER_NORMAL: {
             // The variance of the coordinates of a unit vector is 1 minus its squared mean.
-            vec3 normal = at(picture_->normal, i);
+            vec3 normal = picture_->normal ? finite(rgb_at(*picture_->normal, i)) : vec3(0.0f);
             if (!has_features(i)) return vec4(vec3(0.0f), -1.0f);
             const float length = glm::length(normal);
             if (length == 0.0f) return vec4(0.0f);
@@ -74,15 +85,15 @@ vec4 Irradiance::texel(uint32_t layer, size_t i) const {
             return {normal, spread / (samples >= 1.0f ? samples : 1.0f)};
         }
         case DENOISE_LAYER_ALBEDO:
-            return {glm::clamp(at(picture_->albedo, i), 0.0f, 1.0f), 0.0f};
+            return {glm::clamp(finite(albedo(i)), 0.0f, 1.0f), 0.0f};
         case DENOISE_LAYER_SAMPLED: {
             if (!has_value(i)) return {vec3(DENOISE_MISSING), 0.0f};
             if (!picture_->variance) return {vec3(DENOISE_UNKNOWN), 0.0f};
             const vec3 variance = rgb_at(*picture_->variance, i) / level_.unit() / level_.unit();
             const bool is_known = glm::all(glm::greaterThanEqual(variance, vec3(0.0f))) &&
                                   glm::all(glm::lessThanEqual(variance, vec3(GREATEST_VARIANCE)));
-            const vec3 albedo = reflected(i);
-            return {is_known ? variance / albedo / albedo : vec3(DENOISE_UNKNOWN), 0.0f};
+            const vec3 over = reflected(i);
+            return {is_known ? variance / over / over : vec3(DENOISE_UNKNOWN), 0.0f};
         }
         default: {
             const float alpha =

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "base/math.h"
 #include "denoise/level.h"
@@ -15,6 +16,9 @@ class Irradiance {
     // `picture` must live as long.
     explicit Irradiance(const NoisyPicture& picture);
 
+    // Prepares the pixels of that rectangle; only these may then be asked for.
+    void load(const PixelRect& rect);
+
     // The texel of pixel i in a layer below DENOISE_LAYERS_GIVEN, as shared/denoise.h says.
     vec4 texel(uint32_t layer, size_t i) const;
 
@@ -24,6 +28,8 @@ class Irradiance {
 
   private:
     vec3 colour(size_t i) const;
+    // Without its noise; 0 if there is none.
+    vec3 albedo(size_t i) const;
     // What irradiance is multiplied by.
     vec3 reflected(size_t i) const;
     // The mean albedo of the 3 x 3 pixels around one without.
@@ -32,6 +38,8 @@ class Irradiance {
     bool has_features(size_t i) const;
 
     const NoisyPicture* picture_;
+    PixelRect rect_;
+    std::vector<vec3> albedo_;  // Of the rectangle; empty if the picture has none.
     PictureLevel level_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "denoise/smooth_albedo.h"
 #include "denoise/tiles.h"
 
 namespace candela {
@@ -31,9 +32,10 @@ int quality_code(DenoiserQuality quality) {
     return OIDN_HIGH;
 }
 
-// Light is limited to this after exposure. The network knows values up to 65504; far beyond, what it makes of
-// them spreads.
-constexpr float LARGEST = 1e7f;
+// Light is limited to this after exposure: the network spreads what is far brighter, such as a small lamp,
+// over the pixels around it. The blend gives the lamp its own values back; where the variance is unknown,
+// nothing does, and only what the network does not know at all (65504) is kept from it.
+constexpr float LARGEST = 100.0f, LARGEST_WITHOUT_BLEND = 1e7f;
 
 // A value of light: not a number is black, and infinity the largest number.
 float sane(float value) {
@@ -232,8 +234,8 @@ class TileDenoiser {
           filter_(device, quality) {
         const bool trusts_guides = quality != DenoiserQuality::fast;
         if (input.albedo) {
-            albedo_.emplace(first.width,
-                            first.height);  // As it is: the filter of albedos smears small letters.
+            // Not by the library's filter of albedos, which smears small letters.
+            albedo_.emplace(first.width, first.height);
         }
         if (input.albedo && input.normal) {
             normal_.emplace(first.width, first.height);
@@ -241,7 +243,7 @@ class TileDenoiser {
         }
         set_features(filter_, trusts_guides);
         const float exposure = exposure_of(input);
-        limit_ = LARGEST / exposure;
+        limit_ = (input.variance ? LARGEST : LARGEST_WITHOUT_BLEND) / exposure;
         filter_.set("hdr", true);
         filter_.set("inputScale", exposure);
         filter_.commit();
@@ -254,7 +256,7 @@ class TileDenoiser {
 
     void run(const Tile& tile, Denoised& picture) {
         const uint32_t width = input_.size.x;
-        if (albedo_) load(*albedo_, tile, width, *input_.albedo, sane_fraction);
+        if (albedo_) load_albedo(tile);
         if (normal_) load(*normal_, tile, width, *input_.normal, sane_normal);
         if (normal_filter_) normal_filter_->execute();
         load(colour_, tile, width, input_.rgb, [&](float value) { return std::min(sane(value), limit_); });
@@ -271,6 +273,15 @@ class TileDenoiser {
     }
 
   private:
+    void load_albedo(const Tile& tile) {
+        float* out = albedo_->values.data();
+        for (const vec3& albedo : smooth_albedo(
+                 input_,
+                 {tile.x.first, tile.y.first, tile.x.first + tile.width, tile.y.first + tile.height})) {
+            for (int c = 0; c < 3; ++c)
+                *out++ = sane_fraction(albedo[c]);
+        }
+    }
     void prefilter_normal(const OidnDevice& device, DenoiserQuality quality) {
         normal_filter_.emplace(device, quality);
         normal_filter_->set("normal", *normal_);

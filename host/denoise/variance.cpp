@@ -61,8 +61,8 @@ vk::Kernel make_kernel(const vk::Device& device, uint32_t pass, const vk::Storag
 // Filters tiles on the device.
 class Tiles {
   public:
-    Tiles(const vk::Device& device, const Irradiance& irradiance, uvec2 size, uint32_t tile)
-        : irradiance_(irradiance),
+    Tiles(const vk::Device& device, const NoisyPicture& picture, uvec2 size, uint32_t tile)
+        : irradiance_(picture),
           size_(size),
           image_(vk::make_storage_image(device, std::min(tile + 2 * halo(), size.x),
                                         std::min(tile + 2 * halo(), size.y), DENOISE_LAYER_COUNT,
@@ -85,6 +85,7 @@ class Tiles {
 
   private:
     void upload(const PixelRect& loaded) {
+        irradiance_.load(loaded);
         values_.resize(image_.layer_floats());
         for (uint32_t layer = 0; layer < DENOISE_LAYERS_GIVEN; ++layer) {
             parallel_for(loaded.height(), [&](size_t y) {
@@ -134,7 +135,7 @@ class Tiles {
         });
     }
 
-    const Irradiance& irradiance_;
+    Irradiance irradiance_;
     uvec2 size_;
     vk::StorageImage image_;
     vk::Kernel smooth_, filter_;
@@ -153,13 +154,10 @@ Denoised filter_by_variance(const vk::Device& device, const NoisyPicture& pictur
         plane.resize(pixels);
     if (!picture.alpha.empty()) result.alpha.resize(pixels);
     result.own_weight.resize(pixels);
-    const Irradiance irradiance(picture);
-    {
-        Tiles tiles(device, irradiance, size, tile);
-        for (uint32_t y = 0; y < size.y; y += tile) {
-            for (uint32_t x = 0; x < size.x; x += tile)
-                tiles.denoise({x, y, std::min(x + tile, size.x), std::min(y + tile, size.y)}, result);
-        }
+    Tiles tiles(device, picture, size, tile);
+    for (uint32_t y = 0; y < size.y; y += tile) {
+        for (uint32_t x = 0; x < size.x; x += tile)
+            tiles.denoise({x, y, std::min(x + tile, size.x), std::min(y + tile, size.y)}, result);
     }
     return result;
 }

@@ -71,14 +71,25 @@ class Half {
     double transmission(size_t i) const { return total(LAYER_ALBEDO, i, 3) / count(i); }
     // Variance of the mean, from the sum of the samples and the sum of their squares.
     double variance(size_t i, int component) const {
-        const double n = count(i);
-        if (n < 2) return INFINITE;
         const double samples = total(LAYER_L, i, component);
-        const double squares = total(LAYER_SQUARE, i, component);
-        return std::max(0.0, squares - samples * samples / n) / (n * (n - 1.0));
+        return variance(i, samples * samples, total(LAYER_SQUARE, i, component));
+    }
+    // The same of the guide albedo, added up over its channels.
+    double albedo_variance(size_t i) const {
+        const uint32_t layer = states_.front().denoising_layer + GUIDE_ALBEDO;
+        double squared_sum = 0.0;
+        for (int c = 0; c < 3; ++c) {
+            const double samples = total(layer, i, c);
+            squared_sum += samples * samples;
+        }
+        return variance(i, squared_sum, total(layer, i, 3));
     }
 
   private:
+    double variance(size_t i, double squared_sum, double squares) const {
+        const double n = count(i);
+        return n < 2 ? INFINITE : std::max(0.0, squares - squared_sum / n) / (n * (n - 1.0));
+    }
     template <class Value>
     double sum(size_t i, const Value& value) const {
         double sum = 0.0;
@@ -119,11 +130,11 @@ auto mean_of(const std::vector<Half>& halves, size_t i, const Value& value) {
     return count == 0 ? sum : sum / double(count);
 }
 
-// Variance of the image, which is the mean of independent halves.
-double variance_of_mean(const std::vector<Half>& halves, size_t i, int component) {
+// Variance of the mean of independent halves, whose own is variance(half).
+template <class Value>
+double variance_of_mean(const std::vector<Half>& halves, size_t i, const Value& variance) {
     if (std::ranges::any_of(halves, [i](const Half& half) { return half.count(i) == 0; })) return INFINITE;
-    return mean_of(halves, i, [&](const Half& half) { return half.variance(i, component); }) /
-           double(halves.size());
+    return mean_of(halves, i, variance) / double(halves.size());
 }
 
 }  // namespace
@@ -218,6 +229,9 @@ Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
     if (aovs.denoising) {
         add_means(DENOISING_ALBEDO, first.denoising_layer + GUIDE_ALBEDO);
         add_means(DENOISING_NORMAL, first.denoising_layer + GUIDE_NORMAL);
+        add_channel(image, DENOISING_ALBEDO_VARIANCE, [&](size_t i) {
+            return variance_of_mean(halves, i, [&](const Half& half) { return half.albedo_variance(i); });
+        });
     }
     if (aovs.position) {
         constexpr const char* NAMES[] = {"P.X", "P.Y", "P.Z"};
@@ -228,7 +242,9 @@ Image make_image(std::span<const Accumulation> states, const AovSelection& aovs,
     if (aovs.variance) {
         constexpr const char* NAMES[] = {"Variance.R", "Variance.G", "Variance.B"};
         for (int c = 0; c < 3; ++c)
-            add_channel(image, NAMES[c], [&](size_t i) { return variance_of_mean(halves, i, c); });
+            add_channel(image, NAMES[c], [&](size_t i) {
+                return variance_of_mean(halves, i, [&](const Half& half) { return half.variance(i, c); });
+            });
     }
     if (aovs.sample_count) add_channel(image, "SampleCount.V", [&](size_t i) { return count_of(states, i); });
     return image;

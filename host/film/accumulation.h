@@ -84,7 +84,7 @@ struct AovSelection {
     bool ids = false;          // ObjectId.V, InstanceId.V, MaterialId.V: see id_layers.h.
     bool cryptomatte = false;  // CryptoObject, CryptoMaterial: see id_layers.h.
     bool motion = false;       // Motion.X/Y: since the frame before; see render/motion.h.
-    bool denoising = false;    // DenoisingAlbedo.R/G/B, DenoisingNormal.X/Y/Z: see integrator/guides.glsl.
+    bool denoising = false;    // DenoisingAlbedo.R/G/B/V, DenoisingNormal.X/Y/Z: see integrator/guides.glsl.
 
     bool catchers = false;  // The scene has catchers, rendered as such: see catcher_layers.h.
 
@@ -107,6 +107,8 @@ inline constexpr std::array<const char*, 3> DENOISING_ALBEDO{"DenoisingAlbedo.R"
                                                              "DenoisingAlbedo.B"};
 inline constexpr std::array<const char*, 3> DENOISING_NORMAL{"DenoisingNormal.X", "DenoisingNormal.Y",
                                                              "DenoisingNormal.Z"};
+// The variance of the pixel's mean albedo, added up over its three channels; infinity below two samples.
+inline constexpr const char* DENOISING_ALBEDO_VARIANCE = "DenoisingAlbedo.V";
 
 inline Image make_image(const Accumulation& state, const AovSelection& aovs,
                         const std::vector<float>& positions) {

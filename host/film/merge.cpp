@@ -141,7 +141,15 @@ void warn_of_makers(const std::vector<Part>& parts, std::vector<std::string>& wa
     }
 }
 
-// The channels that all parts have, sorted by name; warns of channels that are left out.
+// Whether the means without which a variance cannot be merged are there.
+bool has_means(const std::string& name, const std::vector<std::string>& channels) {
+    return std::ranges::all_of(PartSum::means_of(name), [&](const std::string& mean) {
+        return std::ranges::find(channels, mean) != channels.end();
+    });
+}
+
+// The channels that all parts have, sorted by name, so that means are before their variances; warns of
+// channels that are left out.
 std::vector<std::string> common_channels(const std::vector<Part>& parts, std::vector<std::string>& warnings) {
     std::set<std::string> names;
     for (const Part& part : parts) {
@@ -160,6 +168,9 @@ std::vector<std::string> common_channels(const std::vector<Part>& parts, std::ve
         } else if (lacking != parts.end()) {
             warnings.push_back("the channel " + quoted_name + " is left out: " + lacking->name +
                                " does not have it");
+        } else if (!has_means(name, common)) {
+            warnings.push_back("the channel " + quoted_name +
+                               " is left out: the channels whose variance it is are missing");
         } else {
             common.push_back(name);
         }

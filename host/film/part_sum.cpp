@@ -38,7 +38,8 @@ static constexpr std::string_view MEANS[] = {"R",
                                              CATCHER_WITHOUT[0],
                                              CATCHER_WITHOUT[1],
                                              CATCHER_WITHOUT[2]};
-static constexpr std::string_view VARIANCES[] = {"Variance.R", "Variance.G", "Variance.B"};
+static constexpr std::string_view VARIANCES[] = {"Variance.R", "Variance.G", "Variance.B",
+                                                 DENOISING_ALBEDO_VARIANCE};
 static constexpr std::string_view CONSTANTS[] = {"P.X", "P.Y", "P.Z", "Z", "Depth.V", "Motion.X", "Motion.Y"};
 static constexpr std::string_view COUNT = "SampleCount.V";
 
@@ -56,6 +57,12 @@ bool PartSum::is_constant(const std::string& channel) {
     return contains(CONSTANTS, channel) || is_id_channel(channel);
 }
 
+std::vector<std::string> PartSum::means_of(const std::string& variance) {
+    if (variance == DENOISING_ALBEDO_VARIANCE) return {DENOISING_ALBEDO.begin(), DENOISING_ALBEDO.end()};
+    if (contains(VARIANCES, variance)) return {variance.substr(VARIANCE.size())};
+    return {};
+}
+
 PartSum::Kind PartSum::kind_of(const std::string& channel) {
     assert(knows(channel));
     if (contains(MEANS, channel)) return Kind::mean;
@@ -67,12 +74,10 @@ PartSum::PartSum(const Image& like, std::vector<std::string> channels)
     : full_(like.full), data_(like.data), counts_(like.pixel_count()) {
     for (std::string& name : channels) {
         const Kind kind = kind_of(name);
-        Sum sum{.name = std::move(name), .kind = kind, .mean_name = {}, .values = {}, .samples = {}};
+        Sum sum{.name = std::move(name), .kind = kind, .values = {}, .samples = {}};
         if (kind != Kind::count) sum.values.resize(like.pixel_count());
-        if (kind == Kind::variance) {
-            sum.mean_name = sum.name.substr(VARIANCE.size());
-            sum.samples.resize(like.pixel_count());
-        }
+        if (kind == Kind::variance)
+            sum.samples.assign(means_of(sum.name).size(), std::vector<double>(like.pixel_count()));
         sums_.push_back(std::move(sum));
     }
 }
@@ -84,17 +89,24 @@ void PartSum::add_mean(Sum& sum, const Channel& channel, const std::vector<uint3
 
 void PartSum::add_variance(Sum& sum, const Image& part, const std::vector<uint32_t>& counts) const {
     const std::vector<float>& variances = part.find(sum.name)->values;
-    const std::vector<float>& means = part.find(sum.mean_name)->values;
     for (size_t i = 0; i < counts.size(); ++i) {
         const double n = counts[i];
-        if (n == 0.0) continue;
-        const auto before = double(counts_[i]);
         if (n > 1.0) sum.values[i] += double(variances[i]) * n * (n - 1.0);  // Infinite for one sample.
-        if (before > 0.0) {
-            const double difference = double(means[i]) - sum.samples[i] / before;
-            sum.values[i] += difference * difference * (before * n / (before + n));
+    }
+    const std::vector<std::string> names = means_of(sum.name);
+    for (size_t c = 0; c < names.size(); ++c) {
+        const std::vector<float>& means = part.find(names[c])->values;
+        std::vector<double>& samples = sum.samples[c];
+        for (size_t i = 0; i < counts.size(); ++i) {
+            const double n = counts[i];
+            if (n == 0.0) continue;
+            const auto before = double(counts_[i]);
+            if (before > 0.0) {
+                const double difference = double(means[i]) - samples[i] / before;
+                sum.values[i] += difference * difference * (before * n / (before + n));
+            }
+            samples[i] += n * double(means[i]);
         }
-        sum.samples[i] += n * double(means[i]);
     }
 }
 

@@ -27,15 +27,16 @@ namespace candela {
 class PartSum {
   public:
     // For images of the size of `like`; sums their channels of these names, in this order. It knows R, G, B,
-    // A, Albedo, N and the layers of guides and catchers (means), Variance of R, G and B, SampleCount.V, and
-    // what is_constant().
+    // A, Albedo, N and the layers of guides and catchers (means), variances of R, G and B and of the guides'
+    // albedo, SampleCount.V, and what is_constant().
     PartSum(const Image& like, std::vector<std::string> channels);
     static bool knows(const std::string& channel);
     // Whether the channel depends on no sample, and is the same in all images.
     static bool is_constant(const std::string& channel);
+    // The channels of the means whose variance it is, added up; none for other channels.
+    static std::vector<std::string> means_of(const std::string& channel);
 
-    // Adds an image with counts[i] samples of pixel i. It must have all the channels and, if Variance is
-    // among them, R, G and B.
+    // Adds an image with counts[i] samples of pixel i. It must have all the channels and their means_of().
     void add(const Image& part, const std::vector<uint32_t>& counts);
 
     // The image of all samples, in 32 bits, without attributes. Means are 0 for pixels without samples, and
@@ -49,9 +50,8 @@ class PartSum {
     struct Sum {
         std::string name;
         Kind kind;
-        std::string mean_name;        // The channel whose variance it is.
-        std::vector<double> values;   // mean: sum of the samples; variance: sum of squared deviations.
-        std::vector<double> samples;  // variance: sum of the samples.
+        std::vector<double> values;  // mean: sum of the samples; variance: sum of squared deviations.
+        std::vector<std::vector<double>> samples;  // variance: sums of the samples, for each of means_of().
     };
     static Kind kind_of(const std::string& channel);
     void add_mean(Sum& sum, const Channel& channel, const std::vector<uint32_t>& counts) const;

@@ -64,6 +64,7 @@ struct Pixel {
     Sum without;
     Sum guide_albedo;  // Sums of Guides; only if HAS_GUIDES.
     Sum guide_normal;
+    ScalarSum guide_square;  // Sum of squared lengths of guide albedos.
     float caught;            // Samples whose camera ray hit a catcher,
     float reflecting;        // and one that reflects; only if HAS_CATCHERS.
     ScalarSum transmission;  // Only if BEFORE_BACKGROUND.
@@ -114,9 +115,12 @@ Pixel pixel_load(uvec2 at) {
     }
     p.guide_albedo = Sum(vec3(0.0), vec3(0.0));
     p.guide_normal = Sum(vec3(0.0), vec3(0.0));
+    p.guide_square = ScalarSum(0.0, 0.0);
     if (HAS_GUIDES) {
-        p.guide_albedo = Sum(layer_load(at, DENOISING_LAYER + GUIDE_ALBEDO).rgb,
-                             layer_load(at, DENOISING_LAYER + GUIDE_ALBEDO_COMPENSATION).rgb);
+        vec4 albedo = layer_load(at, DENOISING_LAYER + GUIDE_ALBEDO);
+        vec4 albedo_compensation = layer_load(at, DENOISING_LAYER + GUIDE_ALBEDO_COMPENSATION);
+        p.guide_albedo = Sum(albedo.rgb, albedo_compensation.rgb);
+        p.guide_square = ScalarSum(albedo.a, albedo_compensation.a);
         p.guide_normal = Sum(layer_load(at, DENOISING_LAYER + GUIDE_NORMAL).rgb,
                              layer_load(at, DENOISING_LAYER + GUIDE_NORMAL_COMPENSATION).rgb);
     }
@@ -145,8 +149,9 @@ void pixel_store(uvec2 at, Pixel p) {
         layer_store(at, LAYER_WITHOUT_COMPENSATION, vec4(p.without.compensation, 0.0));
     }
     if (HAS_GUIDES) {
-        layer_store(at, DENOISING_LAYER + GUIDE_ALBEDO, vec4(p.guide_albedo.sum, 0.0));
-        layer_store(at, DENOISING_LAYER + GUIDE_ALBEDO_COMPENSATION, vec4(p.guide_albedo.compensation, 0.0));
+        layer_store(at, DENOISING_LAYER + GUIDE_ALBEDO, vec4(p.guide_albedo.sum, p.guide_square.sum));
+        layer_store(at, DENOISING_LAYER + GUIDE_ALBEDO_COMPENSATION,
+                    vec4(p.guide_albedo.compensation, p.guide_square.compensation));
         layer_store(at, DENOISING_LAYER + GUIDE_NORMAL, vec4(p.guide_normal.sum, 0.0));
         layer_store(at, DENOISING_LAYER + GUIDE_NORMAL_COMPENSATION, vec4(p.guide_normal.compensation, 0.0));
     }
@@ -205,9 +210,10 @@ void pixel_fold(inout Pixel p, Estimate estimate) {
     }
     if (HAS_GUIDES) {
         Guides guides = estimate.guides;
-        bool finite = is_finite(guides.albedo) && is_finite(guides.normal);
-        add(p.guide_albedo, finite ? guides.albedo : vec3(0.0));
-        add(p.guide_normal, finite ? guides.normal : vec3(0.0));
+        if (!is_finite(guides.albedo) || !is_finite(guides.normal)) guides.albedo = guides.normal = vec3(0.0);
+        add(p.guide_albedo, guides.albedo);
+        add(p.guide_normal, guides.normal);
+        add(p.guide_square, dot(guides.albedo, guides.albedo));
     }
     ++p.samples;
 }

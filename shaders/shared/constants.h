@@ -60,8 +60,9 @@ const uint LAYER_COUNT_COLOUR = 4u;           // Layers of an image without AOVs
 const uint LAYER_COUNT_AOVS = 8u;             // Layers of an image with AOVs.
 const uint LAYER_COUNT_CATCHERS = 12u;        // The same with catchers.
 // Of what guides denoisers: these follow whatever other layers the image has.
-const uint GUIDE_ALBEDO = 0u;               // rgb: sum of Guides::albedo, see integrator/guides.glsl.
-const uint GUIDE_ALBEDO_COMPENSATION = 1u;  // rgb.
+// See integrator/guides.glsl.
+const uint GUIDE_ALBEDO = 0u;  // rgb: sum of Guides::albedo; a: sum of its squared length.
+const uint GUIDE_ALBEDO_COMPENSATION = 1u;
 const uint GUIDE_NORMAL = 2u;               // rgb: sum of Guides::normal.
 const uint GUIDE_NORMAL_COMPENSATION = 3u;  // rgb.
 const uint LAYER_COUNT_GUIDES = 4u;

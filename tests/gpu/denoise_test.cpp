@@ -6,6 +6,7 @@
 #include <random>
 
 #include "denoise/blend.h"
+#include "denoise/smooth_albedo.h"
 #include "denoise/variance.h"
 #include "gpu/denoise_reference.h"
 #include "gpu/device_fixture.h"
@@ -22,7 +23,7 @@ using Planes = std::array<std::vector<float>, 3>;
 struct Owned {
     uvec2 size;
     Planes rgb, variance, albedo, normal;
-    std::vector<float> alpha;
+    std::vector<float> alpha, albedo_variance;
 
     explicit Owned(uvec2 s) : size(s) {
         for (Planes* planes : {&rgb, &variance, &albedo, &normal}) {
@@ -34,7 +35,7 @@ struct Owned {
     size_t pixels() const { return rgb[0].size(); }
     NoisyPicture picture() const {
         const auto view = [](const Planes& planes) { return RgbPlanes{planes[0], planes[1], planes[2]}; };
-        return {size, view(rgb), view(variance), view(albedo), view(normal), alpha, {}};
+        return {size, view(rgb), view(variance), view(albedo), view(normal), alpha, {}, albedo_variance};
     }
 };
 
@@ -334,6 +335,28 @@ TEST_F(DenoiseTest, ColourAloneIsEnough) {
     EXPECT_LT(squared_error(result.rgb, truth, picture.size),
               0.075 * squared_error(picture.rgb, truth, picture.size));
     EXPECT_TRUE(same_bits(result.rgb[0], filter(alone).rgb[0]));
+}
+
+// An albedo that differs from sample to sample would leave its noise in the picture.
+TEST_F(DenoiseTest, WorksOnAlbedoWithoutItsNoise) {
+    Owned picture = varied_picture({70, 50});
+    std::mt19937 random(3);
+    std::normal_distribution<float> normal(0.0f, 0.05f);
+    for (std::vector<float>& plane : picture.albedo) {
+        for (float& value : plane)
+            value += normal(random);
+    }
+    picture.albedo_variance.assign(picture.pixels(), 3 * 0.05f * 0.05f);
+    const Denoised result = filter_by_variance(device(), picture.picture(), 32);
+    const std::vector<vec3> smooth = smooth_albedo(picture.picture(), {0, 0, 70, 50});
+    for (size_t i = 0; i < smooth.size(); ++i) {
+        for (size_t c = 0; c < 3; ++c)
+            picture.albedo[c][i] = smooth[i][int(c)];
+    }
+    picture.albedo_variance.clear();
+    const Denoised expected = filter_by_variance(device(), picture.picture(), 32);
+    for (size_t c = 0; c < 3; ++c)
+        EXPECT_TRUE(same_bits(result.rgb[c], expected.rgb[c]));
 }
 
 }  // namespace

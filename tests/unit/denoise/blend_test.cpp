@@ -57,6 +57,19 @@ TEST(Blend, TheWeightIsTheShareOfTheDifferenceThatNoiseDoesNotExplain) {
         EXPECT_EQ(weight, 0.0f);
 }
 
+// The same where the variance counts for 120 %.
+TEST(Blend, WithFewSamplesMoreIsTakenForNoise) {
+    const Planes noisy = checkered(1.0f, 0.1f), variance = filled(0.008f);
+    for (const double samples : {1.0, 16.0}) {
+        for (const float weight :
+             noisy_weights(SIZE, view(noisy), view(variance), {filled(1.0f), {}, {}}, samples))
+            EXPECT_NEAR(weight, 1.0 - 1.2 * 0.8, 1e-5);
+    }
+    // Half way between 16 and 64 samples.
+    for (const float weight : noisy_weights(SIZE, view(noisy), view(variance), {filled(1.0f), {}, {}}, 32.0))
+        EXPECT_NEAR(weight, 1.0 - 1.025 * 0.8, 1e-5);
+}
+
 // The same where the variance counts for a fifth.
 TEST(Blend, WithManySamplesLessIsTakenForNoise) {
     const Planes noisy = checkered(1.0f, 0.1f), variance = filled(0.008f);

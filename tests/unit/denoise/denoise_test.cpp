@@ -9,7 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "denoise/denoise_image.h"
+#include "denoise/level.h"
 #include "denoise/oidn.h"
+#include "denoise/smooth_albedo.h"
 #include "denoise/tiles.h"
 #include "unit/base/base_fixture.h"
 
@@ -181,6 +183,25 @@ TEST(Oidn, GetsNumbersThatItCanTakeWhateverTheImageHolds) {
     }
 }
 
+// The tests' library gives twice the colour plus the albedo.
+TEST(Oidn, AlbedoComesWithoutItsNoise) {
+    Image image = image_of(40, 30, COLOUR + GUIDES);
+    for (size_t c = 0; c < 3; ++c) {
+        std::vector<float>& values = image.channels[3 + c].values;
+        for (size_t i = 0; i < values.size(); ++i)
+            values[i] = (i * 7919 + c) % 3 == 0 ? 0.5f : 0.4f;
+    }
+    image.add("DenoisingAlbedo.V").values.assign(image.pixel_count(), 0.02f);
+    NoisyPicture picture = noisy_picture(image, false, "a.exr");
+    const std::vector<vec3> smooth = smooth_albedo(picture, {0, 0, 40, 30});
+    const Denoised result = fake()->run(picture);
+    for (size_t c = 0; c < 3; ++c) {
+        for (size_t i = 0; i < smooth.size(); ++i)
+            ASSERT_EQ(result.rgb[c][i], 2.0f * picture.rgb[c][i] + smooth[i][int(c)]);
+    }
+    EXPECT_NE(smooth[0], rgb_at(*picture.albedo, 0));
+}
+
 // The result of the tests' library depends on each pixel alone, so that a seam or a gap would show.
 TEST(Oidn, TilesOfALargePictureCoverItOnce) {
     const Image noisy = image_of(600, 520, COLOUR);
@@ -204,6 +225,25 @@ TEST(Oidn, TilesOfALargePictureCoverItOnce) {
     }
     EXPECT_EQ(count, 4u);
     EXPECT_NE(first.find("512x512"), std::string::npos) << first;
+}
+
+// A lamp far brighter than the picture would spread. The blend, which needs the variance, gives it back.
+TEST(Oidn, LampsAreLimitedWhereTheBlendGivesThemBack) {
+    Image image = image_of(32, 32, COLOUR);
+    for (size_t c = 0; c < 3; ++c) {
+        image.channels[c].values.assign(image.pixel_count(), 1.0f);
+        image.channels[c].values[40] = 1e6f;
+    }
+    const auto lamp = [&] { return fake()->run(noisy_picture(image, false, "a.exr")).rgb[0][40]; };
+    EXPECT_EQ(lamp(), 2e6f);
+    for (const char* name : {"Variance.R", "Variance.G", "Variance.B"})
+        image.add(name);
+    // The mean of one block of four is 1 + (1e6 - 1) / 256, the others' is 1; the geometric mean becomes
+    // 0.18.
+    const double mean = std::pow(1.0 + (1e6 - 1.0) / 256.0, 0.25);
+    EXPECT_NEAR(lamp(), 2.0 * 100.0 * mean / 0.18, 0.01);
+    add_denoised(image, *fake(), false, "a.exr");
+    EXPECT_EQ(image.find("Denoised.R")->values[40], 1e6f);
 }
 
 // What a filter was told: its images, and its numbers.

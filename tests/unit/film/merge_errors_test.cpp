@@ -33,14 +33,14 @@ TEST_F(Merge, WhatIsNoPartIsRefused) {
               "b.exr: it has no channel R; give images (-o), not checkpoints or other files");
     for (const float count : {5.0f, -1.0f, 0.5f, NAN}) {
         EXPECT_EQ(
-            message([&](Image& image) { image.channels[8].values[3] = count; }),
+            message([&](Image& image) { image.channels[COUNT].values[3] = count; }),
             "b.exr: its channel SampleCount.V has the value " + std::to_string(count) +
                 ", but it says to hold 4 sample(s) per pixel at most; give files as candela wrote them");
     }
-    EXPECT_EQ(message([](Image& image) { image.channels[9].values[2] += 1.0f; }),
+    EXPECT_EQ(message([](Image& image) { image.channels[Z].values[2] += 1.0f; }),
               "b.exr: its channel Z differs from that of a.exr; give files as candela wrote them");
     EXPECT_EQ(message([](Image& image) {
-                  image.channels.erase(image.channels.begin() + 8);
+                  image.channels.erase(image.channels.begin() + COUNT);
                   image.attributes["samplesPerPixel"] = 3.0f;
               }),
               "b.exr: its pixels hold different numbers of samples, and it has no channel SampleCount.V to "

@@ -41,6 +41,7 @@ struct Samples {
 inline constexpr PixelRect CROP{10, 20, 13, 22};
 inline constexpr size_t PIXELS = 6;
 inline constexpr const char* MEANS[] = {"R", "G", "B", "A", "N.X"};
+inline constexpr size_t COUNT = 12, Z = 13;  // The channels SampleCount.V and Z of a part.
 
 // One part: for each of MEANS, six pixels' samples.
 struct PartSamples {
@@ -78,6 +79,15 @@ class Merge : public testing::Test {
             for (size_t i = 0; i < PIXELS; ++i)
                 channel.values[i] = float(samples.of[c][i].variance_of_mean());
         }
+        // The guides of denoisers have the same samples.
+        Channel variance{.name = "DenoisingAlbedo.V", .values = std::vector<float>(PIXELS, 0.0f)};
+        for (size_t c = 0; c < 3; ++c) {
+            const std::vector<float> means = image.channels[c].values;
+            image.add(std::string("DenoisingAlbedo.") + MEANS[c]).values = means;
+            for (size_t i = 0; i < PIXELS; ++i)
+                variance.values[i] += float(samples.of[c][i].variance_of_mean());
+        }
+        image.channels.push_back(variance);
         Channel& count = image.add("SampleCount.V");
         Channel& depth = image.add("Z");
         size_t min = SIZE_MAX;

@@ -32,6 +32,8 @@ TEST_F(Merge, MeansAndVariancesAreThoseOfAllSamples) {
     const Image merged = merge_files(files).image;
     EXPECT_EQ(merged.full, uvec2(40, 30));
     EXPECT_EQ(merged.data, CROP);
+    // Of all samples of the guides' albedo, and how far the merged variance may be from it.
+    std::array<double, PIXELS> variances{}, bounds{};
     for (size_t c = 0; c < 5; ++c) {
         for (size_t i = 0; i < PIXELS; ++i) {
             Samples all;
@@ -56,8 +58,12 @@ TEST_F(Merge, MeansAndVariancesAreThoseOfAllSamples) {
                                  4.0 * U * U * largest * largest / (n - 1.0);
             EXPECT_NEAR(double(merged.find(std::string("Variance.") + MEANS[c])->values[i]), v, bound)
                 << MEANS[c] << ' ' << i;
+            variances[i] += v;
+            bounds[i] += bound + 3.0 * U * v;  // Each part adds up three rounded variances.
         }
     }
+    for (size_t i = 0; i < PIXELS; ++i)
+        EXPECT_NEAR(double(merged.find("DenoisingAlbedo.V")->values[i]), variances[i], bounds[i]) << i;
     EXPECT_EQ(merged.find("Z")->values[4], 5.0f);
     EXPECT_EQ(std::get<std::string>(merged.attributes.at("candela.samples")), "0..1000");
     EXPECT_EQ(std::get<float>(merged.attributes.at("samplesPerPixel")), 64.0f + 0 + 1 + 432);
@@ -117,19 +123,24 @@ TEST_F(Merge, AMergedImageCanBeMergedAgain) {
 TEST_F(Merge, OnlyChannelsOfAllPartsAreKept) {
     const auto a = write("a.exr", {0, 4});
     const auto b = write_changed("b.exr", {4, 8}, [](Image& image) {
-        std::erase_if(image.channels,
-                      [](const Channel& c) { return c.name == "Z" || c.name == "SampleCount.V"; });
+        std::erase_if(image.channels, [](const Channel& c) {
+            return c.name == "Z" || c.name == "SampleCount.V" || c.name == "DenoisingAlbedo.R";
+        });
         image.add("Mask");
     });
     const Merged merged = merge_files({a, b});
     std::vector<std::string> warnings = merged.warnings;
     for (std::string& warning : warnings)
         warning = text(warning);
-    EXPECT_EQ(warnings, (std::vector<std::string>{
-                            "the channel \"Mask\" is left out: candela does not know how to merge it",
-                            "the channel \"SampleCount.V\" is left out: b.exr does not have it",
-                            "the channel \"Z\" is left out: b.exr does not have it"}));
-    EXPECT_EQ(merged.image.channels.size(), 8u);
+    EXPECT_EQ(warnings,
+              (std::vector<std::string>{
+                  "the channel \"DenoisingAlbedo.R\" is left out: b.exr does not have it",
+                  "the channel \"DenoisingAlbedo.V\" is left out: the channels whose variance it is "
+                  "are missing",
+                  "the channel \"Mask\" is left out: candela does not know how to merge it",
+                  "the channel \"SampleCount.V\" is left out: b.exr does not have it",
+                  "the channel \"Z\" is left out: b.exr does not have it"}));
+    EXPECT_EQ(merged.image.channels.size(), 10u);
     EXPECT_EQ(merged.image.find("Z"), nullptr);
 }
 
