@@ -11,9 +11,11 @@
 namespace candela::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 23> READ{"EXT_lights_image_based",
+constexpr std::array<std::string_view, 26> READ{"EXT_lights_image_based",
                                                 "EXT_mesh_gpu_instancing",
+                                                "EXT_meshopt_compression",
                                                 "EXT_texture_webp",
+                                                "KHR_draco_mesh_compression",
                                                 "KHR_lights_punctual",
                                                 "KHR_materials_anisotropy",
                                                 "KHR_materials_clearcoat",
@@ -30,6 +32,7 @@ constexpr std::array<std::string_view, 23> READ{"EXT_lights_image_based",
                                                 "KHR_materials_variants",
                                                 "KHR_materials_volume",
                                                 "KHR_mesh_quantization",
+                                                "KHR_meshopt_compression",
                                                 "KHR_node_visibility",
                                                 "KHR_texture_transform",
                                                 "KHR_xmp_json_ld",
@@ -77,19 +80,15 @@ constexpr std::array<std::string_view, 38> UNSEEN{"AGI_articulations",
                                                   "VRMC_vrm*"};
 
 // Extensions that are not read, and what is then missing.
-constexpr const char* UNCOMPRESSED = "the uncompressed data is used instead";
 constexpr const char* OTHER_IMAGES = "images in PNG, JPEG or WebP are used instead";
 constexpr const char* NO_TOON = "toon shading looks as the material does without it";
-constexpr std::array<std::pair<std::string_view, std::string_view>, 16> NOT_READ{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 13> NOT_READ{
     {{"EXT_lights_ies", "lights shine evenly, without a profile"},
-     {"EXT_meshopt_compression", UNCOMPRESSED},
      {"EXT_texture_avif", OTHER_IMAGES},
      {"FB_materials_modmap", "materials look as they do without it"},
      {"GOOGLE_tilt_brush_material", "brushes look as their materials do without it"},
-     {"KHR_draco_mesh_compression", UNCOMPRESSED},
      {"KHR_gaussian_splatting", "splats are points, which are left out"},
      {"KHR_materials_volume_scatter", "bodies absorb light within, but do not scatter it"},
-     {"KHR_meshopt_compression", UNCOMPRESSED},
      {"KHR_techniques_webgl", "materials look as they do without it"},
      {"KHR_texture_basisu", OTHER_IMAGES},
      {"MOZ_lightmap", "light is computed instead"},
