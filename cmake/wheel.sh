@@ -46,7 +46,7 @@ license() {
     cp "$2" "$folder/licenses/$1.txt"
 }
 
-if [ ! -f "$static/complete" ]; then
+if [ ! -f "$static/complete" ] || [ ! -f "$static/lib/libmeshoptimizer.a" ]; then
     source_of imath openexr meshoptimizer
     archive imath
     archive openexr -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF

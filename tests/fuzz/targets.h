@@ -15,7 +15,7 @@ void gltf(std::string_view bytes);
 void glb(std::string_view bytes);  // With lengths corrected.
 // A glTF file with its images, its tree and its records, within 128 MiB; more is an Error.
 void cost(std::string_view bytes);
-// What Draco has compressed, as a primitive of a glTF file, within the same limit.
+// What Draco has compressed: by the library alone, and as a primitive of a glTF file, within the same limit.
 void draco(std::string_view bytes);
 // What meshopt has compressed, as a view of a glTF file. The first byte is the mode, the filter and the
 // stride, the next two are the number of elements.

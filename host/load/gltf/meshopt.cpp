@@ -23,9 +23,9 @@ constexpr std::array<std::pair<std::string_view, Filter>, 4> FILTERS{{{"NONE", F
                                                                       {"QUATERNION", Filter::quaternion},
                                                                       {"EXPONENTIAL", Filter::exponential}}};
 
-// No stream is shorter than this part of what it holds: a group of 16 bytes of a vertex takes at least two
+// No stream is shorter than this part of what it holds: one byte each of 256 vertices takes at least two
 // bits, and a triangle or an index at least a byte.
-constexpr uint64_t MOST_PER_BYTE = 64;
+constexpr uint64_t MOST_PER_BYTE = 1024;
 
 // A view as its extension describes it.
 struct Stream {

@@ -5,6 +5,7 @@
 
 #include <draco/compression/encode.h>
 
+#include "base/memory_limit.h"
 #include "load/gltf/draco_header.h"
 #include "unit/load/gltf/gltf_fixture.h"
 
@@ -225,6 +226,23 @@ TEST_F(GltfDraco, MoreElementsThanStatedAreRefusedBeforeTheyAreDecoded) {
     expect_damaged(
         file_of(data),
         "the data hold 4 vertices and 4294967295 triangles, but the primitive's accessors only 4 and 2");
+}
+
+TEST_F(GltfDraco, AbsurdNumbersThatAccessorsRepeatMeetTheMemoryLimit) {
+    // 20 million vertices and 40 million triangles, all of whose symbols would follow.
+    const std::string vertices = "\x80\xDA\xC4\x09", triangles = "\x80\xB4\x89\x13";
+    const std::string data = std::string("DRACO\x02\x02\x01\x01\0\0\0", 12) + vertices + triangles +
+                             std::string("\x01", 1) + triangles + std::string(100, '\0');
+    const GltfFile file = file_of(data, 20'000'000, 120'000'000);
+    set_memory_limit(memory_in_use() + (uint64_t(64) << 20));
+    const LimitedMemory limited;
+    const std::string message = error_of([&] { load(file); });
+    set_memory_limit(UINT64_MAX);
+    EXPECT_NE(
+        message.find("KHR_draco_mesh_compression: there is not enough memory for the mesh that Draco has "
+                     "compressed, which needs at least"),
+        std::string::npos)
+        << message;
 }
 
 TEST_F(GltfDraco, DamagedDataAreRefused) {

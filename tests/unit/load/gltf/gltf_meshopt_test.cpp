@@ -222,11 +222,12 @@ TEST_F(GltfMeshopt, DamagedStreamsAreRefused) {
     extension(file, 0)["byteLength"] = 20;
     expect_error(file, at + ": the compressed data are damaged; copy or export the file again");
     extension(file, 0)["byteLength"] = 1;
-    extension(file, 0)["count"] = 8;
-    file.root["bufferViews"][0]["byteLength"] = 96;
-    expect_error(file, at + ": 1 compressed bytes cannot hold 96; is the file damaged?");
-    file.root["bufferViews"][0]["byteLength"] = 95;
-    expect_error(file, at + ": the extension describes 96 bytes, but the view has 95; export the file again");
+    extension(file, 0)["count"] = 86;
+    file.root["bufferViews"][0]["byteLength"] = 1032;
+    expect_error(file, at + ": 1 compressed bytes cannot hold 1032; is the file damaged?");
+    file.root["bufferViews"][0]["byteLength"] = 1031;
+    expect_error(file,
+                 at + ": the extension describes 1032 bytes, but the view has 1031; export the file again");
 }
 
 TEST_F(GltfMeshopt, IndicesAreCheckedAfterwards) {
