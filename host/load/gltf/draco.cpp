@@ -9,6 +9,7 @@
 
 #include <draco/compression/decode.h>
 
+#include "base/memory_budget.h"
 #include "base/text.h"
 #include "load/gltf/draco_header.h"
 #include "load/quote.h"
@@ -18,6 +19,15 @@ namespace {
 
 constexpr const char* DAMAGED = "; copy or export the file again";
 
+// The densest data hold regular grids of flat triangles: a million of them take 37 kB.
+constexpr uint64_t MOST_TRIANGLES_PER_BYTE = 512;
+
+// What decoding may allocate: for each vertex and each triangle, for the mesh and as much for each attribute
+// (a third of this is used), and beside them. Draco runs some loops as often as the data say, but only after
+// it has made room for a bit of each turn: so this bounds the time, too.
+constexpr uint64_t BYTES_PER_ELEMENT = 64;
+constexpr uint64_t BYTES_BESIDE = uint64_t(1) << 20;
+
 // Draco makes room for as much as the header states before it reads further.
 void check_counts(const Node& place, uint32_t vertices, uint32_t triangles, const DracoLimits& limits) {
     if (vertices <= limits.vertices && triangles <= limits.triangles) return;
@@ -26,23 +36,32 @@ void check_counts(const Node& place, uint32_t vertices, uint32_t triangles, cons
                       limits.triangles, DAMAGED));
 }
 
-void check_header(const Node& place, std::span<const std::byte> bytes, const DracoLimits& limits) {
+DracoHeader checked_header(const Node& place, std::span<const std::byte> bytes, const DracoLimits& limits) {
     std::string problem;
     const auto header = read_draco_header(bytes, problem);
     if (!header) place.fail(problem + DAMAGED);
     check_counts(place, header->vertices, header->faces, limits);
+    if (header->faces > MOST_TRIANGLES_PER_BYTE * bytes.size()) {
+        place.fail(
+            concat(bytes.size(), " compressed bytes cannot hold ", header->faces, " triangles", DAMAGED));
+    }
+    return *header;
 }
 
-std::unique_ptr<draco::Mesh> decode_mesh(const Node& place, std::span<const std::byte> bytes) {
+std::unique_ptr<draco::Mesh> decode_mesh(const Node& place, std::span<const std::byte> bytes,
+                                         uint64_t budget) {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    draco::Decoder decoder;
-    auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!mesh.ok()) {
-        place.fail(
-            concat("Draco cannot decode the data (", quote(mesh.status().error_msg_string()), ")", DAMAGED));
+    std::string problem;
+    try {
+        const MemoryBudget limited(budget);
+        auto mesh = draco::Decoder().DecodeMeshFromBuffer(&buffer);
+        if (mesh.ok()) return std::move(mesh).value();
+        problem = mesh.status().error_msg_string();
+    } catch (const BudgetExceeded&) {
+        place.fail(std::string("Draco needs more memory for the data than such a mesh takes") + DAMAGED);
     }
-    return std::move(mesh).value();
+    place.fail(concat("Draco cannot decode the data (", quote(problem), ")", DAMAGED));
 }
 
 std::vector<uint32_t> corners_of(const Node& place, const draco::Mesh& mesh) {
@@ -166,8 +185,11 @@ std::vector<std::byte> elements_of(const Node& place, const draco::Mesh& mesh, c
 
 DracoMesh decode_draco(const Node& place, std::span<const std::byte> bytes, const DracoLimits& limits,
                        const std::vector<DracoAttribute>& attributes) {
-    check_header(place, bytes, limits);
-    const std::unique_ptr<draco::Mesh> mesh = decode_mesh(place, bytes);
+    const DracoHeader header = checked_header(place, bytes, limits);
+    const uint64_t faces = header.faces, elements = faces + std::min<uint64_t>(limits.vertices, 3 * faces);
+    const uint64_t budget =
+        BYTES_BESIDE + 8 * bytes.size() + BYTES_PER_ELEMENT * elements * (2 + attributes.size());
+    const std::unique_ptr<draco::Mesh> mesh = decode_mesh(place, bytes, budget);
     check_counts(place, mesh->num_points(), mesh->num_faces(), limits);
     DracoMesh result{.vertices = mesh->num_points(), .corners = corners_of(place, *mesh)};
     for (const DracoAttribute& attribute : attributes)

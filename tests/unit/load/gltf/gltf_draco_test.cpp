@@ -5,6 +5,7 @@
 
 #include <draco/compression/encode.h>
 
+#include "base/file.h"
 #include "base/memory_limit.h"
 #include "load/gltf/draco_header.h"
 #include "unit/load/gltf/gltf_fixture.h"
@@ -33,10 +34,13 @@ class DracoSource {
     void add_face(uint32_t a, uint32_t b, uint32_t c) {
         mesh_->AddFace({draco::PointIndex(a), draco::PointIndex(b), draco::PointIndex(c)});
     }
-    std::string encoded(int method, int speed = 5) const {
+    // Without bits of positions, these are exact.
+    std::string encoded(int method, int speed = 5, int position_bits = 0) const {
         draco::Encoder encoder;
         encoder.SetEncodingMethod(method);
         encoder.SetSpeedOptions(speed, speed);
+        if (position_bits > 0)
+            encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, position_bits);
         draco::EncoderBuffer buffer;
         EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh_, &buffer).ok());
         return {buffer.data(), buffer.size()};
@@ -158,20 +162,29 @@ TEST_F(GltfDraco, SparseAndPlainAccessorsStandBesideIt) {
 }
 
 TEST_F(GltfDraco, MoreZerosThanCompressedBytesMayStandBesideIt) {
-    // A morph target without a view may have as many elements as the vertices that were decoded.
-    DracoSource source(3000);
+    // A morph target without a view may have as many elements as the vertices that were decoded: here a grid
+    // at whole numbers, which takes few bytes.
+    constexpr uint32_t SIDE = 128, VERTICES = SIDE * SIDE, TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1);
+    DracoSource source(VERTICES);
     std::vector<float> positions;
-    for (int i = 0; i < 1000; ++i)
-        positions.insert(positions.end(), {float(i), 0, 0, float(i) + 1, 0, 0, float(i), 1, 0});
+    for (uint32_t i = 0; i < VERTICES; ++i)
+        positions.insert(positions.end(), {float(i % SIDE), float(i / SIDE), 0.0f});
     source.add<float>(draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, 3, positions);
-    source.add<uint8_t>(draco::GeometryAttribute::COLOR, draco::DT_UINT8, 4, std::vector<uint8_t>(12000));
-    for (uint32_t i = 0; i < 3000; i += 3)
-        source.add_face(i, i + 1, i + 2);
-    GltfFile file = file_of(source.encoded(draco::MESH_SEQUENTIAL_ENCODING), 3000, 3000);
-    const size_t zeros = file.push("accessors", {{"type", "VEC3"}, {"componentType", 5126}, {"count", 3000}});
+    source.add<uint8_t>(draco::GeometryAttribute::COLOR, draco::DT_UINT8, 4,
+                        std::vector<uint8_t>(4 * VERTICES));
+    for (uint32_t i = 0; i + SIDE < VERTICES; ++i) {
+        if (i % SIDE + 1 == SIDE) continue;
+        source.add_face(i, i + 1, i + SIDE + 1);
+        source.add_face(i, i + SIDE + 1, i + SIDE);
+    }
+    const std::string data = source.encoded(draco::MESH_EDGEBREAKER_ENCODING, 0, 7);
+    GltfFile file = file_of(data, VERTICES, 3 * TRIANGLES);
+    const size_t zeros =
+        file.push("accessors", {{"type", "VEC3"}, {"componentType", 5126}, {"count", VERTICES}});
     primitive_of(file)["targets"] = Json::array({{{"POSITION", zeros}}});
     file.root["meshes"][0]["weights"] = {1};
-    EXPECT_EQ(load(file).meshes.at(0).triangles.size(), 1000u);
+    ASSERT_LT(file.gltf().size() + data.size(), VERTICES);
+    EXPECT_EQ(load(file).meshes.at(0).triangles.size(), TRIANGLES);
 }
 
 TEST_F(GltfDraco, ASkinAndAnAnimationPoseIt) {
@@ -228,12 +241,15 @@ TEST_F(GltfDraco, MoreElementsThanStatedAreRefusedBeforeTheyAreDecoded) {
         "the data hold 4 vertices and 4294967295 triangles, but the primitive's accessors only 4 and 2");
 }
 
-TEST_F(GltfDraco, AbsurdNumbersThatAccessorsRepeatMeetTheMemoryLimit) {
+TEST_F(GltfDraco, AbsurdNumbersThatAccessorsRepeatAreRefused) {
     // 20 million vertices and 40 million triangles, all of whose symbols would follow.
     const std::string vertices = "\x80\xDA\xC4\x09", triangles = "\x80\xB4\x89\x13";
     const std::string data = std::string("DRACO\x02\x02\x01\x01\0\0\0", 12) + vertices + triangles +
-                             std::string("\x01", 1) + triangles + std::string(100, '\0');
-    const GltfFile file = file_of(data, 20'000'000, 120'000'000);
+                             std::string("\x01", 1) + triangles;
+    expect_damaged(file_of(data, 20'000'000, 120'000'000),
+                   "25 compressed bytes cannot hold 40000000 triangles");
+    // Enough bytes for them meet the limit on memory.
+    const GltfFile file = file_of(data + std::string(80'000, '\0'), 20'000'000, 120'000'000);
     set_memory_limit(memory_in_use() + (uint64_t(64) << 20));
     const LimitedMemory limited;
     const std::string message = error_of([&] { load(file); });
@@ -243,6 +259,12 @@ TEST_F(GltfDraco, AbsurdNumbersThatAccessorsRepeatMeetTheMemoryLimit) {
                      "compressed, which needs at least"),
         std::string::npos)
         << message;
+}
+
+TEST_F(GltfDraco, LoopsThatNoMeshNeedsEndForTheirMemory) {
+    // A finding of the fuzzer: two thousand million bits, in a mesh of a few triangles.
+    const std::string data = read_file(CANDELA_CORPORA "/draco/orientations_without_end");
+    expect_damaged(file_of(data, 3000, 9000), "Draco needs more memory for the data than such a mesh takes");
 }
 
 TEST_F(GltfDraco, DamagedDataAreRefused) {
