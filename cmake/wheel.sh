@@ -1,8 +1,8 @@
 #!/bin/sh
 # Makes the wheel of the Python package for all Linux systems whose glibc is new enough, in build/wheel:
 # candela_render-VERSION-py3-none-manylinux_2_N_x86_64.whl, for every Python from 3.9 on. All libraries but glibc are in
-# the program: those that Debian has as archives, and OpenEXR with Imath, which are built from Debian's sources. Needs
-# apt, Python's venv, and an index of Python packages for the tools.
+# the program: those that Debian has as archives, and OpenEXR with Imath and meshoptimizer, which are built from Debian's
+# sources. Needs apt, Python's venv, and an index of Python packages for the tools.
 # usage: sh cmake/wheel.sh
 set -eu
 cd "$(dirname "$0")/.."
@@ -46,14 +46,15 @@ license() {
     cp "$2" "$folder/licenses/$1.txt"
 }
 
-if [ ! -f "$static/complete" ]; then
-    source_of imath openexr
+if [ ! -f "$static/complete" ] || [ ! -f "$static/lib/libmeshoptimizer.a" ]; then
+    source_of imath openexr meshoptimizer
     archive imath
     archive openexr -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF
-    for name in imath openexr; do license "$name" "$folder/source/$name/debian/copyright"; done
+    archive meshoptimizer -DMESHOPT_BUILD_SHARED_LIBS=OFF -DMESHOPT_BUILD_GLTFPACK=OFF
+    for name in imath openexr meshoptimizer; do license "$name" "$folder/source/$name/debian/copyright"; done
     touch "$static/complete"
 fi
-for package in libpng-dev libjpeg62-turbo-dev libwebp-dev zlib1g-dev libstdc++-12-dev libvulkan-volk-dev libstb-dev \
+for package in libpng-dev libjpeg62-turbo-dev libwebp-dev libdraco-dev zlib1g-dev libstdc++-12-dev libvulkan-volk-dev libstb-dev \
     nlohmann-json3-dev libcli11-dev libglm-dev libdeflate-dev; do
     if [ -f "/usr/share/doc/$package/copyright" ]; then license "$package" "/usr/share/doc/$package/copyright"; fi
 done

@@ -21,6 +21,8 @@ LIBRARIES = {
     "libpng": r"png\.h",
     "libjpeg": r"jpeglib\.h|jerror\.h",
     "libwebp": r"webp/",
+    "Draco": r"draco/",
+    "meshoptimizer": r"meshoptimizer",
     "nlohmann-json": r"nlohmann/",
     "tinyobjloader": r"tiny_obj_loader",
     "tinygltf": r"tiny_gltf",

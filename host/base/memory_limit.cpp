@@ -13,6 +13,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include "base/memory_budget.h"
 #include "base/text.h"
 
 namespace candela {
@@ -26,8 +27,12 @@ constexpr size_t SMALL = 1024;
 std::atomic<uint64_t> in_use = 0;
 std::atomic<uint64_t> limit = NO_LIMIT;
 thread_local uint32_t holders = 0;  // This thread's live objects of LimitedMemory.
+// Bytes left of this thread's MemoryBudget, if it has one.
+thread_local int64_t budget = 0;
+thread_local bool has_budget = false;
 
 void check_limit(uint64_t bytes) {
+    if (has_budget && (budget < 0 || bytes > uint64_t(budget))) throw BudgetExceeded();
     if (holders == 0) return;
     const uint64_t used = in_use.load(std::memory_order_relaxed);
     const uint64_t max = limit.load(std::memory_order_relaxed);
@@ -37,13 +42,17 @@ void check_limit(uint64_t bytes) {
 
 void* counted(void* memory) {
     if (memory == nullptr) throw std::bad_alloc();
-    in_use.fetch_add(::malloc_usable_size(memory), std::memory_order_relaxed);
+    const size_t size = ::malloc_usable_size(memory);
+    in_use.fetch_add(size, std::memory_order_relaxed);
+    if (has_budget) budget -= int64_t(size);
     return memory;
 }
 
 void release(void* memory) {
     if (memory == nullptr) return;
-    in_use.fetch_sub(::malloc_usable_size(memory), std::memory_order_relaxed);
+    const size_t size = ::malloc_usable_size(memory);
+    in_use.fetch_sub(size, std::memory_order_relaxed);
+    if (has_budget) budget += int64_t(size);
     std::free(memory);
 }
 
@@ -112,6 +121,15 @@ LimitedMemory::~LimitedMemory() {
 
 bool LimitedMemory::applies() {
     return holders > 0;
+}
+
+MemoryBudget::MemoryBudget(uint64_t bytes) {
+    budget = int64_t(std::min(bytes, uint64_t(INT64_MAX)));
+    has_budget = true;
+}
+
+MemoryBudget::~MemoryBudget() {
+    has_budget = false;
 }
 
 MemoryCharge::MemoryCharge(uint64_t bytes) : bytes_(bytes) {

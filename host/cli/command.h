@@ -17,6 +17,7 @@ struct Command {
 
 // Each adds one command to `app`. `command_line` is the whole call as the user typed it, for image files.
 Command add_render_command(CLI::App& app, const std::string& command_line);
+Command add_fidelity_command(CLI::App& app, const std::string& command_line);
 Command add_info_command(CLI::App& app);
 Command add_devices_command(CLI::App& app);
 Command add_compare_command(CLI::App& app);

@@ -20,6 +20,7 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
     // Commands inherit the column width, but must not inherit the footer, which is therefore set last.
     app.get_formatter()->column_width(36);
     std::vector<Command> commands{add_render_command(app, command_line),
+                                  add_fidelity_command(app, command_line),
                                   add_view_command(app, command_line),
                                   add_info_command(app),
                                   add_devices_command(app),
@@ -102,8 +103,9 @@ ExitCode run_program(int argc, const char* const* argv) {
         if (command.app->parsed()) return command.run();
     }
     throw Error(
-        "no command given; use render, view, info, devices, compare, merge, denoise, plot, selftest, bench "
-        "or serve, or see candela --help",
+        "no command given; use render, fidelity, view, info, devices, compare, merge, denoise, plot, "
+        "selftest, "
+        "bench or serve, or see candela --help",
         ErrorKind::request);
 }
 

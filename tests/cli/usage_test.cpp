@@ -46,8 +46,8 @@ TEST_F(Usage, HelpOfRenderListsEveryOption) {
 TEST_F(Usage, UnknownWordsAreNamed) {
     const std::vector<std::pair<Words, const char*>> cases = {
         {{},
-         "no command given; use render, view, info, devices, compare, merge, denoise, plot, selftest, "
-         "bench or serve"},
+         "no command given; use render, fidelity, view, info, devices, compare, merge, denoise, plot, "
+         "selftest, bench or serve"},
         {{"trace"}, "unknown command \"trace\""},
         {{"--trace"}, "unknown argument \"--trace\""},
         {{"render", CORNELL_BOX, "-o", "x.png", "--trace"},

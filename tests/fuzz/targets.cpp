@@ -1,15 +1,19 @@
 // See targets.h.
 #include "fuzz/targets.h"
 
+#include <array>
 #include <cstring>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <draco/compression/decode.h>
 #include <nlohmann/json.hpp>
 
 #include "base/memory_limit.h"
+#include "base/text.h"
 #include "cli/report_curve.h"
 #include "film/checkpoint.h"
 #include "film/merge.h"
@@ -95,6 +99,54 @@ std::string with_lengths(std::string_view file) {
     return mended;
 }
 
+std::string little_endian(size_t word) {
+    std::string bytes(4, '\0');
+    for (size_t i = 0; i < 4; ++i)
+        bytes[i] = char(word >> (8 * i) & 0xFFu);
+    return bytes;
+}
+
+// A .glb file with this document, in which BYTES stands for the number of bytes of its buffer.
+std::string glb_file(std::string text, std::string_view buffer) {
+    constexpr std::string_view BYTES = "BYTES";
+    for (size_t at = 0; (at = text.find(BYTES, at)) != std::string::npos;)
+        text.replace(at, BYTES.size(), std::to_string(buffer.size()));
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::string chunks =
+        little_endian(text.size()) + "JSON" + text + little_endian(buffer.size()) + std::string("BIN\0", 4);
+    chunks += buffer;
+    return "glTF" + little_endian(2) + little_endian(chunks.size() + 12) + chunks;
+}
+
+// Of what targets do within a limit.
+constexpr uint64_t MAX_BYTES = uint64_t(128) << 20;
+
+// Decodes without the checks of the reader.
+void draco_alone(std::string_view bytes) {
+    set_memory_limit(memory_in_use() + MAX_BYTES);
+    const LimitedMemory limited;
+    ::draco::DecoderBuffer buffer;
+    buffer.Init(bytes.data(), bytes.size());
+    try {
+        ::draco::Decoder().DecodeMeshFromBuffer(&buffer);
+    } catch (const std::bad_alloc&) {  // The limit.
+    }
+}
+
+// Reads a glTF file, builds its tree and packs its records, within a limit.
+void within_limit(std::string_view bytes) {
+    const MemoryFile file(bytes);
+    set_memory_limit(memory_in_use() + MAX_BYTES);
+    const LimitedMemory limited;
+    const auto name = [] { return std::string("fuzz.gltf"); };
+    with_memory_for("the scene", name, [&] {
+        Scene scene = load_gltf_scene(file.path());
+        DecodedImages decoded;
+        load_images(scene, {}, no_progress, decoded);
+        build_gpu_scene_freeing_images(scene);
+    });
+}
+
 }  // namespace
 
 void scene(std::string_view bytes) {
@@ -135,17 +187,47 @@ void glb(std::string_view bytes) {
 }
 
 void cost(std::string_view bytes) {
-    constexpr uint64_t MAX_BYTES = uint64_t(128) << 20;
-    const MemoryFile file(bytes);
-    set_memory_limit(memory_in_use() + MAX_BYTES);
-    const LimitedMemory limited;
-    const auto name = [] { return std::string("fuzz.gltf"); };
-    with_memory_for("the scene", name, [&] {
-        Scene scene = load_gltf_scene(file.path());
-        DecodedImages decoded;
-        load_images(scene, {}, no_progress, decoded);
-        build_gpu_scene_freeing_images(scene);
-    });
+    within_limit(bytes);
+}
+
+void draco(std::string_view bytes) {
+    draco_alone(bytes);
+    within_limit(
+        glb_file(R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{
+        "attributes": {"COLOR_0": 0, "POSITION": 1}, "indices": 2, "extensions": {"KHR_draco_mesh_compression":
+        {"bufferView": 0, "attributes": {"COLOR_0": 0, "POSITION": 1}}}}]}],
+        "accessors": [{"componentType": 5121, "type": "VEC4", "count": 3000, "normalized": true},
+        {"componentType": 5126, "type": "VEC3", "count": 3000},
+        {"componentType": 5125, "type": "SCALAR", "count": 9000}],
+        "bufferViews": [{"buffer": 0, "byteLength": BYTES}], "buffers": [{"byteLength": BYTES}]})",
+                 bytes));
+}
+
+void meshopt(std::string_view bytes) {
+    constexpr size_t HEADER = 3;
+    constexpr std::array<const char*, 4> MODES{"ATTRIBUTES", "ATTRIBUTES", "TRIANGLES", "INDICES"};
+    constexpr std::array<const char*, 4> FILTERS{"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+    if (bytes.size() <= HEADER) return;
+    const auto choice = size_t(uint8_t(bytes[0]));
+    const size_t count = 1 + uint8_t(bytes[1]) + 256 * size_t(uint8_t(bytes[2]));
+    const bool is_index = (choice & 3u) > 1;
+    const size_t stride = is_index ? 2 << (choice >> 4 & 1u) : 4 * (1 + (choice >> 4));
+    // Colours of vertices at the origin, or its indices.
+    const std::string number = is_index ? (stride == 2 ? "5123" : "5125") : "5121";
+    within_limit(glb_file(
+        concat(R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{
+        "attributes": {"POSITION": 0)",
+               is_index ? R"(}, "indices": 1)" : R"(, "COLOR_0": 1})",
+               R"(}]}], "accessors": [{"componentType": 5126, "type": "VEC3", "count": )",
+               is_index ? 1 : count, R"(}, {"bufferView": 0, "componentType": )", number, R"(, "type": ")",
+               is_index ? "SCALAR" : "VEC4", R"(", "normalized": )", is_index ? "false" : "true",
+               R"(, "count": )", count, R"(}], "bufferViews": [{"buffer": 1, "byteLength": )", count * stride,
+               is_index ? "" : concat(R"(, "byteStride": )", stride),
+               R"(, "extensions": {"EXT_meshopt_compression": {"buffer": 0, "byteOffset": 3, "byteLength": )",
+               bytes.size() - HEADER, R"(, "byteStride": )", stride, R"(, "count": )", count,
+               R"(, "mode": ")", MODES[choice & 3u], R"(", "filter": ")", FILTERS[choice >> 2 & 3u],
+               R"("}}}], "buffers": [{"byteLength": BYTES}, {"byteLength": 16777216}]})"),
+        bytes));
 }
 
 void hdr(std::string_view bytes) {

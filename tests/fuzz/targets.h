@@ -15,6 +15,11 @@ void gltf(std::string_view bytes);
 void glb(std::string_view bytes);  // With lengths corrected.
 // A glTF file with its images, its tree and its records, within 128 MiB; more is an Error.
 void cost(std::string_view bytes);
+// What Draco has compressed: by the library alone, and as a primitive of a glTF file, within the same limit.
+void draco(std::string_view bytes);
+// What meshopt has compressed, as a view of a glTF file. The first byte is the mode, the filter and the
+// stride, the next two are the number of elements.
+void meshopt(std::string_view bytes);
 void hdr(std::string_view bytes);
 void exr(std::string_view bytes);
 // Images of textures.
@@ -37,13 +42,27 @@ struct Target {
     std::string_view name;  // Its inputs are in corpora/NAME.
     void (*run)(std::string_view bytes);
 };
-inline constexpr std::array<Target, 20> TARGETS{
-    {{"scene", scene},     {"gltf", gltf},        {"glb", glb},
-     {"cost", cost},       {"obj", obj},          {"mtl", mtl},
-     {"ply", ply},         {"hdr", hdr},          {"exr", exr},
-     {"png", png},         {"jpeg", jpeg},        {"webp", webp},
-     {"targa", targa},     {"bmp", bmp},          {"checkpoint", checkpoint},
-     {"merge", merge},     {"compare", compare},  {"plot", plot},
-     {"cameras", cameras}, {"messages", messages}}};
+inline constexpr std::array<Target, 22> TARGETS{{{"scene", scene},
+                                                 {"gltf", gltf},
+                                                 {"glb", glb},
+                                                 {"cost", cost},
+                                                 {"draco", draco},
+                                                 {"meshopt", meshopt},
+                                                 {"obj", obj},
+                                                 {"mtl", mtl},
+                                                 {"ply", ply},
+                                                 {"hdr", hdr},
+                                                 {"exr", exr},
+                                                 {"png", png},
+                                                 {"jpeg", jpeg},
+                                                 {"webp", webp},
+                                                 {"targa", targa},
+                                                 {"bmp", bmp},
+                                                 {"checkpoint", checkpoint},
+                                                 {"merge", merge},
+                                                 {"compare", compare},
+                                                 {"plot", plot},
+                                                 {"cameras", cameras},
+                                                 {"messages", messages}}};
 
 }  // namespace candela::fuzz

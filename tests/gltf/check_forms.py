@@ -14,16 +14,16 @@ import sys
 import tempfile
 from pathlib import Path
 
-import exr_alpha
+import exr_header
 
 OPTIONS = ("--size", "160x90", "--spp", "4", "-q")
 
 
 def blocks(data):
     """The digest of an image's blocks, without the header and without their places in the file."""
-    header, place = exr_alpha.attributes(data)
+    header, place = exr_header.attributes(data)
     _, y0, _, y1 = struct.unpack("<4i", header["dataWindow"])
-    count = -(-(y1 - y0 + 1) // exr_alpha.ZIP_LINES[header["compression"][0]])
+    count = -(-(y1 - y0 + 1) // exr_header.ZIP_LINES[header["compression"][0]])
     digest = hashlib.sha256(header["channels"])
     for offset in struct.unpack_from(f"<{count}Q", data, place):
         size = struct.unpack_from("<4xi", data, offset)[0]

@@ -33,7 +33,7 @@ MOVING = ("--time", "0.5", "--animation", "all")
 HANG = 60  # Seconds.
 # Said of files without a flaw, too.
 REMARKS = re.compile(r"there is no light;|there is no camera;|the scene has no surfaces|left out points or lines"
-                     r"|left out a primitive without area|the extension .* is not read: |range of a light is ignored"
+                     r"|left out a primitive without area|the extension .* is not read: |what these extensions add |range of a light is ignored"
                      r"|posed by the first animation|has no animations|ignored what KHR_animation_pointer moves"
                      r"|only small or dim surfaces emit light")
 LINE = re.compile(r"candela: (error|warning): (.*)")

@@ -106,32 +106,52 @@ void copy_element(const std::byte* bytes, uint32_t width, bool normalized, float
 
 }  // namespace
 
-Accessor::Accessor(File& file, const Node& reference, std::initializer_list<std::string_view> types)
-    : node_(file.resolve("accessors", reference)) {
-    component_ = read_component(node_.require("componentType"));
-    width_ = read_width(node_.require("type"), types);
-    const Node count = node_.require("count");
-    count_ = count.integer(1, UINT32_MAX);
-    if (const auto normalized = node_.find("normalized")) normalized_ = normalized->boolean();
-    if (normalized_ && (component_ == Component::float32 || component_ == Component::uint32)) {
-        file.warn(node_, "\"normalized\" does not apply to floats or 32-bit integers, and is ignored");
-        normalized_ = false;
+size_t AccessorType::element_size() const {
+    return width * size_of_component(component);
+}
+
+AccessorType read_accessor_type(File& file, const Node& node, std::initializer_list<std::string_view> types) {
+    AccessorType type;
+    type.component = read_component(node.require("componentType"));
+    type.width = read_width(node.require("type"), types);
+    type.count = node.require("count").integer(1, UINT32_MAX);
+    if (const auto normalized = node.find("normalized")) type.is_normalized = normalized->boolean();
+    if (type.is_normalized && (type.component == Component::float32 || type.component == Component::uint32)) {
+        file.warn(node, "\"normalized\" does not apply to floats or 32-bit integers, and is ignored");
+        type.is_normalized = false;
     }
-    const size_t size = width_ * size_of_component(component_);
+    return type;
+}
+
+Accessor::Accessor(File& file, const Node& reference, std::initializer_list<std::string_view> types)
+    : node_(file.resolve("accessors", reference)), type_(read_accessor_type(file, node_, types)) {
     if (node_.find("bufferView")) {
-        bytes_ = element_bytes(file, node_, count_, size, stride_);
-    } else if (count_ > file.bytes_read()) {
+        bytes_ = element_bytes(file, node_, type_.count, type_.element_size(), stride_);
+    } else if (type_.count > file.bytes_read()) {
         // Zeros take no bytes in the file, but they do take memory. An attribute cannot have more elements
         // than the data it accompanies.
-        count.fail(
+        node_.require("count").fail(
             concat("an accessor without a bufferView is all zeros, and may not have more elements than the ",
                    file.bytes_read(), " bytes that were read; name the view of its bytes"));
     }
-    if (const auto sparse = node_.find("sparse")) read_sparse(file, *sparse);
+    read_sparse(file);
 }
 
-void Accessor::read_sparse(File& file, const Node& sparse) {
-    const uint32_t replaced = sparse.require("count").integer(1, count_);
+Accessor::Accessor(File& file, const Node& reference, std::initializer_list<std::string_view> types,
+                   std::span<const std::byte> elements)
+    : node_(file.resolve("accessors", reference)),
+      type_(read_accessor_type(file, node_, types)),
+      bytes_(elements),
+      stride_(type_.element_size()) {
+    type_.count = uint32_t(elements.size() / stride_);
+    read_sparse(file);
+}
+
+void Accessor::read_sparse(File& file) {
+    const auto found = node_.find("sparse");
+    if (!found) return;
+    const Node& sparse = *found;
+    const uint32_t replaced = sparse.require("count").integer(1, count());
     const Node indices = sparse.require("indices");
     const Node type_node = indices.require("componentType");
     const Component type = read_component(type_node);
@@ -146,44 +166,44 @@ void Accessor::read_sparse(File& file, const Node& sparse) {
             std::memcpy(&value, index_bytes.data() + i * stride, sizeof value);
             return double(value);
         });
-        if (!(index >= 0.0 && index < double(count_))) {
-            indices.fail(concat("number ", i, " replaces an element beyond the accessor's ", count_,
+        if (!(index >= 0.0 && index < double(count()))) {
+            indices.fail(concat("number ", i, " replaces an element beyond the accessor's ", count(),
                                 "; is the file damaged?"));
         }
         sparse_->indices.push_back(uint32_t(index));
     }
-    const size_t size = width_ * size_of_component(component_);
-    sparse_->values = element_bytes(file, sparse.require("values"), replaced, size, sparse_->stride);
+    sparse_->values =
+        element_bytes(file, sparse.require("values"), replaced, type_.element_size(), sparse_->stride);
 }
 
 std::vector<float> Accessor::floats() const {
-    std::vector<float> result(size_t(count_) * width_, 0.0f);
-    with_type(component_, [&](auto zero) {
+    std::vector<float> result(size_t(count()) * width(), 0.0f);
+    with_type(component(), [&](auto zero) {
         using T = decltype(zero);
-        for (size_t i = 0; !bytes_.empty() && i < count_; ++i)
-            copy_element<T>(bytes_.data() + i * stride_, width_, normalized_, &result[i * width_]);
+        for (size_t i = 0; !bytes_.empty() && i < count(); ++i)
+            copy_element<T>(bytes_.data() + i * stride_, width(), is_normalized(), &result[i * width()]);
         if (!sparse_) return;
         for (size_t i = 0; i < sparse_->indices.size(); ++i) {
-            copy_element<T>(sparse_->values.data() + i * sparse_->stride, width_, normalized_,
-                            &result[size_t(sparse_->indices[i]) * width_]);
+            copy_element<T>(sparse_->values.data() + i * sparse_->stride, width(), is_normalized(),
+                            &result[size_t(sparse_->indices[i]) * width()]);
         }
     });
     return result;
 }
 
 std::vector<float> Accessor::floats(std::span<const uint32_t> rows) const {
-    std::vector<float> result(rows.size() * width_, 0.0f);
+    std::vector<float> result(rows.size() * width(), 0.0f);
     if (sparse_) {
         const std::vector<float> all = floats();
         for (size_t i = 0; i < rows.size(); ++i)
-            std::copy_n(&all[size_t(rows[i]) * width_], width_, &result[i * width_]);
+            std::copy_n(&all[size_t(rows[i]) * width()], width(), &result[i * width()]);
         return result;
     }
     if (bytes_.empty()) return result;
-    with_type(component_, [&](auto zero) {
+    with_type(component(), [&](auto zero) {
         for (size_t i = 0; i < rows.size(); ++i) {
-            copy_element<decltype(zero)>(bytes_.data() + rows[i] * stride_, width_, normalized_,
-                                         &result[i * width_]);
+            copy_element<decltype(zero)>(bytes_.data() + rows[i] * stride_, width(), is_normalized(),
+                                         &result[i * width()]);
         }
     });
     return result;
@@ -194,20 +214,20 @@ const std::vector<float>& Accessor::kept_floats(File& file) const {
 }
 
 std::vector<uint32_t> Accessor::integers() const {
-    if (!is_unsigned(component_) || normalized_) {
+    if (!is_unsigned(component()) || is_normalized()) {
         node_.require("componentType").fail("unsigned integers are expected here; export the file again");
     }
-    std::vector<uint32_t> result(size_t(count_) * width_, 0);
-    with_type(component_, [&](auto zero) {
+    std::vector<uint32_t> result(size_t(count()) * width(), 0);
+    with_type(component(), [&](auto zero) {
         using T = decltype(zero);
         const auto copy = [&](const std::byte* bytes, size_t element) {
-            for (uint32_t c = 0; c < width_; ++c) {
+            for (uint32_t c = 0; c < width(); ++c) {
                 T value;
                 std::memcpy(&value, bytes + c * sizeof(T), sizeof(T));
-                result[element * width_ + c] = uint32_t(double(value));
+                result[element * width() + c] = uint32_t(double(value));
             }
         };
-        for (size_t i = 0; !bytes_.empty() && i < count_; ++i)
+        for (size_t i = 0; !bytes_.empty() && i < count(); ++i)
             copy(bytes_.data() + i * stride_, i);
         if (!sparse_) return;
         for (size_t i = 0; i < sparse_->indices.size(); ++i)

@@ -24,18 +24,35 @@ struct Sparse {
     size_t stride = 0;  // From one element to the next [bytes].
 };
 
+// What an accessor states of its elements.
+struct AccessorType {
+    Component component = Component::float32;
+    uint32_t width = 1;  // Numbers per element.
+    bool is_normalized = false;
+    uint32_t count = 0;
+
+    size_t element_size() const;  // [bytes]
+};
+
+// Reads that of the accessor `node`. Throws Error unless it has one of these types ("SCALAR", "VEC3" ...).
+AccessorType read_accessor_type(File& file, const Node& node, std::initializer_list<std::string_view> types);
+
 class Accessor {
   public:
-    // Reads the accessor that `reference` refers to. Throws Error unless it has one of these types ("SCALAR",
-    // "VEC3" ...), and its bytes are there.
+    // Reads the accessor that `reference` refers to. Throws Error unless it has one of these types, and its
+    // bytes are there.
     Accessor(File& file, const Node& reference, std::initializer_list<std::string_view> types);
+    // The same, but its elements are these bytes, one after the other, however many it states. They must
+    // outlive it.
+    Accessor(File& file, const Node& reference, std::initializer_list<std::string_view> types,
+             std::span<const std::byte> elements);
 
     const Node& node() const { return node_; }
-    uint32_t count() const { return count_; }
+    uint32_t count() const { return type_.count; }
     // Numbers per element.
-    uint32_t width() const { return width_; }
-    Component component() const { return component_; }
-    bool is_normalized() const { return normalized_; }
+    uint32_t width() const { return type_.width; }
+    Component component() const { return type_.component; }
+    bool is_normalized() const { return type_.is_normalized; }
 
     // All elements, one after the other, as floats: integers as they are, or normalised to [0, 1] or [-1, 1].
     std::vector<float> floats() const;
@@ -47,13 +64,10 @@ class Accessor {
     std::vector<uint32_t> integers() const;
 
   private:
-    void read_sparse(File& file, const Node& sparse);
+    void read_sparse(File& file);
 
     Node node_;
-    Component component_ = Component::float32;
-    uint32_t width_ = 1;
-    bool normalized_ = false;
-    uint32_t count_ = 0;
+    AccessorType type_;
     std::span<const std::byte> bytes_;  // Begins at the first element; empty: all elements are zero.
     size_t stride_ = 0;
     std::optional<Sparse> sparse_;

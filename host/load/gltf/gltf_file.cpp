@@ -9,8 +9,8 @@
 #include "base/error.h"
 #include "base/memory_limit.h"
 #include "base/text.h"
+#include "load/gltf/meshopt.h"
 #include "load/gltf/uri.h"
-#include "load/gltf/values.h"
 #include "load/quote.h"
 
 namespace candela::gltf {
@@ -68,15 +68,6 @@ std::optional<std::string> mended(std::string_view text) {
         result += text.substr(begin, end - begin);
     }
     return result;
-}
-
-// Throws Error for a buffer that only an extension can fill.
-void check_meshopt(const Node& buffer) {
-    for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
-        if (!extension_of(buffer, name)) continue;
-        buffer.fail(concat("the data is compressed by meshopt (", name,
-                           "), which is not read; export the file without compression"));
-    }
 }
 
 // Throws Error unless a loader of glTF 2.0 can read the file.
@@ -203,6 +194,19 @@ uint32_t File::index(std::string_view array, const Node& reference) const {
 }
 
 std::span<const std::byte> File::view_bytes(const Node& view) {
+    const auto extension = meshopt_of(view);
+    if (!extension) return plain_bytes(view);
+    const std::string place = extension->place();
+    const auto& bytes = contents_.keep("bytes of " + place, [&] {
+        return with_memory_for(
+            "the data that meshopt has compressed", [&] { return place; },
+            [&] { return decode_meshopt(view, *extension, plain_bytes(*extension)); });
+    });
+    count_decoded(place, bytes.size());
+    return bytes;
+}
+
+std::span<const std::byte> File::plain_bytes(const Node& view) {
     const Node buffer = view.require("buffer");
     const std::span<const std::byte> bytes = buffer_bytes(index("buffers", buffer));
     const auto offset_node = view.find("byteOffset");
@@ -242,7 +246,11 @@ std::span<const std::byte> File::buffer_bytes(uint32_t i) {
     } else if (i == 0 && contents_.chunk()) {
         bytes = *contents_.chunk();
     } else {
-        check_meshopt(buffer);
+        if (meshopt_of(buffer)) {
+            buffer.fail(
+                "the buffer has no bytes, as only views that meshopt compresses may refer to it, but another "
+                "does; export the file again");
+        }
         buffer.fail(
             "the buffer has neither a uri nor, as the first of a .glb, a binary chunk; export the file "
             "again");

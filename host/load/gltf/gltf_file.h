@@ -86,14 +86,19 @@ class File {
         return element(array, index(array, reference));
     }
 
-    // The bytes of a bufferView; valid as long as the contents. Throws Error if they are missing.
+    // The bytes of a bufferView, decoded if they are compressed; valid as long as the contents. Throws Error
+    // if they are missing or damaged.
     std::span<const std::byte> view_bytes(const Node& view);
 
     // The index in Scene::images of the file's image `i`, once it has one.
     std::optional<uint32_t>& image_index(uint32_t i) { return images_[i]; }
 
-    // How many bytes this reading has used so far: the file, and the buffers.
+    // How many bytes this reading has used so far: the file, the buffers, and what was decoded of them.
     size_t bytes_read() const { return contents_.size() + buffer_bytes_read_; }
+    // Counts bytes that were decoded at a place, the first time.
+    void count_decoded(const std::string& place, size_t bytes) {
+        if (decoded_.insert(place).second) buffer_bytes_read_ += bytes;
+    }
 
     // Files besides this one that were read for buffers.
     const std::vector<std::filesystem::path>& files() const { return files_; }
@@ -105,12 +110,14 @@ class File {
 
   private:
     std::span<const std::byte> buffer_bytes(uint32_t index);
+    std::span<const std::byte> plain_bytes(const Node& view);
     std::string_view named_buffer(uint32_t index, const Node& uri, size_t length);
 
     Contents& contents_;
     LoadProgress progress_;
     std::vector<bool> is_read_;  // For each buffer.
     size_t buffer_bytes_read_ = 0;
+    std::unordered_set<std::string> decoded_;  // Places.
     std::vector<std::optional<uint32_t>> images_;
     std::vector<std::filesystem::path> files_;
     std::vector<std::string> warnings_;

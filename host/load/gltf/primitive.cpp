@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "load/gltf/accessor.h"
 #include "load/gltf/primitive_triangles.h"
-#include "load/gltf/values.h"
+#include "load/gltf/vertex_data.h"
 #include "scene/mesh.h"
 #include "scene/texture.h"
 
@@ -20,7 +20,10 @@ namespace {
 class PrimitiveReader {
   public:
     PrimitiveReader(File& file, const Node& primitive, const Deformation& deformation)
-        : file_(file), attributes_(primitive.require("attributes")), deformation_(deformation) {
+        : file_(file),
+          primitive_(primitive),
+          attributes_(primitive.require("attributes")),
+          deformation_(deformation) {
         const auto targets = primitive.find("targets");
         if (!targets || deformation.weights.empty()) return;
         const std::vector<Node> all = targets->elements();
@@ -62,7 +65,7 @@ class PrimitiveReader {
                               uint32_t& width) {
         const auto reference = attributes_.find(name);
         if (!reference) return {};
-        const Accessor accessor(file_, *reference, types);
+        const Accessor accessor = vertex_accessor(file_, primitive_, *reference, types);
         check_count(*reference, accessor);
         width = accessor.width();
         std::vector<float> values = accessor.floats(rows_);
@@ -171,8 +174,8 @@ class PrimitiveReader {
                            concat("JOINTS_", set, " and WEIGHTS_", set, " are only used together"));
             }
             if (!joints || !weights) break;
-            const Accessor joint_accessor(file_, *joints, {"VEC4"});
-            const Accessor weight_accessor(file_, *weights, {"VEC4"});
+            const Accessor joint_accessor = vertex_accessor(file_, primitive_, *joints, {"VEC4"});
+            const Accessor weight_accessor = vertex_accessor(file_, primitive_, *weights, {"VEC4"});
             check_count(*joints, joint_accessor);
             check_count(*weights, weight_accessor);
             const std::vector<uint32_t> joint = joint_accessor.integers();
@@ -217,29 +220,13 @@ class PrimitiveReader {
     }
 
     File& file_;
+    Node primitive_;
     Node attributes_;
     Deformation deformation_;
     std::vector<std::pair<Node, double>> targets_;  // With weights other than 0.
     uint32_t vertices_ = 0;
     std::vector<uint32_t> rows_;  // The vertices that triangles use.
 };
-
-// Throws Error for a primitive whose data is only available compressed.
-void check_draco(const File& file, const Node& primitive) {
-    if (!extension_of(primitive, "KHR_draco_mesh_compression")) return;
-    const auto check = [&](const Node& reference) {
-        if (file.resolve("accessors", reference).find("bufferView")) return;
-        primitive.fail(
-            "the mesh is compressed by Draco (KHR_draco_mesh_compression), which is not read; export it "
-            "without "
-            "compression");
-    };
-    if (const auto indices = primitive.find("indices")) check(*indices);
-    if (const auto attributes = primitive.find("attributes")) {
-        for (const Node& attribute : attributes->members())
-            check(attribute);
-    }
-}
 
 // Whether the accessor of that index states that it has no elements.
 bool is_empty(const File& file, const Node& reference) {
@@ -250,7 +237,7 @@ bool is_empty(const File& file, const Node& reference) {
 // The mesh with all of its triangles, also those without area. `position` refers to the accessor.
 TriangleMesh read_all(File& file, const Node& primitive, const Deformation& deformation,
                       const Node& position) {
-    const uint32_t vertices = Accessor(file, position, {"VEC3"}).count();
+    const uint32_t vertices = vertex_accessor(file, primitive, position, {"VEC3"}).count();
     std::vector<uvec3> triangles = read_triangles(file, primitive, mode_of(primitive), vertices);
     if (deformation.mirrors) {
         for (uvec3& t : triangles)
@@ -268,7 +255,6 @@ std::optional<TriangleMesh> read_primitive(File& file, const Node& primitive,
         file.warn(primitive, "left out points or lines, which have no surface");
         return std::nullopt;
     }
-    check_draco(file, primitive);
     const auto attributes = primitive.find("attributes");
     const auto position = attributes ? attributes->find("POSITION") : std::nullopt;
     if (!position) {

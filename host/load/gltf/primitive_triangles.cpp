@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "load/gltf/accessor.h"
+#include "load/gltf/vertex_data.h"
 
 namespace candela::gltf {
 namespace {
@@ -65,6 +66,7 @@ uint32_t mode_of(const Node& primitive) {
 }
 
 std::vector<uvec3> read_triangles(File& file, const Node& primitive, uint32_t mode, uint32_t vertices) {
+    if (const DracoMesh* mesh = draco_of(file, primitive)) return triangles_of(mesh->corners, MODE_TRIANGLES);
     return triangles_of(read_corners(file, primitive, vertices), mode);
 }
 

@@ -10,6 +10,7 @@ namespace candela::gltf {
 
 // Modes of primitives; those below show no surface.
 inline constexpr uint32_t MODE_TRIANGLES = 4;
+inline constexpr uint32_t MODE_TRIANGLE_STRIP = 5;
 inline constexpr uint32_t MODE_TRIANGLE_FAN = 6;  // The last.
 
 uint32_t mode_of(const Node& primitive);

@@ -9,6 +9,7 @@
 #include "load/gltf/far_points.h"
 #include "load/gltf/primitive_triangles.h"
 #include "load/gltf/skin.h"
+#include "load/gltf/vertex_data.h"
 
 namespace candela::gltf {
 namespace {
@@ -24,13 +25,10 @@ void add_corners(FarPoints& points, const Range& range) {
                     i & 4 ? range.hi.z : range.lo.z});
 }
 
-// The positions that one of these attributes has for the vertices `rows`; none if it is absent.
-std::vector<dvec3> positions_of(File& file, const Node& attributes, const std::vector<uint32_t>& rows,
+// The positions of the vertices `rows`; none if the accessor has others.
+std::vector<dvec3> positions_of(const Accessor& accessor, const std::vector<uint32_t>& rows,
                                 uint32_t vertices) {
     std::vector<dvec3> positions;
-    const auto reference = attributes.find("POSITION");
-    if (!reference) return positions;
-    const Accessor accessor(file, *reference, {"VEC3"});
     if (accessor.count() != vertices) return positions;
     const std::vector<float> numbers = accessor.floats(rows);
     for (size_t i = 0; i < numbers.size(); i += 3)
@@ -41,11 +39,15 @@ std::vector<dvec3> positions_of(File& file, const Node& attributes, const std::v
 std::vector<Range> ranges_of(File& file, const Node& primitive, const WeightRanges& weights,
                              const std::vector<uint32_t>& rows, uint32_t vertices) {
     std::vector<Range> ranges;
-    for (const dvec3 p : positions_of(file, primitive.require("attributes"), rows, vertices))
+    const Node position = primitive.require("attributes").require("POSITION");
+    const Accessor accessor = vertex_accessor(file, primitive, position, {"VEC3"});
+    for (const dvec3 p : positions_of(accessor, rows, vertices))
         ranges.push_back({p, p});
     const auto targets = primitive.find("targets");
     for (size_t t = 0; targets && t < std::min(targets->size(), weights.size()); ++t) {
-        const std::vector<dvec3> moves = positions_of(file, (*targets)[t], rows, vertices);
+        const auto moved = (*targets)[t].find("POSITION");
+        if (!moved) continue;
+        const std::vector<dvec3> moves = positions_of(Accessor(file, *moved, {"VEC3"}), rows, vertices);
         for (size_t i = 0; i < moves.size(); ++i) {
             const dvec3 a = weights[t].first * moves[i], b = weights[t].second * moves[i];
             ranges[i].lo += min(a, b);
@@ -56,16 +58,19 @@ std::vector<Range> ranges_of(File& file, const Node& primitive, const WeightRang
 }
 
 // For each joint, the vertices that follow it.
-std::vector<FarPoints> points_of_joints(File& file, const Node& attributes, const std::vector<Range>& ranges,
+std::vector<FarPoints> points_of_joints(File& file, const Node& primitive, const std::vector<Range>& ranges,
                                         const std::vector<uint32_t>& rows, size_t joints) {
+    const Node attributes = primitive.require("attributes");
     std::vector<FarPoints> points(joints);
     std::vector<bool> is_free(rows.size(), true);
     for (int set = 0;; ++set) {
         const auto joint_reference = attributes.find("JOINTS_" + std::to_string(set));
         const auto weight_reference = attributes.find("WEIGHTS_" + std::to_string(set));
         if (!joint_reference || !weight_reference) break;
-        const std::vector<uint32_t> joint = Accessor(file, *joint_reference, {"VEC4"}).integers();
-        const std::vector<float> weight = Accessor(file, *weight_reference, {"VEC4"}).floats();
+        const std::vector<uint32_t> joint =
+            vertex_accessor(file, primitive, *joint_reference, {"VEC4"}).integers();
+        const std::vector<float> weight =
+            vertex_accessor(file, primitive, *weight_reference, {"VEC4"}).floats();
         for (size_t i = 0; i < rows.size(); ++i) {
             for (size_t k = 4 * size_t(rows[i]); k < 4 * (size_t(rows[i]) + 1); ++k) {
                 if (k >= joint.size() || k >= weight.size() || !(weight[k] > 0.0f) || joint[k] >= joints)
@@ -85,8 +90,8 @@ std::vector<FarPoints> points_of_joints(File& file, const Node& attributes, cons
 
 void add_clouds(File& file, const Node& primitive, const WeightRanges& weights,
                 const std::optional<Node>& skin, uint32_t carrier, std::vector<Cloud>& clouds) {
-    const Node attributes = primitive.require("attributes");
-    const uint32_t vertices = Accessor(file, attributes.require("POSITION"), {"VEC3"}).count();
+    const Node position = primitive.require("attributes").require("POSITION");
+    const uint32_t vertices = vertex_accessor(file, primitive, position, {"VEC3"}).count();
     std::vector<uvec3> triangles = read_triangles(file, primitive, mode_of(primitive), vertices);
     const std::vector<uint32_t> rows = keep_used(triangles, vertices);
     const std::vector<Range> ranges = ranges_of(file, primitive, weights, rows, vertices);
@@ -101,7 +106,7 @@ void add_clouds(File& file, const Node& primitive, const WeightRanges& weights,
     const std::vector<PosedNode> at_origin(file.count("nodes"));
     const std::vector<glm::dmat4> to_joints = joint_matrices(file, *skin, at_origin);
     const std::vector<Node> joints = skin->require("joints").elements();
-    const std::vector<FarPoints> points = points_of_joints(file, attributes, ranges, rows, to_joints.size());
+    const std::vector<FarPoints> points = points_of_joints(file, primitive, ranges, rows, to_joints.size());
     for (size_t i = 0; i < points.size(); ++i) {
         Cloud cloud{file.index("nodes", joints[i]), carrier, points[i].points()};
         for (dvec3& p : cloud.points)

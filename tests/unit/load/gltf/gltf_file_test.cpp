@@ -258,15 +258,6 @@ TEST_F(GltfFileTest, RefusesBuffersAndViewsThatAreTooShort) {
         "file has");
 }
 
-TEST_F(GltfFileTest, BuffersThatExtensionsFillAreRefusedByTheirNames) {
-    for (const std::string name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
-        GltfFile file = corner_file();
-        file.root["buffers"] = {{{"byteLength", 36}, {"extensions", {{name, {{"fallback", true}}}}}}};
-        expect_error(file, "#/buffers/0: the data is compressed by meshopt (" + name +
-                               "), which is not read; export the file without compression");
-    }
-}
-
 TEST_F(GltfFileTest, MembersThatAreNullAreAbsent) {
     GltfFile file = corner_file();
     file.root["animations"] = file.root["extensionsRequired"] = file.root["scene"] = nullptr;

@@ -323,22 +323,5 @@ TEST_F(GltfMesh, LeavesOutWhatShowsNoSurface) {
     expect_empty("SCALAR", 5123, true);
 }
 
-TEST_F(GltfMesh, DataThatOnlyDracoHoldsAreRefused) {
-    GltfFile file = corner_file();
-    Json& primitive = file.root["meshes"][0]["primitives"][0];
-    primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
-    // The same data stand beside it.
-    EXPECT_EQ(load(file).shapes.size(), 1u);
-    const std::string message =
-        "#/meshes/0/primitives/0: the mesh is compressed by Draco (KHR_draco_mesh_compression), which is not "
-        "read; export it without compression";
-    primitive["indices"] =
-        file.push("accessors", {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}});
-    expect_error(file, message);
-    file.root["meshes"][0]["primitives"][0].erase("indices");
-    file.root["accessors"][0].erase("bufferView");
-    expect_error(file, message);
-}
-
 }  // namespace
 }  // namespace candela
