@@ -16,9 +16,9 @@ namespace candela::serve {
 namespace {
 
 // The keys of a picture, beside the scene's id.
-constexpr std::array<std::string_view, 13> KEYS{
-    "camera",       "size",       "crop",      "spp",     "seed",      "layers", "background",
-    "target_error", "time_limit", "estimator", "sampler", "max_depth", "denoise"};
+constexpr std::array<std::string_view, 14> KEYS{
+    "camera",       "size",       "crop",      "spp",     "seed",      "layers",  "background",
+    "target_error", "time_limit", "estimator", "sampler", "max_depth", "denoise", "latency"};
 
 constexpr std::array<std::pair<std::string_view, Backdrop>, 2> BACKGROUND_NAMES{
     {{"environment", Backdrop::environment}, {"transparent", Backdrop::transmitted}}};
@@ -114,6 +114,8 @@ RenderJob read_job(const Node& parameters, const Scene& scene) {
     if (const auto spp = parameters.find("spp")) job.target = spp->integer(1, MAX_SPP);
     if (const auto error = parameters.find("target_error")) job.target_error = error->positive();
     if (const auto limit = parameters.find("time_limit")) job.time_limit = limit->positive();
+    if (const auto latency = parameters.find("latency"))
+        job.settings.submission_seconds = latency->positive();
     job.aovs = read_layers(parameters);
     if (const auto denoise = parameters.find("denoise"); denoise && denoise->boolean()) {
         job.aovs.denoising = job.aovs.variance = job.aovs.sample_count = true;
