@@ -26,6 +26,7 @@ class CANDELA_RENDER_PT_sampling(_Panel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(settings, "samples")
+        layout.prop(settings, "preview_samples")
         row = layout.row(heading="Target Error")
         row.prop(settings, "use_target_error", text="")
         sub = row.row()

@@ -21,6 +21,8 @@ class CandelaPreferences(bpy.types.AddonPreferences):
 
 class CandelaSettings(bpy.types.PropertyGroup):
     samples: IntProperty(name="Samples", default=128, min=1, max=1 << 24, description="Samples per pixel")
+    preview_samples: IntProperty(name="Viewport Samples", default=1024, min=1, max=1 << 24,
+                                 description="Samples per pixel after which the picture in a viewport stays as it is")
     use_target_error: BoolProperty(name="Target Error", default=False,
                                    description="End when the estimated relative error is this")
     target_error: FloatProperty(name="Error", default=0.02, min=0.0001, max=1.0, precision=4)
