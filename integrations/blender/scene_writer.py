@@ -17,6 +17,9 @@ _MISSING = {"CURVES": "hair", "VOLUME": "volumes", "POINTCLOUD": "point clouds",
             "GPENCIL": "grease pencil"}
 _SILENT = {"EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 
+# The kinds of rays that an object may be hidden from.
+_RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
+
 
 class _Shown:
     """A mesh with its materials, and where it is shown."""
@@ -37,7 +40,7 @@ class SceneWriter:
         """size: (width, height) of the whole picture [pixels]. cache: what is known of an earlier look at the scene."""
         self.notices = Notices()
         self._depsgraph = depsgraph
-        self._scene = candela.Scene(size=size, session=session)
+        self._scene = candela.Scene(size=size, session=session, **depsgraph.scene.candela.film())
         self._size = size
         self._cache = cache or Cache()
         self._materials = {}
@@ -77,6 +80,8 @@ class SceneWriter:
             self.notices.add(f'Object "{thing.name}"', "candela has no hair; its particles are left out")
 
     def _add_mesh(self, thing, instance):
+        if not any(getattr(thing, f"visible_{name}") for name in _RAYS):
+            return
         matrix = placed(instance.matrix_world)
         if numpy.linalg.matrix_rank(matrix[:3, :3]) < 3:
             self.notices.add(f'Object "{thing.name}"', "it is flat along an axis of its own; it is left out")
@@ -92,8 +97,9 @@ class SceneWriter:
         materials = [self._material(slot) for slot in slots] or [self._material(None)]
         if thing.is_holdout:
             self.notices.add(f'Object "{thing.name}"', "candela has no holdouts; it is shown")
-        if not thing.visible_camera:
-            self.notices.add(f'Object "{thing.name}"', "candela hides objects from all rays or none; it is shown")
+        hidden = [name for name in _RAYS if not getattr(thing, f"visible_{name}")]
+        if hidden:
+            self.notices.add(f'Object "{thing.name}"', f"candela hides objects from all rays or none; it is shown to {', '.join(hidden)}")
         owner = uid_of(thing)
         key = ("mesh", owner, sum(shown.key[1] == owner for shown in self._shown.values()))
         sources = {owner, uid_of(thing.data), uid_of(instance.parent)}

@@ -38,6 +38,18 @@ class CandelaSettings(bpy.types.PropertyGroup):
         ("mis", "Both", "Light and surface sampling, combined by multiple importance sampling"),
         ("light", "Lights", "Light sampling"), ("bsdf", "Surfaces", "Surface sampling")])
 
+    pixel_filter: EnumProperty(name="Filter", default="blackman-harris", description="How samples are spread around a pixel", items=[
+        ("blackman-harris", "Blackman-Harris", "Soft, without rings: what Cycles has by default"),
+        ("gaussian", "Gaussian", "A normal distribution, cut off at its width"),
+        ("tent", "Tent", "Falls off evenly"),
+        ("box", "Box", "Evenly over the square; of width 1, the pixel itself")])
+    filter_width: FloatProperty(name="Width", default=1.5, min=0.01, max=10.0, subtype="PIXEL",
+                                description="The filter's whole width")
+
+    def film(self):
+        """What candela.Scene() takes."""
+        return {"filter": self.pixel_filter, "filter_width": self.filter_width}
+
     def options(self):
         """What Scene.render() takes."""
         options = {"seed": self.seed, "estimator": self.light_sampling}

@@ -101,6 +101,17 @@ class BlenderTest(SceneTest):
         render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.5, 1.0, 0.25, 1.0
         numpy.testing.assert_array_equal(self.render(), whole[:SIZE * 3 // 4, SIZE // 2:])
 
+    def test_a_filter_spreads_samples(self):
+        """Of an edge through the middle of a pixel: a box of the pixel's width is nowhere else, a wider one is."""
+        scene = bpy.context.scene
+        scene.candela.samples = 256
+        add("plane", glowing(), size=2, location=(1 + 0.5 / SIZE, 0, 0))
+        add_camera(type="ORTHO", ortho_scale=1)
+        scene.candela.pixel_filter, scene.candela.filter_width = "box", 1.0
+        numpy.testing.assert_allclose(self.render()[8, SIZE // 2 - 1:SIZE // 2 + 2, 0], (0, 0.5, 1), atol=0.01)
+        scene.candela.filter_width = 3.0
+        numpy.testing.assert_allclose(self.render()[8, SIZE // 2 - 1:SIZE // 2 + 2, 0], (1 / 6, 0.5, 5 / 6), atol=0.01)
+
     def test_what_is_out_of_focus_is_blurred(self):
         add("uv_sphere", glowing(), radius=0.02)
         camera = add_camera(location=(0, 0, 5), lens=50)
@@ -337,6 +348,24 @@ class BlenderTest(SceneTest):
         inside.chmod(0o644)
         addon.program.make_executable()
         self.assertTrue(os.access(inside, os.X_OK))
+
+    def test_presets_keep_the_settings(self):
+        settings = bpy.context.scene.candela
+        settings.samples, settings.denoise = 77, "variance"
+        bpy.ops.candela.sampling_preset_add(name="Quick")
+        settings.samples, settings.denoise = 5, "none"
+        preset = Path(bpy.utils.user_resource("SCRIPTS")) / "presets/candela/sampling/Quick.py"
+        bpy.ops.script.execute_preset(filepath=str(preset), menu_idname="CANDELA_MT_sampling_presets")
+        self.assertEqual((settings.samples, settings.denoise), (77, "variance"))
+
+    def test_objects_are_hidden_from_all_rays_or_none(self):
+        ball = add("uv_sphere", glowing(), radius=1)
+        add_camera()
+        ball.visible_camera = ball.visible_shadow = False
+        self.assertIn('Object "Sphere": candela hides objects from all rays or none; it is shown to camera, shadow', self.notices())
+        ball.visible_diffuse = ball.visible_glossy = ball.visible_transmission = False
+        self.assertEqual(self.notices(), "")
+        self.assertEqual(self.render()[..., 0].max(), 0)
 
     def test_registers_again(self):
         addon.unregister()

@@ -2,11 +2,15 @@
 folder, build/blender/candela_blender (sh cmake/blender.sh), and the program. Needs PyPI's bpy.
 """
 import os
+import shutil
 import sys
 import tempfile
 import unittest
 import warnings
 from pathlib import Path
+
+# Presets of users are not the tests'.
+os.environ["BLENDER_USER_RESOURCES"] = tempfile.mkdtemp(prefix="candela-blender-")
 
 import bpy
 import mathutils
@@ -147,5 +151,6 @@ class SceneTest(unittest.TestCase):
 def run():
     """Runs the tests of the program, which ends without what Blender does then."""
     outcome = unittest.main(exit=False).result
+    shutil.rmtree(os.environ["BLENDER_USER_RESOURCES"], ignore_errors=True)
     sys.stdout.flush()
     os._exit(0 if outcome.wasSuccessful() and outcome.testsRun else 1)

@@ -17,7 +17,8 @@ _PLACEHOLDER = {"position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40}
 class Draft:
     """The parts of a scene file, some of them arrays."""
 
-    def __init__(self, size: Tuple[int, int]) -> None:
+    def __init__(self, size: Tuple[int, int], film: Optional[Dict[str, Any]] = None) -> None:
+        self.film = {**(film or {}), "size": list(size)}
         self.size = size
         self.cameras: Dict[str, Any] = {}
         self.materials: Dict[str, Any] = {}
@@ -42,7 +43,7 @@ class Draft:
     def to_text(self) -> Tuple[str, Dict[str, Tuple[AnyArray, Optional[str]]]]:
         """The scene in JSON, and the arrays that it names."""
         convert = Converter()
-        scene: Dict[str, Any] = {"film": {"size": list(self.size)},
+        scene: Dict[str, Any] = {"film": self.film,
                                  "cameras": _plain(self.cameras or {"main": _PLACEHOLDER}),
                                  "materials": convert(self.materials, "materials"),
                                  "lights": _plain(self.lights), "objects": {}, "shapes": []}

@@ -15,7 +15,7 @@ _FIXED = ("emission", "two_sided", "material", "shadow_catcher")
 def change_between(before: Draft, now: Draft) -> Optional[Dict[str, Any]]:
     """What Scene.change() takes to make `now` of a scene of `before`; None if it has to be loaded anew. What is the same object
     in both is not looked at."""
-    if before.size != now.size or any(list(getattr(before, kind)) != list(getattr(now, kind)) for kind in ("meshes", "shapes")):
+    if before.film != now.film or any(list(getattr(before, kind)) != list(getattr(now, kind)) for kind in ("meshes", "shapes")):
         return None
     if set(before.materials) != set(now.materials) or set(before.cameras) != set(now.cameras):
         return None

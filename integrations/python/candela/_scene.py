@@ -43,14 +43,15 @@ class Scene(Building):
     After a change, only what depends on it is made again. Threads may share it; a picture at a time is rendered.
     """
 
-    def __init__(self, size: Tuple[int, int] = (640, 480), session: Optional[Session] = None) -> None:
+    def __init__(self, size: Tuple[int, int] = (640, 480), session: Optional[Session] = None, **film: Any) -> None:
         """A scene without anything in it. size: of its pictures, (width, height) in pixels. session: the one of
-        candela.Session() that it belongs to; by default the one that all share."""
+        candela.Session() that it belongs to; by default the one that all share. film: further keys of the film in scene files,
+        such as filter="gaussian"."""
         if session is None:
             from ._session import default_session
             session = default_session()
         self._begin(session._connection)
-        self._draft: Optional[Draft] = Draft(size)
+        self._draft: Optional[Draft] = Draft(size, film)
 
     @classmethod
     def _of(cls, connection: Connection, description: Dict[str, Any]) -> Scene:
