@@ -9,6 +9,7 @@ import numpy
 
 from . import candela
 from .axes import to_blender
+from .cryptomatte import metadata
 from .drawing import Drawing
 from .program import session
 from .scene_writer import SceneWriter
@@ -103,6 +104,8 @@ class CandelaEngine(bpy.types.RenderEngine):
     def _accumulate(self, written, view_layer, scene, crop):
         settings = scene.candela
         options = {"crop": crop, "transparent": scene.render.film_transparent, **settings.options()}
+        if _mattes(view_layer):
+            options["layers"] = ["albedo", "normal", "position", "depth", "object_id", "crypto_object00"]
         samples = settings.samples
         began, goal = time.monotonic(), 1 if not bpy.app.background else samples
         while True:
@@ -131,6 +134,10 @@ class CandelaEngine(bpy.types.RenderEngine):
         for name, _, _, _, read in _passes(view_layer, settings):
             if name in passes:
                 _fill(passes[name], read(image))
+        for kind in _mattes(view_layer):
+            names = filter(None, image.names[f"{kind.lower()}_id"])
+            for key, value in metadata(f"{view_layer.name}.Crypto{kind}", names):
+                result.stamp_data_add_field(key, value)
         self.end_result(result)
 
 
@@ -184,7 +191,16 @@ def _passes(layer, settings):
         wanted.append(("Position", 3, "XYZ", "VECTOR", lambda image: to_blender(_finite(image.position))))
     if layer.use_pass_diffuse_color:
         wanted.append(("DiffCol", 3, "RGB", "COLOR", lambda image: image.albedo))
+    for kind in _mattes(layer):
+        for rank in range(3):
+            wanted.append((f"Crypto{kind}{rank:02}", 4, "RGBA", "COLOR",
+                           lambda image, name=f"crypto_{kind.lower()}{rank:02}": image[name]))
     return wanted
+
+
+def _mattes(layer):
+    """The kinds of Cryptomatte that a view layer wants."""
+    return [kind for kind in ("Object", "Material") if getattr(layer, f"use_pass_cryptomatte_{kind.lower()}")]
 
 
 def _finite(values):

@@ -99,7 +99,8 @@ class CANDELA_VIEWLAYER_PT_passes(_Panel, bpy.types.Panel):
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        for name in ("use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_diffuse_color"):
+        for name in ("use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_diffuse_color",
+                     "use_pass_cryptomatte_object", "use_pass_cryptomatte_material"):
             self.layout.prop(context.view_layer, name)
 
 
