@@ -6,6 +6,8 @@ FOLDER: that of the add-on, build/blender/candela_blender (sh cmake/blender.sh).
 import math
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import bpy
@@ -297,6 +299,43 @@ class BlenderTest(SceneTest):
         # Normals of vertices have 16 bits a coordinate.
         numpy.testing.assert_allclose(centre(read["Normal"]), (0, -math.sin(0.5), math.cos(0.5)), atol=1e-4)
         numpy.testing.assert_allclose(centre(read["Position"]), (0, 0, 1), atol=1e-3)
+
+    def test_mattes_are_those_of_the_names(self):
+        """The ids of Cryptomatte are hashes of Blender's names, which Blender's own metadata would have, too."""
+        layer = bpy.context.view_layer
+        layer.use_pass_cryptomatte_object = layer.use_pass_cryptomatte_material = True
+        add("plane", matte("Paint"), size=20).name = "Wall"
+        add_camera()
+        read, told = {}, {}
+        show, metadata = addon.engine.CandelaEngine._show, addon.engine.metadata
+
+        def spy(engine, image, view_layer, settings):
+            show(engine, image, view_layer, settings)
+            read.update({name: values(image) for name, _, _, _, values in addon.engine._passes(view_layer, settings)})
+        addon.engine.CandelaEngine._show = spy
+        self.addCleanup(setattr, addon.engine.CandelaEngine, "_show", show)
+        addon.engine.metadata = lambda *args: told.update(metadata(*args)) or metadata(*args)
+        self.addCleanup(setattr, addon.engine, "metadata", metadata)
+        self.render()
+        for kind, name in (("Object", "Wall"), ("Material", "Paint")):
+            expected = numpy.array([addon.cryptomatte.id_of(name)], numpy.uint32).view(numpy.float32)[0]
+            numpy.testing.assert_array_equal(read[f"Crypto{kind}00"][0, 0].astype(numpy.float32)[:2], [expected, 1])
+        manifests = [value for key, value in told.items() if key.endswith("/manifest")]
+        self.assertEqual(manifests[0], '{"Wall":"%08x"}' % addon.cryptomatte.id_of("Wall"))
+        # As the specification has it.
+        self.assertEqual(addon.cryptomatte.murmur_hash(b"hello"), 0x248BFA47)
+        self.assertEqual(addon.cryptomatte.murmur_hash(b""), 0)
+
+    def test_the_command_line_renders_files_of_blender(self):
+        add("plane", glowing(), size=20)
+        add_camera()
+        scene = Path(self.file).with_name("a scene.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=str(scene))
+        done = subprocess.run([os.environ["CANDELA"], "render", scene, "--size", "8x8", "--spp", "1", "--quiet", "-o", self.file],
+                              env={**os.environ, "CANDELA_BLENDER": sys.executable}, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        image = bpy.data.images.load(self.file)
+        numpy.testing.assert_allclose(numpy.array(image.pixels[:3]), 1, rtol=1e-3)
 
     # What goes wrong.
 
