@@ -2,11 +2,14 @@
 #include "cli/loading.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include <nlohmann/json.hpp>
 
 #include "base/memory_limit.h"
+#include "cli/blend_file.h"
 #include "cli/console.h"
 #include "cli/interrupt.h"
 #include "cli/progress_line.h"
@@ -65,9 +68,13 @@ LoadOptions load_options(const LoadingOptions& given, const LoadProgress& progre
 
 Scene load_quietly(const std::string& file, const LoadingOptions& given, const LoadProgress& progress) {
     const LoadOptions options = load_options(given, progress);
+    std::optional<ExportedBlend> blend;
+    std::error_code missing;
+    if (is_blend_file(file) && std::filesystem::exists(file, missing)) blend.emplace(file);
     const LimitedMemory limited;
     return with_memory_for(
-        "the scene", [&] { return file; }, [&] { return load_scene(file, options); });
+        "the scene", [&] { return file; },
+        [&] { return load_scene(blend ? blend->gltf() : std::filesystem::path(file), options); });
 }
 
 void show_progress(ProgressStyle style, const std::function<void(const LoadProgress&)>& load) {

@@ -16,9 +16,9 @@ namespace candela::serve {
 namespace {
 
 // The keys of a picture, beside the scene's id.
-constexpr std::array<std::string_view, 13> KEYS{
-    "camera",       "size",       "crop",      "spp",     "seed",      "layers", "background",
-    "target_error", "time_limit", "estimator", "sampler", "max_depth", "denoise"};
+constexpr std::array<std::string_view, 14> KEYS{
+    "camera",       "size",       "crop",      "spp",     "seed",      "layers",  "background",
+    "target_error", "time_limit", "estimator", "sampler", "max_depth", "denoise", "latency"};
 
 constexpr std::array<std::pair<std::string_view, Backdrop>, 2> BACKGROUND_NAMES{
     {{"environment", Backdrop::environment}, {"transparent", Backdrop::transmitted}}};
@@ -55,6 +55,24 @@ std::span<const LayerKind> layer_kinds() {
         {"object_id", {OBJECT_ID}, &AovSelection::ids},
         {"instance_id", {INSTANCE_ID}, &AovSelection::ids},
         {"material_id", {MATERIAL_ID}, &AovSelection::ids},
+        {"crypto_object00",
+         {"CryptoObject00.R", "CryptoObject00.G", "CryptoObject00.B", "CryptoObject00.A"},
+         &AovSelection::cryptomatte},
+        {"crypto_object01",
+         {"CryptoObject01.R", "CryptoObject01.G", "CryptoObject01.B", "CryptoObject01.A"},
+         &AovSelection::cryptomatte},
+        {"crypto_object02",
+         {"CryptoObject02.R", "CryptoObject02.G", "CryptoObject02.B", "CryptoObject02.A"},
+         &AovSelection::cryptomatte},
+        {"crypto_material00",
+         {"CryptoMaterial00.R", "CryptoMaterial00.G", "CryptoMaterial00.B", "CryptoMaterial00.A"},
+         &AovSelection::cryptomatte},
+        {"crypto_material01",
+         {"CryptoMaterial01.R", "CryptoMaterial01.G", "CryptoMaterial01.B", "CryptoMaterial01.A"},
+         &AovSelection::cryptomatte},
+        {"crypto_material02",
+         {"CryptoMaterial02.R", "CryptoMaterial02.G", "CryptoMaterial02.B", "CryptoMaterial02.A"},
+         &AovSelection::cryptomatte},
     };
     return kinds;
 }
@@ -72,8 +90,9 @@ AovSelection read_layers(const Node& parameters) {
     std::vector<std::string> wanted;
     if (all) {
         for (const LayerKind& kind : layer_kinds()) {
-            if (kind.selected != nullptr && kind.selected != &AovSelection::ids)
-                wanted.emplace_back(kind.name);
+            const bool is_of_ids =
+                kind.selected == &AovSelection::ids || kind.selected == &AovSelection::cryptomatte;
+            if (kind.selected != nullptr && !is_of_ids) wanted.emplace_back(kind.name);
         }
     } else {
         for (const Node& layer : layers->elements())
@@ -114,6 +133,8 @@ RenderJob read_job(const Node& parameters, const Scene& scene) {
     if (const auto spp = parameters.find("spp")) job.target = spp->integer(1, MAX_SPP);
     if (const auto error = parameters.find("target_error")) job.target_error = error->positive();
     if (const auto limit = parameters.find("time_limit")) job.time_limit = limit->positive();
+    if (const auto latency = parameters.find("latency"))
+        job.settings.submission_seconds = latency->positive();
     job.aovs = read_layers(parameters);
     if (const auto denoise = parameters.find("denoise"); denoise && denoise->boolean()) {
         job.aovs.denoising = job.aovs.variance = job.aovs.sample_count = true;

@@ -13,7 +13,7 @@ def placed(matrix):
 
 def to_candela(vector):
     """(3,): the point or direction in candela's world."""
-    x, y, z = vector
+    x, y, z = (float(coordinate) for coordinate in vector)
     return [x, z, -y]
 
 

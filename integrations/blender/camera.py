@@ -40,6 +40,30 @@ def camera_keys(camera, depsgraph, size, notices):
     return {"position": to_candela(position), "look_at": to_candela(position + forward), "up": to_candela(up), **keys}
 
 
+def view_keys(view, depsgraph, notices):
+    """The keys of a camera that sees what a viewport shows, whatever its size: a View of viewport.py."""
+    matrix = view.view_matrix.inverted().normalized()
+    position = numpy.array(matrix.translation)
+    forward, up = -numpy.array(matrix.col[2][:3]), numpy.array(matrix.col[1][:3])
+    projection, (width, height) = view.window_matrix, view.size
+    if projection[3][3] != 0:
+        right = numpy.array(matrix.col[0][:3])
+        position = position - right * projection[0][3] / projection[0][0] - up * projection[1][3] / projection[1][1]
+        keys = {"orthographic_height": 2.0 / projection[1][1]}
+    else:
+        # In heights of the picture; its film is a square.
+        aspect = width / height
+        keys = {"film_size": [1, 1], "focal_length": [projection[0][0] * aspect / 2, projection[1][1] / 2],
+                "principal_point": [(1 - projection[0][2] * aspect) / 2, (1 + projection[1][2]) / 2]}
+        if view.camera is not None:
+            camera = view.camera.evaluated_get(depsgraph)
+            if camera.type == "CAMERA" and camera.data.type == "PERSP":
+                lens = _lens(camera, camera.data, position, forward, f'Camera "{camera.name}"', notices)
+                if lens:
+                    keys["lens"] = lens
+    return {"position": to_candela(position), "look_at": to_candela(position + forward), "up": to_candela(up), **keys}
+
+
 def _panorama(data, place, notices):
     source = data if hasattr(data, "panorama_type") else data.cycles
     kind = source.panorama_type

@@ -8,8 +8,9 @@ from .axes import placed, to_candela
 from .trees import shader_of, tree_of
 
 
-def add_light(scene, light, matrix, name, notices):
-    """Adds a light to a candela.Scene. light: Blender's data; matrix: its matrix_world; name: for messages."""
+def add_light(scene, light, matrix, name, glow, notices):
+    """Adds a light to a candela.Scene. light: Blender's data; matrix: its matrix_world; name: what it is called; glow: what
+    its material is, if it has a surface."""
     place = f'Light "{name}"'
     power = _power(light, place, notices)
     if not power.any():
@@ -17,11 +18,11 @@ def add_light(scene, light, matrix, name, notices):
     if light.type == "SUN":
         _add_sun(scene, light, matrix, power, name, place, notices)
     elif light.type == "AREA":
-        _add_area(scene, light, matrix, power, name, place, notices)
+        _add_area(scene, light, matrix, power, name, glow, place, notices)
     elif light.type == "SPOT":
         _add_spot(scene, light, matrix, power, name, place, notices)
     else:
-        _add_point(scene, light, matrix, power, name)
+        _add_point(scene, light, matrix, power, name, glow)
 
 
 def _power(light, place, notices):
@@ -51,12 +52,14 @@ def _unknown(node, place, notices):
     return numpy.ones(3)
 
 
-def _add_point(scene, light, matrix, power, name):
+def _add_point(scene, light, matrix, power, name, glow):
     position = to_candela(matrix.translation)
     radius = light.shadow_soft_size
     if radius > 0:
         radiance = power / (4 * math.pi ** 2 * radius ** 2)
-        scene.add_shape("sphere", name=name, center=position, radius=radius, emission=radiance)
+        transform = numpy.diag([radius, radius, radius, 1.0])
+        transform[:3, 3] = position
+        scene.add_shape("sphere", name=name, radius=1.0, transform=transform, material=_glowing(scene, glow, radiance))
     else:
         scene.add_light("point", name, position=position, intensity=power / (4 * math.pi))
 
@@ -80,7 +83,7 @@ def _add_sun(scene, light, matrix, power, name, place, notices):
     scene.add_light("directional", name, direction=to_candela(direction), irradiance=power)
 
 
-def _add_area(scene, light, matrix, power, name, place, notices):
+def _add_area(scene, light, matrix, power, name, glow, place, notices):
     """A rectangle or an ellipse, which shines along its -Z."""
     if light.spread < math.pi:
         notices.add(place, "candela has no spread below 180 degrees; it shines to all sides of its front")
@@ -92,20 +95,16 @@ def _add_area(scene, light, matrix, power, name, place, notices):
         return
     is_round = light.shape in {"DISK", "ELLIPSE"}
     radiance = power / (math.pi * area * (math.pi / 4 if is_round else 1))
-    keys = {"name": name, "emission": radiance, "material": _open_backed(scene)}
+    transform = placed(matrix) @ numpy.diag([width, height, 1, 1])
+    keys = {"name": name, "transform": transform, "material": _glowing(scene, glow, radiance)}
     if is_round:
-        scene.add_shape("disk", normal=[0, 0, -1], radius=0.5, transform=placed(matrix) @ numpy.diag([width, height, 1, 1]),
-                        **keys)
-        return
-    middle = numpy.array(matrix.translation)
-    corners = [middle + across * width * x / 2 + along * height * y / 2
-               for x, y in ((-1, -1), (-1, 1), (1, 1), (1, -1))]
-    scene.add_shape("quad", vertices=[to_candela(corner) for corner in corners], **keys)
+        scene.add_shape("disk", normal=[0, 0, -1], radius=0.5, **keys)
+    else:
+        scene.add_shape("quad", vertices=[[x / 2, y / 2, 0] for x, y in ((-1, -1), (-1, 1), (1, 1), (1, -1))], **keys)
 
 
-def _open_backed(scene):
-    """The name of a material that reflects nothing, whose back light passes."""
-    name = "(area light)"
-    if name not in scene._draft.materials:
-        scene.add_material(name, base_color=0.0, specular=0.0, double_sided=False)
+def _glowing(scene, name, radiance):
+    """A material, by its name, that emits and reflects nothing, whose back light passes. With one for each lamp, where a lamp
+    is and how bright it is can be changed without loading the scene anew."""
+    scene.add_material(name, base_color=0.0, specular=0.0, double_sided=False, emission=radiance.tolist())
     return name

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Panels: candela's own, and those of Blender that apply to it."""
 import bpy
+from bl_operators.presets import AddPresetBase
+from bl_ui.utils import PresetPanel
 
 _ENGINE = "CANDELA"
 # Blender's panels of other engines that mean nothing here.
@@ -18,14 +20,46 @@ class _Panel:
         return context.engine == _ENGINE
 
 
+class CANDELA_MT_sampling_presets(bpy.types.Menu):
+    bl_label = "Sampling Presets"
+    preset_subdir = "candela/sampling"
+    preset_operator = "script.execute_preset"
+    COMPAT_ENGINES = {_ENGINE}
+    draw = bpy.types.Menu.draw_preset
+
+
+class CANDELA_OT_sampling_preset_add(AddPresetBase, bpy.types.Operator):
+    """Add or remove a preset of the settings of candela"""
+    bl_idname = "candela.sampling_preset_add"
+    bl_label = "Add Sampling Preset"
+    preset_menu = "CANDELA_MT_sampling_presets"
+    preset_defines = ["settings = bpy.context.scene.candela"]
+    preset_values = [f"settings.{name}" for name in (
+        "samples", "preview_samples", "use_target_error", "target_error", "max_bounces", "denoise", "light_sampling",
+        "pixel_filter", "filter_width")]
+    preset_subdir = "candela/sampling"
+
+
+class CANDELA_PT_sampling_presets(PresetPanel, bpy.types.Panel):
+    bl_label = "Sampling Presets"
+    preset_subdir = "candela/sampling"
+    preset_operator = "script.execute_preset"
+    preset_add_operator = "candela.sampling_preset_add"
+    COMPAT_ENGINES = {_ENGINE}
+
+
 class CANDELA_RENDER_PT_sampling(_Panel, bpy.types.Panel):
     bl_label = "Sampling"
+
+    def draw_header_preset(self, context):
+        CANDELA_PT_sampling_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
         settings, layout = context.scene.candela, self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(settings, "samples")
+        layout.prop(settings, "preview_samples")
         row = layout.row(heading="Target Error")
         row.prop(settings, "use_target_error", text="")
         sub = row.row()
@@ -54,6 +88,8 @@ class CANDELA_RENDER_PT_film(_Panel, bpy.types.Panel):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
         self.layout.prop(context.scene.render, "film_transparent", text="Transparent")
+        self.layout.prop(context.scene.candela, "pixel_filter")
+        self.layout.prop(context.scene.candela, "filter_width")
 
 
 class CANDELA_VIEWLAYER_PT_passes(_Panel, bpy.types.Panel):
@@ -63,11 +99,13 @@ class CANDELA_VIEWLAYER_PT_passes(_Panel, bpy.types.Panel):
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        for name in ("use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_diffuse_color"):
+        for name in ("use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_diffuse_color",
+                     "use_pass_cryptomatte_object", "use_pass_cryptomatte_material"):
             self.layout.prop(context.view_layer, name)
 
 
-_CLASSES = (CANDELA_RENDER_PT_sampling, CANDELA_RENDER_PT_paths, CANDELA_RENDER_PT_film, CANDELA_VIEWLAYER_PT_passes)
+_CLASSES = (CANDELA_MT_sampling_presets, CANDELA_OT_sampling_preset_add, CANDELA_PT_sampling_presets, CANDELA_RENDER_PT_sampling,
+            CANDELA_RENDER_PT_paths, CANDELA_RENDER_PT_film, CANDELA_VIEWLAYER_PT_passes)
 
 
 def _blenders():

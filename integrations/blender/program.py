@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The program, which goes on running between pictures."""
 import os
+from pathlib import Path
 
 import bpy
 
@@ -19,11 +20,19 @@ def session():
         close()
     if _session is None:
         program, device = options
+        make_executable()
         if program:
             os.environ["CANDELA"] = bpy.path.abspath(program)
         _session = candela.Session(device=device or None)
         _options = options
     return _session
+
+
+def make_executable():
+    """Lets the program in the add-on run, which Blender unpacks as a file like any other."""
+    inside = Path(candela.__file__).with_name("candela")
+    if inside.is_file() and not os.access(inside, os.X_OK):
+        inside.chmod(inside.stat().st_mode | 0o755)
 
 
 def close():

@@ -4,6 +4,7 @@ import numpy
 
 from . import candela
 from .axes import placed
+from .cache import Cache, uid_of
 from .camera import camera_keys
 from .geometry import KINDS, parts_of, uv_of_render
 from .lights import add_light
@@ -16,11 +17,15 @@ _MISSING = {"CURVES": "hair", "VOLUME": "volumes", "POINTCLOUD": "point clouds",
             "GPENCIL": "grease pencil"}
 _SILENT = {"EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 
+# The kinds of rays that an object may be hidden from.
+_RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
+
 
 class _Shown:
     """A mesh with its materials, and where it is shown."""
 
-    def __init__(self, name, parts, materials, catches):
+    def __init__(self, key, name, parts, materials, catches):
+        self.key = key
         self.name = name
         self.parts = parts
         self.materials = materials
@@ -31,22 +36,26 @@ class _Shown:
 class SceneWriter:
     """Writes the scene of a dependency graph. `notices` are what candela cannot show of it."""
 
-    def __init__(self, depsgraph, session, size):
-        """size: (width, height) of the whole picture [pixels]."""
+    def __init__(self, depsgraph, session, size, cache=None):
+        """size: (width, height) of the whole picture [pixels]. cache: what is known of an earlier look at the scene."""
         self.notices = Notices()
         self._depsgraph = depsgraph
-        self._scene = candela.Scene(size=size, session=session)
+        self._scene = candela.Scene(size=size, session=session, **depsgraph.scene.candela.film())
         self._size = size
+        self._cache = cache or Cache()
         self._materials = {}
         self._shown = {}
 
     def write(self):
         """The candela.Scene, whose camera is the scene's."""
         camera = self._depsgraph.scene.camera.evaluated_get(self._depsgraph)  # Without one, Blender does not render.
-        keys = camera_keys(camera, self._depsgraph, self._size, self.notices)
-        self._scene.add_camera(candela.Camera._of(keys))
+        return self.write_for(camera_keys(camera, self._depsgraph, self._size, self.notices))
+
+    def write_for(self, camera, is_seen=lambda instance: True):
+        """The candela.Scene with a camera of these keys, of the objects that are seen."""
+        self._scene.add_camera(candela.Camera._of(camera))
         for instance in self._depsgraph.object_instances:
-            if instance.show_self:
+            if instance.show_self and is_seen(instance):
                 self._add(instance)
         for shown in self._shown.values():
             self._write_shown(shown)
@@ -56,8 +65,11 @@ class SceneWriter:
     def _add(self, instance):
         thing = instance.object
         if thing.type == "LIGHT":
-            name = thing.name if not instance.is_instance else f"{thing.name} of {instance.parent.name}"
-            add_light(self._scene, thing.data, instance.matrix_world, name, self.notices)
+            title = thing.name if not instance.is_instance else f"{thing.name} of {instance.parent.name}"
+            key = ("light", uid_of(thing), uid_of(instance.parent), tuple(instance.persistent_id))
+            name = self._cache.name("object", key, title)
+            glow = self._cache.name("material", key, f"{name} (light)")
+            add_light(self._scene, thing.data, instance.matrix_world, name, glow, self.notices)
         elif thing.type in KINDS:
             self._add_mesh(thing, instance)
         elif thing.type in _MISSING:
@@ -68,33 +80,44 @@ class SceneWriter:
             self.notices.add(f'Object "{thing.name}"', "candela has no hair; its particles are left out")
 
     def _add_mesh(self, thing, instance):
+        if not any(getattr(thing, f"visible_{name}") for name in _RAYS):
+            return
         matrix = placed(instance.matrix_world)
         if numpy.linalg.matrix_rank(matrix[:3, :3]) < 3:
             self.notices.add(f'Object "{thing.name}"', "it is flat along an axis of its own; it is left out")
             return
         slots = tuple(slot.material.original if slot.material else None for slot in thing.material_slots)
-        key = (thing.data.as_pointer(), slots, thing.is_shadow_catcher)
+        key = (thing.data.as_pointer(), tuple(uid_of(slot) for slot in slots), thing.is_shadow_catcher)
         if key not in self._shown:
-            self._shown[key] = self._read_mesh(thing, slots)
+            self._shown[key] = self._read_mesh(thing, instance, slots)
         self._shown[key].matrices.append(matrix)
 
-    def _read_mesh(self, thing, slots):
+    def _read_mesh(self, thing, instance, slots):
+        """A mesh that is shown for the first time. Pointers say what is one mesh during a look at the scene, but not beyond."""
         materials = [self._material(slot) for slot in slots] or [self._material(None)]
         if thing.is_holdout:
             self.notices.add(f'Object "{thing.name}"', "candela has no holdouts; it is shown")
-        if not thing.visible_camera:
-            self.notices.add(f'Object "{thing.name}"', "candela hides objects from all rays or none; it is shown")
-        mesh = thing.data if thing.type == "MESH" else thing.to_mesh()
-        try:
-            parts = [] if mesh is None else parts_of(mesh, self._second_uv(mesh, materials))
-        finally:
-            if thing.type != "MESH":
-                thing.to_mesh_clear()
-        return _Shown(thing.name, parts, materials, thing.is_shadow_catcher)
+        hidden = [name for name in _RAYS if not getattr(thing, f"visible_{name}")]
+        if hidden:
+            self.notices.add(f'Object "{thing.name}"', f"candela hides objects from all rays or none; it is shown to {', '.join(hidden)}")
+        owner = uid_of(thing)
+        key = ("mesh", owner, sum(shown.key[1] == owner for shown in self._shown.values()))
+        sources = {owner, uid_of(thing.data), uid_of(instance.parent)}
+        named = frozenset(made.uv for _, made in materials if made.uv is not None)
 
-    def _second_uv(self, mesh, materials):
-        """The name of the texture coordinates, besides those of the render, that the materials use."""
-        named = {made.uv for _, made in materials if made.uv is not None} - {uv_of_render(mesh)}
+        def read():
+            mesh = thing.data if thing.type == "MESH" else thing.to_mesh()
+            try:
+                return [] if mesh is None else parts_of(mesh, self._second_uv(mesh, named))
+            finally:
+                if thing.type != "MESH":
+                    thing.to_mesh_clear()
+        parts = self._cache.parts(key, thing.data.as_pointer(), named, sources, read)
+        return _Shown(key, thing.name, parts, materials, thing.is_shadow_catcher)
+
+    def _second_uv(self, mesh, named):
+        """The name of the texture coordinates, besides those of the render, that are named by its materials."""
+        named = named - {uv_of_render(mesh)}
         if len(named) > 1:
             self.notices.add(f'Mesh "{mesh.name}"', "candela has two sets of texture coordinates for a mesh; "
                                                     f"not {', '.join(sorted(named)[1:])}")
@@ -102,12 +125,13 @@ class SceneWriter:
 
     def _material(self, material):
         """Its name, and what candela makes of it."""
-        if material not in self._materials:
-            name = material.name_full if material is not None else "default"
-            made = read_material(material, self.notices)
+        uid = uid_of(material)
+        if uid not in self._materials:
+            name = self._cache.name("material", uid, material.name_full if material is not None else "default")
+            made = self._cache.material(uid, lambda: read_material(material, self.notices))
             self._scene.add_material(name, made.type, **made.values)
-            self._materials[material] = (name, made)
-        return self._materials[material]
+            self._materials[uid] = (name, made)
+        return self._materials[uid]
 
     def _write_shown(self, shown):
         for number, part in enumerate(shown.parts):
@@ -118,7 +142,8 @@ class SceneWriter:
             title = shown.name if number == 0 else f"{shown.name} ({name})"
             if shown.catches:
                 placing["shadow_catcher"] = "catch"
-            self._scene.add_mesh(**arrays, **placing, material=name, name=self._free(title))
+            name_of_part = self._cache.name("object", (*shown.key, part.slot), title)
+            self._scene.add_mesh(**arrays, **placing, material=name, name=name_of_part)
 
     def _arrays_for(self, part, made, name):
         arrays = dict(part.arrays)
@@ -131,13 +156,6 @@ class SceneWriter:
         if "vertex_colors" not in made.values:
             arrays.pop("colors", None)
         return arrays
-
-    def _free(self, name):
-        taken = self._scene._draft
-        number, free = 2, name
-        while free in taken.meshes or free in taken.shapes:
-            free, number = f"{name} {number}", number + 1
-        return free
 
 
 def _has_images(made):

@@ -21,6 +21,8 @@ class CandelaPreferences(bpy.types.AddonPreferences):
 
 class CandelaSettings(bpy.types.PropertyGroup):
     samples: IntProperty(name="Samples", default=128, min=1, max=1 << 24, description="Samples per pixel")
+    preview_samples: IntProperty(name="Viewport Samples", default=1024, min=1, max=1 << 24,
+                                 description="Samples per pixel after which the picture in a viewport stays as it is")
     use_target_error: BoolProperty(name="Target Error", default=False,
                                    description="End when the estimated relative error is this")
     target_error: FloatProperty(name="Error", default=0.02, min=0.0001, max=1.0, precision=4)
@@ -35,6 +37,18 @@ class CandelaSettings(bpy.types.PropertyGroup):
     light_sampling: EnumProperty(name="Light Sampling", default="mis", items=[
         ("mis", "Both", "Light and surface sampling, combined by multiple importance sampling"),
         ("light", "Lights", "Light sampling"), ("bsdf", "Surfaces", "Surface sampling")])
+
+    pixel_filter: EnumProperty(name="Filter", default="blackman-harris", description="How samples are spread around a pixel", items=[
+        ("blackman-harris", "Blackman-Harris", "Soft, without rings: what Cycles has by default"),
+        ("gaussian", "Gaussian", "A normal distribution, cut off at its width"),
+        ("tent", "Tent", "Falls off evenly"),
+        ("box", "Box", "Evenly over the square; of width 1, the pixel itself")])
+    filter_width: FloatProperty(name="Width", default=1.5, min=0.01, max=10.0, subtype="PIXEL",
+                                description="The filter's whole width")
+
+    def film(self):
+        """What candela.Scene() takes."""
+        return {"filter": self.pixel_filter, "filter_width": self.filter_width}
 
     def options(self):
         """What Scene.render() takes."""

@@ -77,4 +77,4 @@ def _set_sky(scene, node, strength, place, notices):
         return
     # Blender's sun stands at +Y turned by the rotation, clockwise from above; candela's azimuth is from +Z to +X.
     azimuth = (180.0 - math.degrees(node.sun_rotation)) % 360.0
-    scene.change(sky={"sun_elevation": min(elevation, 90.0), "sun_azimuth": azimuth, "intensity": 62.0 * strength})
+    scene._draft.sky = {"sun_elevation": min(elevation, 90.0), "sun_azimuth": azimuth, "intensity": 62.0 * strength}

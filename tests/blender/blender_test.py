@@ -6,147 +6,17 @@ FOLDER: that of the add-on, build/blender/candela_blender (sh cmake/blender.sh).
 import math
 import os
 import signal
+import subprocess
 import sys
-import tempfile
-import unittest
-import warnings
 from pathlib import Path
 
 import bpy
-import mathutils
 import numpy
-from bpy_extras.object_utils import world_to_camera_view
-
-FOLDER = Path(sys.argv.pop(1))
-os.environ["CANDELA"] = os.path.abspath(sys.argv.pop(1))
-sys.path.insert(0, str(FOLDER.parent.resolve()))
-addon = __import__(FOLDER.name)
-writer_of = addon.engine.SceneWriter
-Error = addon.engine.candela.Error
-
-SIZE = 64
-RHO = 0.5
+from scenes import RHO, SIZE, SceneTest, add, add_camera, add_light, addon, centre, glowing, link, look, matte, principled, run, spot_of
 
 
-def link(thing):
-    bpy.context.collection.objects.link(thing)
-    return thing
-
-
-def look(thing, location, target):
-    thing.location = location
-    thing.rotation_euler = (mathutils.Vector(target) - mathutils.Vector(location)).to_track_quat("-Z", "Y").to_euler()
-    return thing
-
-
-def add_camera(location=(0, 0, 10), target=(0, 0, 0), **values):
-    data = bpy.data.cameras.new("Camera")
-    for key, value in values.items():
-        setattr(data, key, value)
-    camera = look(link(bpy.data.objects.new("Camera", data)), location, target)
-    bpy.context.scene.camera = camera
-    return camera
-
-
-def add_light(kind, location=(0, 0, 2), target=(0, 0, 0), **values):
-    data = bpy.data.lights.new(kind, kind)
-    for key, value in values.items():
-        setattr(data, key, value)
-    return look(link(bpy.data.objects.new(kind, data)), location, target)
-
-
-def principled(name="Material", **values):
-    material = bpy.data.materials.new(name)
-    if bpy.app.version < (5, 0, 0):
-        material.use_nodes = True
-    node = material.node_tree.nodes["Principled BSDF"]
-    for key, value in values.items():
-        node.inputs[key.replace("_", " ")].default_value = value
-    return material
-
-
-def matte(name="Matte"):
-    return principled(name, Base_Color=(RHO, RHO, RHO, 1), Roughness=1.0, Specular_IOR_Level=0.0)
-
-
-def glowing(strength=1.0, name="Glow"):
-    return principled(name, Base_Color=(0, 0, 0, 1), Specular_IOR_Level=0.0, Emission_Color=(1, 1, 1, 1),
-                      Emission_Strength=strength)
-
-
-def add(kind, material, **values):
-    getattr(bpy.ops.mesh, f"primitive_{kind}_add")(**values)
-    thing = bpy.context.object
-    thing.data.materials.append(material)
-    return thing
-
-
-def centre(image):
-    """The mean of the four pixels in the middle."""
-    half = image.shape[0] // 2
-    return image[half - 1:half + 1, half - 1:half + 1].mean((0, 1))
-
-
-def spot_of(image):
-    """Where the light in a picture is on average: (x, y) in pixels from the top left."""
-    weight = image[..., 0]
-    y, x = numpy.mgrid[0:weight.shape[0], 0:weight.shape[1]] + 0.5
-    return numpy.array([(x * weight).sum(), (y * weight).sum()]) / weight.sum()
-
-
-class BlenderTest(unittest.TestCase):
-    """Each begins with an empty scene, black all around, and 16 samples."""
-
-    @classmethod
-    def setUpClass(cls):
-        warnings.simplefilter("ignore", DeprecationWarning)
-
-    def setUp(self):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
-        addon.register()
-        self.addCleanup(addon.unregister)
-        scene = bpy.context.scene
-        scene.render.engine = "CANDELA"
-        scene.render.resolution_x = scene.render.resolution_y = SIZE
-        scene.candela.samples = 16
-        scene.render.image_settings.file_format = "OPEN_EXR"
-        scene.render.image_settings.color_depth = "32"
-        scene.view_settings.view_transform = "Raw"
-        world = bpy.data.worlds.new("World")
-        scene.world = world
-        if bpy.app.version < (5, 0, 0):
-            world.use_nodes = True
-        self.background = world.node_tree.nodes["Background"]
-        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.file = str(Path(folder.name) / "picture.exr")
-
-    def render(self):
-        """(H, W, 4): the picture, rows from the top."""
-        bpy.context.scene.render.filepath = self.file
-        bpy.ops.render.render(write_still=True)
-        image = bpy.data.images.load(self.file)
-        pixels = numpy.empty(image.size[0] * image.size[1] * 4, numpy.float32)
-        image.pixels.foreach_get(pixels)
-        width, height = image.size
-        bpy.data.images.remove(image)
-        return pixels.reshape(height, width, 4)[::-1].astype(float)
-
-    def notices(self):
-        writer = writer_of(bpy.context.evaluated_depsgraph_get(), addon.program.session(), (SIZE, SIZE))
-        writer.write().close()
-        return "\n".join(writer.notices)
-
-    def expect_spot(self, image, thing, point=(0, 0, 0)):
-        """A small light is where Blender itself projects it, within a tenth of a pixel."""
-        world = thing.matrix_world @ mathutils.Vector(point)
-        x, y, _ = world_to_camera_view(bpy.context.scene, bpy.context.scene.camera, world)
-        expected = numpy.array([x * image.shape[1], (1 - y) * image.shape[0]])
-        self.assertLess(numpy.abs(spot_of(image) - expected).max(), 0.1)
-
-    def expect_close(self, found, expected, tolerance):
-        self.assertLess(abs(found / expected - 1), tolerance, f"{found}, not {expected}")
+class BlenderTest(SceneTest):
+    """Final renders."""
 
     # Lights: the radiance of a matte floor below them is RHO / pi times its irradiance. What is left is how the floor's
     # irradiance varies over the four pixels, and for those with an area, the noise of 1024 samples.
@@ -232,6 +102,17 @@ class BlenderTest(unittest.TestCase):
         render.use_border, render.use_crop_to_border = True, True
         render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.5, 1.0, 0.25, 1.0
         numpy.testing.assert_array_equal(self.render(), whole[:SIZE * 3 // 4, SIZE // 2:])
+
+    def test_a_filter_spreads_samples(self):
+        """Of an edge through the middle of a pixel: a box of the pixel's width is nowhere else, a wider one is."""
+        scene = bpy.context.scene
+        scene.candela.samples = 256
+        add("plane", glowing(), size=2, location=(1 + 0.5 / SIZE, 0, 0))
+        add_camera(type="ORTHO", ortho_scale=1)
+        scene.candela.pixel_filter, scene.candela.filter_width = "box", 1.0
+        numpy.testing.assert_allclose(self.render()[8, SIZE // 2 - 1:SIZE // 2 + 2, 0], (0, 0.5, 1), atol=0.01)
+        scene.candela.filter_width = 3.0
+        numpy.testing.assert_allclose(self.render()[8, SIZE // 2 - 1:SIZE // 2 + 2, 0], (1 / 6, 0.5, 5 / 6), atol=0.01)
 
     def test_what_is_out_of_focus_is_blurred(self):
         add("uv_sphere", glowing(), radius=0.02)
@@ -419,6 +300,43 @@ class BlenderTest(unittest.TestCase):
         numpy.testing.assert_allclose(centre(read["Normal"]), (0, -math.sin(0.5), math.cos(0.5)), atol=1e-4)
         numpy.testing.assert_allclose(centre(read["Position"]), (0, 0, 1), atol=1e-3)
 
+    def test_mattes_are_those_of_the_names(self):
+        """The ids of Cryptomatte are hashes of Blender's names, which Blender's own metadata would have, too."""
+        layer = bpy.context.view_layer
+        layer.use_pass_cryptomatte_object = layer.use_pass_cryptomatte_material = True
+        add("plane", matte("Paint"), size=20).name = "Wall"
+        add_camera()
+        read, told = {}, {}
+        show, metadata = addon.engine.CandelaEngine._show, addon.engine.metadata
+
+        def spy(engine, image, view_layer, settings):
+            show(engine, image, view_layer, settings)
+            read.update({name: values(image) for name, _, _, _, values in addon.engine._passes(view_layer, settings)})
+        addon.engine.CandelaEngine._show = spy
+        self.addCleanup(setattr, addon.engine.CandelaEngine, "_show", show)
+        addon.engine.metadata = lambda *args: told.update(metadata(*args)) or metadata(*args)
+        self.addCleanup(setattr, addon.engine, "metadata", metadata)
+        self.render()
+        for kind, name in (("Object", "Wall"), ("Material", "Paint")):
+            expected = numpy.array([addon.cryptomatte.id_of(name)], numpy.uint32).view(numpy.float32)[0]
+            numpy.testing.assert_array_equal(read[f"Crypto{kind}00"][0, 0].astype(numpy.float32)[:2], [expected, 1])
+        manifests = [value for key, value in told.items() if key.endswith("/manifest")]
+        self.assertEqual(manifests[0], '{"Wall":"%08x"}' % addon.cryptomatte.id_of("Wall"))
+        # As the specification has it.
+        self.assertEqual(addon.cryptomatte.murmur_hash(b"hello"), 0x248BFA47)
+        self.assertEqual(addon.cryptomatte.murmur_hash(b""), 0)
+
+    def test_the_command_line_renders_files_of_blender(self):
+        add("plane", glowing(), size=20)
+        add_camera()
+        scene = Path(self.file).with_name("a scene.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=str(scene))
+        done = subprocess.run([os.environ["CANDELA"], "render", scene, "--size", "8x8", "--spp", "1", "--quiet", "-o", self.file],
+                              env={**os.environ, "CANDELA_BLENDER": sys.executable}, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        image = bpy.data.images.load(self.file)
+        numpy.testing.assert_allclose(numpy.array(image.pixels[:3]), 1, rtol=1e-3)
+
     # What goes wrong.
 
     def test_what_candela_refuses_is_an_error_with_blenders_names(self):
@@ -460,6 +378,34 @@ class BlenderTest(unittest.TestCase):
         bpy.context.scene.candela.samples = 4
         numpy.testing.assert_allclose(centre(self.render())[:3], 1, rtol=1e-6)
 
+    def test_the_program_in_the_zip_can_be_run(self):
+        """Blender unpacks it without leave to run it."""
+        inside = Path(addon.program.candela.__file__).with_name("candela")
+        self.assertFalse(inside.exists(), "make the add-on by sh cmake/blender.sh none")
+        self.addCleanup(inside.unlink)
+        inside.write_text("#!/bin/sh\n")
+        inside.chmod(0o644)
+        addon.program.make_executable()
+        self.assertTrue(os.access(inside, os.X_OK))
+
+    def test_presets_keep_the_settings(self):
+        settings = bpy.context.scene.candela
+        settings.samples, settings.denoise = 77, "variance"
+        bpy.ops.candela.sampling_preset_add(name="Quick")
+        settings.samples, settings.denoise = 5, "none"
+        preset = Path(bpy.utils.user_resource("SCRIPTS")) / "presets/candela/sampling/Quick.py"
+        bpy.ops.script.execute_preset(filepath=str(preset), menu_idname="CANDELA_MT_sampling_presets")
+        self.assertEqual((settings.samples, settings.denoise), (77, "variance"))
+
+    def test_objects_are_hidden_from_all_rays_or_none(self):
+        ball = add("uv_sphere", glowing(), radius=1)
+        add_camera()
+        ball.visible_camera = ball.visible_shadow = False
+        self.assertIn('Object "Sphere": candela hides objects from all rays or none; it is shown to camera, shadow', self.notices())
+        ball.visible_diffuse = ball.visible_glossy = ball.visible_transmission = False
+        self.assertEqual(self.notices(), "")
+        self.assertEqual(self.render()[..., 0].max(), 0)
+
     def test_registers_again(self):
         addon.unregister()
         with self.assertRaises(TypeError):
@@ -469,6 +415,4 @@ class BlenderTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    outcome = unittest.main(exit=False).result
-    sys.stdout.flush()
-    os._exit(0 if outcome.wasSuccessful() and outcome.testsRun else 1)
+    run()

@@ -161,7 +161,7 @@ def render(engine, folder):
                            "sample_clamp_indirect": 0, "pixel_filter_type": "BOX", "filter_width": 1}.items():
             setattr(scene.cycles, key, value)
     else:
-        scene.candela.samples = SAMPLES
+        scene.candela.samples, scene.candela.pixel_filter, scene.candela.filter_width = SAMPLES, "box", 1.0
     bpy.ops.render.render(write_still=True)
     image = bpy.data.images.load(scene.render.filepath)
     pixels = numpy.empty(SIZE[0] * SIZE[1] * 4, numpy.float32)

@@ -13,5 +13,7 @@ for version in "$@"; do
     [ -x "$environment/bin/python" ] || python3 -m venv "$environment"
     "$environment/bin/python" -c 'import bpy' 2>/dev/null || "$environment/bin/pip" install --quiet "bpy==$version"
     echo "== Blender $version"
-    "$environment/bin/python" tests/blender/blender_test.py build/blender/candela_blender build/ci/candela
+    for test in blender_test viewport_test; do
+        "$environment/bin/python" tests/blender/$test.py build/blender/candela_blender build/ci/candela
+    done
 done

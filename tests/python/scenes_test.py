@@ -113,6 +113,49 @@ class Scenes(unittest.TestCase):
         numpy.testing.assert_allclose(sky.render(spp=64).rgb.mean(), plain.mean(), rtol=0.05)
         self.assertEqual(sky.environment["radiance"].shape, (4, 8, 3))
 
+    def test_other_meshes_and_lights_are_those_of_a_new_scene(self):
+        lamp = {"type": "point", "position": [2, 2, 2], "intensity": 5}
+        scene, changed = tetrahedron(), tetrahedron(normals=POINTS, uvs=UVS)
+        scene.render(spp=1)
+        scene.change(meshes={"pot": {"vertices": POINTS, "faces": FACES, "normals": POINTS, "uvs": UVS}}, lights=[lamp])
+        changed.add_light(**lamp)
+        self.same(scene, changed)
+        scene.add_shape("sphere", name="ball", radius=0.5)  # The scene is loaded again, and stays as it is.
+        changed.add_shape("sphere", name="ball", radius=0.5)
+        self.same(scene, changed)
+        self.assertEqual(scene.lights, ("point 1",))
+        with self.assertRaisesRegex(candela.Error, "pot: a mesh needs vertices and faces"):
+            scene.change(meshes={"pot": {"faces": FACES}})
+        self.same(scene, changed)
+
+    def test_a_scene_follows_a_draft_by_changes(self):
+        """By one message, without what is the same; and by a new scene where no change can say it."""
+        def drafted(transform=MOVED, vertices=POINTS, reflectance=0.5, second=False, power=5, radiance=1.0):
+            other = candela.Scene(size=(24, 18))
+            other.add_camera(CAMERA)
+            other.add_material("clay", type="diffuse", reflectance=reflectance)
+            other.add_mesh(vertices, FACES, name="pot", material="clay", transform=transform)
+            other.add_mesh(POINTS, FACES, name="pots", material="clay", transforms=numpy.stack([MOVED, transform]))
+            if second:
+                other.add_shape("sphere", name="ball", radius=0.5)
+            other.add_light("point", position=(2, 2, 2), intensity=power)
+            other.environment = radiance
+            return other
+        scene = drafted()
+        scene.render(spp=1)
+        sent, call = [], scene._connection.call
+        scene._connection.call = lambda method, params, *rest, **more: sent.append((method, params)) or call(method, params, *rest, **more)
+        self.addCleanup(setattr, scene._connection, "call", call)
+        for values, keys in (({}, None), ({"transform": numpy.eye(4)}, ["objects"]), ({"vertices": POINTS * 2}, ["meshes", "objects"]),
+                             ({"vertices": POINTS * 2, "power": 3}, ["lights"]), ({"reflectance": 0.3}, ["lights", "materials", "meshes"]),
+                             ({"reflectance": 0.3, "radiance": 2.0}, ["environment"]), ({"second": True}, "load"), ({"second": True}, None)):
+            with self.subTest(**values):
+                scene._follow(drafted(**values)._draft)
+                expected = [] if keys is None else [keys]
+                self.assertEqual([sorted(params["change"]) if method == "set" else method for method, params in sent], expected)
+                self.same(scene, drafted(**values))
+                sent.clear()
+
     def test_says_what_is_wrong_with_an_array(self):
         for mesh, message in (({"normals": POINTS[:3]}, r'the array "pot.normals": expected 4 rows, one for each position, found \[3, 3\]'),
                               ({"normals": POINTS[:, :2]}, "pot.normals: expected an array of N x 3 numbers, found 4 x 2"),

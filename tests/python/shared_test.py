@@ -353,6 +353,73 @@ class Objects(unittest.TestCase):
             self.assertTrue(picture(client) == picture(fresh))
             self.assertEqual([one["visible"] for one in client.call("object", scene="1", object="set")["instances"]], [True, False])
 
+    def test_another_mesh_is_that_of_a_scene_with_it(self):
+        smaller = {"positions": POINTS[:3], "triangles": [[0, 1, 2]]}
+        larger = {"positions": [*POINTS, [2, 2, 0]], "triangles": [*FACES, [1, 4, 2]], "normals": [*POINTS, [2, 2, 0]],
+                  "uvs": [*UVS, [0, 0]], "uvs1": [*UVS, [0, 0]], "colors": [*COLORS, [1, 1, 1]]}
+        with Client() as client, Client() as fresh:
+            load(client, self.scene(["pot"]))
+            for lists in (smaller, larger, self.SHAPES["pot"]):
+                lists = {key: value for key, value in lists.items() if key != "type"}
+                names = {key: {"array": key} for key in lists}
+                with shared(**lists) as arrays:
+                    client.call("set", scene="1", change={"meshes": {"pot": names}}, arrays=arrays)
+                place = {"name": "pot", "type": "mesh", "material": "clay", "transform": [{"matrix": TURN}]}
+                shapes = [{**place, **lists}, *self.scene()["shapes"][1:]]
+                load(fresh, self.scene(shapes=shapes), scene="1")
+                self.assertTrue(picture(client) == picture(fresh))
+            twice = {"type": "instance", "object": "pots", "transforms": [[], [{"translate": [1, 0, 0]}]]}
+            load(client, self.scene(objects={"pots": [{"material": "clay", **self.SHAPES["pot"]}]}, shapes=[twice]), scene="1")
+            client.call("set", scene="1", change={"meshes": {"pots": smaller}})
+            load(fresh, self.scene(objects={"pots": [{"material": "clay", "type": "mesh", **smaller}]}, shapes=[twice]), scene="1")
+            self.assertTrue(picture(client) == picture(fresh))
+
+    def test_other_lights_take_the_place_of_all(self):
+        lamps = [{"type": "directional", "direction": [0, -1, -1], "irradiance": 1}, self.scene()["lights"][0]]
+        with Client() as client, Client() as fresh:
+            load(client, self.scene())
+            for lights in (lamps, lamps[:1], [], lamps):
+                client.call("set", scene="1", change={"lights": lights})
+                load(fresh, self.scene(lights=lights), scene="1")
+                self.assertTrue(picture(client) == picture(fresh))
+                self.assertEqual(len(client.call("scene", scene="1")["lights"]), len(lights))
+            before = picture(client)
+            self.assertIn('unknown type "lamp"', client.error("set", scene="1", change={"lights": [{"type": "lamp"}]})["message"])
+            self.assertTrue(picture(client) == before)
+
+    def test_a_short_latency_leaves_the_picture_as_it_is(self):
+        with Client() as client:
+            load(client, self.scene())
+            before = picture(client)
+            self.assertTrue(picture(client, latency=1e-6, seed=0) == before)
+            self.assertTrue(picture(client, latency=1e-6, seed=1) != before)
+            self.assertTrue(picture(client, latency=1e-6, seed=0) == before)
+
+    def test_a_mesh_that_cannot_be_is_refused(self):
+        clay = {"type": "diffuse", "reflectance": {"image": {"array": "image"}}}
+        mesh = {"positions": POINTS, "triangles": FACES}
+        with Client() as client, shared(image=numpy.full((2, 2, 3), 128, "u1")) as arrays:
+            scene = self.scene(objects={"two": [{"material": "clay", **self.SHAPES["pot"]}, {"type": "sphere", "material": "clay"}]})
+            scene["shapes"] += [{"type": "instance", "object": "two"}, {"type": "mesh", "name": "cloth", "material": "cloth", **mesh, "uvs": UVS}]
+            scene["materials"]["cloth"] = clay
+            load(client, scene, arrays)
+            before = picture(client)
+            for meshes, message in (({"vase": mesh}, 'unknown object "vase"'), ({"ball": mesh}, 'the object "ball" is not one mesh of its own'),
+                                    ({"two": mesh}, 'the object "two" is not one mesh of its own'),
+                                    ({"pot": {**mesh, "material": "clay"}}, 'unknown key "material"'),
+                                    ({"pot": {"positions": POINTS}}, '"triangles"'),
+                                    ({"pot": {**mesh, "triangles": [[0, 1, 4]]}}, "expected a whole number from 0 to 3"),
+                                    ({"pot": {**mesh, "positions": [[0, 0, 0]] * 4}}, "the mesh has no triangle with an area"),
+                                    ({"pot": {**mesh, "positions": [[0, 0, 0], [2e37, 0, 0], [0, 2e37, 0], [0, 0, 1]]}}, "the shape reaches beyond 1e37"),
+                                    ({"cloth": mesh}, "has textures, but the mesh has no texture coordinates")):
+                change = {"meshes": meshes, "materials": {"clay": {"reflectance": 0.1}}}
+                error = client.error("set", scene="1", change=change)["message"]
+                self.assertIn(message, error)
+                self.assertRegex(error, "^change")
+            self.assertTrue(picture(client) == before)
+            flat = {**mesh, "triangles": [*FACES, [0, 0, 1]]}
+            self.assertIn("left out 1 triangle without area", client.call("set", scene="1", change={"meshes": {"pot": flat}})["warnings"][0])
+
     def test_errors_leave_the_scene_as_it_was(self):
         with Client() as client:
             load(client, self.scene(objects={"set": [{"type": "sphere", "material": "clay"}]},

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "load/json/change_meshes.h"
 #include "load/json/loader_parts.h"
 #include "scene/images.h"
 #include "scene/material_textures.h"
@@ -171,8 +172,9 @@ SceneChange change_scene(Scene& scene, std::string_view text, const std::string&
                          const std::filesystem::path& folder, SceneEdits& edits, const NamedArrays* arrays) {
     const json::Document document{name, json::parse(text, name)};
     const Node root(document);
-    root.allow_only({"cameras", "materials", "objects", "environment", "sky"});
+    root.allow_only({"cameras", "materials", "objects", "meshes", "lights", "environment", "sky"});
     const auto cameras = root.find("cameras"), materials = root.find("materials");
+    const auto meshes = root.find("meshes"), lights = root.find("lights");
 
     // All is read into a scene of its own before this one changes; images are read anew.
     Scene change;
@@ -184,7 +186,10 @@ SceneChange change_scene(Scene& scene, std::string_view text, const std::string&
         for (const Node& camera : cameras->members())
             change.cameras.push_back(read_camera(camera, scene.film));
     }
+    if (lights) change.lights = read_lights(*lights, change);
     change.environment = read_distant_light(root, folder, change);
+    std::vector<ChangedMesh> shown;
+    if (meshes) shown = read_mesh_changes(*meshes, scene, change);
     DecodedImages decoded;
     load_images(change, {}, no_progress, decoded);
     InstanceEdits moves;
@@ -193,7 +198,16 @@ SceneChange change_scene(Scene& scene, std::string_view text, const std::string&
     std::vector<MovedShape> moved = move_shapes(moves, name, scene);
     SceneChange result = take_materials(scene, change, changes);
     take_shapes(std::move(moved), scene, result);
+    take_meshes(std::move(shown), scene, result);
     add(edits.objects, moves);
+    if (meshes) {
+        for (const Node& mesh : meshes->members())
+            edits.meshes.emplace(mesh.key());
+    }
+    if (lights) {
+        scene.lights = std::move(change.lights);
+        result.lights = edits.lights = true;
+    }
     for (const MaterialChange& made : changes)
         edits.materials.insert(scene.materials[made.index].name);
     for (const Camera& camera : change.cameras)
@@ -226,6 +240,9 @@ void carry_edits(const SceneEdits& edits, const Scene& from, const std::string& 
     }
     take_cameras(to, change);
     if (edits.environment) to.environment = from.environment;
+    if (edits.lights) to.lights = from.lights;
+    for (const std::string& object : edits.meshes)
+        carry_mesh(object, from, to);
     SceneChange moved;
     take_shapes(move_shapes(edits.objects, name, to), to, moved);
 }

@@ -12,20 +12,21 @@
 
 namespace candela {
 
-// What of a scene changes have replaced: cameras and materials of these names, perhaps the environment, and
-// what is said of objects.
+// What of a scene changes have replaced: cameras, materials and the meshes of objects of these names, perhaps
+// the environment and the punctual lights, and what is said of objects.
 struct SceneEdits {
-    std::set<std::string> cameras{}, materials{};
-    bool environment = false;
+    std::set<std::string> cameras{}, materials{}, meshes{};
+    bool environment = false, lights = false;
     InstanceEdits objects{};
 };
 
-// Reads `text`, an object with any of the keys "cameras", "materials", "environment" and "sky" of a scene
-// file, and replaces cameras and materials of the same names, and the environment; a material without a
-// "type" keeps the values that are not given. The key "objects" is read by read_object_changes(). A camera of
-// a new name joins the others. Shapes without an emission of their own emit as their new material does. Files
-// are relative to `folder` and within scene.reach; images are read anew, or are among `arrays`. What is
-// replaced joins `edits`. Returns what has changed of the scene, besides cameras.
+// Reads `text`, an object with any of the keys "cameras", "materials", "lights", "environment" and "sky" of a
+// scene file, and replaces cameras and materials of the same names, all punctual lights, and the environment;
+// a material without a "type" keeps the values that are not given. The keys "objects" and "meshes" are read
+// by read_object_changes() and read_mesh_changes(). A camera of a new name joins the others. Shapes without
+// an emission of their own emit as their new material does. Files are relative to `folder` and within
+// scene.reach; images are read anew, or are among `arrays`. What is replaced joins `edits`. Returns what has
+// changed of the scene, besides cameras.
 //
 // Throws Error, beginning with `name:line:column:`, for what is also an error in a scene file, and where a
 // mesh would have been read in another way for the new material; the scene is then unchanged.

@@ -55,6 +55,10 @@ std::optional<Environment> read_distant_light(const Node& root, const std::files
 void read_shapes(const Node& node, const std::optional<Node>& objects, const std::filesystem::path& folder,
                  Scene& scene, const LoadProgress& progress);
 
+// Reads the triangles of a mesh, and what their corners have, in the space of its shape. Arrays are the
+// scene's.
+TriangleMesh read_triangle_mesh(const Node& node, const Scene& scene);
+
 // Round shapes: "sphere" and "disk".
 void read_sphere(const Node& node, ShapeList& shapes);
 void read_disk(const Node& node, ShapeList& shapes);

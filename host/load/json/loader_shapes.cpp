@@ -180,26 +180,7 @@ void read_mesh(const Node& node, ShapeList& shapes) {
     node.allow_only({"type"}, keys_of({"mesh", "shape"}));
     const Appearance appearance = shapes.appearance_of(node);
     const Transform transform = ShapeList::transform_of(node);
-    TriangleMesh mesh;
-    const Node positions = node.require("positions");
-    const Scene& scene = shapes.scene();
-    std::vector<dvec3> points = read_vectors(positions, scene);
-    if (points.empty()) positions.fail_expected("at least one point");
-    const auto last = uint32_t(points.size() - 1);
-    set_positions(mesh, std::move(points));
-    mesh.triangles = read_triangles(node.require("triangles"), scene, last);
-    if (const auto normals = node.find("normals")) {
-        for (const dvec3 n : read_vectors(*normals, scene, mesh.positions.size()))
-            mesh.normals.emplace_back(n);
-        if (mesh.normals.size() != mesh.positions.size()) {
-            normals->fail_expected("as many normals as positions, " + std::to_string(mesh.positions.size()));
-        }
-    }
-    if (const auto uvs = node.find("uvs")) mesh.uv0 = read_uvs(*uvs, scene, mesh.positions.size());
-    if (const auto uvs = node.find("uvs1")) mesh.uv1 = read_uvs(*uvs, scene, mesh.positions.size());
-    if (const auto colors = node.find("colors"))
-        mesh.colors = read_colors(*colors, scene, mesh.positions.size());
-    shapes.add_mesh(node.place(), appearance, transform, std::move(mesh));
+    shapes.add_mesh(node.place(), appearance, transform, read_triangle_mesh(node, shapes.scene()));
 }
 
 // The name of a shape: its own, that of the object or file that it shows, or its type and its place in the
@@ -221,6 +202,28 @@ void alone(const Node& node, const ObjectMap&, ShapeList& shapes) {
 }
 
 }  // namespace
+
+TriangleMesh read_triangle_mesh(const Node& node, const Scene& scene) {
+    TriangleMesh mesh;
+    const Node positions = node.require("positions");
+    std::vector<dvec3> points = read_vectors(positions, scene);
+    if (points.empty()) positions.fail_expected("at least one point");
+    const auto last = uint32_t(points.size() - 1);
+    set_positions(mesh, std::move(points));
+    mesh.triangles = read_triangles(node.require("triangles"), scene, last);
+    if (const auto normals = node.find("normals")) {
+        for (const dvec3 n : read_vectors(*normals, scene, mesh.positions.size()))
+            mesh.normals.emplace_back(n);
+        if (mesh.normals.size() != mesh.positions.size()) {
+            normals->fail_expected("as many normals as positions, " + std::to_string(mesh.positions.size()));
+        }
+    }
+    if (const auto uvs = node.find("uvs")) mesh.uv0 = read_uvs(*uvs, scene, mesh.positions.size());
+    if (const auto uvs = node.find("uvs1")) mesh.uv1 = read_uvs(*uvs, scene, mesh.positions.size());
+    if (const auto colors = node.find("colors"))
+        mesh.colors = read_colors(*colors, scene, mesh.positions.size());
+    return mesh;
+}
 
 void read_shapes(const Node& node, const std::optional<Node>& objects, const std::filesystem::path& folder,
                  Scene& scene, const LoadProgress& progress) {

@@ -15,7 +15,7 @@ class Building:
     _lock: threading.RLock
     _draft: Optional[Draft]
     _is_stale: bool
-    _edits: Dict[str, Dict[str, Any]]
+    _edits: Dict[str, Any]
 
     def _drafted(self) -> Draft:
         """The draft, which is about to get more."""

@@ -53,15 +53,18 @@ class Connection:
             raise
 
     def call(self, method: str, params: Dict[str, Any], progress: Optional[Progress] = None,
-             timeout: Optional[float] = None) -> Dict[str, Any]:
+             timeout: Optional[float] = None, sent: Optional[Callable[[int], None]] = None) -> Dict[str, Any]:
         """The result of a request; raises Error for its error. If the caller is interrupted, or progress() raises, the
-        request is cancelled first; so it is after `timeout` seconds, without waiting for that, and Error is raised."""
+        request is cancelled first; so it is after `timeout` seconds, without waiting for that, and Error is raised. sent() gets
+        the request's number, for cancel()."""
         end = None if timeout is None else time.monotonic() + timeout
         self._send_unused()
         number = next(self._ids)
         answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
         self._send(number, method, params, answers)
         try:
+            if sent is not None:
+                sent(number)
             while True:
                 kind, value = _next(answers, end)
                 if kind != "progress":
@@ -79,6 +82,10 @@ class Connection:
         finally:
             with self._lock:
                 self._answers.pop(number, None)
+
+    def cancel(self, number: int) -> None:
+        """Cancels a request of another thread, whose call() then returns what there is of its result."""
+        self._send(0, "cancel", {"request": number})
 
     def call_later(self, method: str, params: Dict[str, str]) -> None:
         """Sends a request before the next one. May be called at any moment, by any thread."""

@@ -17,7 +17,8 @@ _PLACEHOLDER = {"position": [0, 0, 1], "look_at": [0, 0, 0], "vertical_fov": 40}
 class Draft:
     """The parts of a scene file, some of them arrays."""
 
-    def __init__(self, size: Tuple[int, int]) -> None:
+    def __init__(self, size: Tuple[int, int], film: Optional[Dict[str, Any]] = None) -> None:
+        self.film = {**(film or {}), "size": list(size)}
         self.size = size
         self.cameras: Dict[str, Any] = {}
         self.materials: Dict[str, Any] = {}
@@ -42,7 +43,7 @@ class Draft:
     def to_text(self) -> Tuple[str, Dict[str, Tuple[AnyArray, Optional[str]]]]:
         """The scene in JSON, and the arrays that it names."""
         convert = Converter()
-        scene: Dict[str, Any] = {"film": {"size": list(self.size)},
+        scene: Dict[str, Any] = {"film": self.film,
                                  "cameras": _plain(self.cameras or {"main": _PLACEHOLDER}),
                                  "materials": convert(self.materials, "materials"),
                                  "lights": _plain(self.lights), "objects": {}, "shapes": []}
@@ -76,19 +77,26 @@ def environment_json(convert: Converter, value: Any) -> Dict[str, Any]:
     return converted
 
 
-def _mesh(convert: Converter, name: str, mesh: Dict[str, Any]) -> Dict[str, Any]:
-    shape: Dict[str, Any] = {"type": "mesh",
-                             "positions": convert.array(mesh["vertices"], f"{name}.vertices", (None, 3)),
-                             "triangles": convert.array(_indices(mesh["faces"], name), f"{name}.faces", (None, 3))}
+def mesh_json(convert: Converter, name: str, mesh: Dict[str, Any]) -> Dict[str, Any]:
+    """The triangles of a mesh, and what their corners have, as arrays by reference."""
+    if mesh.get("vertices") is None or mesh.get("faces") is None:
+        raise Error(f"{name}: a mesh needs vertices and faces", "usage", 2)
+    keys: Dict[str, Any] = {"positions": convert.array(mesh["vertices"], f"{name}.vertices", (None, 3)),
+                            "triangles": convert.array(_indices(mesh["faces"], name), f"{name}.faces", (None, 3))}
     for key, columns in (("normals", 3), ("uvs", 2), ("uvs1", 2)):
-        if mesh[key] is not None:
-            shape[key] = convert.array(mesh[key], f"{name}.{key}", (None, columns))
-    if mesh["colors"] is not None:
+        if mesh.get(key) is not None:
+            keys[key] = convert.array(mesh[key], f"{name}.{key}", (None, columns))
+    if mesh.get("colors") is not None:
         colors = numpy.asarray(mesh["colors"])
         if colors.dtype.kind not in "f":
             raise Error(f"{name}.colors: expected linear floats from 0 to 1, found {colors.dtype}; divide them by their range",
                         "usage", 2)
-        shape["colors"] = convert.array(colors, f"{name}.colors", (None, 4 if colors.shape[-1:] == (4,) else 3))
+        keys["colors"] = convert.array(colors, f"{name}.colors", (None, 4 if colors.shape[-1:] == (4,) else 3))
+    return keys
+
+
+def _mesh(convert: Converter, name: str, mesh: Dict[str, Any]) -> Dict[str, Any]:
+    shape = {"type": "mesh", **mesh_json(convert, name, mesh)}
     for key in ("material", "emission", "two_sided", "shadow_catcher"):
         if mesh[key] is not None:
             shape[key] = convert(mesh[key], f"{name}.{key}")

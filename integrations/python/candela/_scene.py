@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from ._building import Building
 from ._camera import Camera, _plain
 from ._connection import Connection
-from ._draft import Draft, environment_json
+from ._draft import Draft, environment_json, mesh_json
+from ._errors import Error
+from ._following import change_between
 from ._image import Image
 from ._parts import Materials, Objects
 from ._progress import Bar, Progress
@@ -41,14 +43,15 @@ class Scene(Building):
     After a change, only what depends on it is made again. Threads may share it; a picture at a time is rendered.
     """
 
-    def __init__(self, size: Tuple[int, int] = (640, 480), session: Optional[Session] = None) -> None:
+    def __init__(self, size: Tuple[int, int] = (640, 480), session: Optional[Session] = None, **film: Any) -> None:
         """A scene without anything in it. size: of its pictures, (width, height) in pixels. session: the one of
-        candela.Session() that it belongs to; by default the one that all share."""
+        candela.Session() that it belongs to; by default the one that all share. film: further keys of the film in scene files,
+        such as filter="gaussian"."""
         if session is None:
             from ._session import default_session
             session = default_session()
         self._begin(session._connection)
-        self._draft: Optional[Draft] = Draft(size)
+        self._draft: Optional[Draft] = Draft(size, film)
 
     @classmethod
     def _of(cls, connection: Connection, description: Dict[str, Any]) -> Scene:
@@ -63,7 +66,7 @@ class Scene(Building):
         self._connection = connection
         self._name = ""  # What the program calls it, once it is loaded.
         self._is_stale = False  # It has to be loaded again, with more in it.
-        self._edits: Dict[str, Dict[str, Any]] = {}  # All changes since the draft was loaded, for the next time.
+        self._edits: Dict[str, Any] = {}  # All changes since the draft was loaded, for the next time.
         self._finalizer: Optional[weakref.finalize[[str, Dict[str, str]], Scene]] = None
         self._folder: Optional[Callable[[], object]] = None
         self._lock = threading.RLock()
@@ -188,25 +191,47 @@ class Scene(Building):
         return width, height
 
     def change(self, *, cameras: Optional[Dict[str, Any]] = None, materials: Optional[Dict[str, Any]] = None,
-               objects: Optional[Dict[str, Any]] = None, environment: Any = None, sky: Any = None) -> None:
-        """Replaces cameras, materials, the environment or the sky, in the syntax of scene files (docs/scene-format.md); a
-        material without a type keeps its other values. objects: by name, with "transform", "visible", or the "instances" that
-        have them, by their numbers. If it fails, the scene is as before."""
-        given = {"cameras": cameras, "materials": materials, "objects": objects, "environment": environment, "sky": sky}
+               objects: Optional[Dict[str, Any]] = None, environment: Any = None, sky: Any = None,
+               meshes: Optional[Dict[str, Any]] = None, lights: Optional[Sequence[Dict[str, Any]]] = None) -> None:
+        """Replaces cameras, materials, the environment, the sky, or all lights without a surface, in the syntax of scene files
+        (docs/scene-format.md); a material without a type keeps its other values. objects: by name, with "transform", "visible",
+        or the "instances" that have them, by their numbers. meshes: by the name of their object, what add_mesh() takes:
+        vertices, faces, normals, uvs, uvs1, colors. If it fails, the scene is as before."""
+        given = {"cameras": cameras, "materials": materials, "objects": objects, "environment": environment, "sky": sky,
+                 "meshes": meshes, "lights": lights}
         change = {key: value for key, value in given.items() if value is not None}
         if objects is not None:
             change["objects"] = object_changes(objects)
         convert = Converter()
         converted = {key: environment_json(convert, value) if key == "environment"
+                     else {name: mesh_json(convert, name, mesh) for name, mesh in value.items()} if key == "meshes"
                      else _plain(value) if key == "cameras" else convert(value, key) for key, value in change.items()}
         with self._lock, SharedArrays(convert.arrays) as shared:
             params = {"scene": self._id, "change": converted}
             _warn(self._connection.call("set", {**params, "arrays": shared} if shared else params))
-            if objects is not None:
+            if objects is not None or meshes is not None or lights is not None:
                 self._description = None
             if self._draft is not None:
                 merge(self._edits, change)
             self._add_cameras(converted.get("cameras", {}))
+
+    def _follow(self, draft: Draft) -> None:
+        """Makes the scene, which was built of arrays, that of another draft: by a change, if one can say how they differ;
+        otherwise it is loaded anew. Drafts and their arrays must stay as they are."""
+        with self._lock:
+            change = None
+            if self._draft is not None and self._name and not self._is_stale and not self._edits:
+                change = change_between(self._draft, draft)
+            try:
+                if change:
+                    self.change(**change)
+            except Error as error:
+                if not self._connection.is_open or error.kind == "cancelled":
+                    raise
+                change = None  # Such as a material that wants other meshes.
+            self._draft, self._edits = draft, {}
+            self._is_stale = self._is_stale or change is None
+            self._id  # noqa: B018  (It is loaded now.)
 
     def pose(self, time: Optional[float], animation: Optional[str] = None) -> None:
         """Shows a glTF scene at that time [s] of its animation with that name or index (by default the first); None: as

@@ -108,7 +108,7 @@ def environment_of(value: Any) -> Dict[str, Any]:
     return {"radiance": value}
 
 
-def merge(edits: Dict[str, Dict[str, Any]], later: Dict[str, Any]) -> None:
+def merge(edits: Dict[str, Any], later: Dict[str, Any]) -> None:
     """Adds a change to those before it, as Scene.change() takes them."""
     for kind, change in later.items():
         if kind in ("environment", "sky"):
@@ -116,9 +116,12 @@ def merge(edits: Dict[str, Dict[str, Any]], later: Dict[str, Any]) -> None:
             edits.pop("sky", None)
             edits[kind] = change
             continue
+        if kind == "lights":
+            edits[kind] = change
+            continue
         known = edits.setdefault(kind, {})
         for name, value in change.items():
-            replaces = kind == "cameras" or (kind == "materials" and "type" in value)
+            replaces = kind in ("cameras", "meshes") or (kind == "materials" and "type" in value)
             known[name] = dict(value) if replaces else _merged(known.get(name, {}), value)
 
 

@@ -228,6 +228,35 @@ TEST_F(LiveSceneTest, ObjectsMoveAndHideWithoutTheRest) {
     EXPECT_EQ(scene.records().arrays, at_first);
 }
 
+// A mesh of an object, and the punctual lights: the other meshes' trees stay, and so do the changes in a
+// pose.
+TEST_F(LiveSceneTest, OtherMeshesAndLightsAreThoseOfAFile) {
+    const auto write = [&](const std::string& mesh, const std::string& lights) {
+        folder_.write("scene.json", R"({"scene": "m.gltf",
+            "cameras": {"main": {"position": [0, 1, 9], "look_at": [0, 0, 0], "vertical_fov": 40}},
+            "materials": {"wall": {"type": "diffuse", "reflectance": 0.5}}, "lights": [)" +
+                                        lights +
+                                        R"(], "shapes": [{"type": "mesh", "name": "wall", "material": "wall",
+            "transform": [{"translate": [0, 1, 0]}], )" +
+                                        mesh + "}]}");
+    };
+    const std::string lamp = R"({"type": "point", "position": [0, 3, 1], "intensity": 5})";
+    const std::string sun = R"({"type": "directional", "direction": [0, -1, 0], "irradiance": 1})";
+    const std::string mesh =
+        R"("positions": [[0, 0, 0], [2, 0, 0], [0, 1, 0], [2, 1, 1]], "triangles": [[0, 1, 2], [1, 3, 2]])";
+    write(R"("positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]])", lamp);
+    LiveScene scene = loaded();
+    scene.update();
+    scene.change(R"({"meshes": {"wall": {)" + mesh + R"(}}, "lights": [)" + sun + ", " + lamp + "]}");
+    ASSERT_TRUE(scene.pending());
+    EXPECT_TRUE(scene.pending()->lights && scene.pending()->meshes.size() == 1u);
+    EXPECT_TRUE(scene.pending()->shapes.empty() && !scene.pending()->materials);
+    write(mesh, sun + ", " + lamp);
+    expect_equal(scene, loaded());
+    scene.pose(0.5, "move");
+    expect_equal(scene, loaded({.animation = "move", .time = 0.5}));
+}
+
 // Materials that the change would read otherwise, and options that the file has no use for.
 TEST_F(LiveSceneTest, WhatFailsLeavesTheScene) {
     write(LAMP, SKY);

@@ -1,0 +1,29 @@
+// Blender's own files, which only Blender can read: it exports them to glTF.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace candela {
+
+// Whether a file's name says that it is Blender's.
+bool is_blend_file(const std::filesystem::path& file);
+
+// A scene of Blender as a glTF file, in a folder of its own that is removed with this object. Runs the
+// program that the environment variable CANDELA_BLENDER names, a Blender, or a Python that has the module
+// bpy; by default the `blender` on the PATH. Scripts in the file are not run.
+class ExportedBlend {
+  public:
+    // Throws Error if the file cannot be exported, which says what to install if there is no such program.
+    explicit ExportedBlend(const std::filesystem::path& file);
+    ExportedBlend(const ExportedBlend&) = delete;
+    ExportedBlend& operator=(const ExportedBlend&) = delete;
+    ~ExportedBlend();
+
+    std::filesystem::path gltf() const { return folder_ / "scene.glb"; }
+
+  private:
+    std::filesystem::path folder_;
+};
+
+}  // namespace candela
