@@ -108,6 +108,7 @@ class SceneTest(unittest.TestCase):
         scene.render.engine = "CANDELA"
         scene.render.resolution_x = scene.render.resolution_y = SIZE
         scene.candela.samples = 16
+        scene.candela.pixel_filter, scene.candela.filter_width = "box", 1.0  # What pixels show is what is in them.
         scene.render.image_settings.file_format = "OPEN_EXR"
         scene.render.image_settings.color_depth = "32"
         scene.view_settings.view_transform = "Raw"

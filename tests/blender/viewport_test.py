@@ -214,12 +214,14 @@ class ViewportTest(SceneTest):
     def see_balls(self):
         """Small lights, one of which is the last."""
         self.background.inputs["Strength"].default_value = 0
-        bpy.context.scene.candela.preview_samples = 64
+        settings = bpy.context.scene.candela
+        settings.preview_samples = 256
+        settings.pixel_filter, settings.filter_width = "gaussian", 3.0  # So smooth that pixels say where the middle is.
         ball = add("uv_sphere", glowing(), radius=0.03, location=(0.3, 0.2, 0.5))
         self.follow()
         return ball
 
-    def expect_at(self, ball, spp=64):
+    def expect_at(self, ball, spp=256):
         """The light is where the view's own matrices have it."""
         world = self.view.window_matrix @ self.view.view_matrix @ ball.location.to_4d()
         width, height = self.view.size
@@ -240,7 +242,7 @@ class ViewportTest(SceneTest):
         camera = add_camera(location=(0.2, 0.1, -3), target=(0.2, 0.1, -10), type="ORTHO", ortho_scale=3)
         self.look_through(camera)
         view = View(self.view.size, self.view.view_matrix, self.view.window_matrix)
-        self.assertEqual(self.picture(64)[..., :3].max(), 0)
+        self.assertEqual(self.picture(256)[..., :3].max(), 0)
         self.view = view
         self.viewport.look(view, bpy.context.evaluated_depsgraph_get())
         self.expect_at(ball)
@@ -249,12 +251,12 @@ class ViewportTest(SceneTest):
         ball = self.see_balls()
         camera = add_camera(location=(0, 0, 5))
         self.look_through(camera)
-        sharp = (self.picture(64)[..., 0] > 0).sum()
+        sharp = (self.picture(256)[..., 0] > 0).sum()
         camera.data.dof.use_dof = True
         camera.data.dof.aperture_fstop = 0.1
         camera.data.dof.focus_distance = 2
         self.look_through(camera)
-        self.assertGreater((self.picture(64)[..., 0] > 0).sum(), 4 * sharp)
+        self.assertGreater((self.picture(256)[..., 0] > 0).sum(), 4 * sharp)
         self.assertIsNotNone(ball)
 
     def test_a_border_is_a_part_of_the_camera_s_frame(self):
