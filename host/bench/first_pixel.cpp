@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/temporary_folder.h"
 #include "base/text.h"
 #include "bench/clocks.h"
 #include "probe/embedded.h"
@@ -22,32 +23,6 @@ namespace {
 double seconds(const timeval& time) {
     return double(time.tv_sec) + 1e-6 * double(time.tv_usec);
 }
-
-// A new, empty directory, which is removed with all its contents at the end.
-class ScratchDirectory {
-  public:
-    ScratchDirectory() {
-        std::error_code no_folder;  // If set, there is no folder.
-        const std::filesystem::path folder = std::filesystem::temp_directory_path(no_folder);
-        std::string name = (folder / "candela-bench-XXXXXX").string();
-        if (no_folder || ::mkdtemp(name.data()) == nullptr) {
-            throw Error("first-pixel: cannot create a folder for its images: " +
-                        (no_folder ? no_folder.message() : name + ": " + std::strerror(errno)) +
-                        "; set TMPDIR to a folder that may be written to");
-        }
-        path_ = name;
-    }
-    ScratchDirectory(const ScratchDirectory&) = delete;
-    ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-    ~ScratchDirectory() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
-};
 
 std::vector<char*> pointers(std::vector<std::string>& words) {
     std::vector<char*> result;
@@ -101,7 +76,7 @@ std::vector<Row> bench_first_pixel(const BenchOptions& options, const std::files
                                    const std::optional<std::string>& device) {
     const std::string name = scene_file ? scene_file->string() : "Cornell box";
     options.progress("first-pixel: " + name);
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch("first-pixel");
     const std::filesystem::path file = scene_file.value_or(scratch.path() / "cornell-box.json");
     if (!scene_file) write_file_atomically(file, embedded::cornell_box_json);
     std::vector<std::string> call{

@@ -10,16 +10,14 @@
 
 #include <fcntl.h>
 #include <spawn.h>
-#include <stdlib.h>  // NOLINT: mkdtemp
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/printable.h"
 #include "base/text.h"
 #include "load/quote.h"
-
-extern char** environ;
 
 namespace candela {
 namespace fs = std::filesystem;
@@ -59,8 +57,9 @@ std::vector<std::string> call_of(const std::string& program, const fs::path& scr
             target.string()};
 }
 
-// Runs a program, whose messages go to a file. Returns how it ended as wait() says, or throws errno.
-int run(std::vector<std::string> words, const fs::path& messages) {
+// Runs a program, whose messages go to a file; `status` says how it ended, as wait() does. Returns errno if
+// it cannot be run, and otherwise 0.
+int run(std::vector<std::string> words, const fs::path& messages, int& status) {
     std::vector<char*> arguments;
     for (std::string& word : words)
         arguments.push_back(word.data());
@@ -73,11 +72,9 @@ int run(std::vector<std::string> words, const fs::path& messages) {
     pid_t pid = 0;
     const int error = ::posix_spawnp(&pid, words[0].c_str(), &actions, nullptr, arguments.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) throw error;
-    int status = 0;
-    while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+    while (error == 0 && ::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
     }
-    return status;
+    return error;
 }
 
 // The last line about an error, otherwise the last that says something.
@@ -98,36 +95,24 @@ bool is_blend_file(const fs::path& file) {
     return file.extension() == ".blend";
 }
 
-ExportedBlend::ExportedBlend(const fs::path& file) {
+ExportedBlend::ExportedBlend(const fs::path& file) : folder_(file.string()) {
     const char* const named = std::getenv(VARIABLE);
     const std::string program = named != nullptr && *named != '\0' ? named : "blender";
-    std::error_code error;
-    std::string folder = (fs::temp_directory_path(error) / "candela-blend-XXXXXX").string();
-    if (error || ::mkdtemp(folder.data()) == nullptr)
-        throw Error(concat(file.string(), ": cannot create a folder to export it to; set TMPDIR to a folder ",
-                           "that may be written to"));
-    folder_ = folder;
-    try {
-        write_file_atomically(folder_ / "export.py", SCRIPT);
-        const int status = run(call_of(program, folder_ / "export.py", file, gltf()), folder_ / "messages");
-        if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !fs::exists(gltf(), error))
-            throw Error(concat(file.string(), ": ", quote(program), " cannot export it: ",
-                               last_words(folder_ / "messages"), "; export it to glTF in Blender"));
-    } catch (const int number) {
-        fs::remove_all(folder_, error);
+    const fs::path script = folder_.path() / "export.py", messages = folder_.path() / "messages";
+    write_file_atomically(script, SCRIPT);
+    int status = 0;
+    if (const int error = run(call_of(program, script, file, gltf()), messages, status); error != 0) {
         throw Error(concat(file.string(), ": only Blender can read it, and ", quote(program),
-                           " cannot be run (", std::strerror(number),
+                           " cannot be run (", std::strerror(error),
                            "); install Blender 4.2 or newer, or name one in the ", "environment variable ",
                            VARIABLE, ", or a Python that has the module bpy"));
-    } catch (...) {
-        fs::remove_all(folder_, error);
-        throw;
     }
-}
-
-ExportedBlend::~ExportedBlend() {
     std::error_code ignored;
-    fs::remove_all(folder_, ignored);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !fs::exists(gltf(), ignored)) {
+        throw Error(concat(file.string(), ": ", quote(program),
+                           " cannot export it: ", printable(last_words(messages), MAX_MESSAGE_BYTES),
+                           "; export it to glTF in Blender"));
+    }
 }
 
 }  // namespace candela

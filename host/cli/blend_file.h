@@ -2,7 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
+
+#include "base/temporary_folder.h"
 
 namespace candela {
 
@@ -16,14 +17,11 @@ class ExportedBlend {
   public:
     // Throws Error if the file cannot be exported, which says what to install if there is no such program.
     explicit ExportedBlend(const std::filesystem::path& file);
-    ExportedBlend(const ExportedBlend&) = delete;
-    ExportedBlend& operator=(const ExportedBlend&) = delete;
-    ~ExportedBlend();
 
-    std::filesystem::path gltf() const { return folder_ / "scene.glb"; }
+    std::filesystem::path gltf() const { return folder_.path() / "scene.glb"; }
 
   private:
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 }  // namespace candela

@@ -3,7 +3,6 @@
 // Ref: Khronos, "glTF Render Fidelity Generator", test/config.json and src/common.ts.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,10 +11,10 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <unistd.h>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/temporary_folder.h"
 #include "base/text.h"
 #include "cli/camera_options.h"
 #include "cli/command.h"
@@ -41,28 +40,6 @@ struct FidelityArguments {
     std::string file;
     std::optional<std::string> scenario;
     std::optional<std::string> root;
-};
-
-// A folder among the temporary files, which goes with this object.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "candela-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr)
-            throw Error(name + ": cannot make a temporary folder; set TMPDIR to one that can be written to");
-        path_ = name;
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
 };
 
 // The scenario in a document that is one, holds it as "scenario", or holds a list of them by their names.
@@ -153,7 +130,7 @@ ExitCode run(const FidelityArguments& arguments, std::vector<std::string> own,
     const Node scenario = scenario_in(Node(document), arguments.scenario);
     const std::filesystem::path root = arguments.root ? std::filesystem::path(*arguments.root)
                                                       : std::filesystem::path(arguments.file).parent_path();
-    const TemporaryFolder folder;
+    const TemporaryFolder folder(arguments.file);
     std::vector<std::string> words = words_of(scenario, root, folder.path() / "transforms.json", own);
     std::ranges::reverse(words);  // As CLI11 has it.
     CLI::App app;

@@ -15,7 +15,8 @@
 namespace candela {
 
 // What the argument SCENE of a command may name.
-inline constexpr const char* SCENE_FILES = "Scene file (.json, .gltf, .glb, .obj, .ply)";
+inline constexpr const char* SCENE_FILES =
+    "Scene file (.json, .gltf, .glb, .obj, .ply, and .blend where there is a Blender)";
 
 struct LoadingOptions {
     std::optional<uint32_t> texture_limit;  // Texels along a side of an image.

@@ -34,7 +34,7 @@ class BenchFirstPixel : public testing::Test {
 TEST_F(BenchFirstPixel, RunsColdAndWarmInTurnAfterAWarmUp) {
     const std::filesystem::path log = directory_ / "log";
     const std::vector<Row> rows =
-        bench(program("case $XDG_CACHE_HOME in */candela-bench-*) cache=own;; esac\n"
+        bench(program("case $XDG_CACHE_HOME in */candela-*) cache=own;; esac\n"
                       "echo \"no cache: $CANDELA_NO_CACHE $MESA_SHADER_CACHE_DISABLE, cache: $cache, "
                       "$(echo $* | sed 's| /.*first.png| FILE|')\" >> " +
                       log.string()));
@@ -82,9 +82,9 @@ TEST_F(BenchFirstPixel, AFolderThatCannotBeMadeIsNamed) {
     ::setenv("TMPDIR", "/nonexistent", 1);
     const std::string message = error_of([] { bench("/bin/true"); });
     before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", kept.c_str(), 1);
-    EXPECT_EQ(message, "first-pixel: cannot create a folder for its images: " +
+    EXPECT_EQ(message, "first-pixel: cannot create a temporary folder (" +
                            std::generic_category().message(ENOENT) +
-                           "; set TMPDIR to a folder that may be written to");
+                           "); set TMPDIR to a folder that may be written to");
 }
 
 }  // namespace
