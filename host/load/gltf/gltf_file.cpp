@@ -199,7 +199,7 @@ std::span<const std::byte> File::view_bytes(const Node& view) {
     const std::string place = extension->place();
     const auto& bytes = contents_.keep("bytes of " + place, [&] {
         return with_memory_for(
-            "the data that meshopt has compressed", [&] { return place; },
+            "the data that meshopt has compressed", [&] { return extension->place(); },
             [&] { return decode_meshopt(view, *extension, plain_bytes(*extension)); });
     });
     count_decoded(place, bytes.size());
