@@ -117,7 +117,7 @@ std::vector<std::string> words_of(const Node& scenario, const std::filesystem::p
     add("--tonemap", "aces");
     add("--exposure", EXPOSURE);
     if (!sky || !sky->boolean()) {
-        words.push_back("--environment-hidden");
+        words.emplace_back("--environment-hidden");
         add("--background", "transparent");
     }
     words.insert(words.end(), own.begin(), own.end());
