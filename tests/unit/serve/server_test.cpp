@@ -46,8 +46,8 @@ class ServerTest : public testing::Test {
         if (end_.valid()) end_.wait();
     }
 
-    // Starts it. `echo` is answered with its parameters' "text", and `wait` when the call is cancelled, or
-    // after go().
+    // Starts it. `echo` is answered with its parameters' "text", and `wait`, which tells its progress at
+    // least once, when the call is cancelled or `go_` is set.
     void start(const Limits& limits = {}) {
         end_ = std::async(std::launch::async, [this, limits] {
             Server server(
@@ -60,9 +60,9 @@ class ServerTest : public testing::Test {
     Json handle(const Request& request, const Call& call) {
         if (request.method == "fail") throw Error("it failed");
         if (request.method != "wait") return {{"text", request.parameters().text()}};
-        began_.store(true);
-        for (int i = 0; !call.is_cancelled() && !go_; ++i) {
+        for (int i = 0; i == 0 || (!call.is_cancelled() && !go_); ++i) {
             call.progress({{"done", i}});
+            began_.store(true);
             std::this_thread::sleep_for(1ms);
         }
         return {{"cancelled", call.is_cancelled()}};
