@@ -3,7 +3,7 @@
 #   lavapipe of the Mesa in Debian 12's backports, whose compiler differs much from the stock one's;
 #   SwiftShader, of Chromium, which shares nothing with Mesa: four lanes, denormal numbers flushed to zero, and texel
 #   buffers of no more than 65 536 elements.
-# Both are downloaded once and unpacked below build/; the system's driver stays as it is. Needs build/ci (sh
+# Both are downloaded once and unpacked below build/; the system's driver stays as it is. Needs build/release (sh
 # cmake/test.sh) and Debian 12; on other systems it says so and exits with 3. Prints how long each step took.
 #
 # usage: sh cmake/other_drivers.sh          the tests vk, gpu and render, on both
@@ -15,7 +15,7 @@ folder=$PWD/build/other-drivers
 packages=$folder/packages
 mesa=$folder/root/usr/lib/x86_64-linux-gnu
 chromium=$folder/root/usr/lib/chromium
-candela=build/ci/candela
+candela=build/release/candela
 
 case $extent in
     full | quick) ;;

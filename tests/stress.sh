@@ -14,8 +14,8 @@ devices='DeviceFailure|SteadyRenderer'
 servers='ServerTest|^serve$|^python$'
 tests=${2:-$windows|$signals|$intervals|$devices|$servers}
 
-# CTest asks the programs for their tests where they are new. It keeps the answers in build/ci, so once, and alone.
-number=$(ctest --test-dir build/ci -R "$tests" -LE '^slow$' --show-only | sed -n 's/^Total Tests: *//p')
+# CTest asks the programs for their tests where they are new. It keeps the answers in build/release, so once, and alone.
+number=$(ctest --test-dir build/release -R "$tests" -LE '^slow$' --show-only | sed -n 's/^Total Tests: *//p')
 echo "$number tests in each repetition"
 [ "$number" -gt 0 ]
 
@@ -34,7 +34,7 @@ repeat() {
     trap '[ -z "$running" ] || kill -- "-$running" 2>/dev/null' EXIT
     trap 'exit 1' TERM
     mkdir -p "$folder/$1"
-    echo "subdirs(\"$PWD/build/ci\")" >"$folder/$1/CTestTestfile.cmake"
+    echo "subdirs(\"$PWD/build/release\")" >"$folder/$1/CTestTestfile.cmake"
     for repetition in $(seq "$1" 8 "$repetitions"); do
         setsid nice -n 19 ctest --test-dir "$folder/$1" -R "$tests" -LE '^slow$' --output-on-failure \
             --parallel 4 >"$folder/$repetition.log" 2>&1 &

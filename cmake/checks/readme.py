@@ -3,7 +3,7 @@
 but for links to the scenes, the tests and the program, as if it were the root of the repository; the page's commands
 run there in order. Every ```sh block is run, so a command of an unknown kind is an error; other blocks are not run.
 Scripts (sh, python3) only have to exist, and cmake and ctest are left to the stages that run them: this check is part
-of what they do. What would take minutes is cut short: a rendering uses at most 64 samples per pixel and, where its size
+of what they do. What would take minutes is cut short: a rendering uses at most 16 samples per pixel and, where its size
 is given, 128 pixels along each side; a benchmark runs once at the smallest sizes, the commands in the captions of
 pictures use a single sample, and the selftest, which has a test of its own, shows its help.
 
@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CAPTION = re.compile(r"`(candela\s+render\s[^`]*)`")
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 SPP = re.compile(r"--spp (\d+)")
-MAX_SPP = 64
+MAX_SPP = 16
 SIZE = re.compile(r"--size (\d+)x(\d+)")
 MAX_SIDE = 128
 FIELD = re.compile(r"\{[^}]*\}")  # In the names of several files.
@@ -61,8 +61,8 @@ def written_files(command):
     return [value for option, value in zip(words, words[1:]) if option in WRITES and value != "-"]
 
 
-def try_command(command, folder):
-    """Runs the command in the folder. Returns what went wrong, or an empty string."""
+def try_command(command, folder, cache):
+    """Runs the command in the folder, with compiled kernels in `cache`. Returns what went wrong, or an empty string."""
     words = shlex.split(command, comments=True)
     if words[0] in ("cmake", "ctest"):
         return ""
@@ -70,7 +70,7 @@ def try_command(command, folder):
         return "" if Path(ROOT, words[1]).is_file() else f"there is no {words[1]}"
     if not subcommand(command):
         return "is of a kind that this check cannot try"
-    environment = os.environ | {"PATH": f"{folder}/build/release:{os.environ['PATH']}", "XDG_CACHE_HOME": folder}
+    environment = os.environ | {"PATH": f"{folder}/build/release:{os.environ['PATH']}", "XDG_CACHE_HOME": cache}
     result = subprocess.run(["sh", "-c", command], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                             capture_output=True, text=True, check=False)
     if result.returncode != 0:
@@ -79,8 +79,8 @@ def try_command(command, folder):
     return f"did not write {', '.join(absent)}" if absent else ""
 
 
-def try_page(page, candela):
-    """Tries the commands of one page. Returns how many there are, and how many went wrong."""
+def try_page(page, candela, cache):
+    """Tries the commands of one page, with compiled kernels in `cache`. Returns how many there are, and how many went wrong."""
     text = page.read_text(encoding="utf-8")
     found = commands(text) + caption_commands(text)
     problems = 0
@@ -91,7 +91,7 @@ def try_page(page, candela):
             Path(folder, name).symlink_to(ROOT / name)
         for command in found:
             start = time.monotonic()
-            problem = try_command(command, folder)
+            problem = try_command(command, folder, cache)
             print(f"{time.monotonic() - start:6.1f} s  {command}", flush=True)
             if problem:
                 problems += 1
@@ -104,10 +104,11 @@ def main():
         sys.exit(__doc__)
     candela, *pages = (Path(argument).resolve() for argument in sys.argv[1:])
     count, problems = 0, 0
-    for page in pages:
-        print(page.relative_to(ROOT), flush=True)
-        counts = try_page(page, candela)
-        count, problems = count + counts[0], problems + counts[1]
+    with tempfile.TemporaryDirectory() as cache:
+        for page in pages:
+            print(page.relative_to(ROOT), flush=True)
+            counts = try_page(page, candela, cache)
+            count, problems = count + counts[0], problems + counts[1]
     if count == 0:
         problems += 1
         print("no command found")

@@ -323,7 +323,8 @@ Renderer::Work Renderer::complete(const Tile& tile) {
 }
 
 bool Renderer::render(uint32_t target, const std::function<bool(double)>& keep_going) {
-    Schedule schedule(image_size(), samples_, target, settings_.submission_seconds, settings_.pass_growth);
+    Schedule schedule(image_size(), samples_, target,
+                      std::min(settings_.submission_seconds, settings_.latency), settings_.pass_growth);
     while (!schedule.done()) {
         const Work work = complete(schedule.next());
         schedule.advance(work.seconds, work.samples);

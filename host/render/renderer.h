@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -55,7 +56,9 @@ struct RenderSettings {
     uint32_t layer_bytes = 0;
     uint64_t later_bytes = 0;  // Bytes of it that are needed when the picture is there, whatever its size.
     SceneAccess scene_access = SceneAccess::automatic;
-    double submission_seconds = 0.0;     // Duration of a submission; 0: suitable for the device.
+    double submission_seconds = 0.0;  // Duration of a submission; 0: suitable for the device.
+    // What waits for a picture to end waits no longer for a submission, where the device can do it [s].
+    double latency = std::numeric_limits<double>::infinity();
     uint32_t pass_growth = PASS_GROWTH;  // See Schedule; changes no bit.
 };
 

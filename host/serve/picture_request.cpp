@@ -133,8 +133,7 @@ RenderJob read_job(const Node& parameters, const Scene& scene) {
     if (const auto spp = parameters.find("spp")) job.target = spp->integer(1, MAX_SPP);
     if (const auto error = parameters.find("target_error")) job.target_error = error->positive();
     if (const auto limit = parameters.find("time_limit")) job.time_limit = limit->positive();
-    if (const auto latency = parameters.find("latency"))
-        job.settings.submission_seconds = latency->positive();
+    if (const auto latency = parameters.find("latency")) job.settings.latency = latency->positive();
     job.aovs = read_layers(parameters);
     if (const auto denoise = parameters.find("denoise"); denoise && denoise->boolean()) {
         job.aovs.denoising = job.aovs.variance = job.aovs.sample_count = true;

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Tests the add-on in Blender, as PyPI has it: each version in a virtual environment of its own below build/, which stays.
-# Needs build/ci and Python 3.11, which these versions are made for; elsewhere it says so and exits with 3.
+# Needs build/release and Python 3.11, which these versions are made for; elsewhere it says so and exits with 3.
 #   usage: sh tests/blender/run.sh [VERSION...]   (4.2.0 4.5.15 5.0.1)
 set -eu
 cd "$(dirname "$0")/../.."
@@ -14,6 +14,6 @@ for version in "$@"; do
     "$environment/bin/python" -c 'import bpy' 2>/dev/null || "$environment/bin/pip" install --quiet "bpy==$version"
     echo "== Blender $version"
     for test in blender_test viewport_test; do
-        "$environment/bin/python" tests/blender/$test.py build/blender/candela_blender build/ci/candela
+        "$environment/bin/python" tests/blender/$test.py build/blender/candela_blender build/release/candela
     done
 done

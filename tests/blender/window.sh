@@ -2,10 +2,10 @@
 # Tries the add-on as a new user does: Debian 13's own Blender in a root folder below build/, which stays; the zip is installed
 # by Blender, and the viewport of a window, which Xvfb shows, is switched to candela. Leaves screenshots in build/window, to be
 # looked at. Needs root, debootstrap, a mirror of Debian that apt knows, and 2 GB; where one is missing it exits with 3.
-#   usage: sh tests/blender/window.sh [PROGRAM]   (build/ci/candela)
+#   usage: sh tests/blender/window.sh [PROGRAM]   (build/release/candela)
 set -eu
 cd "$(dirname "$0")/../.."
-program=${1:-build/ci/candela}
+program=${1:-build/release/candela}
 root=$PWD/build/debian13-window
 
 # stop REASON

@@ -20,7 +20,7 @@ from mutations import GROUPS
 
 ROOT = Path(__file__).resolve().parents[2]
 COPY = ROOT / "build/mutations"
-BUILD = COPY / "build/ci"
+BUILD = COPY / "build/release"
 LIMIT = 120.0  # Seconds that the tests of one mutation may take.
 PROGRAMS = ("gpu_tests", "render_tests", "unit_tests")  # In the order of a group's filters, which may end earlier.
 FAILED = re.compile(r"^\[  FAILED  \] (\S+?)(?:,| \()", re.MULTILINE)

@@ -56,6 +56,9 @@ PUNCTUAL_LIGHTS = "host/gpu_scene/punctual_lights.cpp"
 MATERIAL_ARRAYS = "host/gpu_scene/material_arrays.cpp"
 GEOMETRY_ARRAYS = "host/gpu_scene/geometry_arrays.cpp"
 INSTANCING = "host/gpu_scene/instancing.cpp"
+DENOISE = "shaders/kernels/denoise.comp.glsl"
+BLEND = "host/denoise/blend.cpp"
+SMOOTH_ALBEDO = "host/denoise/smooth_albedo.cpp"
 
 # What a group runs: filters for the tests of shaders, for those of whole images, which tell much in little time, and
 # perhaps for those of the host alone.
@@ -81,6 +84,7 @@ LAYERED = ("PrincipledTest*:Records*", "PrincipledPicture*")
 CHANGES = ("Records*", "SessionTest*:UpdateTest*", "LiveScene*:SceneStages*")
 MOTION = ("InstanceTest*", "MotionTest*", "Projection*:AnimatedScene*")
 COVERAGE = ("InstanceTest*", "CoverageTest*:AovTest*", "IdLayers*")
+DENOISING = ("DenoiseTest*", "GuidesTest*", "Blend*:SmoothAlbedo*:DenoiseImage*:Oidn*:TileSpans*:Merge*")
 DEVICES = ("Exponential*:Records*", "*IdentityTest*Suit*:*IdentityTest*Tuned*:FiniteTest*")
 
 GROUPS = [
@@ -434,6 +438,28 @@ GROUPS = [
          "*source_.camera, source_.settings, changed);", "*source_.camera, source_.settings);"),
         ("a pose that bends no mesh", "host/scene/scene_change.cpp",
          "if (!is_same(before.meshes[i], now.meshes[i]))", "if (false)"),
+    ]),
+    (DENOISING, [
+        ("noise not taken off differences of light", DENOISE,
+         "difference * difference - variance - min(variance, other_variance)", "difference * difference"),
+        ("normals' noise taken for edges", DENOISE, "squared(normal.rgb - other.rgb) - noise)",
+         "squared(normal.rgb - other.rgb))"),
+        ("variance of a weighted mean by the weights themselves", DENOISE, "weight * weight * source_variance.rgb",
+         "weight * source_variance.rgb"),
+        ("what a pass leaves of the noisy pixel forgotten by the next", DENOISE, "weight * source_variance.a", "weight"),
+        ("noise not taken off differences of albedo", SMOOTH_ALBEDO,
+         "glm::dot(difference, difference) - a.variance - std::min(a.variance, b.variance)",
+         "glm::dot(difference, difference)"),
+        ("all of a difference taken for noise", BLEND, "1.0 - belief_.noise_share * sum.noise / sum.square", "0.0"),
+        ("few samples believed as many", BLEND, "samples_per_pixel > 0.0 ? samples_per_pixel : UNKNOWN_SAMPLES",
+         "UNKNOWN_SAMPLES"),
+        ("neighbours that agree not heard", BLEND, "std::max(unexplained, agreeing)", "unexplained"),
+        ("the noisy pixel's share of itself taken for noise", BLEND, "others * variance / level", "variance / level"),
+        ("guides without the tint of mirrors", "shaders/integrator/guides.glsl",
+         "guides.tint *= clamp(scattered.weight * square(scattered.eta), 0.0, 1.0);", ""),
+        ("guides end at the first mirror", "shaders/integrator/guides.glsl", "!bsdf_is_sharp(x.bsdf, uc)", "true"),
+        ("merged variances without the difference of means", "host/film/part_sum.cpp",
+         "sum.values[i] += difference * difference", "sum.values[i] += 0.0 * difference"),
     ]),
     (DEVICES, [
         ("a work group's counts in the place of those before", PIXEL, "if (n > 0u) atomicAdd(counters[i], n);",

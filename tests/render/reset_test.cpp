@@ -1,5 +1,7 @@
 // A renderer that begins anew with another camera or other settings: the picture is what a fresh one would
 // make.
+#include <limits>
+
 #include "load/load.h"
 #include "render/render_fixture.h"
 
@@ -75,6 +77,28 @@ TEST_F(ResetTest, TheMediaAroundTheCameraAreThoseOfItsPlace) {
         camera.position = place;
         expect_as_fresh(renderer, camera, settings);
     }
+}
+
+TEST_F(ResetTest, ALatencyHoldsForOnePicture) {
+    RenderSettings settings = settings_for(64, 64);
+    settings.submission_seconds = 1000.0;
+    Renderer renderer(device(), gpu_scene_, scene_.cameras.at(0), settings);
+    const auto submissions = [&](double latency) {
+        RenderSettings changed = settings;
+        changed.submission_seconds = 0.0;  // As before.
+        changed.latency = latency;
+        renderer.reset(gpu_scene_, scene_.cameras.at(0), changed);
+        int count = 0;
+        EXPECT_TRUE(renderer.render(4, [&](double) {
+            ++count;
+            return true;
+        }));
+        return count;
+    };
+    const int unhurried = submissions(std::numeric_limits<double>::infinity());
+    EXPECT_GT(submissions(1e-6), 32);  // A work group at a time, after the first submission.
+    EXPECT_LE(unhurried, 4);
+    EXPECT_EQ(submissions(std::numeric_limits<double>::infinity()), unhurried);
 }
 
 }  // namespace
