@@ -3,9 +3,9 @@
 but for links to the scenes, the tests and the program, as if it were the root of the repository; the page's commands
 run there in order. Every ```sh block is run, so a command of an unknown kind is an error; other blocks are not run.
 Scripts (sh, python3) only have to exist, and cmake and ctest are left to the stages that run them: this check is part
-of what they do. What would take minutes is cut short: a rendering uses at most 16 samples per pixel and, where its size
-is given, 128 pixels along each side; a benchmark runs once at the smallest sizes, the commands in the captions of
-pictures use a single sample, and the selftest, which has a test of its own, shows its help.
+of what they do. What would take minutes is cut short: a rendering uses at most 16 samples per pixel and, if it is not a
+crop, 128 pixels along each side; a benchmark runs once at the smallest sizes, the commands in the captions of pictures
+use a single sample, and the selftest, which has a test of its own, shows its help.
 
 usage: readme.py CANDELA PAGE...      Prints each command and what went wrong; exits 1 if anything did.
 """
@@ -41,13 +41,21 @@ def commands(text):
     found = [" ".join(re.sub(r"(^|\s)#.*", "", line).split()) for line in lines]
     found = [SPP.sub(lambda spp: f"--spp {min(int(spp[1]), MAX_SPP)}", line) for line in found if line]
     found = [SIZE.sub(smaller, line) for line in found]
-    return [line + SHORTER.get(subcommand(line), "") for line in found]
+    return [small(line) + SHORTER.get(subcommand(line), "") for line in found]
+
+
+def small(command):
+    """The command, with a size and samples if it renders and has none."""
+    size = f" --size {MAX_SIDE}x{MAX_SIDE}" if not re.search(r" --(size|crop)\b", command) else ""
+    spp = f" --spp {MAX_SPP}" if not re.search(r" --(spp|samples|target-error|time-limit)\b", command) else ""
+    return re.sub(r"\bcandela render\b", f"candela render{size}{spp}", command)
 
 
 def caption_commands(text):
     """The commands in running text, each at one sample per pixel."""
     found = [" ".join(command.split()) for command in CAPTION.findall(text)]
-    return [re.sub(r" --spp \d+| --adaptive", "", command) + " --spp 1" for command in found if "scenes/" in command]
+    return [small(re.sub(r" --spp \d+| --adaptive", "", command) + " --spp 1") for command in found
+            if "scenes/" in command]
 
 
 def subcommand(command):
