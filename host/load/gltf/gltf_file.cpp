@@ -202,8 +202,8 @@ std::span<const std::byte> File::view_bytes(const Node& view) {
             "the data that meshopt has compressed", [&] { return extension->place(); },
             [&] { return decode_meshopt(view, *extension, plain_bytes(*extension)); });
     });
-    count_decoded(place, bytes.size());
-    return bytes;
+    count_decoded(place, bytes.count);
+    return {bytes.first.get(), bytes.count};
 }
 
 std::span<const std::byte> File::plain_bytes(const Node& view) {

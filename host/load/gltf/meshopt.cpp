@@ -129,8 +129,7 @@ std::optional<Node> meshopt_of(const Node& element) {
     return std::nullopt;
 }
 
-std::vector<std::byte> decode_meshopt(const Node& view, const Node& extension,
-                                      std::span<const std::byte> compressed) {
+DecodedBytes decode_meshopt(const Node& view, const Node& extension, std::span<const std::byte> compressed) {
     const Stream stream = read_stream(extension);
     const uint64_t length = uint64_t(stream.count) * stream.stride;
     if (const uint64_t stated = view.require("byteLength").integer(1, UINT32_MAX); stated != length) {
@@ -141,13 +140,15 @@ std::vector<std::byte> decode_meshopt(const Node& view, const Node& extension,
         extension.fail(
             concat(compressed.size(), " compressed bytes cannot hold ", length, "; is the file damaged?"));
     }
-    std::vector<std::byte> result(length);
+    // The decoder writes all of it, so that nothing fills it with zeros before.
+    const auto bytes = std::make_shared_for_overwrite<std::byte[]>(length);
+    const std::span result(bytes.get(), length);
     if (decode_stream(stream, compressed, result) != 0) {
         check_header(extension, stream, compressed.front());
         extension.fail("the compressed data are damaged; copy or export the file again");
     }
     unfilter(stream, result);
-    return result;
+    return {bytes, length};
 }
 
 }  // namespace candela::gltf
