@@ -1,10 +1,12 @@
 """Renders scenes by the add-on and by Cycles, and prints the means of candela's pictures over those of Cycles, of the whole and
-of its quarters, and the relMSE between them, most of which is noise.
+of its quarters; the relMSE between them, most of which is noise; and the noise of candela's over that of Cycles', each from two
+pictures of its own, as if both had taken the same CPU time for their samples.
 
 usage: python tests/blender/judge.py FOLDER PROGRAM [SCENE...]      FOLDER: build/blender/candela_blender. Needs PyPI's bpy.
 """
 import math
 import os
+import resource
 import sys
 import tempfile
 import warnings
@@ -149,33 +151,62 @@ def begin(material):
     bpy.context.scene.camera = camera
 
 
-def render(engine, folder):
+def cpu_seconds():
+    """Of this process, and of the programs that it has started."""
+    total = sum(usage.ru_utime + usage.ru_stime for usage in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+        except OSError:  # It has ended.
+            continue
+        if int(fields[1]) == os.getpid():
+            total += (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return total
+
+
+def render(engine, folder, samples=SAMPLES, seed=0):
+    """The picture (height, width, 3), and the CPU time that it took [s]."""
     scene = bpy.context.scene
     scene.render.engine = engine
     scene.render.resolution_x, scene.render.resolution_y = SIZE
     scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"
     scene.render.filepath = f"{folder}/{engine}.exr"
     if engine == "CYCLES":
-        for key, value in {"samples": SAMPLES, "use_denoising": False, "use_adaptive_sampling": False, "max_bounces": 64,
+        for key, value in {"samples": samples, "seed": seed, "use_denoising": False, "use_adaptive_sampling": False, "max_bounces": 64,
                            "diffuse_bounces": 64, "glossy_bounces": 64, "transmission_bounces": 64, "blur_glossy": 0,
                            "sample_clamp_indirect": 0, "pixel_filter_type": "BOX", "filter_width": 1}.items():
             setattr(scene.cycles, key, value)
     else:
-        scene.candela.samples, scene.candela.pixel_filter, scene.candela.filter_width = SAMPLES, "box", 1.0
+        scene.candela.samples, scene.candela.seed = samples, seed
+        scene.candela.pixel_filter, scene.candela.filter_width = "box", 1.0
+    before = cpu_seconds()
     bpy.ops.render.render(write_still=True)
+    seconds = cpu_seconds() - before
     image = bpy.data.images.load(scene.render.filepath)
     pixels = numpy.empty(SIZE[0] * SIZE[1] * 4, numpy.float32)
     image.pixels.foreach_get(pixels)
     bpy.data.images.remove(image)
-    return pixels.reshape(SIZE[1], SIZE[0], 4)[::-1, :, :3].astype(float)
+    return pixels.reshape(SIZE[1], SIZE[0], 4)[::-1, :, :3].astype(float), seconds
+
+
+def relative_square(difference, picture):
+    return (difference ** 2 / (picture ** 2 + 0.01 * picture.mean() ** 2)).mean()
+
+
+def two_pictures(engine, folder):
+    """The mean of two pictures, and the noise that each would have after a second of CPU time for samples."""
+    start = render(engine, folder, samples=1)[1]
+    (first, seconds), (second, _) = (render(engine, folder, seed=seed) for seed in (0, 1))
+    noise = relative_square(first - second, first) / 2
+    return (first + second) / 2, noise * (seconds - start)
 
 
 def judge(name, folder):
-    cycles, ours = render("CYCLES", folder), render("CANDELA", folder)
+    (cycles, of_cycles), (ours, of_ours) = (two_pictures(engine, folder) for engine in ("CYCLES", "CANDELA"))
     halves = [(slice(0, n // 2), slice(n // 2, n)) for n in SIZE[::-1]]
     quarters = [ours[y, x].mean() / cycles[y, x].mean() for y in halves[0] for x in halves[1]]
-    error = ((ours - cycles) ** 2 / (cycles ** 2 + 0.01 * cycles.mean() ** 2)).mean()
-    print(f"| {name} | {ours.mean() / cycles.mean():.3f} | {min(quarters):.3f} to {max(quarters):.3f} | {error:.4f} |", flush=True)
+    print(f"| {name} | {ours.mean() / cycles.mean():.3f} | {min(quarters):.3f} to {max(quarters):.3f} "
+          f"| {relative_square(ours - cycles, cycles):.4f} | {of_ours / of_cycles:.2f} |", flush=True)
 
 
 def main():
