@@ -39,9 +39,11 @@ class PunctualLights {
         const double inner = one_minus_cos(double(light.inner_angle));
         const double outer = one_minus_cos(double(light.outer_angle));
         record.e1 = vec3(direction_of(light.direction));
-        record.e2 = vec3(float(outer), float(std::min(1.0 / (outer - inner), STEEPEST)), 0.0f);
-        // The mean of the falloff between the angles is a third: it is the square of what is uniform there.
-        append(record, 2.0 * (inner + (outer - inner) / 3.0));
+        const bool smooth = light.falloff == SpotFalloff::smoothstep;
+        record.e2 =
+            vec3(float(outer), float(std::min(1.0 / (outer - inner), STEEPEST)), smooth ? 1.0f : 0.0f);
+        // The means between the angles of t^2 and t^2 (3 - 2t), where t is uniform.
+        append(record, 2.0 * (inner + (outer - inner) / (smooth ? 2.0 : 3.0)));
     }
 
     void add(const std::string&, const DirectionalLight& light) {

@@ -60,6 +60,9 @@ inline constexpr Choices<Wrap, 3> WRAP_NAMES{
 inline constexpr Choices<TextureFilter, 2> FILTER_NAMES{
     {{"bilinear", TextureFilter::bilinear}, {"nearest", TextureFilter::nearest}}};
 
+inline constexpr Choices<SpotFalloff, 2> FALLOFF_NAMES{
+    {{"square", SpotFalloff::square}, {"smoothstep", SpotFalloff::smoothstep}}};
+
 inline constexpr Choices<TextureEncoding, 2> ENCODING_NAMES{
     {{"srgb", TextureEncoding::srgb}, {"linear", TextureEncoding::linear}}};
 

@@ -320,14 +320,21 @@ struct PointLight {
     vec3 intensity{1};  // [W/sr], each >= 0 and finite.
 };
 
-// Light from a point into a cone. Between the angles it falls off as glTF's KHR_lights_punctual recommends:
-// with the square of a number that is linear in the cosine.
+// Between the angles of a spot light, where t is linear in the cosine: 0 at the outer one, 1 at the inner
+// one.
+enum class SpotFalloff {
+    square,      // t^2, as glTF's KHR_lights_punctual recommends.
+    smoothstep,  // t^2 (3 - 2t), as in Cycles.
+};
+
+// Light from a point into a cone.
 struct SpotLight {
     dvec3 position{0};
     dvec3 direction{0, 0, -1};      // Direction of the axis, of any length above 0.
     vec3 intensity{1};              // Up to the inner angle [W/sr], each >= 0 and finite.
     float inner_angle = 0.0f;       // From the axis [rad]; 0 <= inner_angle < outer_angle <= pi / 2.
     float outer_angle = PI / 4.0f;  // Beyond it, the light is dark.
+    SpotFalloff falloff = SpotFalloff::square;
 };
 
 // Light from infinitely far away in a single direction.

@@ -68,12 +68,12 @@ def _add_spot(scene, light, matrix, power, name, place, notices):
     if light.shadow_soft_size > 0:
         notices.add(place, "candela has no soft spots; its shadows are hard")
     half = min(light.spot_size / 2, math.pi / 2)
-    # Blender's falloff begins where the cosine is this; candela's is another curve between the same angles.
+    # Where the cosine is this, the light begins to fall off.
     inner = math.acos(math.cos(half) + (1 - math.cos(half)) * light.spot_blend)
     direction = -numpy.array(matrix.col[2][:3])
     scene.add_light("spot", name, position=to_candela(matrix.translation), direction=to_candela(direction),
                     intensity=power / (4 * math.pi), outer_angle=math.degrees(half),
-                    inner_angle=min(math.degrees(inner), math.degrees(half) * 0.9999))
+                    inner_angle=min(math.degrees(inner), math.degrees(half) * 0.9999), falloff="smoothstep")
 
 
 def _add_sun(scene, light, matrix, power, name, place, notices):

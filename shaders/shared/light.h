@@ -47,7 +47,8 @@ struct LightRecord {
     uint kind;  // LIGHT_*
     vec3 p;
     vec3 e1;
-    vec3 e2;
+    vec3 e2;         // Of a spot: 1 - cos of its outer angle, one over the range of cosines in which it falls off, and
+                     // 0 if by the square, 1 if by smoothstep.
     vec3 radiance;   // [W/(m^2 sr)], constant over the surface and its directions; of a point or spot light
                      // its intensity [W/sr], of a directional one the irradiance across it [W/m^2].
     uint two_sided;  // 1: emits from the back as well.

@@ -47,7 +47,8 @@ TEST_F(PunctualLightTest, APointLightsByTheInverseSquareAndTheCosine) {
     expect_black(floor_under(PointLight{dvec3(0, -1, 0), INTENSITY}));
 }
 
-// In the words of glTF's KHR_lights_punctual. The axis is at that angle to the direction towards the origin.
+// In the words of glTF's KHR_lights_punctual, or as smoothstep. The axis is at that angle to the direction
+// towards the origin.
 TEST_F(PunctualLightTest, ASpotFallsOffBetweenItsAngles) {
     constexpr double INNER = 0.2, OUTER = 0.6;
     const double scale = 1.0 / (std::cos(INNER) - std::cos(OUTER));
@@ -60,11 +61,18 @@ TEST_F(PunctualLightTest, ASpotFallsOffBetweenItsAngles) {
                               .inner_angle = float(INNER),
                               .outer_angle = float(OUTER)};
         const double attenuation = std::min(std::cos(angle) * scale + offset, 1.0);
-        expect_irradiance(floor_under(light), attenuation * attenuation * point_irradiance(position));
+        const double square = attenuation * attenuation;
+        expect_irradiance(floor_under(light), square * point_irradiance(position));
+        SpotLight smooth = light;
+        smooth.falloff = SpotFalloff::smoothstep;
+        expect_irradiance(floor_under(smooth),
+                          square * (3.0 - 2.0 * attenuation) * point_irradiance(position));
     }
     for (const double angle : {0.61, 3.0}) {
         const dvec3 direction(std::sin(angle), -std::cos(angle), 0);
         expect_black(floor_under(SpotLight{position, direction, INTENSITY, float(INNER), float(OUTER)}));
+        expect_black(floor_under(
+            SpotLight{position, direction, INTENSITY, float(INNER), float(OUTER), SpotFalloff::smoothstep}));
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "load/json/loader_parts.h"
 #include "scene/geometry.h"
+#include "scene/names.h"
 
 namespace candela {
 namespace {
@@ -52,6 +53,7 @@ SpotLight read_spot(const Node& node) {
             inner->fail("inner_angle must be below outer_angle, which is " + number_text(outer_degrees, 6) +
                         " degrees");
     }
+    if (const auto falloff = node.find("falloff")) light.falloff = falloff->choice(FALLOFF_NAMES);
     return light;
 }
 

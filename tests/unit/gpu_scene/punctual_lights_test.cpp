@@ -63,6 +63,18 @@ TEST(PunctualLights, AreChosenByTheirPower) {
     }
 }
 
+// The mean of smoothstep between the angles is a half.
+TEST(PunctualLights, ASpotThatFallsOffSmoothlyHasMorePower) {
+    Scene scene = scene_of_lights();
+    scene.lights.erase(scene.lights.begin());
+    std::get<SpotLight>(scene.lights[1].model).falloff = SpotFalloff::smoothstep;
+    const double spot = 3.0 * 2.0 * (1.0 - 0.5 * (std::cos(INNER) + std::cos(OUTER)));
+    const double total = 5.0 + 4.0 * 2.0 * 0.7152 + spot;
+    const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
+    EXPECT_NEAR(double(light(gpu, 2).pmf), spot / total, 1e-6);
+    EXPECT_EQ(light(gpu, 2).e2.z, 1.0f);
+}
+
 // A sun beside a lamp of 10^12 times its power: the probability is that of the choice, a unit of a share.
 TEST(PunctualLights, EveryGroupIsChosenNowAndThen) {
     Scene scene = scene_of_shapes({emitter(SQUARE, vec3(1e12f))});

@@ -66,6 +66,7 @@ TEST(SceneKeys, DefaultsAreThoseOfTheScene) {
     const SpotLight spot;
     EXPECT_EQ(stated("spot", "inner_angle"), text_of(glm::degrees(spot.inner_angle)));
     EXPECT_EQ(stated("spot", "outer_angle"), text_of(glm::degrees(spot.outer_angle)));
+    EXPECT_EQ(stated("spot", "falloff"), name_of(spot.falloff, FALLOFF_NAMES));
     const Environment sky;
     EXPECT_EQ(stated("environment", "rotation"), text_of(sky.rotation));
     EXPECT_EQ(stated("environment", "visible"), sky.visible ? "true" : "false");

@@ -29,7 +29,7 @@ TEST(SceneLights, AreReadInTheirOrder) {
     const Scene scene = folder.load(lit_by(R"([
         {"type": "directional", "direction": [0, -2, 0.5], "irradiance": [3, 2, 1]},
         {"type": "spot", "position": [1, 2, 3], "look_at": [1, 0, 3], "intensity": 7,
-            "inner_angle": 10, "outer_angle": 90},
+            "inner_angle": 10, "outer_angle": 90, "falloff": "smoothstep"},
         {"type": "point", "name": "bulb", "position": [1, 2, 3e30], "intensity": [0, 0.5, 1e30]},
         {"type": "spot", "position": [0, 0, 0], "direction": [3, 0, 0], "intensity": 1}])"));
     EXPECT_TRUE(scene.warnings.empty());
@@ -47,6 +47,7 @@ TEST(SceneLights, AreReadInTheirOrder) {
     EXPECT_EQ(wide.intensity, vec3(7));
     EXPECT_FLOAT_EQ(wide.inner_angle, PI / 18);
     EXPECT_FLOAT_EQ(wide.outer_angle, PI / 2);
+    EXPECT_EQ(wide.falloff, SpotFalloff::smoothstep);
 
     EXPECT_EQ(scene.lights[2].name, "bulb");
     const auto& bulb = std::get<PointLight>(scene.lights[2].model);
@@ -57,6 +58,7 @@ TEST(SceneLights, AreReadInTheirOrder) {
     EXPECT_EQ(plain.direction, dvec3(3, 0, 0));
     EXPECT_EQ(plain.inner_angle, 0.0f);
     EXPECT_FLOAT_EQ(plain.outer_angle, PI / 4);
+    EXPECT_EQ(plain.falloff, SpotFalloff::square);
 }
 
 TEST(SceneLights, AreEnoughToLightAScene) {
