@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs what is missing, builds candela, and runs all tests and checks except the slow ones, on the Vulkan device
-# that it finds.
+# that it finds: one more at a time than there are processors, since some wait.
 #   usage: sh cmake/test.sh [OPTIONS of cmake, such as -DCANDELA_VIEW=OFF]
 set -eu
 cd "$(dirname "$0")/.."
@@ -9,4 +9,4 @@ cd "$(dirname "$0")/.."
 install_packages render test optional
 cmake --preset ci "$@"
 cmake --build --preset ci
-ctest --preset ci --parallel "$(nproc)"
+ctest --preset ci --parallel "$(($(nproc) + 1))"
