@@ -6,6 +6,8 @@ set -eu
 cd "$(dirname "$0")/../.."
 python3 -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' ||
     { echo "Nothing was tested: Blender's modules need Python 3.11."; exit 3; }
+. cmake/setup.sh
+install_packages blender wheel
 [ $# -gt 0 ] || set -- 4.2.0 4.5.15 5.0.1
 sh cmake/blender.sh none
 for version in "$@"; do
