@@ -130,6 +130,8 @@ class Renderer {
     const vk::StorageImage& accumulation() const { return image_; }
     // How the arrays of the scene are read.
     const ArrayMap& array_map() const { return scene_.map(); }
+    // See RenderSettings::latency.
+    void set_latency(double seconds) { settings_.latency = seconds; }
     // How long a submission should take [s].
     double submission_seconds() const { return settings_.submission_seconds; }
     // Wall time of compiling, first dispatch included; and the CPU time of it in this thread.

@@ -133,7 +133,12 @@ RenderJob read_job(const Node& parameters, const Scene& scene) {
     if (const auto spp = parameters.find("spp")) job.target = spp->integer(1, MAX_SPP);
     if (const auto error = parameters.find("target_error")) job.target_error = error->positive();
     if (const auto limit = parameters.find("time_limit")) job.time_limit = limit->positive();
-    if (const auto latency = parameters.find("latency")) job.settings.latency = latency->positive();
+    if (const auto latency = parameters.find("latency")) {
+        job.settings.latency = latency->positive();
+        if (job.time_limit)
+            latency->fail(
+                "a request with a time limit has no latency, which would lose its samples; leave one out");
+    }
     job.aovs = read_layers(parameters);
     if (const auto denoise = parameters.find("denoise"); denoise && denoise->boolean()) {
         job.aovs.denoising = job.aovs.variance = job.aovs.sample_count = true;

@@ -40,7 +40,7 @@ void LivePicture::prepare(RenderJob job) {
     update();
     RenderRecord record = make_record(scene_.scene(), scene_.records(), arrays_hash_, job);
     if (continues(job, record)) {
-        rendering_->set_target(job.target, job.target_error, job.time_limit);
+        rendering_->set_target(job);
         job_ = std::move(job);
         return;
     }

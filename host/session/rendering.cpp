@@ -65,13 +65,14 @@ void Rendering::restart(RenderJob job, RenderRecord record, const BufferSet& cha
     complete_record();
 }
 
-void Rendering::set_target(uint32_t spp, std::optional<double> error, std::optional<double> time_limit) {
-    job_.target = spp;
-    job_.time_limit = time_limit;
-    if (error == job_.target_error) return;
-    job_.target_error = error;
-    record_.target_error = error;
-    convergence_ = Convergence(error, {});
+void Rendering::set_target(const RenderJob& job) {
+    job_.target = job.target;
+    job_.time_limit = job.time_limit;
+    renderer_.set_latency(job.settings.latency);
+    if (job.target_error == job_.target_error) return;
+    job_.target_error = job.target_error;
+    record_.target_error = job.target_error;
+    convergence_ = Convergence(job.target_error, {});
 }
 
 // Notes what the device says.

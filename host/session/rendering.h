@@ -55,8 +55,9 @@ class Rendering {
     // otherwise.
     std::optional<Error> run(RenderCallbacks callbacks);
 
-    // Changes the samples per pixel, the error and the time [s] that run() renders to. There is no reference.
-    void set_target(uint32_t spp, std::optional<double> error, std::optional<double> time_limit);
+    // Takes from the job the samples per pixel, the error and the time [s] that run() renders to, and its
+    // latency. There is no reference.
+    void set_target(const RenderJob& job);
     // Starts over, on the same device, with another job, which may not ask for files, and with the source's
     // scene as it is now, of which these buffers have changed. Throws Error if that fails; the object is then
     // unusable.

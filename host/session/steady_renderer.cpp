@@ -2,6 +2,7 @@
 #include "session/steady_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace candela {
@@ -71,6 +72,11 @@ void SteadyRenderer::select(size_t state) {
     loaded_ = false;
 }
 
+void SteadyRenderer::set_latency(double seconds) {
+    source_.settings.latency = seconds;
+    if (renderer_) renderer_->set_latency(seconds);
+}
+
 void SteadyRenderer::copy_state() {
     const Clock::time_point start = Clock::now();
     state() = renderer_->download();
@@ -91,7 +97,11 @@ bool SteadyRenderer::render(uint32_t target, const std::function<bool(double)>& 
                 if (Clock::now() >= next_copy_) copy_state();
                 return keep_going(before + (1.0 - before) * done);
             });
-            copy_state();
+            const bool is_hurried = std::isfinite(source_.settings.latency);
+            if (complete || !is_hurried)
+                copy_state();
+            else
+                loaded_ = false;
             return complete;
         } catch (const Error& error) {
             recover(error);

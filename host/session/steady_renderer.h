@@ -50,8 +50,12 @@ class SteadyRenderer {
 
     // As Renderer::render(), but `progress` is the fraction of all samples up to the target. If the device
     // fails, reopens it and makes submissions half as long. Throws the Error if Recovery gives up; the states
-    // are then the last copies.
+    // are then the last copies. So they are where keep_going() ends a rendering that has a latency: copying
+    // would take longer.
     bool render(uint32_t target, const std::function<bool(double progress)>& keep_going);
+
+    // As Renderer::set_latency().
+    void set_latency(double seconds);
 
     // Copies the selected state from the device to the host. May only be called from keep_going(). render()
     // itself copies every copy_seconds, less often where copying is slow, and at its end.

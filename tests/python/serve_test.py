@@ -93,6 +93,23 @@ class Serve(unittest.TestCase):
             fresh.call("render", scene="1", spp=spp)
             self.assertTrue(client.pixels() == fresh.pixels())
 
+    def test_with_a_latency_what_is_cancelled_leaves_the_picture_before(self):
+        with Client() as client, Client() as fresh:
+            for one in (client, fresh):
+                one.load()
+                one.call("render", scene="1", spp=2)
+            hurried = client.send("render", scene="1", spp=FOREVER, latency=1e-3, progress=True)
+            while not client.told:
+                client.told.append(json.loads(client.process.stdout.readline())["params"])
+            client.call("cancel")
+            answer = client.read()
+            self.assertEqual((answer["id"], answer["result"]["cancelled"], answer["result"]["spp"]), (hurried, True, 2))
+            self.assertTrue(client.pixels() == fresh.pixels())
+            for one in (client, fresh):
+                self.assertEqual(one.call("render", scene="1", spp=3)["spp"], 3)
+            self.assertTrue(client.pixels() == fresh.pixels())
+            self.assertIn("leave one out", client.error("render", scene="1", latency=1, time_limit=1)["message"])
+
     def test_cancels_loading(self):
         many = SCENE.replace('"shapes": [', '"shapes": [' + '{"type": "sphere", "material": "clay"}, ' * 200000)
         with Client() as client:
