@@ -195,6 +195,7 @@ def relative_square(difference, picture):
 
 def two_pictures(engine, folder):
     """The mean of two pictures, and the noise that each would have after a second of CPU time for samples."""
+    render(engine, folder, samples=1)  # Compiles kernels.
     start = render(engine, folder, samples=1)[1]
     (first, seconds), (second, _) = (render(engine, folder, seed=seed) for seed in (0, 1))
     noise = relative_square(first - second, first) / 2
