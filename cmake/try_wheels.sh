@@ -62,10 +62,6 @@ assert server.wait() == 0
 print("Rendered on", [device.name for device in candela.devices() if device.default])
 END
 
-echo "== Types, as of Python 3.9"
-"$wheels/tools/bin/pip" install --quiet 'mypy<1.19' numpy  # Later ones do not know 3.9.
-(cd integrations/python && "$wheels/tools/bin/mypy" --strict --python-version 3.9 -p candela)
-
 echo "== A fresh virtual environment"
 fresh=$(mktemp -d)
 trap 'rm -rf "$fresh"' EXIT
