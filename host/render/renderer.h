@@ -57,7 +57,7 @@ struct RenderSettings {
     uint64_t later_bytes = 0;  // Bytes of it that are needed when the picture is there, whatever its size.
     SceneAccess scene_access = SceneAccess::automatic;
     double submission_seconds = 0.0;  // Duration of a submission; 0: suitable for the device.
-    // What waits for a picture to end waits no longer for a submission, where the device can do it [s].
+    // No submission takes longer than that, as far as the device allows: how soon a rendering can end [s].
     double latency = std::numeric_limits<double>::infinity();
     uint32_t pass_growth = PASS_GROWTH;  // See Schedule; changes no bit.
 };

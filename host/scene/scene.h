@@ -320,8 +320,7 @@ struct PointLight {
     vec3 intensity{1};  // [W/sr], each >= 0 and finite.
 };
 
-// Between the angles of a spot light, where t is linear in the cosine: 0 at the outer one, 1 at the inner
-// one.
+// Between the angles of a spot light; t is linear in the cosine, 0 at the outer angle, 1 at the inner.
 enum class SpotFalloff {
     square,      // t^2, as glTF's KHR_lights_punctual recommends.
     smoothstep,  // t^2 (3 - 2t), as in Cycles.

@@ -153,7 +153,8 @@ def begin(material):
 
 def cpu_seconds():
     """Of this process, and of the programs that it has started."""
-    total = sum(usage.ru_utime + usage.ru_stime for usage in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+    usages = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    total = sum(usage.ru_utime + usage.ru_stime for usage in usages)
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
             fields = stat.read_text().rpartition(")")[2].split()
@@ -172,8 +173,9 @@ def render(engine, folder, samples=SAMPLES, seed=0):
     scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"
     scene.render.filepath = f"{folder}/{engine}.exr"
     if engine == "CYCLES":
-        for key, value in {"samples": samples, "seed": seed, "use_denoising": False, "use_adaptive_sampling": False, "max_bounces": 64,
-                           "diffuse_bounces": 64, "glossy_bounces": 64, "transmission_bounces": 64, "blur_glossy": 0,
+        for key, value in {"samples": samples, "seed": seed, "use_denoising": False, "use_adaptive_sampling": False,
+                           "max_bounces": 64, "diffuse_bounces": 64, "glossy_bounces": 64, "transmission_bounces": 64,
+                           "blur_glossy": 0,
                            "sample_clamp_indirect": 0, "pixel_filter_type": "BOX", "filter_width": 1}.items():
             setattr(scene.cycles, key, value)
     else:
