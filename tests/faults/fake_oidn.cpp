@@ -18,11 +18,6 @@
 
 namespace {
 
-struct FakeImage {
-    float* values;
-    size_t width, height;
-};
-
 std::string error;
 int executions = 0;
 
@@ -40,7 +35,11 @@ void fail_if_asked(const char* where) {
 struct OidnDeviceHandle {};
 
 struct OidnFilterHandle {
-    std::map<std::string, FakeImage> images;
+    struct Image {
+        float* values;
+        size_t width, height;
+    };
+    std::map<std::string, Image> images;
     std::map<std::string, int> numbers;
     float scale = 0.0f;
 };
@@ -109,7 +108,7 @@ void oidnSetSharedFilterImage(OidnFilterHandle* filter, const char* name, void* 
 void oidnExecuteFilter(OidnFilterHandle* filter) {
     const std::string after = variable("FAKE_OIDN_AFTER");
     if (++executions > (after.empty() ? 0 : std::atoi(after.c_str()))) fail_if_asked("execute");
-    const FakeImage output = filter->images.at("output");
+    const OidnFilterHandle::Image output = filter->images.at("output");
     const size_t count = 3 * output.width * output.height;
     const bool has_colour = filter->images.contains("color"), has_albedo = filter->images.contains("albedo");
     const std::string alone = has_albedo ? "albedo" : "normal";
