@@ -6,11 +6,12 @@
 strict=-DCANDELA_WERROR=GNU-12
 took=()
 
-# stage NAME COMMAND...: runs it; when the script ends, all stages are listed with their seconds, a failed one last.
+# stage NAME COMMAND...: runs it in a shell of its own, so that what it exports ends with it; when the script ends, all
+# stages are listed with their seconds, a failed one last.
 stage() {
     running=$1 began=$SECONDS
     echo "=== $1"
-    "${@:2}"
+    ("${@:2}")
     took+=("$(printf '%-14s %5d s' "$1" $((SECONDS - began)))")
     running=
 }
