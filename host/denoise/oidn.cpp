@@ -18,7 +18,7 @@ namespace {
 // A tile of this size takes, with the library's own memory, no more than OIDN_BYTES in any quality.
 // Tiles overlap, so that what is missing beyond their edges does not show.
 constexpr uint32_t TILE = 512, OVERLAP = 64;
-constexpr int SCRATCH_MEBIBYTES = 128;
+constexpr int SCRATCH_MEBIBYTES = 112;
 
 int quality_code(DenoiserQuality quality) {
     switch (quality) {

@@ -225,23 +225,40 @@ TEST_F(CostOfFiles, OfAPictureIsItsPixels) {
     EXPECT_CONTAINS(result.err, " GiB are in use and --memory-limit allows 0.09 GiB; use a smaller picture");
 }
 
-// Of ids and motion, the channels of a file, 4 bytes each, and less than as much again for how they are made.
-TEST_F(CostOfFiles, OfAPictureIsAlsoThatOfItsIds) {
-    const std::string file = scene(R"("film": {"size": [4096, 4096]}, "shapes": [])");
-    const auto gibibytes_of = [&](const char* layers) {
-        const ProcessResult result = candela({"render", file, "--spp", "1", "-o", this->file("a.exr"),
-                                              "--aov", layers, "--memory-limit", "100M"});
+// What a picture of 4096x4096 with these arguments is said to need [GiB].
+class CostOfPictures : public StrangersFiles {
+  protected:
+    double gibibytes(const Words& arguments) {
+        const std::string scene_file = scene(R"("film": {"size": [4096, 4096]}, "shapes": [])");
+        const ProcessResult result =
+            candela(Words{"render", scene_file, "--spp", "1", "-o", file("a.exr"), "--memory-limit", "100M"} +
+                    arguments);
         EXPECT_EQ(result.exit_code, 5) << result.err;
         const std::string needs = " needs ";
         const size_t number = result.err.find(needs);
         return number == std::string::npos ? 0.0 : std::stod(result.err.substr(number + needs.size()));
-    };
-    const double none = gibibytes_of("none");
+    }
+    static constexpr double GIBIBYTES_OF_FOUR_BYTES_A_PIXEL = 4 * 4096.0 * 4096.0 / (1 << 30);
+};
+
+// Of ids and motion, the channels of a file, 4 bytes each, and less than as much again for how they are made.
+TEST_F(CostOfPictures, AreAlsoThoseOfIds) {
+    const double none = gibibytes({"--aov", "none"});
     for (const auto& [layers, channels] : {std::pair("ids", 3), std::pair("cryptomatte", 24)}) {
-        const double least = channels * 4 * 4096.0 * 4096.0 / (1 << 30), more = gibibytes_of(layers) - none;
+        const double least = channels * GIBIBYTES_OF_FOUR_BYTES_A_PIXEL;
+        const double more = gibibytes({"--aov", layers}) - none;
         EXPECT_GT(more, least) << layers;
         EXPECT_LT(more, least + 1.0) << layers;
     }
+}
+
+// What a denoiser needs is counted before it is needed: its guides, and 256 MiB for itself.
+TEST_F(CostOfPictures, AreAlsoThoseOfADenoiser) {
+    const Words guided = {"--aov", "albedo,n,variance,samples,denoising"};
+    const double without = gibibytes(guided), with = gibibytes(guided + Words{"--denoise", "variance"});
+    const double denoised = 3 * GIBIBYTES_OF_FOUR_BYTES_A_PIXEL;
+    EXPECT_GT(with - without, 0.24 + denoised);
+    EXPECT_LT(with - without, 0.26 + 3 * denoised);
 }
 
 TEST_F(CostOfFiles, HasALimitThatIsASize) {
