@@ -121,9 +121,10 @@ std::string glb_file(std::string text, std::string_view buffer) {
 // Of what targets do within a limit.
 constexpr uint64_t MAX_BYTES = uint64_t(128) << 20;
 
-// Decodes without the checks of the reader.
+// Decodes without the checks of the reader. Few bytes may say that there are as many bits as the memory
+// holds, each of which takes its time.
 void draco_alone(std::string_view bytes) {
-    set_memory_limit(memory_in_use() + MAX_BYTES);
+    set_memory_limit(memory_in_use() + MAX_BYTES / 4);
     const LimitedMemory limited;
     ::draco::DecoderBuffer buffer;
     buffer.Init(bytes.data(), bytes.size());
