@@ -63,14 +63,16 @@ void sample_begin(inout Sample s, Parameters parameters, uvec2 pixel, uint index
 struct TraceResult {
     bool complete;  // False if the driver ended the loop early.
     bool lit;       // There is a shadow ray, and it is not blocked.
+    uint depth;     // Optical depth of what it has passed, in parts; only if HAS_OPACITY.
     Hit hit;        // The hit of the path's ray, if the path continues.
 };
 
 // Advances the traversal; once that of a shadow ray has ended, begins that of the path's next ray, if there is one.
-void sample_advance(Sample s, inout Traversal traversal, inout bool lit) {
+void sample_advance(Sample s, inout Traversal traversal, inout bool lit, inout uint depth) {
     bvh_advance(traversal);
     if (traversal.any_hit && bvh_ended(traversal)) {
         lit = !is_hit(traversal.hit);
+        if (HAS_OPACITY) depth = traversal.depth;
         if (HAS_PASSABLE) traversal.any_hit = false;
         if (s.alive) traversal = bvh_begin(s.path.ray, FLOAT_MAX, false);
         if (HAS_CATCHERS) traversal.alone = s.path.alone;
@@ -87,23 +89,24 @@ TraceResult sample_trace(Sample s) {
     if (HAS_CATCHERS) traversal.alone = shadowed ? s.shadow_alone : s.path.alone;
     if (!shadowed && !s.alive) bvh_end(traversal);
     bool lit = false;
+    uint depth = 0u;
     if (HAS_PASSABLE) {
         // On software Vulkan, code in a branch takes its time even if no lane takes the branch. So the decision about
         // opacity is in an outer loop, at whose end lanes wait for each other once more.
         bool more;
         do {
             while (!bvh_waits(traversal) && (traversal.any_hit || !bvh_ended(traversal))) {
-                sample_advance(s, traversal, lit);
+                sample_advance(s, traversal, lit, depth);
             }
             bvh_decide(traversal);
             more = traversal.any_hit || !bvh_ended(traversal);
         } while (more);
     } else {
         while (!bvh_ended(traversal))
-            sample_advance(s, traversal, lit);
+            sample_advance(s, traversal, lit, depth);
     }
     bool turned = !(HAS_PASSABLE && traversal.any_hit);  // To the path's ray, if there is one.
-    return TraceResult(turned && bvh_ended(traversal), lit, traversal.hit);
+    return TraceResult(turned && bvh_ended(traversal), lit, depth, traversal.hit);
 }
 
 // Advances the path past the hit of its ray, or past its miss.
@@ -149,6 +152,7 @@ void render_pixel() {
         }
         TraceResult met = sample_trace(s);
         if (!met.complete) break;
+        if (HAS_OPACITY) s.shadow.Ld *= passed_fraction(met.depth);
         if (met.lit) s.estimate.L += s.shadow.Ld;
         if (again) {
             estimate_turn(s.estimate);

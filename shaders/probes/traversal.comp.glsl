@@ -12,10 +12,11 @@ Hit brute_force(Ray ray) {
     RayShear shear = ray_shear(ray.d, reciprocals(ray.d));
     Hit hit = hit_none(FLOAT_MAX);
     Candidate candidate = candidate_none();
+    uint depth = 0u;
     for (uint i = 0u; i < primitive_count; ++i) {
         meet(i, primitive_hit(ray, shear, scene_primitive(i), i, NO_INSTANCE), hit, candidate);
         for (int k = 0; k < 2; ++k)
-            decide(ray, shear, hit, candidate);
+            decide(ray, shear, false, hit, candidate, depth);
     }
     return hit;
 }

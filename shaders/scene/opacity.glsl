@@ -1,13 +1,32 @@
-// Surfaces that some rays pass as if they were not there: masks, and opacity below 1.
+// Surfaces that some rays pass as if they were not there: masks, and opacity below 1. Where opacity is between 0 and 1,
+// a path's ray ends or passes by chance; a shadow ray passes and is dimmed, which has the same mean without the noise.
 #ifndef SCENE_OPACITY_GLSL
 #define SCENE_OPACITY_GLSL
 
+#include "base/exponential.glsl"
 #include "base/hash.glsl"
 #include "base/sampler.glsl"
 #include "scene/material.glsl"
 #include "scene/primitive.glsl"
 
 const bool HAS_PASSABLE = (TEXTURED & TEXTURED_PASSABLE) != 0u;
+const bool HAS_OPACITY = (TEXTURED & TEXTURED_OPACITY) != 0u;
+
+// What dims a shadow ray is a whole number of these parts of an optical depth, so that the sum over the surfaces that
+// it passes is independent of their order.
+const float OPTICAL_DEPTH_PARTS = 16777216.0;
+const uint OPTICAL_DEPTH_OPAQUE = 18u << 24u;  // Less than 2^-25 would pass.
+
+// The optical depth of a surface of that opacity, -log(1 - opacity), in parts.
+uint optical_depth(float opacity) {
+    if (opacity >= 1.0) return OPTICAL_DEPTH_OPAQUE;
+    return uint(OPTICAL_DEPTH_PARTS * -log1p_nonpositive(-max(opacity, 0.0)) + 0.5);
+}
+
+// The fraction of light that passes that optical depth, in parts.
+float passed_fraction(uint depth) {
+    return exp_nonpositive(float(depth) * (-1.0 / OPTICAL_DEPTH_PARTS));
+}
 
 // A number in [0, 1) that is random for each ray and hit, independent of the order in which they are found: a hash of
 // the bits of the ray in the primitive's space, of the surface's id in the scene, and of whether the hit is the first
@@ -25,19 +44,24 @@ bool is_hit_from_behind(Ray ray, Primitive p, Hit hit, vec3 n) {
     return dot(n, ray.d) > 0.0;
 }
 
-// Whether the ray, in the primitive's space, ends at a hit of that primitive, the first one there or not.
-bool is_stopped(Ray ray, Primitive p, Hit hit, bool first) {
+// The opacity of a hit for the ray, in the primitive's space: 0 if the ray passes.
+float hit_opacity(Ray ray, Primitive p, Hit hit) {
     Surface surface = hit_surface(hit);
     vec3 n = ray.o + hit.t * ray.d - p.a;
     if ((PRINCIPLED & PRINCIPLED_HAS_CULLED) != 0u && scene_material_textures(surface.material).culled != 0u &&
         is_hit_from_behind(ray, p, hit, n)) {
-        return false;
+        return 0.0;
     }
-    if ((TEXTURED & TEXTURED_OPACITY) == 0u) return true;
+    if (!HAS_OPACITY) return 1.0;
     AttributePlace place = AttributePlace(hit_primitive(hit), hit_second(hit), hit_coordinates(ray, p, hit),
                                           is_kind(p.kind, PRIMITIVE_SPHERE), n);
-    float opacity = material_opacity(surface.material, attributes_at(place));
-    if (opacity >= 1.0 || opacity <= 0.0) return opacity >= 1.0;
+    return material_opacity(surface.material, attributes_at(place));
+}
+
+// Whether a path's ray, in the primitive's space, ends at a hit of that opacity, the first one of its primitive or not.
+bool is_stopped(Ray ray, Hit hit, float opacity, bool first) {
+    if (!HAS_OPACITY || opacity >= 1.0 || opacity <= 0.0) return opacity >= 1.0;
+    Surface surface = hit_surface(hit);
     return opacity_random(ray, hit_second(hit) ? surface.id.y : surface.id.x, first) < opacity;
 }
 
@@ -63,12 +87,20 @@ void meet(uint position, Hit found, inout Hit hit, inout Candidate candidate) {
 }
 
 // Makes the candidate the nearest hit if it stops the ray; otherwise the second hit of its primitive is the next
-// candidate, if it may stop the ray.
-void decide(Ray ray, RayShear shear, inout Hit hit, inout Candidate candidate) {
+// candidate, if it may stop the ray. A shadow ray passes what is not opaque, which adds to `depth`, until that is so.
+void decide(Ray ray, RayShear shear, bool shadow, inout Hit hit, inout Candidate candidate, inout uint depth) {
     if (!HAS_PASSABLE || !is_hit(candidate.hit)) return;
     Hit found = candidate.hit;
     Primitive p = scene_primitive(hit_primitive(found));
-    if (is_stopped(ray, p, found, candidate.first)) {
+    float opacity = hit_opacity(ray, p, found);
+    bool stopped;
+    if (HAS_OPACITY && shadow) {
+        depth += optical_depth(opacity);
+        stopped = depth >= OPTICAL_DEPTH_OPAQUE;
+    } else {
+        stopped = is_stopped(ray, found, opacity, candidate.first);
+    }
+    if (stopped) {
         hit = found;
         candidate = candidate_none();
         return;

@@ -21,7 +21,7 @@ struct Traversal {
     Ray ray;     // In the space of the nodes that it visits: the scene's, or that of an instance's mesh.
     vec3 inv_d;  // reciprocals(ray.d)
     RayShear shear;
-    bool any_hit;         // The first hit ends the traversal.
+    bool any_hit;         // The first hit that stops the ray ends the traversal: that of a shadow ray.
     Hit hit;              // The nearest so far.
     uint node;            // The next node to be visited.
     uint pending;         // Its siblings, which come after it; those further up are on the stack.
@@ -32,6 +32,7 @@ struct Traversal {
     uint instance;        // The instance that the ray is in, or NO_INSTANCE.
     uint root;            // The root of its mesh, followed by all nodes of the mesh; 0 outside instances.
     bool alone;           // Only catchers and what emits are there; only if HAS_CATCHERS.
+    uint depth;           // Optical depth of what the ray has passed, in parts; only if HAS_OPACITY and any_hit.
 };
 
 // A traversal at the root that looks for hits with t in (0, t_max). bvh_prepare comes first.
@@ -39,7 +40,7 @@ Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack[0] = PENDING_NONE;
     vec3 inv_d = reciprocals(ray.d);
     return Traversal(ray, inv_d, ray_shear(ray.d, inv_d), any_hit, hit_none(t_max), 0u, PENDING_NONE, 0u, 0u,
-                     candidate_none(), ray, NO_INSTANCE, 0u, false);
+                     candidate_none(), ray, NO_INSTANCE, 0u, false, 0u);
 }
 
 // Whether the surface also belongs to the scene without what is seen before catchers: it is one, or it emits.
@@ -96,7 +97,7 @@ bool bvh_ended(Traversal t) {
 // Decides whether the hit for which the traversal waits, if it does, stops the ray.
 void bvh_decide(inout Traversal t) {
     if (!bvh_waits(t)) return;
-    decide(t.ray, t.shear, t.hit, t.candidate);
+    decide(t.ray, t.shear, t.any_hit, t.hit, t.candidate, t.depth);
     if (t.any_hit && is_hit(t.hit)) bvh_end(t);
 }
 
@@ -168,7 +169,7 @@ Hit bvh_intersect(Ray ray) {
     return t.hit;
 }
 
-// True if the ray hits any primitive with t in (0, t_max).
+// True if the ray hits any primitive with t in (0, t_max) that is opaque there.
 bool bvh_occluded(Ray ray, float t_max) {
     bvh_prepare();
     Traversal t = bvh_begin(ray, t_max, true);

@@ -97,6 +97,31 @@ TEST_F(OpacityTest, ALampShinesThroughTheNthPower) {
     }
 }
 
+// A shadow ray is dimmed and never stopped by chance: a point of light makes the same picture through panes,
+// darker, sample by sample. Its bits are independent of the order of the panes.
+TEST_F(OpacityTest, AShadowRayIsDimmedWithoutNoise) {
+    const float opacities[] = {0.3f, 0.001f, 0.9f, 0.62f};
+    Scene open = floor_seen_closely(vec3(1));
+    open.lights = {{"", PointLight{dvec3(0.3, 4, 0), vec3(30)}}};
+    Scene panes = open, reversed = open;
+    double fraction = 1.0;
+    for (int i = 0; i < 4; ++i) {
+        const auto pane_above = [&](Scene& scene, int number) {
+            const float y = 0.5f + 0.1f * float(number);
+            add_shape(scene, parallelogram(vec3(-3, y, -3), vec3(0, 0, 4.2f), vec3(6, 0, 0)),
+                      add_veil(scene, opacities[number]));
+        };
+        pane_above(panes, i);
+        pane_above(reversed, 3 - i);
+        fraction *= 1.0 - double(opacities[i]);
+    }
+    const RenderSettings settings = independent_settings(16, Estimator::light, 4);
+    const Image lit = image_of(render(open, settings, 8)), dim = image_of(render(panes, settings, 8));
+    for (size_t i = 0; i < lit.pixel_count(); ++i)
+        ASSERT_NEAR(plane(dim, "", 0)[i], fraction * plane(lit, "", 0)[i], 1e-6 * plane(lit, "", 0)[i]) << i;
+    EXPECT_TRUE(std::ranges::equal(plane(image_of(render(reversed, settings, 8)), "", 0), plane(dim, "", 0)));
+}
+
 // Two triangles that share an edge and are folded onto each other are one primitive. Where a ray hits both,
 // either may be transparent.
 TEST_F(OpacityTest, BothTrianglesOfAFoldedPairAreTested) {
