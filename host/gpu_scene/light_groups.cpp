@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gpu_scene/alias_table.h"
+#include "gpu_scene/punctual_lights.h"
 
 namespace candela {
 namespace {
@@ -27,7 +28,7 @@ uint32_t fraction(double power, double others_power, uint32_t left, uint32_t oth
 }
 
 int rank(const LightRecord& light) {
-    return light.kind == LIGHT_ENVIRONMENT ? 2 : light.kind == LIGHT_DIRECTIONAL ? 1 : 0;
+    return light.kind == LIGHT_ENVIRONMENT ? 2 : is_afar(light) ? 1 : 0;
 }
 
 // Sorts lights and their powers by rank, keeping the order of equal ones.

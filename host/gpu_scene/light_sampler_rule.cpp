@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/color.h"
+#include "gpu_scene/punctual_lights.h"
 
 namespace candela {
 namespace {
@@ -51,8 +52,8 @@ bool light_tree_pays(uint32_t count, const PoweredLights& lights, std::span<cons
             double sent = sky_irradiance;
             if (i < placed.size()) {
                 sent = irradiance(placed[i], place);
-            } else if (lights.records[i].kind == LIGHT_DIRECTIONAL) {
-                sent = double(luminance(lights.records[i].radiance));
+            } else if (is_afar(lights.records[i])) {
+                sent = irradiance_across(lights.records[i]);
             }
             sum += sent;
             squares += sent * sent / double(lights.records[i].pmf);

@@ -8,6 +8,7 @@
 
 #include "base/color.h"
 #include "gpu_scene/append.h"
+#include "gpu_scene/punctual_lights.h"
 
 namespace candela {
 namespace {
@@ -81,8 +82,7 @@ std::vector<LightBounds> bounds_of_placed(const PoweredLights& area, std::span<c
     placed.reserve(area.records.size() + lamps.size() + punctual.records.size());
     const auto add = [&](const PoweredLights& lights) {
         for (size_t i = 0; i < lights.records.size(); ++i) {
-            if (lights.records[i].kind != LIGHT_DIRECTIONAL)
-                placed.push_back(bounds_of(lights.records[i], lights.powers[i]));
+            if (!is_afar(lights.records[i])) placed.push_back(bounds_of(lights.records[i], lights.powers[i]));
         }
     };
     add(area);
@@ -121,7 +121,7 @@ void set_fluxes(LightGroups& groups, std::span<const LightRecord> lights, const 
                 const LightTree& tree) {
     dvec4 suns(0.0);
     for (const LightRecord& sun : lights.subspan(groups.placed, groups.suns)) {
-        const double irradiance = double(luminance(sun.radiance));
+        const double irradiance = irradiance_across(sun);
         suns += dvec4(irradiance * dvec3(sun.e1), irradiance);
     }
     // Exact for one sun. Suns from all sides together give any normal about a quarter of their irradiance.

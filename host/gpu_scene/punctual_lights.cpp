@@ -16,10 +16,20 @@ namespace {
 // Of a point light from the middle of the scene, in units of the frame: squares of distances remain finite.
 constexpr double FARTHEST = 1e18;
 
+// Floats do not tell the directions of a smaller disk apart [rad, across]: it counts as a single direction.
+constexpr float SMALLEST_DISK = 1e-4f;
+
 // Twice the square of the sine of half an angle: 1 - cos, without cancellation.
 double one_minus_cos(double angle) {
     const double s = std::sin(0.5 * angle);
     return 2.0 * s * s;
+}
+
+// The integral of the cosine to its middle over the disk of a sun [sr]: pi times the squared sine of half the
+// angle across.
+double projected_solid_angle(const LightRecord& sun) {
+    const double h = double(sun.e2.x);
+    return M_PI * h * (2.0 - h);
 }
 
 class PunctualLights {
@@ -46,12 +56,22 @@ class PunctualLights {
         append(record, 2.0 * (inner + (outer - inner) / (smooth ? 2.0 : 3.0)));
     }
 
-    void add(const std::string&, const DirectionalLight& light) {
+    void add(const std::string& name, const DirectionalLight& light) {
         LightRecord record{};
         record.kind = LIGHT_DIRECTIONAL;
         record.e1 = vec3(-direction_of(light.direction));
         record.radiance = light.irradiance;
-        append(record, radius_ * radius_);
+        if (light.angle < SMALLEST_DISK) return append(record, radius_ * radius_);
+        record.kind = LIGHT_SUN;
+        record.e2.x = float(one_minus_cos(0.5 * double(light.angle)));
+        const dvec3 radiance = dvec3(light.irradiance) / projected_solid_angle(record);
+        if (std::max({radiance.x, radiance.y, radiance.z}) > double(FLOAT_MAX)) {
+            throw Error(
+                concat("the light \"", name,
+                       "\" is too bright for 32-bit floats; give it a lower irradiance or a wider angle"));
+        }
+        record.radiance = vec3(radiance);
+        append(record, radius_ * radius_ * projected_solid_angle(record));
     }
 
     PoweredLights take() { return std::move(lights_); }
@@ -95,6 +115,11 @@ class PunctualLights {
 };
 
 }  // namespace
+
+double irradiance_across(const LightRecord& light) {
+    const double radiance = double(luminance(light.radiance));
+    return light.kind == LIGHT_SUN ? radiance * projected_solid_angle(light) : radiance;
+}
 
 PoweredLights build_punctual_lights(const Scene& scene, const SceneFrame& frame, const Box& box) {
     PunctualLights lights(frame, box);

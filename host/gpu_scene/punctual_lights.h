@@ -14,4 +14,12 @@ namespace candela {
 // Ref: Pharr, Jakob and Humphreys 2023, Physically Based Rendering, sections 12.2, 12.3 and 12.5.
 PoweredLights build_punctual_lights(const Scene& scene, const SceneFrame& frame, const Box& box);
 
+// Whether the light is infinitely far away, but not the sky.
+inline bool is_afar(const LightRecord& light) {
+    return light.kind == LIGHT_DIRECTIONAL || light.kind == LIGHT_SUN;
+}
+
+// Luminance of the irradiance of such a light on a surface perpendicular to it [W/m^2].
+double irradiance_across(const LightRecord& light);
+
 }  // namespace candela

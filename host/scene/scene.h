@@ -336,10 +336,12 @@ struct SpotLight {
     SpotFalloff falloff = SpotFalloff::square;
 };
 
-// Light from infinitely far away in a single direction.
+// Light from infinitely far away, in a single direction or from a disk there, which rays that leave the scene
+// find, too, but those of the camera.
 struct DirectionalLight {
     dvec3 direction{0, 0, -1};  // The direction of travel, of any length above 0.
     vec3 irradiance{1};         // On a surface perpendicular to it [W/m^2], each >= 0 and finite.
+    float angle = 0.0f;         // Across the disk [rad]; 0: a single direction; below pi.
 };
 
 struct Light {

@@ -16,7 +16,7 @@ def add_light(scene, light, matrix, name, glow, notices):
     if not power.any():
         return
     if light.type == "SUN":
-        _add_sun(scene, light, matrix, power, name, place, notices)
+        _add_sun(scene, light, matrix, power, name)
     elif light.type == "AREA":
         _add_area(scene, light, matrix, power, name, glow, place, notices)
     elif light.type == "SPOT":
@@ -76,11 +76,10 @@ def _add_spot(scene, light, matrix, power, name, place, notices):
                     inner_angle=min(math.degrees(inner), math.degrees(half) * 0.9999), falloff="smoothstep")
 
 
-def _add_sun(scene, light, matrix, power, name, place, notices):
-    if light.angle > 0:
-        notices.add(place, "candela has no soft suns; its shadows are hard")
+def _add_sun(scene, light, matrix, power, name):
     direction = -numpy.array(matrix.col[2][:3])
-    scene.add_light("directional", name, direction=to_candela(direction), irradiance=power)
+    scene.add_light("directional", name, direction=to_candela(direction), irradiance=power,
+                    angle=min(math.degrees(light.angle), 179.9))
 
 
 def _add_area(scene, light, matrix, power, name, glow, place, notices):

@@ -172,6 +172,19 @@ void add_environment(Path path, inout Estimate estimate) {
     if (path.depth == 0u) estimate.visible = true;
 }
 
+// Adds the radiance of the suns that have a disk there, for a path whose ray left the scene. The camera does not see
+// them.
+void add_suns(Path path, inout Estimate estimate) {
+    if (path.depth == 0u) return;
+    LightGroups groups = scene_parameters().lights;
+    for (uint i = groups.placed; i < groups.placed + groups.suns; ++i) {
+        LightRecord sun = light_at(i);
+        if (!is_light(sun, LIGHT_SUN) || !sun_light_covers(sun, path.ray.d)) continue;
+        float weight = emission_weight(path, path.pdf_bsdf, sun_pdf_li(i, sun, path_lit_point(path)));
+        estimate.L += clamp_indirect(weight * path.beta * sun.radiance, path.depth);
+    }
+}
+
 // The radiance that light s.light emits at s.
 vec3 surface_le(Interaction s) {
     return area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
@@ -266,8 +279,9 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         path.beta *= media_transmittance(path.media, FLOAT_MAX);  // Through a medium without an end.
         if (BEFORE_BACKGROUND && path.clear) {
             estimate.transmission = path.eta_scale * dot(path.beta, LUMINANCE);
-        } else if (HAS_SKY) {
-            add_environment(path, estimate);
+        } else {
+            if (HAS_SKY) add_environment(path, estimate);
+            if (HAS_SUN_DISKS) add_suns(path, estimate);
         }
         return false;
     }

@@ -8,10 +8,11 @@
 #include "light/lamp.glsl"
 #include "light/tree.glsl"
 
-const bool HAS_SUNS = (LIGHTS & 1u << LIGHT_DIRECTIONAL) != 0u;
+const bool HAS_SUN_DISKS = (LIGHTS & 1u << LIGHT_SUN) != 0u;
+const bool HAS_SUNS = (LIGHTS & (1u << LIGHT_DIRECTIONAL | 1u << LIGHT_SUN)) != 0u;
 const bool SKY_IS_LIGHT = (LIGHTS & 1u << LIGHT_ENVIRONMENT) != 0u;
 const bool LIGHTS_AFAR = HAS_SUNS || SKY_IS_LIGHT;
-const bool LIGHTS_PLACED = (LIGHTS & ~(1u << LIGHT_DIRECTIONAL | 1u << LIGHT_ENVIRONMENT)) != 0u;
+const bool LIGHTS_PLACED = (LIGHTS & ~(1u << LIGHT_DIRECTIONAL | 1u << LIGHT_SUN | 1u << LIGHT_ENVIRONMENT)) != 0u;
 
 // A chosen light and its probability.
 struct LightChoice {
@@ -119,7 +120,7 @@ uvec4 light_groups_at(LitPoint lit) {
 }
 
 // The probability of a sun among the suns.
-float sun_pmf(uint i, LightGroups groups) {
+float sun_share(uint i, LightGroups groups) {
     return scene_light(i).pmf * 2147483648.0 / float(groups.sun_fraction);
 }
 
@@ -151,7 +152,7 @@ LightChoice light_choose_by_tree(LitPoint lit, uvec2 bits) {
         LightGroups table = scene_parameters().lights;
         uvec2 column = warp_alias_column(light_stretch(2u * random.u, random.size), table.suns);
         choice.i = table.placed + warp_alias_choice(column, scene_light_alias(table.placed + column.x)).i;
-        choice.pmf = range_part(groups, 2u) * sun_pmf(choice.i, table);
+        choice.pmf = range_part(groups, 2u) * sun_share(choice.i, table);
     }
     if (SKY_IS_LIGHT && group == 3u) choice = LightChoice(sky_light(), NO_LIGHT, range_part(groups, 3u));
     return choice;
@@ -212,6 +213,14 @@ float light_pmf(uint i, uint lamp, LitPoint lit) {
     }
     float pmf = light_at(i).pmf;
     return is_lamp(lamp) ? light_at(lamp).pmf * pmf : pmf;
+}
+
+// The same of a sun.
+float sun_pmf(uint i, LitPoint lit) {
+    if (LIGHT_SAMPLER == LIGHT_SAMPLER_TREE && !ONE_LIGHT) {
+        return range_part(light_groups_at(lit), 2u) * sun_share(i, scene_parameters().lights);
+    }
+    return light_pmf(i, NO_LIGHT, lit);
 }
 
 // The same of the sky, which is one of the lights.

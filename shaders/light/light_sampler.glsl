@@ -70,6 +70,8 @@ LightSample light_sample_li(LitPoint lit, uvec3 u) {
         s = spot_light_sample_li(l, lit.p);
     } else if (is_light(l, LIGHT_DIRECTIONAL)) {
         s = directional_light_sample_li(l);
+    } else if (is_light(l, LIGHT_SUN)) {
+        s = sun_light_sample_li(l, unit_float(u.xy));
     } else {
         s = area_light_sample_li(l, lit.p, unit_float(u.xy));
     }
@@ -99,6 +101,11 @@ float light_pdf_li(uint i, uint lamp, LitPoint lit, float distance_squared, floa
 float environment_pdf_li(EnvironmentTexel texel, LitPoint lit) {
     if (!SKY_IS_LIGHT) return 0.0;
     return sky_pmf(lit) * texel.pdf;
+}
+
+// The same of sun i, of that record, and one of its directions.
+float sun_pdf_li(uint i, LightRecord l, LitPoint lit) {
+    return sun_pmf(i, lit) * warp_cone_pdf(l.e2.x);
 }
 
 #endif

@@ -15,7 +15,7 @@ bool is_light(LightRecord l, const uint kind) {
 // True if the light has a surface, which rays may hit.
 bool light_has_surface(LightRecord l) {
     return !is_light(l, LIGHT_ENVIRONMENT) && !is_light(l, LIGHT_POINT) && !is_light(l, LIGHT_SPOT) &&
-           !is_light(l, LIGHT_DIRECTIONAL);
+           !is_light(l, LIGHT_DIRECTIONAL) && !is_light(l, LIGHT_SUN);
 }
 
 // Shadow rays end earlier by this fraction of their length, a bound on the error of the distance at which a light is

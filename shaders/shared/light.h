@@ -39,10 +39,14 @@ const uint LIGHT_SPOT = 6u;           // At p, around the unit axis e1. For a di
                                       // to the axis is h, its intensity has the factor saturate((e2.x - h) e2.y)^2.
 const uint LIGHT_DIRECTIONAL = 7u;    // Infinitely far away in the unit direction e1.
 
+const uint LIGHT_SUN = 9u;  // A disk infinitely far away, around the unit direction e1; 1 - cos of the angle from there
+                            // to its edge is e2.x.
+
 const uint LIGHT_LAMP = 8u;  // An instance of a mesh that emits: a LampRecord.
 
 // An emitter. The front of a flat one is the side that cross(e1, e2) points to, that of a sphere is outside.
-// No ray hits points, spots and directional lights. In the frame of the scene, or in the space of a lamp's mesh.
+// No ray hits points, spots and directional lights; rays that leave the scene hit suns. In the frame of the scene, or
+// in the space of a lamp's mesh.
 struct LightRecord {
     uint kind;  // LIGHT_*
     vec3 p;
@@ -71,7 +75,7 @@ struct LampRecord {
 };
 
 // The division of the choice among lights. Their table has first the lights with a place in the scene, lamps among
-// them, then the suns, which are the directional lights, then the sky, if it is a light; and then the lights of lamps,
+// them, then the suns, which directional lights are, too, then the sky, if it is a light; and then the lights of lamps,
 // whose pmf is that of the choice within a lamp. Each of the first two groups has its own alias table; the suns' table
 // comes second, and those of lamps follow.
 struct LightGroups {

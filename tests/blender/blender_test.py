@@ -39,6 +39,10 @@ class BlenderTest(SceneTest):
         add_light("SUN", location=(0, 3, 4), energy=2, angle=0)
         self.expect_close(self.floor_below(), 2 * 0.8, 1e-4)
 
+    def test_a_sun_has_a_disk(self):
+        add_light("SUN", location=(0, 3, 4), energy=2, angle=0.3)
+        self.expect_close(self.floor_below(1024), 2 * 0.8, 0.005)
+
     def test_a_spot_is_a_part_of_a_point_light(self):
         add_light("SPOT", location=(0, 0, 2), energy=100, shadow_soft_size=0, spot_size=1.0, spot_blend=0.2)
         self.expect_close(self.floor_below(), 100 / (4 * math.pi) / 4, 0.005)

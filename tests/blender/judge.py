@@ -113,6 +113,7 @@ LIGHTS = {
     "point": lambda: add_light("POINT", energy=400, shadow_soft_size=0),
     "soft point": lambda: add_light("POINT", energy=400, shadow_soft_size=0.5, use_soft_falloff=False),
     "sun": lambda: add_light("SUN", energy=3, angle=0),
+    "soft sun": lambda: add_light("SUN", energy=3, angle=math.radians(10)),
     "spot": lambda: add_light("SPOT", energy=800, shadow_soft_size=0, spot_size=1.0, spot_blend=0.5),
     "area": lambda: add_light("AREA", energy=300, size=2),
     "disk": lambda: add_light("AREA", energy=300, size=2, shape="DISK"),

@@ -69,7 +69,7 @@ BSDFS = ("BsdfTest*:Phong*:Dielectric*:Warp*", "Albedo*:SkyFurnace*:*Dielectric*
 LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
 TREES = ("LightTree*:LightChoice*", "EstimatorTest*HoweverLights*:ManyLight*", "LightTree*:TextureMean*")
-PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Orthographic*:ScaleTest*Mean*")
+PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Sun*:Orthographic*:ScaleTest*Mean*")
 TERMINATOR = ("Interaction*", "Terminator*")
 CAMERAS = ("WarpTest*", "PanoramaTest*:PixelFilterTest*:ClampTest*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
@@ -273,11 +273,13 @@ GROUPS = [
          "s.Li *= material_opacity(scene_light_textures(s.light).material, at)", "s.Li *= 1.0"),
         ("both triangles of a lamp for the first", LIGHT_SAMPLER, "place.second = b.y > b.x;", "place.second = false;"),
         ("the same rays pass all surfaces", OPACITY, "floatBitsToUint(ray.d), id)", "floatBitsToUint(ray.d), 0u)"),
+        ("a shadow ray dimmed by the last surface alone", OPACITY, "depth += optical_depth(opacity);",
+         "depth = optical_depth(opacity);"),
         ("the other triangle of a pair not tested", OPACITY, "bool goes_on = candidate.first && is_nearer(second, hit);",
          "bool goes_on = false;"),
         ("nothing behind a hole casts a shadow", TRAVERSAL,
-         "decide(t.ray, t.shear, t.hit, t.candidate);\n    if (t.any_hit && is_hit(t.hit)) bvh_end(t);",
-         "decide(t.ray, t.shear, t.hit, t.candidate);\n    if (t.any_hit) bvh_end(t);"),
+         "decide(t.ray, t.shear, t.any_hit, t.hit, t.candidate, t.depth);\n    if (t.any_hit && is_hit(t.hit)) bvh_end(t);",
+         "decide(t.ray, t.shear, t.any_hit, t.hit, t.candidate, t.depth);\n    if (t.any_hit) bvh_end(t);"),
         ("opaque below the cutoff", MATERIAL, "opacity >= textures.cutoff ? 1.0 : 0.0",
          "opacity >= textures.cutoff ? 0.0 : 1.0"),
         ("light below the surface of a bent normal lost", BENT_NORMAL,
@@ -381,7 +383,14 @@ GROUPS = [
         ("a spot's angles swapped in its choice", PUNCTUAL_LIGHTS, "inner + (outer - inner) / (smooth ? 2.0 : 3.0)",
          "outer - (outer - inner) / 3.0"),
         ("directional light from where it goes", DIRECTIONAL, "s.wi = l.e1;", "s.wi = -l.e1;"),
-        ("nothing far away hides directional light", DIRECTIONAL, "s.t_max = FLOAT_MAX;", "s.t_max = LIGHT_T_MAX;"),
+        ("nothing far away hides directional light", DIRECTIONAL,
+         "s.delta = true;\n    s.shadow = s.wi;\n    s.t_max = FLOAT_MAX;",
+         "s.delta = true;\n    s.shadow = s.wi;\n    s.t_max = LIGHT_T_MAX;"),
+        ("a sun wider for rays than for samples", DIRECTIONAL, "dot(chord, chord) <= l.e2.x",
+         "dot(chord, chord) <= 1.1 * l.e2.x"),
+        ("a sun's density without the probability of its choice", LIGHT_SAMPLER,
+         "sun_pmf(i, lit) * warp_cone_pdf(l.e2.x)", "warp_cone_pdf(l.e2.x)"),
+        ("suns seen by the camera", PATH, "if (path.depth == 0u) return;\n    LightGroups", "LightGroups"),
         ("directional light weighted as if rays could hit it", DIRECTIONAL, "s.delta = true;", "s.delta = false;"),
         ("directional light chosen as in a scene of unit size", PUNCTUAL_LIGHTS, "append(record, radius_ * radius_);",
          "append(record, 1.0);"),

@@ -59,8 +59,14 @@ SpotLight read_spot(const Node& node) {
 
 DirectionalLight read_directional(const Node& node) {
     node.allow_only({"type"}, keys_of({"light", "directional"}));
-    return {.direction = direction_of(node.require("direction")),
-            .irradiance = vec3(node.require("irradiance").rgb())};
+    DirectionalLight light{.direction = direction_of(node.require("direction")),
+                           .irradiance = vec3(node.require("irradiance").rgb())};
+    if (const auto angle = node.find("angle")) {
+        const double degrees = angle->non_negative();
+        if (degrees >= 180.0) angle->fail_expected("an angle below 180 degrees");
+        light.angle = float(glm::radians(degrees));
+    }
+    return light;
 }
 
 }  // namespace

@@ -75,6 +75,24 @@ TEST(PunctualLights, ASpotThatFallsOffSmoothlyHasMorePower) {
     EXPECT_EQ(light(gpu, 2).e2.z, 1.0f);
 }
 
+// A disk has the power of its middle; floats do not tell the directions of a tiny one apart.
+TEST(PunctualLights, ASunMayHaveADisk) {
+    Scene scene = scene_of_lights();
+    const GpuScene plain = build_gpu_scene(scene, SceneFrame{});
+    auto& sun = std::get<DirectionalLight>(scene.lights[0].model);
+    sun.angle = 1.0f;
+    const GpuScene disk = build_gpu_scene(scene, SceneFrame{});
+    EXPECT_EQ(light(disk, 3).kind, LIGHT_SUN);
+    EXPECT_NEAR(double(light(disk, 3).e2.x), 1.0 - std::cos(0.5), 1e-7);
+    EXPECT_NEAR(double(light(disk, 3).radiance.x), 4.0 / (M_PI * std::pow(std::sin(0.5), 2)), 1e-5);
+    for (uint32_t i = 0; i < disk.light_count; ++i)
+        EXPECT_FLOAT_EQ(light(disk, i).pmf, light(plain, i).pmf) << i;
+    for (const int c : {0, 1, 2, 3})
+        EXPECT_NEAR(disk.light_groups.sun_flux[c], plain.light_groups.sun_flux[c], 1e-6);
+    sun.angle = 0.9e-4f;
+    EXPECT_EQ(light(build_gpu_scene(scene, SceneFrame{}), 3).kind, LIGHT_DIRECTIONAL);
+}
+
 // A sun beside a lamp of 10^12 times its power: the probability is that of the choice, a unit of a share.
 TEST(PunctualLights, EveryGroupIsChosenNowAndThen) {
     Scene scene = scene_of_shapes({emitter(SQUARE, vec3(1e12f))});
@@ -143,6 +161,10 @@ TEST(PunctualLights, AreRefusedWhereFloatsCannotHoldThem) {
     EXPECT_EQ(error_of([&] { build_gpu_scene(scene, SceneFrame{.origin = dvec3(0), .unit = 0x1p-20}); }),
               "the light \"flash\" is too bright for 32-bit floats in a scene of this size; give it a lower "
               "intensity");
+    scene.lights = {{"sun", DirectionalLight{.irradiance = vec3(1e35f), .angle = 1e-3f}}};
+    EXPECT_EQ(
+        error_of([&] { build_gpu_scene(scene); }),
+        "the light \"sun\" is too bright for 32-bit floats; give it a lower irradiance or a wider angle");
 }
 
 }  // namespace

@@ -67,6 +67,7 @@ TEST(SceneKeys, DefaultsAreThoseOfTheScene) {
     EXPECT_EQ(stated("spot", "inner_angle"), text_of(glm::degrees(spot.inner_angle)));
     EXPECT_EQ(stated("spot", "outer_angle"), text_of(glm::degrees(spot.outer_angle)));
     EXPECT_EQ(stated("spot", "falloff"), name_of(spot.falloff, FALLOFF_NAMES));
+    EXPECT_EQ(stated("directional", "angle"), text_of(DirectionalLight{}.angle));
     const Environment sky;
     EXPECT_EQ(stated("environment", "rotation"), text_of(sky.rotation));
     EXPECT_EQ(stated("environment", "visible"), sky.visible ? "true" : "false");

@@ -27,7 +27,7 @@ std::string marked_spot(const std::string& members) {
 TEST(SceneLights, AreReadInTheirOrder) {
     SceneFolder folder;
     const Scene scene = folder.load(lit_by(R"([
-        {"type": "directional", "direction": [0, -2, 0.5], "irradiance": [3, 2, 1]},
+        {"type": "directional", "direction": [0, -2, 0.5], "irradiance": [3, 2, 1], "angle": 90},
         {"type": "spot", "position": [1, 2, 3], "look_at": [1, 0, 3], "intensity": 7,
             "inner_angle": 10, "outer_angle": 90, "falloff": "smoothstep"},
         {"type": "point", "name": "bulb", "position": [1, 2, 3e30], "intensity": [0, 0.5, 1e30]},
@@ -39,6 +39,7 @@ TEST(SceneLights, AreReadInTheirOrder) {
     const auto& sun = std::get<DirectionalLight>(scene.lights[0].model);
     EXPECT_EQ(sun.direction, dvec3(0, -2, 0.5));
     EXPECT_EQ(sun.irradiance, vec3(3, 2, 1));
+    EXPECT_FLOAT_EQ(sun.angle, PI / 2);
 
     EXPECT_EQ(scene.lights[1].name, "spot 2");
     const auto& wide = std::get<SpotLight>(scene.lights[1].model);
@@ -97,7 +98,14 @@ TEST(SceneLights, ChecksTheirKeys) {
     folder.expect_error(
         lit_by(
             "[{\"type\": \"directional\", \"direction\": [0, 0, 1], @\"intensity\": 1, \"irradiance\": 1}]"),
-        "unknown key \"intensity\" (known: type, name, direction, irradiance)");
+        "unknown key \"intensity\" (known: type, name, direction, irradiance, angle)");
+    const auto wide_sun = [](const std::string& angle) {
+        return lit_by(
+            "[{\"type\": \"directional\", \"direction\": [0, 0, 1], \"irradiance\": 1, \"angle\": @" + angle +
+            "}]");
+    };
+    folder.expect_error(wide_sun("180"), "\"angle\": expected an angle below 180 degrees, found 180");
+    folder.expect_error(wide_sun("-1"), "\"angle\": expected a number of at least 0, found -1");
 }
 
 TEST(SceneLights, ChecksTheAxisOfASpot) {
