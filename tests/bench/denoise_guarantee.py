@@ -5,8 +5,8 @@ usage: denoise_guarantee.py BUILD [SCENE.json ...] [--spp 4,64,256,4096] [--seed
            [--denoise variance|oidn]
 
 For each scene and number of samples, prints the mean ratio over the seeds with its 95 % interval, the median and the
-worst. The reference has other samples; its own variance, an upper bound on its share, is taken off both errors. Pictures
-are kept in BUILD/denoising. Needs NumPy.
+worst. The reference of a seed is the mean of pictures of other seeds with the most samples; its own variance, an upper
+bound on its share, is taken off both errors. Pictures are kept in BUILD/denoising. Needs NumPy.
 """
 import argparse
 import re
@@ -42,16 +42,22 @@ def size_of(build, scene, width):
     return f"{width}x{round(width * y / x)}"
 
 
-def ratios(build, scene, spp, args):
+def ratios(build, scene, spp, most, args):
     folder = build / "denoising"
     folder.mkdir(exist_ok=True)
     size, stem = size_of(build, scene, args.width), scene.stem
-    reference = render(build, scene, size, args.reference, 1000, folder / f"{stem}-{size}-reference.exr")
-    r, own = planes(reference), planes(reference, "Variance.")
-    weight = 1.0 / (r * r + 0.01 * r.mean() ** 2)
+    seeds = range(1, args.seeds + 1)
+
+    def picture(samples, seed):
+        return render(build, scene, size, samples, seed, folder / f"{stem}-{size}-{samples}-{seed}.exr")
+
     result = []
-    for seed in range(1, args.seeds + 1):
-        noisy = render(build, scene, size, spp, seed, folder / f"{stem}-{size}-{spp}-{seed}.exr")
+    for seed in seeds:
+        noisy = picture(spp, seed)
+        others = [picture(most, other) for other in seeds if other != seed][:args.reference // most]
+        r = np.mean([planes(other) for other in others], axis=0)
+        own = np.mean([planes(other, "Variance.") for other in others], axis=0) / len(others)
+        weight = 1.0 / (r * r + 0.01 * r.mean() ** 2)
         denoised = folder / "denoised.exr"
         subprocess.run([build / "candela", "denoise", noisy, "-o", denoised, "--denoise", args.denoise], check=True,
                        stdout=subprocess.DEVNULL)
@@ -71,11 +77,15 @@ def main():
     parser.add_argument("--denoise", default="variance", choices=("oidn", "variance"))
     args = parser.parse_args()
     args.build = args.build.resolve()
+    numbers = [int(spp) for spp in args.spp.split(",")]
+    most = max(numbers)
+    if not most <= args.reference <= (args.seeds - 1) * most:
+        parser.error(f"--reference must be from {most} to {(args.seeds - 1) * most}, the samples of the other seeds")
     scenes = args.scenes or [Path("scenes") / f"{name}.json" for name in SCENES]
-    for spp in map(int, args.spp.split(",")):
+    for spp in numbers:
         means = []
         for scene in scenes:
-            values = ratios(args.build, scene, spp, args)
+            values = ratios(args.build, scene, spp, most, args)
             half = T_95[args.seeds] * values.std(ddof=1) / np.sqrt(args.seeds)
             means.append(values.mean())
             print(f"{spp:5} {scene.stem:16} {values.mean():.3f} ± {half:.3f}", flush=True)
