@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/limits.h"
 #include "base/temporary_folder.h"
 #include "base/text.h"
 #include "cli/camera_options.h"
