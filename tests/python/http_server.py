@@ -1,6 +1,7 @@
 """A server for tests of pictures over HTTP (python -m candela.serve), and what clients send to it.
 
 All connections are to this machine."""
+import contextlib
 import glob
 import http.client
 import json
@@ -90,8 +91,11 @@ class Server:
 
     def program(self):
         """The process that renders."""
-        return [int(child) for thread in glob.glob(f"/proc/{self.process.pid}/task/*/children")
-                for child in Path(thread).read_text().split()][0]
+        children = []
+        for thread in glob.glob(f"/proc/{self.process.pid}/task/*/children"):
+            with contextlib.suppress(FileNotFoundError):  # The thread has ended.
+                children += Path(thread).read_text().split()
+        return int(children[0])
 
     def files(self):
         """What requests have left."""
