@@ -269,11 +269,11 @@ TEST(Oidn, FiltersAreToldWhatTheyDenoise) {
     EXPECT_EQ(
         told(DenoiserQuality::high, image),
         (std::vector<std::string>{
-            "normal output maxMemoryMB=128 quality=6 2x2 inputScale=0",
-            "albedo color normal output cleanAux=1 hdr=1 maxMemoryMB=128 quality=6 2x2 inputScale=0.09",
-            "albedo color normal output cleanAux=1 maxMemoryMB=128 quality=6 srgb=1 2x2 inputScale=0"}));
+            "normal output maxMemoryMB=112 quality=6 2x2 inputScale=0",
+            "albedo color normal output cleanAux=1 hdr=1 maxMemoryMB=112 quality=6 2x2 inputScale=0.09",
+            "albedo color normal output cleanAux=1 maxMemoryMB=112 quality=6 srgb=1 2x2 inputScale=0"}));
     EXPECT_EQ(told(DenoiserQuality::fast, image).front(),
-              "albedo color normal output cleanAux=0 hdr=1 maxMemoryMB=128 quality=4 2x2 inputScale=0.09");
+              "albedo color normal output cleanAux=0 hdr=1 maxMemoryMB=112 quality=4 2x2 inputScale=0.09");
     EXPECT_NE(told(DenoiserQuality::balanced, image).back().find("quality=5"), std::string::npos);
     EXPECT_EQ(told(DenoiserQuality::high, image_of(2, 2, {{"R", 0}, {"G", 0}, {"B", 0}})).size(), 1u);
 }
