@@ -3,6 +3,7 @@
 #define LIGHT_DIRECTIONAL_GLSL
 
 #include "base/frame.glsl"
+#include "base/math.glsl"
 #include "base/warp.glsl"
 #include "light/sample.glsl"
 

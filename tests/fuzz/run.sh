@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds the fuzzers of this folder with Clang, AddressSanitizer and UndefinedBehaviorSanitizer and runs them, each with
-# 512 MiB and five seconds per input, a second of which is what the slowest known one takes on an idle machine. Findings are in build/fuzz/findings, and make the exit code differ from 0.
+# 512 MiB and five seconds per input; the slowest known one takes one second on an idle machine. Findings are in
+# build/fuzz/findings, and make the exit code differ from 0.
 #   usage: sh tests/fuzz/run.sh [-max_total_time=SECONDS | -runs=INPUTS] [TARGET...]   (180 seconds; all targets)
 # New inputs are kept in build/fuzz/corpora, for the next time.
 set -eu
