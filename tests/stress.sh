@@ -1,8 +1,9 @@
 #!/bin/sh
 # Repeats the tests that wait (for windows, signals, intervals, time limits, failing devices, clients) beside other work:
-# at nice 19, beside four busy loops, each of which has a session of its own, like the work of other users. Up to eight
-# repetitions run at once, four tests at a time in each, which makes it harder for each and an hour of fifty. (Where
-# Linux groups tasks by session, nice counts within a session only: each loop then gets as much as a repetition.)
+# at nice 5, beside four busy loops, each of which has a session of its own, like the work of other users. Up to eight
+# repetitions run at once, four tests at a time in each, which makes it harder for each and an hour of fifty. (A test at
+# nice 5 gets a third of a loop's time, so the four of a repetition get about as much as one loop, which is also what a
+# repetition gets where Linux groups tasks by session.)
 #   usage: sh tests/stress.sh [REPETITIONS [TESTS]]   (50; TESTS: a regular expression of names, as for ctest -R)
 set -eu
 cd "$(dirname "$0")/.."
@@ -36,7 +37,7 @@ repeat() {
     mkdir -p "$folder/$1"
     echo "subdirs(\"$PWD/build/release\")" >"$folder/$1/CTestTestfile.cmake"
     for repetition in $(seq "$1" 8 "$repetitions"); do
-        setsid nice -n 19 ctest --test-dir "$folder/$1" -R "$tests" -LE '^slow$' --output-on-failure \
+        setsid nice -n 5 ctest --test-dir "$folder/$1" -R "$tests" -LE '^slow$' --output-on-failure \
             --parallel 4 >"$folder/$repetition.log" 2>&1 &
         running=$!
         wait "$running" || {
