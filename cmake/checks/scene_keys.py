@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 KEYS, VALUES = "host/load/json/scene_keys.inc", "host/scene/principled_values.inc"
 SCHEMA, PAGE = "scenes/scene.schema.json", "docs/scene-format.md"
-CONSTANTS = ["host/base/limits.h", "host/scene/scene.h", "host/scene/principled.h", "host/scene/sky.h",
+CONSTANTS = ["host/base/limits.h", "host/scene/scene.h", "host/scene/medium.h", "host/scene/principled.h", "host/scene/sky.h",
              "host/scene/texture.h"]
 NAMES = ["host/scene/names.h", "host/load/json/loader_mesh_files.cpp"]
 
@@ -28,9 +28,11 @@ TABLES = {
     "Film": [["film"]],
     "Integrator": [["integrator"]],
     "Materials": [["diffuse", "phong", "mirror", "conductor", "dielectric", "absorption", "diffuse_transmission",
+                   "interface",
                    "| `principled` | [many](#principled) | a base under layers | |", "rough_conductor",
                    "rough_dielectric"], ["material", "normal_map", "bump_map", "opacity"]],
-    "Principled": [["principled"]],
+    "Media": [["medium", "scattering"]],
+    "Principled": [["principled", "subsurface"]],
     "Textures": [["texture", "textured"]],
     "Shapes": [["shape"], ["quad", "box", "mesh", "sphere", "disk", "obj", "ply", "instance"]],
     "Lights": [["light", "point", "spot", "directional"]],
@@ -38,7 +40,7 @@ TABLES = {
     "Sky": [["sky"]],
 }
 # Objects that are the value of the key of their name: the page calls their keys NAME.KEY.
-PARTS = {"absorption", "normal_map", "bump_map", "opacity"}
+PARTS = {"absorption", "scattering", "subsurface", "normal_map", "bump_map", "opacity"}
 # Where the schema has the keys that all variants of an object share.
 COMMON = {"material": {"normal_map": "normalMap", "bump_map": "bumpMap", "opacity": "opacity",
                        "vertex_colors": "vertexColors"},
@@ -49,7 +51,8 @@ COMMON = {"material": {"normal_map": "normalMap", "bump_map": "bumpMap", "opacit
 TEXTURED = {"color": "texturedReflectance", "radiance": "texturedRadiance", "weight": "texturedWeight",
             "thickness": "texturedThickness"}
 MAPS = {"vector_map": "vectorMap", "normal_map": "normalMap"}
-PRINCIPLED_KEYS = {"thin_walled": "`true`; `false` with `absorption`", "absorption": "none", "priority": "0"}
+PRINCIPLED_KEYS = {"thin_walled": "`true`; `false` with `absorption`, `scattering` or `subsurface`", "absorption": "none",
+                   "scattering": "none", "subsurface": "none", "priority": "0"}
 NEEDS_MORE = {"iridescence_thickness_min": ["iridescence_thickness"]}
 
 ENTRY = re.compile(r"""^([A-Z]+)\(((?:[^"]|"(?:[^"\\]|\\.)*")*?)\)$""", re.MULTILINE)
@@ -144,7 +147,7 @@ def rows_of(of, keys, has_types):
             default = f"`{default}`"
         shown = f"{of}.{name}" if of in PARTS else name
         cells = [f"`{shown}`", prose_of(key), default]
-        if of == "principled":
+        if of in ("principled", "subsurface"):
             cells.insert(1, "T" if key["kind"] in TEXTURED else "")
         if has_types:
             cells.insert(0, "" if rows or of in PARTS else "all" if of in COMMON else f"`{of}`")
@@ -185,7 +188,8 @@ def places_of(schema):
     places = {"scene": [schema], "film": [schema["properties"]["film"]],
               "integrator": [schema["properties"]["integrator"]], "environment": defs["environment"]["oneOf"],
               "normal_map": [defs["normalMap"]], "bump_map": [defs["bumpMap"]], "opacity": [defs["opacity"]["oneOf"][1]]}
-    places |= {name: [defs[name]] for name in ("camera", "lens", "texture", "absorption", "sky")}
+    places |= {name: [defs[name]] for name in ("camera", "lens", "texture", "absorption", "scattering", "subsurface", "medium",
+                                               "sky")}
     for family, common in COMMON.items():
         places[family] = [{"properties": {key: defs[name] for key, name in common.items()}}]
         for variant in defs[family]["oneOf"]:

@@ -72,7 +72,7 @@ MaterialTextures textures_of(const Material& material, const EncodedMaterial& en
 }
 
 // What materials know a medium by; appends it to the media if it is new. (The first of them, outside of
-// everything, is none that a surface encloses.)
+// all solids, is none that a surface encloses.)
 uint32_t add_medium(std::vector<Interior>& media, const Interior& medium) {
     auto place = std::find(media.begin() + 1, media.end(), medium);
     if (place == media.end()) place = media.insert(place, medium);
@@ -133,7 +133,7 @@ uint32_t needed_attributes(const MaterialFacts& facts) {
 // Appends the records of the materials, and of the media that they enclose.
 void append_materials(MaterialArrays& out, const Scene& scene, const SceneFrame& frame,
                       TextureTable& textures) {
-    std::vector<Interior> media(1);
+    std::vector<Interior> media{{scene.medium}};
     static_assert(MEDIUM_NONE == 0);
     std::vector<std::pair<size_t, EncodedPrincipled>> principled;  // And the words of their materials.
     for (const Material& material : scene.materials) {
@@ -149,6 +149,7 @@ void append_materials(MaterialArrays& out, const Scene& scene, const SceneFrame&
                 out.facts.principled |= PRINCIPLED_HAS_COAT_NORMAL;
         }
         append(out.materials, pack(encoded.record));
+        out.facts.volumetric |= std::holds_alternative<InterfaceMaterial>(material.model);
         out.facts.materials_present |= 1u << encoded.record.model;
         const MaterialTextures used = textures_of(material, encoded, frame, textures);
         append(out.material_textures, pack(used));
@@ -161,9 +162,14 @@ void append_materials(MaterialArrays& out, const Scene& scene, const SceneFrame&
         out.materials[word + 1].x = std::bit_cast<uint32_t>(principled_place(first));
     }
     for (const Interior& m : media) {
-        append(out.media, pack(MediumRecord{vec3(frame.unit * dvec3(m.medium.absorption)), m.ior}));
-        out.facts.has_media |= m.medium != Medium{};
+        append(out.media, pack(MediumRecord{.absorption = vec3(frame.unit * dvec3(m.medium.absorption)),
+                                            .ior = m.ior,
+                                            .scattering = vec3(frame.unit * dvec3(m.medium.scattering)),
+                                            .g = m.medium.g}));
+        out.facts.has_media |= m.medium.absorption != vec3(0.0f) || m.medium.scattering != vec3(0.0f);
+        out.facts.volumetric |= m.medium.scattering != vec3(0.0f);
     }
+    if (out.facts.volumetric) out.facts.materials_present |= 1u << MATERIAL_PHASE;
     if (out.facts.textured == 0 && !out.facts.small_model && !out.facts.has_catchers)
         out.material_textures.clear();
 }

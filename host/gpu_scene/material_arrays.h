@@ -13,7 +13,8 @@ namespace candela {
 // What kernels must know: see shared/kernel_constants.inc.
 struct MaterialFacts {
     uint32_t material_count = 0;
-    bool has_media = false;          // Some medium absorbs light.
+    bool has_media = false;          // Some medium absorbs or scatters light.
+    bool volumetric = false;         // Some medium scatters light, or ends without a surface.
     bool has_catchers = false;       // Some material is a catcher's.
     uint32_t materials_present = 0;  // Bit i: a material of model i.
     uint32_t principled = 0;         // Bits PRINCIPLED_HAS_*: of all principled materials.

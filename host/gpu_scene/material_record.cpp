@@ -45,6 +45,12 @@ EncodedMaterial encode(const DielectricMaterial& m) {
                    m.ior / m.exterior_ior.value_or(1.0f));
 }
 
+// Glass of the same index as what is around.
+EncodedMaterial encode(const InterfaceMaterial&) {
+    const Textured<vec3> own_eta = vec3(1.0f, 0.0f, 0.0f);
+    return encoded(MATERIAL_DIELECTRIC_EXACT, NO_COLOR, own_eta, 1.0f);
+}
+
 EncodedMaterial encode(const DiffuseTransmissionMaterial& m) {
     return encoded(MATERIAL_DIFFUSE_TRANSMISSION, m.reflectance, m.transmittance);
 }
@@ -68,6 +74,10 @@ std::optional<Interior> behind(const OpaqueMaterial&) {
 
 std::optional<Interior> behind(const DielectricMaterial& m) {
     return Interior{m.inside, m.ior, m.priority};
+}
+
+std::optional<Interior> behind(const InterfaceMaterial& m) {
+    return Interior{m.inside, 1.0f, m.priority};
 }
 
 std::optional<Interior> behind(const DiffuseTransmissionMaterial& m) {

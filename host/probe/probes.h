@@ -13,9 +13,9 @@
 
 namespace candela::kernels {
 
-extern const std::span<const uint32_t> any_hit, bsdf, closest_hit, environment, escape, exponential, frame,
-    hash, interaction, light_choice, light_sample, light_tree, math, octahedral, records, sampler, spawn,
-    texture, traversal, warp;
+extern const std::span<const uint32_t> any_hit, bsdf, closest_hit, distance, environment, escape, exponential,
+    frame, hash, interaction, light_choice, light_sample, light_tree, math, octahedral, records, sampler,
+    spawn, texture, traversal, warp;
 
 }  // namespace candela::kernels
 

@@ -30,7 +30,7 @@ void for_each_value(Model& m, const Visit& visit) {
 #undef VALUE
 #undef KEY
     } else {
-        static_assert(std::is_same_v<Type, DielectricMaterial>);
+        static_assert(std::is_same_v<Type, DielectricMaterial> || std::is_same_v<Type, InterfaceMaterial>);
     }
 }
 

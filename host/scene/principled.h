@@ -5,16 +5,10 @@
 #include <optional>
 
 #include "base/math.h"
+#include "scene/medium.h"
 #include "scene/texture.h"
 
 namespace candela {
-
-// A medium between surfaces.
-struct Medium {
-    vec3 absorption{0};  // [1/m], each >= 0 (Beer and Lambert).
-
-    bool operator==(const Medium&) const = default;
-};
 
 // A normal for shading at every point: in the image's red, green and blue, from -1 to 1 (0 to 1 in the file),
 // along the tangent, the bitangent and the normal of the surface.

@@ -175,6 +175,14 @@ struct DielectricMaterial {
 };
 inline constexpr uint32_t MAX_PRIORITY = 15;
 
+// The end of a medium without a surface: light passes it straight. Solids of it must be closed.
+struct InterfaceMaterial {
+    Medium inside{};        // Behind it.
+    uint32_t priority = 0;  // As in DielectricMaterial.
+
+    bool operator==(const InterfaceMaterial&) const = default;
+};
+
 // Heights above a surface, for the normals that it would have if it were displaced by them.
 struct BumpMap {
     Texture texture{};   // Only its channel is used.
@@ -206,7 +214,7 @@ enum class Catcher {
 struct Material {
     std::string name;
     std::variant<DiffuseMaterial, PhongMaterial, MirrorMaterial, ConductorMaterial, DielectricMaterial,
-                 DiffuseTransmissionMaterial, PrincipledMaterial>
+                 DiffuseTransmissionMaterial, InterfaceMaterial, PrincipledMaterial>
         model;
     std::optional<NormalMap> normal_map{};
     std::optional<BumpMap> bump_map{};  // Not beside a normal map.
@@ -375,6 +383,7 @@ struct Scene {
     std::vector<std::string> objects;          // Names, all different, of what shapes are parts of.
     std::vector<Light> lights;                 // Besides shapes that emit and the environment.
     std::optional<Environment> environment;    // None: black.
+    Medium medium{};                           // Where no solid is.
     std::optional<uint32_t> ground{};          // A shape that was added below the others; views ignore it.
     std::optional<Motion> motion;              // Only of a scene that shows a frame of an animation.
     FileReach reach;                           // The files that may be read for it.

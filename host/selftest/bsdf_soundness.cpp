@@ -73,6 +73,8 @@ class Adversary {
                 const vec3 reflectance = fractions();
                 return diffuse_transmission(reflectance, (vec3(1.0f) - reflectance) * fractions());
             }
+            case MATERIAL_PHASE:
+                return phase((random_.bits() % 2 == 0 ? 1.0f : -1.0f) * (1.0f - of_any_size(1e-3f, 1.0f)));
             case MATERIAL_PRINCIPLED:
                 return principled(layers());
             case MATERIAL_UNLIT:

@@ -66,6 +66,10 @@ MaterialRecord diffuse_transmission(vec3 reflectance, vec3 transmittance) {
     return encode_material(DiffuseTransmissionMaterial{reflectance, transmittance, {}}).record;
 }
 
+MaterialRecord phase(float g) {
+    return {.model = MATERIAL_PHASE, .medium = MEDIUM_SAME, .base = vec3(1.0f), .specular{}, .parameter = g};
+}
+
 BsdfItem bsdf_item(const ProbedMaterial& material, vec3 wo, vec3 wi, uint32_t back) {
     return {.material = pack(material.record),
             .wo = wo,
@@ -100,6 +104,8 @@ std::vector<BsdfCase> bsdf_cases() {
             add(concat("conductor ", alpha), conductor(vec3(0.9f, 0.6f, 0.3f), alpha),
                 FacetChart(glm::dvec3(wo), alpha));
     }
+    for (const float g : {0.0f, 0.3f, -0.6f, 0.9f, -0.99f, 0.999f})
+        cases.push_back({concat("phase ", g), phase(g), vec3(0, 0, 1), ForwardChart(double(g)), 0});
     return cases;
 }
 
@@ -161,13 +167,14 @@ void test_values(const BsdfCase& c, const std::vector<BsdfResult>& results, Evid
     for (const BsdfResult& s : results) {
         bool holds = s.delta == 0 && (s.eta == 1.0f || model == MATERIAL_PRINCIPLED);
         if (s.pdf != 0.0f) {  // Otherwise the sample failed.
-            const bool transmits = model == MATERIAL_DIFFUSE_TRANSMISSION || model == MATERIAL_PRINCIPLED;
+            const bool transmits = model == MATERIAL_DIFFUSE_TRANSMISSION || model == MATERIAL_PRINCIPLED ||
+                                   model == MATERIAL_PHASE;
+            const double cosine = model == MATERIAL_PHASE ? 1.0 : std::abs(double(s.wi.z));
             holds = holds && std::abs(length(glm::dvec3(s.wi)) - 1.0) <= 0x1p-20 &&
                     (s.wi.z > 0.0f || transmits) &&
                     std::abs(double(s.pdf) - double(s.pdf_of_sample)) <= double(s.pdf) * 0x1p-15;
             for (const int i : {0, 1, 2}) {
-                const double weight =
-                    double(s.f_of_sample[i]) * std::abs(double(s.wi.z)) / double(s.pdf_of_sample);
+                const double weight = double(s.f_of_sample[i]) * cosine / double(s.pdf_of_sample);
                 holds = holds && std::abs(double(s.weight[i]) - weight) <= weight * 0x1p-15 + 0x1p-19;
             }
             // Refraction divides radiance by eta^2, but does not change energy.

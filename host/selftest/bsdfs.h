@@ -21,6 +21,8 @@ MaterialRecord conductor(vec3 reflectance, float alpha);
 // it.
 MaterialRecord dielectric(uint32_t model, float eta);
 MaterialRecord diffuse_transmission(vec3 reflectance, vec3 transmittance);
+// A point in a medium, whose phase function has the mean cosine g.
+MaterialRecord phase(float g);
 
 // The records of a material.
 struct ProbedMaterial {
@@ -45,7 +47,7 @@ struct BsdfCase {
     std::string name;
     ProbedMaterial material;
     vec3 wo;
-    std::variant<SphereChart, LobeChart, FacetChart, RefractionChart> chart;
+    std::variant<SphereChart, LobeChart, ForwardChart, FacetChart, RefractionChart> chart;
     uint32_t back = 0;  // 1: wo is on the back side of the surface.
 };
 std::vector<BsdfCase> bsdf_cases();

@@ -2,6 +2,7 @@
 // of equal size resolve it. All in double precision, from the formulas of the models.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -64,6 +65,30 @@ class LobeChart {
 
     glm::dvec3 x_, y_, z_;
     double n_;
+};
+
+// The whole sphere, by azimuth and the angle theta from -z or, if g < 0, from +z: evenly in the logarithm of
+// (1 - |g|)^2 + 1 - cos(theta), since the phase function of Henyey and Greenstein changes as that does.
+class ForwardChart {
+  public:
+    explicit ForwardChart(double g)
+        : side_(g < 0.0 ? 1.0 : -1.0), least_(square(1.0 - std::abs(g))), range_(std::log1p(2.0 / least_)) {}
+    ChartPoint at(double a, double b) const {
+        const double h = least_ * std::expm1(a * range_), phi = 2.0 * M_PI * (b - 0.5);
+        const double r = std::sqrt(std::max(0.0, h * (2.0 - h)));
+        return {{r * std::cos(phi), r * std::sin(phi), side_ * (1.0 - h)},
+                2.0 * M_PI * range_ * (least_ + h)};
+    }
+    std::optional<glm::dvec2> find(glm::dvec3 w) const {
+        const glm::dvec3 chord = w - glm::dvec3(0, 0, side_);
+        const double h = std::min(0.5 * dot(chord, chord), 2.0);
+        return glm::dvec2(std::log1p(h / least_) / range_, turn_of(w.y, w.x));
+    }
+
+  private:
+    static double square(double x) { return x * x; }
+
+    double side_, least_, range_;
 };
 
 // The reflections of wo by microfacets, by the slopes of these. With a = 1 - t^2, slopes of the GGX

@@ -166,7 +166,7 @@ Records filled(Fields& fields) {
                   .base = fields.f3(),
                   .specular = fields.f3(),
                   .parameter = fields.f()};
-    r.medium = {.absorption = fields.f3(), .ior = fields.f()};
+    r.medium = {.absorption = fields.f3(), .ior = fields.f(), .scattering = fields.f3(), .g = fields.f()};
     r.light = {.kind = fields.u(),
                .p = fields.f3(),
                .e1 = fields.f3(),

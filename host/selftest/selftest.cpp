@@ -9,6 +9,7 @@
 #include "selftest/exponentials.h"
 #include "selftest/images.h"
 #include "selftest/lights.h"
+#include "selftest/media.h"
 #include "selftest/records.h"
 #include "selftest/samplers.h"
 #include "selftest/skies.h"
@@ -103,6 +104,7 @@ std::vector<Row> rows() {
         {"BSDFs", "samples", {always<test_bsdfs>}},
         {"layered BSDFs", "samples", {always<test_layers>}},
         {"BSDFs at extremes", "samples", {always<test_extreme_bsdfs>}},
+        {"media", "samples", {always<test_distances>}},
         {"flat lights",
          "samples",
          {test_flat_light_points, always<through_both_buffers<test_flat_light_values>>}},

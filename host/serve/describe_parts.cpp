@@ -85,6 +85,9 @@ class Describer {
                 {"fresnel", name_of(m.fresnel, FRESNEL_NAMES)},
                 {"priority", m.priority}};
     }
+    Json operator()(const InterfaceMaterial& m) const {
+        return {{"type", "interface"}, {"priority", m.priority}};
+    }
     Json operator()(const PrincipledMaterial& m) const {
         Json json{{"type", "principled"}, {"thin_walled", !m.inside}, {"priority", m.priority}};
 #define VALUE(kind, name, initial, min, max, needs, text) json[#name] = value<ValueKind::kind>(m.name);

@@ -28,6 +28,17 @@ float log1p_nonpositive(float x) {
     return exponent * ln2_high + (2.0 * (s + s * series) + exponent * ln2_low);
 }
 
+// A number with the density exp(-x), from 32 random bits: at least 0, at most 22.9.
+float exponential_sample(uint bits) {
+    const float ln2 = 0.693147180559945;
+    // u = m / 2^steps in [2^-33, 1], with m in [1/2, 1).
+    float u = float(bits >> 8u) * (1.0 / 16777216.0) + (float(bits & 255u) + 0.5) * (1.0 / 4294967296.0);
+    uint u_bits = floatBitsToUint(u);
+    float steps = float(126 - int(u_bits >> 23u));
+    float m = uintBitsToFloat((u_bits & 0x7FFFFFu) | 126u << 23u);
+    return max(0.0, steps * ln2 - log1p_nonpositive(m - 1.0));
+}
+
 // exp(x) = (1 + p) 2^k with k whole and |log(1 + p)| <= log(2) / 2, for x in [-87, 0].
 struct ExpParts {
     float p;

@@ -10,6 +10,7 @@
 #include "bsdf/diffuse.glsl"
 #include "bsdf/diffuse_transmission.glsl"
 #include "bsdf/mirror.glsl"
+#include "bsdf/phase.glsl"
 #include "bsdf/phong.glsl"
 #if LAYERED
 #include "bsdf/principled.glsl"
@@ -22,8 +23,8 @@
 const uint MATERIALS_DIELECTRIC = 1u << MATERIAL_DIELECTRIC_SCHLICK | 1u << MATERIAL_DIELECTRIC_EXACT;
 
 // True if some surface scatters light that comes from behind it, so that light samples there are needed.
-const bool LIT_FROM_BEHIND =
-    (MATERIALS & 1u << MATERIAL_DIFFUSE_TRANSMISSION | PRINCIPLED & PRINCIPLED_IS_LIT_FROM_BEHIND) != 0u;
+const bool LIT_FROM_BEHIND = (MATERIALS & (1u << MATERIAL_DIFFUSE_TRANSMISSION | 1u << MATERIAL_PHASE) |
+                              PRINCIPLED & PRINCIPLED_IS_LIT_FROM_BEHIND) != 0u;
 
 // A material at one point of a surface, seen from one side.
 struct Bsdf {
@@ -76,6 +77,7 @@ BsdfValue bsdf_evaluate(Bsdf b, vec3 wo, vec3 wi) {
     if (is_model(b, 1u << MATERIAL_PHONG)) return phong_evaluate(b.base, b.specular, b.parameter, wo, wi);
     if (is_model(b, 1u << MATERIAL_CONDUCTOR)) return conductor_evaluate(b.base, b.parameter, wo, wi);
     if (is_model(b, 1u << MATERIAL_DIFFUSE_TRANSMISSION)) return diffuse_transmission_evaluate(b.base, b.specular, wi);
+    if (is_model(b, 1u << MATERIAL_PHASE)) return phase_evaluate(b.parameter, wi);
     if (is_model(b, 1u << MATERIAL_PRINCIPLED)) return principled_evaluate(b.principled, wo, wi);
     return bsdf_zero();
 }
@@ -100,6 +102,7 @@ BsdfSample bsdf_sample_f(Bsdf b, vec3 wo, float uc, vec2 u) {
     if (is_model(b, 1u << MATERIAL_DIFFUSE_TRANSMISSION)) {
         return diffuse_transmission_sample_f(b.base, b.specular, uc, u);
     }
+    if (is_model(b, 1u << MATERIAL_PHASE)) return phase_sample_f(b.parameter, u);
     if (is_model(b, 1u << MATERIAL_PRINCIPLED)) return principled_sample_f(b.principled, wo, uc, u);
     return bsdf_sample_failed();
 }

@@ -4,7 +4,8 @@
 //     for (depth = 0;; ++depth)
 //         find the nearest hit along the ray
 //         if there is none: L += beta * weight * radiance of the sky; stop
-//         beta *= transmittance of the medium up to the hit
+//         beta *= transmittance of the medium up to the hit; or the path scatters in the medium before it, by its
+//                 phase function instead of a BSDF
 //         L += beta * weight * radiance that the surface emits
 //         if depth = max_depth: stop
 //         sample a point on a light; if nothing is in between: L += beta * weight * f cos Li / pdf
@@ -49,6 +50,7 @@ struct Path {
     uint depth;       // Scattering vertices so far.
     bool clear;       // Nothing but ideal transmission so far; only if BEFORE_BACKGROUND.
     bool alone;       // Only catchers, sky and lights are there; only if HAS_CATCHERS.
+    uint crossed;     // Interfaces passed so far; only if VOLUMETRIC.
 };
 
 // The estimate of a path so far.
@@ -76,12 +78,15 @@ struct ShadowRay {
     Ray ray;
     float t_max;  // In lengths of ray.d; 0 if there is none to trace.
     vec3 Ld;      // Added to L if the ray is not blocked.
+    // Only if VOLUMETRIC; Ld then lacks the transmittance of what is still to be traced.
+    uvec2 media;   // Around `ray`.
+    uint crossed;  // Interfaces passed so far.
 };
 
 // A path that begins with a camera ray within these media, and an empty estimate.
 Path path_begin(Ray ray, uvec2 media) {
-    return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u, true,
-                false);
+    return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u, true, false,
+                0u);
 }
 
 // Whether the path begins where the camera does not see anything: its throughput is then 0.
@@ -121,7 +126,7 @@ void estimate_turn(inout Estimate estimate) {
 }
 
 ShadowRay shadow_none() {
-    return ShadowRay(Ray(vec3(0.0), vec3(0.0)), 0.0, vec3(0.0));
+    return ShadowRay(Ray(vec3(0.0), vec3(0.0)), 0.0, vec3(0.0), MEDIA_NONE, 0u);
 }
 
 // The point of a surface for which lights are sampled. Rays begin at an offset from the surface, on the side to which
@@ -225,14 +230,31 @@ ShadowRay direct_light(Path path, ShadedSurface x, LitPoint lit, LightSample lig
     float cosine;
     BsdfValue value = surface_evaluate(x, light.wi, cosine);
     vec3 Ld = path.beta * value.f * cosine * light.Li;
-    Ld *= media_transmittance(media, light.t_max * length(ray.d));
+    if (!VOLUMETRIC) Ld *= media_transmittance(media, light.t_max * length(ray.d));
     // A light is not seen if the horizon and the shading normal disagree about its side.
     bool sides_differ = LIT_FROM_BEHIND ? surface_reflects(x, light.wi, dot(light.wi, x.frame.z)) != viewers_side
                                         : dot(light.wi, x.horizon) <= 0.0;
     bool dark = light.pdf == 0.0 || sides_differ || Ld == vec3(0.0);
     float weight = 1.0;
     if (ESTIMATOR == ESTIMATOR_MIS && !light.delta) weight = power_heuristic(light.pdf, value.pdf);
-    return ShadowRay(ray, dark ? 0.0 : light.t_max, clamp_indirect(weight * Ld / light.pdf, path.depth + 1u));
+    return ShadowRay(ray, dark ? 0.0 : light.t_max, clamp_indirect(weight * Ld / light.pdf, path.depth + 1u), media,
+                     0u);
+}
+
+// Takes a shadow ray through the medium to what it hit, or to its end, and beyond an interface; returns whether it is
+// to be traced from there. It goes on towards the same point of the light.
+bool shadow_goes_on(inout ShadowRay shadow, Hit hit) {
+    if (shadow.t_max == 0.0) return false;
+    shadow.Ld *= media_transmittance(shadow.media, hit.t * length(shadow.ray.d));
+    if (!is_hit(hit) || max_component(shadow.Ld) == 0.0 || shadow.crossed == DEPTH_SAFETY_LIMIT) return false;
+    ShadedSurface x = boundary_at(shadow.ray, hit, shadow.media);
+    if (!surface_is_interface(x)) return false;
+    vec3 o = vertex_spawn_origin(interaction_vertex(x.s), false);
+    if (shadow.t_max < FLOAT_MAX) shadow.ray.d += shadow.ray.o - o;
+    shadow.ray.o = o;
+    shadow.media = media_beyond(shadow.media, x.material.medium, x.s.front);
+    ++shadow.crossed;
+    return true;
 }
 
 // Continues the path in the direction that the BSDF sampled; returns whether the path goes on. A direction carries no
@@ -257,12 +279,53 @@ bool path_scatter(inout Path path, ShadedSurface x, LitPoint lit, BsdfSample sca
 // end a vertex or two later, which reduces the noise by more than its rays cost. After ideal scattering the throughput
 // is ignored: only this path can find what lies ahead, which is often a light.
 // Ref: Arvo and Kirk 1990, Particle Transport and Image Synthesis.
-bool path_survives(inout Path path, float u) {
-    float survival = RR_MAX_SURVIVAL;
-    if (!path.delta) survival = min(survival, sqrt(max_component(path.beta) * path.eta_scale));
+//
+// Within a medium, paths with all of their throughput go on for certain: light comes out of wax after hundreds of
+// vertices. In one without an end they would wander away: beyond the distance `reach` from the scene, they survive less
+// often by its inverse square, as light samples are dimmer. (As often as diffusing light comes back, by the inverse,
+// took eight times as long for the same noise.)
+bool path_survives(inout Path path, bool in_medium, float reach, float u) {
+    float survival = in_medium ? 1.0 : RR_MAX_SURVIVAL;
+    float importance = in_medium ? min(1.0, square(reach) / dot(path.ray.o, path.ray.o)) : 1.0;
+    if (!path.delta) survival = min(survival, sqrt(max_component(path.beta) * path.eta_scale * importance));
     if (u >= survival) return false;
     path.beta /= survival;
     return true;
+}
+
+// A light near the path's ray in that medium, chosen by its power from those that have a place. The denser the medium
+// on the way to it, the fewer vertices are for it: at most half.
+Focus path_focus(Path path, MediumRecord medium, float t_max, uint bits) {
+    LightGroups groups = scene_parameters().lights;
+    if (ESTIMATOR == ESTIMATOR_BSDF || !LIGHTS_PLACED || groups.placed == 0u) return focus_none();
+    LightChoice choice = light_choose_placed(bits);
+    LightRecord l = light_at(choice.i);
+    if (is_light(l, LIGHT_LAMP)) return focus_none();
+    vec3 to_light = light_middle(l) - path.ray.o;
+    float along = dot(to_light, path.ray.d);
+    float nearest = length(to_light - along * path.ray.d);
+    float depth =
+        dot(path.beta, medium_extinction(medium)) / dot(path.beta, vec3(1.0)) * (clamp(along, 0.0, t_max) + nearest);
+    return Focus(along, max(max(nearest, light_size(l)), 1e-6), 0.5 * exp(-depth));
+}
+
+// What the path meets on its way to the hit, or to infinity; only if VOLUMETRIC.
+MediumSample path_medium_sample(Path path, Hit hit, Sampler random) {
+    uint pair = PAIR_FIRST_DISTANCE + path.depth | path.crossed << PAIR_CROSSED_SHIFT;
+    MediumRecord medium = scene_medium(media_first(path.media));
+    uvec3 u = sampler_triple(random, pair);
+    uvec3 more = hash_pcg3d(u);
+    Focus focus = path_focus(path, medium, hit.t, more.x);
+    return medium_sample(medium, path.beta, hit.t, focus, uvec4(u, more.y));
+}
+
+// Lets the path pass an interface at x; returns whether it goes on.
+bool path_cross(inout Path path, inout Estimate estimate, ShadedSurface x) {
+    estimate.cut = path.crossed == DEPTH_SAFETY_LIMIT;
+    path.media = media_beyond(path.media, x.material.medium, x.s.front);
+    path.ray.o = vertex_spawn_origin(interaction_vertex(x.s), false);
+    ++path.crossed;
+    return !estimate.cut;
 }
 
 // Advances the path past the hit of its ray, or past its miss; returns whether the path continues. `shadow` is the ray
@@ -274,9 +337,16 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         estimate.transmission = 1.0;
         return false;
     }
-    if (!is_hit(hit)) {
+    MediumSample way;
+    bool scattered_before = false;  // The hit.
+    if (VOLUMETRIC) {
+        way = path_medium_sample(path, hit, random);
+        scattered_before = way.scattered;
+    }
+    if (!is_hit(hit) && !scattered_before) {
         if (seeks_guides(path, estimate)) guides_meet(estimate.guides, vec3(0.0), vec3(0.0), vec3(0.0));
-        path.beta *= media_transmittance(path.media, FLOAT_MAX);  // Through a medium without an end.
+        // Through a medium without an end.
+        path.beta *= VOLUMETRIC ? way.weight : media_transmittance(path.media, FLOAT_MAX);
         if (BEFORE_BACKGROUND && path.clear) {
             estimate.transmission = path.eta_scale * dot(path.beta, LUMINANCE);
         } else {
@@ -285,11 +355,21 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         }
         return false;
     }
-    ShadedSurface x = surface_at(path.ray, hit, path.media);
+    ShadedSurface x;
+    if (scattered_before) {
+        x = surface_in_medium(path.ray, way.t, scene_medium(media_first(path.media)));
+    } else {
+        x = surface_at(path.ray, hit, path.media);
+    }
+    vec3 passed = VOLUMETRIC ? way.weight : media_transmittance(path.media, hit.t);
+    if (surface_is_interface(x)) {
+        path.beta *= passed;
+        return path_cross(path, estimate, x);
+    }
     if (path.depth == 0u) {
         estimate.visible = true;
         estimate.albedo = bsdf_albedo(x.bsdf);
-        estimate.normal = x.s.ns;
+        estimate.normal = normal_seen(x);
     }
     if (HAS_CATCHERS && !path.alone) {
         if (path.depth == 0u) {
@@ -300,10 +380,11 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     }
 
     // Attenuate by the medium on the way.
-    path.beta *= media_transmittance(path.media, hit.t);
+    path.beta *= passed;
     if (seeks_guides(path, estimate)) {
-        estimate.guides.tint *= media_transmittance(path.media, hit.t);
-        guides_meet(estimate.guides, bsdf_albedo(x.bsdf), x.s.light == NO_LIGHT ? vec3(0.0) : surface_le(x.s), x.s.ns);
+        estimate.guides.tint *= passed;
+        guides_meet(estimate.guides, bsdf_albedo(x.bsdf), x.s.light == NO_LIGHT ? vec3(0.0) : surface_le(x.s),
+                    normal_seen(x));
     }
 
     // Add what the surface emits; light samples of the previous vertex may already account for a part.
@@ -322,14 +403,15 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     uint pair = PAIR_FIRST_BOUNCE + path.depth * PAIRS_PER_BOUNCE;
 
     // Choose a point on a light, before the lobes of a principled material need registers.
-    LitPoint lit = lit_point(x);
+    LitPoint lit = is_in_medium(x) ? lit_anywhere(x.s.p) : lit_point(x);
     LightSample light;
     if (ESTIMATOR != ESTIMATOR_BSDF) light_set_groups(lit);
     if (ESTIMATOR != ESTIMATOR_BSDF) light = sample_light(lit, random, pair);
     surface_add_layers(x, path.ray, path.beta);
     if (path.depth == 0u && is_principled(x.material)) estimate.albedo = bsdf_albedo(x.bsdf);
     if (seeks_guides(path, estimate)) {
-        guides_meet(estimate.guides, bsdf_albedo(x.bsdf), x.s.light == NO_LIGHT ? vec3(0.0) : surface_le(x.s), x.s.ns);
+        guides_meet(estimate.guides, bsdf_albedo(x.bsdf), x.s.light == NO_LIGHT ? vec3(0.0) : surface_le(x.s),
+                    normal_seen(x));
     }
 
     // Add direct light.
@@ -341,7 +423,9 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     if (seeks_guides(path, estimate)) guides_scatter(estimate.guides, x, unit_float(u.z), scattered);
     if (!path_scatter(path, x, lit, scattered)) return false;
     if (path.depth >= parameters.rr_depth) {
-        if (!path_survives(path, unit_float(sampler_pair(random, pair + PAIR_SURVIVAL).x))) return false;
+        float u_survival = unit_float(sampler_pair(random, pair + PAIR_SURVIVAL).x);
+        float reach = max(1.0, length(parameters.position));  // The scene lies within 1 of the frame's origin.
+        if (!path_survives(path, is_in_medium(x), reach, u_survival)) return false;
     }
     ++path.depth;
     return true;

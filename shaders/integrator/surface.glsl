@@ -49,6 +49,50 @@ ShadedSurface surface_at(Ray ray, Hit hit, uvec2 media) {
     return x;
 }
 
+// The same without what only light that is scattered there needs: enough for surface_is_interface.
+ShadedSurface boundary_at(Ray ray, Hit hit, uvec2 media) {
+    ShadedSurface x;
+    x.s = interaction_at(ray, hit);
+    x.material = scene_material(x.s.material);
+    x.bsdf = bsdf_at(x.material, x.s.front);
+    surface_nest(x, media);
+    return x;
+}
+
+// A point within the medium m at the distance t on the ray, as if it were a surface: its normals point to the viewer,
+// and the medium is on both sides.
+ShadedSurface surface_in_medium(Ray ray, float t, MediumRecord m) {
+    ShadedSurface x;
+    x.s.p = ray.o + t * ray.d;
+    x.s.wo = x.s.n = x.s.ns = x.unbent = -ray.d;
+    x.s.front = true;
+    x.s.error = 0.0;
+    x.s.lift = vec3(0.0);
+    x.s.material = 0u;
+    x.s.light = NO_LIGHT;
+    x.s.lamp = NO_LIGHT;
+    x.material =
+        MaterialRecord(MATERIAL_PHASE, MEDIUM_SAME, m.scattering / max(medium_extinction(m), 1e-37), vec3(0.0), m.g);
+    x.bsdf = bsdf_at(x.material, true);
+    x.bent = false;
+    return x;
+}
+
+// A point within a medium, not on a surface.
+bool is_in_medium(ShadedSurface x) {
+    return VOLUMETRIC && is_model(x.bsdf, 1u << MATERIAL_PHASE);
+}
+
+// A boundary that light passes as if nothing were there but another medium.
+bool surface_is_interface(ShadedSurface x) {
+    return VOLUMETRIC && x.s.light == NO_LIGHT && is_model(x.bsdf, MATERIALS_DIELECTRIC) && x.bsdf.parameter == 1.0;
+}
+
+// The shading normal that images and denoisers get.
+vec3 normal_seen(ShadedSurface x) {
+    return is_in_medium(x) ? vec3(0.0) : x.s.ns;
+}
+
 // Turns the shading normals towards the viewer where necessary, and puts the frame around the resulting one.
 //
 // The horizon is perpendicular to the geometric normal or, if SMOOTH, to the shape's shading normal: light that
@@ -87,7 +131,7 @@ BsdfValue surface_evaluate(ShadedSurface x, vec3 wi, out float cosine) {
     vec3 local = frame_to_local(x.frame, wi);
     cosine = 1.0;
     if (x.bent) return bent_evaluate(x.bsdf, x.wo, local, frame_to_local(x.frame, x.horizon));
-    cosine = abs(local.z);
+    cosine = is_in_medium(x) ? 1.0 : abs(local.z);
     return bsdf_evaluate(x.bsdf, x.wo, local);
 }
 

@@ -4,6 +4,7 @@
 //
 // One iteration of a lane's loop, for a path on its way to vertex k:
 //     trace the shadow ray of vertex k - 1, then the path's ray to vertex k
+//     if the shadow ray passed an interface: go on with it in the next iteration, before all that follows
 //     add the direct light of vertex k - 1; if the path ended there, fold the sample
 //     shade vertex k, which yields its shadow ray and the path's next ray
 // For a new sample, "vertex k - 1" is the last one of the sample before. A sample that hits a catcher first is begun
@@ -31,6 +32,10 @@ struct Sample {
     bool ended;         // The path has ended; its last shadow ray may still have to be traced.
     uint rays;          // Traced so far.
     bool shadow_alone;  // As Path::alone, of the shadow ray.
+    // Only if VOLUMETRIC: the shadow ray goes on beyond an interface, while the path's ray has been traced. The rest
+    // then waits, with what the ray hit.
+    bool waits;
+    Hit hit;
 };
 
 // No sample yet.
@@ -41,6 +46,8 @@ Sample sample_none() {
     s.ended = false;
     s.rays = 0u;
     s.shadow_alone = false;
+    s.waits = false;
+    s.hit = hit_none(FLOAT_MAX);
     return s;
 }
 
@@ -65,16 +72,24 @@ struct TraceResult {
     bool lit;       // There is a shadow ray, and it is not blocked.
     uint depth;     // Optical depth of what it has passed, in parts; only if HAS_OPACITY.
     Hit hit;        // The hit of the path's ray, if the path continues.
+    Hit shadow;     // The nearest hit of the shadow ray, if there is one; only if VOLUMETRIC.
 };
 
+// Any hit of a shadow ray blocks it, unless it may be on an interface.
+bool is_shadow(Traversal traversal, bool shadowing) {
+    return VOLUMETRIC ? shadowing : traversal.any_hit;
+}
+
 // Advances the traversal; once that of a shadow ray has ended, begins that of the path's next ray, if there is one.
-void sample_advance(Sample s, inout Traversal traversal, inout bool lit, inout uint depth) {
+void sample_advance(Sample s, inout Traversal traversal, inout bool shadowing, inout TraceResult met) {
     bvh_advance(traversal);
-    if (traversal.any_hit && bvh_ended(traversal)) {
-        lit = !is_hit(traversal.hit);
-        if (HAS_OPACITY) depth = traversal.depth;
+    if (is_shadow(traversal, shadowing) && bvh_ended(traversal)) {
+        met.lit = !is_hit(traversal.hit);
+        if (VOLUMETRIC) met.shadow = traversal.hit;
+        if (HAS_OPACITY) met.depth = traversal.depth;
         if (HAS_PASSABLE) traversal.any_hit = false;
-        if (s.alive) traversal = bvh_begin(s.path.ray, FLOAT_MAX, false);
+        shadowing = false;
+        if (s.alive && !(VOLUMETRIC && s.waits)) traversal = bvh_begin(s.path.ray, FLOAT_MAX, false);
         if (HAS_CATCHERS) traversal.alone = s.path.alone;
     }
 }
@@ -83,35 +98,39 @@ void sample_advance(Sample s, inout Traversal traversal, inout bool lit, inout u
 // lanes in between.
 TraceResult sample_trace(Sample s) {
     bool shadowed = s.shadow.t_max > 0.0;
+    bool shadowing = shadowed;
     Ray first = s.path.ray;
     if (shadowed) first = s.shadow.ray;
-    Traversal traversal = bvh_begin(first, shadowed ? s.shadow.t_max : FLOAT_MAX, shadowed);
+    Traversal traversal = bvh_begin(first, shadowed ? s.shadow.t_max : FLOAT_MAX, shadowed && !VOLUMETRIC);
     if (HAS_CATCHERS) traversal.alone = shadowed ? s.shadow_alone : s.path.alone;
     if (!shadowed && !s.alive) bvh_end(traversal);
-    bool lit = false;
-    uint depth = 0u;
+    TraceResult met = TraceResult(false, false, 0u, traversal.hit, traversal.hit);
     if (HAS_PASSABLE) {
         // On software Vulkan, code in a branch takes its time even if no lane takes the branch. So the decision about
         // opacity is in an outer loop, at whose end lanes wait for each other once more.
         bool more;
         do {
-            while (!bvh_waits(traversal) && (traversal.any_hit || !bvh_ended(traversal))) {
-                sample_advance(s, traversal, lit, depth);
+            while (!bvh_waits(traversal) && (is_shadow(traversal, shadowing) || !bvh_ended(traversal))) {
+                sample_advance(s, traversal, shadowing, met);
             }
             bvh_decide(traversal);
-            more = traversal.any_hit || !bvh_ended(traversal);
+            more = is_shadow(traversal, shadowing) || !bvh_ended(traversal);
         } while (more);
     } else {
         while (!bvh_ended(traversal))
-            sample_advance(s, traversal, lit, depth);
+            sample_advance(s, traversal, shadowing, met);
     }
-    bool turned = !(HAS_PASSABLE && traversal.any_hit);  // To the path's ray, if there is one.
-    return TraceResult(turned && bvh_ended(traversal), lit, depth, traversal.hit);
+    bool turned = !(HAS_PASSABLE && is_shadow(traversal, shadowing));  // To the path's ray, if there is one.
+    met.complete = turned && bvh_ended(traversal);
+    met.hit = traversal.hit;
+    if (VOLUMETRIC && s.waits) met.hit = s.hit;
+    return met;
 }
 
 // Advances the path past the hit of its ray, or past its miss.
 void sample_step(inout Sample s, Hit hit, Parameters parameters) {
-    if (s.path.depth == 0u && !(HAS_CATCHERS && s.path.alone)) s.estimate = estimate_begin();
+    bool first = s.path.depth == 0u && !(VOLUMETRIC && s.path.crossed > 0u);
+    if (first && !(HAS_CATCHERS && s.path.alone)) s.estimate = estimate_begin();
     s.shadow_alone = s.path.alone;
     s.alive = path_step(s.path, s.estimate, s.shadow, hit, s.random, parameters);
     s.rays += s.shadow.t_max > 0.0 ? 2u : 1u;
@@ -144,14 +163,25 @@ void render_pixel() {
     Sample s = sample_none();
     uint begun = before;  // Samples begun; pixel.samples of them are folded.
     uint rays = 0u;       // Rays of the folded samples.
+    bool again = false;   // The sample's second path begins, without the rest of the scene.
     while (pixel.samples < target) {
-        bool again = HAS_CATCHERS && s.ended && !s.path.alone && s.estimate.catcher != CATCHER_NONE;
-        if (!s.alive && (again || begun < target)) {
+        if (!(VOLUMETRIC && s.waits)) {
+            again = HAS_CATCHERS && s.ended && !s.path.alone && s.estimate.catcher != CATCHER_NONE;
+        }
+        if (!s.alive && !(VOLUMETRIC && s.waits) && (again || begun < target)) {
             if (!again) ++begun;
             sample_begin(s, parameters, parameters.crop + at, parameters.first_sample + begun - 1u, again);
         }
         TraceResult met = sample_trace(s);
         if (!met.complete) break;
+        if (VOLUMETRIC) {
+            s.waits = shadow_goes_on(s.shadow, met.shadow);
+            if (s.waits) {
+                s.hit = met.hit;
+                ++s.rays;
+                continue;
+            }
+        }
         if (HAS_OPACITY) s.shadow.Ld *= passed_fraction(met.depth);
         if (met.lit) s.estimate.L += s.shadow.Ld;
         if (again) {

@@ -72,6 +72,12 @@ uint light_choose_by_power(uint bits) {
     return is_sky ? groups.placed + groups.suns : i;
 }
 
+// A light with a place chosen by 32 random bits, by its power; its pmf is not set. The scene has one.
+LightChoice light_choose_placed(uint bits) {
+    uvec2 column = warp_alias_column(bits, scene_parameters().lights.placed);
+    return LightChoice(warp_alias_choice(column, scene_light_alias(column.x)).i, NO_LIGHT, 0.0);
+}
+
 uint light_count(LightGroups groups) {
     return groups.placed + groups.suns + (SKY_IS_LIGHT ? 1u : 0u);
 }

@@ -18,6 +18,20 @@ bool light_has_surface(LightRecord l) {
            !is_light(l, LIGHT_DIRECTIONAL) && !is_light(l, LIGHT_SUN);
 }
 
+// A point in the middle of a light with a place.
+vec3 light_middle(LightRecord l) {
+    if (is_light(l, LIGHT_TRIANGLE)) return l.p + (l.e1 + l.e2) * (1.0 / 3.0);
+    if (is_light(l, LIGHT_PARALLELOGRAM)) return l.p + 0.5 * (l.e1 + l.e2);
+    return l.p;
+}
+
+// How far it reaches from there, roughly; 0 for a point.
+float light_size(LightRecord l) {
+    if (is_light(l, LIGHT_POINT) || is_light(l, LIGHT_SPOT)) return 0.0;
+    if (is_light(l, LIGHT_SPHERE)) return l.e1.x;
+    return (is_light(l, LIGHT_DISK) ? 1.0 : 0.5) * sqrt(max(dot(l.e1, l.e1), dot(l.e2, l.e2)));
+}
+
 // Shadow rays end earlier by this fraction of their length, a bound on the error of the distance at which a light is
 // hit from far away.
 const float LIGHT_T_MAX = 1.0 - 1.0 / 524288.0;

@@ -6,6 +6,7 @@
 #ifndef MEDIUM_MEDIUM_GLSL
 #define MEDIUM_MEDIUM_GLSL
 
+#include "medium/distance.glsl"
 #include "scene/scene_data.glsl"
 
 // The media around a point, MEDIUM_BITS each, the one that fills it first, MEDIUM_NONE after the last. If media do not
@@ -50,13 +51,10 @@ uvec2 media_beyond(uvec2 here, uint behind, bool front) {
     return front ? media_entered(here, behind) : media_left(here, behind);
 }
 
-// Fraction of the light that the medium transmits over that distance. An infinite distance is replaced by a finite one,
-// since infinity times 0 is NaN. (A compiler that assumes finite numbers may drop a min with FLOAT_MAX.)
-// Ref: Beer and Lambert's law.
+// Fraction of the light that the medium transmits over that distance. Ref: Beer and Lambert's law.
 vec3 media_transmittance(uvec2 media, float distance) {
-    const float far = 1e30;
     if (!HAS_MEDIA) return vec3(1.0);
-    return exp(-min(distance, far) * scene_medium(media_first(media)).absorption);
+    return exp(-min(distance, FAR) * medium_extinction(scene_medium(media_first(media))));
 }
 
 // The index of refraction beyond a boundary over that before it; 1, exactly, if the indices are equal, or the same

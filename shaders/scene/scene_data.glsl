@@ -137,9 +137,9 @@ PrincipledImage scene_principled_image(uint word) {
 }
 
 MediumRecord scene_medium(uint i) {
-    uvec4 a;
-    READ_1(MATERIALS, MEDIA, (i & MAX_MEDIA - 1u) * MEDIUM_WORDS, a);
-    return medium_unpack(a);
+    uvec4 a, b;
+    READ_2(MATERIALS, MEDIA, (i & MAX_MEDIA - 1u) * MEDIUM_WORDS, a, b);
+    return medium_unpack(a, b);
 }
 
 LightRecord scene_light(uint i) {

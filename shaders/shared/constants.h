@@ -41,6 +41,10 @@ const uint PAIR_LIGHT = 0u;     // The point on a light; its third word: which l
 const uint PAIR_BSDF = 1u;      // Scattered direction; its third word: which lobe of the BSDF.
 const uint PAIR_SURVIVAL = 2u;  // Its first word.
 const uint PAIRS_PER_BOUNCE = 3u;
+// In media that scatter, one more for each of the ray's segments on the way to vertex k: this + k, and the number of
+// interfaces passed in the bits from PAIR_CROSSED_SHIFT on.
+const uint PAIR_FIRST_DISTANCE = 1u << 14u;
+const uint PAIR_CROSSED_SHIFT = 16u;
 
 // Layers of the accumulation image (rgba32f). The value of a sum is sum - compensation (Kahan).
 const uint LAYER_L = 0u;                    // rgb: sum of L; a: camera rays that hit something visible.

@@ -9,6 +9,7 @@
 //   diffuse transmission     MATERIAL_DIFFUSE_TRANSMISSION, reflectance  transmittance    0
 //   principled               MATERIAL_PRINCIPLED, base colour            record, some, 0  ior
 //   unlit                    MATERIAL_UNLIT, radiance                    0                0
+//   (a point in a medium)    MATERIAL_PHASE, albedo                      0                g
 #ifndef SHARED_MATERIAL_H
 #define SHARED_MATERIAL_H
 
@@ -30,7 +31,8 @@ const uint MATERIAL_DIELECTRIC_EXACT = 5u;
 const uint MATERIAL_DIFFUSE_TRANSMISSION = 6u;
 const uint MATERIAL_PRINCIPLED = 7u;  // See shared/principled.h.
 const uint MATERIAL_UNLIT = 8u;       // Shows its colour in any light, and scatters none.
-const uint MATERIAL_COUNT = 9u;
+const uint MATERIAL_PHASE = 9u;       // Of no material: see bsdf/phase.glsl.
+const uint MATERIAL_COUNT = 10u;
 
 // Limits of `parameter`.
 const float MIN_FACET_ALPHA = 1e-3f;

@@ -12,6 +12,9 @@ DIRECTIONAL = "shaders/light/directional.glsl"
 SKY = "shaders/light/environment.glsl"
 PHONG = "shaders/bsdf/phong.glsl"
 MEDIUM = "shaders/medium/medium.glsl"
+DISTANCE = "shaders/medium/distance.glsl"
+PHASE = "shaders/bsdf/phase.glsl"
+RENDER = "shaders/kernels/render.glsl"
 CONDUCTOR = "shaders/bsdf/conductor.glsl"
 DIELECTRIC = "shaders/bsdf/dielectric.glsl"
 PRINCIPLED = "shaders/bsdf/principled.glsl"
@@ -73,6 +76,7 @@ PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Sun*:Orthographic*:Sc
 TERMINATOR = ("Interaction*", "Terminator*")
 CAMERAS = ("WarpTest*", "PanoramaTest*:PixelFilterTest*:ClampTest*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
+SCATTERING = ("MediumTest*:BsdfTest*", "ScatteringTest*")
 CATCHERS = ("*Traversal*", "CatcherTest*")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 INSTANCES = ("InstanceTest*", "InstancedNormals*:*InstanceTest*", "Instancing*:MediaAt*")
@@ -408,7 +412,35 @@ GROUPS = [
         ("a gaussian that ends too late", PIXEL_FILTER, "within = 0.98889100346", "within = 0.999"),
         ("a single step of Newton's method", PIXEL_FILTER, "i < 4u", "i < 1u"),
         ("direct light limited, too", PATH, "bounces < 2u", "bounces < 1u"),
-        ("light samples of the second vertex not limited", PATH, "path.depth + 1u));", "path.depth));"),
+        ("light samples of the second vertex not limited", PATH, "path.depth + 1u)", "path.depth)"),
+    ]),
+    (SCATTERING, [
+        ("distances of one channel weighted for it alone", DISTANCE, "float pdf = dot(share, s.weight);",
+         "float pdf = exp(-hero * t_max);"),
+        ("distances without the density's factor", DISTANCE, "dot(share, extinction * s.weight);",
+         "dot(share, s.weight);"),
+        ("vertices for a light not counted", DISTANCE, "if (focus.share > 0.0) pdf +=", "if (false) pdf +="),
+        ("light not scattered but absorbed", DISTANCE, "s.weight *= m.scattering;", "s.weight *= m.absorption;"),
+        ("what is scattered not lost from the ray", DISTANCE, "VOLUMETRIC ? m.absorption + m.scattering : m.absorption",
+         "m.absorption"),
+        ("forwards for backwards", PHASE, "g < 0.0 ? 1.0 : -1.0", "g < 0.0 ? -1.0 : 1.0"),
+        ("forwards sampled for backwards", PHASE, "if (g >= 0.0) wi.z = -wi.z;", "if (g < 0.0) wi.z = -wi.z;"),
+        ("the phase function normalised for g = 0", PHASE, "(1.0 - a) * (1.0 + a) / (q_squared", "1.0 / (q_squared"),
+        ("a cosine at points without a surface", SURFACE, "is_in_medium(x) ? 1.0 : abs(local.z)", "abs(local.z)"),
+        ("the medium behind an interface ignored by shadow rays", PATH,
+         "shadow.media = media_beyond(shadow.media, x.material.medium, x.s.front);", ""),
+        ("shadow rays not dimmed", PATH, "shadow.Ld *= media_transmittance(shadow.media,",
+         "vec3 unused = media_transmittance(shadow.media,"),
+        ("shadow rays stopped by interfaces", PATH, "if (!surface_is_interface(x)) return false;", "return false;"),
+        ("shadow rays that miss their light beyond an interface", PATH, "shadow.ray.d += shadow.ray.o - o;", ""),
+        ("the medium behind an interface ignored by paths", PATH,
+         "path.media = media_beyond(path.media, x.material.medium, x.s.front);\n    path.ray.o",
+         "path.ray.o"),
+        ("the same distances behind an interface", PATH, " | path.crossed << PAIR_CROSSED_SHIFT", ""),
+        ("the path's ray traced again while its shadow ray goes on", RENDER, "if (VOLUMETRIC && s.waits) met.hit = s.hit;",
+         ""),
+        ("no medium around everything", MATERIAL_ARRAYS, "std::vector<Interior> media{{scene.medium}};",
+         "std::vector<Interior> media(1);"),
     ]),
     (INSTANCES, [
         ("what follows an instance traversed in its space", TRAVERSAL, "if (t.node < t.root) {", "if (false) {"),

@@ -63,7 +63,12 @@ SPP = {
     "punctual-lights": 256,
     "hundred-lights": 512,
     "orthographic": 256,
+    "smoke": 128,
+    "milk": 64,
 }
+
+# Of scenes with media, where it is not 64.
+MOST_VERTICES = {"milk": 128}
 
 # A string, which stays, or a comment, which becomes a space.
 STRING_OR_COMMENT = re.compile(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
@@ -144,8 +149,14 @@ def metal(material, smooth):
 
 
 def dielectric(material, smooth):
+    if material["ior"] == material.get("exterior_ior", 1):
+        return {"type": "null"}
     assert material.get("fresnel") == "exact", "Mitsuba knows no approximation of Fresnel's equations"
     return {"type": "dielectric", "int_ior": float(material["ior"]), "ext_ior": float(material.get("exterior_ior", 1))}
+
+
+def interface(material, smooth):
+    return {"type": "null"}
 
 
 def detailed(bsdf, material):
@@ -183,18 +194,41 @@ def rough_dielectric(material, smooth):
 
 
 BSDFS = {"diffuse": diffuse, "mirror": mirror, "phong": phong, "conductor": metal, "dielectric": dielectric,
+         "interface": interface,
          "principled": principled, "rough_conductor": rough_conductor, "rough_dielectric": rough_dielectric}
 BLACK = {"type": "diffuse", "reflectance": 0.0}
+BOUNDARIES = ("dielectric", "interface", "principled", "rough_dielectric")
+
+
+def coefficients(material):
+    """Absorption and scattering [1/m] of what is inside a material, or of the scene's medium."""
+    absorption, scattering = material.get("absorption"), material.get("scattering", {})
+    sigma_a, sigma_s = np.zeros(3), np.array(rgb(scattering.get("coefficient", 0)), dtype=float)
+    if absorption:
+        sigma_a = -np.log(rgb(absorption["transmittance"])) / absorption["distance"]
+    if "albedo" in scattering:
+        sigma_t, albedo = 1 / np.array(rgb(scattering["mean_free_path"])), np.array(rgb(scattering["albedo"]))
+        sigma_a, sigma_s = (1 - albedo) * sigma_t, albedo * sigma_t
+    return sigma_a, sigma_s
+
+
+MEDIA = {}  # By their descriptions: one object for all that refer to a medium.
 
 
 def medium(material):
-    """The absorbing medium inside a dielectric; none if it absorbs nothing."""
-    absorption = material.get("absorption")
-    if not absorption:
+    """The medium inside a material, or around everything; none if it neither absorbs nor scatters."""
+    sigma_a, sigma_s = coefficients(material)
+    sigma_t = sigma_a + sigma_s
+    if not sigma_t.any():
         return None
-    sigma_t = -np.log(rgb(absorption["transmittance"])) / absorption["distance"]
     scale = float(max(sigma_t))  # Mitsuba treats it as a colour, in [0, 1].
-    return {"type": "homogeneous", "albedo": 0.0, "sigma_t": colour((sigma_t / scale).tolist()), "scale": scale}
+    albedo = np.divide(sigma_s, sigma_t, out=np.zeros(3), where=sigma_t > 0)
+    g = material.get("scattering", {}).get("g", 0)
+    key = str((sigma_a, sigma_s, g))
+    if key not in MEDIA:
+        MEDIA[key] = mi.load_dict({"type": "homogeneous", "albedo": colour(albedo.tolist()), "scale": scale,
+                                   "sigma_t": colour((sigma_t / scale).tolist()), "phase": {"type": "hg", "g": float(g)}})
+    return MEDIA[key]
 
 
 # --- Shapes ----------------------------------------------------------------------------------------------------------
@@ -284,12 +318,14 @@ def shape_of(shape, scene, folder, temporary):
     smooth = not result.get("face_normals", True)
     if "material" in shape:
         material = scene["materials"][shape["material"]]
-        outer = around(shape, scene) if material["type"] == "dielectric" else None
-        if outer:
+        outer = around(shape, scene) if material["type"] in ("dielectric", "interface") else None
+        if outer and "ior" in outer:
             material = {"exterior_ior": outer["ior"], **material}
         result["bsdf"] = detailed(BSDFS[material["type"]](material, smooth), material)
-        media = {"interior": medium(material), "exterior": medium(outer) if outer else None}
-        result |= {side: inside for side, inside in media.items() if inside}
+        # Without media, a shape does not change that of a path; light does not pass the opaque ones.
+        if material["type"] in BOUNDARIES:
+            media = {"interior": medium(material), "exterior": medium(outer or scene.get("medium", {}))}
+            result |= {side: inside for side, inside in media.items() if inside}
     else:
         result["bsdf"] = BLACK
     if "emission" in shape:
@@ -369,11 +405,13 @@ def environment_of(environment, folder):
 # --- Pictures --------------------------------------------------------------------------------------------------------
 
 
-def integrator(scene):
-    if any("absorption" in material for material in scene["materials"].values()):
+def integrator(name, scene):
+    media = [*scene["materials"].values(), scene.get("medium", {})]
+    if any("absorption" in material or "scattering" in material for material in media):
         # Of the two integrators with media, `volpath` has fireflies, and the roulette of `volpathmis` loses 0.2 % of
         # the light: so this is the latter without roulette, and with more vertices than light survives.
-        return {"type": "volpathmis", "max_depth": 64, "rr_depth": 64}
+        depth = MOST_VERTICES.get(name, 64)
+        return {"type": "volpathmis", "max_depth": depth, "rr_depth": depth}
     depth = scene.get("integrator", {}).get("max_depth", "unlimited")
     # Mitsuba counts the light as a vertex, too.
     return {"type": "path", "max_depth": -1 if depth == "unlimited" else depth + 1}
@@ -383,7 +421,9 @@ def load(name, temporary):
     scene, folder = read_scene(name)
     FOLDER[0] = folder
     camera = next(iter(scene["cameras"].values()))
-    result = {"type": "scene", "integrator": integrator(scene), "sensor": sensor(camera)}
+    result = {"type": "scene", "integrator": integrator(name, scene), "sensor": sensor(camera)}
+    if around_all := medium(scene.get("medium", {})):
+        result["sensor"]["medium"] = around_all
     if "environment" in scene:
         result["environment"] = environment_of(scene["environment"], folder)
     for i, shape in enumerate(side for shape in scene["shapes"] for side in sides(shape)):

@@ -280,7 +280,7 @@ TEST_P(LayeredIdentityTest, LayersInSmallTilesAndManySubmissions) {
     expect_same_bits(r.download(), in_one_go(settings()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, LayeredIdentityTest, testing::Values(layered_scene));
+INSTANTIATE_TEST_SUITE_P(Scenes, LayeredIdentityTest, testing::Values(layered_scene, hazy_room));
 
 class ArrayIdentityTest : public IdentityTest {};
 

@@ -53,6 +53,8 @@ constexpr std::array REFERENCES{
     Reference{"punctual-lights", 768},
     Reference{"hundred-lights", 1280},
     Reference{"orthographic", 512},
+    Reference{"smoke", 512},
+    Reference{"milk", 512},
     Reference{"principled-nested-glass", 512, "nested-glass"},
 };
 

@@ -172,4 +172,21 @@ Scene layered_scene() {
     return scene;
 }
 
+Scene hazy_room() {
+    Scene scene = open_room();
+    scene.medium = {vec3(0.05f), vec3(0.05f, 0.1f, 0.15f), 0.5f};
+    scene.environment = constant_environment(vec3(0.5f, 0.7f, 1.0f));
+    const uint32_t black = add_diffuse(scene, vec3(0));
+    add_shape(scene, Sphere{dvec3(-0.6, 0.5, 0), 0.4},
+              add_material(scene, InterfaceMaterial{{vec3(0.2f), vec3(0.4f, 0.6f, 0.8f), -0.3f}}));
+    add_shape(scene, Sphere{dvec3(-0.6, 0.5, 0), 0.2}, black, Emission{vec3(2, 4, 6)});
+    add_shape(
+        scene, Sphere{dvec3(0.5, 0.4, 0.2), 0.3},
+        add_material(scene, DiffuseTransmissionMaterial{vec3(0.3f), vec3(0.6f), Medium{vec3(0), vec3(2)}}));
+    add_shape(scene, parallelogram(vec3(-0.8f, 1.8f, -0.8f), vec3(1.6f, 0, 0), vec3(0, 0, 1.6f)), black,
+              Emission{vec3(2, 4, 6)});
+    scene.lights = {{"", PointLight{dvec3(0.9, 1, 0.5), vec3(0.3f)}}};
+    return scene;
+}
+
 }  // namespace candela

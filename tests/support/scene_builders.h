@@ -36,4 +36,8 @@ Scene textured_scene();
 // sheen and fuzz among them.
 Scene layered_scene();
 
+// Haze, a cloud around a lamp, and wax, in an open room under another lamp, a point light and a sky: light on
+// ways of every kind through media.
+Scene hazy_room();
+
 }  // namespace candela

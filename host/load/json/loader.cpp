@@ -67,6 +67,19 @@ void read_base(const Node& node, const std::filesystem::path& folder, const Gltf
     }
 }
 
+// Nothing comes through a medium without an end.
+void warn_of_hidden_lights(const Node& root, Scene& scene) {
+    const bool sun = std::ranges::any_of(scene.lights, [](const Light& light) {
+        return std::holds_alternative<DirectionalLight>(light.model);
+    });
+    if (scene.medium.scattering + scene.medium.absorption == vec3(0.0f) || !(scene.environment || sun))
+        return;
+    scene.warnings.push_back(
+        root.require("medium").place() +
+        ": the medium has no end, so that no light of the sky or of suns comes through it; give it "
+        "to an \"interface\" around the scene instead");
+}
+
 JsonScene scene_of(const json::Document& document, const std::filesystem::path& folder,
                    const GltfOptions& gltf, const LoadProgress& progress, const FileReach& reach,
                    GltfFiles& files, const NamedArrays* arrays = nullptr) {
@@ -102,9 +115,11 @@ JsonScene scene_of(const json::Document& document, const std::filesystem::path& 
     if (shapes) read_shapes(*shapes, objects, folder, scene, progress);
     if (const auto lights = root.find("lights"))
         std::ranges::move(read_lights(*lights, scene), std::back_inserter(scene.lights));
+    if (const auto medium = root.find("medium")) scene.medium = read_medium(*medium);
     if (auto environment = read_distant_light(root, folder, scene))
         scene.environment = std::move(environment);
 
+    warn_of_hidden_lights(root, scene);
     if (base) {
         complete_gltf_scene(base->place(), scene);
         return {std::move(scene), base->place(), true};

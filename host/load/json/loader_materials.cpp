@@ -75,7 +75,7 @@ MaterialModel read_diffuse_transmission(const Node& node, const ImageFolder& ima
     const Textured<dvec3> transmittance = read_reflectance(place, images);
     check_sum(place, "reflectance + transmittance", reflectance, transmittance);
     DiffuseTransmissionMaterial material{as_floats(reflectance), as_floats(transmittance), {}};
-    if (const auto absorption = node.find("absorption")) material.inside = read_absorption(*absorption);
+    if (const auto inside = find_medium(node)) material.inside = inside;
     return material;
 }
 
@@ -92,7 +92,7 @@ void read_values(const Node& node, DielectricMaterial& material) {
                 "ior and exterior_ior differ by a factor above a million; give both as those of real media");
     }
     if (const auto fresnel = node.find("fresnel")) material.fresnel = fresnel->choice(FRESNEL_NAMES);
-    if (const auto absorption = node.find("absorption")) material.inside = read_absorption(*absorption);
+    if (const auto inside = find_medium(node)) material.inside = *inside;
     if (const auto priority = node.find("priority"))
         material.priority = read_integer(*priority, scene_key("dielectric", "priority"));
 }
@@ -102,6 +102,20 @@ MaterialModel read_dielectric(const Node& node, const ImageFolder&) {
     node.require("ior");
     DielectricMaterial material;
     read_values(node, material);
+    return material;
+}
+
+// Reads the values that are present.
+void change_values(const Node& node, const ImageFolder&, InterfaceMaterial& material) {
+    node.allow_only({"type"}, keys_of({"interface"}));
+    if (const auto inside = find_medium(node)) material.inside = *inside;
+    if (const auto priority = node.find("priority"))
+        material.priority = read_integer(*priority, scene_key("interface", "priority"));
+}
+
+MaterialModel read_interface(const Node& node, const ImageFolder& images) {
+    InterfaceMaterial material;
+    change_values(node, images, material);
     return material;
 }
 
@@ -149,7 +163,7 @@ void change_values(const Node& node, const ImageFolder& images, DiffuseTransmiss
     change_color(node, "transmittance", images, material.transmittance);
     check_sum(node, "reflectance + transmittance", as_doubles(material.reflectance),
               as_doubles(material.transmittance), FLOAT_SLACK);
-    if (const auto absorption = node.find("absorption")) material.inside = read_absorption(*absorption);
+    if (const auto inside = find_medium(node)) material.inside = inside;
 }
 
 void change_values(const Node& node, const ImageFolder&, DielectricMaterial& material) {
@@ -172,30 +186,15 @@ void read_surface(const Node& node, const ImageFolder& images, Material& materia
 
 }  // namespace
 
-// By Beer and Lambert, from the fraction of light that is left after a distance.
-Medium read_absorption(const Node& node) {
-    node.allow_only({}, keys_of({"absorption"}));
-    const Node transmittance = node.require("transmittance");
-    const dvec3 fraction = transmittance.reflectance();
-    if (glm::any(glm::equal(fraction, dvec3(0.0)))) {
-        transmittance.fail_expected("numbers above 0 and up to 1");
-    }
-    const Node distance = node.require("distance");
-    const dvec3 absorption = abs(log(fraction)) / distance.positive();
-    if (glm::any(glm::greaterThan(absorption, dvec3(FLOAT_MAX)))) {
-        distance.fail("the absorption exceeds the range of 32-bit floats; use a longer distance");
-    }
-    return {vec3(absorption)};
-}
-
 Material read_material(const Node& node, const ImageFolder& images) {
-    constexpr std::array<std::pair<std::string_view, MaterialModel (*)(const Node&, const ImageFolder&)>, 9>
+    constexpr std::array<std::pair<std::string_view, MaterialModel (*)(const Node&, const ImageFolder&)>, 10>
         READERS{{{"diffuse", &read_diffuse},
                  {"phong", &read_phong},
                  {"mirror", &read_mirror},
                  {"conductor", &read_conductor},
                  {"dielectric", &read_dielectric},
                  {"diffuse_transmission", &read_diffuse_transmission},
+                 {"interface", &read_interface},
                  {"principled", &read_principled},
                  {"rough_conductor", &read_rough_conductor},
                  {"rough_dielectric", &read_rough_dielectric}}};

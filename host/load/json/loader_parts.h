@@ -30,8 +30,15 @@ Material read_changed_material(const Node& node, const ImageFolder& images, cons
 // The same for the values of its model.
 void change_values(const Node& node, const ImageFolder& images, PrincipledMaterial& material);
 
-// Reads the object "absorption": the absorbing medium behind a surface.
-Medium read_absorption(const Node& node);
+// Reads the keys of a medium, if there is any of them: "absorption" and "scattering".
+std::optional<Medium> find_medium(const Node& node);
+
+// Reads the object "subsurface" into the material's diffuse transmission; returns the medium inside, if the
+// surface is no thin wall.
+std::optional<Medium> read_subsurface(const Node& node, bool thin, PrincipledMaterial& material);
+
+// Reads the object "medium": the medium around everything.
+Medium read_medium(const Node& node);
 
 using MaterialModel = decltype(Material::model);
 

@@ -39,18 +39,31 @@ void check_unlit(const Node& node) {
     }
 }
 
-// Reads what is behind the surface; without "absorption" and "thin_walled", the same as in front of it if it
-// is `thin`.
-void read_inside(const Node& node, bool thin, PrincipledMaterial& material) {
-    const auto absorption = node.find("absorption");
-    const auto thin_walled = node.find("thin_walled");
-    if (absorption) thin = false;
-    if (thin_walled) thin = thin_walled->boolean();
-    if (absorption && thin) {
-        thin_walled->fail(
-            "a thin wall has no inside that could absorb light; remove thin_walled, or absorption");
+const std::string THIN_WITH_MEDIUM =
+    "a thin wall has no inside that could absorb or scatter light; remove thin_walled, or \"absorption\" and "
+    "\"scattering\"";
+
+// The medium that the keys give, other than "thin_walled".
+std::optional<Medium> find_inside(const Node& node, PrincipledMaterial& material) {
+    const auto subsurface = node.find("subsurface"), thin = node.find("thin_walled");
+    if (!subsurface) return find_medium(node);
+    for (const char* other :
+         {"diffuse_transmission", "diffuse_transmission_color", "absorption", "scattering"}) {
+        if (const auto found = node.find(other))
+            found->fail(concat("\"subsurface\" says this, too; remove it, or ", other));
     }
-    if (!thin) material.inside = absorption ? read_absorption(*absorption) : Medium{};
+    return read_subsurface(*subsurface, thin && thin->boolean(), material);
+}
+
+// Reads what is behind the surface; without a medium and "thin_walled", the same as in front of it if it is
+// `thin`.
+void read_inside(const Node& node, bool thin, PrincipledMaterial& material) {
+    const auto thin_walled = node.find("thin_walled");
+    const std::optional<Medium> inside = find_inside(node, material);
+    if (inside) thin = false;
+    if (thin_walled) thin = thin_walled->boolean();
+    if (inside && thin) thin_walled->fail(THIN_WITH_MEDIUM);
+    if (!thin) material.inside = inside.value_or(Medium{});
     if (const auto priority = node.find("priority")) {
         material.priority = read_integer(*priority, scene_key("dielectric", "priority"));
         if (thin) {
@@ -69,9 +82,11 @@ void check_inside(const Node& node, const PrincipledMaterial& material) {
             "\"thin_walled\": false, or remove dispersion");
     }
     if (!material.inside) return;
-    if (!node.find("transmission") && !node.find("diffuse_transmission")) {
-        const auto absorption = node.find("absorption");
-        (absorption ? *absorption : node.require("thin_walled"))
+    if (!node.find("transmission") && !node.find("diffuse_transmission") && !node.find("subsurface")) {
+        const auto absorption = node.find("absorption"), scattering = node.find("scattering");
+        (absorption   ? *absorption
+         : scattering ? *scattering
+                      : node.require("thin_walled"))
             .fail(
                 "no light reaches the medium inside; add \"transmission\" or \"diffuse_transmission\", or "
                 "make the surface a thin wall");
@@ -160,12 +175,11 @@ MaterialModel read_principled(const Node& node, const ImageFolder& images) {
 void change_values(const Node& node, const ImageFolder& images, PrincipledMaterial& material) {
     allow_principled(node, {});
     read_values(node, images, material);
-    if (const auto absorption = node.find("absorption")) material.inside = read_absorption(*absorption);
+    const std::optional<Medium> inside = find_inside(node, material);
+    if (inside) material.inside = inside;
     if (const auto thin = node.find("thin_walled")) {
         if (thin->boolean()) {
-            if (node.find("absorption"))
-                thin->fail(
-                    "a thin wall has no inside that could absorb light; remove thin_walled, or absorption");
+            if (inside) thin->fail(THIN_WITH_MEDIUM);
             material.inside.reset();
         } else if (!material.inside) {
             material.inside = Medium{};

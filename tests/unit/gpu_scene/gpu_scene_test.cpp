@@ -274,11 +274,15 @@ TEST(GpuScene, EveryMaterialHasItsRecord) {
         EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i], words[0]) << i;
         EXPECT_EQ(gpu.arrays[ARRAY_MATERIALS][2 * i + 1], words[1]) << i;
     }
-    EXPECT_EQ(gpu.materials_present, ((1u << MATERIAL_COUNT) - 1) & ~(1u << MATERIAL_PRINCIPLED));
-    const auto medium = [](vec3 absorption, float ior) { return pack(MediumRecord{absorption, ior})[0]; };
-    EXPECT_EQ(gpu.arrays[ARRAY_MEDIA], (std::vector<uvec4>{medium(vec3(0), 1), medium(vec3(1, 2, 3), 1.5f),
-                                                           medium(vec3(0), 1.5f), medium(vec3(1, 2, 3), 1)}));
+    EXPECT_EQ(gpu.materials_present,
+              ((1u << MATERIAL_COUNT) - 1) & ~(1u << MATERIAL_PRINCIPLED | 1u << MATERIAL_PHASE));
+    std::vector<uvec4> media;
+    for (const auto& [absorption, ior] :
+         {std::pair(vec3(0), 1.0f), {vec3(1, 2, 3), 1.5f}, {vec3(0), 1.5f}, {vec3(1, 2, 3), 1.0f}})
+        std::ranges::copy(pack(MediumRecord{absorption, ior, vec3(0), 0.0f}), std::back_inserter(media));
+    EXPECT_EQ(gpu.arrays[ARRAY_MEDIA], media);
     EXPECT_TRUE(gpu.has_media);
+    EXPECT_FALSE(gpu.volumetric);
     EXPECT_FALSE(build_gpu_scene(scene_of_shapes({})).has_media);
     EXPECT_EQ(build_gpu_scene(scene_of_shapes({})).materials_present, 1u << MATERIAL_DIFFUSE);
 }

@@ -35,10 +35,11 @@ TEST(SceneMaterials, AreFoundByName) {
 
 TEST(SceneMaterials, HaveAKnownType) {
     SceneFolder folder;
-    folder.expect_error(material(R"({"type": @"difuse", "reflectance": 1})"),
-                        "unknown type \"difuse\" (did you mean \"diffuse\"? known: diffuse, phong, mirror, "
-                        "conductor, dielectric, diffuse_transmission, principled, rough_conductor, "
-                        "rough_dielectric)");
+    folder.expect_error(
+        material(R"({"type": @"difuse", "reflectance": 1})"),
+        "unknown type \"difuse\" (did you mean \"diffuse\"? known: diffuse, phong, mirror, "
+        "conductor, dielectric, diffuse_transmission, interface, principled, rough_conductor, "
+        "rough_dielectric)");
     folder.expect_error(material(R"(@{"reflectance": 1})"), "the key \"type\" is missing here; add it");
     folder.expect_error(
         material(R"({"type": "mirror", @"alpha": 0.1})"),
@@ -224,11 +225,76 @@ TEST(SceneMaterials, CheckDielectrics) {
     folder.expect_error(absorption(R"({"transmittance": 0.5, "distance": @0})"),
                         "\"distance\": expected a number above 0, found 0");
     folder.expect_error(absorption(R"({"transmittance": 1e-300, "distance": @1e-37})"),
-                        "the absorption exceeds the range of 32-bit floats; use a longer distance");
+                        "the medium exceeds the range of 32-bit floats; use a longer distance");
     folder.expect_error(absorption(R"(@{"transmittance": 0.5})"),
                         "the key \"distance\" is missing here; add it");
     folder.expect_error(absorption(R"(@{"distance": 0.5})"),
                         "the key \"transmittance\" is missing here; add it");
+}
+
+TEST(SceneMaterials, ReadInterfacesAndScattering) {
+    const auto cloud = material<InterfaceMaterial>(
+        R"({"type": "interface", "scattering": {"coefficient": [1, 2, 0], "g": -0.25},
+            "absorption": {"transmittance": [0.5, 1, 0.25], "distance": 0.1}, "priority": 2})");
+    EXPECT_EQ(cloud.inside.scattering, vec3(1, 2, 0));
+    EXPECT_EQ(cloud.inside.absorption, vec3(6.9314718056f, 0.0f, 13.8629436112f));
+    EXPECT_EQ(cloud.inside.g, -0.25f);
+    EXPECT_EQ(cloud.priority, 2u);
+    EXPECT_EQ(material<InterfaceMaterial>(R"({"type": "interface"})"), InterfaceMaterial());
+    // Of what comes as far as 0.1 m, a particle scatters 0.75.
+    const auto milk = material<DielectricMaterial>(
+        R"({"type": "dielectric", "ior": 1.33,
+            "scattering": {"albedo": [0.75, 1, 0], "mean_free_path": [0.125, 0.5, 1], "g": 0.75}})");
+    EXPECT_EQ(milk.inside.scattering, vec3(6, 2, 0));
+    EXPECT_EQ(milk.inside.absorption, vec3(2, 0, 1));
+    EXPECT_EQ(milk.inside.g, 0.75f);
+    const auto paper = material<DiffuseTransmissionMaterial>(
+        R"({"type": "diffuse_transmission", "reflectance": 0, "transmittance": 1, "scattering": {"coefficient": 3}})");
+    ASSERT_TRUE(paper.inside);
+    EXPECT_EQ(paper.inside->scattering, vec3(3));
+}
+
+// A medium that fills half of space, of particles that scatter in all directions, reflects (1 - s) (1 - 0.139
+// s) / (1 + 1.17 s) of diffuse light, with s = sqrt(1 - albedo), within 0.002. Ref: van de Hulst 1980,
+// Multiple Light Scattering, chapter 11.
+TEST(SceneMaterials, ReadScatteringByWhatItReflects) {
+    for (const double reflectance : {0.0, 0.1, 0.5, 0.9, 1.0}) {
+        const auto solid = material<InterfaceMaterial>(
+            R"({"type": "interface", "scattering": {"mean_free_path": 0.5, "reflectance": )" +
+            std::to_string(reflectance) + "}}");
+        const vec3 extinction = solid.inside.scattering + solid.inside.absorption;
+        EXPECT_NEAR(extinction.x, 2.0, 1e-6);
+        const double s = std::sqrt(std::max(0.0, 1.0 - double(solid.inside.scattering.x) / 2.0));
+        EXPECT_NEAR((1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s), reflectance, 0.002);
+    }
+}
+
+TEST(SceneMaterials, CheckScattering) {
+    SceneFolder folder;
+    const auto scattering = [](const std::string& value) {
+        return material("{\"type\": \"interface\", \"scattering\": " + value + "}");
+    };
+    folder.expect_error(scattering("@{}"), "expected one of \"coefficient\", \"albedo\" and \"reflectance\"");
+    folder.expect_error(scattering(R"(@{"coefficient": 1, "albedo": 1})"),
+                        "expected one of \"coefficient\", \"albedo\" and \"reflectance\"");
+    folder.expect_error(scattering(R"({"coefficient": @-1})"),
+                        "\"coefficient\": expected numbers of at least 0, found -1");
+    folder.expect_error(scattering(R"({"coefficient": 1, "g": @1})"),
+                        "\"g\": expected a number from -0.999 to 0.999, found 1");
+    folder.expect_error(scattering(R"({"coefficient": 1, "mean_free_path": @1})"),
+                        "the coefficient says how far light comes; remove mean_free_path");
+    folder.expect_error(scattering(R"(@{"albedo": 1})"),
+                        "the key \"mean_free_path\" is missing here; add it");
+    folder.expect_error(scattering(R"({"albedo": @1.5, "mean_free_path": 1})"),
+                        "\"albedo\": expected numbers from 0 to 1, found 1.5");
+    folder.expect_error(scattering(R"({"albedo": 1, "mean_free_path": @[1, 0, 1]})"),
+                        "\"mean_free_path\": expected numbers above 0, found [1, 0, 1]");
+    folder.expect_error(scattering(R"({"albedo": 1, "mean_free_path": @1e-300})"),
+                        "the medium exceeds the range of 32-bit floats; use a longer distance");
+    folder.expect_error(
+        material(R"({"type": "interface", "scattering": {"albedo": @1, "mean_free_path": 1},
+                     "absorption": {"transmittance": 0.5, "distance": 1}})"),
+        "this says how much light is absorbed; remove \"absorption\", or use \"coefficient\"");
 }
 
 }  // namespace

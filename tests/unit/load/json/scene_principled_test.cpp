@@ -254,7 +254,8 @@ TEST_F(ScenePrincipled, IsAThinWallUnlessItHasAMediumInside) {
     EXPECT_EQ(load(principled(TRANSPARENT + absorption)).inside, smoke);
 
     expect_error("\"transmission\": 1, \"thin_walled\": @true, " + absorption,
-                 "a thin wall has no inside that could absorb light; remove thin_walled, or absorption");
+                 "a thin wall has no inside that could absorb or scatter light; remove thin_walled, or "
+                 "\"absorption\" and \"scattering\"");
     expect_error("\"transmission\": 1, \"priority\": @1",
                  "priority ranks the medium inside, and a thin wall has none; add \"absorption\" or "
                  "\"thin_walled\": false, or remove priority");
@@ -428,11 +429,39 @@ TEST_F(ScenePrincipled, ReadsRoughDielectrics) {
     refuse(R"(@{"type": "rough_dielectric", "ior": 1})", "the key \"roughness\" is missing here; add it");
     refuse(R"({"type": "rough_dielectric", "ior": 1.5, "roughness": 0, "thin_walled": @true,
                "absorption": {"transmittance": 0.5, "distance": 1}})",
-           "a thin wall has no inside that could absorb light; remove thin_walled, or absorption");
+           "a thin wall has no inside that could absorb or scatter light; remove thin_walled, or "
+           "\"absorption\" and \"scattering\"");
     refuse(
         R"({"type": "rough_dielectric", "ior": 1.5, "roughness": 0, "thin_walled": true, "priority": @1})",
         "priority ranks the medium inside, and a thin wall has none; add \"absorption\" or \"thin_walled\": "
         "false, or remove priority");
+}
+
+TEST_F(ScenePrincipled, ReadsSubsurface) {
+    const auto skin = load(
+        principled(R"("subsurface": {"color": 0.5, "radius": [1, 0.5, 0.25], "g": 0.25, "weight": 0.75})"));
+    EXPECT_EQ(skin.diffuse_transmission.factor, 0.75f);
+    EXPECT_EQ(skin.diffuse_transmission_color.factor, vec3(1));
+    ASSERT_TRUE(skin.inside);
+    const vec3 extinction = skin.inside->scattering + skin.inside->absorption;
+    EXPECT_NEAR(extinction.x, 1.0f, 1e-6f);
+    EXPECT_NEAR(extinction.z, 4.0f, 1e-6f);
+    EXPECT_EQ(skin.inside->g, 0.25f);
+    // (1 - s^2) / (1 - g s^2), with s = 0.2971 for this colour.
+    EXPECT_NEAR(skin.inside->scattering.x, 0.9323f, 1e-4f);
+    // A thin wall scatters (1 + g) / 2 forwards.
+    const auto leaf = load(principled(
+        R"("base_color": 0.2, "thin_walled": true, "subsurface": {"color": 0.5, "radius": 1, "g": 0.5, "weight": 0.5})"));
+    EXPECT_FALSE(leaf.inside);
+    EXPECT_EQ(leaf.diffuse_transmission.factor, 0.375f);
+    EXPECT_EQ(leaf.diffuse_transmission_color.factor, vec3(0.5f));
+    EXPECT_NEAR(leaf.base_color.factor.x, (0.5f * 0.2f + 0.125f * 0.5f) / 0.625f, 1e-6f);
+    const std::string subsurface = R"("subsurface": {"color": 0.5, "radius": 1}, )";
+    expect_error(subsurface + "\"diffuse_transmission\": @1",
+                 "\"subsurface\" says this, too; remove it, or diffuse_transmission");
+    expect_error(subsurface + R"("scattering": @{"coefficient": 1})",
+                 "\"subsurface\" says this, too; remove it, or scattering");
+    expect_error(R"("subsurface": @{"color": 0.5})", "the key \"radius\" is missing here; add it");
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ TEST(Scene, SaysWhichKeysItKnows) {
     folder.expect_error(
         "{" + GOOD_CAMERA + ",\n\"shapes\": [], @\"light\": []}",
         "unknown key \"light\" (did you mean \"lights\"? known: $schema, scene, cameras, film, integrator, "
-        "materials, objects, shapes, lights, environment, sky)");
+        "materials, objects, shapes, lights, environment, sky, medium)");
     folder.expect_error(
         settings(R"("cameras": {"m": {"position": [0, 0, 1], "look_at": [0, 0, 0], @"vertcal_fov": 40}})"),
         "unknown key \"vertcal_fov\" (did you mean \"vertical_fov\"? known: position, look_at, up, "
