@@ -13,7 +13,7 @@
 namespace candela::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 26> READ{"EXT_lights_image_based",
+constexpr std::array<std::string_view, 27> READ{"EXT_lights_image_based",
                                                 "EXT_mesh_gpu_instancing",
                                                 "EXT_meshopt_compression",
                                                 "EXT_texture_webp",
@@ -33,6 +33,7 @@ constexpr std::array<std::string_view, 26> READ{"EXT_lights_image_based",
                                                 "KHR_materials_unlit",
                                                 "KHR_materials_variants",
                                                 "KHR_materials_volume",
+                                                "KHR_materials_volume_scatter",
                                                 "KHR_mesh_quantization",
                                                 "KHR_meshopt_compression",
                                                 "KHR_node_visibility",
@@ -88,7 +89,7 @@ constexpr std::array<std::string_view, 42> UNSEEN{"AGI_articulations",
 // Extensions that are not read, and what is then missing.
 constexpr const char* OTHER_IMAGES = "images in PNG, JPEG or WebP are used instead";
 constexpr const char* NO_TOON = "toon shading looks as the material does without it";
-constexpr std::array<std::pair<std::string_view, std::string_view>, 15> NOT_READ{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 14> NOT_READ{
     {{"ADOBE_materials_thin_transparency", "thin walls are as opaque as the material is without it"},
      {"EXT_lights_ies", "lights shine evenly, without a profile"},
      {"EXT_texture_avif", OTHER_IMAGES},
@@ -96,7 +97,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 15> NOT_READ
      {"GOOGLE_tilt_brush_material", "brushes look as their materials do without it"},
      {"KHR_gaussian_splatting", "splats are points, which are left out"},
      {"KHR_gaussian_splatting_compression_spz_2", "splats are points, which are left out"},
-     {"KHR_materials_volume_scatter", "bodies absorb light within, but do not scatter it"},
      {"KHR_techniques_webgl", "materials look as they do without it"},
      {"KHR_texture_basisu", OTHER_IMAGES},
      {"MOZ_lightmap", "light is computed instead"},

@@ -187,7 +187,14 @@ class MaterialReader {
     // With a thickness the body is solid, and light is absorbed along its true path inside; without one the
     // surface is a thin wall.
     void read_volume(const Node& volume, PrincipledMaterial& m) {
-        if (number(volume, "thicknessFactor", 0.0f, FLOAT_MAX, 0.0f) == 0.0f) return;
+        const auto scatter = extension("KHR_materials_volume_scatter");
+        if (number(volume, "thicknessFactor", 0.0f, FLOAT_MAX, 0.0f) == 0.0f) {
+            if (scatter)
+                file_.warn(
+                    *scatter,
+                    "the volume has no thickness: the surface is a thin wall, within which nothing scatters");
+            return;
+        }
         m.inside.emplace();
         const auto distance = volume.find("attenuationDistance");
         if (!distance) return;        // Infinite.
@@ -202,6 +209,21 @@ class MaterialReader {
             const double fraction = std::clamp(double(left[i]), double(MIN), 1.0);
             m.inside->absorption[i] = float(std::min(-std::log(fraction) / length, double(FLOAT_MAX)));
         }
+        if (scatter) read_scattering(*scatter, *m.inside);
+    }
+
+    // Some of what the medium takes out of a ray's way is scattered instead of absorbed. A draft of the
+    // extension has a factor and a texture in place of the colour.
+    void read_scattering(const Node& scatter, Medium& medium) {
+        const char* name =
+            scatter.find("multiscatterColorFactor") ? "multiscatterColorFactor" : "multiscatterColor";
+        const dvec3 color(color_of(file_, scatter, name, 1.0f, vec3(0.0f)));
+        if (const auto texture = scatter.find("multiscatterColorTexture"))
+            file_.warn(*texture, "the medium is the same everywhere inside; its texture is ignored");
+        const dvec3 extinction(medium.absorption), albedo = single_scattering_albedo(color, 0.0f);
+        medium.absorption = vec3(extinction * (1.0 - albedo));
+        medium.scattering = vec3(extinction * albedo);
+        medium.g = number(scatter, "scatterAnisotropy", {-MAX_ANISOTROPY, MAX_ANISOTROPY}, 0.0f);
     }
 
     // A specular colour above 1 raises the reflectance of the index. If no light is refracted, another index

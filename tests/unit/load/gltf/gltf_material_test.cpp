@@ -244,6 +244,34 @@ TEST_F(GltfMaterial, ReadsExtensionsOfBodies) {
                    "above 0, and is treated as infinite");
 }
 
+// The example of the extension's text, with a thickness.
+TEST_F(GltfMaterial, SomeOfWhatTheMediumTakesIsScattered) {
+    const auto body = [](const Json& volume) {
+        return Json{{"extensions",
+                     {{"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 1}}},
+                      {"KHR_materials_volume", volume},
+                      {"KHR_materials_volume_scatter",
+                       {{"multiscatterColor", {0.572, 0, 1}}, {"scatterAnisotropy", 0.3}}}}}};
+    };
+    const Json dense{
+        {"thicknessFactor", 1}, {"attenuationColor", {0.9, 0.9, 0.9}}, {"attenuationDistance", 0.01}};
+    const auto skin = principled(body(dense));
+    ASSERT_TRUE(skin.inside);
+    const double extinction = -std::log(0.9) / 0.01;
+    for (const int c : {0, 1, 2})
+        EXPECT_NEAR(double(skin.inside->absorption[c] + skin.inside->scattering[c]), extinction,
+                    1e-5 * extinction);
+    // 1 - (4.09712 + 4.20863 c - sqrt(9.59217 + 41.6808 c + 17.7126 c^2))^2 of it.
+    EXPECT_NEAR(double(skin.inside->scattering.x) / extinction, 0.94184, 1e-4);
+    EXPECT_NEAR(double(skin.inside->scattering.y), 0.0, 1e-3);
+    EXPECT_NEAR(double(skin.inside->absorption.z), 0.0, 1e-3);
+    EXPECT_EQ(skin.inside->g, 0.3f);
+    expect_warning(file_of(body({{"attenuationDistance", 1}})),
+                   "#/materials/0/extensions/KHR_materials_volume_scatter: the volume has no thickness: the "
+                   "surface is a "
+                   "thin wall, within which nothing scatters");
+}
+
 TEST_F(GltfMaterial, AnUnlitOneShowsItsColourAlone) {
     Json unlit = extension("KHR_materials_unlit", Json::object());
     unlit["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", 1}};
