@@ -160,10 +160,26 @@ class _Writer:
         self._set_emission(self.read(node, "Emission Color"), self.read(node, "Emission Strength"), node)
         self.set_opacity(self.read(node, "Alpha"))
         self.set_normal(node)
-        if self.number(node, "Subsurface Weight") > 0:
-            self.notice(node, "candela does not scatter light below surfaces; the surface is diffuse instead")
+        self._set_subsurface(node, base)
         if self.number(node, "Anisotropic") > 0:
             self.notice(node, "its anisotropy is left out")
+
+    def _set_subsurface(self, node, base):
+        """Cycles' radius is 4 pi times the mean free path, and the latter is longer by 1 / (1 - g)."""
+        weight = self.number(node, "Subsurface Weight")
+        if weight <= 0:
+            return
+        if "transmission" in self.made.values:
+            self.notice(node, "its subsurface scattering is left out, since it also transmits light")
+            return
+        g = min(max(self.number(node, "Subsurface Anisotropy"), 0.0), 0.9)
+        radius = self.read(node, "Subsurface Radius").color * self.number(node, "Subsurface Scale", 0.05)
+        if not base.is_constant:
+            self.notice(node, "light is scattered below the surface by the mean colour of its image")
+        color = base.pixels.reshape(-1, base.pixels.shape[-1])[:, :3].mean(0)
+        self.made.values["subsurface"] = {
+            "weight": min(weight, 1.0), "color": numpy.clip(color, 0, 1).tolist(), "g": g,
+            "radius": numpy.maximum(numpy.broadcast_to(radius, 3) * (1 - g) / (4 * math.pi), 1e-6).tolist()}
 
     def _set_reflection(self, node, transmission):
         """Blender's level scales the reflectance at normal incidence, by 1 at 0.5; above, the index follows it."""

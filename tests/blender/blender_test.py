@@ -187,8 +187,16 @@ class BlenderTest(SceneTest):
                 self.assertEqual(self.notices(), "")
                 self.expect_close(centre(self.render())[1], 1.0, 0.1)
 
+    def test_light_is_scattered_below_surfaces(self):
+        add("uv_sphere", principled("Wax", Base_Color=(0.9, 0.1, 0.1, 1), Subsurface_Weight=1.0, Subsurface_Scale=0.5,
+                                    Subsurface_Anisotropy=0.5), radius=1)
+        add_camera()
+        self.assertEqual(self.notices(), "")
+        red, green, _ = centre(self.render())[:3]
+        self.assertGreater(red, 3 * green)
+
     def test_what_candela_does_not_know_is_named(self):
-        material = principled("Clouds", Subsurface_Weight=0.5)
+        material = principled("Clouds", Anisotropic=0.5)
         noise = material.node_tree.nodes.new("ShaderNodeTexNoise")
         material.node_tree.links.new(noise.outputs[0], material.node_tree.nodes["Principled BSDF"].inputs["Base Color"])
         ball = add("uv_sphere", material, radius=1)
@@ -197,7 +205,7 @@ class BlenderTest(SceneTest):
         link(bpy.data.objects.new("Smoke", bpy.data.volumes.new("Smoke")))
         add_camera()
         found = self.notices()
-        for text in ('Material "Clouds", node "Noise Texture": candela does not know', "does not scatter light below",
+        for text in ('Material "Clouds", node "Noise Texture": candela does not know', "its anisotropy is left out",
                      '"Sphere": candela has no hair', 'Object "Smoke": candela has no volumes'):
             self.assertIn(text, found)
         self.render()

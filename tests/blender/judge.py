@@ -129,6 +129,7 @@ MATERIALS = {
     "glass": lambda: principled(Base_Color=(0.8, 0.95, 0.9, 1), Transmission_Weight=1, Roughness=0),
     "Glass": lambda: shader("BsdfGlass", Roughness=0.1),
     "Translucent": lambda: shader("BsdfTranslucent"),
+    "wax": lambda: principled(Base_Color=(0.8, 0.4, 0.2, 1), Subsurface_Weight=1, Subsurface_Scale=0.5, Roughness=0.5),
     "coat": lambda: principled(Base_Color=(0.6, 0.1, 0.05, 1), Coat_Weight=1, Roughness=0.6),
     "sheen": lambda: principled(Base_Color=(0.1, 0.1, 0.3, 1), Sheen_Weight=1, Roughness=0.8),
     "film": lambda: principled(Base_Color=(0.1, 0.1, 0.1, 1), Thin_Film_Thickness=400, Roughness=0.2),
