@@ -64,11 +64,12 @@ SPP = {
     "hundred-lights": 512,
     "orthographic": 256,
     "smoke": 128,
+    "haze": 128,
     "milk": 64,
 }
 
 # Of scenes with media, where it is not 64.
-MOST_VERTICES = {"milk": 128}
+MOST_VERTICES = {"haze": 40, "milk": 128}
 
 # A string, which stays, or a comment, which becomes a space.
 STRING_OR_COMMENT = re.compile(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
