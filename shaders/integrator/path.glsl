@@ -101,6 +101,7 @@ Estimate estimate_begin() {
 
 // Notes that the path's first hit is a catcher, if it is one.
 void estimate_catch(inout Estimate estimate, inout Path path, ShadedSurface x) {
+    if (is_in_medium(x)) return;
     estimate.catcher = scene_material_textures(x.s.material).catcher;
     if (estimate.catcher != CATCHER_NONE) path.clear = false;
 }
@@ -108,7 +109,8 @@ void estimate_catch(inout Estimate estimate, inout Path path, ShadedSurface x) {
 // Keeps what the estimate holds as light that has not met the rest of the scene, if the path meets it first at x.
 void estimate_stray(inout Estimate estimate, ShadedSurface x) {
     if (estimate.catcher != CATCHER_REFLECTIONS || estimate.strayed) return;
-    if (x.s.light != NO_LIGHT || scene_material_textures(x.s.material).catcher != CATCHER_NONE) return;
+    if (x.s.light != NO_LIGHT) return;
+    if (!is_in_medium(x) && scene_material_textures(x.s.material).catcher != CATCHER_NONE) return;
     estimate.strayed = true;
     estimate.with = estimate.L;
     estimate.L = vec3(0.0);
@@ -364,6 +366,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     vec3 passed = VOLUMETRIC ? way.weight : media_transmittance(path.media, hit.t);
     if (surface_is_interface(x)) {
         path.beta *= passed;
+        if (seeks_guides(path, estimate)) estimate.guides.tint *= min(passed, 1.0);
         return path_cross(path, estimate, x);
     }
     if (path.depth == 0u) {
@@ -382,7 +385,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     // Attenuate by the medium on the way.
     path.beta *= passed;
     if (seeks_guides(path, estimate)) {
-        estimate.guides.tint *= passed;
+        estimate.guides.tint *= min(passed, 1.0);
         guides_meet(estimate.guides, bsdf_albedo(x.bsdf), x.s.light == NO_LIGHT ? vec3(0.0) : surface_le(x.s),
                     normal_seen(x));
     }

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 263u
+#define RESULT_WORDS 267u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -75,6 +75,8 @@ void put_material(MaterialRecord m) {
 void put_medium(MediumRecord m) {
     put(m.absorption);
     put(m.ior);
+    put(m.scattering);
+    put(m.g);
 }
 
 void put_light(LightRecord l) {
