@@ -46,7 +46,7 @@ void read_scattering(const Node& node, bool absorbs, Medium& medium) {
     const auto coefficient = node.find("coefficient"), albedo = node.find("albedo"),
                reflectance = node.find("reflectance"), path = node.find("mean_free_path");
     if (int(coefficient.has_value()) + int(albedo.has_value()) + int(reflectance.has_value()) != 1)
-        node.fail("expected one of \"coefficient\", \"albedo\" and \"reflectance\"");
+        node.fail(R"(expected one of "coefficient", "albedo" and "reflectance")");
     const float g = read_mean_cosine(node);
     if (coefficient) {
         if (path) path->fail("the coefficient says how far light comes; remove mean_free_path");
@@ -57,7 +57,7 @@ void read_scattering(const Node& node, bool absorbs, Medium& medium) {
     }
     if (absorbs) {
         (albedo ? *albedo : *reflectance)
-            .fail("this says how much light is absorbed; remove \"absorption\", or use \"coefficient\"");
+            .fail(R"(this says how much light is absorbed; remove "absorption", or use "coefficient")");
     }
     medium = read_medium_of(
         node.require("mean_free_path"),
@@ -100,7 +100,7 @@ std::optional<Medium> read_subsurface(const Node& node, bool thin, PrincipledMat
 Medium read_medium(const Node& node) {
     node.allow_only({}, keys_of({"medium"}));
     const std::optional<Medium> medium = find_medium(node);
-    if (!medium) node.fail("the medium is empty; add \"absorption\" or \"scattering\"");
+    if (!medium) node.fail(R"(the medium is empty; add "absorption" or "scattering")");
     return *medium;
 }
 
