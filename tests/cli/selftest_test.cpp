@@ -16,7 +16,7 @@ class SelftestCommand : public CliTest {
         EXPECT_NE(report["device"], "");
         EXPECT_NE(report["driver"], "");
         EXPECT_NE(report["system"], "");
-        EXPECT_EQ(report["checks"].size(), 20u);
+        EXPECT_EQ(report["checks"].size(), 21u);
         for (const auto& check : report["checks"]) {
             EXPECT_EQ(check["passed"], true) << check;
             EXPECT_EQ(check["wrong"], 0) << check;
