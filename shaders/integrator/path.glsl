@@ -31,6 +31,8 @@
 #include "scene/camera.glsl"
 #include "scene/interaction.glsl"
 
+const uint DEPTH_LIMIT = VOLUMETRIC ? DEPTH_LIMIT_IN_MEDIA : DEPTH_SAFETY_LIMIT;
+
 // Survival is never more likely than this, so that every path ends.
 const float RR_MAX_SURVIVAL = 0.99;
 
@@ -398,8 +400,8 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     }
 
     // End at the last scattering vertex.
-    if (path.depth == parameters.max_depth) {
-        estimate.cut = path.depth == DEPTH_SAFETY_LIMIT;
+    if (path.depth == parameters.max_depth || VOLUMETRIC && path.depth == DEPTH_LIMIT) {
+        estimate.cut = path.depth == DEPTH_LIMIT;
         return false;
     }
     surface_turn(x);

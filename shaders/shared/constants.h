@@ -13,6 +13,9 @@ const uint WORKGROUP_SIZE = 8u;
 
 // A path that would scatter more often than this is cut off, counted and reported.
 const uint DEPTH_SAFETY_LIMIT = 4096u;
+// The same where media scatter: there, paths are long, and Mesa's software driver ends all loops after 65 535
+// iterations.
+const uint DEPTH_LIMIT_IN_MEDIA = 512u;
 
 // No light, in Primitive::light.
 const uint NO_LIGHT = 0xFFFFFFFFu;

@@ -190,6 +190,7 @@ class BlenderTest(SceneTest):
     def test_light_is_scattered_below_surfaces(self):
         add("uv_sphere", principled("Wax", Base_Color=(0.9, 0.1, 0.1, 1), Subsurface_Weight=1.0, Subsurface_Scale=0.5,
                                     Subsurface_Anisotropy=0.5), radius=1)
+        add_light("POINT", location=(3, 0, 6), energy=1000, shadow_soft_size=0.5)
         add_camera()
         self.assertEqual(self.notices(), "")
         red, green, _ = centre(self.render())[:3]
