@@ -22,7 +22,7 @@
 
 const uint MATERIALS_DIELECTRIC = 1u << MATERIAL_DIELECTRIC_SCHLICK | 1u << MATERIAL_DIELECTRIC_EXACT;
 
-// True if some surface scatters light that comes from behind it, so that light samples there are needed.
+// True if light samples on all sides are needed: some surface scatters light that comes from behind it, or media do.
 const bool LIT_FROM_BEHIND = (MATERIALS & (1u << MATERIAL_DIFFUSE_TRANSMISSION | 1u << MATERIAL_PHASE) |
                               PRINCIPLED & PRINCIPLED_IS_LIT_FROM_BEHIND) != 0u;
 

@@ -269,5 +269,26 @@ TEST_F(DamagedScene, LoadsOrIsRefusedAfterAnyChangeOfAByte) {
     }
 }
 
+TEST(Scene, AMediumFillsTheSpaceAroundAndHidesSkyAndSuns) {
+    const auto scene = [](const std::string& more) {
+        return "{" + GOOD_CAMERA +
+               ",\n\"shapes\": [], \"medium\": @{\"scattering\": {\"coefficient\": 2, \"g\": 0.5}}" + more +
+               "}";
+    };
+    SceneFolder folder;
+    const std::string hidden =
+        "the medium has no end, so that no light of the sky or of suns comes through it; give it to an "
+        "\"interface\" around the scene instead";
+    folder.expect_warning(scene(R"(, "environment": {"radiance": 1})"), hidden);
+    std::string lit = scene(R"(, "lights": [{"type": "point", "position": [0, 1, 0], "intensity": 1}])");
+    lit.erase(lit.find('@'), 1);
+    const Scene haze = folder.load(lit);
+    EXPECT_EQ(haze.medium, (Medium{vec3(0), vec3(2), 0.5f}));
+    for (const std::string& warning : haze.warnings)
+        EXPECT_EQ(warning.find(hidden), std::string::npos);
+    folder.expect_error("{" + GOOD_CAMERA + ",\n\"shapes\": [], \"medium\": @{}}",
+                        R"(the medium is empty; add "absorption" or "scattering")");
+}
+
 }  // namespace
 }  // namespace candela
