@@ -72,10 +72,10 @@ uint light_choose_by_power(uint bits) {
     return is_sky ? groups.placed + groups.suns : i;
 }
 
-// A light with a place chosen by 32 random bits, by its power; its pmf is not set. The scene has one.
-LightChoice light_choose_placed(uint bits) {
+// One of the lights with a place, of which there is at least one, chosen by 32 random bits, by its power.
+uint light_choose_placed(uint bits) {
     uvec2 column = warp_alias_column(bits, scene_parameters().lights.placed);
-    return LightChoice(warp_alias_choice(column, scene_light_alias(column.x)).i, NO_LIGHT, 0.0);
+    return warp_alias_choice(column, scene_light_alias(column.x)).i;
 }
 
 uint light_count(LightGroups groups) {

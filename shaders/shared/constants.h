@@ -58,7 +58,7 @@ const uint LAYER_ALBEDO = 4u;               // rgb: sum of the first hit's albed
 const uint LAYER_ALBEDO_COMPENSATION = 5u;  // rgb; a.
 const uint LAYER_NORMAL = 6u;               // rgb: sum of the first hit's shading normal, world space.
 const uint LAYER_NORMAL_COMPENSATION = 7u;  // rgb.
-// Of catchers: see Estimate in integrator/path.glsl.
+// Of catchers: see Estimate in integrator/path_state.glsl.
 const uint LAYER_WITH = 8u;                   // rgb: sum of `with`; a: camera rays that hit a catcher.
 const uint LAYER_WITH_COMPENSATION = 9u;      // rgb.
 const uint LAYER_WITHOUT = 10u;               // rgb: sum of `without`; a: camera rays that hit one that reflects.
@@ -113,7 +113,7 @@ const uint PIXEL_FILTER_TENT = 2u;
 const uint PIXEL_FILTER_GAUSSIAN = 3u;
 const uint PIXEL_FILTER_BLACKMAN_HARRIS = 4u;
 
-// Whether surfaces are catchers: see integrator/path.glsl.
+// Whether surfaces are catchers: see integrator/path_state.glsl.
 const uint CATCHERS_NONE = 0u;
 const uint CATCHERS_SHOWN = 1u;  // As other surfaces.
 const uint CATCHERS_SEEN = 2u;   // As such. Only with LAYER_COUNT_CATCHERS.

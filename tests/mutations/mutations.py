@@ -2,6 +2,7 @@
 what occurs there once, and what it becomes."""
 
 PATH = "shaders/integrator/path.glsl"
+PATH_STATE = "shaders/integrator/path_state.glsl"
 LIGHT_CHOICE = "shaders/light/choice.glsl"
 LIGHT_SAMPLER = "shaders/light/light_sampler.glsl"
 AREA = "shaders/light/area.glsl"
@@ -190,7 +191,7 @@ GROUPS = [
          "if (HAS_CATCHERS && t.alone && !stays_alone(scene_surface(position))) continue;", ""),
         ("lamps are no bodies beside catchers", TRAVERSAL, "return surface.light != NO_LIGHT || scene_material",
          "return scene_material"),
-        ("what a catcher reflects is part of its shadow", PATH, "    estimate.strayed = true;\n", ""),
+        ("what a catcher reflects is part of its shadow", PATH_STATE, "    estimate.strayed = true;\n", ""),
     ]),
     (SAMPLES, [
         ("aperture not uniform", CAMERA, "? warp_disk(u)", "? u.x * cos_sin_turn(u.y)"),
@@ -301,7 +302,7 @@ GROUPS = [
         ("all media left with one", MEDIUM, "return front ? media_entered(here, behind) : media_left(here, behind);",
          "return front ? media_entered(here, behind) : MEDIA_NONE;"),
         ("the second of the media lost when the first is left", MEDIUM, "uvec4(here.x ? m.y : m.x", "uvec4(here.x ? m.z : m.x"),
-        ("nothing around the camera", PATH, "NESTED_MEDIA ? media : MEDIA_NONE", "MEDIA_NONE"),
+        ("nothing around the camera", PATH_STATE, "NESTED_MEDIA ? media : MEDIA_NONE", "MEDIA_NONE"),
         ("indices of refraction against the air", SURFACE, "if (!NESTED_MEDIA || !bsdf_refracts(x.material)) return;",
          "return;"),
         ("a stated exterior index ignored", MEDIUM, "return own_eta ? eta :", "return"),
@@ -406,7 +407,7 @@ GROUPS = [
     (CAMERAS, [
         ("an equirectangular picture mirrored", CAMERA, "fract(0.5 * s.x)", "fract(-0.5 * s.x)"),
         ("an equisolid fisheye that is equidistant", CAMERA, "if (CAMERA == CAMERA_FISHEYE) {", "if (true) {"),
-        ("light outside of a fisheye's circle", PATH, "return IS_FISHEYE &&", "return false &&"),
+        ("light outside of a fisheye's circle", PATH_STATE, "return IS_FISHEYE &&", "return false &&"),
         ("depth along the axis of a panorama", "shaders/kernels/position.comp.glsl", "IS_PANORAMA ? length(away) : ", ""),
         ("a tent that is a box", PIXEL_FILTER, "PIXEL_FILTER == PIXEL_FILTER_TENT", "false"),
         ("a gaussian that ends too late", PIXEL_FILTER, "within = 0.98889100346", "within = 0.999"),
