@@ -83,9 +83,9 @@ void PictureRenderer::print_outcome(const RenderRecord& record, uint32_t target,
     }
     if (record.counters.depth_limit_hits > 0) {
         print_warning(name + std::to_string(record.counters.depth_limit_hits) +
-                      " path(s) were cut off after " + std::to_string(DEPTH_SAFETY_LIMIT) + " bounces (" +
-                      std::to_string(DEPTH_LIMIT_IN_MEDIA) +
-                      " where media scatter); the light that they would have found is missing");
+                      " path(s) were cut off after " + std::to_string(DEPTH_SAFETY_LIMIT) +
+                      " bounces (some hundred or thousand where media scatter); the light that they would "
+                      "have found is missing");
     }
     if (record.spp == 0)
         print_warning(name + "stopped before every pixel had a sample; pixels without one are black");

@@ -23,6 +23,7 @@ namespace candela {
 struct GpuScene : MaterialFacts, LeafFacts, NodeFacts, LightFacts, SkyFacts {
     SceneFrame frame;           // Of all lengths and points.
     bool nested_media = false;  // Media may lie within each other.
+    bool sealed_media = false;  // See Nesting::sealed.
 
     // Records as shared/*.h describe them, in words of uvec4, by ARRAY_*.
     std::array<Words, ARRAY_COUNT> arrays;

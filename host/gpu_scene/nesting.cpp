@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/text.h"
+#include "gpu_scene/material_arrays.h"
 #include "gpu_scene/material_record.h"
 #include "gpu_scene/mesh_solids.h"
 #include "scene/geometry.h"
@@ -213,6 +214,55 @@ std::optional<std::string> warn_of_thin(const Scene& scene, const std::vector<So
                   count == 1 ? "" : concat(" (and ", count - 1, " more)"));
 }
 
+// The places of the lights that have one.
+std::vector<DoubleBox> places_of_lights(const Scene& scene) {
+    std::vector<DoubleBox> places;
+    const ShapeBounds bounds_of(scene);
+    for (const Shape& shape : scene.shapes) {
+        if (shape.emission) places.push_back(bounds_of(shape));
+    }
+    for (const Light& light : scene.lights) {
+        std::visit(
+            [&](const auto& model) {
+                if constexpr (requires { model.position; })
+                    places.push_back({model.position, model.position});
+            },
+            light.model);
+    }
+    return places;
+}
+
+bool is_interface(const Material& material) {
+    return std::holds_alternative<InterfaceMaterial>(material.model);
+}
+
+// See Nesting::sealed. Solids of any kind count, since one may join the inside of another. Light that comes
+// by an opening is only lost if it has no surface that a path could hit.
+bool is_sealed(const Scene& scene, const std::vector<Solid>& solids, const MeshSolids& parts, bool nested) {
+    if (nested && std::ranges::any_of(scene.materials, is_interface)) return false;
+    const std::vector<DoubleBox> lights = places_of_lights(scene);
+    bool scatters = false;
+    for (const Solid& solid : solids) {
+        const Shape& shape = scene.shapes[solid.shape];
+        if (is_interface(scene.materials[shape.material])) continue;
+        if (solid.inside.medium.scattering != vec3(0)) {
+            scatters = true;
+            const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+            const bool open =
+                solid.walls ||
+                (instance != nullptr && !std::ranges::all_of(parts.at(instance->mesh), &MeshSolid::closed));
+            if (lets_rays_pass(scene, shape) || (open && !scene.lights.empty())) return false;
+        }
+        const auto touches = [&](const DoubleBox& light) {
+            return all(lessThanEqual(light.lo, solid.box.hi)) &&
+                   all(greaterThanEqual(light.hi, solid.box.lo));
+        };
+        if ((nested || solid.inside.medium.scattering != vec3(0)) && std::ranges::any_of(lights, touches))
+            return false;
+    }
+    return scatters;
+}
+
 }  // namespace
 
 std::string name_of_shape(const Scene& scene, size_t i) {
@@ -234,6 +284,8 @@ Nesting find_nesting(const Scene& scene) {
         result.nested = true;
         result.warnings.push_back(*warning);
     }
+
+    result.sealed = is_sealed(scene, solids, parts, result.nested);
 
     for (const Solid& solid : solids) {
         const auto* instance = std::get_if<MeshInstance>(&scene.shapes[solid.shape].geometry);

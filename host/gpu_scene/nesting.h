@@ -12,6 +12,9 @@ struct Nesting {
     // Whether paths must track the media they are in: the boxes around two solids overlap, or rays may miss a
     // side of a solid.
     bool nested = false;
+    // Whether some solids scatter light, and it comes into them through their surfaces alone, which no shadow
+    // ray does; none of the lights that have a place lies within. In doubt false.
+    bool sealed = false;
     // About open meshes that enclose a medium, solids nested deeper than a path can track (MEDIA_AT_ONCE),
     // and solids that are too thin.
     std::vector<std::string> warnings;

@@ -110,9 +110,10 @@ void SceneStages::make_materials(Work& work) {
 
 void SceneStages::make_nesting(const Work& work) {
     // Cameras, which may move with a motion, also decide.
-    if (work.all || work.materials || work.change.of_geometry() || work.scene.motion) {
+    if (work.all || work.materials || work.change.of_geometry() || work.change.lights || work.scene.motion) {
         nesting_ = find_nesting(work.scene);
         gpu_.nested_media = nesting_.nested;
+        gpu_.sealed_media = nesting_.sealed;
     }
     if (work.all || work.change.of_geometry()) coplanar_lights_ = warn_of_coplanar_lights(work.scene);
 }

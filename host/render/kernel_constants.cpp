@@ -133,6 +133,7 @@ KernelConstants make_constants(const GpuScene& scene, const Camera& camera, cons
     constants[CONSTANT_LIGHTS] = scene.lights_present;
     constants[CONSTANT_HAS_MEDIA] = scene.has_media;
     constants[CONSTANT_VOLUMETRIC] = scene.volumetric;
+    constants[CONSTANT_WALKS] = scene.sealed_media;
     constants[CONSTANT_NESTED_MEDIA] = scene.nested_media || media_at(scene, camera.position) != uvec2(0);
     // Boundaries within one medium: see path_step().
     if (constants[CONSTANT_NESTED_MEDIA] != 0 && (scene.principled & PRINCIPLED_HAS_VOLUME) != 0)

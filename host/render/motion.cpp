@@ -101,7 +101,8 @@ std::vector<vec2> Renderer::motion(const GpuScene& scene, const Camera& camera, 
     motion.reserve(size_t(size.x) * size.y);
     for (uint32_t y = 0; y < size.y; y += rows) {
         const uvec2 tile(size.x, std::min(rows, size.y - y));
-        record(kernel, {.origin = {0, y}, .size = tile, .stride = {1, 1}, .target_samples = 0});
+        record(kernel,
+               {.origin = {0, y}, .size = tile, .stride = {1, 1}, .target_samples = 0, .lane = LANES});
         commands_.submit_and_wait();
         for (uint32_t i = 0; i < tile.x * tile.y; ++i) {
             PixelWords of_pixel;

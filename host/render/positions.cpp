@@ -19,7 +19,8 @@ std::vector<float> Renderer::positions_in_frame() {
     const uint32_t rows = std::max(1u, POSITION_PIXELS / size.x);
     for (uint32_t y = 0; y < size.y; y += rows) {
         const uvec2 tile(size.x, std::min(rows, size.y - y));
-        record(kernel, {.origin = {0, y}, .size = tile, .stride = {1, 1}, .target_samples = 0});
+        record(kernel,
+               {.origin = {0, y}, .size = tile, .stride = {1, 1}, .target_samples = 0, .lane = LANES});
         commands_.submit_and_wait();
     }
     return vk::download(image, 0, 1);

@@ -245,7 +245,7 @@ void Renderer::compile() {
     // Some drivers compile at the first dispatch.
     if (device_->programs().compiled() != compiled_before) {
         record(*render_kernel_,
-               Tile{.origin = {0, 0}, .size = {0, 0}, .stride = {1, 1}, .target_samples = 0});
+               Tile{.origin = {0, 0}, .size = {0, 0}, .stride = {1, 1}, .target_samples = 0, .lane = LANES});
         commands_.submit_and_wait();
     }
     pipeline_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -295,30 +295,38 @@ void Renderer::record(const vk::Kernel& kernel, Tile tile) {
     commands_.dispatch(kernel, bytes_of(tile), {count.x, count.y, 1});
 }
 
+// Dispatches a tile; returns whether all pixels that it is for hold their samples.
+bool Renderer::dispatch(const Tile& tile, Work& work) {
+    commands_.clear(counter_buffer_);
+    record(*render_kernel_, tile);
+    commands_.copy(counter_buffer_, counts_);
+    work.seconds += commands_.submit_and_wait();
+    uint32_t words[COUNTER_COUNT];
+    std::memcpy(words, counts_.mapped(), sizeof words);
+    counters_.rays += uint64_t{words[COUNTER_RAYS_HIGH]} << 32 | words[COUNTER_RAYS_LOW];
+    counters_.nonfinite_samples += words[COUNTER_NONFINITE];
+    counters_.depth_limit_hits += words[COUNTER_DEPTH_LIMIT];
+    work.samples += words[COUNTER_SAMPLES];
+    return words[COUNTER_UNFINISHED] == 0;
+}
+
 // Dispatches a tile until all its pixels hold their samples. Once is enough, unless the driver ends long
-// loops, as lavapipe does: see kernels/render.glsl.
+// loops, as lavapipe does: see kernels/render.glsl. Lanes none of which then finishes a sample render one by
+// one.
 Renderer::Work Renderer::complete(const Tile& tile) {
     Work work;
     while (true) {
-        commands_.clear(counter_buffer_);
-        record(*render_kernel_, tile);
-        commands_.copy(counter_buffer_, counts_);
-        work.seconds += commands_.submit_and_wait();
-        uint32_t words[COUNTER_COUNT];
-        std::memcpy(words, counts_.mapped(), sizeof words);
-        counters_.rays += uint64_t{words[COUNTER_RAYS_HIGH]} << 32 | words[COUNTER_RAYS_LOW];
-        counters_.nonfinite_samples += words[COUNTER_NONFINITE];
-        counters_.depth_limit_hits += words[COUNTER_DEPTH_LIMIT];
-        work.samples += words[COUNTER_SAMPLES];
-        if (words[COUNTER_UNFINISHED] == 0) return work;
-        if (words[COUNTER_SAMPLES] == 0) {
-            throw Error(
-                "the driver of " + device_->info().name +
-                " ends loops before a single path is finished: paths are too long, or rays meet too many "
-                "shapes "
-                "in the same place; allow fewer bounces (--max-depth), remove shapes that lie on each other, "
-                "or use another device (candela devices lists them)");
-        }
+        const uint64_t before = work.samples;
+        if (dispatch(tile, work)) return work;
+        if (work.samples > before) continue;
+        Tile one = tile;
+        for (one.lane = 0; one.lane < LANES; ++one.lane)
+            dispatch(one, work);
+        if (work.samples > before) continue;
+        throw Error("the driver of " + device_->info().name +
+                    " ends loops before a single path is finished: paths are too long, or rays meet too many "
+                    "shapes in the same place; allow fewer bounces (--max-depth), remove shapes that lie on "
+                    "each other, or use another device (candela devices lists them)");
     }
 }
 

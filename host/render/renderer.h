@@ -151,6 +151,7 @@ class Renderer {
     void record(const vk::Kernel& kernel, Tile tile);
     // As positions(), but in the frame of the scene.
     std::vector<float> positions_in_frame();
+    bool dispatch(const Tile& tile, Work& work);
     Work complete(const Tile& tile);
     uvec2 image_size() const { return {settings_.crop.width(), settings_.crop.height()}; }
 

@@ -69,7 +69,11 @@ Tile Schedule::next() const {
     if (at_.x > 0 || pixels < double(size_.x) * WORKGROUP_SIZE) {
         tile = uvec2(whole_groups(pixels / WORKGROUP_SIZE), WORKGROUP_SIZE);
     }
-    return {.origin = at_, .size = min(tile, size_ - at_), .stride = {1, 1}, .target_samples = pass_target_};
+    return {.origin = at_,
+            .size = min(tile, size_ - at_),
+            .stride = {1, 1},
+            .target_samples = pass_target_,
+            .lane = LANES};
 }
 
 // The budget is for tiles in which no pixel has reached its limit. Where most pixels have, the cost of the

@@ -31,9 +31,6 @@
 #include "scene/camera.glsl"
 #include "scene/interaction.glsl"
 
-// Where a path is cut.
-const uint DEPTH_LIMIT = VOLUMETRIC ? DEPTH_LIMIT_IN_MEDIA : DEPTH_SAFETY_LIMIT;
-
 // Survival is never more likely than this, so that every path ends.
 const float RR_MAX_SURVIVAL = 0.99;
 
@@ -179,6 +176,7 @@ bool path_scatter(inout Path path, ShadedSurface x, LitPoint lit, BsdfSample sca
     if (BEFORE_BACKGROUND) path.clear = path.clear && scattered.delta && !viewers_side;
     path.lit = lit;
     if (!viewers_side) path.media = media_beyond(path.media, x.material.medium, x.s.front);
+    if (WALKS && !viewers_side && x.material.medium != MEDIUM_SAME) path.sealed = x.s.front;
     path.ray = Ray(vertex_spawn_origin(interaction_vertex(x.s), viewers_side), wi);
     return true;
 }
@@ -192,7 +190,8 @@ bool path_scatter(inout Path path, ShadedSurface x, LitPoint lit, BsdfSample sca
 // vertices. In one without an end they would wander away: beyond the distance `reach` from the scene, they survive less
 // often by its inverse square, as light samples are dimmer. (As often as diffusing light comes back, by the inverse,
 // took eight times as long for the same noise.)
-bool path_survives(inout Path path, bool in_medium, float reach, float u) {
+bool path_survives(inout Path path, bool in_medium, float u, Parameters parameters) {
+    float reach = max(1.0, length(parameters.position));  // The scene lies within 1 of the frame's origin.
     float survival = in_medium ? 1.0 : RR_MAX_SURVIVAL;
     float importance = in_medium ? min(1.0, square(reach) / dot(path.ray.o, path.ray.o)) : 1.0;
     if (!path.delta) survival = min(survival, sqrt(max_component(path.beta) * path.eta_scale * importance));
@@ -216,20 +215,22 @@ Focus path_focus(Path path, MediumRecord medium, float t_max, uint bits) {
     return Focus(along, max(max(nearest, light_size(l)), 1e-6), 0.5 * exp(-depth));
 }
 
-// What the path meets on its way to the hit, or to infinity; only if VOLUMETRIC.
-MediumSample path_medium_sample(Path path, Hit hit, Sampler random) {
+// What the path meets on its way to a hit at t_max, or to infinity; only if VOLUMETRIC.
+MediumSample path_medium_sample(Path path, float t_max, Sampler random) {
     uint pair = PAIR_FIRST_DISTANCE + path.depth | path.crossed << PAIR_CROSSED_SHIFT;
     MediumRecord medium = scene_medium(media_first(path.media));
     uvec3 u = sampler_triple(random, pair);
     uvec3 more = hash_pcg3d(u);
-    Focus focus = path_focus(path, medium, hit.t, more.x);
-    return medium_sample(medium, path.beta, hit.t, focus, uvec4(u, more.y));
+    Focus focus = focus_none();
+    if (!(WALKS && path.sealed)) focus = path_focus(path, medium, t_max, more.x);
+    return medium_sample(medium, path.beta, t_max, focus, uvec4(u, more.y));
 }
 
 // Lets the path pass an interface at x; returns whether it goes on.
 bool path_cross(inout Path path, inout Estimate estimate, ShadedSurface x) {
     estimate.cut = path.crossed == DEPTH_SAFETY_LIMIT;
     path.media = media_beyond(path.media, x.material.medium, x.s.front);
+    if (WALKS && !x.s.front) path.sealed = false;
     path.ray.o = vertex_spawn_origin(interaction_vertex(x.s), false);
     ++path.crossed;
     return !estimate.cut;
@@ -247,7 +248,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     MediumSample way;
     bool scattered_before = false;  // The hit.
     if (VOLUMETRIC) {
-        way = path_medium_sample(path, hit, random);
+        way = path_medium_sample(path, hit.t, random);
         scattered_before = way.scattered;
     }
     if (!is_hit(hit) && !scattered_before) {
@@ -303,8 +304,8 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     }
 
     // End at the last scattering vertex.
-    if (path.depth == parameters.max_depth || VOLUMETRIC && path.depth == DEPTH_LIMIT) {
-        estimate.cut = path.depth == DEPTH_LIMIT;
+    if (path.depth == parameters.max_depth || VOLUMETRIC && path_is_long(path)) {
+        estimate.cut = path_is_long(path);
         return false;
     }
     surface_turn(x);
@@ -332,8 +333,7 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
     if (!path_scatter(path, x, lit, scattered)) return false;
     if (path.depth >= parameters.rr_depth) {
         float u_survival = unit_float(sampler_pair(random, pair + PAIR_SURVIVAL).x);
-        float reach = max(1.0, length(parameters.position));  // The scene lies within 1 of the frame's origin.
-        if (!path_survives(path, is_in_medium(x), reach, u_survival)) return false;
+        if (!path_survives(path, is_in_medium(x), u_survival, parameters)) return false;
     }
     ++path.depth;
     return true;

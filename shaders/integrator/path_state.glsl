@@ -26,6 +26,8 @@ struct Path {
     bool clear;       // Nothing but ideal transmission so far; only if BEFORE_BACKGROUND.
     bool alone;       // Only catchers, sky and lights are there; only if HAS_CATCHERS.
     uint crossed;     // Interfaces passed so far; only if VOLUMETRIC.
+    bool sealed;      // No light sample comes to where `ray` is; only if WALKS.
+    uint iterations;  // Of its rays so far: see ITERATION_LIMIT; only if VOLUMETRIC.
 };
 
 // The estimate of a path so far.
@@ -61,7 +63,12 @@ struct ShadowRay {
 // A path that begins with a camera ray within these media, and an empty estimate.
 Path path_begin(Ray ray, uvec2 media) {
     return Path(ray, vec3(1.0), 1.0, 0.0, true, lit_anywhere(ray.o), NESTED_MEDIA ? media : MEDIA_NONE, 0u, true, false,
-                0u);
+                0u, false, 0u);
+}
+
+// Whether the path is as long as it may be.
+bool path_is_long(Path path) {
+    return path.depth == DEPTH_SAFETY_LIMIT || VOLUMETRIC && path.iterations > ITERATION_LIMIT;
 }
 
 // Whether the path begins where the camera does not see anything: its throughput is then 0.

@@ -13,6 +13,7 @@
 #define KERNELS_RENDER_GLSL
 
 #include "integrator/path.glsl"
+#include "integrator/walk.glsl"
 #include "kernels/pixel.glsl"
 #include "scene/camera.glsl"
 
@@ -21,6 +22,9 @@ layout(local_size_x = WORKGROUP_SIZE, local_size_y = WORKGROUP_SIZE) in;
 layout(push_constant) uniform TileBlock {
     Tile tile;
 };
+
+// Steps of a walk that a lane takes before others go on.
+const uint WALK_STEPS = 16u;
 
 // The state of the sample that a lane traces.
 struct Sample {
@@ -36,6 +40,7 @@ struct Sample {
     // then waits, with what the ray hit.
     bool waits;
     Hit hit;
+    bool walked;  // Only if WALKS: the path has not come to a surface; its next ray is still to be traced.
 };
 
 // No sample yet.
@@ -48,6 +53,7 @@ Sample sample_none() {
     s.shadow_alone = false;
     s.waits = false;
     s.hit = hit_none(FLOAT_MAX);
+    s.walked = false;
     return s;
 }
 
@@ -81,7 +87,7 @@ bool is_shadow(Traversal traversal, bool shadowing) {
 }
 
 // Advances the traversal; once that of a shadow ray has ended, begins that of the path's next ray, if there is one.
-void sample_advance(Sample s, inout Traversal traversal, inout bool shadowing, inout TraceResult met) {
+void sample_advance(Sample s, float t_max, inout Traversal traversal, inout bool shadowing, inout TraceResult met) {
     bvh_advance(traversal);
     if (is_shadow(traversal, shadowing) && bvh_ended(traversal)) {
         met.lit = !is_hit(traversal.hit);
@@ -89,39 +95,68 @@ void sample_advance(Sample s, inout Traversal traversal, inout bool shadowing, i
         if (HAS_OPACITY) met.depth = traversal.depth;
         if (HAS_PASSABLE) traversal.any_hit = false;
         shadowing = false;
-        if (s.alive && !(VOLUMETRIC && s.waits)) traversal = bvh_begin(s.path.ray, FLOAT_MAX, false);
+        uint iterations = traversal.iterations;
+        if (s.alive && !(VOLUMETRIC && s.waits)) traversal = bvh_begin(s.path.ray, t_max, false);
+        if (VOLUMETRIC) traversal.iterations = iterations;
         if (HAS_CATCHERS) traversal.alone = s.path.alone;
     }
 }
 
+// What the path meets on its next segment if it walks, before what is in its way is known; also how far to trace it.
+bool sample_walks(Sample s, Parameters parameters, out MediumSample way, out float t_max) {
+    t_max = FLOAT_MAX;
+    if (!WALKS || !s.alive || s.waits || !path_walks(s.path, s.estimate, parameters)) return false;
+    way = path_medium_sample(s.path, FLOAT_MAX, s.random);
+    if (way.scattered) t_max = way.t;
+    return way.scattered;
+}
+
 // Traces the shadow ray of a vertex and the path's next ray, one after the other, without waiting for neighbouring
-// lanes in between.
-TraceResult sample_trace(Sample s) {
+// lanes in between. A path that walks takes up to WALK_STEPS steps before it comes to a surface.
+TraceResult sample_trace(inout Sample s, Parameters parameters) {
     bool shadowed = s.shadow.t_max > 0.0;
     bool shadowing = shadowed;
+    MediumSample way;
+    float t_max;
+    bool walks = sample_walks(s, parameters, way, t_max);
+    uint steps = 0u;
     Ray first = s.path.ray;
     if (shadowed) first = s.shadow.ray;
-    Traversal traversal = bvh_begin(first, shadowed ? s.shadow.t_max : FLOAT_MAX, shadowed && !VOLUMETRIC);
+    Traversal traversal = bvh_begin(first, shadowed ? s.shadow.t_max : t_max, shadowed && !VOLUMETRIC);
     if (HAS_CATCHERS) traversal.alone = shadowed ? s.shadow_alone : s.path.alone;
     if (!shadowed && !s.alive) bvh_end(traversal);
     TraceResult met = TraceResult(false, false, 0u, traversal.hit, traversal.hit);
-    if (HAS_PASSABLE) {
+    if (WALKS && !s.waits) s.walked = false;
+    if (HAS_PASSABLE || WALKS) {
         // On software Vulkan, code in a branch takes its time even if no lane takes the branch. So the decision about
-        // opacity is in an outer loop, at whose end lanes wait for each other once more.
+        // opacity, and the steps of a walk, are in an outer loop, at whose end lanes wait for each other once more.
         bool more;
         do {
             while (!bvh_waits(traversal) && (is_shadow(traversal, shadowing) || !bvh_ended(traversal))) {
-                sample_advance(s, traversal, shadowing, met);
+                sample_advance(s, t_max, traversal, shadowing, met);
             }
             bvh_decide(traversal);
             more = is_shadow(traversal, shadowing) || !bvh_ended(traversal);
+            if (WALKS && !more && walks && !is_hit(traversal.hit)) {
+                s.path.iterations += traversal.iterations + 2u;
+                s.alive = path_walk(s.path, way, s.random, parameters);
+                ++s.rays;
+                ++steps;
+                more = walks = steps < WALK_STEPS && sample_walks(s, parameters, way, t_max);
+                s.walked = !more;
+                if (more) traversal = bvh_begin(s.path.ray, t_max, false);
+            }
         } while (more);
     } else {
         while (!bvh_ended(traversal))
-            sample_advance(s, traversal, shadowing, met);
+            sample_advance(s, t_max, traversal, shadowing, met);
     }
     bool turned = !(HAS_PASSABLE && is_shadow(traversal, shadowing));  // To the path's ray, if there is one.
     met.complete = turned && bvh_ended(traversal);
+    // A shadow ray before the first segment is that of the sample before.
+    if (VOLUMETRIC && s.path.depth + s.path.crossed > 0u) {
+        s.path.iterations += traversal.iterations + ITERATIONS_PER_VERTEX;
+    }
     met.hit = traversal.hit;
     if (VOLUMETRIC && s.waits) met.hit = s.hit;
     return met;
@@ -141,6 +176,7 @@ void render_pixel() {
     uvec2 group = gl_WorkGroupID.xy * tile.stride % gl_NumWorkGroups.xy;
     uvec2 at = group * WORKGROUP_SIZE + gl_LocalInvocationID.xy;
     if (any(greaterThanEqual(at, tile.size))) return;
+    if (tile.lane != LANES && gl_LocalInvocationIndex % LANES != tile.lane) return;
     at += tile.origin;
     Parameters parameters = scene_parameters();
 
@@ -158,8 +194,9 @@ void render_pixel() {
     // Each step of a sample is in the code only once: the compiler might round differently in a copy, and a sample's
     // bits must not depend on its place in a dispatch.
     //
-    // Lavapipe ends all loops of an invocation after 65 535 iterations in total, regardless of their conditions. A
-    // sample that is not folded by then is dropped, and the next dispatch traces it again.
+    // Lavapipe ends all loops of its lanes after 65 535 iterations in total, regardless of their conditions. A sample
+    // that is not folded by then is dropped, and the next dispatch traces it again; at last alone, without the
+    // iterations that only the neighbours need.
     Sample s = sample_none();
     uint begun = before;  // Samples begun; pixel.samples of them are folded.
     uint rays = 0u;       // Rays of the folded samples.
@@ -172,7 +209,7 @@ void render_pixel() {
             if (!again) ++begun;
             sample_begin(s, parameters, parameters.crop + at, parameters.first_sample + begun - 1u, again);
         }
-        TraceResult met = sample_trace(s);
+        TraceResult met = sample_trace(s, parameters);
         if (!met.complete) break;
         if (VOLUMETRIC) {
             s.waits = shadow_goes_on(s.shadow, met.shadow);
@@ -191,7 +228,12 @@ void render_pixel() {
             rays += s.rays;
             s.rays = 0u;
         }
-        if (s.alive) sample_step(s, met.hit, parameters);
+        if (WALKS && s.walked) {
+            s.shadow.t_max = 0.0;
+            s.ended = !s.alive;
+        } else if (s.alive) {
+            sample_step(s, met.hit, parameters);
+        }
     }
     count_rays(rays);
     if (pixel.samples < target) count(COUNTER_UNFINISHED, 1u);

@@ -33,6 +33,7 @@ struct Traversal {
     uint root;            // The root of its mesh, followed by all nodes of the mesh; 0 outside instances.
     bool alone;           // Only catchers and what emits are there; only if HAS_CATCHERS.
     uint depth;           // Optical depth of what the ray has passed, in parts; only if HAS_OPACITY and any_hit.
+    uint iterations;      // Of loops, for this ray; only if VOLUMETRIC.
 };
 
 // A traversal at the root that looks for hits with t in (0, t_max). bvh_prepare comes first.
@@ -40,7 +41,7 @@ Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack[0] = PENDING_NONE;
     vec3 inv_d = reciprocals(ray.d);
     return Traversal(ray, inv_d, ray_shear(ray.d, inv_d), any_hit, hit_none(t_max), 0u, PENDING_NONE, 0u, 0u,
-                     candidate_none(), ray, NO_INSTANCE, 0u, false, 0u);
+                     candidate_none(), ray, NO_INSTANCE, 0u, false, 0u, 0u);
 }
 
 // Whether the surface also belongs to the scene without what is seen before catchers: it is one, or it emits.
@@ -114,9 +115,11 @@ void bvh_advance(inout Traversal t) {
         return;
     }
 
+    if (VOLUMETRIC) t.iterations += 3u;  // The caller's, and the last ones of both loops.
     // Go to the nearest child, else to the next sibling, else up.
     for (uint k = 0u; t.leaves == 0u && t.node != NODE_NONE && (!INSTANCED || k < NODES_PER_TURN); ++k) {
         if (INSTANCED) leave_instance(t);
+        if (VOLUMETRIC) ++t.iterations;
 
         // The next node if this one has no child to visit.
         bool siblings = pending_any(t.pending);
@@ -146,6 +149,7 @@ void bvh_advance(inout Traversal t) {
     while (t.leaves != 0u && !bvh_waits(t)) {
         uint position = t.first_leaf + uint(findLSB(t.leaves));
         t.leaves &= t.leaves - 1u;
+        if (VOLUMETRIC) ++t.iterations;
         if (HAS_CATCHERS && t.alone && !stays_alone(scene_surface(position))) continue;
         Hit first = primitive_hit(t.ray, t.shear, scene_primitive(position), position, t.instance);
         meet(position, first, t.hit, t.candidate);

@@ -13,9 +13,10 @@ const uint WORKGROUP_SIZE = 8u;
 
 // A path that would scatter more often than this is cut off, counted and reported.
 const uint DEPTH_SAFETY_LIMIT = 4096u;
-// The same where media scatter: there, paths are long, and Mesa's software driver ends all loops after 65 535
-// iterations.
-const uint DEPTH_LIMIT_IN_MEDIA = 512u;
+// Where media scatter, so is one whose rays have taken more iterations of loops than this, as Mesa's software driver
+// ends all loops of an invocation after 65 535. A vertex outside of walks (integrator/walk.glsl) counts as some more.
+const uint ITERATION_LIMIT = 30000u;
+const uint ITERATIONS_PER_VERTEX = 32u;
 
 // No light, in Primitive::light.
 const uint NO_LIGHT = 0xFFFFFFFFu;

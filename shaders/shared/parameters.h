@@ -50,6 +50,9 @@ struct Parameters {
     float fisheye_edge;
 };
 
+// Neighbouring invocations that a device may compute side by side, in loops that end for all at once.
+const uint LANES = 8u;
+
 // One dispatch: a rectangle of the accumulation image whose pixels are brought to `target_samples` samples
 // each.
 struct Tile {
@@ -57,6 +60,7 @@ struct Tile {
     uvec2 size;
     uvec2 stride;  // Group i of the dispatch has place i * stride modulo the number of groups, on each axis.
     uint target_samples;
+    uint lane;  // Only invocations with this number in their group, modulo LANES, render; LANES: all do.
 };
 
 #ifdef __cplusplus

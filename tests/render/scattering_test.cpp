@@ -204,6 +204,42 @@ TEST_F(ScatteringTest, ADeepMediumReflectsWhatChandrasekharSays) {
     }
 }
 
+// Paths walk in solids that no light sample reaches. A dark light within a solid lets them take light samples
+// there, too, which finds nothing.
+TEST_F(ScatteringTest, WalksAreWhatOtherPathsAre) {
+    PrincipledMaterial skin{.base_color = vec3(0.9f, 0.6f, 0.4f), .roughness = 0.3f};
+    skin.diffuse_transmission = 1.0f;
+    skin.inside = scattering(vec3(5, 12, 20), 0.3f, vec3(0.2f, 0.5f, 1));
+    const Medium milk = scattering(vec3(3, 2, 1), -0.4f, vec3(0.1f, 0.2f, 0.3f));
+    Scene walks = scene_with_camera(dvec3(0, 1, 5), dvec3(0), 0.8f);
+    add_shape(walks, Sphere{dvec3(-1.1, 0, 0), 1.0}, add_material(walks, skin));
+    add_shape(walks, Sphere{dvec3(1.1, 0, 0), 1.0},
+              add_material(walks, DielectricMaterial{.fresnel = Fresnel::exact, .inside = milk}));
+    add_shape(walks, Sphere{dvec3(1.3, 0.1, 0), 0.5},
+              add_material(walks, DielectricMaterial{.ior = 1.2f, .inside = scattering(vec3(6))}));
+    walks.lights = {{"", PointLight{dvec3(3, 3, 3), vec3(4)}}};
+    walks.environment = constant_environment(vec3(0.4f, 0.5f, 0.6f));
+    Scene others = walks;
+    others.lights.push_back({"", PointLight{dvec3(-1.1, 0, 0), vec3(0)}});
+    ASSERT_TRUE(build_gpu_scene(walks).sealed_media);
+    ASSERT_FALSE(build_gpu_scene(others).sealed_media);
+    const auto picture = [&](const Scene& scene, Backdrop backdrop, uint32_t seed, uint32_t spp) {
+        RenderSettings s = settings(Estimator::mis, seed);
+        const bool transmission = backdrop == Backdrop::transmitted;
+        s.backdrop = backdrop;
+        s.aovs = transmission;
+        return make_image(render(scene, s, spp), {.variance = true, .transmission = transmission}, {});
+    };
+    expect_same_expectation(picture(walks, Backdrop::environment, 13, samples(384)),
+                            picture(others, Backdrop::environment, 14, samples(384)));
+    // What has been scattered shows no background.
+    const auto alpha = [&](const Scene& scene, uint32_t seed) {
+        return coverage(picture(scene, Backdrop::transmitted, seed, samples(64)));
+    };
+    EXPECT_NEAR(alpha(walks, 15), alpha(others, 16),
+                5.0 * std::sqrt(2.0 * 0.25 / (32.0 * 32.0 * samples(64))));
+}
+
 TEST_F(ScatteringTest, EstimatorsAgreeInHaze) {
     Scene scene = hazy_room();
     scene.lights.clear();
@@ -230,7 +266,7 @@ TEST_F(ScatteringTest, RouletteInHazeDoesNotChangeTheMean) {
     RenderSettings none = settings(Estimator::mis, 9);
     none.rr_depth = DEPTH_SAFETY_LIMIT;
     none.max_depth = 80;  // Less than 2^-20 of the light is left: each vertex takes a sixth or more.
-    expect_same_expectation(image_of(render(scene, settings(Estimator::mis, 10), samples(900))),
+    expect_same_expectation(image_of(render(scene, settings(Estimator::mis, 10), samples(1000))),
                             image_of(render(scene, none, samples(600))));
 }
 

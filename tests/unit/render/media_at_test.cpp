@@ -326,5 +326,61 @@ TEST(MediaMayNest, WhereASolidIsTooThin) {
     EXPECT_TRUE(instance_nests(1e-6));
 }
 
+bool sealed(const Scene& scene) {
+    return build_gpu_scene(scene).sealed_media;
+}
+
+// Paths take no light samples in sealed solids, so that none may lack one.
+TEST(SealedMedia, NoLightReachesTheInsideOfASolidThatScatters) {
+    const Medium milk{.scattering = vec3(1)};
+    Scene scene;
+    add_shape(scene, Sphere{dvec3(0), 1.0}, add_material(scene, DielectricMaterial{.inside = milk}));
+    scene.lights = {{"", PointLight{dvec3(0, 3, 0), vec3(1)}}};
+    EXPECT_TRUE(sealed(scene));
+
+    Scene other = scene;
+    other.materials[0].model = DielectricMaterial{};
+    EXPECT_FALSE(sealed(other)) << "Nothing scatters.";
+    other.materials[0].model = InterfaceMaterial{milk};
+    EXPECT_FALSE(sealed(other)) << "Shadow rays pass.";
+    other = scene;
+    other.materials[0].opacity.value = 0.5f;
+    EXPECT_FALSE(sealed(other)) << "Some shadow rays pass.";
+    other = scene;
+    std::get<PointLight>(other.lights[0].model).position = dvec3(0, 0.5, 0);
+    EXPECT_FALSE(sealed(other)) << "The light is within.";
+    other = scene;
+    add_shape(other, Sphere{dvec3(0), 0.1}, add_material(other, DiffuseMaterial{}), Emission{vec3(1)});
+    EXPECT_FALSE(sealed(other)) << "A lamp is within.";
+}
+
+// A light beside them may come in by another solid.
+TEST(SealedMedia, SolidsThatTouchCountTogether) {
+    Scene scene;
+    add_shape(scene, Sphere{dvec3(0), 1.0},
+              add_material(scene, DielectricMaterial{.inside = {.scattering = vec3(1)}}));
+    add_shape(scene, Sphere{dvec3(1.5, 0, 0), 1.0}, add_material(scene, DielectricMaterial{}));
+    EXPECT_TRUE(sealed(scene));
+    scene.lights = {{"", PointLight{dvec3(1.8, 0, 0), vec3(1)}}};
+    EXPECT_FALSE(sealed(scene));
+    scene.lights.clear();
+    scene.materials[1].model = InterfaceMaterial{};
+    EXPECT_FALSE(sealed(scene));
+    std::get<Sphere>(scene.shapes[1].geometry).center.x = 2.5;
+    EXPECT_TRUE(sealed(scene));
+}
+
+// Paths find a sky or a lamp through an opening, but no point.
+TEST(SealedMedia, OpenMeshesLetPointsOfLightIn) {
+    Scene scene;
+    TriangleMesh bowl = sphere_mesh(16, 24);
+    bowl.triangles.resize(bowl.triangles.size() / 2);
+    add_shape(scene, bowl, add_material(scene, DielectricMaterial{.inside = {.scattering = vec3(1)}}));
+    scene.environment = Environment{.radiance = {vec3(1)}};
+    EXPECT_TRUE(sealed(scene));
+    scene.lights = {{"", DirectionalLight{}}};
+    EXPECT_FALSE(sealed(scene));
+}
+
 }  // namespace
 }  // namespace candela
