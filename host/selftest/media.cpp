@@ -24,6 +24,8 @@ struct DistanceItem {
     float t_max = 1.0f;
     uvec4 random{0};
     float along = 0.0f, distance = 1.0f, share = 0.0f, unused = 0.0f;  // Focus
+    vec2 lit{0};                                                       // Also.
+    vec2 padding{0};
 };
 
 struct DistanceResult {
@@ -32,12 +34,15 @@ struct DistanceResult {
     vec3 weight;
 };
 
+constexpr float ENDLESS = 3.4e38f;
+
 struct MediumCase {
     std::string name;
     vec3 absorption, scattering;
     vec3 beta{1};
     float t_max = 1.0f;
-    float along = 0.0f, distance = 1.0f, focused = 0.0f;  // Of a light, and the share of vertices for it.
+    float along = 0.0f, distance = 1.0f, focused = 0.0f;  // Of a light, and the share of paths for it.
+    vec2 lit{0, ENDLESS};                                 // From where to where it shines.
 
     double length() const { return std::min(double(t_max), 1e30); }
     dvec3 extinction() const { return dvec3(absorption + scattering); }
@@ -45,23 +50,29 @@ struct MediumCase {
     // The probability that the path scatters before t, without a light and with it.
     double unfocused(double t) const { return -dot(share(), expm1(-extinction() * t)); }
     double scattered_before(double t) const {
-        const double place = (place_of(t) - place_of(0.0)) / (place_of(length()) - place_of(0.0));
-        return (1.0 - focused) * unfocused(t) + focused * unfocused(length()) * place;
+        const double place = (place_of(std::clamp(t, lit_from(), lit_to())) - place_of(lit_from())) / chord();
+        return (1.0 - for_light()) * unfocused(t) + (for_light() > 0.0 ? for_light() * place : 0.0);
     }
+    double passes() const { return (1.0 - for_light()) * (1.0 - unfocused(length())); }
     // Its density.
     double density(double t) const {
         const double d = distance + std::abs(t - along);
-        const double light = distance / (d * d * (place_of(length()) - place_of(0.0)));
-        return (1.0 - focused) * dot(share(), extinction() * exp(-extinction() * t)) +
-               focused * unfocused(length()) * light;
+        const bool is_lit = for_light() > 0.0 && t >= lit_from() && t <= lit_to();
+        return (1.0 - for_light()) * dot(share(), extinction() * exp(-extinction() * t)) +
+               (is_lit ? for_light() * distance / (d * d * chord()) : 0.0);
     }
+    double for_light() const {
+        return chord() < 1.0 / 1024.0 ? 0.0 : double(focused) * std::sqrt(unfocused(length()));
+    }
+    double lit_from() const { return std::clamp(double(lit.x), 0.0, length()); }
+    double lit_to() const { return std::clamp(double(lit.y), 0.0, length()); }
+    double chord() const { return place_of(lit_to()) - place_of(lit_from()); }
     double place_of(double t) const { return (t - along) / (distance + std::abs(t - along)); }
 
     static dvec3 expm1(dvec3 x) { return {std::expm1(x.x), std::expm1(x.y), std::expm1(x.z)}; }
 };
 
 std::vector<MediumCase> medium_cases() {
-    constexpr float ENDLESS = 3.4e38f;
     return {
         {"thin", vec3(0), vec3(1e-3f)},
         {"grey", vec3(0.5f), vec3(1.5f)},
@@ -76,6 +87,9 @@ std::vector<MediumCase> medium_cases() {
         {"near a light", vec3(0.01f), vec3(0.02f, 0.05f, 0.1f), vec3(1), 6.0f, 2.0f, 0.01f, 0.5f},
         {"before a light", vec3(0.1f), vec3(0.5f, 1, 0), vec3(1, 2, 3), 3.0f, 10.0f, 1.0f, 0.3f},
         {"behind a light", vec3(0.1f), vec3(0.5f, 1, 2), vec3(1), ENDLESS, -1.0f, 0.5f, 0.5f},
+        {"in a beam", vec3(0.01f), vec3(0.1f, 0.2f, 0.3f), vec3(1), 6.0f, 2.0f, 0.3f, 0.7f, {1.0f, 4.0f}},
+        {"before a beam", vec3(0.1f), vec3(0.5f, 1, 2), vec3(1), ENDLESS, -1.0f, 0.5f, 0.5f, {3.0f, ENDLESS}},
+        {"beside a beam", vec3(0.1f), vec3(0.5f, 1, 2), vec3(1), 6.0f, 2.0f, 0.5f, 0.5f, {0.0f, 0.0f}},
         {"without particles", vec3(1e-3f, 1, 80), vec3(0)},
         {"black", vec3(0, 40, 300), vec3(0)},
         {"nothing", vec3(0), vec3(0)},
@@ -91,7 +105,8 @@ std::vector<DistanceResult> run_distances(const vk::Device& device, const Medium
                       .t_max = c.t_max,
                       .along = c.along,
                       .distance = c.distance,
-                      .share = c.focused};
+                      .share = c.focused,
+                      .lit = c.lit};
     std::vector<DistanceItem> items(DISTANCE_SAMPLES, item);
     for (DistanceItem& i : items)
         i.random = uvec4(random.bits(), random.bits(), random.bits(), random.bits());
@@ -106,7 +121,8 @@ std::vector<DistanceResult> run_distances(const vk::Device& device, const Medium
 dvec3 weight_at(const MediumCase& c, const DistanceResult& r) {
     const dvec3 passed = exp(-c.extinction() * std::min(double(r.t), 1e30));
     if (c.scattering == vec3(0)) return passed;
-    const double pdf = r.scattered != 0 ? c.density(double(r.t)) : dot(c.share(), passed);
+    const double pdf =
+        r.scattered != 0 ? c.density(double(r.t)) : (1.0 - c.for_light()) * dot(c.share(), passed);
     return passed / pdf * (r.scattered != 0 ? dvec3(c.scattering) : dvec3(1.0));
 }
 
@@ -122,7 +138,7 @@ bool is_near(double found, double expected, double depth) {
 void test_case(const vk::Device& device, const MediumCase& c, uint32_t seed, Evidence& evidence) {
     std::vector<double> counts(DISTANCE_CELLS + 1), expected(DISTANCE_CELLS + 1);
     const bool scatters = c.scattering != vec3(0);
-    const double before_end = scatters ? c.unfocused(c.length()) : 0.0;
+    const double before_end = scatters ? 1.0 - c.passes() : 0.0;
     std::fill_n(expected.begin(), DISTANCE_CELLS, before_end / DISTANCE_CELLS);
     expected.back() = 1.0 - before_end;
     for (const DistanceResult& r : run_distances(device, c, seed)) {

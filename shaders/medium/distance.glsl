@@ -20,11 +20,13 @@ vec3 medium_extinction(MediumRecord m) {
 struct Focus {
     float along;     // Where on the segment it is nearest, in lengths of the ray; may be beyond either end.
     float distance;  // How near it is there, or its size if that is more; above 0.
-    float share;     // Of the vertices that are placed for it, if the path scatters; 0: there is no such light.
+    float
+        share;  // Of the paths that scatter for it, in a medium that none passes otherwise; 0: there is no such light.
+    vec2 lit;   // From where to where it shines on the segment.
 };
 
 Focus focus_none() {
-    return Focus(0.0, 1.0, 0.0);
+    return Focus(0.0, 1.0, 0.0, vec2(0.0));
 }
 
 // Distances t from the start of a segment with a density that falls with the square of the distance from the focus, as
@@ -58,8 +60,9 @@ struct MediumSample {
 // Samples how far a path with the throughput beta comes on a segment of the length t_max, from random words: one for
 // the distance, one for the channel whose extinction the distance follows, and two for the focus. Each channel is
 // chosen as often as its share of beta, and the weights account for all three: no channel's throughput then exceeds the
-// sum of beta. A share of the paths that scatter do so where the focus says instead, which the weights account for,
-// too. Where nothing scatters, the path reaches the end, and the weight is the transmittance.
+// sum of beta. A share of the paths scatter where the focus says instead, which the weights account for, too: in thin
+// media less, by the square root of the share that would scatter anyway. Where nothing scatters, the path reaches the
+// end, and the weight is the transmittance.
 // Ref: Wilkie et al. 2014, Hero Wavelength Spectral Sampling; Chiang et al. 2016, Practical and Controllable Subsurface
 // Scattering for Production Path Tracing.
 MediumSample medium_sample(MediumRecord m, vec3 beta, float t_max, Focus focus, uvec4 random) {
@@ -72,20 +75,20 @@ MediumSample medium_sample(MediumRecord m, vec3 beta, float t_max, Focus focus, 
     float hero = uc < share.x ? extinction.x : uc < share.x + share.y ? extinction.y : extinction.z;
     float depth = exponential_sample(random.x);
     s.scattered = depth < hero * t_max;
-    float pdf = dot(share, s.weight);
+    if (s.scattered) s.t = depth / hero;
+    focus.lit = clamp(focus.lit, 0.0, t_max);
+    vec2 ends = vec2(focus_place(focus, focus.lit.x), focus_place(focus, focus.lit.y));
+    if (ends.y - ends.x < 1.0 / 1024.0) focus.share = 0.0;  // Rounding would count.
+    focus.share *= sqrt(max(1.0 - dot(share, s.weight), 0.0));
+    if (unit_float(random.z) < focus.share) {
+        s.scattered = true;
+        s.t = clamp(focus_sample(focus, ends, unit_float(random.w)), focus.lit.x, focus.lit.y);
+    }
+    s.weight = exp(-s.t * extinction);
+    float pdf = (1.0 - focus.share) * dot(share, s.scattered ? extinction * s.weight : s.weight);
     if (s.scattered) {
-        vec2 ends = vec2(focus_place(focus, 0.0), focus_place(focus, t_max));
-        if (ends.y - ends.x < 1.0 / 1024.0) focus.share = 0.0;  // Rounding would count.
-        s.t = depth / hero;
-        if (unit_float(random.z) < focus.share) {
-            s.t = clamp(focus_sample(focus, ends, unit_float(random.w)), 0.0, t_max);
-        }
-        float scatters =
-            -(share.x * expm1_nonpositive(-t_max * extinction.x) + share.y * expm1_nonpositive(-t_max * extinction.y) +
-              share.z * expm1_nonpositive(-t_max * extinction.z));
-        s.weight = exp(-s.t * extinction);
-        pdf = (1.0 - focus.share) * dot(share, extinction * s.weight);
-        if (focus.share > 0.0) pdf += focus.share * scatters * focus_pdf(focus, ends, s.t);
+        bool lit = s.t >= focus.lit.x && s.t <= focus.lit.y;
+        if (focus.share > 0.0 && lit) pdf += focus.share * focus_pdf(focus, ends, s.t);
         s.weight *= m.scattering;
     }
     s.weight = pdf > 0.0 ? s.weight / pdf : vec3(0.0);

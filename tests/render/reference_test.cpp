@@ -54,7 +54,7 @@ constexpr std::array REFERENCES{
     Reference{"hundred-lights", 1280},
     Reference{"orthographic", 512},
     Reference{"smoke", 512},
-    Reference{"haze", 1792},
+    Reference{"haze", 2048},
     Reference{"milk", 512},
     Reference{"principled-nested-glass", 512, "nested-glass"},
 };
