@@ -15,6 +15,7 @@ PHONG = "shaders/bsdf/phong.glsl"
 MEDIUM = "shaders/medium/medium.glsl"
 DISTANCE = "shaders/medium/distance.glsl"
 PHASE = "shaders/bsdf/phase.glsl"
+WALK = "shaders/integrator/walk.glsl"
 RENDER = "shaders/kernels/render.glsl"
 CONDUCTOR = "shaders/bsdf/conductor.glsl"
 DIELECTRIC = "shaders/bsdf/dielectric.glsl"
@@ -77,7 +78,7 @@ PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Sun*:Orthographic*:Sc
 TERMINATOR = ("Interaction*", "Terminator*")
 CAMERAS = ("WarpTest*", "PanoramaTest*:PixelFilterTest*:ClampTest*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
-SCATTERING = ("MediumTest*:BsdfTest*", "ScatteringTest*")
+SCATTERING = ("MediumTest*:BsdfTest*", "ScatteringTest*", "SealedMedia*")
 CATCHERS = ("*Traversal*", "CatcherTest*")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 INSTANCES = ("InstanceTest*", "InstancedNormals*:*InstanceTest*", "Instancing*:MediaAt*")
@@ -416,11 +417,12 @@ GROUPS = [
         ("light samples of the second vertex not limited", PATH, "path.depth + 1u)", "path.depth)"),
     ]),
     (SCATTERING, [
-        ("distances of one channel weighted for it alone", DISTANCE, "float pdf = dot(share, s.weight);",
-         "float pdf = exp(-hero * t_max);"),
-        ("distances without the density's factor", DISTANCE, "dot(share, extinction * s.weight);",
-         "dot(share, s.weight);"),
-        ("vertices for a light not counted", DISTANCE, "if (focus.share > 0.0) pdf +=", "if (false) pdf +="),
+        ("distances of one channel weighted for it alone", DISTANCE,
+         "dot(share, s.scattered ? extinction * s.weight : s.weight);", "(s.scattered ? hero : 1.0) * exp(-s.t * hero);"),
+        ("distances without the density's factor", DISTANCE, "s.scattered ? extinction * s.weight : s.weight", "s.weight"),
+        ("vertices for a light not counted", DISTANCE, "if (focus.share > 0.0 && lit) pdf +=", "if (false) pdf +="),
+        ("a light that shines everywhere", DISTANCE, "bool lit = s.t >= focus.lit.x && s.t <= focus.lit.y;",
+         "bool lit = true;"),
         ("light not scattered but absorbed", DISTANCE, "s.weight *= m.scattering;", "s.weight *= m.absorption;"),
         ("what is scattered not lost from the ray", DISTANCE, "VOLUMETRIC ? m.absorption + m.scattering : m.absorption",
          "m.absorption"),
@@ -435,11 +437,18 @@ GROUPS = [
         ("shadow rays stopped by interfaces", PATH, "if (!surface_is_interface(x)) return false;", "return false;"),
         ("shadow rays that miss their light beyond an interface", PATH, "shadow.ray.d += shadow.ray.o - o;", ""),
         ("the medium behind an interface ignored by paths", PATH,
-         "path.media = media_beyond(path.media, x.material.medium, x.s.front);\n    path.ray.o",
-         "path.ray.o"),
+         "path.media = media_beyond(path.media, x.material.medium, x.s.front);\n    if (WALKS && !x", "if (WALKS && !x"),
         ("the same distances behind an interface", PATH, " | path.crossed << PAIR_CROSSED_SHIFT", ""),
         ("the path's ray traced again while its shadow ray goes on", RENDER, "if (VOLUMETRIC && s.waits) met.hit = s.hit;",
          ""),
+        ("a walk that loses nothing", WALK, "path.beta *= way.weight;", ""),
+        ("lights found by a walk weighted", WALK, "path.delta = true;  //", "path.delta = false;  //"),
+        ("the background seen through what scatters", WALK, "path.clear = false;", ""),
+        ("steps of a walk in one direction", WALK, "frame_to_world(frame_from_z(-path.ray.d), scattered.wi)",
+         "path.ray.d"),
+        ("steps of a walk beyond the solid", RENDER, "if (way.scattered) t_max = way.t;", "if (way.scattered) t_max = 1e-6;"),
+        ("a shadow ray traced again after a walk", RENDER, "s.shadow.t_max = 0.0;", ""),
+        ("walks beside lights", "host/gpu_scene/nesting.cpp", "std::ranges::any_of(lights, touches)", "false"),
         ("no medium around everything", MATERIAL_ARRAYS, "std::vector<Interior> media{{scene.medium}};",
          "std::vector<Interior> media(1);"),
     ]),

@@ -36,13 +36,17 @@ SCENES = {
     "principled": (SCENES_FOLDER / "made" / "principled.json", 8),
     "street": (SCENES_FOLDER / "made" / "street" / "street.json", 6),
     "room": (SCENES_FOLDER / "made" / "room.json", 6),
+    "wax": (SCENES_FOLDER / "wax.json", 1024),
+    "milk": (SCENES_FOLDER / "made" / "milk.json", 1024),
+    "haze": (SCENES_FOLDER / "haze.json", 64),
 } | {name: (SCENES_FOLDER / "made" / f"{name}.json", 8) for name in LIT_BY_IMAGE}
 # What the tracer does not know.
 BEYOND_THE_TRACER = {"textured": "textures", "principled": "principled materials", "street": "textures",
-                     "room": "spheres that emit"} | {name: "principled materials" for name in LIT_BY_IMAGE}
+                     "room": "spheres that emit", "wax": "media", "milk": "media", "haze": "media"} | {name: "principled materials" for name in LIT_BY_IMAGE}
 MADE_BY_PYTHON = {
     "many-lights.json": [SCENES_FOLDER / "make_many_lights.py"],
     "room.json": [SCENES_FOLDER / "make_room.py"],
+    "milk.json": [SCENES_FOLDER / "make_milk.py"],
     "street/street.json": [ROOT / "scenes" / "make_street.py", SCENES_FOLDER / "made" / "street"],
 }
 MADE_BY_BLENDER = {

@@ -8,7 +8,7 @@ import bpy
 COLOR_SPACES = {"srgb": "sRGB", "linear": "Non-Color"}
 TEXTURE_KEYS = {"image", "factor", "encoding", "cutoff"}
 PRINCIPLED_KEYS = {"type", "base_color", "metalness", "roughness", "ior", "anisotropy", "transmission", "thin_walled"}
-PRINCIPLED_KEYS |= {"coat", "coat_roughness", "fuzz", "fuzz_roughness", "normal_map", "opacity"}
+PRINCIPLED_KEYS |= {"subsurface", "coat", "coat_roughness", "fuzz", "fuzz_roughness", "normal_map", "opacity"}
 
 
 class Graph:
@@ -89,13 +89,33 @@ class Graph:
         absent = self.math("LESS_THAN", self.image(opacity, "srgb").outputs["Alpha"], opacity["cutoff"])
         return self.node("MixShader", absent, surface, self.node("BsdfTransparent").outputs[0]).outputs[0]
 
-    def finish(self, surface):
-        self.node("OutputMaterial", surface)
+    def volume(self, material):
+        """What fills a solid, or None where nothing does."""
+        parts = []
+        if "scattering" in material:
+            given = rgb(material["scattering"]["coefficient"])
+            density = max(given)
+            parts.append(self.node("VolumeScatter", (*[c / density for c in given], 1), density,
+                                   material["scattering"].get("g", 0)))
+        if "absorption" in material:
+            given = absorption(material["absorption"])
+            density = max(given)
+            parts.append(self.node("VolumeAbsorption", (*[1 - c / density for c in given], 1), density))
+        parts = [part.outputs[0] for part in parts]
+        return self.node("AddShader", *parts).outputs[0] if len(parts) == 2 else parts[0] if parts else None
+
+    def finish(self, surface, volume=None):
+        self.node("OutputMaterial", surface, volume)
         return self.material
 
 
 def rgb(value):
     return value if isinstance(value, list) else [value] * 3
+
+
+def absorption(value):
+    """Coefficients [1/m]."""
+    return [-math.log(t) / value["distance"] for t in rgb(value["transmittance"])]
 
 
 def f0(ior):
@@ -113,6 +133,10 @@ def diffuse_transmission(graph, material):
     front = graph.node("BsdfDiffuse", graph.color(material["reflectance"]), 0, normal)
     back = graph.node("BsdfTranslucent", graph.color(material["transmittance"]), normal)
     return graph.node("AddShader", front.outputs[0], back.outputs[0]).outputs[0]
+
+
+def interface(graph, material):
+    """No surface."""
 
 
 def dielectric(graph, material):
@@ -154,10 +178,26 @@ def inputs_of_blender_4(graph, material, transmission):
     return {
         "Base Color": graph.color([c * c for c in rgb(color)] if transmission else color),
         "Transmission Weight": transmission,
+    } | subsurface(material.get("subsurface")) | {
         "Coat Weight": material.get("coat", 0),
         "Coat Roughness": material.get("coat_roughness", 0),
         "Sheen Weight": material.get("fuzz", 0),
         "Sheen Roughness": material.get("fuzz_roughness", 0.5),
+    }
+
+
+def subsurface(given):
+    """The colour is the base's, and the radius such that the mean free path is candela's: 1 / (4 pi) of it, without g."""
+    if given is None:
+        return {}
+    g = given.get("g", 0)
+    radius = [4 * math.pi / (1 - g) * r for r in rgb(given["radius"])]
+    return {
+        "Base Color": (*rgb(given["color"]), 1),
+        "Subsurface Weight": given.get("weight", 1),
+        "Subsurface Scale": 1,
+        "Subsurface Radius": radius,
+        "Subsurface Anisotropy": g,
     }
 
 
@@ -195,7 +235,7 @@ def principled(graph, material):
 def reflecting(name, material, folder):
     """A material of a scene."""
     graph = Graph(name, folder)
-    return graph.finish(graph.cut(material, MODELS[material["type"]](graph, material)))
+    return graph.finish(graph.cut(material, MODELS[material["type"]](graph, material)), graph.volume(material))
 
 
 def emitting(name, radiance, folder):
@@ -210,6 +250,7 @@ MODELS = {
     "diffuse": diffuse,
     "diffuse_transmission": diffuse_transmission,
     "dielectric": dielectric,
+    "interface": interface,
     "conductor": conductor,
     "principled": principled,
 }

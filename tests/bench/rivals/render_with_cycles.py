@@ -103,9 +103,26 @@ def add_model(path, to_blender):
             made.matrix_world = turn @ made.matrix_world
 
 
+def add_spot(name, light, to_blender):
+    """Its power is that of a point as bright all around; where it fades, it is linear in another measure than candela's."""
+    spot = bpy.data.lights.new(name, "SPOT")
+    outer, inner = (math.radians(light[key]) for key in ("outer_angle", "inner_angle"))
+    spot.spot_size = 2 * outer
+    spot.spot_blend = (math.cos(inner) - math.cos(outer)) / (1 - math.cos(outer))
+    spot.shadow_soft_size = 0
+    spot.energy, spot.color = 4 * math.pi, light["intensity"]
+    made = add_object(name, spot)
+    made.location = to_blender(light["position"])
+    direction = to_blender(light["look_at"]) - made.location
+    made.rotation_euler = direction.to_track_quat("-Z", "Y").to_euler()
+
+
 def add_lights(lights, to_blender):
     for i, light in enumerate(lights):
-        assert light["type"] == "directional", "lights without a surface must be directional"
+        if light["type"] == "spot":
+            add_spot(f"spot {i}", light, to_blender)
+            continue
+        assert light["type"] == "directional", "lights without a surface must be directional, or spots"
         sun = bpy.data.lights.new(f"sun {i}", "SUN")
         sun.angle, sun.energy, sun.color = 0, 1, light["irradiance"]
         direction = to_blender(light["direction"])
@@ -156,6 +173,7 @@ def set_up(width, depth, seed, threads):
     cycles.use_denoising = cycles.use_adaptive_sampling = cycles.use_auto_tile = False
     # Cycles counts the segments between surfaces. Its roulette begins where candela's does with --rr-depth 1.
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = depth - 1
+    cycles.volume_bounces = depth - 1
     cycles.min_light_bounces = 0
     # Candela's holes are neither bounces nor places of roulette. 1024 is the most that Cycles allows.
     cycles.transparent_max_bounces = cycles.min_transparent_bounces = 1024
