@@ -4,7 +4,8 @@
 # slow: suites that begin with Slow, and what these names begin with. They run by `ctest --preset slow` alone.
 set(slow_render GlossyEstimatorTest PrincipledPictureTest.EstimatorsAgree TexturedTest.EstimatorsAgree
     NormalMapTest.EstimatorsAgree DiffuseTransmissionTest.EstimatorsAgree SamplerErrorTest.SobolIsNowhere
-    ScatteringTest.EstimatorsAgree ScatteringTest.ChoicesOfLightsAgree ScatteringTest.RouletteInHaze)
+    ScatteringTest.EstimatorsAgree ScatteringTest.ChoicesOfLightsAgree ScatteringTest.RouletteInHaze
+    DeepMediumTest.ReflectsWhatChandrasekharSaysTo)
 # quick: the most telling tests, all together under a minute on two cores; here by what their names begin with.
 set(quick_unit ".")
 set(quick_vk ".")

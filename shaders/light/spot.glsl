@@ -4,6 +4,7 @@
 #define LIGHT_SPOT_GLSL
 
 #include "base/math.glsl"
+#include "base/ray.glsl"
 #include "light/point.glsl"
 
 // The factor of the intensity in the unit direction w, away from the light. It is the reference's, or smoothstep of the

@@ -203,7 +203,7 @@ class Runs(unittest.TestCase):
                 self.assertEqual(["--light-sampler", "power"] == command[-2:], sampler == "power")
 
     def test_what_is_unknown_or_missing_is_told_with_its_remedy(self):
-        known = "cornell-box, suzannes, many-lights, sky, textured, principled, street, room, "
+        known = "cornell-box, suzannes, many-lights, sky, textured, principled, street, room, wax, milk, haze, "
         known += "lit-primitives, lit-suzanne, lit-textures, lit-glass, lit-lights"
         self.assertIn(f"unknown scene teapot (known: {known})", compare(CANDELA, "teapot"))
         self.assertIn("cannot run /no/candela: build it, or give", compare("/no/candela"))
