@@ -42,7 +42,8 @@ SCENES = {
 } | {name: (SCENES_FOLDER / "made" / f"{name}.json", 8) for name in LIT_BY_IMAGE}
 # What the tracer does not know.
 BEYOND_THE_TRACER = {"textured": "textures", "principled": "principled materials", "street": "textures",
-                     "room": "spheres that emit", "wax": "media", "milk": "media", "haze": "media"} | {name: "principled materials" for name in LIT_BY_IMAGE}
+                     "room": "spheres that emit", "wax": "media", "milk": "media", "haze": "media"}
+BEYOND_THE_TRACER |= {name: "principled materials" for name in LIT_BY_IMAGE}
 MADE_BY_PYTHON = {
     "many-lights.json": [SCENES_FOLDER / "make_many_lights.py"],
     "room.json": [SCENES_FOLDER / "make_room.py"],
