@@ -229,7 +229,7 @@ TEST_F(DeepMediumTest, ReflectsWhatChandrasekharSaysToTheThousandth) {
 // there, too, which finds nothing.
 TEST_F(ScatteringTest, WalksAreWhatOtherPathsAre) {
     PrincipledMaterial skin{.base_color = vec3(0.9f, 0.6f, 0.4f), .roughness = 0.3f};
-    skin.diffuse_transmission = 1.0f;
+    skin.diffuse_transmission = 0.6f;
     skin.inside = scattering(vec3(5, 12, 20), 0.3f, vec3(0.2f, 0.5f, 1));
     const Medium milk = scattering(vec3(3, 2, 1), -0.4f, vec3(0.1f, 0.2f, 0.3f));
     Scene walks = scene_with_camera(dvec3(0, 1, 5), dvec3(0), 0.8f);
@@ -238,7 +238,7 @@ TEST_F(ScatteringTest, WalksAreWhatOtherPathsAre) {
               add_material(walks, DielectricMaterial{.fresnel = Fresnel::exact, .inside = milk}));
     add_shape(walks, Sphere{dvec3(1.3, 0.1, 0), 0.5},
               add_material(walks, DielectricMaterial{.ior = 1.2f, .inside = scattering(vec3(6))}));
-    walks.lights = {{"", PointLight{dvec3(3, 3, 3), vec3(4)}}};
+    walks.lights = {{"", PointLight{dvec3(3, 3, 3), vec3(12)}}};
     walks.environment = constant_environment(vec3(0.4f, 0.5f, 0.6f));
     Scene others = walks;
     others.lights.push_back({"", PointLight{dvec3(-1.1, 0, 0), vec3(0)}});
