@@ -20,9 +20,8 @@ vec3 medium_extinction(MediumRecord m) {
 struct Focus {
     float along;     // Where on the segment it is nearest, in lengths of the ray; may be beyond either end.
     float distance;  // How near it is there, or its size if that is more; above 0.
-    float
-        share;  // Of the paths that scatter for it, in a medium that none passes otherwise; 0: there is no such light.
-    vec2 lit;   // From where to where it shines on the segment.
+    float share;     // Of the paths in a dense medium that scatter for it; 0: there is no such light.
+    vec2 lit;        // From where to where it shines on the segment.
 };
 
 Focus focus_none() {
