@@ -241,12 +241,13 @@ bool is_interface(const Material& material) {
 bool is_sealed(const Scene& scene, const std::vector<Solid>& solids, const MeshSolids& parts, bool nested) {
     if (nested && std::ranges::any_of(scene.materials, is_interface)) return false;
     const std::vector<DoubleBox> lights = places_of_lights(scene);
-    bool scatters = false;
+    bool any_scatters = false;
     for (const Solid& solid : solids) {
         const Shape& shape = scene.shapes[solid.shape];
         if (is_interface(scene.materials[shape.material])) continue;
-        if (solid.inside.medium.scattering != vec3(0)) {
-            scatters = true;
+        const bool scatters = solid.inside.medium.scattering != vec3(0);
+        any_scatters = any_scatters || scatters;
+        if (scatters) {
             const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
             const bool open =
                 solid.walls ||
@@ -257,10 +258,9 @@ bool is_sealed(const Scene& scene, const std::vector<Solid>& solids, const MeshS
             return all(lessThanEqual(light.lo, solid.box.hi)) &&
                    all(greaterThanEqual(light.hi, solid.box.lo));
         };
-        if ((nested || solid.inside.medium.scattering != vec3(0)) && std::ranges::any_of(lights, touches))
-            return false;
+        if ((nested || scatters) && std::ranges::any_of(lights, touches)) return false;
     }
-    return scatters;
+    return any_scatters;
 }
 
 }  // namespace
