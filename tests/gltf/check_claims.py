@@ -19,7 +19,7 @@ import png
 from stage import DARK
 
 BLOCK = 4  # Pixels along each side of what is compared.
-QUICK_SPP = 64
+QUICK_SPP = 16
 
 
 def means(picture, rect):
