@@ -7,7 +7,10 @@
 # For the wheel (pyproject.toml), the component `wheel` has the program alone. With -DCANDELA_PORTABLE=ON, it has all
 # libraries but glibc inside (cmake/wheel.sh).
 #
-# Left out are the libraries that every system with a Vulkan driver has: glibc and the C++ run-time library. A process
+# `cpack -G DEB` makes a package of Debian, which uses the system's libraries (the component `debian`): with pages of the
+# manual, completions for shells, and what a desktop needs to open scenes. Build it with the window.
+#
+# Left out of archives are the libraries that every system with a Vulkan driver has: glibc and the C++ run-time library. A process
 # should have only one of each, and drivers need the system's.
 include(GNUInstallDirs)
 
@@ -27,9 +30,42 @@ install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${C
     DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
+install(CODE "set(version ${PROJECT_VERSION})
+set(name candela-${PROJECT_VERSION}-${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR})
+set(documents ${CMAKE_INSTALL_DOCDIR})
+set(library_folder ${CMAKE_INSTALL_LIBDIR})")
+install(SCRIPT ${CMAKE_SOURCE_DIR}/cmake/archive_files.cmake)
+
+set(CPACK_PACKAGE_CONTACT "The candela contributors <maintainers@candela.invalid>" CACHE STRING
+    "Who answers for the package of Debian")
+
+# What only the system's folders are for. The program prints its own manual and completions.
+set(desktop ${CMAKE_SOURCE_DIR}/integrations/desktop)
+set(share ${CMAKE_CURRENT_BINARY_DIR}/share)
+set(to_debian COMPONENT debian EXCLUDE_FROM_ALL)
+install(TARGETS candela RUNTIME ${to_debian})
+install(CODE "set(candela $<TARGET_FILE:candela>)
+set(share ${share})
+set(version ${PROJECT_VERSION})
+set(contact \"${CPACK_PACKAGE_CONTACT}\")" ${to_debian})
+install(SCRIPT ${CMAKE_SOURCE_DIR}/cmake/debian_files.cmake ${to_debian})
+install(DIRECTORY ${share}/ DESTINATION ${CMAKE_INSTALL_DATADIR} ${to_debian})
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/candela ${to_debian}
+    PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} ${to_debian})
+install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} ${to_debian})
+install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright ${to_debian})
+install(FILES ${desktop}/candela.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications ${to_debian})
+install(FILES ${desktop}/candela.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps ${to_debian})
+install(FILES ${desktop}/candela.mime.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages RENAME candela.xml
+    ${to_debian})
+install(FILES ${desktop}/candela.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo
+    RENAME io.github.candela_render.candela.metainfo.xml ${to_debian})
+
 set(CPACK_GENERATOR TGZ)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "A path tracer that gives the same picture on any Vulkan device")
 string(TOLOWER "${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR}" system)
 set(CPACK_PACKAGE_FILE_NAME "candela-${PROJECT_VERSION}-${system}")
 set(CPACK_STRIP_FILES ON)
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/cmake/cpack_debian.cmake)
 include(CPack)

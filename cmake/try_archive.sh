@@ -1,7 +1,8 @@
 #!/bin/sh
-# Makes the portable archive and renders from it in a root folder that holds only glibc, the C++ run-time library and
-# lavapipe; prints which versions of the first two it needs, and fails if they are newer than Debian 12's. Needs a build
-# with the preset `release`, and root. usage: sh cmake/try_archive.sh
+# Makes the portable archive, twice, which must give the same bytes, and renders from it in a root folder that holds only
+# glibc, the C++ run-time library and lavapipe; prints which versions of the first two it needs, and fails if they are
+# newer than Debian 12's, or if the licence of a library in it is missing. Needs a build with the preset `release`, and
+# root. usage: sh cmake/try_archive.sh
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -18,12 +19,25 @@ fi
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cpack --config "$build/CPackConfig.cmake" -B "$folder" >"$folder/cpack.log" || { cat "$folder/cpack.log"; exit 1; }
-archive=$(ls "$folder"/candela-*.tar.gz)
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct 2>/dev/null || echo 0)
+export SOURCE_DATE_EPOCH
+for copy in one two; do
+    cpack --config "$build/CPackConfig.cmake" -B "$folder/$copy" >"$folder/cpack.log" ||
+        { cat "$folder/cpack.log"; exit 1; }
+done
+archive=$(ls "$folder"/one/candela-*.tar.gz)
+cmp "$archive" "$folder"/two/candela-*.tar.gz
 root=$folder/root
 mkdir -p "$root/opt" "$root/tmp" "$root/proc"
 tar -C "$root/opt" -xzf "$archive"
 home=$(cd "$root" && ls -d opt/candela-*)
+
+# Every library is of a package that the SBOM names, with its licence.
+for library in "$root/$home"/lib/lib*.so*; do
+    package=$(dpkg-query -S "*/$(basename "$library")" | head -n 1 | cut -d : -f 1)
+    grep -qx "PackageName: $package" "$root/$home/share/doc/candela/sbom.spdx"
+    test -s "$root/$home/share/doc/candela/licenses/$package.txt"
+done
 
 # newest NAME: prints the highest version NAME_... that the program and its libraries need.
 newest() {

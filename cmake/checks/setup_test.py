@@ -103,7 +103,7 @@ class Debian13(unittest.TestCase):
         self.assertEqual(self.said(answer="none:/", without_debootstrap=True),
                          "Nothing was tried: debootstrap cannot be installed.")
         self.assertEqual(self.said(answer="none:/"),
-                         "Nothing was tried: the mirror that apt knows has no Debian 13, or cannot be reached.")
+                         "Nothing was tried: the mirror that apt knows has no suite trixie, or cannot be reached.")
 
 
 if __name__ == "__main__":

@@ -28,5 +28,8 @@ Command add_selftest_command(CLI::App& app);
 Command add_bench_command(CLI::App& app);
 Command add_serve_command(CLI::App& app, const std::string& command_line);
 Command add_view_command(CLI::App& app, const std::string& command_line);
+// These describe `app`, which must outlive them.
+Command add_completion_command(CLI::App& app);
+Command add_manual_command(CLI::App& app);
 
 }  // namespace candela

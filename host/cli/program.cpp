@@ -16,7 +16,10 @@ namespace candela {
 static std::vector<Command> declare_program(CLI::App& app, const std::string& command_line) {
     app.name("candela");
     app.description("candela: a physically based path tracer for any Vulkan device, GPU or CPU");
-    app.set_version_flag("--version", "candela " CANDELA_VERSION, "Print the version and exit");
+    app.set_version_flag("--version", "candela " CANDELA_VERSION "\nbuilt with " CANDELA_BUILT_WITH,
+                         "Print the version, and those of what the program is built with, and exit");
+    app.require_subcommand(0,
+                           1);  // Further names of commands are words like others: `candela manual render`.
     // Commands inherit the column width, but must not inherit the footer, which is therefore set last.
     app.get_formatter()->column_width(36);
     std::vector<Command> commands{add_render_command(app, command_line),
@@ -30,7 +33,9 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
                                   add_plot_command(app),
                                   add_selftest_command(app),
                                   add_bench_command(app),
-                                  add_serve_command(app, command_line)};
+                                  add_serve_command(app, command_line),
+                                  add_completion_command(app),
+                                  add_manual_command(app)};
     app.footer(
         "`candela COMMAND --help` lists the options of a command.\n\n"
         "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no suitable device, 4 device lost,\n"
@@ -104,8 +109,7 @@ ExitCode run_program(int argc, const char* const* argv) {
     }
     throw Error(
         "no command given; use render, fidelity, view, info, devices, compare, merge, denoise, plot, "
-        "selftest, "
-        "bench or serve, or see candela --help",
+        "selftest, bench, serve, completion or manual, or see candela --help",
         ErrorKind::request);
 }
 

@@ -1,0 +1,83 @@
+# Run when an archive is made on Debian: adds the licences of all that is in it, and an SBOM by SPDX 2.3, both below
+# ${documents}. Other systems' package managers are not asked; there, a notice says so.
+# Ref: https://spdx.github.io/spdx-spec/v2.3/
+set(root $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
+find_program(DPKG_QUERY dpkg-query)
+if(NOT DPKG_QUERY)
+    message("-- This system has no dpkg: the archive lacks the licences of its libraries, and an SBOM.")
+    return()
+endif()
+
+# query(VARIABLE ARGUMENT...): what dpkg-query prints, without the line's end.
+function(query variable)
+    execute_process(COMMAND ${DPKG_QUERY} ${ARGN} OUTPUT_VARIABLE text OUTPUT_STRIP_TRAILING_WHITESPACE
+        COMMAND_ERROR_IS_FATAL ANY)
+    set(${variable} "${text}" PARENT_SCOPE)
+endfunction()
+
+string(TIMESTAMP created "%Y-%m-%dT%H:%M:%SZ" UTC)
+set(sbom "SPDXVersion: SPDX-2.3
+DataLicense: CC0-1.0
+SPDXID: SPDXRef-DOCUMENT
+DocumentName: ${name}
+DocumentNamespace: urn:candela:sbom:${name}
+Creator: Tool: candela-archive_files.cmake
+Created: ${created}
+
+PackageName: candela
+SPDXID: SPDXRef-candela
+PackageVersion: ${version}
+PackageDownloadLocation: NOASSERTION
+FilesAnalyzed: false
+PackageLicenseConcluded: MIT
+PackageLicenseDeclared: MIT
+PackageCopyrightText: <text>Copyright (c) 2026 the candela authors</text>
+Relationship: SPDXRef-DOCUMENT DESCRIBES SPDXRef-candela
+")
+
+# add(PACKAGE RELATIONSHIP): a package of Debian that candela links so.
+function(add package relationship)
+    query(version -f "\${Version}" -W ${package})
+    query(source -f "\${source:Package}" -W ${package})
+    query(architecture -f "\${Architecture}" -W ${package})
+    string(REGEX REPLACE ":.*" "" package ${package})
+    file(COPY_FILE /usr/share/doc/${package}/copyright ${root}/${documents}/licenses/${package}.txt)
+    string(REGEX REPLACE "[^A-Za-z0-9.-]" "-" id ${package})
+    string(REPLACE "+" "%2B" encoded ${version})
+    string(APPEND sbom "
+PackageName: ${package}
+SPDXID: SPDXRef-${id}
+PackageVersion: ${version}
+PackageSupplier: Organization: Debian
+PackageDownloadLocation: NOASSERTION
+FilesAnalyzed: false
+PackageSourceInfo: built from Debian's source package ${source}
+PackageLicenseConcluded: NOASSERTION
+PackageLicenseDeclared: NOASSERTION
+PackageLicenseComments: <text>See licenses/${package}.txt.</text>
+PackageCopyrightText: NOASSERTION
+ExternalRef: PACKAGE-MANAGER purl pkg:deb/debian/${package}@${encoded}?arch=${architecture}
+Relationship: SPDXRef-candela ${relationship} SPDXRef-${id}
+")
+    set(sbom "${sbom}" PARENT_SCOPE)
+endfunction()
+
+# Of the libraries that the archive brings, wherever the system has them.
+file(GLOB libraries ${root}/${library_folder}/*.so*)
+set(packages)
+foreach(library IN LISTS libraries)
+    get_filename_component(library ${library} NAME)
+    query(found -S */${library})
+    string(REGEX MATCH "^[^:, ]+(:[^:, ]+)?" package ${found})
+    list(APPEND packages ${package})
+endforeach()
+list(REMOVE_DUPLICATES packages)
+list(SORT packages)
+file(MAKE_DIRECTORY ${root}/${documents}/licenses)
+foreach(package IN LISTS packages)
+    add(${package} DYNAMIC_LINK)
+endforeach()
+foreach(package IN ITEMS libcli11-dev libglm-dev libstb-dev libvulkan-volk-dev nlohmann-json3-dev)  # Headers alone.
+    add(${package} STATIC_LINK)
+endforeach()
+file(WRITE ${root}/${documents}/sbom.spdx "${sbom}")

@@ -1,0 +1,42 @@
+# What `candela --version` says that the program is built with: CANDELA_BUILT_WITH, names and versions.
+
+# describe(NAME VERSION): adds a library; without its version where nothing tells it.
+macro(describe name version)
+    string(STRIP "${name} ${version}" described)
+    list(APPEND CANDELA_BUILT_WITH "${described}")
+endmacro()
+
+# describe_by_pc(NAME LIBRARY PC): its version is in the file PC.pc for pkg-config, beside the library.
+macro(describe_by_pc name library pc)
+    get_filename_component(folder "${library}" DIRECTORY)
+    set(line)
+    if(EXISTS ${folder}/pkgconfig/${pc}.pc)
+        file(STRINGS ${folder}/pkgconfig/${pc}.pc line REGEX "^Version:")
+        string(REGEX REPLACE "^Version: *" "" line "${line}")
+    endif()
+    describe(${name} "${line}")
+endmacro()
+
+file(STRINGS ${MESHOPTIMIZER_INCLUDE_DIR}/meshoptimizer.h line REGEX "define MESHOPTIMIZER_VERSION")
+string(REGEX REPLACE ".*/\\* ([0-9.]+) \\*/.*" "\\1" meshoptimizer_version "${line}")
+execute_process(COMMAND ${GLSLANG_VALIDATOR} --version OUTPUT_VARIABLE line)
+string(REGEX REPLACE "^[^\n]*:([0-9.]+)\n.*" "\\1" glslang_version "${line}")
+list(GET JPEG_LIBRARIES 0 JPEG_LIBRARY_FILE)
+
+string(REPLACE GNU GCC compiler ${CMAKE_CXX_COMPILER_ID})
+set(CANDELA_BUILT_WITH "${compiler} ${CMAKE_CXX_COMPILER_VERSION}")
+describe(glslang "${glslang_version}")
+describe(OpenEXR "${OpenEXR_VERSION}")
+describe(libpng "${PNG_VERSION_STRING}")
+describe_by_pc(libjpeg "${JPEG_LIBRARY_FILE}" libjpeg)
+describe_by_pc(libwebp "${WEBP_LIBRARY}" libwebp)
+describe_by_pc(Draco "${DRACO_LIBRARY}" draco)
+describe(meshoptimizer "${meshoptimizer_version}")
+describe(GLM "${glm_VERSION}")
+describe(nlohmann-json "${nlohmann_json_VERSION}")
+describe(CLI11 "${CLI11_VERSION}")
+if(CANDELA_HAS_VIEW)
+    describe(GLFW "${glfw3_VERSION}")
+    describe_by_pc("Dear ImGui" "${IMGUI_LIBRARY}" imgui)
+endif()
+list(JOIN CANDELA_BUILT_WITH ", " CANDELA_BUILT_WITH)
