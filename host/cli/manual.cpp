@@ -71,7 +71,7 @@ std::string see_also(const std::vector<CommandRow>& table, const CommandRow& com
 
 std::string page(const std::vector<CommandRow>& table, const CommandRow& command) {
     const std::string name = roff(page_name(command));
-    std::string text = concat(".TH ", name, " 1 \"\" \"candela ", CANDELA_VERSION, "\"\n.SH NAME\n", name,
+    std::string text = concat(".TH ", name, R"( 1 "" "candela )", CANDELA_VERSION, "\"\n.SH NAME\n", name,
                               " \\- ", roff(command.description), "\n.SH SYNOPSIS\n", bold("candela"), ' ');
     text += command.name.empty() ? italic("COMMAND") : bold(command.name);
     text += " [" + italic("OPTIONS") + ']';
