@@ -78,9 +78,9 @@ bool has_extension(std::span<const VkExtensionProperties> extensions, std::strin
 DeviceInfo query_device(VkPhysicalDevice physical_device, uint32_t index);
 
 // Picks a device. Without a request: the first suitable one, in the order discrete, integrated, virtual, CPU
-// (lavapipe before others), other. A request is an index, or a part of a name in any case. Throws an Error
-// (no_device) that lists the devices if none or more than one matches, and one that gives the reason if the
-// requested device is unsuitable.
+// (lavapipe before others), other; one of Microsoft's Direct3D 12 (Dozen) only if there is no other. A
+// request is an index, or a part of a name in any case. Throws an Error (no_device) that lists the devices if
+// none or more than one matches, and one that gives the reason if the requested device is unsuitable.
 const DeviceInfo& select_device(std::span<const DeviceInfo> devices,
                                 const std::optional<std::string>& request);
 

@@ -30,6 +30,11 @@ static std::string list(std::span<const DeviceInfo> devices) {
 
 // True if `a` suits a renderer better than `b`, regardless of their places in the list.
 static bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
+    // Mesa's Dozen speaks to Direct3D 12, which knows less than Vulkan, for a GPU or CPU that others may
+    // drive.
+    const bool a_is_dozen = a.driver_id == VK_DRIVER_ID_MESA_DOZEN;
+    const bool b_is_dozen = b.driver_id == VK_DRIVER_ID_MESA_DOZEN;
+    if (a_is_dozen != b_is_dozen) return b_is_dozen;
     if (a.type != b.type) return a.type < b.type;
     return a.type == DeviceType::cpu && a.is_lavapipe() && !b.is_lavapipe();
 }

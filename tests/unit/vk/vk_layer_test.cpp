@@ -74,6 +74,16 @@ TEST(SelectDevice, PrefersLavapipeAmongCpusAlone) {
     EXPECT_EQ(select_device(devices, std::nullopt).index, 0u);
 }
 
+TEST(SelectDevice, TakesDirect3DOnlyIfThereIsNothingElse) {
+    std::vector<DeviceInfo> devices{make_device(0, "a", DeviceType::discrete),
+                                    make_device(1, "b", DeviceType::cpu)};
+    devices[0].driver_id = VK_DRIVER_ID_MESA_DOZEN;
+    EXPECT_EQ(select_device(devices, std::nullopt).index, 1u);
+    EXPECT_EQ(select_device(devices, "a").index, 0u);
+    devices.pop_back();
+    EXPECT_EQ(select_device(devices, std::nullopt).index, 0u);
+}
+
 TEST(SelectDevice, TakesAnIndexOrAPartOfTheNameInAnyCase) {
     EXPECT_EQ(selected("0"), 0u);
     EXPECT_EQ(selected("2"), 2u);
