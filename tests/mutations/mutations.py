@@ -78,7 +78,8 @@ PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Sun*:Orthographic*:Sc
 TERMINATOR = ("Interaction*", "Terminator*")
 CAMERAS = ("WarpTest*", "PanoramaTest*:PixelFilterTest*:ClampTest*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
-SCATTERING = ("MediumTest*:BsdfTest*", "ScatteringTest*:DeepMediumTest.ReflectsWhatChandrasekharSays", "SealedMedia*")
+SCATTERING = ("MediumTest*:BsdfTest*", "ScatteringTest*:DeepMediumTest.ReflectsWhatChandrasekharSays")
+SCATTERED_PATHS = ("MediumTest.TheMeanCosine*", SCATTERING[1], "SealedMedia*")
 CATCHERS = ("*Traversal*", "CatcherTest*")
 GEOMETRY = ("*Traversal*:*BruteForce*:*Escape*:Spawn*", "DirectLight*Under*:SkyFurnace*:AovTest*:ListTest*")
 INSTANCES = ("InstanceTest*", "InstancedNormals*:*InstanceTest*", "Instancing*:MediaAt*")
@@ -430,6 +431,8 @@ GROUPS = [
         ("forwards sampled for backwards", PHASE, "if (g >= 0.0) wi.z = -wi.z;", "if (g < 0.0) wi.z = -wi.z;"),
         ("the phase function normalised for g = 0", PHASE, "(1.0 - a) * (1.0 + a) / (q_squared", "1.0 / (q_squared"),
         ("a cosine at points without a surface", SURFACE, "is_in_medium(x) ? 1.0 : abs(local.z)", "abs(local.z)"),
+    ]),
+    (SCATTERED_PATHS, [
         ("the medium behind an interface ignored by shadow rays", PATH,
          "shadow.media = media_beyond(shadow.media, x.material.medium, x.s.front);", ""),
         ("shadow rays not dimmed", PATH, "shadow.Ld *= media_transmittance(shadow.media,",

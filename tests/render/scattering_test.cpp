@@ -114,7 +114,19 @@ TEST_F(ScatteringTest, InterfacesDimWhatIsBehind) {
     }
 }
 
-// A floor under a point light, with all kinds of boundaries in between.
+// A wall that shines, ten metres away.
+TEST_F(ScatteringTest, AMediumAroundEverythingDimsWhatIsBehindIt) {
+    Scene scene = seen_from(1.0);
+    scene.medium = scattering(0.05f * ABSORPTION, 0.0f, 0.05f * ABSORPTION);
+    add_shape(scene, parallelogram(vec3(-5, 0, 5), vec3(10, 0, 0), vec3(0, 0, -10)),
+              add_diffuse(scene, vec3(0)), Emission{RADIANCE});
+    RenderSettings s = settings(Estimator::mis, 6);
+    s.max_depth = 0;
+    expect_mean_of(scene, glm::dvec3(RADIANCE) * glm::exp(-glm::dvec3(ABSORPTION)), 4096, 1e-5, s);
+}
+
+// A floor under a point light, with all kinds of boundaries in between. What is beyond the light casts no
+// shadow.
 TEST_F(ScatteringTest, ShadowRaysPassInterfaces) {
     Scene scene = scene_with_camera(dvec3(6, 0.2, 0), dvec3(0), 1e-4f);
     add_shape(scene, parallelogram(vec3(-50, 0, 50), vec3(100, 0, 0), vec3(0, 0, -100)),
@@ -125,6 +137,7 @@ TEST_F(ScatteringTest, ShadowRaysPassInterfaces) {
     add_shape(scene, Sphere{dvec3(0, 2, 0), 0.25}, add_material(scene, InterfaceMaterial{{}}));
     add_shape(scene, Sphere{dvec3(0, 3.5, 0), 0.25},
               add_material(scene, DielectricMaterial{.ior = 1.0f, .inside = {2.0f * ABSORPTION}}));
+    add_shape(scene, parallelogram(vec3(-2, 5.1f, -2), vec3(4, 0, 0), vec3(0, 0, 4)), 0);
     scene.lights = {{"", PointLight{dvec3(0, 5, 0), vec3(50)}}};
     const glm::dvec3 passed = glm::exp(-0.5 * glm::dvec3(ABSORPTION + scattered) - glm::dvec3(ABSORPTION));
     RenderSettings s = settings(Estimator::light, 4);
@@ -259,6 +272,26 @@ TEST_F(ScatteringTest, WalksAreWhatOtherPathsAre) {
     };
     EXPECT_NEAR(alpha(walks, 15), alpha(others, 16),
                 5.0 * std::sqrt(2.0 * 0.25 / (32.0 * 32.0 * samples(64))));
+}
+
+// A path that walks out of an open vessel finds a lamp that light samples do not look for there.
+TEST_F(ScatteringTest, WalksFindLampsThroughOpenings) {
+    const Medium milk = scattering(vec3(1.5f, 1, 0.5f), 0.2f, vec3(0.05f, 0.1f, 0.2f));
+    TriangleMesh vessel = sphere_mesh(12, 16);
+    std::erase_if(vessel.triangles, [&](uvec3 t) { return vessel.positions[t.x].y > 0.6f; });
+    Scene walks = scene_with_camera(dvec3(0, 0.5, 6), dvec3(0, -0.1, 0), 0.25f);
+    add_shape(walks, vessel, add_material(walks, DiffuseTransmissionMaterial{vec3(0.1f), vec3(0.6f), milk}));
+    add_shape(walks, parallelogram(vec3(-1, 1, -1), vec3(2, 0, 0), vec3(0, 0, 2)),
+              add_diffuse(walks, vec3(0)), Emission{vec3(4)});
+    Scene others = walks;
+    others.lights.push_back({"", PointLight{dvec3(0), vec3(0)}});
+    ASSERT_TRUE(build_gpu_scene(walks).sealed_media);
+    ASSERT_FALSE(build_gpu_scene(others).sealed_media);
+    const auto picture = [&](const Scene& scene, uint32_t seed) {
+        return make_image(render(scene, settings(Estimator::mis, seed), samples(2560)), {.variance = true},
+                          {});
+    };
+    expect_same_expectation(picture(walks, 17), picture(others, 18));
 }
 
 TEST_F(ScatteringTest, EstimatorsAgreeInHaze) {
