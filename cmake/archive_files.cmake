@@ -1,5 +1,5 @@
 # Run when an archive is made on Debian: adds the licences of all that is in it, and an SBOM by SPDX 2.3, both below
-# ${documents}. Other systems' package managers are not asked; there, a notice says so.
+# ${documents}. A notice names what no package of Debian brought; other systems' package managers are not asked.
 # Ref: https://spdx.github.io/spdx-spec/v2.3/
 set(root $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
 find_program(DPKG_QUERY dpkg-query)
@@ -8,12 +8,15 @@ if(NOT DPKG_QUERY)
     return()
 endif()
 
-# query(VARIABLE ARGUMENT...): what dpkg-query prints, without the line's end.
+# query(VARIABLE ARGUMENT...): what dpkg-query prints, without the line's end; nothing if it knows no such package.
 function(query variable)
-    execute_process(COMMAND ${DPKG_QUERY} ${ARGN} OUTPUT_VARIABLE text OUTPUT_STRIP_TRAILING_WHITESPACE
-        COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND ${DPKG_QUERY} ${ARGN} OUTPUT_VARIABLE text ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
     set(${variable} "${text}" PARENT_SCOPE)
 endfunction()
+
+macro(lack what)
+    message("-- ${what} is of no package of Debian: the archive lacks its licence, and the SBOM its name.")
+endmacro()
 
 string(TIMESTAMP created "%Y-%m-%dT%H:%M:%SZ" UTC)
 set(sbom "SPDXVersion: SPDX-2.3
@@ -40,6 +43,10 @@ function(add package relationship)
     query(version -f "\${Version}" -W ${package})
     query(source -f "\${source:Package}" -W ${package})
     query(architecture -f "\${Architecture}" -W ${package})
+    if(NOT version)
+        lack(${package})
+        return()
+    endif()
     string(REGEX REPLACE ":.*" "" package ${package})
     file(COPY_FILE /usr/share/doc/${package}/copyright ${root}/${documents}/licenses/${package}.txt)
     string(REGEX REPLACE "[^A-Za-z0-9.-]" "-" id ${package})
@@ -62,14 +69,18 @@ Relationship: SPDXRef-candela ${relationship} SPDXRef-${id}
     set(sbom "${sbom}" PARENT_SCOPE)
 endfunction()
 
-# Of the libraries that the archive brings, wherever the system has them.
+# Of the libraries that the archive brings.
 file(GLOB libraries ${root}/${library_folder}/*.so*)
 set(packages)
 foreach(library IN LISTS libraries)
     get_filename_component(library ${library} NAME)
-    query(found -S */${library})
-    string(REGEX MATCH "^[^:, ]+(:[^:, ]+)?" package ${found})
-    list(APPEND packages ${package})
+    query(found -S */${architecture}/${library})
+    string(REGEX MATCH "^[^:, ]+(:[^:, ]+)?" package "${found}")
+    if(package)
+        list(APPEND packages ${package})
+    else()
+        lack(${library})
+    endif()
 endforeach()
 list(REMOVE_DUPLICATES packages)
 list(SORT packages)

@@ -10,8 +10,8 @@
 # `cpack -G DEB` makes a package of Debian, which uses the system's libraries (the component `debian`): with pages of the
 # manual, completions for shells, and what a desktop needs to open scenes. Build it with the window.
 #
-# Left out of archives are the libraries that every system with a Vulkan driver has: glibc and the C++ run-time library. A process
-# should have only one of each, and drivers need the system's.
+# Left out of archives are the libraries that every system with a Vulkan driver has: glibc and the C++ run-time library.
+# A process should have only one of each, and drivers need the system's.
 include(GNUInstallDirs)
 
 set_target_properties(candela PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
@@ -33,7 +33,8 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(CODE "set(version ${PROJECT_VERSION})
 set(name candela-${PROJECT_VERSION}-${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR})
 set(documents ${CMAKE_INSTALL_DOCDIR})
-set(library_folder ${CMAKE_INSTALL_LIBDIR})")
+set(library_folder ${CMAKE_INSTALL_LIBDIR})
+set(architecture ${CMAKE_LIBRARY_ARCHITECTURE})")
 install(SCRIPT ${CMAKE_SOURCE_DIR}/cmake/archive_files.cmake)
 
 set(CPACK_PACKAGE_CONTACT "The candela contributors <maintainers@candela.invalid>" CACHE STRING

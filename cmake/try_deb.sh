@@ -1,8 +1,9 @@
 #!/bin/sh
-# Makes the package of Debian, twice, which must give the same bytes; has lintian check it; installs it in a fresh Debian 12
-# below build/, where the program renders, man finds its pages, zsh and fish complete its options, and a scene has its MIME
-# type. Needs a build with the preset `release` that has a window, root, debootstrap, and a mirror of Debian that apt
-# knows; where one of the latter is missing it says so and exits with 3.   usage: sh cmake/try_deb.sh
+# Makes the package of Debian, twice, which must give the same bytes; has lintian check it; installs it in a fresh system
+# of this one's release below build/, where the program renders, man finds its pages, zsh and fish complete its options,
+# and a scene has its MIME type. Needs a build with the preset `release` that has a window, root, debootstrap, and a
+# mirror of Debian that apt knows; where one of the last three is missing it says so and exits with 3.
+# usage: sh cmake/try_deb.sh
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/setup.sh
@@ -18,11 +19,13 @@ make() {
         cpack -G DEB --config build/release/CPackConfig.cmake -B "$folder/$1" >"$folder/$1.log" ||
         { cat "$folder/$1.log"; exit 1; }
 }
+install_packages wheel  # dpkg-dev finds the packages of the libraries.
 make one
 make two
 cmp "$folder"/one/candela_*.deb "$folder"/two/candela_*.deb
 
-fresh_debian bookworm "$root"
+# shellcheck source=/dev/null
+fresh_debian "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$root"
 cp "$folder"/one/candela_*.deb "$root/candela.deb"
 # shellcheck disable=SC2016  # The inner shells replace these.
 run_in "$root" '
@@ -39,7 +42,8 @@ run_in "$root" '
     # contains TEXT WHAT: fails, and shows it, if what came from WHAT has no such text.
     contains() { echo "$2" | grep -qF -- "$1" || { echo "No $1 in: $2"; exit 1; }; }
     for page in candela candela-render candela-view; do
-        contains "candela" "$(MANWIDTH=100 man --warnings "$page" 2>&1)"
+        said=$(man --warnings "$page" 2>&1 >/dev/null)
+        test -z "$said" || { echo "man $page: $said"; exit 1; }
     done
     contains "denoise-quality" "$(MANWIDTH=100 man candela-render)"
     contains "--denoise-quality" "$(fish -c "complete -C \"candela render --den\"")"

@@ -6,14 +6,10 @@
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/setup.sh
+. cmake/fresh_debian.sh
 wheels=$PWD/build/wheel
 root=$wheels/debian
 
-# stop REASON
-stop() {
-    echo "Nothing was tried: $1."
-    exit 3
-}
 [ "$(id -u)" -eq 0 ] || stop "a system in a folder needs root"
 command -v apt-get >/dev/null || stop "this system has no apt-get"
 [ "$(uname -m)" = x86_64 ] || stop "the wheels are for x86-64"

@@ -21,6 +21,9 @@ namespace candela {
 // The images that --aov can name, but for "motion", which needs frames and is not among "all".
 inline constexpr const char* AOV_NAMES = "albedo,n,p,z,variance,samples,depth,ids,cryptomatte,denoising";
 
+// The word in single quotes, as sh, bash and zsh read it.
+std::string shell_quoted(const std::string& word);
+
 // The parts of `text` between separators, including empty ones.
 std::vector<std::string> split(const std::string& text, char separator);
 

@@ -32,14 +32,6 @@ std::string escaped(const std::string& text, std::string_view special) {
     return result;
 }
 
-// As a word of bash and zsh.
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text)
-        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return result + '\'';
-}
-
 std::string joined(const std::vector<std::string>& words, const char* separator) {
     std::string text;
     for (const std::string& word : words)
@@ -63,7 +55,7 @@ std::vector<std::string> names_of(const std::vector<OptionRow>& options) {
 
 // What may stand where an option or operand takes a value.
 std::string bash_values(const std::vector<std::string>& words, bool files) {
-    return concat(" words=", quoted(joined(words, " ")), files ? " files=1" : "");
+    return concat(" words=", shell_quoted(joined(words, " ")), files ? " files=1" : "");
 }
 
 std::string bash_script(const std::vector<CommandRow>& table) {
@@ -74,7 +66,7 @@ std::string bash_script(const std::vector<CommandRow>& table) {
             if (!option.takes_value) continue;
             std::vector<std::string> calls;
             for (const std::string& name : option.names)
-                calls.push_back(quoted(command.name + ' ' + name));
+                calls.push_back(shell_quoted(command.name + ' ' + name));
             values += concat("        ", joined(calls, " | "), ')',
                              bash_values(option.choices, option.takes_file), " ;;\n");
         }
@@ -88,9 +80,9 @@ std::string bash_script(const std::vector<CommandRow>& table) {
             for (const CommandRow& other : table)
                 if (!other.name.empty()) words.push_back(other.name);
         }
-        commands +=
-            concat("                ", quoted(command.name),
-                   ") options=", quoted(joined(names_of(options), " ")), bash_values(words, files), " ;;\n");
+        commands += concat("                ", shell_quoted(command.name),
+                           ") options=", shell_quoted(joined(names_of(options), " ")),
+                           bash_values(words, files), " ;;\n");
     }
     return concat(R"(_candela() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command='' options='' words='' files=''
@@ -129,7 +121,7 @@ std::string zsh_option(const OptionRow& option) {
                                     option.takes_value ? zsh_value(option) : "");
     const std::string names =
         option.names.size() > 1 ? concat('{', joined(option.names, ","), '}') : option.names[0];
-    return concat(quoted(once), names, quoted(text));
+    return concat(shell_quoted(once), names, shell_quoted(text));
 }
 
 std::string zsh_script(const std::vector<CommandRow>& table) {
@@ -137,17 +129,17 @@ std::string zsh_script(const std::vector<CommandRow>& table) {
     for (const CommandRow& command : table) {
         if (command.name.empty()) {
             for (const OptionRow& option : options_of(command))
-                words +=
-                    concat("        ", quoted(option.names.back() + ':' + summary(option.description)), '\n');
+                words += concat("        ",
+                                shell_quoted(option.names.back() + ':' + summary(option.description)), '\n');
             continue;
         }
-        words += concat("        ", quoted(command.name + ':' + summary(command.description)), '\n');
+        words += concat("        ", shell_quoted(command.name + ':' + summary(command.description)), '\n');
         cases += concat("        ", command.name, ")\n            _arguments");
         for (const OptionRow& option : options_of(command))
             cases += concat(" \\\n                ", zsh_option(option));
         for (const OptionRow& operand : command.positionals)
             cases += concat(" \\\n                ",
-                            quoted(concat(operand.repeats ? "*" : "", zsh_value(operand))));
+                            shell_quoted(concat(operand.repeats ? "*" : "", zsh_value(operand))));
         cases += " ;;\n";
     }
     return concat(R"(#compdef candela
