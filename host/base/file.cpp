@@ -1,22 +1,17 @@
-// Reading and atomic writing of files, through POSIX calls: the standard library does not report the kind of
-// an open file, or what a mount or a sticky directory forbids.
+// Reading and atomic writing of files.
 #include "base/file.h"
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <optional>
 #include <system_error>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/error.h"
 #include "base/printable.h"
 #include "base/temporary_file.h"
 #include "base/text.h"
+#include "os/file.h"
 
 namespace candela {
 namespace {
@@ -31,35 +26,31 @@ namespace fs = std::filesystem;
     throw Error("cannot write " + quoted(path) + ": " + reason);
 }
 
-std::string describe(int error) {
-    return std::generic_category().message(error);
-}
-
 // The folder that holds a file.
 fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
 // Throws the Error of a system call that failed with `error` while `target` was being written.
-[[noreturn]] void fail_to_write(const fs::path& path, const fs::path& target, int error) {
+[[noreturn]] void fail_to_write(const fs::path& path, const fs::path& target, const std::error_code& error) {
     const fs::path directory = folder_of(target);
     std::error_code ignored;
-    if ((error == ENOENT || error == ENOTDIR) && !fs::is_directory(directory, ignored)) {
+    if ((error.value() == ENOENT || error.value() == ENOTDIR) && !fs::is_directory(directory, ignored)) {
         fail_to_write(path, "the directory " + quoted(directory) + " does not exist; create it first");
     }
-    switch (error) {
+    switch (error.value()) {
         case ENOENT:  // The code of kernel file systems in which nothing can be created.
         case EACCES:
         case EPERM:
         case EROFS:
             fail_to_write(path, "no file can be created in the directory " + quoted(directory) + " (" +
-                                    describe(error) + "); choose a place that you may write to");
+                                    error.message() + "); choose a place that you may write to");
         case ENOSPC:
         case EDQUOT:
         case EFBIG:
-            fail_to_write(path, describe(error) + "; free some space or choose another place");
+            fail_to_write(path, error.message() + "; free some space or choose another place");
         default:
-            fail_to_write(path, describe(error) + "; choose another place");
+            fail_to_write(path, error.message() + "; choose another place");
     }
 }
 
@@ -84,15 +75,15 @@ fs::path writable_target(const fs::path& path) {
         case fs::file_type::not_found:
             break;
         case fs::file_type::regular:
-            if (::access(target.c_str(), W_OK) != 0) {
-                fail_to_write(path, "the file exists and is write-protected (" + describe(errno) +
+            if (const std::error_code refusal = os::refusal_to_write(target)) {
+                fail_to_write(path, "the file exists and is write-protected (" + refusal.message() +
                                         "); choose another name");
             }
             break;
         case fs::file_type::directory:
             fail_to_write(path, "it is a directory; give the name of a file in it");
         case fs::file_type::none:
-            fail_to_write(path, target, error.value());
+            fail_to_write(path, target, error);
         default:
             fail_to_write(path, "it is not a regular file; choose another name");
     }
@@ -101,23 +92,19 @@ fs::path writable_target(const fs::path& path) {
 
 // Throws Error if `target` is a file that may be written to but not replaced by another.
 void check_replaceable(const fs::path& path, const fs::path& target) {
-    struct statx file {};
-    if (::statx(AT_FDCWD, target.c_str(), 0, STATX_BASIC_STATS, &file) != 0) return;  // It is new.
-    if ((file.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0) {
-        fail_to_write(path,
-                      "the file is a mount point, and cannot be replaced; mount the folder that holds it");
-    }
-    if ((file.stx_attributes & STATX_ATTR_APPEND) != 0) {
-        fail_to_write(path,
-                      "the file is append-only (chattr +a), and cannot be replaced; choose another name");
-    }
-    struct stat folder {};
-    const uid_t user = ::geteuid();
-    if (user != 0 && file.stx_uid != user && ::stat(folder_of(target).c_str(), &folder) == 0 &&
-        (folder.st_mode & S_ISVTX) != 0 && folder.st_uid != user) {
-        fail_to_write(path, "the file belongs to another user, and in the directory " +
-                                quoted(folder_of(target)) +
-                                " only its owner may replace it; choose another name");
+    const fs::path folder = folder_of(target);
+    switch (os::obstacle_to_replacing(target, folder)) {
+        case os::Obstacle::none:
+            break;
+        case os::Obstacle::mount_point:
+            fail_to_write(
+                path, "the file is a mount point, and cannot be replaced; mount the folder that holds it");
+        case os::Obstacle::append_only:
+            fail_to_write(path,
+                          "the file is append-only (chattr +a), and cannot be replaced; choose another name");
+        case os::Obstacle::owner:
+            fail_to_write(path, "the file belongs to another user, and in the directory " + quoted(folder) +
+                                    " only its owner may replace it; choose another name");
     }
 }
 
@@ -126,14 +113,14 @@ void put_in_place(const fs::path& path, TemporaryFile& file) {
     try {
         file.commit();
     } catch (const std::system_error& error) {
-        fail_to_write(path, "no file can be put in its place (" + describe(error.code().value()) +
-                                "); choose another place");
+        fail_to_write(
+            path, "no file can be put in its place (" + error.code().message() + "); choose another place");
     }
 }
 
 // Writes a new file under a free name like that of `target`, which another folder may hold. Returns its path;
 // nothing if that fails.
-std::optional<fs::path> write_beside(const fs::path& target, std::optional<mode_t> permissions,
+std::optional<fs::path> write_beside(const fs::path& target, std::optional<os::Permissions> permissions,
                                      std::string_view bytes) {
     try {
         TemporaryFile file(target, permissions);
@@ -147,18 +134,22 @@ std::optional<fs::path> write_beside(const fs::path& target, std::optional<mode_
 
 // As write_beside(), in a new folder for this user alone among the temporary files.
 std::optional<fs::path> write_to_temporary_folder(const fs::path& target, std::string_view bytes) {
-    std::error_code error;
-    std::string folder = (fs::temp_directory_path(error) / "candela-XXXXXX").string();
-    if (error || ::mkdtemp(folder.data()) == nullptr) return std::nullopt;
+    fs::path folder;
+    try {
+        folder = os::make_temporary_folder();
+    } catch (const std::system_error&) {
+        return std::nullopt;
+    }
     auto kept = write_beside(folder / target.filename(), std::nullopt, bytes);
-    if (!kept) fs::remove(folder, error);
+    std::error_code ignored;
+    if (!kept) fs::remove(folder, ignored);
     return kept;
 }
 
 // Writes data that can no longer be written to `target`: beside it, otherwise to the working folder,
 // otherwise to the temporary one. Returns the path; nothing if all three fail.
 std::optional<fs::path> write_elsewhere(const fs::path& target, std::string_view bytes) {
-    const std::optional<mode_t> permissions = permissions_of(target);
+    const std::optional<os::Permissions> permissions = os::permissions_of(target);
     std::optional<fs::path> kept = write_beside(target, permissions, bytes);
     std::error_code error;
     const fs::path working = fs::current_path(error);
@@ -166,51 +157,18 @@ std::optional<fs::path> write_elsewhere(const fs::path& target, std::string_view
     return kept ? kept : write_to_temporary_folder(target, bytes);
 }
 
-// An open file.
-class Descriptor {
-  public:
-    Descriptor(const fs::path& path, int flags) {
-        do {
-            file_ = ::open(path.c_str(), flags | O_CLOEXEC);
-        } while (file_ < 0 && errno == EINTR);
+// Appends the remaining bytes of a file, at most `max`. Throws Error if it is not open or cannot be read.
+void read_all(const fs::path& path, os::InputFile& file, std::string& bytes, uint64_t max = UINT64_MAX,
+              const ReadProgress& progress = {}) {
+    bytes.reserve(std::min(file.size(), max));
+    std::array<char, 65536> buffer;
+    for (size_t count = 1; count > 0 && !file.error();) {
+        count = file.read({buffer.data(), size_t(std::min<uint64_t>(buffer.size(), max - bytes.size()))});
+        bytes.append(buffer.data(), count);
+        if (count > 0 && progress) progress(bytes.size(), file.size());
     }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (is_open()) ::close(file_);
-    }
-
-    bool is_open() const { return file_ >= 0; }
-    bool is_regular() const {
-        struct stat status {};
-        return is_open() && ::fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
-    }
-
-    uint64_t size() const {
-        struct stat status {};
-        return ::fstat(file_, &status) == 0 && status.st_size > 0 ? uint64_t(status.st_size) : 0;
-    }
-
-    // Appends the remaining bytes, at most `max`. Returns false, with errno, if reading fails.
-    bool read_all(std::string& bytes, uint64_t max = UINT64_MAX, const ReadProgress& progress = {}) const {
-        bytes.reserve(std::min<uint64_t>(size(), max));
-        std::array<char, 65536> buffer;
-        while (true) {
-            const ssize_t count =
-                ::read(file_, buffer.data(), std::min<uint64_t>(buffer.size(), max - bytes.size()));
-            if (count == 0) return true;
-            if (count > 0) {
-                bytes.append(buffer.data(), size_t(count));
-                if (progress) progress(bytes.size(), size());
-            } else if (errno != EINTR) {
-                return false;
-            }
-        }
-    }
-
-  private:
-    int file_ = -1;
-};
+    if (file.error()) fail_to_read(path, file.error().message() + "; check the file and its disk");
+}
 
 constexpr std::string_view START_OF_POINTER = "version https://git-lfs.github.com/spec/";
 
@@ -246,15 +204,15 @@ void check_readable(const fs::path& path) {
         default:
             fail_to_read(path, "it is neither a regular file nor a pipe; give the name of a file");
     }
-    if (::access(path.c_str(), R_OK) != 0) fail_to_read(path, describe(errno) + "; check the permissions");
+    if (const std::error_code refusal = os::refusal_to_read(path))
+        fail_to_read(path, refusal.message() + "; check the permissions");
 }
 
 std::string read_file(const fs::path& path, const ReadProgress& progress) {
     check_readable(path);
-    const Descriptor file(path, O_RDONLY);
+    os::InputFile file(path);
     std::string bytes;
-    if (!file.is_open() || !file.read_all(bytes, UINT64_MAX, progress))
-        fail_to_read(path, describe(errno) + "; check the file and its disk");
+    read_all(path, file, bytes, UINT64_MAX, progress);
     refuse_pointer(path, bytes);
     return bytes;
 }
@@ -265,14 +223,13 @@ std::string read_finite_file(const fs::path& path, const fs::path& real, uint64_
     constexpr const char* NO_FILE = "it is not a regular file, and files may name no others";
     std::error_code ignored;
     if (!fs::is_regular_file(real, ignored)) fail_to_read(path, NO_FILE);
-    const Descriptor file(real, O_RDONLY | O_NONBLOCK | O_NOFOLLOW);
+    os::InputFile file(real, os::InputFile::Pipes::refuse, os::InputFile::Links::refuse);
     if (file.is_open() && !file.is_regular()) fail_to_read(path, NO_FILE);
-    const uint64_t size = file.is_open() ? file.size() : 0;
+    const uint64_t size = file.size();
     const uint64_t wanted = std::max<uint64_t>(max, START_OF_POINTER.size());
     std::string bytes;
     // Reads one byte beyond the size, to notice that there are more.
-    if (!file.is_open() || !file.read_all(bytes, std::min(wanted, size + 1), progress))
-        fail_to_read(path, describe(errno) + "; check the file and its disk");
+    read_all(path, file, bytes, std::min(wanted, size + 1), progress);
     if (bytes.size() != std::min(wanted, size)) {
         fail_to_read(path,
                      "its contents do not match its size; is it a system file, or still being written?");
@@ -284,12 +241,11 @@ std::string read_finite_file(const fs::path& path, const fs::path& real, uint64_
 
 FileStart read_file_start(const fs::path& path, size_t max) {
     check_readable(path);
-    const Descriptor file(path, O_RDONLY | O_NONBLOCK);
+    os::InputFile file(path, os::InputFile::Pipes::refuse);
     FileStart start;
     if (file.is_open() && !file.is_regular())
         fail_to_read(path, "it is a pipe, but must be read more than once; give the name of a file");
-    if (!file.is_open() || !file.read_all(start.bytes, max))
-        fail_to_read(path, describe(errno) + "; check the file and its disk");
+    read_all(path, file, start.bytes, max);
     refuse_pointer(path, start.bytes);
     start.size = file.size();
     return start;
@@ -302,19 +258,19 @@ void check_writable(const fs::path& path) {
     try {
         const TemporaryFile probe(target);
     } catch (const std::system_error& error) {
-        fail_to_write(path, target, error.code().value());
+        fail_to_write(path, target, error.code());
     }
 }
 
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
     const fs::path target = writable_target(path);
     try {
-        TemporaryFile file(target, permissions_of(target));
+        TemporaryFile file(target, os::permissions_of(target));
         file.write(bytes);
         file.flush();
         put_in_place(path, file);
     } catch (const std::system_error& error) {
-        fail_to_write(path, target, error.code().value());
+        fail_to_write(path, target, error.code());
     }
 }
 
@@ -333,8 +289,8 @@ std::vector<std::string> file_keys(const fs::path& path) {
     const fs::path target = follow_links(path);
     std::vector<std::string> keys{
         (fs::weakly_canonical(folder_of(target), ignored) / target.filename()).string()};
-    struct stat status {};
-    if (::stat(path.c_str(), &status) == 0) keys.push_back(concat(status.st_dev, ':', status.st_ino));
+    std::string identity = os::identity_of(path);
+    if (!identity.empty()) keys.push_back(std::move(identity));
     return keys;
 }
 

@@ -5,16 +5,11 @@
 #include <atomic>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string_view>
-
-#include <malloc.h>
-#include <unistd.h>
 
 #include "base/memory_budget.h"
 #include "base/text.h"
+#include "os/memory.h"
 
 namespace candela {
 namespace {
@@ -40,20 +35,42 @@ void check_limit(uint64_t bytes) {
     if (bytes > SMALL || used + bytes > max + RESERVE) throw LimitReached(bytes, used);
 }
 
-void* counted(void* memory) {
-    if (memory == nullptr) throw std::bad_alloc();
-    const size_t size = ::malloc_usable_size(memory);
+void add_use(size_t size) {
     in_use.fetch_add(size, std::memory_order_relaxed);
     if (has_budget) budget -= int64_t(size);
+}
+
+void end_use(size_t size) {
+    in_use.fetch_sub(size, std::memory_order_relaxed);
+    if (has_budget) budget += int64_t(size);
+}
+
+void* allocate(size_t size) {
+    check_limit(size);
+    void* const memory = os::allocate(std::max<size_t>(size, 1));
+    if (memory == nullptr) throw std::bad_alloc();
+    add_use(os::size_of(memory));
+    return memory;
+}
+
+void* allocate(size_t size, std::align_val_t alignment) {
+    check_limit(size);
+    void* const memory = os::allocate_aligned(std::max<size_t>(size, 1), size_t(alignment));
+    if (memory == nullptr) throw std::bad_alloc();
+    add_use(os::size_of_aligned(memory, size_t(alignment)));
     return memory;
 }
 
 void release(void* memory) {
     if (memory == nullptr) return;
-    const size_t size = ::malloc_usable_size(memory);
-    in_use.fetch_sub(size, std::memory_order_relaxed);
-    if (has_budget) budget += int64_t(size);
-    std::free(memory);
+    end_use(os::size_of(memory));
+    os::release(memory);
+}
+
+void release(void* memory, std::align_val_t alignment) {
+    if (memory == nullptr) return;
+    end_use(os::size_of_aligned(memory, size_t(alignment)));
+    os::release_aligned(memory);
 }
 
 std::string size_text(uint64_t bytes) {
@@ -77,19 +94,7 @@ uint64_t memory_limit() {
 }
 
 uint64_t default_memory_limit() {
-    uint64_t bytes = uint64_t(::sysconf(_SC_PHYS_PAGES)) * uint64_t(::sysconf(_SC_PAGESIZE));
-    std::ifstream groups("/proc/self/cgroup");
-    std::string group;
-    while (std::getline(groups, group) && !group.starts_with("0::/")) {
-    }
-    if (!groups) return bytes / 4 * 3;
-    // The limits of the groups above apply, too; without a limit, the file says "max".
-    for (std::filesystem::path path = "/sys/fs/cgroup" + group.substr(3); path.has_relative_path();
-         path = path.parent_path()) {
-        uint64_t allowed = 0;
-        if (std::ifstream(path / "memory.max") >> allowed) bytes = std::min(bytes, allowed);
-    }
-    return bytes / 4 * 3;
+    return os::allowed_memory() / 4 * 3;
 }
 
 std::optional<uint64_t> parse_memory_size(const std::string& text) {
@@ -154,14 +159,11 @@ std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
 // All forms, since sanitizers replace the missing ones with their own. If these are inlined, GCC warns that
 // malloc() and delete do not match.
 [[gnu::noinline]] void* operator new(size_t size) {
-    candela::check_limit(size);
-    return candela::counted(std::malloc(std::max<size_t>(size, 1)));
+    return candela::allocate(size);
 }
 
 [[gnu::noinline]] void* operator new(size_t size, std::align_val_t alignment) {
-    candela::check_limit(size);
-    const auto step = size_t(alignment);
-    return candela::counted(std::aligned_alloc(step, (std::max<size_t>(size, 1) + step - 1) / step * step));
+    return candela::allocate(size, alignment);
 }
 
 [[gnu::noinline]] void* operator new(size_t size, const std::nothrow_t&) noexcept {
@@ -192,12 +194,12 @@ std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
     candela::release(memory);
 }
 
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-    candela::release(memory);
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t alignment) noexcept {
+    candela::release(memory, alignment);
 }
 
-[[gnu::noinline]] void operator delete(void* memory, size_t, std::align_val_t) noexcept {
-    candela::release(memory);
+[[gnu::noinline]] void operator delete(void* memory, size_t, std::align_val_t alignment) noexcept {
+    candela::release(memory, alignment);
 }
 
 [[gnu::noinline]] void operator delete[](void* memory) noexcept {
@@ -208,10 +210,10 @@ std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
     candela::release(memory);
 }
 
-[[gnu::noinline]] void operator delete[](void* memory, std::align_val_t) noexcept {
-    candela::release(memory);
+[[gnu::noinline]] void operator delete[](void* memory, std::align_val_t alignment) noexcept {
+    candela::release(memory, alignment);
 }
 
-[[gnu::noinline]] void operator delete[](void* memory, size_t, std::align_val_t) noexcept {
-    candela::release(memory);
+[[gnu::noinline]] void operator delete[](void* memory, size_t, std::align_val_t alignment) noexcept {
+    candela::release(memory, alignment);
 }

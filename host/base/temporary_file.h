@@ -5,19 +5,16 @@
 #include <optional>
 #include <string_view>
 
-#include <sys/types.h>
+#include "os/file.h"
 
 namespace candela {
-
-// The permissions of a regular file; nothing if there is none of that name.
-std::optional<mode_t> permissions_of(const std::filesystem::path& file);
 
 // A new, empty file beside `target`, with these permissions or the usual ones. Removed with this object
 // unless commit() gave it the target's name. Its name identifies its process and computer, and it is locked
 // as long as the process lives. All functions throw std::system_error.
 class TemporaryFile {
   public:
-    explicit TemporaryFile(std::filesystem::path target, std::optional<mode_t> permissions = {});
+    explicit TemporaryFile(std::filesystem::path target, std::optional<os::Permissions> permissions = {});
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
     ~TemporaryFile();
@@ -33,7 +30,7 @@ class TemporaryFile {
   private:
     std::filesystem::path target_;
     std::filesystem::path name_;
-    int file_ = -1;
+    std::optional<os::OutputFile> file_;
     bool committed_ = false;
 };
 

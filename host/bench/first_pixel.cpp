@@ -1,72 +1,37 @@
 // See first_pixel.h.
 #include "bench/first_pixel.h"
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-
-#include <spawn.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/temporary_folder.h"
 #include "base/text.h"
 #include "bench/clocks.h"
+#include "os/process.h"
 #include "probe/embedded.h"
 
 namespace candela {
 namespace {
 
-double seconds(const timeval& time) {
-    return double(time.tv_sec) + 1e-6 * double(time.tv_usec);
-}
-
-std::vector<char*> pointers(std::vector<std::string>& words) {
-    std::vector<char*> result;
-    for (std::string& word : words)
-        result.push_back(word.data());
-    result.push_back(nullptr);
-    return result;
-}
-
-// Our environment with these variables ("NAME=value") added or replaced.
-std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
-    std::vector<std::string> all = variables;
-    for (char** variable = environ; *variable != nullptr; ++variable) {
-        const std::string_view old(*variable);
-        const auto same_name = [&](const std::string& s) {
-            return old.starts_with(s.substr(0, s.find('=') + 1));
-        };
-        if (std::ranges::none_of(variables, same_name)) all.emplace_back(old);
-    }
-    return all;
-}
-
 // Runs a program to its end; it must succeed.
-Clocks run_program(std::vector<std::string> arguments, const std::vector<std::string>& variables) {
-    std::vector<std::string> environment = environment_with(variables);
+Clocks run_program(const std::vector<std::string>& words, const std::vector<std::string>& variables) {
     const Stopwatch watch;
-    pid_t pid = 0;
-    const int error = ::posix_spawn(&pid, arguments[0].c_str(), nullptr, nullptr, pointers(arguments).data(),
-                                    pointers(environment).data());
-    if (error != 0) throw Error("cannot start " + arguments[0] + ": " + std::strerror(error));
-    int status = 0;
-    rusage usage{};
-    while (::wait4(pid, &status, 0, &usage) < 0 && errno == EINTR) {
+    os::ProgramEnd end;
+    try {
+        end = os::run_program({.words = words, .variables = variables, .output = std::nullopt});
+    } catch (const std::system_error& error) {
+        throw Error("cannot start " + words[0] + ": " + error.code().message());
     }
     const double wall = watch.elapsed().wall;
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    if (!end.succeeded()) {
         std::string call;
-        for (const std::string& word : arguments)
+        for (const std::string& word : words)
             call += (call.empty() ? "" : " ") + word;
-        const std::string end = WIFEXITED(status) ? concat("exited with ", WEXITSTATUS(status))
-                                                  : concat("was ended by signal ", WTERMSIG(status));
-        throw Error("first-pixel: `" + call + "` " + end + "; see its messages above");
+        throw Error(concat("first-pixel: `", call, "` ", end.exited ? "exited with " : "was ended by signal ",
+                           end.code, "; see its messages above"));
     }
-    return {seconds(usage.ru_utime) + seconds(usage.ru_stime), wall};
+    return {end.cpu_seconds, wall};
 }
 
 }  // namespace

@@ -23,6 +23,8 @@
 #include "cli/loading.h"
 #include "cli/vulkan.h"
 #include "image/image_io.h"
+#include "os/process.h"
+#include "os/program.h"
 #include "probe/scenes.h"
 #include "session/version.h"
 #include "vk/device.h"
@@ -75,7 +77,7 @@ RgbPlanes reference_planes(const std::string& file, const Image& image, const Re
 // Prints on stderr what is running: on a terminal, in a line that is cleared later; elsewhere, only if no
 // table is printed.
 void print_progress(const std::string& text, bool table) {
-    const bool terminal = stderr_is_terminal();
+    const bool terminal = os::stderr_is_terminal();
     if (terminal) std::fputs("\r\x1b[K", stderr);
     if (text.empty() || !(terminal || !table)) return;
     std::fprintf(stderr, "%s%s", printable(text, MAX_PATH_BYTES).c_str(), terminal ? "" : "\n");
@@ -91,7 +93,7 @@ void print_heading(const vk::DeviceInfo& device, const BenchOptions& options) {
     std::printf("device   %u: %s (%s)\n", device.index, printable(device.name, MAX_NAME_BYTES).c_str(),
                 vk::to_string(device.type));
     std::printf("driver   %s\n", printable(device.driver, MAX_NAME_BYTES).c_str());
-    std::printf("system   %s, %.0f cores\n", system_text().c_str(), cores());
+    std::printf("system   %s, %.0f cores\n", os::system_text().c_str(), cores());
     std::printf("rival    %s\n\n", rival_text().c_str());
     std::printf("Median (least .. largest) of %u run(s); ratio: candela over Embree, run by run.\n",
                 options.runs);
@@ -142,7 +144,7 @@ Json report_json(const BenchArguments& arguments, const vk::DeviceInfo& device,
             {"type", vk::to_string(device.type)},
             {"driver", device.driver},
             {"vulkan", vk::version_text(device.api_version)},
-            {"system", system_text()},
+            {"system", os::system_text()},
             {"cores", uint32_t(cores())},
             {"clock", works_on_cpu(device) ? "cpu" : "wall"},
             {"embree", embree_version() ? Json(*embree_version()) : Json(nullptr)},
@@ -179,7 +181,7 @@ std::vector<Row> run_group(BenchGroup group, const vk::Device& device, const Ben
                 append(bench_render(device, arguments.bench, task));
             break;
         case BenchGroup::first_pixel: {
-            const auto program = std::filesystem::read_symlink("/proc/self/exe");
+            const auto program = os::program_file();
             const auto first_pixel = [&](const std::optional<std::filesystem::path>& scene) {
                 append(bench_first_pixel(arguments.bench, program, scene, arguments.rendering.device.name));
             };

@@ -1,23 +1,18 @@
 // See blend_file.h.
 #include "cli/blend_file.h"
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <fstream>
-#include <string_view>
+#include <string>
+#include <system_error>
 #include <vector>
-
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/printable.h"
 #include "base/text.h"
 #include "load/quote.h"
+#include "os/process.h"
+#include "os/program.h"
 
 namespace candela {
 namespace fs = std::filesystem;
@@ -57,26 +52,6 @@ std::vector<std::string> call_of(const std::string& program, const fs::path& scr
             target.string()};
 }
 
-// Runs a program, whose messages go to a file; `status` says how it ended, as wait() does. Returns errno if
-// it cannot be run, and otherwise 0.
-int run(std::vector<std::string> words, const fs::path& messages, int& status) {
-    std::vector<char*> arguments;
-    for (std::string& word : words)
-        arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, messages.c_str(),
-                                       O_WRONLY | O_CREAT | O_TRUNC, S_IRUSR | S_IWUSR);
-    ::posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    pid_t pid = 0;
-    const int error = ::posix_spawnp(&pid, words[0].c_str(), &actions, nullptr, arguments.data(), environ);
-    ::posix_spawn_file_actions_destroy(&actions);
-    while (error == 0 && ::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-    }
-    return error;
-}
-
 // The last line about an error, otherwise the last that says something.
 std::string last_words(const fs::path& file) {
     std::string error, last = "it said nothing";
@@ -96,19 +71,21 @@ bool is_blend_file(const fs::path& file) {
 }
 
 ExportedBlend::ExportedBlend(const fs::path& file) : folder_(file.string()) {
-    const char* const named = std::getenv(VARIABLE);
-    const std::string program = named != nullptr && *named != '\0' ? named : "blender";
+    const std::string named = os::environment(VARIABLE), program = named.empty() ? "blender" : named;
     const fs::path script = folder_.path() / "export.py", messages = folder_.path() / "messages";
     write_file_atomically(script, SCRIPT);
-    int status = 0;
-    if (const int error = run(call_of(program, script, file, gltf()), messages, status); error != 0) {
+    os::ProgramEnd end;
+    try {
+        end = os::run_program(
+            {.words = call_of(program, script, file, gltf()), .variables = {}, .output = messages});
+    } catch (const std::system_error& error) {
         throw Error(concat(file.string(), ": only Blender can read it, and ", quote(program),
-                           " cannot be run (", std::strerror(error),
+                           " cannot be run (", error.code().message(),
                            "); install Blender 4.2 or newer, or name one in the ", "environment variable ",
                            VARIABLE, ", or a Python that has the module bpy"));
     }
     std::error_code ignored;
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !fs::exists(gltf(), ignored)) {
+    if (!end.succeeded() || !fs::exists(gltf(), ignored)) {
         throw Error(concat(file.string(), ": ", quote(program),
                            " cannot export it: ", printable(last_words(messages), MAX_MESSAGE_BYTES),
                            "; export it to glTF in Blender"));

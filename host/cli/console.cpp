@@ -4,21 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <iterator>
-#include <string_view>
-
-#include <sys/utsname.h>
-#include <unistd.h>
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "os/program.h"
 
 namespace candela {
 
 void print_warning(const std::string& message) {
     // On a terminal it replaces a live line, if there is one.
-    std::fprintf(stderr, "%scandela: warning: %s\n", stderr_is_terminal() ? "\r\x1b[K" : "",
+    std::fprintf(stderr, "%scandela: warning: %s\n", os::stderr_is_terminal() ? "\r\x1b[K" : "",
                  printable(message, MAX_MESSAGE_BYTES).c_str());
 }
 
@@ -35,21 +31,10 @@ void print_note(const std::string& message) {
     std::fprintf(stderr, "%s\n", printable(message, MAX_MESSAGE_BYTES).c_str());
 }
 
-bool stderr_is_terminal() {
-    const char* const terminal = std::getenv("TERM");
-    return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
-}
-
 void flush_results() {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
         throw Error("cannot write to standard output; check where it goes");
     }
-}
-
-std::string system_text() {
-    utsname names{};
-    if (uname(&names) != 0) return "unknown";
-    return std::string(names.sysname) + ' ' + names.release + ' ' + names.machine;
 }
 
 std::string fixed(double value, int digits) {

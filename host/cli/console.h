@@ -22,14 +22,8 @@ void print_error(const std::string& message);
 // Prints the message alone to stderr.
 void print_note(const std::string& message);
 
-// True if lines on stderr can be rewritten: it is a terminal, and not a dumb one.
-bool stderr_is_terminal();
-
 // Sends buffered results to stdout. Throws Error if they, or any before, could not be written.
 void flush_results();
-
-// "Linux 6.1.0 x86_64".
-std::string system_text();
 
 // `value` with that many digits after the decimal point.
 std::string fixed(double value, int digits);

@@ -78,7 +78,7 @@ Scene load_quietly(const std::string& file, const LoadingOptions& given, const L
 }
 
 void show_progress(ProgressStyle style, const std::function<void(const LoadProgress&)>& load) {
-    const InterruptGuard guard(OnSignal::quit);
+    const QuittingGuard guard;
     LoadingLine line(style);
     load([&line](const char* what, size_t done, size_t of) { line.update(what, done, of); });
 }
@@ -104,7 +104,7 @@ GpuScene build_quietly(Scene& scene) {
 }
 
 GpuScene build_showing_progress(Scene& scene, ProgressStyle style) {
-    const InterruptGuard guard(OnSignal::quit);
+    const QuittingGuard guard;
     ProgressLine line(style, 0.0);
     if (line.is_live()) line.print("building the tree", 0.0);
     return build_quietly(scene);

@@ -141,7 +141,7 @@ RenderedPicture PictureRenderer::run(const PreparedScene& scene, const PreparedP
         uint64_t{crop.width()} * crop.height(), job.target, double(rendering_->spp()) / job.target,
         job.time_limit, options_.messages.progress_style(), is_batch_ ? picture.picture.files.front() : "");
     // Before this line there is nothing to keep, and a signal ends the program at once.
-    if (!guard_) guard_.emplace();
+    if (!interrupts_) interrupts_.emplace();
     const ImageOutputs outputs = options_.outputs.images.renamed(picture.picture.files);
     std::optional<Error> failure = rendering_->run(
         {.progress = [&](double done, std::optional<double> error) { progress->update(done, error); },
@@ -160,10 +160,10 @@ RenderedPicture PictureRenderer::run(const PreparedScene& scene, const PreparedP
              }});
     progress->clear();
     const bool complete = rendering_->record().complete;
-    const char* const state = complete                ? "done"
-                              : guard_->interrupted() ? "interrupted"
-                              : time_is_over()        ? "left out"
-                                                      : "time limit";
+    const char* const state = complete               ? "done"
+                              : interrupts_->noted() ? "interrupted"
+                              : time_is_over()       ? "left out"
+                                                     : "time limit";
     if (is_batch_ && failure) throw Error(*failure);
 
     Image image = rendering_->image();

@@ -63,11 +63,11 @@ class PictureRenderer {
     }
 
     // Whether a signal has come since the first picture began.
-    bool interrupted() const { return guard_ && guard_->interrupted(); }
+    bool interrupted() const { return interrupts_ && interrupts_->noted(); }
     // Whether the time for all pictures is over.
     bool time_is_over() const;
     // Whether signals end the program at once.
-    bool can_be_quit() const { return !guard_; }
+    bool can_be_quit() const { return !interrupts_; }
     // Throws Error if the validation layer has reported anything.
     void check_validation() const;
 
@@ -87,7 +87,7 @@ class PictureRenderer {
     std::optional<DeviceSlot> device_, denoising_device_;
     GpuScene records_;                      // Of the current scene.
     std::unique_ptr<Rendering> rendering_;  // Of them.
-    std::optional<InterruptGuard> guard_;
+    std::optional<os::Interrupts> interrupts_;
 };
 
 }  // namespace candela

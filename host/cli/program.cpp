@@ -49,13 +49,12 @@ static std::vector<Command> declare_program(CLI::App& app, const std::string& co
 }
 
 // The call as one line that a shell would accept: words with special characters are quoted.
-static std::string command_line_text(int argc, const char* const* argv) {
+static std::string command_line_text(const std::vector<std::string>& words) {
     std::string line;
-    for (int i = 0; i < argc; ++i) {
-        const std::string word = argv[i];
+    for (const std::string& word : words) {
         const bool plain =
             !word.empty() && word.find_first_of(" \t\n\"'\\$`&|;<>()*?[]{}!#~") == std::string::npos;
-        if (i > 0) line += ' ';
+        if (!line.empty()) line += ' ';
         line += plain ? word : shell_quoted(word);
     }
     return line;
@@ -81,9 +80,9 @@ static std::string explain(const CLI::App& app, const CLI::ParseError& error) {
 
 // Parses the command line into `app`. Returns false if help or the version was asked for, and has been
 // printed.
-static bool parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+static bool parse_command_line(CLI::App& app, const std::vector<std::string>& words) {
     try {
-        app.parse(argc, argv);
+        app.parse(std::vector<std::string>(words.rbegin(), words.rend() - 1));  // The last one first.
     } catch (const CLI::Success& help_or_version) {
         app.exit(help_or_version);
         flush_results();
@@ -94,10 +93,10 @@ static bool parse_command_line(CLI::App& app, int argc, const char* const* argv)
     return true;
 }
 
-ExitCode run_program(int argc, const char* const* argv) {
+ExitCode run_program(const std::vector<std::string>& words) {
     CLI::App app;
-    const std::vector<Command> commands = declare_program(app, command_line_text(argc, argv));
-    if (!parse_command_line(app, argc, argv)) return ExitCode::done;
+    const std::vector<Command> commands = declare_program(app, command_line_text(words));
+    if (!parse_command_line(app, words)) return ExitCode::done;
     for (const Command& command : commands) {
         if (command.app->parsed()) return command.run();
     }

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "cli/console.h"
+#include "os/program.h"
 
 namespace candela {
 
@@ -21,7 +22,7 @@ ProgressLine::Output ProgressLine::choose(ProgressStyle style) {
         case ProgressStyle::none:
             return Output::none;
         default:
-            return stderr_is_terminal() ? Output::live : Output::plain;
+            return os::stderr_is_terminal() ? Output::live : Output::plain;
     }
 }
 

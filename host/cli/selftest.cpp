@@ -16,6 +16,7 @@
 #include "cli/console.h"
 #include "cli/json_text.h"
 #include "cli/vulkan.h"
+#include "os/program.h"
 #include "session/version.h"
 #include "vk/device.h"
 #include "vk/instance.h"
@@ -44,7 +45,7 @@ void print_heading(const vk::DeviceInfo& device, Effort effort, double level) {
                 vk::to_string(device.type));
     std::printf("driver   %s\n", printable(device.driver, MAX_NAME_BYTES).c_str());
     std::printf("Vulkan   %s\n", vk::version_text(device.api_version).c_str());
-    std::printf("system   %s\n", system_text().c_str());
+    std::printf("system   %s\n", os::system_text().c_str());
     std::printf("effort   %s\n\n", name_of(effort, EFFORT_NAMES).c_str());
     std::printf("p is how often chance gives a result as odd; %s or less fails a check.\n",
                 probability_text(level).c_str());
@@ -112,7 +113,7 @@ void print_json(const std::vector<CheckResult>& results, const vk::DeviceInfo& d
                          {"type", vk::to_string(device.type)},
                          {"driver", device.driver},
                          {"vulkan", vk::version_text(device.api_version)},
-                         {"system", system_text()},
+                         {"system", os::system_text()},
                          {"effort", name_of(effort, EFFORT_NAMES)},
                          {"false_alarm_probability", SELFTEST_ALPHA},
                          {"p_limit", level},
@@ -134,7 +135,7 @@ void print_verdict(const std::vector<CheckResult>& results, size_t checks, size_
 // Shows which check is running: on a terminal in a line that is cleared later; elsewhere only if no table is
 // printed.
 void print_progress(size_t done, const std::vector<Check>& checks, bool json) {
-    const bool terminal = stderr_is_terminal();
+    const bool terminal = os::stderr_is_terminal();
     if (terminal) std::fputs("\r\x1b[K", stderr);
     if (done == checks.size() || !(terminal || json)) return;
     std::fprintf(stderr, "check %zu of %zu: %s%s", done + 1, checks.size(), checks[done].name.c_str(),

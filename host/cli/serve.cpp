@@ -4,17 +4,18 @@
 #include <string>
 
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
+#include "base/error.h"
 #include "cli/command.h"
-#include "cli/interrupt.h"
 #include "cli/loading.h"
 #include "cli/rendering_options.h"
 #include "cli/vulkan.h"
-#include "os/shared_memory.h"
+#include "os/interrupt.h"
+#include "os/process.h"
 #include "os/stream.h"
 #include "serve/methods.h"
 #include "serve/server.h"
+#include "serve/shared_memory.h"
 
 namespace candela {
 namespace {
@@ -26,9 +27,11 @@ struct ServeArguments {
 };
 
 ExitCode serve_client(const ServeArguments& arguments, const std::string& command_line) {
-    const InterruptGuard guard;
-    const int out = take_standard_output();
-    const int client = ::getppid();
+    const os::Interrupts interrupts;
+    const int out = os::take_standard_output();
+    if (out < 0)
+        throw Error("there is no standard output; connect it to the program that reads the messages");
+    const int client = os::parent_process_id();
     remove_abandoned_memory();
     serve::Methods methods({.device = arguments.device,
                             .kernel_cache = pipeline_cache_folder(),
@@ -36,9 +39,9 @@ ExitCode serve_client(const ServeArguments& arguments, const std::string& comman
                             .loading = load_options(arguments.loading),
                             .command_line = command_line});
     serve::Server server(
-        STDIN_FILENO, out,
+        os::STANDARD_INPUT, out,
         [&](const serve::Request& request, const serve::Call& call) { return methods(request, call); },
-        [&guard] { return guard.interrupted(); });
+        [&interrupts] { return interrupts.noted(); });
     const serve::Server::End end = server.run();
     remove_abandoned_memory_of(client);  // If it was killed.
     if (end == serve::Server::End::given_up)

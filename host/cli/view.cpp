@@ -120,7 +120,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     DeviceSlot denoising_device(instance, device, pipeline_cache_folder());
     const std::shared_ptr<Denoiser> denoiser = arguments.denoising.make(
         [&denoising_device]() -> const vk::Device& { return denoising_device.open(); });
-    const InterruptGuard guard;
+    const os::Interrupts interrupts;
     bool complete = false;
     {
         Viewer viewer(window, instance, std::move(scene), state,
@@ -130,7 +130,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
                        .command_line = command_line,
                        .target = arguments.frames.value_or(rendering.sampling.spp.value_or(MAX_SPP)),
                        .close_at_target = arguments.frames.has_value(),
-                       .stopped = [&guard] { return guard.interrupted(); },
+                       .stopped = [&interrupts] { return interrupts.noted(); },
                        .say = print_note,
                        .denoiser = denoiser});
         complete = viewer.run();
@@ -141,7 +141,7 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
         attempts.finish();
     }
     check_validation(instance);
-    if (guard.interrupted()) return ExitCode::interrupted;
+    if (interrupts.noted()) return ExitCode::interrupted;
     if (arguments.frames && !complete) {
         throw Error("the window was closed before it had shown " + std::to_string(*arguments.frames) +
                     " frames, so no screenshot was written");

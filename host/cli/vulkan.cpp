@@ -2,67 +2,47 @@
 #include "cli/vulkan.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <latch>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <thread>
 #include <vector>
 
-#include <sys/mman.h>
-
 #include "base/error.h"
 #include "base/threads.h"
+#include "os/memory.h"
+#include "os/program.h"
 
 namespace candela {
 
-// The value of an environment variable; empty if it is not set.
-static std::string_view environment(const char* name) {
-    const char* const value = std::getenv(name);
-    return value == nullptr ? "" : value;
-}
-
 // A switch is on if it is set to anything but "" or "0".
 static bool is_on(const char* name) {
-    const std::string_view value = environment(name);
+    const std::string value = os::environment(name);
     return !value.empty() && value != "0";
-}
-
-// The folder for files that programs can make again; nothing if the environment does not set one. By the XDG
-// specification, a relative path is ignored.
-static std::optional<std::filesystem::path> cache_home() {
-    const std::filesystem::path cache = environment("XDG_CACHE_HOME");
-    if (cache.is_absolute()) return cache;
-    const std::filesystem::path home = environment("HOME");
-    return home.is_absolute() ? std::optional(home / ".cache") : std::nullopt;
 }
 
 // Mesa writes to its cache through mapped memory: on a full disk, SIGBUS ends the program.
 static void keep_drivers_off_full_disks() {
     constexpr uintmax_t ENOUGH = uintmax_t{64} << 20;
-    std::filesystem::path folder = environment("MESA_SHADER_CACHE_DIR");
-    if (folder.empty()) folder = cache_home().value_or("/");
+    std::filesystem::path folder = os::environment("MESA_SHADER_CACHE_DIR");
+    if (folder.empty()) folder = os::cache_folder().value_or("/");
     std::error_code ignored;
     while (folder.has_relative_path() && !std::filesystem::exists(folder, ignored))
         folder = folder.parent_path();
     if (std::filesystem::space(folder, ignored).available < ENOUGH)
-        ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
+        os::set_default_environment("MESA_SHADER_CACHE_DISABLE", "true");
 }
 
 // Drivers without room for threads and code end the program silently or hang. Both limits, on the address
 // space and on data, apply to writable memory.
 static void check_address_space() {
     constexpr size_t NEEDED = size_t{768} << 20;
-    void* const room =
-        ::mmap(nullptr, NEEDED, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (room == MAP_FAILED) {
+    if (!os::has_address_space(NEEDED)) {
         throw Error(
             "cannot use Vulkan: its drivers need 768 MiB of address space and data, and less is left; raise "
             "the limit (ulimit -v, ulimit -d)",
             ErrorKind::out_of_memory);
     }
-    ::munmap(room, NEEDED);
 }
 
 // Drivers that can start only some of their threads wait for the others for ever.
@@ -96,7 +76,7 @@ void check_validation(const vk::Instance& instance) {
 
 std::optional<std::filesystem::path> pipeline_cache_folder() {
     if (is_on("CANDELA_NO_CACHE")) return std::nullopt;
-    const auto home = cache_home();
+    const auto home = os::cache_folder();
     return home ? std::optional(*home / "candela") : std::nullopt;
 }
 

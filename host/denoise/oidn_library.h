@@ -6,8 +6,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "os/library.h"
 
 namespace candela {
 
@@ -15,7 +18,6 @@ struct OidnDeviceHandle;
 struct OidnFilterHandle;
 
 inline constexpr int OIDN_MAJOR_VERSION = 2;
-inline constexpr const char* OIDN_FILE = "libOpenImageDenoise.so.2";
 
 // Values of its enumerations.
 inline constexpr int OIDN_CPU = 1;
@@ -28,7 +30,6 @@ class OidnLibrary {
     // Loads the first of `candidates` that is there. Throws Error (request) if none is, and Error if the one
     // that is there cannot be used.
     explicit OidnLibrary(const std::vector<std::filesystem::path>& candidates);
-    ~OidnLibrary();
     OidnLibrary(const OidnLibrary&) = delete;
     OidnLibrary& operator=(const OidnLibrary&) = delete;
 
@@ -56,7 +57,7 @@ class OidnLibrary {
     void find(Function*& function, const char* name);
 
     std::string file_;
-    void* handle_ = nullptr;
+    std::optional<os::Library> library_;
 };
 
 // Where it is looked for: the file that CANDELA_OIDN names, and nowhere else, if that is set; otherwise

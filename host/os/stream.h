@@ -6,7 +6,9 @@
 #include <span>
 #include <string_view>
 
-namespace candela {
+namespace candela::os {
+
+inline constexpr int STANDARD_INPUT = 0;
 
 struct StreamStep {
     size_t bytes = 0;    // How many were read or written; 0 if it took too long.
@@ -23,7 +25,8 @@ StreamStep write_some(int file, std::string_view bytes, std::chrono::millisecond
 bool has_reader(int file);
 
 // Another number for the program's standard output, which from now on goes to standard error: so libraries
-// that print write nothing between our bytes. Throws Error if the program has no standard output.
+// that print write nothing between our bytes. Negative if the program has no
+// standard output.
 int take_standard_output();
 
-}  // namespace candela
+}  // namespace candela::os

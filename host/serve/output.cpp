@@ -49,7 +49,7 @@ void Output::finish(milliseconds patience) {
 // Writes the line, unless the client is gone before its end.
 void Output::write(const std::stop_token& stop, std::string_view line) {
     while (!line.empty() && !gone_ && !stop.stop_requested()) {
-        const StreamStep step = write_some(file_, line, LOOK);
+        const os::StreamStep step = os::write_some(file_, line, LOOK);
         if (step.ended) gone_ = true;
         line.remove_prefix(step.bytes);
         const std::lock_guard lock(mutex_);
@@ -61,7 +61,8 @@ void Output::run(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!gone_ && !stop.stop_requested()) {
         if (lines_.empty()) {
-            if (!wake_.wait_for(lock, stop, LOOK, [this] { return !lines_.empty(); }) && !has_reader(file_))
+            if (!wake_.wait_for(lock, stop, LOOK, [this] { return !lines_.empty(); }) &&
+                !os::has_reader(file_))
                 gone_ = true;
             continue;
         }

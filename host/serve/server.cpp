@@ -100,7 +100,7 @@ void Server::read() {
     std::array<char, size_t{1} << 16> buffer;
     bool ended = false;
     while (!ended) {
-        const StreamStep step = read_some(in_, buffer, LOOK);
+        const os::StreamStep step = os::read_some(in_, buffer, LOOK);
         ended = step.ended;
         lines.add({buffer.data(), step.bytes});
         read_lines(lines);

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "load/node.h"
-#include "os/shared_memory.h"
 #include "scene/named_arrays.h"
+#include "serve/shared_memory.h"
 
 namespace candela::serve {
 

@@ -9,8 +9,8 @@
 #include "base/memory_limit.h"
 #include "image/image.h"
 #include "image/labels.h"
-#include "os/shared_memory.h"
 #include "serve/message.h"
+#include "serve/shared_memory.h"
 
 namespace candela::serve {
 

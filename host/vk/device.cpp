@@ -1,12 +1,10 @@
 // Opens a device and answers questions about its memory.
 #include "vk/device.h"
 
-#include <fstream>
 #include <vector>
 
-#include <unistd.h>
-
 #include "base/error.h"
+#include "os/memory.h"
 #include "vk/check.h"
 
 namespace candela::vk {
@@ -56,19 +54,8 @@ Device::Device(const Instance& instance, const DeviceInfo& info,
     pipeline_cache_.emplace(device_.get(), properties, pipeline_cache_folder);
 }
 
-// Bytes of RAM that programs can still allocate; all of the RAM if the system does not tell.
-static uint64_t free_ram() {
-    std::ifstream meminfo("/proc/meminfo");
-    std::string word;
-    while (meminfo >> word) {
-        uint64_t kibibytes = 0;
-        if (word == "MemAvailable:" && meminfo >> kibibytes) return kibibytes * 1024;
-    }
-    return uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE));
-}
-
 uint64_t Device::available_memory() const {
-    return info_.type == DeviceType::cpu ? free_ram() : info_.device_heap;
+    return info_.type == DeviceType::cpu ? os::free_memory() : info_.device_heap;
 }
 
 uint32_t Device::memory_type(uint32_t allowed, VkMemoryPropertyFlags required,

@@ -11,7 +11,7 @@
 
 #include "load/json.h"
 #include "load/node.h"
-#include "os/shared_memory.h"
+#include "serve/shared_memory.h"
 
 namespace candela::serve {
 namespace {

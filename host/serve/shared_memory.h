@@ -4,7 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
+
+#include "os/file.h"
+#include "os/mapped_file.h"
 
 namespace candela {
 
@@ -14,17 +18,12 @@ class SharedMemory {
   public:
     // Zeros. Throws Error (out_of_memory) if neither folder has the room.
     explicit SharedMemory(uint64_t size);
-    SharedMemory(const SharedMemory&) = delete;
-    SharedMemory& operator=(const SharedMemory&) = delete;
-    ~SharedMemory();
 
-    const std::filesystem::path& path() const { return path_; }
-    std::span<std::byte> bytes() const { return bytes_; }
+    const std::filesystem::path& path() const { return file_->path(); }
+    std::span<std::byte> bytes() const { return file_->bytes(); }
 
   private:
-    std::filesystem::path path_;
-    std::span<std::byte> bytes_;
-    int file_ = -1;
+    std::unique_ptr<os::MappedFile> file_;
 };
 
 // Such a file of another program of this user, who may change it at any moment: so it is read, and not
@@ -33,9 +32,6 @@ class SharedFile {
   public:
     // Throws Error for any other file.
     explicit SharedFile(const std::filesystem::path& path);
-    SharedFile(const SharedFile&) = delete;
-    SharedFile& operator=(const SharedFile&) = delete;
-    ~SharedFile();
 
     // Bytes, when it was opened.
     uint64_t size() const { return size_; }
@@ -44,7 +40,7 @@ class SharedFile {
 
   private:
     std::filesystem::path path_;
-    int file_ = -1;
+    std::unique_ptr<os::InputFile> file_;
     uint64_t size_ = 0;
 };
 

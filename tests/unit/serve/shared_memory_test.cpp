@@ -1,5 +1,5 @@
 // Files in memory that other programs map.
-#include "os/shared_memory.h"
+#include "serve/shared_memory.h"
 
 #include <algorithm>
 #include <array>

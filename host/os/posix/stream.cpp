@@ -1,4 +1,4 @@
-// See stream.h.
+// See os/stream.h.
 #include "os/stream.h"
 
 #include <algorithm>
@@ -9,9 +9,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include "base/error.h"
-
-namespace candela {
+namespace candela::os {
 namespace {
 
 constexpr short GONE = POLLERR | POLLHUP | POLLNVAL;
@@ -50,9 +48,7 @@ bool has_reader(int file) {
 
 int take_standard_output() {
     const int file = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-    if (file < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
-        throw Error("there is no standard output; connect it to the program that reads the messages");
-    return file;
+    return file < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0 ? -1 : file;
 }
 
-}  // namespace candela
+}  // namespace candela::os
