@@ -176,7 +176,7 @@ void render_pixel() {
     uvec2 group = gl_WorkGroupID.xy * tile.stride % gl_NumWorkGroups.xy;
     uvec2 at = group * WORKGROUP_SIZE + gl_LocalInvocationID.xy;
     if (any(greaterThanEqual(at, tile.size))) return;
-    if (tile.lane != LANES && gl_LocalInvocationIndex % LANES != tile.lane) return;
+    if (VOLUMETRIC && tile.lane != LANES && gl_LocalInvocationIndex % LANES != tile.lane) return;
     at += tile.origin;
     Parameters parameters = scene_parameters();
 
