@@ -35,13 +35,14 @@ if(CANDELA_VIEW)
     find_path(IMGUI_INCLUDE_DIR NAMES imgui.h PATH_SUFFIXES imgui)
     find_library(IMGUI_LIBRARY NAMES imgui)
     find_library(STB_LIBRARY NAMES stb)
-    if(glfw3_FOUND AND IMGUI_INCLUDE_DIR AND IMGUI_LIBRARY AND STB_LIBRARY)
+    if(glfw3_FOUND AND IMGUI_INCLUDE_DIR AND IMGUI_LIBRARY)
         set(CANDELA_HAS_VIEW TRUE)
         # Debian's library has all backends, and the linker uses only those that are called: not the one for Vulkan,
-        # whose calls of Vulkan's functions would resolve to volk's variables of the same names.
+        # whose calls of Vulkan's functions would resolve to volk's variables of the same names. It also needs stb's
+        # library; others have what they need of stb inside.
         add_library(imgui INTERFACE)
         target_include_directories(imgui SYSTEM INTERFACE ${IMGUI_INCLUDE_DIR})
-        target_link_libraries(imgui INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY})
+        target_link_libraries(imgui INTERFACE ${IMGUI_LIBRARY} $<$<BOOL:${STB_LIBRARY}>:${STB_LIBRARY}>)
     elseif(NOT CANDELA_VIEW STREQUAL "AUTO")
         message(FATAL_ERROR "CANDELA_VIEW needs GLFW and Dear ImGui: install libglfw3-dev and libimgui-dev, or "
             "configure with -DCANDELA_VIEW=OFF")
@@ -61,13 +62,18 @@ string(REGEX MATCH "^[0-9]+" compiler_major "${CMAKE_CXX_COMPILER_VERSION}")
 if(CANDELA_WERROR STREQUAL "${CMAKE_CXX_COMPILER_ID}-${compiler_major}")
     target_compile_options(candela_flags INTERFACE -Werror)
 endif()
-target_compile_definitions(candela_flags INTERFACE GLM_FORCE_XYZW_ONLY GLM_FORCE_EXPLICIT_CTOR)
+target_compile_definitions(candela_flags INTERFACE GLM_FORCE_XYZW_ONLY GLM_FORCE_EXPLICIT_CTOR
+    $<$<BOOL:${WIN32}>:_USE_MATH_DEFINES>)  # For M_PI, which other systems have anyway.
 target_include_directories(candela_flags INTERFACE ${CMAKE_SOURCE_DIR}/host ${CMAKE_SOURCE_DIR}/shaders)
 target_include_directories(candela_flags SYSTEM INTERFACE ${STB_INCLUDE_DIR} ${VOLK_INCLUDE_DIR})
 target_link_libraries(candela_flags INTERFACE Threads::Threads glm::glm)
 if(CANDELA_PORTABLE)
     # A driver brings the C++ run-time library that it needs: the two must not see each other.
-    target_link_options(candela_flags INTERFACE -static-libstdc++ -static-libgcc LINKER:--exclude-libs,ALL)
+    if(WIN32)
+        target_link_options(candela_flags INTERFACE -static)
+    else()
+        target_link_options(candela_flags INTERFACE -static-libstdc++ -static-libgcc LINKER:--exclude-libs,ALL)
+    endif()
 endif()
 if(CANDELA_SANITIZE)
     # GCC 12 believes that parts of vectors, variants and std::regex are uninitialised when it instruments them.

@@ -45,12 +45,10 @@ fs::path folder_of(const fs::path& file) {
         case EROFS:
             fail_to_write(path, "no file can be created in the directory " + quoted(directory) + " (" +
                                     error.message() + "); choose a place that you may write to");
-        case ENOSPC:
-        case EDQUOT:
-        case EFBIG:
-            fail_to_write(path, error.message() + "; free some space or choose another place");
         default:
-            fail_to_write(path, error.message() + "; choose another place");
+            fail_to_write(path, error.message() + (os::means_no_room(error)
+                                                       ? "; free some space or choose another place"
+                                                       : "; choose another place"));
     }
 }
 

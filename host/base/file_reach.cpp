@@ -37,6 +37,13 @@ FileReach::FileReach(const fs::path& opened, const ReachOptions& options)
     }
 }
 
+// By its text alone, since on Windows looking at a file can reach another computer, with the user's name:
+// whether the path is on the drive, or the share, of an allowed folder.
+bool FileReach::may_hold(const fs::path& path) const {
+    const auto is_there = [&](const fs::path& folder) { return folder.root_name() == path.root_name(); };
+    return anywhere_ || !path.has_root_name() || std::ranges::any_of(folders_, is_there);
+}
+
 bool FileReach::holds_real(const fs::path& real) const {
     if (real.empty()) return false;
     return anywhere_ || std::ranges::any_of(folders_, [&](const fs::path& folder) {
@@ -46,7 +53,7 @@ bool FileReach::holds_real(const fs::path& real) const {
 }
 
 bool FileReach::holds(const fs::path& path) const {
-    return holds_real(real_path(path));
+    return may_hold(path) && holds_real(real_path(path));
 }
 
 std::string FileReach::refusal(const std::string& name) const {
@@ -66,7 +73,7 @@ fs::path FileReach::find(const fs::path& folder, const std::string& name) const 
 
 std::string FileReach::read(const fs::path& path, uint64_t max, const ReadProgress& progress) const {
     if (path == opened_) return read_file(path, progress);
-    const fs::path real = real_path(path);
+    const fs::path real = may_hold(path) ? real_path(path) : fs::path();
     if (!holds_real(real)) throw Error(refusal(path.string()));
     return read_finite_file(path, real, max, progress);
 }

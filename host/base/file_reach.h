@@ -48,6 +48,7 @@ class FileReach {
 
   private:
     bool holds_real(const std::filesystem::path& real) const;
+    bool may_hold(const std::filesystem::path& path) const;
 
     std::filesystem::path opened_;
     std::vector<std::filesystem::path> folders_;  // Their places, after following links.

@@ -57,7 +57,7 @@ void* allocate(size_t size, std::align_val_t alignment) {
     check_limit(size);
     void* const memory = os::allocate_aligned(std::max<size_t>(size, 1), size_t(alignment));
     if (memory == nullptr) throw std::bad_alloc();
-    add_use(os::size_of_aligned(memory, size_t(alignment)));
+    add_use(os::size_of_aligned(memory));
     return memory;
 }
 
@@ -67,9 +67,9 @@ void release(void* memory) {
     os::release(memory);
 }
 
-void release(void* memory, std::align_val_t alignment) {
+void release_aligned(void* memory) {
     if (memory == nullptr) return;
-    end_use(os::size_of_aligned(memory, size_t(alignment)));
+    end_use(os::size_of_aligned(memory));
     os::release_aligned(memory);
 }
 
@@ -194,12 +194,12 @@ std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
     candela::release(memory);
 }
 
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t alignment) noexcept {
-    candela::release(memory, alignment);
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
+    candela::release_aligned(memory);
 }
 
-[[gnu::noinline]] void operator delete(void* memory, size_t, std::align_val_t alignment) noexcept {
-    candela::release(memory, alignment);
+[[gnu::noinline]] void operator delete(void* memory, size_t, std::align_val_t) noexcept {
+    candela::release_aligned(memory);
 }
 
 [[gnu::noinline]] void operator delete[](void* memory) noexcept {
@@ -210,10 +210,10 @@ std::string shortage_text(const std::bad_alloc& error, uint64_t before) {
     candela::release(memory);
 }
 
-[[gnu::noinline]] void operator delete[](void* memory, std::align_val_t alignment) noexcept {
-    candela::release(memory, alignment);
+[[gnu::noinline]] void operator delete[](void* memory, std::align_val_t) noexcept {
+    candela::release_aligned(memory);
 }
 
-[[gnu::noinline]] void operator delete[](void* memory, size_t, std::align_val_t alignment) noexcept {
-    candela::release(memory, alignment);
+[[gnu::noinline]] void operator delete[](void* memory, size_t, std::align_val_t) noexcept {
+    candela::release_aligned(memory);
 }

@@ -92,7 +92,7 @@ ExrFile::ExrFile(const ExrBytes& file, const fs::path& path) : bytes_(file.bytes
     wishes.max_image_width = wishes.max_image_height = int(MAX_IMAGE_SIDE);
     wishes.max_tile_width = wishes.max_tile_height = int(MAX_IMAGE_SIDE);
     library_message.clear();
-    check(exr_start_read(&context_, path.c_str(), &wishes));
+    check(exr_start_read(&context_, path.string().c_str(), &wishes));
 }
 
 void ExrFile::fail(const std::string& why) const {

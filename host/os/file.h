@@ -13,6 +13,9 @@
 
 namespace candela::os {
 
+// Whether the error says that there is no room for a file: its disk is full, or a limit on it is reached.
+bool means_no_room(const std::error_code& error);
+
 // Why this user may not read or write the file; nothing if that is allowed.
 std::error_code refusal_to_read(const std::filesystem::path& file);
 std::error_code refusal_to_write(const std::filesystem::path& file);

@@ -23,6 +23,6 @@ void release(void* memory);
 size_t size_of(void* memory);
 void* allocate_aligned(size_t size, size_t alignment);
 void release_aligned(void* memory);
-size_t size_of_aligned(void* memory, size_t alignment);
+size_t size_of_aligned(void* memory);
 
 }  // namespace candela::os

@@ -10,13 +10,16 @@
 #include "shared/constants.h"
 #include "shared/scene_arrays.h"
 
-// The longest list of primitives that a kernel tests one by one; there is a LIST_CORNERS_i for each.
-const uint LIST_MAX = 16u;
-
 #ifdef __cplusplus
 #include <array>
 #include <iterator>
 namespace candela {
+#endif
+
+// The longest list of primitives that a kernel tests one by one; there is a LIST_CORNERS_i for each.
+const uint LIST_MAX = 16u;
+
+#ifdef __cplusplus
 
 // What determines a constant. Scene and settings determine the image, the device only its computation.
 enum class ConstantOwner { scene, settings, device };

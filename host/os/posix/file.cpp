@@ -62,6 +62,10 @@ void create_folders(const fs::path& folder) {
 
 }  // namespace
 
+bool means_no_room(const std::error_code& error) {
+    return error.value() == ENOSPC || error.value() == EDQUOT || error.value() == EFBIG;
+}
+
 std::error_code refusal_to_read(const fs::path& file) {
     return ::access(file.c_str(), R_OK) == 0 ? std::error_code() : last_error();
 }

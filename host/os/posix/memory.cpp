@@ -71,7 +71,7 @@ void release_aligned(void* memory) {
     std::free(memory);
 }
 
-size_t size_of_aligned(void* memory, size_t) {
+size_t size_of_aligned(void* memory) {
     return ::malloc_usable_size(memory);
 }
 
