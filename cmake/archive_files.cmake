@@ -38,17 +38,8 @@ PackageCopyrightText: <text>Copyright (c) 2026 the candela authors</text>
 Relationship: SPDXRef-DOCUMENT DESCRIBES SPDXRef-candela
 ")
 
-# add(PACKAGE RELATIONSHIP): a package of Debian that candela links so.
-function(add package relationship)
-    query(version -f "\${Version}" -W ${package})
-    query(source -f "\${source:Package}" -W ${package})
-    query(architecture -f "\${Architecture}" -W ${package})
-    if(NOT version)
-        lack(${package})
-        return()
-    endif()
-    string(REGEX REPLACE ":.*" "" package ${package})
-    file(COPY_FILE /usr/share/doc/${package}/copyright ${root}/${documents}/licenses/${package}.txt)
+# describe(PACKAGE VERSION ARCHITECTURE SOURCE RELATIONSHIP): adds to the SBOM.
+function(describe package version architecture source relationship)
     string(REGEX REPLACE "[^A-Za-z0-9.-]" "-" id ${package})
     string(REPLACE "+" "%2B" encoded ${version})
     string(APPEND sbom "
@@ -66,6 +57,21 @@ PackageCopyrightText: NOASSERTION
 ExternalRef: PACKAGE-MANAGER purl pkg:deb/debian/${package}@${encoded}?arch=${architecture}
 Relationship: SPDXRef-candela ${relationship} SPDXRef-${id}
 ")
+    set(sbom "${sbom}" PARENT_SCOPE)
+endfunction()
+
+# add(PACKAGE RELATIONSHIP): a package of Debian that candela links so.
+function(add package relationship)
+    query(version -f "\${Version}" -W ${package})
+    query(source -f "\${source:Package}" -W ${package})
+    query(architecture -f "\${Architecture}" -W ${package})
+    if(NOT version)
+        lack(${package})
+        return()
+    endif()
+    string(REGEX REPLACE ":.*" "" package ${package})
+    file(COPY_FILE /usr/share/doc/${package}/copyright ${root}/${documents}/licenses/${package}.txt)
+    describe(${package} ${version} ${architecture} ${source} ${relationship})
     set(sbom "${sbom}" PARENT_SCOPE)
 endfunction()
 
@@ -91,4 +97,18 @@ endforeach()
 foreach(package IN ITEMS libcli11-dev libglm-dev libstb-dev libvulkan-volk-dev nlohmann-json3-dev)  # Headers alone.
     add(${package} STATIC_LINK)
 endforeach()
+# What a compiler for Windows links, and what was built from Debian's sources: NAME VERSION in each line.
+if(windows)
+    foreach(package IN ITEMS gcc-mingw-w64-x86-64-posix-runtime libz-mingw-w64-dev mingw-w64-x86-64-dev)
+        add(${package} STATIC_LINK)
+    endforeach()
+    file(STRINGS ${built_from_source}/versions sources)
+    foreach(source IN LISTS sources)
+        separate_arguments(source)
+        list(GET source 0 package)
+        list(GET source 1 version)
+        file(COPY_FILE ${built_from_source}/${package}.txt ${root}/${documents}/licenses/${package}.txt)
+        describe(${package} ${version} source ${package} STATIC_LINK)
+    endforeach()
+endif()
 file(WRITE ${root}/${documents}/sbom.spdx "${sbom}")

@@ -12,14 +12,25 @@
 #
 # Left out of archives are the libraries that every system with a Vulkan driver has: glibc and the C++ run-time library.
 # A process should have only one of each, and drivers need the system's.
+#
+# For Windows (cmake/windows.sh), `cpack` makes a zip, with the program on top and all libraries in it.
+if(WIN32)
+    set(CMAKE_INSTALL_BINDIR .)
+    set(CMAKE_INSTALL_DATADIR .)
+    set(CMAKE_INSTALL_DOCDIR doc)
+endif()
 include(GNUInstallDirs)
 
-set_target_properties(candela PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-# The old kind of run path, which also applies to the libraries that those libraries need.
-target_link_options(candela PRIVATE LINKER:--disable-new-dtags)
-install(TARGETS candela RUNTIME_DEPENDENCY_SET candela_libraries)
-install(RUNTIME_DEPENDENCY_SET candela_libraries
-    PRE_EXCLUDE_REGEXES "^ld-linux" "^linux-vdso" "^lib(c|m|dl|rt|pthread|stdc\\+\\+|gcc_s)\\.so")
+if(WIN32)
+    install(TARGETS candela RUNTIME)
+else()
+    set_target_properties(candela PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+    # The old kind of run path, which also applies to the libraries that those libraries need.
+    target_link_options(candela PRIVATE LINKER:--disable-new-dtags)
+    install(TARGETS candela RUNTIME_DEPENDENCY_SET candela_libraries)
+    install(RUNTIME_DEPENDENCY_SET candela_libraries
+        PRE_EXCLUDE_REGEXES "^ld-linux" "^linux-vdso" "^lib(c|m|dl|rt|pthread|stdc\\+\\+|gcc_s)\\.so")
+endif()
 install(TARGETS candela RUNTIME DESTINATION . COMPONENT wheel EXCLUDE_FROM_ALL)
 if(CANDELA_LICENSES)
     install(DIRECTORY ${CANDELA_LICENSES}/ DESTINATION licenses COMPONENT wheel EXCLUDE_FROM_ALL)
@@ -34,7 +45,9 @@ install(CODE "set(version ${PROJECT_VERSION})
 set(name candela-${PROJECT_VERSION}-${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR})
 set(documents ${CMAKE_INSTALL_DOCDIR})
 set(library_folder ${CMAKE_INSTALL_LIBDIR})
-set(architecture ${CMAKE_LIBRARY_ARCHITECTURE})")
+set(architecture ${CMAKE_LIBRARY_ARCHITECTURE})
+set(windows ${WIN32})
+set(built_from_source ${CANDELA_LICENSES})")
 install(SCRIPT ${CMAKE_SOURCE_DIR}/cmake/archive_files.cmake)
 
 set(CPACK_PACKAGE_CONTACT "The candela contributors <maintainers@candela.invalid>" CACHE STRING
@@ -63,7 +76,11 @@ install(FILES ${desktop}/candela.mime.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/m
 install(FILES ${desktop}/candela.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo
     RENAME io.github.candela_render.candela.metainfo.xml ${to_debian})
 
-set(CPACK_GENERATOR TGZ)
+if(WIN32)
+    set(CPACK_GENERATOR ZIP)
+else()
+    set(CPACK_GENERATOR TGZ)
+endif()
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "A path tracer that gives the same picture on any Vulkan device")
 string(TOLOWER "${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR}" system)
 set(CPACK_PACKAGE_FILE_NAME "candela-${PROJECT_VERSION}-${system}")

@@ -7,51 +7,17 @@
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/setup.sh
+. cmake/sources.sh
 install_packages render wheel
 folder=$PWD/build/wheel
 static=$folder/static
-mkdir -p "$folder"
-
-# source_of NAME...: downloads and unpacks Debian's sources, with lists of apt's own.
-source_of() {
-    lists=$folder/apt
-    # shellcheck disable=SC2016  # Apt replaces this.
-    mirror=$(apt-get indextargets --format '$(REPO_URI) $(CODENAME)' 'Created-By: Packages' 'Label: Debian' | head -n 1)
-    [ -n "$mirror" ] || { echo "apt knows no mirror of Debian." >&2; exit 1; }
-    mkdir -p "$lists/partial" "$lists/cache/archives/partial" "$folder/source"
-    echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror main" >"$lists/sources.list"
-    apt="apt-get -qq -o Dir::Etc::sourcelist=$lists/sources.list -o Dir::Etc::sourceparts=- -o Dir::State::lists=$lists
-         -o Dir::Cache=$lists/cache -o APT::Get::List-Cleanup=0 -o APT::Sandbox::User=$(id -un)"
-    $apt update
-    (cd "$folder/source" && $apt source --download-only "$@")
-    for name in "$@"; do
-        rm -rf "$folder/source/$name"
-        dpkg-source -x "$folder/source/$name"_*.dsc "$folder/source/$name" >/dev/null
-    done
-}
-
-# archive NAME OPTION...: builds a library from source as an archive.
-archive() {
-    name=$1
-    shift
-    cmake -G Ninja -S "$folder/source/$name" -B "$folder/source/$name/build" -DCMAKE_BUILD_TYPE=Release \
-        -DBUILD_SHARED_LIBS=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_TESTING=OFF -DZLIB_USE_STATIC_LIBS=ON \
-        -DCMAKE_PREFIX_PATH="$static" -DCMAKE_INSTALL_PREFIX="$static" "$@" >"$folder/$name.log"
-    cmake --build "$folder/source/$name/build" --target install >>"$folder/$name.log"
-}
-
-# license NAME FILE: that of a library.
-license() {
-    mkdir -p "$folder/licenses"
-    cp "$2" "$folder/licenses/$1.txt"
-}
+mkdir -p "$folder/licenses"
 
 if [ ! -f "$static/complete" ] || [ ! -f "$static/lib/libmeshoptimizer.a" ]; then
     source_of imath openexr meshoptimizer
-    archive imath
-    archive openexr -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF
-    archive meshoptimizer -DMESHOPT_BUILD_SHARED_LIBS=OFF -DMESHOPT_BUILD_GLTFPACK=OFF
-    for name in imath openexr meshoptimizer; do license "$name" "$folder/source/$name/debian/copyright"; done
+    archive imath "$static"
+    archive openexr "$static" -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF
+    archive meshoptimizer "$static" -DMESHOPT_BUILD_SHARED_LIBS=OFF -DMESHOPT_BUILD_GLTFPACK=OFF
     touch "$static/complete"
 fi
 for package in libpng-dev libjpeg62-turbo-dev libwebp-dev libdraco-dev zlib1g-dev libstdc++-12-dev libvulkan-volk-dev libstb-dev \
