@@ -6,6 +6,10 @@
 # usage: sh cmake/try_windows.sh [OPTION OF CMAKE...]
 set -eu
 cd "$(dirname "$0")/.."
+if ! grep -qs '^VERSION_CODENAME=bookworm$' /etc/os-release || [ "$(uname -m)" != x86_64 ]; then
+    echo "Nothing was tried: this needs Debian 12 on x86-64, and this is another system."
+    exit 3
+fi
 linux=$PWD/build/release/candela
 [ -x "$linux" ] || { echo "There is no $linux; run sh cmake/test.sh first." >&2; exit 1; }
 sh cmake/windows.sh "$@"
@@ -17,6 +21,12 @@ mkdir -p "$place"
 program=$(echo "$place"/candela-*/candela.exe)
 
 export WINEPREFIX="$folder/wine" WINEDEBUG=-all
+# Wine's Vulkan needs a display.
+Xvfb -displayfd 3 -screen 0 1280x800x24 3>"$folder/display" 2>"$folder/xvfb.log" &
+trap 'kill $!' EXIT
+while [ ! -s "$folder/display" ]; do sleep 0.1; done
+DISPLAY=:$(cat "$folder/display")
+export DISPLAY
 wine=$(command -v wine64 || echo /usr/lib/wine/wine64)
 "$wine" wineboot --init
 # What tests call instead of a program for Linux.
@@ -44,4 +54,4 @@ print(f"{scene}: {one} on Linux, {other} on Windows")
 sys.exit(one != other)
 END
 done
-python3 tests/python/windows_test.py "$folder/candela"
+/usr/bin/python3 tests/python/windows_test.py "$folder/candela" "$linux"

@@ -142,13 +142,18 @@ void Server::answer(const Waiting& waiting) {
                             told["request"] = Json::parse(id.value_or("null"));
                             output_.offer(notification_line("progress", told));
                         }};
+    std::string line;
     try {
         if (waiting.is_cancelled) throw RequestError(Code::cancelled, "request: cancelled before it began");
-        const Json result = handler_(waiting.request, call);
-        if (id) output_.send(result_line(*id, result));
+        line = result_line(id.value_or("null"), handler_(waiting.request, call));
     } catch (...) {
-        if (id) output_.send(line_of_caught(id));
+        line = line_of_caught(id);
     }
+    {
+        const std::lock_guard lock(mutex_);
+        current_.reset();  // Who has the answer cannot cancel it any more.
+    }
+    if (id) output_.send(std::move(line));
 }
 
 Server::End Server::run() {
