@@ -79,7 +79,7 @@ class InputFile {
 class OutputFile {
   public:
     // With these permissions, or the usual ones. Throws std::errc::file_exists if there is one.
-    explicit OutputFile(const std::filesystem::path& path, std::optional<Permissions> permissions);
+    explicit OutputFile(std::filesystem::path path, std::optional<Permissions> permissions);
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();

@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -140,7 +141,7 @@ size_t InputFile::read_at(uint64_t offset, std::span<std::byte> bytes) {
     return count < 0 ? 0 : size_t(count);
 }
 
-OutputFile::OutputFile(const fs::path& path, std::optional<Permissions> permissions) : path_(path) {
+OutputFile::OutputFile(fs::path path, std::optional<Permissions> permissions) : path_(std::move(path)) {
     const mode_t mode = permissions.value_or(0666);
     file_ = open_file(path_, O_WRONLY | O_CREAT | O_EXCL, mode);
     if (file_ < 0) fail("open");

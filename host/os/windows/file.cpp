@@ -3,6 +3,7 @@
 #include "os/file.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <aclapi.h>
@@ -157,7 +158,7 @@ size_t InputFile::read_at(uint64_t offset, std::span<std::byte> bytes) {
 }
 
 // Locked for all who want to write.
-OutputFile::OutputFile(const fs::path& path, std::optional<Permissions>) : path_(path) {
+OutputFile::OutputFile(fs::path path, std::optional<Permissions>) : path_(std::move(path)) {
     file_ = reinterpret_cast<intptr_t>(open_file(path_, GENERIC_WRITE, FILE_SHARE_READ, CREATE_NEW));
     if (file_ == -1) fail("CreateFile");
 }
