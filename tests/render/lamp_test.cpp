@@ -57,7 +57,7 @@ class LampTest : public RenderTest {
 void expect_same_picture(const Image& a, const Image& b) {
     for (size_t c = 0; c < 3; ++c) {
         const ImageMean mean = image_mean(a, c);
-        EXPECT_LE(mean.error, 0.01 * mean.mean);
+        EXPECT_LE(mean.error, 5.0 * largest_error() * mean.mean);
     }
     const Comparison comparison = compare(a, b, {.alpha = TEST_ALPHA});
     ASSERT_TRUE(comparison.tests.has_value());
