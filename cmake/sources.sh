@@ -18,6 +18,7 @@ source_of() {
     (cd "$folder/source" && $apt source --download-only "$@")
     for name in "$@"; do
         rm -rf "$folder/source/$name"
+        # Apt has checked the files; dpkg-source knows no keys, and says so at length.
         dpkg-source --no-check -x "$folder/source/$name"_*.dsc "$folder/source/$name" >/dev/null
         license "$name" "$folder/source/$name/debian/copyright"
         version=$(sed -n 's/^Version: //p' "$folder/source/$name"_*.dsc)

@@ -2,7 +2,7 @@
 # Tries candela for Windows under Wine, with the system's driver, which Wine gives it: builds it (cmake/windows.sh), unpacks
 # the archive into a folder whose name has a blank and letters beyond ASCII, and runs the self-test, the gallery, whose
 # pictures must have the bits of those of build/release/candela, and what a Python on Linux asks by the protocol.
-# Needs build/release (sh cmake/test.sh).
+# Needs build/release and Xvfb (sh cmake/test.sh).
 # usage: sh cmake/try_windows.sh [OPTION OF CMAKE...]
 set -eu
 cd "$(dirname "$0")/.."

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds candela for Windows 10 and newer on x86-64, on Debian, in build/windows: candela.exe, which needs no library
-# but the system's, and the archive candela-VERSION-windows-amd64.zip with it and the scenes. Its libraries are built
+# but the system's, and the archive candela-VERSION-windows-x86_64.zip with it and the scenes. Its libraries are built
 # from Debian's sources.
 # usage: sh cmake/windows.sh [OPTION OF CMAKE...]
 set -eu

@@ -32,7 +32,7 @@ void note(int) {
 
 // Does only what a signal handler may.
 void quit(int) {
-    if (::write(STDERR_FILENO, last_words.data(), last_words.size()) < 0) ::_exit(last_code);
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, last_words.data(), last_words.size());
     ::_exit(last_code);
 }
 
