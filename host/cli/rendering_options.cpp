@@ -47,8 +47,8 @@ static std::optional<float> parse_clamp(const std::string& text) {
     return float(*limit);
 }
 
-void SceneOptions::add_file_to(CLI::App& app) {
-    app.add_option("SCENE", file, SCENE_FILES)->required()->type_name("");
+CLI::Option* SceneOptions::add_file_to(CLI::App& app) {
+    return app.add_option("SCENE", file, SCENE_FILES)->required()->type_name("");
 }
 
 void SceneOptions::add_camera_to(CLI::App& app) {

@@ -29,7 +29,7 @@ struct SceneOptions {
     std::string file;
     std::optional<std::string> camera;
 
-    void add_file_to(CLI::App& app);
+    CLI::Option* add_file_to(CLI::App& app);
     void add_camera_to(CLI::App& app);
     // The camera of that name, by default the scene's first. Throws Error (usage) that lists the names if
     // there is none.

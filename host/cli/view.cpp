@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/printable.h"
+#include "cli/arguments.h"
 #include "cli/attempts.h"
 #include "cli/command.h"
 #include "cli/command_files.h"
@@ -19,6 +20,7 @@
 #include "cli/rendering_options.h"
 #include "cli/vulkan.h"
 #include "image/image_io.h"
+#include "probe/scenes.h"
 #include "session/device_slot.h"
 #include "vk/device.h"
 #include "vk/instance.h"
@@ -45,7 +47,8 @@ struct ViewArguments {
 
 void ViewArguments::add_to(CLI::App& app) {
     app.option_defaults()->take_last();
-    scene.add_file_to(app);
+    scene.add_file_to(app)->required(false)->description(std::string(SCENE_FILES) +
+                                                         "; without it, drop one onto the window");
     add_value(
         app, "--frames", frames, [](const std::string& text) { return parse_uint(text, 1, MAX_SPP); },
         "a whole number from 1 to " + std::to_string(MAX_SPP),
@@ -71,6 +74,9 @@ void ViewArguments::check() const {
     if (frames && rendering.sampling.spp) {
         throw Error("--frames and --spp both set the number of samples; give only one", ErrorKind::request);
     }
+    if (frames && scene.file.empty()) {
+        throw Error("--frames: also name the SCENE that is shown", ErrorKind::request);
+    }
     if (!screenshots.empty() && !frames) {
         throw Error(
             "--screenshot: also give --frames N, after which it is taken; P and X save a picture at any time",
@@ -94,25 +100,61 @@ vk::DeviceInfo choose_device(const vk::Instance& instance, const Window& window,
     return vk::select_device(devices, wanted);
 }
 
-ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
+// A scene as its window shows it first.
+struct Opened {
+    Scene scene;
+    ViewState state;
+    std::string name;  // For the title, and for files.
+};
+
+Opened opened(const ViewArguments& arguments, Scene scene, const std::string& name, const Camera& camera) {
+    const RenderSettings settings = arguments.rendering.settings(scene, camera);
+    print_warnings(warnings_of_unseen_lights(scene, settings.estimator));
+    return {.scene = std::move(scene),
+            .state = {.camera = camera,
+                      .settings = settings,
+                      .exposure_ev = float(arguments.development.exposure.ev),
+                      .tonemap = arguments.development.tonemap,
+                      .denoise = arguments.denoising.is_on()},
+            .name = name};
+}
+
+Opened opened_file(const ViewArguments& arguments, const std::string& file, Scene scene) {
+    const Camera camera = arguments.scene.choose_camera(scene);
+    return opened(arguments, std::move(scene), std::filesystem::path(file).stem().string(), camera);
+}
+
+// What is shown first: the scene, or what stands behind the start page.
+Opened open_first(const ViewArguments& arguments) {
+    const std::string& file = arguments.scene.file;
     CommandFiles files;
-    files.read("SCENE", arguments.scene.file);
+    if (!file.empty()) files.read("SCENE", file);
     for (const std::string& path : arguments.screenshots)
         files.write("--screenshot", path);
     arguments.check();
-    const RenderingOptions& rendering = arguments.rendering;
-    Scene scene = load_with_progress(arguments.scene.file, rendering.loading);
+    if (file.empty()) {
+        Scene scene = cornell_box();
+        const Camera camera = scene.cameras.front();
+        return opened(arguments, std::move(scene), "candela", camera);
+    }
+    Scene scene = load_with_progress(file, arguments.rendering.loading);
     files.read_all("the scene's file", scene.files);
-    const Camera& camera = arguments.scene.choose_camera(scene);
-    const ViewState state{.camera = camera,
-                          .settings = rendering.settings(scene, camera),
-                          .exposure_ev = float(arguments.development.exposure.ev),
-                          .tonemap = arguments.development.tonemap,
-                          .denoise = arguments.denoising.is_on()};
+    return opened_file(arguments, file, std::move(scene));
+}
 
-    print_warnings(warnings_of_unseen_lights(scene, state.settings.estimator));
-    const std::string name = std::filesystem::path(arguments.scene.file).stem().string();
-    Window window(state.settings.size, !arguments.frames, printable(name, MAX_NAME_BYTES));
+// A file that was dropped onto the window, which waits for it.
+Opened open_dropped(const ViewArguments& arguments, Window& window, const std::string& file) {
+    const std::string name = std::filesystem::path(file).filename().string();
+    window.set_title("loading " + printable(name, MAX_NAME_BYTES));
+    Scene scene = load_quietly(file, arguments.rendering.loading);
+    print_warnings(scene.warnings);
+    return opened_file(arguments, file, std::move(scene));
+}
+
+ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
+    const RenderingOptions& rendering = arguments.rendering;
+    std::optional<Opened> next = open_first(arguments);
+    Window window(next->state.settings.size, !arguments.frames, printable(next->name, MAX_NAME_BYTES));
     vk::Instance::Options instance_wishes = instance_options();
     instance_wishes.extensions = window.instance_extensions();
     const vk::Instance instance(instance_wishes);
@@ -121,19 +163,33 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     const std::shared_ptr<Denoiser> denoiser = arguments.denoising.make(
         [&denoising_device]() -> const vk::Device& { return denoising_device.open(); });
     const os::Interrupts interrupts;
+    ViewerOptions options{.device = device,
+                          .pipeline_cache_folder = pipeline_cache_folder(),
+                          .name = {},
+                          .command_line = command_line,
+                          .target = arguments.frames.value_or(rendering.sampling.spp.value_or(MAX_SPP)),
+                          .close_at_target = arguments.frames.has_value(),
+                          .start_page = arguments.scene.file.empty(),
+                          .stopped = [&interrupts] { return interrupts.noted(); },
+                          .say = print_note,
+                          .denoiser = denoiser};
     bool complete = false;
-    {
-        Viewer viewer(window, instance, std::move(scene), state,
-                      {.device = device,
-                       .pipeline_cache_folder = pipeline_cache_folder(),
-                       .name = name,
-                       .command_line = command_line,
-                       .target = arguments.frames.value_or(rendering.sampling.spp.value_or(MAX_SPP)),
-                       .close_at_target = arguments.frames.has_value(),
-                       .stopped = [&interrupts] { return interrupts.noted(); },
-                       .say = print_note,
-                       .denoiser = denoiser});
+    while (next) {
+        options.name = next->name;
+        Viewer viewer(window, instance, std::move(next->scene), next->state, options);
+        next.reset();
         complete = viewer.run();
+        while (const std::optional<std::string> file = window.take_dropped()) {
+            if (arguments.frames || window.closing()) break;
+            try {
+                next = open_dropped(arguments, window, *file);
+                options.command_line = command_line + " " + shell_quoted(*file);
+                options.start_page = false;
+            } catch (const Error& error) {
+                viewer.tell(error.what());
+                complete = viewer.run();
+            }
+        }
         Attempts attempts;
         for (const std::string& path : arguments.screenshots) {
             if (complete) attempts.attempt([&] { viewer.save(path); });

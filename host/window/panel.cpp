@@ -14,6 +14,7 @@ namespace candela {
 namespace {
 
 constexpr float WIDTH = 290.0f;          // [pixels]
+constexpr float START_WIDTH = 340.0f;    // Of the start page.
 constexpr float LABEL_WIDTH = 90.0f;     // The part of it for labels.
 constexpr float EXPOSURE_RANGE = 10.0f;  // [EV] to either side.
 constexpr float INTENSITY_RANGE = 100.0f;
@@ -103,14 +104,19 @@ void show_rendering(ViewState& state) {
     }
 }
 
+// Begins the window of Dear ImGui that all of this is in.
+void begin_panel(float width) {
+    ImGui::SetNextWindowPos(ImVec2(8.0f, 8.0f), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(width, 0.0f));
+    ImGui::SetNextWindowBgAlpha(0.75f);
+    ImGui::Begin("candela", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoNav);
+}
+
 }  // namespace
 
 void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& figures,
                 std::span<const Camera> cameras, const Camera& home, bool has_environment) {
-    ImGui::SetNextWindowPos(ImVec2(8.0f, 8.0f), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(WIDTH, 0.0f));
-    ImGui::SetNextWindowBgAlpha(0.75f);
-    ImGui::Begin("candela", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoNav);
+    begin_panel(WIDTH);
     ImGui::PushItemWidth(-LABEL_WIDTH);
     show_figures(figures);
     show_buttons(state, requests);
@@ -127,6 +133,18 @@ void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& fig
     // Last, so that nothing above moves when it appears.
     if (!figures.message.empty()) ImGui::TextWrapped("%s", figures.message.c_str());
     ImGui::PopItemWidth();
+    ImGui::End();
+}
+
+void show_start_page(const ViewFigures& figures) {
+    begin_panel(START_WIDTH);
+    ImGui::TextWrapped(
+        "Drop a scene onto this window: a .glb, .gltf, .obj or .ply file, or a .json of candela's own.");
+    ImGui::Separator();
+    ImGui::TextUnformatted(CONTROLS_HELP);
+    ImGui::Separator();
+    ImGui::TextWrapped("%s", printable(figures.device, MAX_NAME_BYTES).c_str());
+    if (!figures.message.empty()) ImGui::TextWrapped("%s", figures.message.c_str());
     ImGui::End();
 }
 

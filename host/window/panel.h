@@ -1,4 +1,4 @@
-// The viewer's panel: figures, sliders and buttons.
+// The viewer's panel: figures, sliders and buttons; or how to open a scene.
 #pragma once
 
 #include <span>
@@ -11,5 +11,8 @@ namespace candela {
 // `cameras` are the scene's; the ranges of the lens's sliders come from the camera `home`.
 void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& figures,
                 std::span<const Camera> cameras, const Camera& home, bool has_environment);
+
+// Shows in its place what to do without a scene of the user's.
+void show_start_page(const ViewFigures& figures);
 
 }  // namespace candela

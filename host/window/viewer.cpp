@@ -59,7 +59,7 @@ Viewer::Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewSt
 }
 
 bool Viewer::ended() const {
-    return window_.closing() || options_.stopped();
+    return window_.closing() || (window_.dropped() && !options_.close_at_target) || options_.stopped();
 }
 
 bool Viewer::changed_lately() const {

@@ -36,6 +36,7 @@ struct ViewerOptions {
     std::string command_line;       // For the attributes of EXRs.
     uint32_t target = 0;            // Samples per pixel to stop at, above 0.
     bool close_at_target = false;   // Close then, and keep the picture's size regardless of the window's.
+    bool start_page = false;        // The panel says how to open a scene.
     std::function<bool()> stopped;  // Called regularly; returns whether to end.
     std::function<void(const std::string&)> say;  // Gets events, such as "wrote box-1.png".
     std::shared_ptr<Denoiser> denoiser;           // Not null.
@@ -47,15 +48,19 @@ class Viewer {
     // outlive the viewer. Throws Error if that fails.
     Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewState state, ViewerOptions options);
 
-    // Runs until the window is closed, options.stopped() returns true or, with close_at_target, the target is
-    // reached. Returns whether the picture is at rest and has all samples. If the device is lost or out of
-    // memory, reopens it, and a picture at rest continues from its copy on the host, to the same bits. If
-    // Recovery gives up, writes the copy to a file and throws the Error.
+    // Runs until the window is closed, a file is dropped onto it, options.stopped() returns true or, with
+    // close_at_target, the target is reached; another call continues. Returns whether the picture is at rest
+    // and has all samples. If the device is lost or out of memory, reopens it, and a picture at rest
+    // continues from its copy on the host, to the same bits. If Recovery gives up, writes the copy to a file
+    // and throws the Error.
     bool run();
 
     // Writes the current picture: as .png as it is shown, without the panel, or as .exr as by `candela
     // render`. Throws Error if that fails.
     void save(const std::filesystem::path& path);
+
+    // Says it, and shows it in the panel.
+    void tell(const std::string& message);
 
   private:
     bool ended() const;
@@ -80,7 +85,6 @@ class Viewer {
     void save_copy();
     void save_as_asked(const ViewRequests& requests);
     void save_as_next(const std::string& extension, const std::function<void(const std::string&)>& write);
-    void tell(const std::string& message);
 
     Window& window_;
     const vk::Instance& instance_;

@@ -98,7 +98,9 @@ void Viewer::denoise() {
 void Viewer::turn(const Input* input) {
     gui_.begin_turn(input);
     ViewRequests requests = controls_.apply(input, state_, frame_seconds_);
-    if (state_.panel) {
+    if (state_.panel && options_.start_page) {
+        show_start_page(figures_);
+    } else if (state_.panel) {
         show_panel(state_, requests, figures_, scene_.cameras, home_, scene_.environment.has_value());
     }
     gui_.end_turn();

@@ -75,6 +75,10 @@ void Window::watch() {
         window_, [](GLFWwindow* w, double x, double y) { window_of(w).add(WheelInput{vec2(x, y)}); });
     glfwSetWindowFocusCallback(
         window_, [](GLFWwindow* w, int focused) { window_of(w).add(FocusInput{focused != GLFW_FALSE}); });
+    glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
+        if (count > 0) window_of(w).dropped_ = paths[0];
+        window_of(w).activity_ = true;
+    });
     glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { window_of(w).activity_ = true; });
     glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { window_of(w).activity_ = true; });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,6 +44,9 @@ class Window {
     bool take_activity() { return std::exchange(activity_, false); }
     // The input that was read, in order; the caller removes what it has handled.
     std::deque<Input>& inputs() { return inputs_; }
+    // The path of the file that was dropped onto the window last, if one was since take_dropped().
+    const std::optional<std::string>& dropped() const { return dropped_; }
+    std::optional<std::string> take_dropped() { return std::exchange(dropped_, std::nullopt); }
 
     GLFWwindow* handle() const { return window_; }
 
@@ -54,6 +58,7 @@ class Window {
     std::string title_;
     bool activity_ = false;
     std::deque<Input> inputs_;
+    std::optional<std::string> dropped_;
 };
 
 }  // namespace candela

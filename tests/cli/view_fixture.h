@@ -53,12 +53,13 @@ class ViewTest : public CliTest {
                 {"XDG_CACHE_HOME", CANDELA_CACHE}};
     }
 
-    // Starts `candela view` of a scene in the test's folder, where it writes its files. Without a window
-    // manager the window is at the top left of the screen.
+    // Starts `candela view` of a scene, or without one if that is empty, in the test's folder, where it
+    // writes its files. Without a window manager the window is at the top left of the screen.
     Process& view(const Words& arguments, const std::string& scene = CORNELL_BOX,
                   std::map<std::string, std::string> variables = {}) {
         variables.merge(environment());
-        viewer_.emplace(Words{"/usr/bin/env", "-C", file(""), CANDELA_BINARY, "view", scene} + arguments,
+        const Words scenes = scene.empty() ? Words{} : Words{scene};
+        viewer_.emplace(Words{"/usr/bin/env", "-C", file(""), CANDELA_BINARY, "view"} + scenes + arguments,
                         ProcessOptions{.environment = std::move(variables)});
         return *viewer_;
     }
@@ -89,6 +90,11 @@ class ViewTest : public CliTest {
     void wait_for_title(const std::string& expected) const {
         wait_until("the title is \"" + expected + "\"", [&] { return title() == expected; });
     }
+    // Waits until the title says that the scene of that name has that many samples.
+    void wait_for_samples(const std::string& name, int count) const {
+        const std::string begin = name + ": " + std::to_string(count) + " samples per pixel";
+        wait_until("the title begins with \"" + begin + "\"", [&] { return title().starts_with(begin); });
+    }
     // The number of samples in the title; -1 if there is none.
     int samples() const {
         const std::string text = title();
@@ -96,6 +102,14 @@ class ViewTest : public CliTest {
     }
     bool says(const std::string& word) const {
         return title().find(", " + word) != std::string::npos;
+    }
+
+    // Drops a file onto the window.
+    void drop(const std::string& path) const {
+        const ProcessResult result =
+            run_process({"/usr/bin/python3", CANDELA_DROP_FILE, " samples per pixel", path},
+                        ProcessOptions{.environment = environment()});
+        EXPECT_EQ(result.exit_code, 0) << result.err << "(python3-xlib drops files)";
     }
 
     // Presses a key when the window has the keyboard.

@@ -282,6 +282,25 @@ TEST_F(MovingView, ThePictureFollowsAHandThatDoesNotRest) {
     expect_clean_end();
 }
 
+TEST_F(View, FilesDroppedOntoTheStartPageAreScenes) {
+    view({"--size", "80x60", "--spp", "4", "--allow-folder", CANDELA_SCENES}, "");
+    wait_for_samples("candela", 4);
+    drop(write("broken.json", "{"));
+    ASSERT_TRUE(viewer_->wait_for_err("broken.json:1", 1)) << viewer_->err();
+    wait_for_samples("candela", 4);
+    drop(DEPTH_OF_FIELD);
+    wait_for_samples("depth-of-field", 4);
+    const Image first = picture_at_rest("depth-of-field", {80, 60}, 4);
+    expect_same_rgb(first, rendered({"--size", "80x60", "--spp", "4"}, DEPTH_OF_FIELD));
+    drop(write("triangle (1).glb",
+               glb()));  // Onto a scene of the user's, by a name with letters that URIs escape.
+    wait_for_samples("triangle (1)", 4);
+    const Image second = picture_at_rest("triangle (1)", {80, 60}, 4);
+    expect_same_rgb(second, rendered({"--size", "80x60", "--spp", "4"}, file("triangle (1).glb")));
+    EXPECT_CONTAINS(std::get<std::string>(second.attributes.at("candela.commandLine")), "triangle (1).glb'");
+    expect_clean_end();
+}
+
 class ViewUsage : public CliTest {
   protected:
     static void expect_error(const Words& arguments, int code, const std::string& message,
@@ -293,7 +312,7 @@ class ViewUsage : public CliTest {
 };
 
 TEST_F(ViewUsage, OptionsThatDoNotGoTogetherAreNamed) {
-    expect_error({}, 2, "SCENE is required; see candela view --help");
+    expect_error({"--frames", "2"}, 2, "--frames: also name the SCENE that is shown");
     expect_error({CORNELL_BOX, "--frames", "0"}, 2,
                  "--frames: cannot use \"0\"; expected a whole number from 1 to");
     expect_error({CORNELL_BOX, "--crop", "0,0,8,8"}, 2,
