@@ -4,9 +4,13 @@
 #include "vk/check.h"
 #include "vk/device.h"
 #include "vk/live_code.h"
+#include "vk/ways_around.h"
 
 namespace candela::vk {
 namespace {
+
+// Functions of fewer blocks get no way around them: see ways_around.h.
+constexpr uint32_t LEAST_BLOCKS = 10;
 
 void append(std::vector<uint32_t>& words, std::span<const uint32_t> more) {
     words.push_back(uint32_t(more.size()));
@@ -104,7 +108,10 @@ std::shared_ptr<const Program> Programs::find_or_compile(
     if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
     const auto program = std::make_shared<Program>();
     create_layouts(device, bindings, push_constant_size, *program);
-    create_pipeline(device, live_code(spirv, constants), constants, *program);
+    std::vector<uint32_t> code = live_code(spirv, constants);
+    if (device.info().driver_id == VK_DRIVER_ID_GOOGLE_SWIFTSHADER)
+        code = with_ways_around(code, LEAST_BLOCKS);
+    create_pipeline(device, code, constants, *program);
     device.set_name(VK_OBJECT_TYPE_PIPELINE, program->pipeline.get(), name);
     ++compiled_;
     if (programs_.size() == MAX_PROGRAMS) forget();

@@ -1,5 +1,5 @@
-// The parts of a SPIR-V module that live_code.h reads. Ref: Khronos 2023, SPIR-V Specification, version 1.5,
-// sections 2.11 and 3.
+// The parts of a SPIR-V module that live_code.h and ways_around.h read. Ref: Khronos 2023, SPIR-V
+// Specification, version 1.5, sections 2.11 and 3.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +31,7 @@ inline constexpr uint32_t OP_FUNCTION = 54;
 inline constexpr uint32_t OP_FUNCTION_END = 56;
 inline constexpr uint32_t OP_FUNCTION_CALL = 57;
 inline constexpr uint32_t OP_VARIABLE = 59;
+inline constexpr uint32_t OP_LOAD = 61;
 inline constexpr uint32_t OP_DECORATE = 71;
 inline constexpr uint32_t OP_I_ADD = 128;
 inline constexpr uint32_t OP_I_SUB = 130;
@@ -60,9 +61,13 @@ inline constexpr uint32_t OP_LABEL = 248;
 inline constexpr uint32_t OP_BRANCH = 249;
 inline constexpr uint32_t OP_BRANCH_CONDITIONAL = 250;
 inline constexpr uint32_t OP_SWITCH = 251;
+inline constexpr uint32_t OP_RETURN = 253;
+inline constexpr uint32_t OP_RETURN_VALUE = 254;
 inline constexpr uint32_t OP_UNREACHABLE = 255;
 
 inline constexpr uint32_t DECORATION_SPEC_ID = 1;
+inline constexpr uint32_t DECORATION_BUILT_IN = 11;
+inline constexpr uint32_t BUILT_IN_LOCAL_INVOCATION_INDEX = 29;
 inline constexpr uint32_t HEADER_WORDS = 5;
 
 // Its words; the first holds their number and the opcode.

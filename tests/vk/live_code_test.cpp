@@ -1,11 +1,12 @@
-// Kernels without the code that their constants leave out: the validation layer accepts them, and they do the
-// same.
+// Kernels without the code that their constants leave out, and with ways around their functions: the
+// validation layer accepts them, and they do the same.
 #include "vk/live_code.h"
 
 #include "render/kernels.h"
 #include "vk/buffer.h"
 #include "vk/commands.h"
 #include "vk/transfer.h"
+#include "vk/ways_around.h"
 #include "vk_fixture.h"
 
 namespace candela::kernels {
@@ -51,6 +52,29 @@ TEST_F(Vk, KernelsWithoutDeadCodeDoTheSame) {
                 ASSERT_EQ(results[i], constants.control_flow(i / 64, i % 64)) << "function " << i / 64;
         }
     }
+}
+
+TEST_F(Vk, KernelsWithWaysAroundFunctionsDoTheSame) {
+    const Device device(instance_, info_);
+    const auto spirv = kernels::control_flow;
+    const ControlFlow constants{true, false, 3};
+    const std::vector<uint32_t> results = results_of(device, spirv, constants);
+    const std::vector<uint32_t> code = with_ways_around(spirv, 2);
+    EXPECT_GT(code.size(), with_ways_around(spirv, 100).size());
+    EXPECT_EQ(results_of(device, code, constants), results);
+}
+
+TEST(WaysAround, NeedFunctionsOfThatSizeAndTheIndexOfAnInvocation) {
+    const auto spirv = kernels::control_flow;
+    EXPECT_GT(with_ways_around(spirv, 1).size(), spirv.size());
+    EXPECT_EQ(with_ways_around(spirv, 100).size(), spirv.size() + 4);  // A constant that nothing uses.
+    std::vector<uint32_t> without_index(spirv.begin(), spirv.end());
+    constexpr uint32_t BUILT_IN = 11, LOCAL_INVOCATION_INDEX = 29, LOCAL_INVOCATION_ID = 27;
+    for (size_t i = 0; i + 1 < without_index.size(); ++i) {
+        if (without_index[i] == BUILT_IN && without_index[i + 1] == LOCAL_INVOCATION_INDEX)
+            without_index[i + 1] = LOCAL_INVOCATION_ID;
+    }
+    EXPECT_EQ(with_ways_around(without_index, 1), without_index);
 }
 
 // No branch depends on the constants any more, and no function is left that nothing calls.
