@@ -54,10 +54,11 @@ find_path(VOLK_INCLUDE_DIR NAMES volk.c REQUIRED)
 find_path(STB_INCLUDE_DIR NAMES stb_image.h PATH_SUFFIXES stb REQUIRED)
 
 # Flags of all our targets. NaN and infinity are data here: no fast-math anywhere; and the compiler must not fuse
-# multiply and add where the shaders do not, so that CPU references agree with the device bit for bit.
+# multiply and add where the shaders do not, so that CPU references agree with the device bit for bit. Messages name files
+# as in the sources, so that a build in another folder has the same bytes.
 add_library(candela_flags INTERFACE)
 target_compile_options(candela_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-    -ffp-contract=off)
+    -ffp-contract=off -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)
 string(REGEX MATCH "^[0-9]+" compiler_major "${CMAKE_CXX_COMPILER_VERSION}")
 if(CANDELA_WERROR STREQUAL "${CMAKE_CXX_COMPILER_ID}-${compiler_major}")
     target_compile_options(candela_flags INTERFACE -Werror)

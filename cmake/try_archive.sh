@@ -2,7 +2,8 @@
 # Makes the portable archive, twice, which must give the same bytes, and renders from it in a root folder that holds only
 # glibc, the C++ run-time library and lavapipe; prints which versions of the first two it needs, and fails if they are
 # newer than Debian 12's, or if the licence of a library in it is missing. Needs a build with the preset `release`, and
-# root. usage: sh cmake/try_archive.sh
+# root.
+#   usage: sh cmake/try_archive.sh [again]     again: also builds all of it in another folder, to the same bytes
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -21,12 +22,23 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct 2>/dev/null || echo 0)
 export SOURCE_DATE_EPOCH
-for copy in one two; do
-    cpack --config "$build/CPackConfig.cmake" -B "$folder/$copy" >"$folder/cpack.log" ||
-        { cat "$folder/cpack.log"; exit 1; }
-done
+# pack BUILD FOLDER: makes the archive of a build.
+pack() {
+    cpack --config "$1/CPackConfig.cmake" -B "$2" >"$folder/cpack.log" || { cat "$folder/cpack.log"; exit 1; }
+}
+pack "$build" "$folder/one"
+pack "$build" "$folder/two"
 archive=$(ls "$folder"/one/candela-*.tar.gz)
 cmp "$archive" "$folder"/two/candela-*.tar.gz
+if [ "${1:-}" = again ]; then
+    mkdir "$folder/sources"
+    git ls-files -z | xargs -0 cp --parents -t "$folder/sources"
+    cmake -S "$folder/sources" --preset release -DCANDELA_VIEW=OFF >/dev/null
+    cmake --build "$folder/sources/build/release" >/dev/null
+    pack "$folder/sources/build/release" "$folder/three"
+    cmp "$archive" "$folder"/three/candela-*.tar.gz
+    echo "built again in another folder: the same bytes"
+fi
 root=$folder/root
 mkdir -p "$root/opt" "$root/tmp" "$root/proc"
 tar -C "$root/opt" -xzf "$archive"
