@@ -54,8 +54,8 @@ find_path(VOLK_INCLUDE_DIR NAMES volk.c REQUIRED)
 find_path(STB_INCLUDE_DIR NAMES stb_image.h PATH_SUFFIXES stb REQUIRED)
 
 # Flags of all our targets. NaN and infinity are data here: no fast-math anywhere; and the compiler must not fuse
-# multiply and add where the shaders do not, so that CPU references agree with the device bit for bit. Messages name files
-# as in the sources, so that a build in another folder has the same bytes.
+# multiply and add where the shaders do not, so that CPU references agree with the device bit for bit. Messages name
+# files as in the sources, so that a build in another folder has the same bytes.
 add_library(candela_flags INTERFACE)
 target_compile_options(candela_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -ffp-contract=off -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)

@@ -1,8 +1,8 @@
 // See ways_around.h.
 #include "vk/ways_around.h"
 
-#include <algorithm>
-#include <iterator>
+#include <cstddef>
+#include <initializer_list>
 #include <map>
 
 #include "vk/spirv.h"
@@ -21,8 +21,7 @@ class Detours {
 
     std::vector<uint32_t> take() {
         size_t at = HEADER_WORDS;
-        for (; at < spirv_.size() && op_of(instruction_at(at)) != OP_FUNCTION;
-             at += instruction_at(at).size())
+        for (; at < spirv_.size() && op_at(at) != OP_FUNCTION; at = behind(at))
             note(instruction_at(at));
         if (index_ == 0 || uint_ == 0 || bool_ == 0) return {spirv_.begin(), spirv_.end()};
         never_ = bound_++;
@@ -38,7 +37,10 @@ class Detours {
     }
 
   private:
+    // The instruction whose first word has that place, and the place behind it.
     Instruction instruction_at(size_t at) const { return spirv_.subspan(at, spirv_[at] >> 16); }
+    size_t behind(size_t at) const { return at + (spirv_[at] >> 16); }
+    uint32_t op_at(size_t at) const { return op_of(instruction_at(at)); }
 
     // An instruction before the first function.
     void note(Instruction i) {
@@ -59,12 +61,12 @@ class Detours {
         uint32_t blocks = 0;
         size_t body = 0;  // After the label and the variables of its first block.
         size_t end = begin;
-        for (; op_of(instruction_at(end)) != OP_FUNCTION_END; end += instruction_at(end).size()) {
-            const uint32_t op = op_of(instruction_at(end));
+        for (; op_at(end) != OP_FUNCTION_END; end = behind(end)) {
+            const uint32_t op = op_at(end);
             if (op == OP_LABEL) ++blocks;
-            if (blocks == 1 && (op == OP_LABEL || op == OP_VARIABLE)) body = end + instruction_at(end).size();
+            if (blocks == 1 && (op == OP_LABEL || op == OP_VARIABLE)) body = behind(end);
         }
-        const size_t after = end + instruction_at(end).size();
+        const size_t after = behind(end);
         if (blocks < least_blocks_ || head[2] == entry_) {
             copy(begin, after);
             return after;
@@ -89,8 +91,8 @@ class Detours {
     }
 
     uint32_t first_label(size_t function) const {
-        while (op_of(instruction_at(function)) != OP_LABEL)
-            function += instruction_at(function).size();
+        while (op_at(function) != OP_LABEL)
+            function = behind(function);
         return instruction_at(function)[1];
     }
 
@@ -100,10 +102,10 @@ class Detours {
     }
     // The same, where what came from block `from` comes from block `to`.
     void copy_inside(size_t begin, size_t end, uint32_t from, uint32_t to) {
-        for (size_t at = begin; at < end; at += instruction_at(at).size()) {
+        for (size_t at = begin; at < end; at = behind(at)) {
             const size_t copied = code_.size();
-            copy(at, at + instruction_at(at).size());
-            if (op_of(instruction_at(at)) != OP_PHI) continue;
+            copy(at, behind(at));
+            if (op_at(at) != OP_PHI) continue;
             for (size_t parent = copied + 4; parent < code_.size(); parent += 2) {
                 if (code_[parent] == from) code_[parent] = to;
             }
